@@ -1,0 +1,82 @@
+#ifndef CLOTH_FLOW_MODEL_H
+#define CLOTH_FLOW_MODEL_H
+
+#include "cloth/base/error.h"
+#include "cloth/mesh/mesh.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* What is to be simulated, as a scene file or a program says it: SI units, right-handed, +y up. Everything is owned by
+ * the model and freed by model_free. Every rank holds the same model. */
+
+struct model_material {
+    char *name;
+    double density;           /* kg/m^2, > 0 */
+    double stretch, shear, bend; /* membrane moduli of springs, N/m, >= 0 */
+    double damping_viscous;   /* kg/s a vertex */
+    double damping_mass;      /* 1/s: a force -damping_mass * m * v */
+    double damping_stiffness; /* s: along each spring, times its k */
+    int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
+};
+
+/* Holds vertices where they start. */
+struct model_pin {
+    enum { MODEL_PIN_VERTICES, MODEL_PIN_NEAREST, MODEL_PIN_BOX } kind;
+    uint32_t n_vertices;
+    uint32_t *vertices;      /* of the cloth's mesh */
+    double point[3];         /* nearest: the vertex nearest to it after the transform, the first of equals */
+    double box[2][3];        /* box: every vertex inside or on it after the transform */
+    int line, column;        /* where the scene says it; 0: not from a file */
+};
+
+/* A constant force on vertices, newton each. */
+struct model_load {
+    uint32_t n_vertices;
+    uint32_t *vertices;
+    double force[3];
+    int line, column;
+};
+
+struct model_cloth {
+    char *name;
+    struct mesh mesh; /* transformed: rest lengths and masses are those of this shape */
+    uint32_t material;
+    double mass_per_vertex; /* kg, replaces density * area where > 0 */
+    double velocity[3];     /* at the start, m/s */
+    uint32_t n_pins, n_loads;
+    struct model_pin *pins;
+    struct model_load *loads;
+};
+
+struct model_plane {
+    double point[3], normal[3]; /* normal of length 1, towards the free side */
+};
+
+enum model_integrator { MODEL_EXPLICIT_EULER, MODEL_IMPLICIT_EULER };
+enum model_stop { MODEL_STOP_RELATIVE, MODEL_STOP_ABSOLUTE, MODEL_STOP_COUNT };
+
+struct model {
+    char *name; /* of the scene */
+    uint32_t n_materials, n_cloths, n_planes;
+    struct model_material *materials;
+    struct model_cloth *cloths;
+    struct model_plane *planes;
+    double gravity[3]; /* m/s^2 */
+
+    double h;   /* s; time is an integer count of h/1024 */
+    double end; /* s; N = round(end / h) steps */
+    double fps; /* frames a second; frame k is written after the step whose end is nearest to k / fps */
+    enum model_integrator integrator;
+
+    enum model_stop stop;    /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s); count: no test */
+    double tolerance;
+    uint32_t max_iterations; /* count: exactly so many */
+
+    uint32_t grain; /* vertices a block */
+};
+
+/* Frees what the model owns and clears it. */
+void model_free(struct model *model);
+
+#endif

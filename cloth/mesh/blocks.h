@@ -1,0 +1,33 @@
+#ifndef CLOTH_MESH_BLOCKS_H
+#define CLOTH_MESH_BLOCKS_H
+
+#include "cloth/base/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The cut of the vertices into blocks of about `grain`: METIS' recursive bisection with a fixed seed, so that blocks with
+ * near numbers are near in space and any rank may own a contiguous range; balanced by vertices; inside a block ordered
+ * for locality (reverse Cuthill-McKee of the block's own graph, ties by vertex number). Depends on the graph and the
+ * grain only, never on ranks or threads.
+ *
+ * A vertex has a place: places are numbered block after block. Vertices that are not used have none. */
+enum { MESH_NO_PLACE = 0xffffffffu };
+
+struct mesh_blocks {
+    uint32_t n_blocks, n_vertices, n_places;
+    uint32_t *start;  /* n_blocks + 1: block b has the places start[b] .. start[b + 1] - 1 */
+    uint32_t *vertex; /* n_places: the vertex at a place */
+    uint32_t *place;  /* n_vertices: the place of a vertex, or MESH_NO_PLACE */
+    uint64_t hash;    /* XXH64 of n_blocks, start and vertex as little-endian 32-bit numbers */
+};
+
+/* pairs: n_pairs x 2, the vertices that springs or elements join (any order, repeats allowed); used: one byte a vertex.
+ * grain >= 1; the number of blocks is ceil(used vertices / grain), and no block is empty.
+ * Errors: CLOTH_E_LIBRARY (METIS failed), CLOTH_E_MEMORY. Local, the same result everywhere. */
+int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsigned char *used,
+                    size_t n_pairs, const uint32_t *pairs, uint32_t grain,
+                    struct cloth_error *error);
+void mesh_blocks_free(struct mesh_blocks *blocks);
+
+#endif

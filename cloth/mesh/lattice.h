@@ -1,0 +1,38 @@
+#ifndef CLOTH_MESH_LATTICE_H
+#define CLOTH_MESH_LATTICE_H
+
+#include "cloth/mesh/mesh.h"
+
+/* The springs of a mesh, after the design's rules (docs/design.md):
+ * grids: stretch along rows and columns, half of k on border edges; shear along one or both diagonals of each cell;
+ *   bend over two vertices along rows and columns, half of k along the border; k is the modulus, N/m.
+ * other meshes: every edge of a triangle is stretch with k = modulus * area of its triangles / length^2; the vertices
+ *   opposite an inner edge are joined by bend with k = modulus * area of the two triangles / length^2; shear has none.
+ * lone edges: stretch with k = modulus.
+ * Rest lengths are the distances in the mesh as positioned. Springs with k = 0 are left out. Sorted by (a, b), a < b;
+ * two springs may join the same vertices. */
+enum mesh_spring_kind { MESH_STRETCH, MESH_SHEAR, MESH_BEND };
+
+struct mesh_spring {
+    uint32_t a, b;
+    double stiffness; /* N/m */
+    double length;    /* at rest, m */
+    enum mesh_spring_kind kind;
+};
+
+struct mesh_moduli {
+    double stretch, shear, bend; /* N/m */
+    int both_diagonals;          /* grids only */
+};
+
+struct mesh_lattice {
+    uint32_t n;
+    struct mesh_spring *spring;
+};
+
+/* Errors: CLOTH_E_INPUT for an edge of length zero (names its vertices), CLOTH_E_MEMORY. Local. */
+int mesh_lattice_build(struct mesh_lattice *lattice, const struct mesh *mesh,
+                       const struct mesh_moduli *moduli, struct cloth_error *error);
+void mesh_lattice_free(struct mesh_lattice *lattice);
+
+#endif

@@ -1,0 +1,68 @@
+#ifndef CLOTH_OUTPUT_OUTPUT_H
+#define CLOTH_OUTPUT_OUTPUT_H
+
+#include "cloth/base/error.h"
+#include "cloth/mesh/mesh.h"
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* Frames on disk, on rank 0 only. A folder holds
+ *   cloth.obj      the start, with the input's polygons, one `o` per cloth
+ *   cloth.pc2      PC2 point cache: header, then one float x y z a vertex and frame
+ *   frames.csv     frame,time: the true time of each frame
+ *   scene.json     what a viewer needs: {"fps", "planes": [{"point", "normal"}]}
+ * PC2's count of frames is rewritten after each frame and the file synced, so that a run that is killed leaves whole
+ * files up to the last finished frame. */
+struct output_frames;
+
+struct output_setup {
+    const char *folder; /* made if missing */
+    size_t n_meshes;
+    const struct mesh *const *meshes; /* input meshes at their start; read during output_open only */
+    const char *const *names;         /* n_meshes */
+    double fps;
+    size_t n_planes;
+    const double (*planes)[6]; /* n_planes x (point, normal) */
+};
+
+/* Opens a folder for frames; files of an earlier run in it are replaced. */
+int output_open(struct output_frames **frames, const struct output_setup *setup,
+                struct cloth_error *error);
+
+/* Appends a frame: position is (all vertices) x 3, metres. Has the form of flow_output.frame, context = frames. */
+int output_frame(void *context, uint64_t frame, double time, const double *position,
+                 struct cloth_error *error);
+
+/* Closes; *frames becomes NULL. */
+int output_close(struct output_frames **frames, struct cloth_error *error);
+
+/* Reads a folder back (viewer, tests). */
+struct output_cache {
+    struct mesh mesh;   /* of cloth.obj */
+    uint64_t n_frames;
+    double *time;       /* n_frames, s */
+    double fps;
+    size_t n_planes;
+    double (*planes)[6];
+    FILE *pc2;
+};
+int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error);
+/* Reads one frame: n_vertices x 3 doubles into position. */
+int output_cache_frame(struct output_cache *cache, uint64_t frame, double *position,
+                       struct cloth_error *error);
+void output_cache_close(struct output_cache *cache);
+
+/* A flat JSON object, written whole or not at all (a temporary name, then renamed). Keys in the order they are added;
+ * NaN and infinities become null. */
+struct output_report;
+int output_report_new(struct output_report **report, struct cloth_error *error);
+void output_report_text(struct output_report *report, const char *key, const char *value);
+void output_report_number(struct output_report *report, const char *key, double value);
+void output_report_integer(struct output_report *report, const char *key, uint64_t value);
+void output_report_null(struct output_report *report, const char *key);
+int output_report_write(struct output_report *report, const char *path, struct cloth_error *error);
+void output_report_free(struct output_report *report);
+
+#endif

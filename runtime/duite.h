@@ -1,0 +1,227 @@
+#ifndef DUITE_H
+#define DUITE_H
+
+/* duite: tasks that declare what they read and write, on threads and MPI ranks.
+ *
+ * A program makes shared objects, lists its kernels (a body and the access modes of its parameters) and forks
+ * tasks. The runtime derives the dependences from the accesses in fork order, runs tasks on its workers as they
+ * become ready, and moves objects between ranks as the accesses need. The result is the one of running the
+ * tasks one after the other in fork order, to the last bit, for any number of ranks and threads.
+ *
+ * Every rank runs the same program and forks the same tasks in the same order; a task runs on one rank.
+ *
+ * Calls marked "collective" are made by all ranks in the same order; "local" calls concern this rank only.
+ * Forking and everything that changes objects is done by the main thread.
+ *
+ * Every call returns DUITE_OK or a code; duite_message() then has the sentence. A failed fork, new, set, hint or
+ * free does nothing, and its error is returned once more by the next get, wait or stop: a program may check
+ * only these. The library never exits or aborts. */
+
+#include <mpi.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Codes. Positive codes belong to the bodies of the program and are passed on as they are. */
+enum {
+    DUITE_OK = 0,
+    DUITE_E_ARGUMENT = -1,  /* an argument that makes no sense: NULL, unknown type, too large */
+    DUITE_E_MEMORY = -2,    /* out of memory */
+    DUITE_E_OBJECT = -3,    /* no such object: never made, or already freed */
+    DUITE_E_KERNEL = -4,    /* a kernel that was not listed at start, or one that is malformed */
+    DUITE_E_ACCESS = -5,    /* number of objects or type does not fit the kernel; one object twice in a task */
+    DUITE_E_MPI = -6,       /* an MPI call failed, or MPI gives less thread support than SERIALIZED */
+    DUITE_E_DIFFERENT = -7, /* the ranks run different programs: other kernels, forks or options */
+    DUITE_E_STATE = -8,     /* a call that is not allowed here: from a task's body, or from another thread */
+    DUITE_E_NOT_FREED = -9, /* stop found objects that were not freed */
+    DUITE_E_SYSTEM = -10    /* threads, topology: the operating system refused */
+};
+
+/* The sentence of the last call of this thread that failed; never NULL. Valid until the next failure. Local. */
+const char *duite_message(void);
+
+/* What a code means, in a few words; for codes of bodies "error of the program". Local. */
+const char *duite_code_text(int code);
+
+typedef struct duite duite; /* a running runtime */
+
+/* Names a shared object: a value, freely copied, the same on all ranks. {0, 0} names none. */
+typedef struct duite_object {
+    uint32_t slot, generation;
+} duite_object;
+
+/* Element types of objects. */
+typedef enum duite_type {
+    DUITE_BYTE = 1, /* bytes without arithmetic: cannot be accumulated into */
+    DUITE_I32,
+    DUITE_I64,
+    DUITE_F32,
+    DUITE_F64
+} duite_type;
+
+/* How a task uses a parameter. */
+typedef enum duite_mode {
+    DUITE_NONE = 0, /* ends a list of modes */
+    DUITE_R,        /* reads */
+    DUITE_W,        /* overwrites the whole object; finds unspecified bytes */
+    DUITE_RW,       /* reads and writes */
+    DUITE_CW        /* accumulates: finds zeros, and what it leaves is added to the object (see duite_fork) */
+} duite_mode;
+
+/* ---- Kernels ---------------------------------------------------------------------------------------- */
+
+typedef struct duite_param {
+    void *data;   /* 64-byte aligned; const under DUITE_R; dies with the body */
+    size_t count; /* elements */
+} duite_param;
+
+/* What a body is given. */
+typedef struct duite_call {
+    const void *args;         /* the copy of the arguments made at the fork; NULL if the kernel has none */
+    void *context;            /* as given at start */
+    const duite_param *param; /* n_params of them, in the order of the fork */
+    size_t n_params;
+    int rank;        /* where the task runs */
+    unsigned worker; /* 0 is the main thread */
+    struct duite_call_private *own;
+} duite_call;
+
+/* Parameter i of a call as elements of a C type, for reading and for writing. */
+#define duite_in(call, i, type) ((const type *)(call)->param[i].data)
+#define duite_out(call, i, type) ((type *)(call)->param[i].data)
+#define duite_count(call, i) ((call)->param[i].count)
+
+/* A task's body. Returns 0, or a positive code of the program: then everything the task writes is poisoned,
+ * tasks that read it do not run and poison what they write in turn, and the next duite_wait, or duite_get of
+ * something poisoned, returns the code on all ranks. Bodies may not call duite_ functions but duite_fail. */
+typedef int duite_body(const duite_call *call);
+
+/* Gives the failure of a body its sentence (printf form, at most 200 bytes are kept). Returns code. */
+int duite_fail(const duite_call *call, int code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+enum { DUITE_MAX_ACCESS = 16 };
+
+/* A kernel: constant, alive from start to stop, listed at start in the same order on every rank. */
+typedef struct duite_kernel {
+    const char *name;
+    duite_body *body;
+    duite_mode access[DUITE_MAX_ACCESS]; /* modes of the first parameters, ended by DUITE_NONE */
+    duite_mode rest;                     /* mode of any number of further ones; DUITE_NONE: none allowed */
+    size_t args_size;                    /* bytes of arguments, copied at the fork; no pointers inside */
+} duite_kernel;
+
+/* ---- Start and stop --------------------------------------------------------------------------------- */
+
+struct duite_scheduler; /* duite_policy.h */
+struct duite_mapping;
+
+typedef struct duite_options {
+    MPI_Comm comm;                      /* who takes part; duplicated. Default MPI_COMM_WORLD */
+    const duite_kernel *const *kernels; /* ended by NULL */
+    void *context;                      /* given to every body; may differ between ranks */
+    unsigned threads;                   /* workers of this rank, the main thread among them; 0: its share of the cores */
+    const struct duite_scheduler *scheduler; /* default: steal */
+    const struct duite_mapping *mapping;     /* default: metis */
+    uint64_t seed;                      /* of everything random in policies. Default 1 */
+    double spin_seconds;                /* how long an idle worker spins before it sleeps. Default 100e-6 */
+    int bind;                           /* bind workers to cores where the rank owns enough. Default 1 */
+} duite_options;
+
+duite_options duite_options_default(void);
+
+/* The built-in policies by name; NULL if there is none of that name. Names: ended by NULL. Local. */
+const struct duite_scheduler *duite_scheduler_find(const char *name);
+const struct duite_mapping *duite_mapping_find(const char *name);
+const char *const *duite_scheduler_names(void);
+const char *const *duite_mapping_names(void);
+
+/* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. Collective over comm.
+ * On failure *rt is NULL on all ranks. */
+int duite_start(duite **rt, const duite_options *options);
+
+/* Waits for all tasks, ends the workers and frees everything; finalises MPI if start initialised it. *rt becomes
+ * NULL whatever is returned. Returns the error that a wait would, or DUITE_E_NOT_FREED. Collective. */
+int duite_stop(duite **rt);
+
+/* This rank, the number of ranks, the workers of this rank. Local. */
+int duite_rank(const duite *rt);
+int duite_ranks(const duite *rt);
+unsigned duite_threads(const duite *rt);
+
+/* ---- Shared objects --------------------------------------------------------------------------------- */
+
+/* Makes an object of count elements, all zero. Collective; no communication. At most 2 GiB with several ranks. */
+int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
+
+/* Frees an object after the last earlier access; `object` names nothing afterwards. Collective. */
+int duite_free(duite *rt, duite_object object);
+
+/* Overwrites the object, in fork order, with a copy of `values` (count elements, the same on every rank). */
+int duite_set(duite *rt, duite_object object, const void *values);
+
+/* Copies the object, as the tasks forked so far leave it, into `values` (count elements) on every rank; returns
+ * when it is there. Later forks wait for this call only. Collective. */
+int duite_get(duite *rt, duite_object object, void *values);
+
+/* The same on one rank only; on the others `values` is ignored and the call returns at once. Collective. */
+int duite_get_at(duite *rt, duite_object object, int rank, void *values);
+
+/* Tells mappings about the object: its share of work, and what it exchanges (weights >= 0) with n neighbours.
+ * Means something before the first fork that comes after the object was made. Collective. */
+int duite_hint(duite *rt, duite_object object, double weight, size_t n, const duite_object *neighbours,
+               const double *edge_weights);
+
+/* The object gets the home of `leader`, whatever the mapping; same moment as duite_hint. Collective. */
+int duite_follow(duite *rt, duite_object object, duite_object leader);
+
+/* The rank that keeps the object, as the mapping decided; -1 for no such object. Collective, since it settles the
+ * homes of all objects made so far. */
+int duite_home(duite *rt, duite_object object);
+
+/* ---- Tasks ------------------------------------------------------------------------------------------ */
+
+/* Forks a task on n objects, in the order of the kernel's modes. It runs where its first w or rw object lives,
+ * else its first r object, else on rank 0. Contributions (cw) between two other accesses of an object are
+ * summed in fork order by a fixed tree: complete subtrees as in a binary counter, the rest folded from the
+ * right; then the sum is added to the object. Collective; returns at once. */
+int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
+               const duite_object *objects);
+
+/* The same on a rank of the caller's choice: for kernels with side effects, such as files. */
+int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
+                  const duite_object *objects);
+
+/* duite_fork with the objects written out: DUITE_FORK(rt, &DOT, NULL, x, y, sum). */
+#define DUITE_FORK(rt, kernel, args, ...)                                                              \
+    duite_fork(rt, kernel, args, sizeof((duite_object[]){__VA_ARGS__}) / sizeof(duite_object),         \
+               (duite_object[]){__VA_ARGS__})
+
+/* Waits for all tasks forked so far, on all ranks. Returns the error of the task that is first in fork order
+ * among those that failed since the last wait, the same on all ranks. Collective. */
+int duite_wait(duite *rt);
+
+/* ---- Counters --------------------------------------------------------------------------------------- */
+
+typedef struct duite_counters {
+    uint64_t tasks;    /* bodies run */
+    uint64_t placed;   /* tasks put in a queue by the scheduler */
+    uint64_t stolen;   /* tasks taken from another worker's queue */
+    uint64_t chained;  /* tasks run directly after the one that made them ready */
+    uint64_t messages; /* sent between ranks */
+    uint64_t bytes;    /* sent between ranks, headers included */
+    double busy;       /* seconds in bodies, over all workers */
+    double idle;       /* seconds without a task, over all workers, while the main program waited */
+} duite_counters;
+
+/* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective. */
+int duite_count_all(duite *rt, duite_counters *counters);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

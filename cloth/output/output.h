@@ -13,15 +13,16 @@
  *   cloth.pc2      PC2 point cache: header, then one float x y z a vertex and frame
  *   frames.csv     frame,time: the true time of each frame
  *   scene.json     what a viewer needs: {"fps", "planes": [{"point", "normal"}]}
- * PC2's count of frames is rewritten after each frame and the file synced, so that a run that is killed leaves whole
- * files up to the last finished frame. */
+ * PC2's count of frames is rewritten after each frame and the file synced, so that a run that is
+ * killed leaves whole files up to the last finished frame. */
 struct output_frames;
 
 struct output_setup {
     const char *folder; /* made if missing */
     size_t n_meshes;
-    const struct mesh *const *meshes; /* input meshes at their start; read during output_open only */
-    const char *const *names;         /* n_meshes */
+    const struct mesh *const
+        *meshes;              /* input meshes at their start; read during output_open only */
+    const char *const *names; /* n_meshes */
     double fps;
     size_t n_planes;
     const double (*planes)[6]; /* n_planes x (point, normal) */
@@ -31,7 +32,8 @@ struct output_setup {
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error);
 
-/* Appends a frame: position is (all vertices) x 3, metres. Has the form of flow_output.frame, context = frames. */
+/* Appends a frame: position is (all vertices) x 3, metres. Has the form of flow_output.frame,
+ * context = frames. */
 int output_frame(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
 
@@ -40,9 +42,9 @@ int output_close(struct output_frames **frames, struct cloth_error *error);
 
 /* Reads a folder back (viewer, tests). */
 struct output_cache {
-    struct mesh mesh;   /* of cloth.obj */
+    struct mesh mesh; /* of cloth.obj */
     uint64_t n_frames;
-    double *time;       /* n_frames, s */
+    double *time; /* n_frames, s */
     double fps;
     size_t n_planes;
     double (*planes)[6];
@@ -54,8 +56,8 @@ int output_cache_frame(struct output_cache *cache, uint64_t frame, double *posit
                        struct cloth_error *error);
 void output_cache_close(struct output_cache *cache);
 
-/* A flat JSON object, written whole or not at all (a temporary name, then renamed). Keys in the order they are added;
- * NaN and infinities become null. */
+/* A flat JSON object, written whole or not at all (a temporary name, then renamed). Keys in the
+ * order they are added; NaN and infinities become null. */
 struct output_report;
 int output_report_new(struct output_report **report, struct cloth_error *error);
 void output_report_text(struct output_report *report, const char *key, const char *value);

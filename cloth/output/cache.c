@@ -1,0 +1,227 @@
+/* A folder is believed as far as PC2's count goes: frames beyond it were never finished. All that
+ * is counted must be there, or the folder is refused. */
+#include "cloth/output/files/files.h"
+#include "cloth/output/files/json.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* Our own scene.json and index are small; what is larger is not ours. */
+enum { MAX_TEXT = 1 << 30 };
+
+static int open_fail(struct cloth_error *error, const char *path)
+{
+    const char *reason = strerror(errno);
+    return cloth_fail(error, CLOTH_E_INPUT, "cannot read %s: %s", path, reason);
+}
+
+/* The whole of a text file, ended by '\0'. */
+static int read_text(const char *path, char **text, struct cloth_error *error)
+{
+    FILE *file = fopen(path, "re");
+    if (!file)
+        return open_fail(error, path);
+    int code = 0;
+    struct stat status;
+    size_t size = fstat(fileno(file), &status) == 0 ? (size_t)status.st_size : 0;
+    *text = size < MAX_TEXT ? malloc(size + 1) : NULL;
+    if (!*text) {
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory to read %s", path);
+    } else {
+        size_t n = fread(*text, 1, size, file);
+        (*text)[n] = '\0';
+        if (ferror(file))
+            code = output_fail(error, "read", path);
+    }
+    fclose(file);
+    return code;
+}
+
+static void read_plane(struct output_cache *cache, struct output_json *json)
+{
+    double(*grown)[6] = realloc(cache->planes, (cache->n_planes + 1) * sizeof *grown);
+    if (!grown) {
+        output_json_fail(json, "less planes than fit in memory");
+        return;
+    }
+    cache->planes = grown;
+    double *plane = grown[cache->n_planes++];
+    memset(plane, 0, sizeof *grown);
+    output_json_expect(json, '{');
+    if (!output_json_key(json, "point"))
+        output_json_fail(json, "\"point\"");
+    output_json_vector(json, plane);
+    output_json_expect(json, ',');
+    if (!output_json_key(json, "normal"))
+        output_json_fail(json, "\"normal\"");
+    output_json_vector(json, plane + 3);
+    output_json_expect(json, '}');
+    if (!(plane[3] * plane[3] + plane[4] * plane[4] + plane[5] * plane[5] > 0))
+        output_json_fail(json, "a normal that is not zero");
+}
+
+static void parse_scene(struct output_cache *cache, struct output_json *json)
+{
+    output_json_expect(json, '{');
+    if (!output_json_key(json, "fps"))
+        output_json_fail(json, "\"fps\"");
+    cache->fps = output_json_double(json);
+    output_json_expect(json, ',');
+    if (!output_json_key(json, "planes"))
+        output_json_fail(json, "\"planes\"");
+    output_json_expect(json, '[');
+    if (!output_json_take(json, ']')) {
+        do
+            read_plane(cache, json);
+        while (output_json_take(json, ','));
+        output_json_expect(json, ']');
+    }
+    output_json_expect(json, '}');
+    output_json_expect(json, '\0');
+}
+
+static int read_scene(struct output_cache *cache, const char *path, struct cloth_error *error)
+{
+    char *text = NULL;
+    int code = read_text(path, &text, error);
+    if (!code) {
+        struct output_json json = {.path = path, .text = text, .next = text, .error = error};
+        parse_scene(cache, &json);
+        code = json.failed ? error ? error->code : CLOTH_E_INPUT : 0;
+    }
+    free(text);
+    return code;
+}
+
+static int read_cache(struct output_cache *cache, const char *path, struct cloth_error *error)
+{
+    cache->pc2 = fopen(path, "rbe");
+    if (!cache->pc2)
+        return open_fail(error, path);
+    unsigned char header[OUTPUT_PC2_HEADER];
+    uint32_t n_points, n_frames;
+    if (fread(header, sizeof header, 1, cache->pc2) != 1 ||
+        !output_pc2_parse(header, &n_points, &n_frames))
+        return cloth_fail(error, CLOTH_E_INPUT, "%s is not a point cache (PC2, version 1)", path);
+    if (n_points != cache->mesh.n_vertices)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s has %u points, cloth.obj beside it %u", path,
+                          n_points, cache->mesh.n_vertices);
+    struct stat status;
+    uint64_t needed = OUTPUT_PC2_HEADER + (uint64_t)12 * n_points * n_frames;
+    if (fstat(fileno(cache->pc2), &status) != 0)
+        return output_fail(error, "read", path);
+    if ((uint64_t)status.st_size < needed)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s is cut off: its header counts %u frames (%ju bytes), it has %ju",
+                          path, n_frames, (uintmax_t)needed, (uintmax_t)status.st_size);
+    cache->n_frames = n_frames;
+    return 0;
+}
+
+/* One line "frame,time" of the index; the frames count up from 0. */
+static bool parse_line(const char **next, uint64_t frame, double *time)
+{
+    char *end = NULL;
+    if (**next < '0' || **next > '9' || strtoull(*next, &end, 10) != frame || *end != ',')
+        return false;
+    const char *start = end + 1;
+    *time = strtod(start, &end);
+    if (end == start || *end != '\n' || !isfinite(*time))
+        return false;
+    *next = end + 1;
+    return true;
+}
+
+static int read_index(struct output_cache *cache, const char *path, struct cloth_error *error)
+{
+    static const char TITLE[] = "frame,time\n";
+    char *text = NULL;
+    int code = read_text(path, &text, error);
+    if (code)
+        goto out;
+    cache->time = calloc(cache->n_frames + 1, sizeof *cache->time);
+    if (!cache->time) {
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory to read %s", path);
+        goto out;
+    }
+    const char *next = text + strlen(TITLE);
+    if (strncmp(text, TITLE, strlen(TITLE)) != 0)
+        code = cloth_fail(error, CLOTH_E_INPUT, "%s:1: expected \"frame,time\"", path);
+    for (uint64_t i = 0; i < cache->n_frames && !code; i++)
+        if (!parse_line(&next, i, &cache->time[i]))
+            code = cloth_fail(error, CLOTH_E_INPUT, "%s:%ju: expected frame %ju and its time", path,
+                              (uintmax_t)(i + 2), (uintmax_t)i);
+out:
+    free(text);
+    return code;
+}
+
+static int read_mesh(struct output_cache *cache, const char *path, struct cloth_error *error)
+{
+    return mesh_read_obj(&cache->mesh, path, error);
+}
+
+int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error)
+{
+    static const struct {
+        const char *name;
+        int (*read)(struct output_cache *, const char *, struct cloth_error *);
+    } part[] = {{"cloth.obj", read_mesh},
+                {"cloth.pc2", read_cache},
+                {"frames.csv", read_index},
+                {"scene.json", read_scene}};
+    memset(cache, 0, sizeof *cache);
+    struct stat status;
+    if (stat(folder, &status) != 0)
+        return open_fail(error, folder);
+    int code = 0;
+    for (size_t i = 0; i < sizeof part / sizeof *part && !code; i++) {
+        char *path = output_path(folder, part[i].name, "");
+        code = path ? part[i].read(cache, path, error)
+                    : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
+        free(path);
+    }
+    if (code)
+        output_cache_close(cache);
+    return code;
+}
+
+/* Floats come in lumps, so that a frame of any size needs little memory besides the caller's. */
+int output_cache_frame(struct output_cache *cache, uint64_t frame, double *position,
+                       struct cloth_error *error)
+{
+    if (frame >= cache->n_frames)
+        return cloth_fail(error, CLOTH_E_INPUT, "there is no frame %ju: the run has %ju frames",
+                          (uintmax_t)frame, (uintmax_t)cache->n_frames);
+    size_t n = (size_t)3 * cache->mesh.n_vertices;
+    if (fseeko(cache->pc2, (off_t)(OUTPUT_PC2_HEADER + 4 * (uint64_t)n * frame), SEEK_SET) != 0)
+        return cloth_fail(error, CLOTH_E_IO, "cannot read frame %ju: %s", (uintmax_t)frame,
+                          strerror(errno));
+    unsigned char lump[4 * 1024];
+    for (size_t done = 0; done < n;) {
+        size_t some = n - done < 1024 ? n - done : 1024;
+        if (fread(lump, 4, some, cache->pc2) != some)
+            return cloth_fail(error, CLOTH_E_IO, "cannot read frame %ju: %s", (uintmax_t)frame,
+                              ferror(cache->pc2) ? strerror(errno) : "the file ends early");
+        for (size_t i = 0; i < some; i++, done++) {
+            position[done] = (double)output_get_float(lump + 4 * i);
+            if (!isfinite(position[done]))
+                return cloth_fail(error, CLOTH_E_INPUT, "frame %ju: vertex %zu is not finite",
+                                  (uintmax_t)frame, done / 3);
+        }
+    }
+    return 0;
+}
+
+void output_cache_close(struct output_cache *cache)
+{
+    mesh_free(&cache->mesh);
+    free(cache->time);
+    free(cache->planes);
+    if (cache->pc2)
+        fclose(cache->pc2);
+    memset(cache, 0, sizeof *cache);
+}

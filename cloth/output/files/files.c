@@ -1,0 +1,109 @@
+/* Nothing here leaves half a file under its final name: a file is filled, synced and only then
+ * renamed by its caller. */
+#include "cloth/output/files/files.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+char *output_path(const char *folder, const char *name, const char *suffix)
+{
+    char *path = NULL;
+    return asprintf(&path, "%s/%s%s", folder, name, suffix) < 0 ? NULL : path;
+}
+
+int output_fail(struct cloth_error *error, const char *what, const char *path)
+{
+    const char *reason = strerror(errno);
+    return cloth_fail(error, CLOTH_E_IO, "cannot %s %s: %s", what, path, reason);
+}
+
+static int make_one(const char *path)
+{
+    struct stat status;
+    if (mkdir(path, 0777) == 0)
+        return 0;
+    if (errno != EEXIST)
+        return -1;
+    if (stat(path, &status) != 0)
+        return -1;
+    if (S_ISDIR(status.st_mode))
+        return 0;
+    errno = ENOTDIR;
+    return -1;
+}
+
+int output_make_folder(const char *folder, struct cloth_error *error)
+{
+    char *path = strdup(folder);
+    if (!path)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to make the folder %s", folder);
+    int bad = 0;
+    for (char *end = path; *end && !bad; end++) {
+        if (*end != '/' || end == path)
+            continue;
+        *end = '\0';
+        bad = make_one(path);
+        *end = '/';
+    }
+    bad = bad || make_one(path);
+    int reason = errno;
+    free(path);
+    if (!bad)
+        return 0;
+    int code = reason == ENOSPC || reason == EIO || reason == EDQUOT ? CLOTH_E_IO : CLOTH_E_INPUT;
+    return cloth_fail(error, code, "cannot make the folder %s: %s", folder, strerror(reason));
+}
+
+int output_write_at(int file, const void *bytes, size_t n, uint64_t offset)
+{
+    const char *next = bytes;
+    while (n > 0) {
+        ssize_t done = pwrite(file, next, n, (off_t)offset);
+        if (done < 0 && errno == EINTR)
+            continue;
+        if (done == 0)
+            errno = ENOSPC;
+        if (done <= 0)
+            return -1;
+        next += done;
+        n -= (size_t)done;
+        offset += (uint64_t)done;
+    }
+    return 0;
+}
+
+int output_write_file(const char *path, int (*fill)(FILE *file, const void *what), const void *what,
+                      struct cloth_error *error)
+{
+    FILE *file = fopen(path, "we");
+    if (!file)
+        return output_fail(error, "write", path);
+    int bad = fill(file, what) != 0 || fflush(file) != 0 || ferror(file);
+    /* Pipes and terminals cannot be synced, and need not be. */
+    bad = bad || (fsync(fileno(file)) != 0 && errno != EINVAL && errno != EROFS);
+    int reason = errno;
+    if (fclose(file) != 0 && !bad) {
+        bad = 1;
+        reason = errno;
+    }
+    if (!bad)
+        return 0;
+    struct stat status;
+    if (stat(path, &status) == 0 && S_ISREG(status.st_mode))
+        unlink(path);
+    errno = reason;
+    return output_fail(error, "write", path);
+}
+
+void output_sync_folder(const char *folder)
+{
+    int handle = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (handle < 0)
+        return;
+    fsync(handle);
+    close(handle);
+}

@@ -1,0 +1,38 @@
+#ifndef CLOTH_OUTPUT_FILES_JSON_H
+#define CLOTH_OUTPUT_FILES_JSON_H
+
+#include "cloth/base/error.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+/* The little JSON that reports and scene.json need. Numbers are printed in the "C" locale, in which
+ * a program starts. */
+
+/* A string in quotes, escaped; bytes that are not UTF-8 become U+FFFD. */
+void output_json_string(FILE *file, const char *text);
+
+/* 17 digits, which read back as the same double; null for NaN and infinities. */
+void output_json_number(FILE *file, double value);
+
+/* A reader of text that ends with '\0'. After the first failure all functions return false or 0 and
+ * `error` says "PATH:LINE: what was expected". */
+struct output_json {
+    const char *path, *text, *next;
+    struct cloth_error *error;
+    bool failed;
+};
+
+/* Takes the character if it comes next after white space. */
+bool output_json_take(struct output_json *json, char c);
+/* The same, but it is an error if it does not come. */
+bool output_json_expect(struct output_json *json, char c);
+/* Takes "name" and the colon after it, if they come next. */
+bool output_json_key(struct output_json *json, const char *name);
+double output_json_double(struct output_json *json);
+/* [x, y, z] */
+void output_json_vector(struct output_json *json, double vector[3]);
+/* Fails with "expected WHAT". */
+void output_json_fail(struct output_json *json, const char *what);
+
+#endif

@@ -1,0 +1,61 @@
+/* The OBJ of a folder: vertices in the order of the input meshes, cloth after cloth, so that vertex
+ * i of the file is point i of the cache; faces are the input's polygons. */
+#include "cloth/output/files/files.h"
+
+#include <ctype.h>
+
+/* Where a mesh's numbers begin in the file, counted from 1 as OBJ does. */
+struct start {
+    uint64_t vertex, uv;
+};
+
+static void put_name(FILE *file, const char *name)
+{
+    fputs("o ", file);
+    for (; *name; name++)
+        fputc(iscntrl((unsigned char)*name) ? '_' : *name, file);
+    fputc('\n', file);
+}
+
+static void put_vertices(FILE *file, const struct mesh *mesh)
+{
+    for (size_t v = 0; v < mesh->n_vertices; v++) {
+        const double *x = mesh->position + 3 * v;
+        fprintf(file, "v %.17g %.17g %.17g\n", x[0], x[1], x[2]);
+    }
+    for (size_t v = 0; mesh->uv && v < mesh->n_vertices; v++)
+        fprintf(file, "vt %.17g %.17g\n", mesh->uv[2 * v], mesh->uv[2 * v + 1]);
+}
+
+static void put_faces(FILE *file, const struct mesh *mesh, struct start start)
+{
+    for (size_t f = 0; f < mesh->n_faces; f++) {
+        fputc('f', file);
+        for (size_t c = mesh->face_start[f]; c < mesh->face_start[f + 1]; c++) {
+            uint64_t v = mesh->face_corner[c];
+            if (mesh->uv)
+                fprintf(file, " %ju/%ju", (uintmax_t)(start.vertex + v), (uintmax_t)(start.uv + v));
+            else
+                fprintf(file, " %ju", (uintmax_t)(start.vertex + v));
+        }
+        fputc('\n', file);
+    }
+    for (size_t e = 0; e < mesh->n_lone_edges; e++)
+        fprintf(file, "l %ju %ju\n", (uintmax_t)(start.vertex + mesh->lone_edge[2 * e]),
+                (uintmax_t)(start.vertex + mesh->lone_edge[2 * e + 1]));
+}
+
+int output_fill_obj(FILE *file, const void *what)
+{
+    const struct output_setup *setup = what;
+    struct start start = {1, 1};
+    for (size_t i = 0; i < setup->n_meshes && !ferror(file); i++) {
+        const struct mesh *mesh = setup->meshes[i];
+        put_name(file, setup->names[i]);
+        put_vertices(file, mesh);
+        put_faces(file, mesh, start);
+        start.vertex += mesh->n_vertices;
+        start.uv += mesh->uv ? mesh->n_vertices : 0;
+    }
+    return ferror(file);
+}

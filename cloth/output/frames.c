@@ -1,0 +1,250 @@
+/* At any moment the folder holds whole frames: PC2's count tells how many, and it is rewritten only
+ * after the floats and the line of the index that it counts are on the disk. Bytes beyond the
+ * counted frames mean nothing; a frame that fails takes its own away again. When a folder is
+ * opened, the cache of an earlier run goes first and the new one comes last, so that cache and mesh
+ * always belong together. */
+#include "cloth/output/files/files.h"
+#include "cloth/output/files/json.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum part { PART_OBJ, PART_SCENE, PART_INDEX, PART_CACHE, N_PARTS };
+static const char *const PART_NAME[N_PARTS] = {"cloth.obj", "scene.json", "frames.csv",
+                                               "cloth.pc2"};
+
+struct output_frames {
+    char *folder;
+    char *path[N_PARTS];
+    int index, cache; /* open files, -1: none */
+    uint32_t n_points, n_frames;
+    uint64_t index_size;  /* bytes of the index that belong to whole frames */
+    unsigned char *bytes; /* of one frame */
+};
+
+static int fill_scene(FILE *file, const void *what)
+{
+    const struct output_setup *setup = what;
+    fputs("{\n  \"fps\": ", file);
+    output_json_number(file, setup->fps);
+    fputs(",\n  \"planes\": [", file);
+    for (size_t i = 0; i < setup->n_planes; i++) {
+        const double *plane = setup->planes[i];
+        fputs(i ? ",\n    {" : "\n    {", file);
+        for (int k = 0; k < 6; k++) {
+            fputs(k == 0 ? "\"point\": [" : k == 3 ? "], \"normal\": [" : ", ", file);
+            output_json_number(file, plane[k]);
+        }
+        fputs("]}", file);
+    }
+    fputs(setup->n_planes ? "\n  ]\n}\n" : "]\n}\n", file);
+    return ferror(file);
+}
+
+static int fill_index(FILE *file, const void *what)
+{
+    (void)what;
+    return fputs("frame,time\n", file) < 0;
+}
+
+static int fill_cache(FILE *file, const void *what)
+{
+    const struct output_frames *frames = what;
+    unsigned char header[OUTPUT_PC2_HEADER];
+    output_pc2_header(header, frames->n_points, 0);
+    return fwrite(header, sizeof header, 1, file) != 1;
+}
+
+/* Writes the new files beside the old ones. */
+static int write_part(const struct output_frames *frames, enum part part, const char *path,
+                      const struct output_setup *setup, struct cloth_error *error)
+{
+    static int (*const fill[N_PARTS])(FILE *, const void *) = {output_fill_obj, fill_scene,
+                                                               fill_index, fill_cache};
+    const void *what = part == PART_CACHE ? (const void *)frames : setup;
+    return output_write_file(path, fill[part], what, error);
+}
+
+static int replace_parts(const struct output_frames *frames, char *const fresh[N_PARTS],
+                         struct cloth_error *error)
+{
+    if (unlink(frames->path[PART_CACHE]) != 0 && errno != ENOENT)
+        return output_fail(error, "replace", frames->path[PART_CACHE]);
+    output_sync_folder(frames->folder);
+    for (int i = 0; i < N_PARTS; i++)
+        if (rename(fresh[i], frames->path[i]) != 0)
+            return output_fail(error, "replace", frames->path[i]);
+    output_sync_folder(frames->folder);
+    return 0;
+}
+
+static int start_files(const struct output_frames *frames, const struct output_setup *setup,
+                       struct cloth_error *error)
+{
+    char *fresh[N_PARTS] = {NULL};
+    int code = 0;
+    for (int i = 0; i < N_PARTS && !code; i++) {
+        fresh[i] = output_path(frames->folder, PART_NAME[i], ".part");
+        code = fresh[i] ? write_part(frames, (enum part)i, fresh[i], setup, error)
+                        : cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
+    }
+    code = code ? code : replace_parts(frames, fresh, error);
+    for (int i = 0; i < N_PARTS; i++) {
+        if (code && fresh[i])
+            unlink(fresh[i]);
+        free(fresh[i]);
+    }
+    return code;
+}
+
+static int open_part(const struct output_frames *frames, enum part part, int *file,
+                     struct cloth_error *error)
+{
+    *file = open(frames->path[part], O_WRONLY | O_CLOEXEC);
+    return *file >= 0 ? 0 : output_fail(error, "write", frames->path[part]);
+}
+
+static int count_points(const struct output_setup *setup, uint32_t *n_points,
+                        struct cloth_error *error)
+{
+    uint64_t n = 0;
+    for (size_t i = 0; i < setup->n_meshes; i++)
+        n += setup->meshes[i]->n_vertices;
+    if (n == 0 || n > INT32_MAX)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s: a point cache holds 1 to 2147483647 vertices, not %ju",
+                          setup->folder, (uintmax_t)n);
+    *n_points = (uint32_t)n;
+    return 0;
+}
+
+static int allocate(struct output_frames *frames, const char *folder, struct cloth_error *error)
+{
+    bool whole = (frames->folder = strdup(folder)) &&
+                 (frames->bytes = malloc((size_t)12 * frames->n_points));
+    for (int i = 0; i < N_PARTS && whole; i++)
+        whole = (frames->path[i] = output_path(folder, PART_NAME[i], ""));
+    return whole ? 0 : cloth_fail(error, CLOTH_E_MEMORY, "no memory for the frames of %s", folder);
+}
+
+static void free_frames(struct output_frames *frames)
+{
+    for (int i = 0; i < N_PARTS; i++)
+        free(frames->path[i]);
+    free(frames->folder);
+    free(frames->bytes);
+    free(frames);
+}
+
+int output_open(struct output_frames **frames, const struct output_setup *setup,
+                struct cloth_error *error)
+{
+    *frames = NULL;
+    struct output_frames *made = calloc(1, sizeof *made);
+    if (!made)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the frames of %s", setup->folder);
+    made->index = made->cache = -1;
+    made->index_size = strlen("frame,time\n");
+    int code = count_points(setup, &made->n_points, error);
+    code = code ? code : allocate(made, setup->folder, error);
+    code = code ? code : output_make_folder(setup->folder, error);
+    code = code ? code : start_files(made, setup, error);
+    code = code ? code : open_part(made, PART_INDEX, &made->index, error);
+    code = code ? code : open_part(made, PART_CACHE, &made->cache, error);
+    if (code) {
+        struct cloth_error ignored = {0};
+        output_close(&made, &ignored);
+        return code;
+    }
+    *frames = made;
+    return 0;
+}
+
+static int encode(struct output_frames *frames, uint64_t frame, const double *position,
+                  struct cloth_error *error)
+{
+    for (size_t i = 0; i < (size_t)3 * frames->n_points; i++) {
+        if (!(fabs(position[i]) <= (double)FLT_MAX))
+            return cloth_fail(error, CLOTH_E_RUN,
+                              "frame %ju: vertex %zu has no finite place; the frame is not written",
+                              (uintmax_t)frame, i / 3);
+        output_put_float(frames->bytes + 4 * i, (float)position[i]);
+    }
+    return 0;
+}
+
+/* The order is what keeps the folder whole: floats, index, both on the disk, then the count. */
+static int write_frame(struct output_frames *frames, const char *line, size_t n,
+                       struct cloth_error *error)
+{
+    size_t size = (size_t)12 * frames->n_points;
+    unsigned char count[4];
+    output_put_u32(count, frames->n_frames + 1);
+    const char *cache = frames->path[PART_CACHE], *index = frames->path[PART_INDEX];
+    if (output_write_at(frames->cache, frames->bytes, size,
+                        OUTPUT_PC2_HEADER + (uint64_t)size * frames->n_frames) != 0 ||
+        fdatasync(frames->cache) != 0)
+        return output_fail(error, "write a frame to", cache);
+    if (output_write_at(frames->index, line, n, frames->index_size) != 0 ||
+        fdatasync(frames->index) != 0)
+        return output_fail(error, "write a frame to", index);
+    if (output_write_at(frames->cache, count, sizeof count, OUTPUT_PC2_COUNT) != 0 ||
+        fdatasync(frames->cache) != 0)
+        return output_fail(error, "count a frame in", cache);
+    return 0;
+}
+
+/* Takes away what a failed frame left beyond the whole ones; a shorter file needs no room. */
+static void forget_frame(const struct output_frames *frames)
+{
+    unsigned char count[4];
+    output_put_u32(count, frames->n_frames);
+    output_write_at(frames->cache, count, sizeof count, OUTPUT_PC2_COUNT);
+    uint64_t whole = OUTPUT_PC2_HEADER + (uint64_t)12 * frames->n_points * frames->n_frames;
+    if (ftruncate(frames->cache, (off_t)whole) == 0)
+        fdatasync(frames->cache);
+    if (ftruncate(frames->index, (off_t)frames->index_size) == 0)
+        fdatasync(frames->index);
+}
+
+int output_frame(void *context, uint64_t frame, double time, const double *position,
+                 struct cloth_error *error)
+{
+    struct output_frames *frames = context;
+    if (frame != frames->n_frames || frame >= INT32_MAX)
+        return cloth_fail(error, CLOTH_E_RUN, "%s: frame %ju came where frame %u was due",
+                          frames->path[PART_CACHE], (uintmax_t)frame, frames->n_frames);
+    int code = encode(frames, frame, position, error);
+    if (code)
+        return code;
+    char line[64];
+    int n = snprintf(line, sizeof line, "%ju,%.17g\n", (uintmax_t)frame, time);
+    code = write_frame(frames, line, (size_t)n, error);
+    if (code) {
+        forget_frame(frames);
+        return code;
+    }
+    frames->n_frames++;
+    frames->index_size += (size_t)n;
+    return 0;
+}
+
+int output_close(struct output_frames **frames, struct cloth_error *error)
+{
+    struct output_frames *gone = *frames;
+    *frames = NULL;
+    if (!gone)
+        return 0;
+    int code = 0;
+    if (gone->index >= 0 && close(gone->index) != 0)
+        code = output_fail(error, "close", gone->path[PART_INDEX]);
+    if (gone->cache >= 0 && close(gone->cache) != 0)
+        code = output_fail(error, "close", gone->path[PART_CACHE]);
+    free_frames(gone);
+    return code;
+}

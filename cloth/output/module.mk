@@ -1,0 +1,11 @@
+libduite_cloth_la_SOURCES += \
+	cloth/output/output.h \
+	cloth/output/frames.c \
+	cloth/output/cache.c \
+	cloth/output/report.c \
+	cloth/output/files/files.h \
+	cloth/output/files/files.c \
+	cloth/output/files/json.h \
+	cloth/output/files/json.c \
+	cloth/output/files/obj.c \
+	cloth/output/files/pc2.c

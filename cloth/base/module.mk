@@ -1,0 +1,1 @@
+libduite_cloth_la_SOURCES += cloth/base/error.c cloth/base/error.h

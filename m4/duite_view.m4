@@ -1,0 +1,16 @@
+dnl What pictures need; optional. duite_view_says names the packages that are missing and what they cost.
+AC_DEFUN([DUITE_VIEW_PART], [
+    PKG_CHECK_MODULES([$1], [$2], [], [duite_view_missing="$duite_view_missing${duite_view_missing:+, }$3"])])
+
+AC_DEFUN([DUITE_VIEW], [
+    duite_view_missing=
+    DUITE_VIEW_PART([EPOXY], [epoxy], [libepoxy-dev])
+    DUITE_VIEW_PART([EGL], [egl], [libegl-dev])
+    DUITE_VIEW_PART([PNG], [libpng], [libpng-dev])
+    AC_CHECK_HEADER([cglm/cglm.h], [], [
+        duite_view_missing="$duite_view_missing${duite_view_missing:+, }libcglm-dev"])
+    AM_CONDITIONAL([HAVE_VIEW], [test -z "$duite_view_missing"])
+    VIEW_MISSING=$duite_view_missing
+    AC_SUBST([VIEW_MISSING])
+    AS_IF([test -z "$duite_view_missing"], [duite_view_says=yes],
+        [duite_view_says="no   ($duite_view_missing: duite-view is not built, make demo leaves the pictures out)"])])

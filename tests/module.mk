@@ -1,0 +1,44 @@
+# How tests run: every program and script prints TAP; tests/support/unit.h and tests/support/tap.sh say what they see.
+TESTS =
+LONG_TESTS =
+check_PROGRAMS =
+check_LTLIBRARIES =
+dist_check_SCRIPTS =
+DUITE_TEST_LIBS = tests/support/libunit.la libduite_core.la $(CHECK_LIBS)
+CLOTH_TEST_LIBS = tests/support/libunit.la libduite_cloth.la libduite_core.la $(CHECK_LIBS)
+
+LOG_DRIVER = env AM_TAP_AWK='$(AWK)' $(SHELL) $(top_srcdir)/build-aux/tap-driver.sh
+LOG_COMPILER = $(SHELL) $(srcdir)/tests/support/run.sh
+AM_TESTS_ENVIRONMENT = \
+    CC='$(CC)'; CFLAGS='$(CFLAGS) $(SANITIZE_FLAGS)'; PKG_CONFIG='$(PKG_CONFIG)'; MAKE='$(MAKE)'; \
+    export CC CFLAGS PKG_CONFIG MAKE; \
+    DUITE_QUICK=$${DUITE_QUICK-$(DUITE_QUICK)}; export DUITE_QUICK; \
+    support=`cd '$(srcdir)/tests/support' && pwd`; \
+    LSAN_OPTIONS=suppressions=$$support/lsan.supp:print_suppressions=0; export LSAN_OPTIONS; \
+    TSAN_OPTIONS=suppressions=$$support/tsan.supp; export TSAN_OPTIONS;
+AM_DISTCHECK_CONFIGURE_FLAGS = DUITE_QUICK=1
+
+# In place of automake's rule of this name: one plain line with the sums of all cases at the end, also after a failure.
+check-TESTS: $(check_PROGRAMS)
+	@$(am__set_TESTS_bases); \
+	  logs=`for base in $$bases; do echo $$base.log; done`; trs=`for base in $$bases; do echo $$base.trs; done`; \
+	  rm -f $$logs $$trs $(TEST_SUITE_LOG); status=0; \
+	  $(MAKE) $(AM_MAKEFLAGS) $(TEST_SUITE_LOG) TEST_LOGS="`echo $$logs`" || status=$$?; \
+	  $(SHELL) $(srcdir)/tests/support/count.sh $$trs; exit $$status
+
+check-long:
+	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)' TEST_SUITE_LOG=test-suite-long.log
+.PHONY: check-long
+
+EXTRA_DIST += tests/arrows.txt tests/support/tap.sh tests/support/run.sh tests/support/count.sh tests/support/lsan.supp tests/support/tsan.supp
+dist_check_SCRIPTS += tests/arrows.sh
+TESTS += tests/arrows.sh
+
+if HAVE_CHECK
+check_LTLIBRARIES += tests/support/libunit.la
+tests_support_libunit_la_SOURCES = tests/support/unit.c tests/support/unit.h
+check_PROGRAMS += tests/support/test_unit
+tests_support_test_unit_SOURCES = tests/support/test_unit.c
+tests_support_test_unit_LDADD = $(DUITE_TEST_LIBS)
+TESTS += tests/support/test_unit
+endif

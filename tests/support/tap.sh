@@ -1,0 +1,112 @@
+# Sourced by the shell tests: . "${srcdir:-.}/tests/support/tap.sh"
+#
+# Tests run in the top build folder; sources are under $srcdir. A test says `plan_later`, then any number of
+#     ok NAME COMMAND...               passes when COMMAND exits with 0
+#     exits STATUS NAME COMMAND...     passes when COMMAND exits with STATUS
+#     not_ok_expected NAME COMMAND...  passes when COMMAND fails by itself: neither a signal nor the time limit
+#     skip NAME REASON                 one case that cannot run here
+#     skip_all REASON                  ends the script as skipped (77)
+# and the plan and the exit status follow at its end. What COMMAND prints is kept in $scratch/output, and shown as
+# TAP comments when the case fails. Also:
+#     ranks N COMMAND...               COMMAND under mpirun on N ranks, at most $DUITE_TIMEOUT seconds (default 300)
+#     limited COMMAND...               COMMAND with the same time limit
+#     quick                            whether only the quick subset is wanted (DUITE_QUICK=1)
+#     skip_unless FILE                 skip_all unless the program FILE was built
+# $scratch is a folder of the test's own, removed at its end. $DUITE_CLOTH and $DUITE_VIEW are the programs.
+
+srcdir=$(cd "${srcdir:-.}" && pwd) || exit 99
+export srcdir
+DUITE_CLOTH=${DUITE_CLOTH:-$PWD/duite-cloth}
+DUITE_VIEW=${DUITE_VIEW:-$PWD/duite-view}
+scratch=$(mktemp -d "${TMPDIR:-/tmp}/duite-test.XXXXXX") || exit 99
+tap_cases=0
+tap_failed=0
+tap_plan=no
+
+if test "$(id -u)" = 0; then
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+fi
+export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
+export HWLOC_HIDE_ERRORS=2
+
+tap_end() {
+    tap_status=$?
+    trap - EXIT
+    rm -rf "$scratch"
+    if test $tap_plan = yes; then
+        echo "1..$tap_cases"
+        if test $tap_status = 0 && test $tap_failed != 0; then tap_status=1; fi
+    fi
+    exit $tap_status
+}
+trap tap_end EXIT
+trap 'exit 99' HUP INT TERM
+
+plan_later() { tap_plan=yes; }
+
+tap_result() { # PASSED NAME
+    tap_cases=$((tap_cases + 1))
+    if test "$1" = 0; then
+        echo "ok $tap_cases - $2"
+    else
+        tap_failed=$((tap_failed + 1))
+        echo "not ok $tap_cases - $2"
+        sed 's/^/# /' "$scratch/output"
+    fi
+}
+
+tap_run() { # COMMAND...: leaves its status in $tap_got
+    tap_got=0
+    "$@" > "$scratch/output" 2>&1 < /dev/null || tap_got=$?
+}
+
+ok() {
+    tap_name=$1
+    shift
+    tap_run "$@"
+    test $tap_got = 0 || echo "(exit status $tap_got)" >> "$scratch/output"
+    tap_result $tap_got "$tap_name"
+}
+
+exits() {
+    tap_want=$1 tap_name=$2
+    shift 2
+    tap_run "$@"
+    test $tap_got = "$tap_want" || echo "(exit status $tap_got, not $tap_want)" >> "$scratch/output"
+    tap_result "$((tap_got != tap_want))" "$tap_name"
+}
+
+not_ok_expected() {
+    tap_name=$1
+    shift
+    tap_run "$@"
+    if test $tap_got -gt 0 && test $tap_got -lt 124; then
+        tap_result 0 "$tap_name"
+    else
+        echo "(exit status $tap_got; a plain failure was expected)" >> "$scratch/output"
+        tap_result 1 "$tap_name"
+    fi
+}
+
+skip() {
+    tap_cases=$((tap_cases + 1))
+    echo "ok $tap_cases - $1 # SKIP $2"
+}
+
+skip_all() {
+    tap_plan=no
+    echo "1..0 # SKIP $*"
+    exit 77
+}
+
+skip_unless() { test -x "$1" || skip_all "$1 is not built"; }
+
+quick() { test "${DUITE_QUICK:-}" = 1; }
+
+limited() { timeout --kill-after=10 "${DUITE_TIMEOUT:-300}" "$@"; }
+
+ranks() {
+    tap_n=$1
+    shift
+    limited "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n "$tap_n" "$@"
+}

@@ -1,0 +1,43 @@
+/* The environment is prepared before the first case is made, since check reads its time limit
+ * there; nothing here outlives unit_run. What the user set in the environment wins. */
+
+#include "tests/support/unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+__attribute__((constructor)) static void prepare(void)
+{
+    setenv("CK_DEFAULT_TIMEOUT", "120", 0);
+    setenv("HWLOC_HIDE_ERRORS", "2", 0);
+    if (geteuid() == 0) {
+        setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);
+        setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
+    }
+}
+
+int unit_run(Suite *suite)
+{
+    const char *rank = getenv("OMPI_COMM_WORLD_RANK");
+    SRunner *runner = srunner_create(suite);
+
+    if (rank != NULL) /* MPI knows this process, not a child of it */
+        srunner_set_fork_status(runner, CK_NOFORK);
+    if (rank == NULL || strcmp(rank, "0") == 0)
+        srunner_set_tap(runner, "-");
+    srunner_run_all(runner, CK_SILENT);
+
+    int failed = srunner_ntests_failed(runner);
+    if (failed > 0 && rank != NULL && strcmp(rank, "0") != 0)
+        fprintf(stderr, "rank %s: %d cases failed\n", rank, failed);
+    srunner_free(runner);
+    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+int unit_quick(void)
+{
+    const char *quick = getenv("DUITE_QUICK");
+    return quick != NULL && strcmp(quick, "1") == 0;
+}

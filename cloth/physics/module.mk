@@ -1,0 +1,4 @@
+libduite_cloth_la_SOURCES += \
+    cloth/physics/particle.c cloth/physics/particle.h \
+    cloth/physics/spring.c cloth/physics/spring.h \
+    cloth/physics/vec.h

@@ -1,0 +1,47 @@
+/* Each row is computed from itself alone: no order of rows matters. */
+#include "cloth/physics/particle.h"
+
+void phys_outside(size_t n, const phys_vec *load, const double *drag, const phys_vec *v,
+                  phys_vec *f)
+{
+    for (size_t i = 0; i < n; i++)
+        f[i] = load[i] - drag[i] * v[i];
+}
+
+void phys_accelerate(size_t n, const double *mass, const double *free, phys_vec *f)
+{
+    for (size_t i = 0; i < n; i++)
+        f[i] = free[i] * (f[i] / mass[i]);
+}
+
+void phys_advance(size_t n, double scale, const phys_vec *d, phys_vec *y)
+{
+    for (size_t i = 0; i < n; i++)
+        y[i] += scale * d[i];
+}
+
+void phys_plane(size_t n, const double point[3], const double normal[3], const double *free,
+                phys_vec *x, phys_vec *v)
+{
+    const phys_vec origin = {point[0], point[1], point[2], 0};
+    const phys_vec up = {normal[0], normal[1], normal[2], 0};
+    for (size_t i = 0; i < n; i++) {
+        const phys_vec from = x[i] - origin;
+        const double height = phys_dot(&from, &up);
+        if (height > 0 || free[i] == 0)
+            continue;
+        x[i] -= height * up;
+        const double speed = phys_dot(v + i, &up);
+        if (speed < 0)
+            v[i] -= speed * up;
+    }
+}
+
+size_t phys_diverged(size_t n, double bound, const phys_vec *y)
+{
+    for (size_t i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++)
+            if (!(y[i][c] < bound && y[i][c] > -bound)) /* NaN too */
+                return i;
+    return n;
+}

@@ -1,0 +1,30 @@
+#ifndef CLOTH_PHYSICS_PARTICLE_H
+#define CLOTH_PHYSICS_PARTICLE_H
+
+#include "cloth/physics/vec.h"
+
+#include <stddef.h>
+
+/* Particles one by one: forces from outside, steps of time, planes. Arrays have n rows; `free` is 1
+ * for a particle that moves and 0 for one that is held. Pure functions; nothing is allocated. */
+
+/* f = load - drag v. load: N, gravity included; drag: kg/s; v: m/s. */
+void phys_outside(size_t n, const phys_vec *load, const double *drag, const phys_vec *v,
+                  phys_vec *f);
+
+/* f (N) -> free f / mass (m/s^2). mass: kg, > 0. */
+void phys_accelerate(size_t n, const double *mass, const double *free, phys_vec *f);
+
+/* y += scale d: v += h a, v += dv, x += h v. */
+void phys_advance(size_t n, double scale, const phys_vec *d, phys_vec *y);
+
+/* Lifts particles that are on or under a plane onto it and takes the velocity into it away; what is
+ * tangent stays. point: m, normal: of length 1, towards the free side. */
+void phys_plane(size_t n, const double point[3], const double normal[3], const double *free,
+                phys_vec *x, phys_vec *v);
+
+/* The first row of which a component is not finite or not below `bound` in size; n if all are well.
+ */
+size_t phys_diverged(size_t n, double bound, const phys_vec *y);
+
+#endif

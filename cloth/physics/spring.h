@@ -1,0 +1,55 @@
+#ifndef CLOTH_PHYSICS_SPRING_H
+#define CLOTH_PHYSICS_SPRING_H
+
+#include "cloth/physics/vec.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Damped springs between particles. With l = |xb - xa| and u = (xb - xa) / l a spring pulls a by
+ *     f = k (l - L) u + c (u . (vb - va)) u        and b by -f                      (N)
+ * and its stiffness towards a difference of positions is
+ *     K = k (u u' + t (I - u u')),  t = max(0, 1 - L / l)                           (N/m)
+ * where the negative transverse term of a spring in compression is dropped, so that K is never
+ * indefinite. Two particles at one place have no direction: u = 0 there, and only t and its K
+ * remain defined, as zero.
+ *
+ * Functions come in pairs. The plain one has both ends in the same arrays and writes both rows. The
+ * one called `_cut` has end 1 in arrays of another block, and writes the rows of end 0 only; the
+ * other block does the same for its end. Both sides compute with the same bits and opposite signs,
+ * so that momentum is kept to roundoff of the sums. Springs are worked on in order. Pure functions;
+ * nothing is allocated. */
+struct phys_springs {
+    size_t n;
+    const uint32_t (*end)[2]; /* n: rows of the two ends */
+    const double *stiffness;  /* n: k, N/m */
+    const double *damping;    /* n: c, kg/s */
+    const double *length;     /* n: L, m, > 0 */
+};
+
+/* Adds the forces (N) to f. x: m, v: m/s. */
+void phys_springs_force(const struct phys_springs *springs, const phys_vec *x, const phys_vec *v,
+                        phys_vec *f);
+void phys_springs_force_cut(const struct phys_springs *springs, const phys_vec *x,
+                            const phys_vec *v, const phys_vec *x_other, const phys_vec *v_other,
+                            phys_vec *f);
+
+/* y_a -= scale K (v_a - v_b), y_b += the same: scale times what the stiffness adds to the forces in
+ * a unit of time. */
+void phys_springs_stiffness(const struct phys_springs *springs, double scale, const phys_vec *x,
+                            const phys_vec *v, phys_vec *y);
+void phys_springs_stiffness_cut(const struct phys_springs *springs, double scale, const phys_vec *x,
+                                const phys_vec *v, const phys_vec *x_other, const phys_vec *v_other,
+                                phys_vec *y);
+
+/* The springs' part of the matrix of an implicit step of h seconds, h c u u' + h^2 K = alpha I + w
+ * w', for each spring as four doubles w0 w1 w2 alpha (value: n; kg). end 1 is looked up in x_other,
+ * which is x where both ends are here. */
+void phys_springs_matrix(const struct phys_springs *springs, double h, const phys_vec *x,
+                         const phys_vec *x_other, phys_vec *value);
+
+/* The largest l / L of those springs whose `chosen` byte (n) is not zero; 0 if there are none. */
+double phys_springs_stretch(const struct phys_springs *springs, const unsigned char *chosen,
+                            const phys_vec *x, const phys_vec *x_other);
+
+#endif

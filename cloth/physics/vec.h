@@ -1,0 +1,24 @@
+#ifndef CLOTH_PHYSICS_VEC_H
+#define CLOTH_PHYSICS_VEC_H
+
+/* Vectors of the state are rows of four doubles, x y z 0, aligned to 32 bytes: one AVX register,
+ * two of SSE2 or NEON. The fourth lane of every vector of the state is zero. The compiler lowers
+ * the type to what the processor has; lanes are independent, so the bits are the same everywhere.
+ * Helpers are always inlined: no vector is passed by value. */
+typedef double phys_vec __attribute__((vector_size(32)));
+
+#define PHYS_INLINE static inline __attribute__((always_inline, unused))
+
+/* Sum of all four lanes, (0 + 2) + (1 + 3): the order that two-lane registers add in. */
+PHYS_INLINE double phys_lanes(const phys_vec *a)
+{
+    return ((*a)[0] + (*a)[2]) + ((*a)[1] + (*a)[3]);
+}
+
+PHYS_INLINE double phys_dot(const phys_vec *a, const phys_vec *b)
+{
+    const phys_vec product = *a * *b;
+    return phys_lanes(&product);
+}
+
+#endif

@@ -1,0 +1,61 @@
+#ifndef CLOTH_SOLVE_BLOCK_H
+#define CLOTH_SOLVE_BLOCK_H
+
+#include "cloth/physics/vec.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* One block of rows of the matrix of an implicit step, A = diagonal + springs, as a spring knows
+ * it: four doubles a spring (w0 w1 w2 alpha, phys_springs_matrix). A spring adds alpha d + w (w .
+ * d), d = p_a - p_b, to row a and takes it from row b: what moves rigidly feels the diagonal alone,
+ * exactly. Springs with both ends in the block are stored once, in rows by their lower end; a
+ * spring whose other end is in another block is known to both, each for its own row. With S =
+ * diag(free) the system is S A S dv = S b (Baraff & Witkin 1998). */
+struct solve_block {
+    size_t n;               /* rows */
+    const double *diagonal; /* n: mass + h (drag), kg, > 0 */
+    const double *free;     /* n: 1, or 0 for a particle that is held */
+    const uint32_t *row;    /* n + 1: the inner springs of row a are row[a] .. row[a + 1] - 1 */
+    const uint32_t *column; /* row[n]: the higher end of each inner spring */
+};
+
+/* Springs into one other block: `own` the row here, `other` the row in the array of the neighbour.
+ */
+struct solve_cut {
+    size_t n;
+    const uint32_t (*end)[2]; /* n: own, other */
+};
+
+/* q = sum over the springs into one other block; q is added to, and zeroed by the caller before the
+ * first. */
+void solve_matvec_cut(const struct solve_cut *cut, const phys_vec *value, const phys_vec *p,
+                      const phys_vec *p_other, phys_vec *q);
+
+/* Adds inner springs and the diagonal to q, which holds the cut springs' part, and filters: q = S A
+ * p. value: row[n], of the inner springs. Returns p . q. */
+double solve_matvec(const struct solve_block *block, const phys_vec *value, const phys_vec *p,
+                    phys_vec *q);
+
+/* dv = 0, r = p = S b. Returns r . r. */
+double solve_start(size_t n, const double *free, const phys_vec *b, phys_vec *dv, phys_vec *r,
+                   phys_vec *p);
+
+/* dv += alpha p, r -= alpha q. Returns r . r. */
+double solve_update(size_t n, double alpha, const phys_vec *p, const phys_vec *q, phys_vec *dv,
+                    phys_vec *r);
+
+/* p = r + beta p. */
+void solve_direction(size_t n, double beta, const phys_vec *r, phys_vec *p);
+
+/* Adds the sum over the free rows of b - A dv to lost[3] (kg m/s), for a dv that is zero where
+ * particles are held. The springs between free rows cancel in this sum, wherever their ends are;
+ * those to held ends remain. They are given by their free row and their place in `value`. */
+struct solve_held {
+    size_t n;
+    const uint32_t (*at)[2]; /* n: row, place in value */
+};
+void solve_lost(const struct solve_block *block, const struct solve_held *held,
+                const phys_vec *value, const phys_vec *b, const phys_vec *dv, double lost[3]);
+
+#endif

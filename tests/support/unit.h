@@ -3,10 +3,20 @@
 
 /* Unit tests with the check library, printed as TAP:
  *
- *     START_TEST(adds) { ck_assert_int_eq(1 + 1, 2); } END_TEST
- *     int main(void) { TCase *c = tcase_create("sums"); tcase_add_test(c, adds);
- *                      Suite *s = suite_create("numbers"); suite_add_tcase(s, c); return
- * unit_run(s); }
+ *     START_TEST(adds)
+ *     {
+ *         ck_assert_int_eq(1 + 1, 2);
+ *     }
+ *     END_TEST
+ *
+ *     int main(void)
+ *     {
+ *         Suite *suite = suite_create("numbers");
+ *         TCase *sums = tcase_create("sums");
+ *         tcase_add_test(sums, adds);
+ *         suite_add_tcase(suite, sums);
+ *         return unit_run(suite);
+ *     }
  *
  * Each case runs in a process of its own, so that a crash fails one case; under mpirun all run in
  * the one process that MPI knows. A case may take 120 seconds. */

@@ -6,7 +6,8 @@
 
 enum cloth_code {
     CLOTH_OK = 0,
-    CLOTH_E_INPUT = 1,  /* a file, key, option or value that cannot be used: the program exits with 2 */
+    CLOTH_E_INPUT =
+        1, /* a file, key, option or value that cannot be used: the program exits with 2 */
     CLOTH_E_MEMORY = 2, /* an allocation failed */
     CLOTH_E_IO = 3,     /* a file could not be opened, read or written */
     CLOTH_E_RUN = 4,    /* the simulation failed: diverged, or a task failed */
@@ -18,8 +19,8 @@ struct cloth_error {
     char text[1024];
 };
 
-/* Sets code and sentence (printf form, no trailing newline) unless an error is already set. Returns the
- * code that is set, so that `return cloth_fail(...)` reads well. `error` may be NULL. Local. */
+/* Sets code and sentence (printf form, no trailing newline) unless an error is already set. Returns
+ * the code that is set, so that `return cloth_fail(...)` reads well. `error` may be NULL. Local. */
 int cloth_fail(struct cloth_error *error, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -6,13 +6,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The cut of the vertices into blocks of about `grain`: METIS' recursive bisection with a fixed seed, so that blocks with
- * near numbers are near in space and any rank may own a contiguous range; balanced by vertices; inside a block ordered
- * for locality (reverse Cuthill-McKee of the block's own graph, ties by vertex number). Depends on the graph and the
- * grain only, never on ranks or threads.
+/* The cut of the vertices into blocks of about `grain`: METIS' recursive bisection with a fixed
+ * seed, so that blocks with near numbers are near in space and any rank may own a contiguous range;
+ * balanced by vertices; inside a block ordered for locality (reverse Cuthill-McKee of the block's
+ * own graph, ties by vertex number). Depends on the graph and the grain only, never on ranks or
+ * threads.
  *
- * A vertex has a place: places are numbered block after block. Vertices that are not used have none. */
-enum { MESH_NO_PLACE = 0xffffffffu };
+ * A vertex has a place: places are numbered block after block. Vertices that are not used have
+ * none. */
+#define MESH_NO_PLACE 0xffffffffu
 
 struct mesh_blocks {
     uint32_t n_blocks, n_vertices, n_places;
@@ -22,9 +24,13 @@ struct mesh_blocks {
     uint64_t hash;    /* XXH64 of n_blocks, start and vertex as little-endian 32-bit numbers */
 };
 
-/* pairs: n_pairs x 2, the vertices that springs or elements join (any order, repeats allowed); used: one byte a vertex.
- * grain >= 1; the number of blocks is ceil(used vertices / grain), and no block is empty.
- * Errors: CLOTH_E_LIBRARY (METIS failed), CLOTH_E_MEMORY. Local, the same result everywhere. */
+/* pairs: n_pairs x 2, the vertices that springs or elements join (any order, repeats allowed);
+ * used: one byte a vertex. grain >= 1; the number of blocks is ceil(used vertices / grain), and no
+ * block is empty: where METIS leaves some empty, the largest others are split along their inner
+ * order. Without any pairs, blocks are runs of vertices by number. Errors: CLOTH_E_INPUT (grain 0,
+ * a pair with a vertex that is not used), CLOTH_E_LIBRARY (METIS failed), CLOTH_E_MEMORY. Local,
+ * the same result everywhere. Not by two threads at once: METIS seeds and draws from the C
+ * library's random numbers. */
 int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsigned char *used,
                     size_t n_pairs, const uint32_t *pairs, uint32_t grain,
                     struct cloth_error *error);

@@ -4,13 +4,14 @@
 #include "cloth/mesh/mesh.h"
 
 /* The springs of a mesh, after the design's rules (docs/design.md):
- * grids: stretch along rows and columns, half of k on border edges; shear along one or both diagonals of each cell;
- *   bend over two vertices along rows and columns, half of k along the border; k is the modulus, N/m.
- * other meshes: every edge of a triangle is stretch with k = modulus * area of its triangles / length^2; the vertices
- *   opposite an inner edge are joined by bend with k = modulus * area of the two triangles / length^2; shear has none.
- * lone edges: stretch with k = modulus.
- * Rest lengths are the distances in the mesh as positioned. Springs with k = 0 are left out. Sorted by (a, b), a < b;
- * two springs may join the same vertices. */
+ * grids: stretch along rows and columns, half of k on border edges; shear along one or both
+ * diagonals of each cell; bend over two vertices along rows and columns, half of k along the
+ * border; k is the modulus, N/m. other meshes: every edge of a triangle is stretch with k = modulus
+ * * area of its triangles / length^2; the vertices opposite an inner edge are joined by bend with k
+ * = modulus * area of the two triangles / length^2; shear has none. lone edges that are no
+ * triangle's: stretch with k = modulus. Rest lengths are the distances in the mesh as positioned.
+ * Springs with k = 0 are left out. Sorted by (a, b), a < b; two springs may join the same vertices,
+ * stretch before bend then. */
 enum mesh_spring_kind { MESH_STRETCH, MESH_SHEAR, MESH_BEND };
 
 struct mesh_spring {
@@ -30,7 +31,8 @@ struct mesh_lattice {
     struct mesh_spring *spring;
 };
 
-/* Errors: CLOTH_E_INPUT for an edge of length zero (names its vertices), CLOTH_E_MEMORY. Local. */
+/* Errors: CLOTH_E_INPUT for a spring whose length is zero or whose length or stiffness is not
+ * finite (names its vertices), CLOTH_E_MEMORY. Local. */
 int mesh_lattice_build(struct mesh_lattice *lattice, const struct mesh *mesh,
                        const struct mesh_moduli *moduli, struct cloth_error *error);
 void mesh_lattice_free(struct mesh_lattice *lattice);

@@ -6,19 +6,22 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A mesh as it was given: vertices, polygons in the input's order and numbering, their triangles, and edges that
- * were given without triangles (chains). All arrays belong to the mesh. Local functions. */
+/* A mesh as it was given: vertices, polygons in the input's order and numbering, their triangles,
+ * and edges that were given without triangles (chains). All arrays belong to the mesh. Local
+ * functions. */
 struct mesh {
     uint32_t n_vertices;
     double *position; /* n_vertices x 3, metres */
-    double *uv;       /* n_vertices x 2, or NULL if the file has none for some corner */
+    double *uv; /* n_vertices x 2, or NULL unless every corner of a face has one and all corners of
+                 * a vertex the same; 0 for vertices without faces */
 
     uint32_t n_faces;
     uint32_t *face_start;  /* n_faces + 1: corners of face f are face_corner[face_start[f] ..] */
     uint32_t *face_corner; /* vertices of the polygons, as in the input */
 
     uint32_t n_triangles;
-    uint32_t *triangle; /* n_triangles x 3: polygons fanned from their first corner, in face order */
+    uint32_t
+        *triangle; /* n_triangles x 3: polygons fanned from their first corner, in face order */
 
     uint32_t n_lone_edges;
     uint32_t *lone_edge; /* n_lone_edges x 2: edges given without triangles */
@@ -26,25 +29,34 @@ struct mesh {
     uint32_t grid_nx, grid_ny; /* vertices in u and v of a grid; 0: not a grid */
 };
 
-/* A flat sheet in the x-z plane (y = 0, +y its normal's side), width along x (u), height along z (v), both in metres
- * and centred on the origin; nx, ny >= 2 vertices, row-major, u fastest: vertex j * nx + i. Two triangles a cell,
- * cut along the diagonal from (i, j) to (i + 1, j + 1); faces are these triangles. uv in metres. */
+/* A flat sheet in the x-z plane (y = 0, +y its normal's side), width along x (u), height along z
+ * (v), both in metres and centred on the origin; nx, ny >= 2 vertices, row-major, u fastest: vertex
+ * j * nx + i. Two triangles a cell, cut along the diagonal from (i, j) to (i + 1, j + 1); faces are
+ * these triangles, wound so that normals are +y. uv in metres from vertex 0. Errors: CLOTH_E_INPUT
+ * for sizes that are not positive and finite, fewer than 2 vertices a side, more than 2^31 corners;
+ * CLOTH_E_MEMORY. After an error the mesh is empty, here and in the next two functions. */
 int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint32_t ny,
               struct cloth_error *error);
 
-/* Reads v (x y z, anything after them ignored), vt, f (any polygon; v, v/vt, v//vn, v/vt/vn; negative indices) and l
- * (lone edges) of a Wavefront OBJ file; all else is skipped. Errors name file and line: no vertices, numbers that are
- * not numbers or not finite, indices out of range, faces with fewer than 3 or repeated corners, an edge shared by more
- * than two triangles (non-manifold), files beyond 2^31 vertices or corners. */
+/* Reads v (x y z, anything after them ignored), vt, f (any polygon; v, v/vt, v//vn, v/vt/vn;
+ * negative indices) and l (lone edges) of a Wavefront OBJ file; all else is skipped. Errors name
+ * file and line: no vertices, numbers that are not numbers or not finite, indices out of range,
+ * faces with fewer than 3 or repeated corners, an edge shared by more than two triangles
+ * (non-manifold, at the third face), files beyond 2^31 vertices or corners. A line ended by `\`
+ * goes on in the next and counts as the first. Codes: CLOTH_E_INPUT, CLOTH_E_IO (cannot be read),
+ * CLOTH_E_MEMORY. */
 int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error);
 
-/* Takes copies of the arrays: vertices n x 3, edges n_edges x 2, triangles n_triangles x 3 (either may be absent).
- * Checks indices, repeated corners, finite positions and non-manifold edges as mesh_read_obj does, naming the entry. */
+/* Takes copies of the arrays: vertices n x 3, edges n_edges x 2, triangles n_triangles x 3 (either
+ * may be absent). Checks indices, repeated corners, finite positions and non-manifold edges as
+ * mesh_read_obj does, naming the entry
+ * ("triangles[4]: ..."), all counted from 0. At least one vertex. No uv. */
 int mesh_inline(struct mesh *mesh, uint32_t n_vertices, const double *vertices, uint32_t n_edges,
                 const uint32_t *edges, uint32_t n_triangles, const uint32_t *triangles,
                 struct cloth_error *error);
 
-/* x -> rotate(scale * x) + translate; rotation is a quaternion (w, x, y, z), normalised here. */
+/* x -> rotate(scale * x) + translate; rotation is a quaternion (w, x, y, z), normalised here
+ * (of length 0 it turns nothing). Parts that are the identity leave every bit as it is. */
 struct mesh_transform {
     double scale[3], rotate[4], translate[3];
 };
@@ -57,11 +69,14 @@ void mesh_used(const struct mesh *mesh, unsigned char *used);
 /* Frees what the mesh owns and clears it; a zeroed mesh is fine. */
 void mesh_free(struct mesh *mesh);
 
-/* All edges of the triangles and the lone edges, each once, a < b, sorted by (a, b). */
+/* All edges of the triangles and the lone edges, each once, a < b, sorted by (a, b). A lone edge
+ * between the ends of a triangle's edge is that edge. Errors: CLOTH_E_INPUT for a third triangle at
+ * an edge, CLOTH_E_MEMORY. */
 struct mesh_edge {
     uint32_t a, b;
-    uint32_t opposite[2]; /* the third vertices of its one or two triangles; UINT32_MAX: none */
-    double area;          /* sum of the areas of its triangles in the positions given, m^2 */
+    uint32_t
+        opposite[2]; /* the third vertices of its triangles, in their order; UINT32_MAX: none */
+    double area;     /* sum of the areas of its triangles in the positions given, m^2 */
 };
 struct mesh_edges {
     uint32_t n;
@@ -70,7 +85,8 @@ struct mesh_edges {
 int mesh_edges_find(struct mesh_edges *edges, const struct mesh *mesh, struct cloth_error *error);
 void mesh_edges_free(struct mesh_edges *edges);
 
-/* Adds to mass[v] (kg, n_vertices) a third of each triangle's area (as positioned) times density (kg/m^2). */
+/* Adds to mass[v] (kg, n_vertices) a third of each triangle's area (as positioned) times density
+ * (kg/m^2). */
 void mesh_add_mass(const struct mesh *mesh, double density, double *mass);
 
 #endif

@@ -1,0 +1,39 @@
+/* No request wraps around: a product that does not fit into size_t fails like memory that is not
+ * there. */
+#include "cloth/base/memory.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+
+static void *out_of_memory(size_t n, size_t size, struct cloth_error *error)
+{
+    cloth_fail(error, CLOTH_E_MEMORY, "out of memory: %zu items of %zu bytes cannot be had", n,
+               size);
+    return NULL;
+}
+
+void *cloth_alloc(size_t n, size_t size, struct cloth_error *error)
+{
+    void *block = calloc(n ? n : 1, size ? size : 1);
+    return block ? block : out_of_memory(n, size, error);
+}
+
+void *cloth_list_add(struct cloth_list *list, size_t size, size_t count, struct cloth_error *error)
+{
+    size_t most = SIZE_MAX / size;
+    if (count > most - list->n)
+        return out_of_memory(count, size, error);
+    size_t needed = list->n + count;
+    if (needed > list->capacity || !list->items) {
+        size_t capacity = needed < 16 ? 16 : needed;
+        if (list->capacity <= most / 2 && capacity < 2 * list->capacity)
+            capacity = 2 * list->capacity;
+        void *items = capacity <= most ? realloc(list->items, capacity * size) : NULL;
+        if (!items)
+            return out_of_memory(capacity, size, error);
+        list->items = items;
+        list->capacity = capacity;
+    }
+    list->n = needed;
+    return (char *)list->items + (needed - count) * size;
+}

@@ -1,0 +1,201 @@
+/* Nodes are the used vertices by rising number; parts hold nodes, blocks are the parts in order.
+ * Every step has one outcome, so that all ranks, which cut for themselves, get the same blocks. */
+#include "cloth/mesh/blocks.h"
+
+#include "cloth/base/memory.h"
+#include "cloth/mesh/detail/graph.h"
+#include "cloth/mesh/detail/pieces.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <xxhash.h>
+
+struct cutter {
+    struct cloth_error *error;
+    struct mesh_blocks
+        *blocks; /* until set_places: place[] is the node of a vertex, vertex[] its reverse */
+    struct mesh_graph graph;
+    struct mesh_order *order;
+    uint32_t *part;  /* of each node */
+    uint32_t *nodes; /* part after part: those of part p are nodes[start[p] ..] */
+};
+
+static int number_nodes(struct cutter *cutter, uint32_t n_vertices, const unsigned char *used,
+                        uint32_t grain)
+{
+    struct mesh_blocks *blocks = cutter->blocks;
+    blocks->n_vertices = n_vertices;
+    for (uint32_t v = 0; v < n_vertices; v++)
+        blocks->n_places += used[v] ? 1 : 0;
+    uint32_t n = blocks->n_places;
+    blocks->n_blocks = n / grain + (n % grain ? 1 : 0);
+    blocks->start = cloth_alloc((size_t)blocks->n_blocks + 1, sizeof(uint32_t), cutter->error);
+    blocks->vertex = cloth_alloc(n, sizeof(uint32_t), cutter->error);
+    blocks->place = cloth_alloc(n_vertices, sizeof(uint32_t), cutter->error);
+    cutter->part = cloth_alloc(n, sizeof(uint32_t), cutter->error);
+    cutter->nodes = cloth_alloc(n, sizeof(uint32_t), cutter->error);
+    if (!blocks->start || !blocks->vertex || !blocks->place || !cutter->part || !cutter->nodes)
+        return CLOTH_E_MEMORY;
+    for (uint32_t v = 0, node = 0; v < n_vertices; v++) {
+        blocks->place[v] = used[v] ? node : MESH_NO_PLACE;
+        if (used[v])
+            blocks->vertex[node++] = v;
+    }
+    return CLOTH_OK;
+}
+
+static int build_graph(struct cutter *cutter, size_t n_pairs, const uint32_t *pairs)
+{
+    const struct mesh_blocks *blocks = cutter->blocks;
+    uint32_t *joined = cloth_alloc(n_pairs, 2 * sizeof *joined, cutter->error);
+    int code = joined ? CLOTH_OK : CLOTH_E_MEMORY;
+    for (size_t i = 0; i < 2 * n_pairs && !code; i++) {
+        uint32_t v = pairs[i];
+        joined[i] = v < blocks->n_vertices ? blocks->place[v] : MESH_NO_PLACE;
+        if (joined[i] == MESH_NO_PLACE)
+            code = cloth_fail(cutter->error, CLOTH_E_INPUT,
+                              "pair %zu joins vertex %u, which is not one of the used vertices",
+                              i / 2, v);
+    }
+    if (!code)
+        code = mesh_graph_build(&cutter->graph, blocks->n_places, n_pairs, joined, cutter->error);
+    free(joined);
+    return code;
+}
+
+/* Brings the nodes of each part together, by rising number; start[] says where. Whether all parts
+ * have one. */
+static bool group(struct cutter *cutter)
+{
+    struct mesh_blocks *blocks = cutter->blocks;
+    uint32_t *start = blocks->start, n = blocks->n_places;
+    bool full = true;
+    for (uint32_t b = 0; b <= blocks->n_blocks; b++)
+        start[b] = 0;
+    for (uint32_t node = 0; node < n; node++)
+        start[cutter->part[node] + 1]++;
+    for (uint32_t b = 0; b < blocks->n_blocks; b++) {
+        full = full && start[b + 1] > 0;
+        start[b + 1] += start[b];
+    }
+    for (uint32_t node = 0; node < n; node++)
+        cutter->nodes[start[cutter->part[node]]++] = node;
+    for (uint32_t b = blocks->n_blocks; b > 0; b--) /* each was moved on to the next one's */
+        start[b] = start[b - 1];
+    start[0] = 0;
+    return full;
+}
+
+static void order_parts(struct cutter *cutter)
+{
+    const uint32_t *start = cutter->blocks->start;
+    for (uint32_t b = 0; b < cutter->blocks->n_blocks; b++)
+        mesh_order_part(cutter->order, cutter->part, start[b + 1] - start[b],
+                        cutter->nodes + start[b]);
+}
+
+/* METIS may leave parts empty: they go, and the largest others are split along their order, so that
+ * blocks with near numbers stay near in space. */
+static int fill_empty(struct cutter *cutter)
+{
+    struct mesh_blocks *blocks = cutter->blocks;
+    uint32_t *size = cloth_alloc(blocks->n_blocks, sizeof *size, cutter->error);
+    uint32_t *pieces = cloth_alloc(blocks->n_blocks, sizeof *pieces, cutter->error);
+    int code = size && pieces ? CLOTH_OK : CLOTH_E_MEMORY;
+    if (!code) {
+        order_parts(cutter);
+        for (uint32_t b = 0; b < blocks->n_blocks; b++)
+            size[b] = blocks->start[b + 1] - blocks->start[b];
+        mesh_pieces(blocks->n_blocks, size, pieces);
+        for (uint32_t b = 0, before = 0; b < blocks->n_blocks; before += pieces[b++])
+            for (uint32_t i = 0; i < size[b]; i++)
+                cutter->part[cutter->nodes[blocks->start[b] + i]] =
+                    before + (uint32_t)((uint64_t)i * pieces[b] / size[b]);
+        group(cutter);
+    }
+    free(size);
+    free(pieces);
+    return code;
+}
+
+static int cut(struct cutter *cutter)
+{
+    cutter->order = mesh_order_new(&cutter->graph, cutter->error);
+    if (!cutter->order)
+        return CLOTH_E_MEMORY;
+    int code =
+        mesh_partition(cutter->part, &cutter->graph, cutter->blocks->n_blocks, cutter->error);
+    if (!code && !group(cutter))
+        code = fill_empty(cutter);
+    if (!code)
+        order_parts(cutter);
+    return code;
+}
+
+static void set_places(struct cutter *cutter)
+{
+    struct mesh_blocks *blocks = cutter->blocks;
+    for (uint32_t i = 0; i < blocks->n_places; i++) /* part is not needed any more */
+        cutter->part[i] = blocks->vertex[cutter->nodes[i]];
+    for (uint32_t i = 0; i < blocks->n_places; i++) {
+        blocks->vertex[i] = cutter->part[i];
+        blocks->place[blocks->vertex[i]] = i;
+    }
+}
+
+static unsigned char *put_numbers(unsigned char *to, size_t n, const uint32_t *numbers)
+{
+    for (size_t i = 0; i < n; i++)
+        for (int shift = 0; shift < 32; shift += 8)
+            *to++ = (unsigned char)(numbers[i] >> shift);
+    return to;
+}
+
+static int set_hash(struct cutter *cutter)
+{
+    struct mesh_blocks *blocks = cutter->blocks;
+    size_t n = 2 + (size_t)blocks->n_blocks + blocks->n_places;
+    unsigned char *bytes = cloth_alloc(n, 4, cutter->error);
+    if (!bytes)
+        return CLOTH_E_MEMORY;
+    unsigned char *to = put_numbers(bytes, 1, &blocks->n_blocks);
+    to = put_numbers(to, (size_t)blocks->n_blocks + 1, blocks->start);
+    put_numbers(to, blocks->n_places, blocks->vertex);
+    blocks->hash = XXH64(bytes, 4 * n, 0);
+    free(bytes);
+    return CLOTH_OK;
+}
+
+int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsigned char *used,
+                    size_t n_pairs, const uint32_t *pairs, uint32_t grain,
+                    struct cloth_error *error)
+{
+    struct cutter cutter = {.error = error, .blocks = blocks};
+    *blocks = (struct mesh_blocks){0};
+    if (grain == 0)
+        return cloth_fail(error, CLOTH_E_INPUT, "a grain of 0 vertices; it must be at least 1");
+    int code = number_nodes(&cutter, n_vertices, used, grain);
+    if (!code)
+        code = build_graph(&cutter, n_pairs, pairs);
+    if (!code)
+        code = cut(&cutter);
+    if (!code) {
+        set_places(&cutter);
+        code = set_hash(&cutter);
+    }
+    if (code)
+        mesh_blocks_free(blocks);
+    mesh_order_free(cutter.order);
+    mesh_graph_free(&cutter.graph);
+    free(cutter.part);
+    free(cutter.nodes);
+    return code;
+}
+
+void mesh_blocks_free(struct mesh_blocks *blocks)
+{
+    free(blocks->start);
+    free(blocks->vertex);
+    free(blocks->place);
+    *blocks = (struct mesh_blocks){0};
+}

@@ -1,0 +1,150 @@
+/* A mesh that leaves here keeps every promise of mesh.h: corners exist and differ, triangles are
+ * the faces fanned from their first corners in order, no edge has a third triangle. */
+#include "cloth/mesh/detail/finish.h"
+
+#include "cloth/base/memory.h"
+#include "cloth/mesh/detail/sides.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct place {
+    char text[700];
+};
+
+const char *mesh_path_shown(const char *path)
+{
+    size_t length = strlen(path), most = 600;
+    return length > most ? path + (length - most) : path;
+}
+
+static struct place place_of(const struct mesh_source *source, const char *array,
+                             const size_t *lines, size_t index)
+{
+    struct place place;
+    if (source->path)
+        snprintf(place.text, sizeof place.text, "%s:%zu", mesh_path_shown(source->path),
+                 lines[index]);
+    else
+        snprintf(place.text, sizeof place.text, "%s[%zu]", array, index);
+    return place;
+}
+
+static struct place face_place(const struct mesh_source *source, size_t face)
+{
+    return place_of(source, "triangles", source->face_line, face);
+}
+
+/* Files count vertices from 1. */
+static uint32_t shown(const struct mesh_source *source, uint32_t vertex)
+{
+    return vertex + (source->path ? 1 : 0);
+}
+
+static int no_such_vertex(const struct mesh *mesh, const struct mesh_source *source,
+                          struct place place, uint32_t vertex, struct cloth_error *error)
+{
+    uint32_t first = shown(source, 0);
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "%s: there is no vertex %u; the mesh has the vertices %u to %u", place.text,
+                      shown(source, vertex), first, first + mesh->n_vertices - 1);
+}
+
+/* last_face: n_vertices, zeroed: the number + 1 of the last face that used a vertex. */
+static int check_faces(const struct mesh *mesh, const struct mesh_source *source,
+                       uint32_t *last_face, struct cloth_error *error)
+{
+    for (uint32_t f = 0; f < mesh->n_faces; f++) {
+        for (uint32_t c = mesh->face_start[f]; c < mesh->face_start[f + 1]; c++) {
+            uint32_t vertex = mesh->face_corner[c];
+            if (vertex >= mesh->n_vertices)
+                return no_such_vertex(mesh, source, face_place(source, f), vertex, error);
+            if (last_face[vertex] == f + 1)
+                return cloth_fail(error, CLOTH_E_INPUT,
+                                  "%s: the face has vertex %u at two corners; corners must differ",
+                                  face_place(source, f).text, shown(source, vertex));
+            last_face[vertex] = f + 1;
+        }
+    }
+    return CLOTH_OK;
+}
+
+static int check_edges(const struct mesh *mesh, const struct mesh_source *source,
+                       struct cloth_error *error)
+{
+    for (size_t i = 0; i < 2 * (size_t)mesh->n_lone_edges; i++) {
+        uint32_t vertex = mesh->lone_edge[i];
+        struct place place;
+        if (vertex < mesh->n_vertices && (i % 2 == 0 || vertex != mesh->lone_edge[i - 1]))
+            continue;
+        place = place_of(source, "edges", source->edge_line, i / 2);
+        if (vertex >= mesh->n_vertices)
+            return no_such_vertex(mesh, source, place, vertex, error);
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s: the edge joins vertex %u to itself; its ends must differ",
+                          place.text, shown(source, vertex));
+    }
+    return CLOTH_OK;
+}
+
+static int fan(struct mesh *mesh, struct cloth_error *error)
+{
+    size_t n = mesh->n_faces ? mesh->face_start[mesh->n_faces] - 2 * (size_t)mesh->n_faces : 0;
+    mesh->triangle = cloth_alloc(3 * n, sizeof *mesh->triangle, error);
+    if (!mesh->triangle)
+        return CLOTH_E_MEMORY;
+    uint32_t *to = mesh->triangle;
+    for (uint32_t f = 0; f < mesh->n_faces; f++) {
+        const uint32_t *corner = mesh->face_corner + mesh->face_start[f];
+        uint32_t n_corners = mesh->face_start[f + 1] - mesh->face_start[f];
+        for (uint32_t c = 2; c < n_corners; c++) {
+            *to++ = corner[0];
+            *to++ = corner[c - 1];
+            *to++ = corner[c];
+        }
+    }
+    mesh->n_triangles = (uint32_t)n;
+    return CLOTH_OK;
+}
+
+static uint32_t face_of(const struct mesh *mesh, uint32_t triangle)
+{
+    uint32_t face = 0, before = 0;
+    for (; face < mesh->n_faces; face++) {
+        before += mesh->face_start[face + 1] - mesh->face_start[face] - 2;
+        if (triangle < before)
+            break;
+    }
+    return face;
+}
+
+static int check_manifold(const struct mesh *mesh, const struct mesh_source *source,
+                          struct cloth_error *error)
+{
+    struct mesh_sides sides;
+    uint32_t third;
+    int code = mesh_sides_sort(&sides, mesh, error);
+    if (!code && mesh_sides_third(&sides, mesh->n_triangles, &third)) {
+        const uint32_t *pair = sides.pair + 2 * (size_t)third;
+        code = cloth_fail(error, CLOTH_E_INPUT,
+                          "%s: this face is the third at the edge between vertices %u and %u "
+                          "(non-manifold); an edge may have at most two triangles",
+                          face_place(source, face_of(mesh, third / 3)).text, shown(source, pair[0]),
+                          shown(source, pair[1]));
+    }
+    mesh_sides_free(&sides);
+    return code;
+}
+
+int mesh_finish(struct mesh *mesh, const struct mesh_source *source, struct cloth_error *error)
+{
+    uint32_t *last_face = cloth_alloc(mesh->n_vertices, sizeof *last_face, error);
+    int code = last_face ? check_faces(mesh, source, last_face, error) : CLOTH_E_MEMORY;
+    free(last_face);
+    if (!code)
+        code = check_edges(mesh, source, error);
+    if (!code)
+        code = fan(mesh, error);
+    return code ? code : check_manifold(mesh, source, error);
+}

@@ -1,0 +1,80 @@
+/* METIS is told everything that it could choose by itself, so that a graph has one cut only. */
+#include "cloth/base/memory.h"
+#include "cloth/mesh/detail/graph.h"
+
+#include <metis.h>
+#include <stdlib.h>
+
+#define UNEVEN 1 /* a bisection may miss equal numbers by a thousandth */
+
+static const char *metis_text(int code)
+{
+    switch (code) {
+    case METIS_ERROR_INPUT:
+        return "wrong input";
+    case METIS_ERROR_MEMORY:
+        return "out of memory";
+    default:
+        return "unknown error";
+    }
+}
+
+static int fits(const struct mesh_graph *graph, struct cloth_error *error)
+{
+    const uint64_t most = IDX_MAX;
+    if (graph->n_nodes < most && graph->start[graph->n_nodes] <= most)
+        return CLOTH_OK;
+    return cloth_fail(error, CLOTH_E_LIBRARY,
+                      "a graph of %u vertices and %zu neighbours is too large for METIS with "
+                      "%d-bit numbers; one with 64 bits is needed",
+                      graph->n_nodes, graph->start[graph->n_nodes], IDXTYPEWIDTH);
+}
+
+static int call_metis(uint32_t *part, const struct mesh_graph *graph, uint32_t n_parts,
+                      idx_t *start, idx_t *neighbour, idx_t *answer, struct cloth_error *error)
+{
+    idx_t n = (idx_t)graph->n_nodes, constraints = 1, parts = (idx_t)n_parts, cut;
+    idx_t options[METIS_NOPTIONS];
+    METIS_SetDefaultOptions(options);
+    options[METIS_OPTION_SEED] = 1;
+    options[METIS_OPTION_NUMBERING] = 0;
+    options[METIS_OPTION_UFACTOR] = UNEVEN;
+    options[METIS_OPTION_DBGLVL] = 0;
+    for (size_t v = 0; v <= graph->n_nodes; v++)
+        start[v] = (idx_t)graph->start[v];
+    for (size_t i = 0; i < graph->start[graph->n_nodes]; i++)
+        neighbour[i] = (idx_t)graph->neighbour[i];
+    int code = METIS_PartGraphRecursive(&n, &constraints, start, neighbour, NULL, NULL, NULL,
+                                        &parts, NULL, NULL, options, &cut, answer);
+    if (code != METIS_OK)
+        return cloth_fail(error, code == METIS_ERROR_MEMORY ? CLOTH_E_MEMORY : CLOTH_E_LIBRARY,
+                          "METIS could not cut %u vertices into %u blocks: %s", graph->n_nodes,
+                          n_parts, metis_text(code));
+    for (size_t v = 0; v < graph->n_nodes; v++)
+        part[v] = (uint32_t)answer[v];
+    return CLOTH_OK;
+}
+
+int mesh_partition(uint32_t *part, const struct mesh_graph *graph, uint32_t n_parts,
+                   struct cloth_error *error)
+{
+    size_t n = graph->n_nodes, n_neighbours = graph->start[n];
+    if (n_parts < 2 || n_neighbours == 0) {
+        for (size_t v = 0; v < n; v++)
+            part[v] = (uint32_t)(v * n_parts / n);
+        return CLOTH_OK;
+    }
+    int code = fits(graph, error);
+    if (code)
+        return code;
+    idx_t *start = cloth_alloc(n + 1, sizeof *start, error);
+    idx_t *neighbour = cloth_alloc(n_neighbours, sizeof *neighbour, error);
+    idx_t *answer = cloth_alloc(n, sizeof *answer, error);
+    code = CLOTH_E_MEMORY;
+    if (start && neighbour && answer)
+        code = call_metis(part, graph, n_parts, start, neighbour, answer, error);
+    free(start);
+    free(neighbour);
+    free(answer);
+    return code;
+}

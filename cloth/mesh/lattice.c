@@ -1,0 +1,169 @@
+/* Springs stand sorted by (a, b); of those that join the same vertices, stretch comes before bend.
+ */
+#include "cloth/mesh/lattice.h"
+
+#include "cloth/base/memory.h"
+#include "cloth/mesh/detail/sort.h"
+#include "cloth/mesh/detail/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct builder {
+    const struct mesh *mesh;
+    struct cloth_error *error;
+    struct cloth_list springs;
+};
+
+static int check_length(const struct builder *builder, uint32_t a, uint32_t b, double length)
+{
+    if (length > 0 && isfinite(length))
+        return CLOTH_OK;
+    return cloth_fail(builder->error, CLOTH_E_INPUT,
+                      "vertices %u and %u (counted from 0) are %g m apart; vertices that a spring "
+                      "joins need a finite distance above 0",
+                      a, b, length);
+}
+
+/* area >= 0: modulus * area / length^2; else the modulus as it is. */
+static int add(struct builder *builder, uint32_t a, uint32_t b, enum mesh_spring_kind kind,
+               double modulus, double area)
+{
+    double length = mesh_distance(builder->mesh->position, a, b);
+    int code = check_length(builder, a, b, length);
+    if (code)
+        return code;
+    double stiffness = area >= 0 ? modulus * (area / length / length) : modulus;
+    if (stiffness == 0)
+        return CLOTH_OK;
+    if (!isfinite(stiffness))
+        return cloth_fail(builder->error, CLOTH_E_INPUT,
+                          "the spring between vertices %u and %u (counted from 0) has a stiffness "
+                          "of %g N/m; it must be finite",
+                          a, b, stiffness);
+    if (builder->springs.n == UINT32_MAX)
+        return cloth_fail(builder->error, CLOTH_E_INPUT,
+                          "the mesh has more than %u springs; use a coarser one", UINT32_MAX);
+    struct mesh_spring *spring =
+        cloth_list_add(&builder->springs, sizeof *spring, 1, builder->error);
+    if (!spring)
+        return CLOTH_E_MEMORY;
+    *spring = (struct mesh_spring){a < b ? a : b, a < b ? b : a, stiffness, length, kind};
+    return CLOTH_OK;
+}
+
+enum { NO_AREA = -1 };
+
+/* The springs of a grid's vertex (i, j) to later vertices, nearest number first. */
+static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j,
+                           const struct mesh_moduli *moduli)
+{
+    uint32_t nx = builder->mesh->grid_nx, ny = builder->mesh->grid_ny, a = j * nx + i;
+    double along = j == 0 || j == ny - 1 ? 0.5 : 1; /* half where the row is the border */
+    double across = i == 0 || i == nx - 1 ? 0.5 : 1;
+    double other = moduli->both_diagonals ? moduli->shear : 0;
+    const struct {
+        int exists;
+        uint32_t b;
+        enum mesh_spring_kind kind;
+        double k;
+    } springs[] = {
+        {i + 1 < nx, a + 1, MESH_STRETCH, along * moduli->stretch},
+        {i + 2 < nx, a + 2, MESH_BEND, along * moduli->bend},
+        {i > 0 && j + 1 < ny, a + nx - 1, MESH_SHEAR, other},
+        {j + 1 < ny, a + nx, MESH_STRETCH, across * moduli->stretch},
+        {i + 1 < nx && j + 1 < ny, a + nx + 1, MESH_SHEAR, moduli->shear},
+        {j + 2 < ny, a + 2 * nx, MESH_BEND, across * moduli->bend},
+    };
+    for (size_t s = 0; s < sizeof springs / sizeof *springs; s++) {
+        if (!springs[s].exists || springs[s].k == 0)
+            continue;
+        int code = add(builder, a, springs[s].b, springs[s].kind, springs[s].k, NO_AREA);
+        if (code)
+            return code;
+    }
+    return CLOTH_OK;
+}
+
+static int add_grid(struct builder *builder, const struct mesh_moduli *moduli)
+{
+    int code = CLOTH_OK;
+    for (uint32_t j = 0; j < builder->mesh->grid_ny && !code; j++)
+        for (uint32_t i = 0; i < builder->mesh->grid_nx && !code; i++)
+            code = add_grid_vertex(builder, i, j, moduli);
+    return code;
+}
+
+/* All stretch springs, then all bend springs, each in edge order. */
+static int add_edges(struct builder *builder, const struct mesh_edges *edges,
+                     const struct mesh_moduli *moduli)
+{
+    int code = CLOTH_OK;
+    for (uint32_t e = 0; e < edges->n && !code; e++) {
+        const struct mesh_edge *edge = &edges->edge[e];
+        double area = edge->opposite[0] == UINT32_MAX ? NO_AREA : edge->area;
+        code = add(builder, edge->a, edge->b, MESH_STRETCH, moduli->stretch, area);
+    }
+    for (uint32_t e = 0; e < edges->n && !code && moduli->bend != 0; e++) {
+        const struct mesh_edge *edge = &edges->edge[e];
+        uint32_t a = edge->opposite[0], b = edge->opposite[1];
+        if (b != UINT32_MAX && a != b)
+            code = add(builder, a, b, MESH_BEND, moduli->bend, edge->area);
+    }
+    return code;
+}
+
+static int sort(struct mesh_lattice *lattice, const struct builder *builder)
+{
+    const struct mesh_spring *spring = builder->springs.items;
+    size_t n = builder->springs.n;
+    int code = CLOTH_E_MEMORY;
+    uint32_t *pair = cloth_alloc(n, 2 * sizeof *pair, builder->error);
+    uint32_t *order = cloth_alloc(n, sizeof *order, builder->error);
+    lattice->spring = cloth_alloc(n, sizeof *lattice->spring, builder->error);
+    if (!pair || !order || !lattice->spring)
+        goto done;
+    for (size_t s = 0; s < n; s++) {
+        pair[2 * s] = spring[s].a;
+        pair[2 * s + 1] = spring[s].b;
+    }
+    code = mesh_sort_pairs(order, n, pair, builder->mesh->n_vertices, builder->error);
+    if (code)
+        goto done;
+    for (size_t s = 0; s < n; s++)
+        lattice->spring[s] = spring[order[s]];
+    lattice->n = (uint32_t)n;
+done:
+    free(pair);
+    free(order);
+    return code;
+}
+
+int mesh_lattice_build(struct mesh_lattice *lattice, const struct mesh *mesh,
+                       const struct mesh_moduli *moduli, struct cloth_error *error)
+{
+    struct builder builder = {.mesh = mesh, .error = error};
+    struct mesh_edges edges = {0};
+    int code = CLOTH_OK;
+    *lattice = (struct mesh_lattice){0};
+    if (mesh->grid_nx) {
+        code = add_grid(&builder, moduli);
+    } else {
+        code = mesh_edges_find(&edges, mesh, error);
+        if (!code)
+            code = add_edges(&builder, &edges, moduli);
+    }
+    if (!code)
+        code = sort(lattice, &builder);
+    if (code)
+        mesh_lattice_free(lattice);
+    mesh_edges_free(&edges);
+    free(builder.springs.items);
+    return code;
+}
+
+void mesh_lattice_free(struct mesh_lattice *lattice)
+{
+    free(lattice->spring);
+    *lattice = (struct mesh_lattice){0};
+}

@@ -1,0 +1,79 @@
+/* What every mesh can do, wherever it came from. Sums run in triangle order, so that they are the
+ * same everywhere. */
+#include "cloth/mesh/mesh.h"
+
+#include "cloth/mesh/detail/vector.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct mesh_transform mesh_identity = {{1, 1, 1}, {1, 0, 0, 0}, {0, 0, 0}};
+
+/* The matrix of a quaternion (w, x, y, z) divided by its length; false if it turns nothing (also of
+ * length zero). */
+static bool rotation(const double *quaternion, double matrix[3][3])
+{
+    const double *q = quaternion;
+    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if ((q[1] == 0 && q[2] == 0 && q[3] == 0) || !(length > 0))
+        return false;
+    double w = q[0] / length, x = q[1] / length, y = q[2] / length, z = q[3] / length;
+    double rows[3][3] = {
+        {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+        {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+        {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)},
+    };
+    memcpy(matrix, rows, sizeof rows);
+    return true;
+}
+
+void mesh_apply(struct mesh *mesh, const struct mesh_transform *transform)
+{
+    double matrix[3][3];
+    bool turns = rotation(transform->rotate, matrix);
+    for (size_t v = 0; v < mesh->n_vertices; v++) {
+        double *x = mesh->position + 3 * v, scaled[3];
+        for (size_t i = 0; i < 3; i++)
+            scaled[i] = x[i] * transform->scale[i];
+        for (size_t i = 0; i < 3; i++) {
+            x[i] = scaled[i];
+            if (turns)
+                x[i] =
+                    matrix[i][0] * scaled[0] + matrix[i][1] * scaled[1] + matrix[i][2] * scaled[2];
+            if (transform->translate[i] != 0) /* -0 + 0 would lose its sign */
+                x[i] += transform->translate[i];
+        }
+    }
+}
+
+void mesh_used(const struct mesh *mesh, unsigned char *used)
+{
+    memset(used, 0, mesh->n_vertices);
+    for (size_t i = 0; i < 3 * (size_t)mesh->n_triangles; i++)
+        used[mesh->triangle[i]] = 1;
+    for (size_t i = 0; i < 2 * (size_t)mesh->n_lone_edges; i++)
+        used[mesh->lone_edge[i]] = 1;
+}
+
+void mesh_add_mass(const struct mesh *mesh, double density, double *mass)
+{
+    for (size_t t = 0; t < mesh->n_triangles; t++) {
+        const uint32_t *corner = mesh->triangle + 3 * t;
+        double third = mesh_area(mesh->position, corner) * density / 3;
+        for (size_t i = 0; i < 3; i++)
+            mass[corner[i]] += third;
+    }
+}
+
+void mesh_free(struct mesh *mesh)
+{
+    free(mesh->position);
+    free(mesh->uv);
+    free(mesh->face_start);
+    free(mesh->face_corner);
+    free(mesh->triangle);
+    free(mesh->lone_edge);
+    *mesh = (struct mesh){0};
+}

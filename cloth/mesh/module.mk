@@ -1,0 +1,13 @@
+libduite_cloth_la_SOURCES += \
+	cloth/mesh/mesh.h cloth/mesh/lattice.h cloth/mesh/blocks.h \
+	cloth/mesh/blocks.c cloth/mesh/edges.c cloth/mesh/grid.c cloth/mesh/inline.c \
+	cloth/mesh/lattice.c cloth/mesh/mesh.c cloth/mesh/obj.c \
+	cloth/mesh/detail/finish.c cloth/mesh/detail/finish.h \
+	cloth/mesh/detail/graph.c cloth/mesh/detail/graph.h \
+	cloth/mesh/detail/lines.c cloth/mesh/detail/lines.h \
+	cloth/mesh/detail/order.c cloth/mesh/detail/partition.c \
+	cloth/mesh/detail/pieces.c cloth/mesh/detail/pieces.h \
+	cloth/mesh/detail/sides.c cloth/mesh/detail/sides.h \
+	cloth/mesh/detail/sort.c cloth/mesh/detail/sort.h \
+	cloth/mesh/detail/vector.h \
+	cloth/mesh/detail/words.c cloth/mesh/detail/words.h

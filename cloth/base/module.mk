@@ -1,1 +1,3 @@
-libduite_cloth_la_SOURCES += cloth/base/error.c cloth/base/error.h
+libduite_cloth_la_SOURCES += \
+	cloth/base/error.c cloth/base/error.h \
+	cloth/base/memory.c cloth/base/memory.h

@@ -6,8 +6,7 @@
 
 enum cloth_code {
     CLOTH_OK = 0,
-    CLOTH_E_INPUT =
-        1, /* a file, key, option or value that cannot be used: the program exits with 2 */
+    CLOTH_E_INPUT = 1,  /* a file, key, option or value that cannot be used: exit code 2 */
     CLOTH_E_MEMORY = 2, /* an allocation failed */
     CLOTH_E_IO = 3,     /* a file could not be opened, read or written */
     CLOTH_E_RUN = 4,    /* the simulation failed: diverged, or a task failed */

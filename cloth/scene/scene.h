@@ -3,12 +3,25 @@
 
 #include "cloth/flow/model.h"
 
-/* Reads a scene file (YAML, schema 1) into a model, after applying `--set` texts ("time.h=0.002", "cloths[0].mesh.grid.nx=40")
- * to the document. Mesh files are looked up relative to the scene's folder. Unknown keys and impossible values
- * are CLOTH_E_INPUT errors "file:line:column: what is wrong; what is allowed"; where the value came by --set the error
- * names the option instead. The model belongs to the caller (model_free), also after an error. Local: every rank reads the
- * same file, the same result and the same error everywhere. */
-int scene_read(struct model *model, const char *path, size_t n_sets, const char *const *sets,
+#include <stdio.h>
+
+/* A change to the document: "time.h=0.002", "cloths[0].mesh.grid.nx=40". The key is a path, the
+ * value is YAML. */
+struct scene_set {
+    const char *text;   /* KEY=VALUE */
+    const char *option; /* how errors name it, such as "--end 3"; NULL: "--set " and the text */
+};
+
+/* Reads a scene file (YAML, schema 1, docs/scene.md) into a model, after applying the sets to the
+ * document. Mesh files are looked up relative to the scene's folder. Unknown keys and impossible
+ * values are CLOTH_E_INPUT errors "file:line:column: what is wrong; what is allowed"; where the
+ * value came by a set the error names the option instead. The model belongs to the caller
+ * (model_free), also after an error. Local: every rank reads the same file, the same result and the
+ * same error everywhere. */
+int scene_read(struct model *model, const char *path, size_t n_sets, const struct scene_set *sets,
                struct cloth_error *error);
+
+/* Prints every key of a scene with its kind, unit, range and default, one a line. Local. */
+void scene_print_keys(FILE *file);
 
 #endif

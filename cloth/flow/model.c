@@ -1,0 +1,29 @@
+/* A model owns all that its pointers reach; a zeroed model owns nothing. */
+#include "cloth/flow/model.h"
+
+#include <stdlib.h>
+
+static void free_cloth(struct model_cloth *cloth)
+{
+    for (uint32_t i = 0; i < cloth->n_pins; i++)
+        free(cloth->pins[i].vertices);
+    for (uint32_t i = 0; i < cloth->n_loads; i++)
+        free(cloth->loads[i].vertices);
+    free(cloth->pins);
+    free(cloth->loads);
+    free(cloth->name);
+    mesh_free(&cloth->mesh);
+}
+
+void model_free(struct model *model)
+{
+    for (uint32_t i = 0; i < model->n_materials; i++)
+        free(model->materials[i].name);
+    for (uint32_t i = 0; i < model->n_cloths; i++)
+        free_cloth(&model->cloths[i]);
+    free(model->materials);
+    free(model->cloths);
+    free(model->planes);
+    free(model->name);
+    *model = (struct model){0};
+}

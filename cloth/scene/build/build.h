@@ -1,0 +1,26 @@
+#ifndef CLOTH_SCENE_BUILD_BUILD_H
+#define CLOTH_SCENE_BUILD_BUILD_H
+
+#include "cloth/flow/model.h"
+#include "cloth/scene/yaml/tree.h"
+
+/* From a tree that scene_check accepted to a model. They check what a table cannot: names, sizes,
+ * indices, files. What they allocate belongs to the model, also after an error. */
+
+/* All but the cloths. */
+int scene_build_world(struct model *model, const struct scene_tree *tree,
+                      struct cloth_error *error);
+
+/* The cloths; after the world, since they name materials. */
+int scene_build_cloths(struct model *model, const struct scene_tree *tree,
+                       struct cloth_error *error);
+
+/* The mesh of a cloth, transformed. */
+int scene_build_mesh(struct mesh *mesh, const struct scene_tree *tree, int cloth,
+                     struct cloth_error *error);
+
+/* n zeroed entries (at least one), or NULL with an error. */
+void *scene_build_array(size_t n, size_t size, struct cloth_error *error);
+char *scene_build_copy(const char *text, struct cloth_error *error);
+
+#endif

@@ -1,0 +1,188 @@
+/* Cloths with their pins and loads. Indices are checked here against the mesh, each with its own
+ * place in the file. */
+#include "cloth/scene/build/build.h"
+#include "cloth/scene/schema/rules.h"
+#include "cloth/scene/yaml/scalar.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int build_vertices(uint32_t **vertices, uint32_t *n_vertices, const struct scene_tree *tree,
+                          int list, const struct model_cloth *cloth, struct cloth_error *error)
+{
+    size_t n = scene_tree_length(tree, list);
+    *vertices = scene_build_array(n, sizeof **vertices, error);
+    if (!*vertices)
+        return error->code;
+    *n_vertices = (uint32_t)n;
+    for (size_t i = 0; i < n; i++) {
+        int item = scene_tree_item(tree, list, i);
+        uint32_t *vertex = &(*vertices)[i];
+        scene_scalar_integer(scene_tree_scalar(tree, item), vertex);
+        if (*vertex >= cloth->mesh.n_vertices)
+            return scene_tree_fail(tree, item, error,
+                                   "vertex %u is outside the mesh of cloth '%.60s', which has %u "
+                                   "vertices; 0 to %u are allowed",
+                                   *vertex, cloth->name, cloth->mesh.n_vertices,
+                                   cloth->mesh.n_vertices - 1);
+    }
+    return CLOTH_OK;
+}
+
+static bool in_box(const double *x, const struct model_pin *pin)
+{
+    bool in = true;
+    for (int i = 0; i < 3; i++)
+        in = in && x[i] >= pin->box[0][i] && x[i] <= pin->box[1][i];
+    return in;
+}
+
+static int build_box(struct model_pin *pin, const struct scene_tree *tree, int node,
+                     const struct model_cloth *cloth, struct cloth_error *error)
+{
+    double corner[2][3];
+    for (size_t i = 0; i < 2; i++)
+        scene_tree_vector(tree, scene_tree_item(tree, node, i), 3, corner[i]);
+    for (int i = 0; i < 3; i++) {
+        int low = corner[0][i] > corner[1][i];
+        pin->box[0][i] = corner[low][i];
+        pin->box[1][i] = corner[!low][i];
+    }
+    for (size_t v = 0; v < cloth->mesh.n_vertices; v++)
+        if (in_box(cloth->mesh.position + 3 * v, pin))
+            return CLOTH_OK;
+    return scene_tree_fail(tree, node, error,
+                           "the box holds no vertex of cloth '%.60s'; it is meant for positions "
+                           "after the transform",
+                           cloth->name);
+}
+
+static int build_pin(struct model_pin *pin, const struct scene_tree *tree, int node,
+                     const struct model_cloth *cloth, struct cloth_error *error)
+{
+    yaml_node_pair_t kind = scene_tree_pair(tree, node, 0);
+    const char *name = scene_tree_scalar(tree, kind.key);
+    scene_tree_position(tree, node, &pin->line, &pin->column);
+    if (!strcmp(name, "vertices")) {
+        pin->kind = MODEL_PIN_VERTICES;
+        return build_vertices(&pin->vertices, &pin->n_vertices, tree, kind.value, cloth, error);
+    }
+    if (!strcmp(name, "nearest")) {
+        pin->kind = MODEL_PIN_NEAREST;
+        scene_tree_vector(tree, kind.value, 3, pin->point);
+        return CLOTH_OK;
+    }
+    pin->kind = MODEL_PIN_BOX;
+    return build_box(pin, tree, kind.value, cloth, error);
+}
+
+static int build_pins(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                      struct cloth_error *error)
+{
+    int list = scene_tree_get(tree, node, "pins");
+    size_t n = scene_tree_length(tree, list);
+    cloth->pins = scene_build_array(n, sizeof *cloth->pins, error);
+    if (!cloth->pins)
+        return error->code;
+    cloth->n_pins = (uint32_t)n;
+    int code = CLOTH_OK;
+    for (size_t i = 0; !code && i < n; i++)
+        code = build_pin(&cloth->pins[i], tree, scene_tree_item(tree, list, i), cloth, error);
+    return code;
+}
+
+static int build_loads(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                       struct cloth_error *error)
+{
+    int list = scene_tree_get(tree, node, "loads");
+    size_t n = scene_tree_length(tree, list);
+    cloth->loads = scene_build_array(n, sizeof *cloth->loads, error);
+    if (!cloth->loads)
+        return error->code;
+    cloth->n_loads = (uint32_t)n;
+    int code = CLOTH_OK;
+    for (size_t i = 0; !code && i < n; i++) {
+        int item = scene_tree_item(tree, list, i);
+        struct model_load *load = &cloth->loads[i];
+        scene_tree_position(tree, item, &load->line, &load->column);
+        scene_tree_vector(tree, scene_tree_get(tree, item, "force"), 3, load->force);
+        code = build_vertices(&load->vertices, &load->n_vertices, tree,
+                              scene_tree_get(tree, item, "vertices"), cloth, error);
+    }
+    return code;
+}
+
+static int no_material(const char *name, const struct model *model, const struct scene_tree *tree,
+                       int node, struct cloth_error *error)
+{
+    char allowed[400];
+    const char **names = scene_build_array(model->n_materials, sizeof *names, error);
+    if (!names)
+        return error->code;
+    for (uint32_t i = 0; i < model->n_materials; i++)
+        names[i] = model->materials[i].name;
+    scene_allowed_words(name, names, model->n_materials, allowed, sizeof allowed);
+    free(names);
+    return scene_tree_fail(tree, node, error, "there is no material '%.60s'%s", name, allowed);
+}
+
+static int find_material(struct model_cloth *cloth, const struct model *model,
+                         const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const char *name = scene_tree_text(tree, node, "material");
+    for (uint32_t i = 0; i < model->n_materials; i++) {
+        if (!strcmp(model->materials[i].name, name)) {
+            cloth->material = i;
+            return CLOTH_OK;
+        }
+    }
+    return no_material(name, model, tree, scene_tree_get(tree, node, "material"), error);
+}
+
+static int name_cloth(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
+                      struct cloth_error *error)
+{
+    char usual[32];
+    snprintf(usual, sizeof usual, "cloth%u", i + 1);
+    int at = scene_tree_get(tree, node, "name");
+    const char *name = at ? scene_tree_scalar(tree, at) : usual;
+    for (uint32_t j = 0; j < i; j++)
+        if (!strcmp(model->cloths[j].name, name))
+            return scene_tree_fail(tree, at ? at : node, error,
+                                   "a second cloth is named '%.60s'; names must differ", name);
+    model->cloths[i].name = scene_build_copy(name, error);
+    return model->cloths[i].name ? CLOTH_OK : error->code;
+}
+
+static int build_cloth(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
+                       struct cloth_error *error)
+{
+    struct model_cloth *cloth = &model->cloths[i];
+    if (scene_tree_get(tree, node, "mass_per_vertex"))
+        cloth->mass_per_vertex = scene_tree_number(tree, node, "mass_per_vertex");
+    scene_tree_vector(tree, scene_tree_get(tree, node, "velocity"), 3, cloth->velocity);
+    int code = name_cloth(model, i, tree, node, error);
+    if (!code)
+        code = find_material(cloth, model, tree, node, error);
+    if (!code)
+        code = scene_build_mesh(&cloth->mesh, tree, node, error);
+    if (!code)
+        code = build_pins(cloth, tree, node, error);
+    return code ? code : build_loads(cloth, tree, node, error);
+}
+
+int scene_build_cloths(struct model *model, const struct scene_tree *tree,
+                       struct cloth_error *error)
+{
+    int list = scene_tree_get(tree, 1, "cloths");
+    size_t n = scene_tree_length(tree, list);
+    model->cloths = scene_build_array(n, sizeof *model->cloths, error);
+    if (!model->cloths)
+        return error->code;
+    model->n_cloths = (uint32_t)n;
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; !code && i < n; i++)
+        code = build_cloth(model, i, tree, scene_tree_item(tree, list, i), error);
+    return code;
+}

@@ -1,0 +1,162 @@
+/* Materials, obstacles, time and solver. Materials keep the order of the file. */
+#include "cloth/scene/build/build.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void *scene_build_array(size_t n, size_t size, struct cloth_error *error)
+{
+    void *array = calloc(n ? n : 1, size);
+    if (!array)
+        cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    return array;
+}
+
+char *scene_build_copy(const char *text, struct cloth_error *error)
+{
+    size_t size = strlen(text) + 1;
+    char *copy = scene_build_array(size, 1, error);
+    if (copy)
+        memcpy(copy, text, size);
+    return copy;
+}
+
+/* The scene's name, else the file's without folder and ending. */
+static int build_name(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+{
+    const char *name = scene_tree_text(tree, 1, "name");
+    const char *slash = strrchr(tree->path, '/');
+    model->name = scene_build_copy(name ? name : slash ? slash + 1 : tree->path, error);
+    if (!model->name)
+        return error->code;
+    char *dot = name ? NULL : strrchr(model->name, '.');
+    if (dot && dot > model->name)
+        *dot = 0;
+    return CLOTH_OK;
+}
+
+static int build_material(struct model_material *material, const struct scene_tree *tree,
+                          const char *name, int node, struct cloth_error *error)
+{
+    int damping = scene_tree_get(tree, node, "damping");
+    *material = (struct model_material){
+        .name = scene_build_copy(name, error),
+        .density = scene_tree_number(tree, node, "density"),
+        .stretch = scene_tree_number(tree, node, "stretch"),
+        .shear = scene_tree_number(tree, node, "shear"),
+        .bend = scene_tree_number(tree, node, "bend"),
+        .damping_viscous = scene_tree_number(tree, damping, "viscous"),
+        .damping_mass = scene_tree_number(tree, damping, "mass"),
+        .damping_stiffness = scene_tree_number(tree, damping, "stiffness"),
+        .both_diagonals = !strcmp(scene_tree_text(tree, node, "diagonals"), "both"),
+    };
+    return material->name ? CLOTH_OK : error->code;
+}
+
+static int build_materials(struct model *model, const struct scene_tree *tree,
+                           struct cloth_error *error)
+{
+    int map = scene_tree_get(tree, 1, "materials");
+    size_t n = scene_tree_length(tree, map);
+    model->materials = scene_build_array(n, sizeof *model->materials, error);
+    if (!model->materials)
+        return error->code;
+    model->n_materials = (uint32_t)n;
+    int code = CLOTH_OK;
+    for (size_t i = 0; !code && i < n; i++) {
+        yaml_node_pair_t pair = scene_tree_pair(tree, map, i);
+        code = build_material(&model->materials[i], tree, scene_tree_scalar(tree, pair.key),
+                              pair.value, error);
+    }
+    return code;
+}
+
+static int build_plane(struct model_plane *plane, const struct scene_tree *tree, int node,
+                       struct cloth_error *error)
+{
+    int normal = scene_tree_get(tree, node, "normal");
+    scene_tree_vector(tree, scene_tree_get(tree, node, "point"), 3, plane->point);
+    scene_tree_vector(tree, normal, 3, plane->normal);
+    double largest = 0, square = 0;
+    for (int i = 0; i < 3; i++)
+        largest = fmax(largest, fabs(plane->normal[i]));
+    if (largest <= 0)
+        return scene_tree_fail(tree, normal, error,
+                               "the normal of a plane is zero; a direction is expected");
+    for (int i = 0; i < 3; i++) {
+        plane->normal[i] /= largest; /* so that the squares neither overflow nor vanish */
+        square += plane->normal[i] * plane->normal[i];
+    }
+    for (int i = 0; i < 3; i++)
+        plane->normal[i] /= sqrt(square);
+    return CLOTH_OK;
+}
+
+static int build_obstacles(struct model *model, const struct scene_tree *tree,
+                           struct cloth_error *error)
+{
+    int list = scene_tree_get(tree, 1, "obstacles");
+    size_t n = scene_tree_length(tree, list);
+    model->planes = scene_build_array(n, sizeof *model->planes, error);
+    if (!model->planes)
+        return error->code;
+    model->n_planes = (uint32_t)n;
+    int code = CLOTH_OK;
+    for (size_t i = 0; !code && i < n; i++) {
+        int obstacle = scene_tree_item(tree, list, i);
+        code = build_plane(&model->planes[i], tree, scene_tree_get(tree, obstacle, "plane"), error);
+    }
+    return code;
+}
+
+/* Time is counted in h / 1024 in 64 bits, so there is an end to the number of steps. */
+static int build_time(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+{
+    int time = scene_tree_get(tree, 1, "time"), end = scene_tree_get(tree, time, "end");
+    model->h = scene_tree_number(tree, time, "h");
+    model->end = scene_tree_number(tree, time, "end");
+    model->fps = scene_tree_number(tree, time, "fps");
+    double steps = model->end / model->h;
+    if (steps < 0.5)
+        return scene_tree_fail(tree, end, error,
+                               "time.end is %g, less than half a step; at least time.h = %g is "
+                               "expected",
+                               model->end, model->h);
+    if (!(steps <= 0x1p50))
+        return scene_tree_fail(tree, end, error,
+                               "time.end / time.h is %g steps; at most 2^50 are possible", steps);
+    return CLOTH_OK;
+}
+
+static void build_solver(struct model *model, const struct scene_tree *tree)
+{
+    int solver = scene_tree_get(tree, 1, "solver"), stop = scene_tree_get(tree, solver, "stop");
+    bool explicit = !strcmp(scene_tree_text(tree, 1, "integrator"), "explicit_euler");
+    model->integrator = explicit ? MODEL_EXPLICIT_EULER : MODEL_IMPLICIT_EULER;
+    model->max_iterations = scene_tree_integer(tree, solver, "max_iterations");
+    if (scene_tree_get(tree, stop, "count")) {
+        model->stop = MODEL_STOP_COUNT;
+        model->max_iterations = scene_tree_integer(tree, stop, "count");
+    } else if (scene_tree_get(tree, stop, "absolute")) {
+        model->stop = MODEL_STOP_ABSOLUTE;
+        model->tolerance = scene_tree_number(tree, stop, "absolute");
+    } else {
+        model->stop = MODEL_STOP_RELATIVE;
+        model->tolerance = scene_tree_number(tree, stop, "relative");
+    }
+}
+
+int scene_build_world(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+{
+    model->grain = scene_tree_integer(tree, 1, "grain");
+    scene_tree_vector(tree, scene_tree_get(tree, 1, "gravity"), 3, model->gravity);
+    build_solver(model, tree);
+    int code = build_name(model, tree, error);
+    if (!code)
+        code = build_time(model, tree, error);
+    if (!code)
+        code = build_materials(model, tree, error);
+    return code ? code : build_obstacles(model, tree, error);
+}

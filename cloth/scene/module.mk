@@ -1,0 +1,20 @@
+libduite_cloth_la_SOURCES += \
+	cloth/scene/scene.h \
+	cloth/scene/scene.c \
+	cloth/scene/yaml/tree.h \
+	cloth/scene/yaml/tree.c \
+	cloth/scene/yaml/load.c \
+	cloth/scene/yaml/scalar.h \
+	cloth/scene/yaml/scalar.c \
+	cloth/scene/yaml/edit.h \
+	cloth/scene/yaml/edit.c \
+	cloth/scene/schema/rules.h \
+	cloth/scene/schema/rules.c \
+	cloth/scene/schema/words.c \
+	cloth/scene/schema/check.h \
+	cloth/scene/schema/check.c \
+	cloth/scene/build/build.h \
+	cloth/scene/build/world.c \
+	cloth/scene/build/mesh.c \
+	cloth/scene/build/cloth.c
+EXTRA_DIST += docs/scene.md

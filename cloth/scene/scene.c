@@ -1,0 +1,27 @@
+/* Reading a scene: load the document, edit it, check it, build the model from it; each step relies
+ * on the one before. */
+#include "cloth/scene/scene.h"
+#include "cloth/scene/build/build.h"
+#include "cloth/scene/schema/check.h"
+#include "cloth/scene/yaml/edit.h"
+
+int scene_read(struct model *model, const char *path, size_t n_sets, const struct scene_set *sets,
+               struct cloth_error *error)
+{
+    struct cloth_error own = {0}; /* the caller may want none, the steps below rely on one */
+    struct scene_tree tree;
+    *model = (struct model){0};
+    int code = scene_tree_load(&tree, path, &own);
+    tree.n_sets = n_sets;
+    tree.sets = sets;
+    if (!code)
+        code = scene_edit_sets(&tree, &own);
+    if (!code)
+        code = scene_check(&tree, &own);
+    if (!code)
+        code = scene_build_world(model, &tree, &own);
+    if (!code)
+        code = scene_build_cloths(model, &tree, &own);
+    scene_tree_free(&tree);
+    return code ? cloth_fail(error, code, "%s", own.text) : CLOTH_OK;
+}

@@ -1,0 +1,295 @@
+/* The walk of a document along the rules. Its depth is the schema's, whatever the document (aliases
+ * may be circular). Every error is reported by `wrong` or `unknown`, so all of them have one form.
+ */
+#include "cloth/scene/schema/check.h"
+#include "cloth/scene/schema/rules.h"
+#include "cloth/scene/yaml/edit.h"
+#include "cloth/scene/yaml/scalar.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Where the walk is: a chain up to the root, for the names of keys in sentences. */
+struct place {
+    const struct place *up;
+    const char *key; /* NULL: entry `index` of a list */
+    size_t index;
+};
+
+struct walk {
+    struct scene_tree *tree;
+    struct cloth_error *error;
+};
+
+static int check(struct walk *walk, const struct place *at, const struct scene_rule *rule,
+                 int node);
+
+/* Writes "cloths[0].mesh"; the root is "the scene". */
+static size_t path_of(const struct place *at, char *text, size_t size)
+{
+    if (!at->up)
+        return (size_t)snprintf(text, size, "the scene");
+    size_t used = at->up->up ? path_of(at->up, text, size) : 0;
+    if (used >= size)
+        return used;
+    if (at->key)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", used ? "." : "", at->key);
+    else
+        used += (size_t)snprintf(text + used, size - used, "[%zu]", at->index);
+    return used;
+}
+
+/* What a node says, short and on one line. */
+static const char *found(const struct walk *walk, int node, char *text, size_t size)
+{
+    bool list = scene_tree_is(walk->tree, node, YAML_SEQUENCE_NODE);
+    size_t n = scene_tree_length(walk->tree, node);
+    if (list || scene_tree_is(walk->tree, node, YAML_MAPPING_NODE)) {
+        snprintf(text, size, n ? "a %s of %zu" : "an empty %s", list ? "list" : "map", n);
+        return text;
+    }
+    if (scene_tree_empty(walk->tree, node))
+        return "empty";
+    bool plain = scene_tree_node(walk->tree, node)->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
+    snprintf(text, size, plain ? "%.60s" : "the text '%.60s'", scene_tree_scalar(walk->tree, node));
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < 32 || *c == 127)
+            *c = ' ';
+    return text;
+}
+
+static int wrong(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node)
+{
+    char path[200], is[100], expected[300];
+    path_of(at, path, sizeof path);
+    return scene_tree_fail(walk->tree, node, walk->error, "%s is %s; %s is expected", path,
+                           found(walk, node, is, sizeof is),
+                           scene_rule_expected(rule, expected, sizeof expected));
+}
+
+static const struct scene_rule *rule_of(const struct scene_rule *keys, const char *name)
+{
+    for (const struct scene_rule *key = keys; key->key; key++)
+        if (!strcmp(key->key, name))
+            return key;
+    return NULL;
+}
+
+enum { MOST_KEYS = 32 }; /* of a map, in sentences */
+
+static int unknown(struct walk *walk, const struct place *at, const struct scene_rule *keys,
+                   int node)
+{
+    const char *names[MOST_KEYS];
+    size_t n = 0;
+    for (const struct scene_rule *key = keys; key->key && n < MOST_KEYS; key++)
+        names[n++] = key->key;
+    char path[200], is[100], allowed[400];
+    path_of(at, path, sizeof path);
+    const char *word = scene_tree_scalar(walk->tree, node);
+    return scene_tree_fail(
+        walk->tree, node, walk->error, "%s is not a key of %s%s", found(walk, node, is, sizeof is),
+        path, scene_allowed_words(word ? word : "", names, n, allowed, sizeof allowed));
+}
+
+static bool is_default(const struct walk *walk, int node)
+{
+    return scene_tree_node(walk->tree, node)->start_mark.index == SCENE_BY_DEFAULT;
+}
+
+/* Keys of a map are texts, each there once. */
+static int check_names(struct walk *walk, const struct place *at, int map)
+{
+    char path[200], is[100];
+    for (size_t i = 0; i < scene_tree_length(walk->tree, map); i++) {
+        int key = scene_tree_pair(walk->tree, map, i).key;
+        const char *name = scene_tree_scalar(walk->tree, key);
+        path_of(at, path, sizeof path);
+        if (!name || !*name)
+            return scene_tree_fail(walk->tree, key, walk->error,
+                                   "a key of %s is %s; a text is expected", path,
+                                   found(walk, key, is, sizeof is));
+        for (size_t j = 0; j < i; j++) {
+            const char *other =
+                scene_tree_scalar(walk->tree, scene_tree_pair(walk->tree, map, j).key);
+            if (!strcmp(name, other))
+                return scene_tree_fail(walk->tree, key, walk->error,
+                                       "%s is twice in %s; each key is allowed once", name, path);
+        }
+    }
+    return CLOTH_OK;
+}
+
+/* Checks the values of a map whose keys are the rules `keys`. */
+static int check_values(struct walk *walk, const struct place *at, const struct scene_rule *keys,
+                        int map)
+{
+    for (size_t i = 0; i < scene_tree_length(walk->tree, map); i++) {
+        yaml_node_pair_t pair = scene_tree_pair(walk->tree, map, i);
+        const struct scene_rule *rule = rule_of(keys, scene_tree_scalar(walk->tree, pair.key));
+        if (!rule && is_default(walk, pair.key))
+            continue; /* of another key that shares this map by an alias */
+        if (!rule)
+            return unknown(walk, at, keys, pair.key);
+        int code = check(walk, &(struct place){at, rule->key, 0}, rule, pair.value);
+        if (code)
+            return code;
+    }
+    return CLOTH_OK;
+}
+
+static int add_defaults(struct walk *walk, const struct place *at, const struct scene_rule *keys,
+                        int map)
+{
+    char path[200], expected[300];
+    for (const struct scene_rule *rule = keys; rule->key; rule++) {
+        if (scene_tree_get(walk->tree, map, rule->key))
+            continue;
+        path_of(&(struct place){at, rule->key, 0}, path, sizeof path);
+        if (rule->required)
+            return scene_tree_fail(walk->tree, map, walk->error, "%s is missing; %s is expected",
+                                   path, scene_rule_expected(rule, expected, sizeof expected));
+        int code = rule->fallback
+                       ? scene_edit_default(walk->tree, map, rule->key, rule->fallback, walk->error)
+                       : CLOTH_OK;
+        if (code)
+            return code;
+    }
+    return CLOTH_OK;
+}
+
+static int check_map(struct walk *walk, const struct place *at, const struct scene_rule *rule,
+                     int node)
+{
+    int code = check_names(walk, at, node);
+    if (!code)
+        code = check_values(walk, at, rule->inside, node);
+    return code ? code : add_defaults(walk, at, rule->inside, node);
+}
+
+static int check_one_of(struct walk *walk, const struct place *at, const struct scene_rule *rule,
+                        int node)
+{
+    int code = check_names(walk, at, node);
+    if (!code)
+        code = check_values(walk, at, rule->inside, node);
+    size_t n = scene_tree_length(walk->tree, node);
+    if (code || n == 1)
+        return code;
+    char path[200], expected[300];
+    path_of(at, path, sizeof path);
+    int where = n ? scene_tree_pair(walk->tree, node, 1).key : node;
+    return scene_tree_fail(walk->tree, where, walk->error, "%s has %zu keys; %s is expected", path,
+                           n, scene_rule_expected(rule, expected, sizeof expected));
+}
+
+static int check_named(struct walk *walk, const struct place *at, const struct scene_rule *rule,
+                       int node)
+{
+    int code = check_names(walk, at, node);
+    if (!scene_tree_length(walk->tree, node))
+        return wrong(walk, at, rule, node);
+    for (size_t i = 0; !code && i < scene_tree_length(walk->tree, node); i++) {
+        yaml_node_pair_t pair = scene_tree_pair(walk->tree, node, i);
+        struct place here = {at, scene_tree_scalar(walk->tree, pair.key), 0};
+        code = check(walk, &here, rule->inside, pair.value);
+    }
+    return code;
+}
+
+static int check_list(struct walk *walk, const struct place *at, const struct scene_rule *rule,
+                      int node)
+{
+    size_t n = scene_tree_length(walk->tree, node);
+    if ((rule->length && n != rule->length) || (rule->filled && !n))
+        return wrong(walk, at, rule, node);
+    int code = CLOTH_OK;
+    for (size_t i = 0; !code && i < n; i++)
+        code = check(walk, &(struct place){at, NULL, i}, rule->inside,
+                     scene_tree_item(walk->tree, node, i));
+    return code;
+}
+
+static bool number_fits(const struct scene_rule *rule, const char *text)
+{
+    double value;
+    if (!scene_scalar_number(text, &value))
+        return false;
+    return rule->range == SCENE_ANY || value > 0 ||
+           (rule->range == SCENE_NOT_NEGATIVE && value >= 0);
+}
+
+static bool integer_fits(const struct scene_rule *rule, const char *text)
+{
+    uint32_t value;
+    return scene_scalar_integer(text, &value) && value >= rule->least &&
+           (rule->most <= 0 || value <= rule->most);
+}
+
+static bool is_word(const struct scene_rule *rule, const char *text)
+{
+    for (size_t i = 0; rule->words[i]; i++)
+        if (!strcmp(rule->words[i], text))
+            return true;
+    return false;
+}
+
+static int check_scalar(struct walk *walk, const struct place *at, const struct scene_rule *rule,
+                        int node)
+{
+    const yaml_node_t *scalar = scene_tree_node(walk->tree, node);
+    const char *text = scene_tree_scalar(walk->tree, node);
+    bool plain = scalar->data.scalar.style == YAML_PLAIN_SCALAR_STYLE, fits;
+    if (rule->type == SCENE_TEXT)
+        fits = *text && !scene_tree_empty(walk->tree, node) &&
+               strlen(text) == scalar->data.scalar.length;
+    else if (rule->type == SCENE_CHOICE)
+        fits = is_word(rule, text);
+    else if (rule->type == SCENE_INTEGER)
+        fits = plain && integer_fits(rule, text);
+    else
+        fits = plain && number_fits(rule, text);
+    return fits ? CLOTH_OK : wrong(walk, at, rule, node);
+}
+
+static bool has_own_tag(const yaml_node_t *node)
+{
+    static const char *const usual[] = {[YAML_SCALAR_NODE] = YAML_STR_TAG,
+                                        [YAML_SEQUENCE_NODE] = YAML_SEQ_TAG,
+                                        [YAML_MAPPING_NODE] = YAML_MAP_TAG};
+    return node->tag && strcmp((const char *)node->tag, usual[node->type]) != 0;
+}
+
+static int check(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node)
+{
+    char path[200];
+    const yaml_node_t *here = scene_tree_node(walk->tree, node);
+    bool list = here->type == YAML_SEQUENCE_NODE, map = here->type == YAML_MAPPING_NODE;
+    if (has_own_tag(here)) {
+        path_of(at, path, sizeof path);
+        return scene_tree_fail(walk->tree, node, walk->error,
+                               "%s has the tag %.60s; a value without a tag is expected", path,
+                               (const char *)here->tag);
+    }
+    if (map && rule->type == SCENE_MAP)
+        return check_map(walk, at, rule, node);
+    if (map && rule->type == SCENE_ONE_OF)
+        return check_one_of(walk, at, rule, node);
+    if (map && rule->type == SCENE_NAMED)
+        return check_named(walk, at, rule, node);
+    if (list && (rule->type == SCENE_LIST || rule->type == SCENE_NUMBER_OR_LIST))
+        return check_list(walk, at, rule, node);
+    if (!list && !map && rule->type >= SCENE_NUMBER)
+        return check_scalar(walk, at, rule, node);
+    return wrong(walk, at, rule, node);
+}
+
+int scene_check(struct scene_tree *tree, struct cloth_error *error)
+{
+    struct walk walk = {tree, error};
+    const struct place root = {0}, schema = {&root, "schema", 0};
+    /* A file of another schema is told so before its keys are called unknown. */
+    int node = scene_tree_get(tree, 1, "schema");
+    int code = node ? check(&walk, &schema, rule_of(scene_root.inside, "schema"), node) : CLOTH_OK;
+    return code ? code : check(&walk, &root, &scene_root, 1);
+}

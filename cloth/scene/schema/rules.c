@@ -1,0 +1,155 @@
+/* The schema 1 of scenes. This table is the only place that knows keys, units, ranges and defaults:
+ * files are checked against it, defaults are taken from it, and the list of keys is printed from
+ * it. docs/scene.md describes it. */
+#include "cloth/scene/schema/rules.h"
+
+static const struct scene_rule number = {.type = SCENE_NUMBER};
+static const struct scene_rule positive = {.type = SCENE_NUMBER, .range = SCENE_POSITIVE};
+static const struct scene_rule vertex = {.type = SCENE_INTEGER};
+static const struct scene_rule point = {
+    .type = SCENE_LIST, .length = 3, .inside = &number, .unit = "m"};
+static const struct scene_rule edge = {.type = SCENE_LIST, .length = 2, .inside = &vertex};
+static const struct scene_rule triangle = {.type = SCENE_LIST, .length = 3, .inside = &vertex};
+
+/* clang-format off */
+static const struct scene_rule grid_keys[] = {
+    {"width", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE, .about = "along x"},
+    {"height", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE, .about = "along z"},
+    {"nx", SCENE_INTEGER, .required = true, .least = 2, .about = "vertices along x"},
+    {"ny", SCENE_INTEGER, .required = true, .least = 2, .about = "vertices along z"},
+    {0}};
+
+static const struct scene_rule inline_keys[] = {
+    {"vertices", SCENE_LIST, "m", .required = true, .filled = true, .inside = &point,
+     .about = "positions [x, y, z]"},
+    {"edges", SCENE_LIST, .fallback = "[]", .inside = &edge,
+     .about = "pairs of vertices: edges without triangles"},
+    {"triangles", SCENE_LIST, .fallback = "[]", .inside = &triangle,
+     .about = "triples of vertices"},
+    {0}};
+
+static const struct scene_rule mesh_kinds[] = {
+    {"grid", SCENE_MAP, .inside = grid_keys, .about = "a flat sheet in the x-z plane"},
+    {"file", SCENE_TEXT, .about = "an OBJ file, relative to the scene's folder"},
+    {"inline", SCENE_MAP, .inside = inline_keys, .about = "a mesh written out"},
+    {0}};
+
+static const struct scene_rule transform_keys[] = {
+    {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3,
+     .inside = &positive, .about = "first: a factor, or one for each axis"},
+    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number,
+     .about = "then: a quaternion [w, x, y, z]"},
+    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     .about = "last: a shift"},
+    {0}};
+
+static const struct scene_rule pin_kinds[] = {
+    {"vertices", SCENE_LIST, .filled = true, .inside = &vertex, .about = "in the mesh's numbering"},
+    {"nearest", SCENE_LIST, "m", .length = 3, .inside = &number,
+     .about = "the vertex nearest to a point"},
+    {"box", SCENE_LIST, "m", .length = 2, .inside = &point,
+     .about = "all vertices in the box between two corners"},
+    {0}};
+static const struct scene_rule pin = {.type = SCENE_ONE_OF, .inside = pin_kinds};
+
+static const struct scene_rule load_keys[] = {
+    {"vertices", SCENE_LIST, .required = true, .filled = true, .inside = &vertex,
+     .about = "in the mesh's numbering"},
+    {"force", SCENE_LIST, "N", .required = true, .length = 3, .inside = &number,
+     .about = "constant, on each of the vertices"},
+    {0}};
+static const struct scene_rule load = {.type = SCENE_MAP, .inside = load_keys};
+
+static const struct scene_rule cloth_keys[] = {
+    {"name", SCENE_TEXT, .about = "unique; else cloth1, cloth2, ..."},
+    {"mesh", SCENE_ONE_OF, .required = true, .inside = mesh_kinds, .about = "its shape at rest"},
+    {"transform", SCENE_MAP, .fallback = "{}", .inside = transform_keys,
+     .about = "of the mesh, before lengths and masses are taken"},
+    {"material", SCENE_TEXT, .required = true, .about = "a name in materials"},
+    {"mass_per_vertex", SCENE_NUMBER, "kg", .range = SCENE_POSITIVE,
+     .about = "instead of density times area"},
+    {"velocity", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     .about = "at the start"},
+    {"pins", SCENE_LIST, .fallback = "[]", .inside = &pin, .about = "vertices held where they start"},
+    {"loads", SCENE_LIST, .fallback = "[]", .inside = &load, .about = "forces on vertices"},
+    {0}};
+static const struct scene_rule cloth = {.type = SCENE_MAP, .inside = cloth_keys};
+
+static const struct scene_rule damping_keys[] = {
+    {"viscous", SCENE_NUMBER, "kg/s", "0", .range = SCENE_NOT_NEGATIVE, .about = "a vertex"},
+    {"mass", SCENE_NUMBER, "1/s", "0", .range = SCENE_NOT_NEGATIVE, .about = "times the mass"},
+    {"stiffness", SCENE_NUMBER, "s", "0", .range = SCENE_NOT_NEGATIVE,
+     .about = "along a spring, times its stiffness"},
+    {0}};
+
+static const char *const diagonals[] = {"both", "one", NULL};
+
+static const struct scene_rule material_keys[] = {
+    {"density", SCENE_NUMBER, "kg/m^2", .required = true, .range = SCENE_POSITIVE,
+     .about = "mass of an area"},
+    {"stretch", SCENE_NUMBER, "N/m", .required = true, .range = SCENE_NOT_NEGATIVE,
+     .about = "modulus of springs along edges"},
+    {"shear", SCENE_NUMBER, "N/m", "0", .range = SCENE_NOT_NEGATIVE,
+     .about = "of springs along the diagonals of grids"},
+    {"bend", SCENE_NUMBER, "N/m", "0", .range = SCENE_NOT_NEGATIVE,
+     .about = "of springs over two edges"},
+    {"damping", SCENE_MAP, .fallback = "{}", .inside = damping_keys, .about = "of motion"},
+    {"diagonals", SCENE_CHOICE, .fallback = "both", .words = diagonals,
+     .about = "shear springs in a cell of a grid"},
+    {0}};
+static const struct scene_rule material = {.type = SCENE_MAP, .inside = material_keys};
+
+static const struct scene_rule plane_keys[] = {
+    {"point", SCENE_LIST, "m", .required = true, .length = 3, .inside = &number,
+     .about = "any point of it"},
+    {"normal", SCENE_LIST, .required = true, .length = 3, .inside = &number,
+     .about = "towards the free side, of any length but 0"},
+    {0}};
+static const struct scene_rule obstacle_kinds[] = {
+    {"plane", SCENE_MAP, .inside = plane_keys, .about = "a floor or wall"},
+    {0}};
+static const struct scene_rule obstacle = {.type = SCENE_ONE_OF, .inside = obstacle_kinds};
+
+static const struct scene_rule time_keys[] = {
+    {"h", SCENE_NUMBER, "s", .required = true, .range = SCENE_POSITIVE, .about = "of a step"},
+    {"end", SCENE_NUMBER, "s", .required = true, .range = SCENE_POSITIVE,
+     .about = "round(end / h) steps are made"},
+    {"fps", SCENE_NUMBER, "1/s", "25", .range = SCENE_POSITIVE, .about = "frames a second"},
+    {0}};
+
+static const struct scene_rule stop_kinds[] = {
+    {"relative", SCENE_NUMBER, .range = SCENE_POSITIVE, .about = "residual against the right side"},
+    {"absolute", SCENE_NUMBER, "kg m/s", .range = SCENE_POSITIVE, .about = "residual"},
+    {"count", SCENE_INTEGER, .least = 1, .about = "so many iterations, no test"},
+    {0}};
+static const struct scene_rule solver_keys[] = {
+    {"stop", SCENE_ONE_OF, .fallback = "{relative: 0.001}", .inside = stop_kinds,
+     .about = "when conjugate gradients end"},
+    {"max_iterations", SCENE_INTEGER, .fallback = "10000", .least = 1,
+     .about = "a solve that needs more fails"},
+    {0}};
+
+static const char *const contacts[] = {"project", NULL};
+static const char *const integrators[] = {"implicit_euler", "explicit_euler", NULL};
+
+static const struct scene_rule scene_keys[] = {
+    {"schema", SCENE_INTEGER, .required = true, .least = 1, .most = 1,
+     .about = "version of these rules"},
+    {"name", SCENE_TEXT, .about = "of the scene; else the file's name"},
+    {"gravity", SCENE_LIST, "m/s^2", .fallback = "[0, -9.81, 0]", .length = 3, .inside = &number,
+     .about = "+y is up"},
+    {"cloths", SCENE_LIST, .required = true, .filled = true, .inside = &cloth,
+     .about = "what moves"},
+    {"materials", SCENE_NAMED, .required = true, .inside = &material, .about = "NAME is yours"},
+    {"obstacles", SCENE_LIST, .fallback = "[]", .inside = &obstacle, .about = "what does not move"},
+    {"contact", SCENE_CHOICE, .fallback = "project", .words = contacts,
+     .about = "how obstacles are met"},
+    {"time", SCENE_MAP, .required = true, .inside = time_keys, .about = "of the simulation"},
+    {"integrator", SCENE_CHOICE, .fallback = "implicit_euler", .words = integrators,
+     .about = "how a step is made"},
+    {"solver", SCENE_MAP, .fallback = "{}", .inside = solver_keys, .about = "of implicit steps"},
+    {"grain", SCENE_INTEGER, .fallback = "1000", .least = 1, .about = "vertices a block"},
+    {0}};
+/* clang-format on */
+
+const struct scene_rule scene_root = {.type = SCENE_MAP, .inside = scene_keys};

@@ -1,0 +1,204 @@
+/* Words for people: what a rule allows, what a wrong word may have meant, and the list of all keys.
+ */
+#include "cloth/scene/scene.h"
+#include "cloth/scene/schema/rules.h"
+
+#include <stdint.h>
+#include <string.h>
+
+enum { LONGEST = 31 }; /* words beyond this length are not guessed at */
+
+static unsigned least_of(unsigned a, unsigned b)
+{
+    return a < b ? a : b;
+}
+
+/* Insertions, deletions, changes and swaps of neighbours that lead from a to b (optimal string
+ * alignment). */
+static unsigned distance(const char *a, const char *b)
+{
+    size_t n = strlen(a), m = strlen(b);
+    unsigned d[LONGEST + 1][LONGEST + 1];
+    for (size_t i = 0; i <= n; i++) {
+        for (size_t j = 0; j <= m; j++) {
+            if (!i || !j) {
+                d[i][j] = (unsigned)(i + j);
+                continue;
+            }
+            d[i][j] = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+            d[i][j] = least_of(d[i][j], least_of(d[i - 1][j], d[i][j - 1]) + 1);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                d[i][j] = least_of(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    }
+    return d[n][m];
+}
+
+const char *scene_nearest_word(const char *word, const char *const *candidates, size_t n)
+{
+    size_t length = strlen(word);
+    unsigned limit = length < 4 ? 1 : length < 9 ? 2 : 3;
+    const char *nearest = NULL;
+    for (size_t i = 0; i < n && length <= LONGEST; i++) {
+        size_t other = strlen(candidates[i]);
+        if (other > LONGEST)
+            continue;
+        unsigned far = distance(word, candidates[i]);
+        if (far <= limit && far < (length > other ? length : other)) {
+            nearest = candidates[i];
+            limit = far ? far - 1 : 0;
+        }
+    }
+    return nearest;
+}
+
+static void append(char *text, size_t size, const char *more)
+{
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "%s", more);
+}
+
+char *scene_allowed_words(const char *word, const char *const *candidates, size_t n, char *text,
+                          size_t size)
+{
+    const char *nearest = scene_nearest_word(word, candidates, n);
+    *text = 0;
+    if (nearest)
+        snprintf(text, size, "; did you mean '%s'? Allowed: ", nearest);
+    else
+        append(text, size, "; allowed: ");
+    for (size_t i = 0; i < n; i++) {
+        append(text, size, i ? ", " : "");
+        append(text, size, candidates[i]);
+    }
+    return text;
+}
+
+static void append_keys(char *text, size_t size, const struct scene_rule *keys)
+{
+    for (const struct scene_rule *key = keys; key->key; key++) {
+        append(text, size, key == keys ? "" : ", ");
+        append(text, size, key->key);
+    }
+}
+
+static void integer_expected(const struct scene_rule *rule, char *text, size_t size)
+{
+    if (rule->most > 0 && rule->least >= rule->most)
+        snprintf(text, size, "%.0f", rule->most);
+    else
+        snprintf(text, size, "a whole number from %.0f to %.0f", rule->least,
+                 rule->most > 0 ? rule->most : (double)UINT32_MAX);
+}
+
+static void list_expected(const struct scene_rule *rule, char *text, size_t size)
+{
+    const char *const items[] = {[SCENE_NUMBER] = "numbers",
+                                 [SCENE_INTEGER] = "whole numbers",
+                                 [SCENE_LIST] = "lists",
+                                 [SCENE_MAP] = "maps",
+                                 [SCENE_ONE_OF] = "maps"};
+    if (rule->length)
+        snprintf(text, size, "a list of %zu %s", rule->length, items[rule->inside->type]);
+    else
+        snprintf(text, size, "a %slist of %s", rule->filled ? "non-empty " : "",
+                 items[rule->inside->type]);
+}
+
+static void number_expected(const struct scene_rule *rule, char *text, size_t size)
+{
+    const char *const ranges[] = {"", " > 0", " >= 0"};
+    snprintf(text, size, "a finite number%s", ranges[rule->range]);
+    if (rule->type != SCENE_NUMBER_OR_LIST)
+        return;
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, " or a list of %zu of them", rule->length);
+}
+
+static void append_unit(const struct scene_rule *rule, char *text, size_t size)
+{
+    if (!rule->unit)
+        return;
+    append(text, size, " (");
+    append(text, size, rule->unit);
+    append(text, size, ")");
+}
+
+char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size)
+{
+    *text = 0;
+    switch (rule->type) {
+    case SCENE_MAP:
+        append(text, size, "a map of ");
+        append_keys(text, size, rule->inside);
+        break;
+    case SCENE_ONE_OF:
+        append(text, size, "a map with exactly one of ");
+        append_keys(text, size, rule->inside);
+        break;
+    case SCENE_NAMED:
+        append(text, size, "a non-empty map of names");
+        break;
+    case SCENE_LIST:
+        list_expected(rule, text, size);
+        break;
+    case SCENE_INTEGER:
+        integer_expected(rule, text, size);
+        break;
+    case SCENE_NUMBER:
+    case SCENE_NUMBER_OR_LIST:
+        number_expected(rule, text, size);
+        break;
+    case SCENE_TEXT:
+        append(text, size, "a text");
+        break;
+    case SCENE_CHOICE:
+        for (size_t i = 0; rule->words[i]; i++) {
+            append(text, size, i ? " or " : "");
+            append(text, size, rule->words[i]);
+        }
+        break;
+    }
+    append_unit(rule, text, size);
+    return text;
+}
+
+static void print_keys(FILE *file, const struct scene_rule *of, const char *path);
+
+static void print_inside(FILE *file, const struct scene_rule *rule, const char *path)
+{
+    char deeper[160];
+    if (rule->type == SCENE_MAP || rule->type == SCENE_ONE_OF) {
+        print_keys(file, rule, path);
+    } else if (rule->type == SCENE_NAMED) {
+        snprintf(deeper, sizeof deeper, "%s.NAME", path);
+        print_inside(file, rule->inside, deeper);
+    } else if (rule->type == SCENE_LIST) {
+        snprintf(deeper, sizeof deeper, "%s[]", path);
+        print_inside(file, rule->inside, deeper);
+    }
+}
+
+static void print_keys(FILE *file, const struct scene_rule *of, const char *path)
+{
+    for (const struct scene_rule *key = of->inside; key->key; key++) {
+        char here[160], expected[200];
+        snprintf(here, sizeof here, "%s%s%s", path, *path ? "." : "", key->key);
+        scene_rule_expected(key, expected, sizeof expected);
+        fprintf(file, "%s: %s; ", here, expected);
+        if (key->fallback)
+            fprintf(file, "default %s\n", key->fallback);
+        else
+            fprintf(file, "%s\n",
+                    of->type == SCENE_ONE_OF ? "a choice"
+                    : key->required          ? "required"
+                                             : "optional");
+        fprintf(file, "    %s\n", key->about);
+        print_inside(file, key, here);
+    }
+}
+
+void scene_print_keys(FILE *file)
+{
+    print_keys(file, &scene_root, "");
+}

@@ -1,0 +1,236 @@
+/* Additions to a tree. New nodes carry their origin in their mark (tree.h). A node on the path of a
+ * set is a copy that only its parent knows, but for the root, which has no parent; so writing
+ * through it changes one place. */
+#include "cloth/scene/yaml/edit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What an edit is doing: the mark of new nodes, and what is left of the path. */
+struct edit {
+    struct scene_tree *tree;
+    yaml_mark_t mark;
+    const char *start, *at; /* text of the set, and the rest of its path */
+    struct cloth_error *error;
+};
+
+static int out_of_memory(struct cloth_error *error)
+{
+    cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    return 0;
+}
+
+/* Adds a node of the type, tag and text of another, without its children. Returns its number, or 0.
+ */
+static int add(struct edit *edit, const yaml_node_t *like)
+{
+    yaml_document_t *document = &edit->tree->document;
+    int node = 0;
+    if (like->type == YAML_SCALAR_NODE)
+        node = yaml_document_add_scalar(document, like->tag, like->data.scalar.value,
+                                        (int)like->data.scalar.length, like->data.scalar.style);
+    else if (like->type == YAML_SEQUENCE_NODE)
+        node = yaml_document_add_sequence(document, like->tag, YAML_FLOW_SEQUENCE_STYLE);
+    else
+        node = yaml_document_add_mapping(document, like->tag, YAML_FLOW_MAPPING_STYLE);
+    if (!node)
+        return out_of_memory(edit->error);
+    scene_tree_node(edit->tree, node)->start_mark = edit->mark;
+    return node;
+}
+
+/* Copies the children of a map or list, shifting their numbers. */
+static bool copy_children(struct scene_tree *tree, int to, const yaml_node_t *from, int shift)
+{
+    if (from->type == YAML_SEQUENCE_NODE) {
+        for (int *item = from->data.sequence.items.start; item < from->data.sequence.items.top;
+             item++)
+            if (!yaml_document_append_sequence_item(&tree->document, to, *item + shift))
+                return false;
+    } else if (from->type == YAML_MAPPING_NODE) {
+        for (yaml_node_pair_t *pair = from->data.mapping.pairs.start;
+             pair < from->data.mapping.pairs.top; pair++)
+            if (!yaml_document_append_mapping_pair(&tree->document, to, pair->key + shift,
+                                                   pair->value + shift))
+                return false;
+    }
+    return true;
+}
+
+/* Adds all nodes of a document; children come after all nodes exist. Returns the new number of its
+ * root, or 0. */
+static int graft(struct edit *edit, const yaml_document_t *from)
+{
+    struct scene_tree *tree = edit->tree;
+    int shift = (int)(tree->document.nodes.top - tree->document.nodes.start);
+    for (const yaml_node_t *node = from->nodes.start; node < from->nodes.top; node++)
+        if (!add(edit, node))
+            return 0;
+    int to = shift + 1;
+    for (const yaml_node_t *node = from->nodes.start; node < from->nodes.top; node++, to++)
+        if (!copy_children(tree, to, node, shift))
+            return out_of_memory(edit->error);
+    return shift + 1;
+}
+
+static int edit_fails(const struct edit *edit, const char *what)
+{
+    const struct scene_set *set = &edit->tree->sets[edit->mark.line];
+    cloth_fail(edit->error, CLOTH_E_INPUT, "%s%s: %s", set->option ? "" : "--set ",
+               set->option ? set->option : set->text, what);
+    return 0;
+}
+
+/* Parses a value and adds it. Returns its node, or 0. */
+static int add_value(struct edit *edit, const char *text)
+{
+    yaml_parser_t parser;
+    yaml_document_t document;
+    if (!yaml_parser_initialize(&parser))
+        return out_of_memory(edit->error);
+    yaml_parser_set_input_string(&parser, (const unsigned char *)text, strlen(text));
+    int node = 0;
+    if (!yaml_parser_load(&parser, &document)) {
+        char what[256];
+        snprintf(what, sizeof what, "the value is not YAML: %s", parser.problem);
+        node =
+            parser.error == YAML_MEMORY_ERROR ? out_of_memory(edit->error) : edit_fails(edit, what);
+    } else {
+        if (yaml_document_get_root_node(&document))
+            node = graft(edit, &document);
+        else
+            node = edit_fails(edit, "there is no value; KEY=VALUE is expected");
+        yaml_document_delete(&document);
+    }
+    yaml_parser_delete(&parser);
+    return node;
+}
+
+/* A copy of a map or list that the caller may change; a new one of that type where there is nothing
+ * yet; 0 with an error if the node is something else. */
+static int own(struct edit *edit, int node, yaml_node_type_t type)
+{
+    struct scene_tree *tree = edit->tree;
+    const yaml_node_t like = {.type = type};
+    if (node == 1 && type == YAML_MAPPING_NODE)
+        return node;
+    if (!node || scene_tree_empty(tree, node))
+        return add(edit, &like);
+    if (!scene_tree_is(tree, node, type)) {
+        char what[160];
+        snprintf(what, sizeof what, "'%.*s' is not a %s", (int)(edit->at - edit->start),
+                 edit->start, type == YAML_SEQUENCE_NODE ? "list" : "map");
+        return edit_fails(edit, what);
+    }
+    int copy = add(edit, &like);
+    if (!copy)
+        return 0;
+    const yaml_node_t *from = scene_tree_node(tree, node);
+    scene_tree_node(tree, copy)->start_mark = from->start_mark;
+    return copy_children(tree, copy, from, 0) ? copy : out_of_memory(edit->error);
+}
+
+static int put(struct edit *edit, int node);
+
+static int add_key(struct edit *edit, const char *name, size_t length)
+{
+    yaml_node_t key = {.type = YAML_SCALAR_NODE};
+    key.data.scalar.value = (yaml_char_t *)name;
+    key.data.scalar.length = length;
+    key.data.scalar.style = YAML_PLAIN_SCALAR_STYLE;
+    return add(edit, &key);
+}
+
+static int put_key(struct edit *edit, int node)
+{
+    struct scene_tree *tree = edit->tree;
+    const char *name = edit->at + (*edit->at == '.');
+    size_t length = strcspn(name, ".[=");
+    if (!length || !name[length])
+        return edit_fails(edit, "KEY=VALUE is expected, such as time.h=0.002");
+    int map = own(edit, node, YAML_MAPPING_NODE);
+    if (!map)
+        return 0;
+    size_t i = 0, n = scene_tree_length(tree, map);
+    for (; i < n; i++) {
+        const char *key = scene_tree_scalar(tree, scene_tree_pair(tree, map, i).key);
+        if (key && strlen(key) == length && !strncmp(key, name, length))
+            break;
+    }
+    edit->at = name + length;
+    int value = put(edit, i < n ? scene_tree_pair(tree, map, i).value : 0);
+    if (!value)
+        return 0;
+    if (i < n) {
+        scene_tree_node(tree, map)->data.mapping.pairs.start[i].value = value;
+        return map;
+    }
+    int key = add_key(edit, name, length);
+    if (key && !yaml_document_append_mapping_pair(&tree->document, map, key, value))
+        key = out_of_memory(edit->error);
+    return key ? map : 0;
+}
+
+static int put_index(struct edit *edit, int node)
+{
+    struct scene_tree *tree = edit->tree;
+    char *end;
+    unsigned long i = strtoul(edit->at + 1, &end, 10);
+    if (edit->at[1] < '0' || edit->at[1] > '9' || *end != ']')
+        return edit_fails(edit, "an index is written [0], [1], ...");
+    int list = own(edit, node, YAML_SEQUENCE_NODE);
+    if (!list)
+        return 0;
+    size_t n = scene_tree_length(tree, list);
+    if (i > n) {
+        char what[160];
+        snprintf(what, sizeof what, "'%.*s' has %zu entries; an index from 0 to %zu is expected",
+                 (int)(edit->at - edit->start), edit->start, n, n);
+        return edit_fails(edit, what);
+    }
+    edit->at = end + 1;
+    int value = put(edit, i < n ? scene_tree_item(tree, list, i) : 0);
+    if (value && i < n)
+        scene_tree_node(tree, list)->data.sequence.items.start[i] = value;
+    else if (value && !yaml_document_append_sequence_item(&tree->document, list, value))
+        return out_of_memory(edit->error);
+    return value ? list : 0;
+}
+
+/* What is to stand where `node` (0: nothing) stands, after the rest of the path was followed; 0
+ * with an error. */
+static int put(struct edit *edit, int node)
+{
+    if (*edit->at == '=')
+        return add_value(edit, edit->at + 1);
+    if (*edit->at == '[')
+        return put_index(edit, node);
+    return put_key(edit, node);
+}
+
+int scene_edit_sets(struct scene_tree *tree, struct cloth_error *error)
+{
+    for (size_t i = 0; i < tree->n_sets; i++) {
+        const char *text = tree->sets[i].text;
+        struct edit edit = {tree, {.index = SCENE_BY_SET, .line = i}, text, text, error};
+        if (*text == '=' || *text == '[' || *text == '.') {
+            edit_fails(&edit, "KEY=VALUE is expected, such as time.h=0.002");
+            return error->code;
+        }
+        if (!put(&edit, 1))
+            return error->code;
+    }
+    return CLOTH_OK;
+}
+
+int scene_edit_default(struct scene_tree *tree, int map, const char *key, const char *value,
+                       struct cloth_error *error)
+{
+    struct edit edit = {tree, {.index = SCENE_BY_DEFAULT}, value, value, error};
+    int value_node = add_value(&edit, value);
+    int key_node = value_node ? add_key(&edit, key, strlen(key)) : 0;
+    if (key_node && !yaml_document_append_mapping_pair(&tree->document, map, key_node, value_node))
+        key_node = out_of_memory(error);
+    return key_node ? CLOTH_OK : error->code;
+}

@@ -1,0 +1,16 @@
+#ifndef CLOTH_SCENE_YAML_EDIT_H
+#define CLOTH_SCENE_YAML_EDIT_H
+
+#include "cloth/scene/yaml/tree.h"
+
+/* Applies the tree's sets in their order. A key that is missing on a path is made, an index equal
+ * to a list's length appends. Maps and lists on the path are copied before they change, so that
+ * what an alias shares changes at this place only. Errors name the option. */
+int scene_edit_sets(struct scene_tree *tree, struct cloth_error *error);
+
+/* Gives a map a further key, whose value is YAML text that is known to be well formed: a default.
+ */
+int scene_edit_default(struct scene_tree *tree, int map, const char *key, const char *value,
+                       struct cloth_error *error);
+
+#endif

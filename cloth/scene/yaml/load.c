@@ -1,0 +1,135 @@
+/* From a file to a document. A file is read whole, so that a byte's offset can be turned into line
+ * and column. */
+#include "cloth/scene/yaml/tree.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int read_all(FILE *file, char **bytes, size_t *size)
+{
+    size_t room = 0, n = 0;
+    for (size_t got = 1; got; n += got) {
+        if (n == room) {
+            room = room ? 2 * room : 65536;
+            char *more = realloc(*bytes, room);
+            if (!more)
+                return CLOTH_E_MEMORY;
+            *bytes = more;
+        }
+        errno = 0;
+        got = fread(*bytes + n, 1, room - n, file);
+    }
+    *size = n;
+    return ferror(file) ? CLOTH_E_IO : CLOTH_OK;
+}
+
+static int read_file(const char *path, char **bytes, size_t *size, struct cloth_error *error)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s: cannot open the scene file: %s", path,
+                          strerror(errno));
+    int code = read_all(file, bytes, size);
+    if (code == CLOTH_E_MEMORY)
+        cloth_fail(error, code, "%s: out of memory", path);
+    else if (code)
+        code = cloth_fail(error, CLOTH_E_INPUT, "%s: cannot read the scene file: %s", path,
+                          strerror(errno));
+    fclose(file);
+    return code;
+}
+
+/* Characters, not bytes, are counted: a byte 10xxxxxx continues one. */
+static void line_and_column(const char *bytes, size_t offset, size_t *line, size_t *column)
+{
+    *line = *column = 1;
+    for (size_t i = 0; i < offset; i++) {
+        if (bytes[i] == '\n') {
+            ++*line;
+            *column = 1;
+        } else if ((bytes[i] & 0xc0) != 0x80) {
+            ++*column;
+        }
+    }
+}
+
+static int parser_fails(const yaml_parser_t *parser, const char *path, const char *bytes,
+                        size_t size, struct cloth_error *error)
+{
+    if (parser->error == YAML_MEMORY_ERROR)
+        return cloth_fail(error, CLOTH_E_MEMORY, "%s: out of memory", path);
+    size_t line = parser->problem_mark.line + 1, column = parser->problem_mark.column + 1;
+    if (parser->error == YAML_READER_ERROR) {
+        size_t offset = parser->problem_offset < size ? parser->problem_offset : size;
+        line_and_column(bytes, offset, &line, &column);
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s:%zu:%zu: not readable as text: %s; a scene is YAML in UTF-8", path,
+                          line, column, parser->problem);
+    }
+    return cloth_fail(error, CLOTH_E_INPUT, "%s:%zu:%zu: not YAML: %s%s%s", path, line, column,
+                      parser->problem, parser->context ? ", " : "",
+                      parser->context ? parser->context : "");
+}
+
+static int check_root(const struct scene_tree *tree, struct cloth_error *error)
+{
+    if (!yaml_document_get_root_node((yaml_document_t *)&tree->document))
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s:1:1: the file is empty; a scene starts with 'schema: 1'", tree->path);
+    if (scene_tree_empty(tree, 1))
+        return scene_tree_fail(tree, 1, error,
+                               "the file is empty; a scene starts with 'schema: 1'");
+    if (!scene_tree_is(tree, 1, YAML_MAPPING_NODE))
+        return scene_tree_fail(tree, 1, error,
+                               "the file is not a map; a scene starts with 'schema: 1'");
+    return CLOTH_OK;
+}
+
+static int parse(struct scene_tree *tree, yaml_parser_t *parser, const char *bytes, size_t size,
+                 struct cloth_error *error)
+{
+    yaml_parser_set_input_string(parser, (const unsigned char *)bytes, size);
+    if (!yaml_parser_load(parser, &tree->document))
+        return parser_fails(parser, tree->path, bytes, size, error);
+    tree->loaded = true;
+    int code = check_root(tree, error);
+    if (code)
+        return code;
+    yaml_document_t second;
+    if (!yaml_parser_load(parser, &second))
+        return parser_fails(parser, tree->path, bytes, size, error);
+    if (yaml_document_get_root_node(&second))
+        code = cloth_fail(error, CLOTH_E_INPUT,
+                          "%s:%zu:%zu: a second document starts here; a scene file holds one",
+                          tree->path, second.start_mark.line + 1, second.start_mark.column + 1);
+    yaml_document_delete(&second);
+    return code;
+}
+
+int scene_tree_load(struct scene_tree *tree, const char *path, struct cloth_error *error)
+{
+    *tree = (struct scene_tree){.path = path};
+    char *bytes = NULL;
+    size_t size = 0;
+    yaml_parser_t parser;
+    int code = read_file(path, &bytes, &size, error);
+    if (!code) {
+        if (yaml_parser_initialize(&parser)) {
+            code = parse(tree, &parser, bytes, size, error);
+            yaml_parser_delete(&parser);
+        } else {
+            code = cloth_fail(error, CLOTH_E_MEMORY, "%s: out of memory", path);
+        }
+    }
+    free(bytes);
+    return code;
+}
+
+void scene_tree_free(struct scene_tree *tree)
+{
+    if (tree->loaded)
+        yaml_document_delete(&tree->document);
+    tree->loaded = false;
+}

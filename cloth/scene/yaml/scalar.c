@@ -1,0 +1,58 @@
+/* strtod alone would also take nan, inf, hexadecimal numbers, leading blanks and half a word: the
+ * form is checked first. */
+#include "cloth/scene/yaml/scalar.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const char *digits(const char *at)
+{
+    while (*at >= '0' && *at <= '9')
+        at++;
+    return at;
+}
+
+static const char *sign(const char *at)
+{
+    return *at == '+' || *at == '-' ? at + 1 : at;
+}
+
+static bool is_number(const char *text)
+{
+    const char *start = sign(text), *at = digits(start);
+    bool any = at > start;
+    if (*at == '.') {
+        const char *fraction = at + 1;
+        at = digits(fraction);
+        any = any || at > fraction;
+    }
+    if (!any)
+        return false;
+    if (*at == 'e' || *at == 'E') {
+        const char *exponent = sign(at + 1);
+        at = digits(exponent);
+        if (at == exponent)
+            return false;
+    }
+    return !*at;
+}
+
+bool scene_scalar_number(const char *text, double *value)
+{
+    if (!is_number(text))
+        return false;
+    *value = strtod(text, NULL);
+    return isfinite(*value);
+}
+
+bool scene_scalar_integer(const char *text, uint32_t *value)
+{
+    const char *start = sign(text), *end = digits(start);
+    double number;
+    if (end == start || *end || !scene_scalar_number(text, &number))
+        return false;
+    if (number < 0 || number > UINT32_MAX)
+        return false;
+    *value = (uint32_t)number;
+    return true;
+}

@@ -1,0 +1,118 @@
+/* A loaded tree holds one document whose root is a map. Nodes are never removed, and what a node is
+ * never changes; only scene_edit adds nodes or changes the children of a map or list. */
+#include "cloth/scene/yaml/tree.h"
+#include "cloth/scene/yaml/scalar.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+yaml_node_t *scene_tree_node(const struct scene_tree *tree, int node)
+{
+    return tree->document.nodes.start + node - 1;
+}
+
+bool scene_tree_is(const struct scene_tree *tree, int node, yaml_node_type_t type)
+{
+    return scene_tree_node(tree, node)->type == type;
+}
+
+const char *scene_tree_scalar(const struct scene_tree *tree, int node)
+{
+    const yaml_node_t *at = scene_tree_node(tree, node);
+    return at->type == YAML_SCALAR_NODE ? (const char *)at->data.scalar.value : NULL;
+}
+
+bool scene_tree_empty(const struct scene_tree *tree, int node)
+{
+    const yaml_node_t *at = scene_tree_node(tree, node);
+    if (at->type != YAML_SCALAR_NODE || at->data.scalar.style != YAML_PLAIN_SCALAR_STYLE)
+        return false;
+    const char *text = (const char *)at->data.scalar.value;
+    return !*text || !strcmp(text, "~") || !strcmp(text, "null");
+}
+
+size_t scene_tree_length(const struct scene_tree *tree, int node)
+{
+    const yaml_node_t *at = scene_tree_node(tree, node);
+    if (at->type == YAML_SEQUENCE_NODE)
+        return (size_t)(at->data.sequence.items.top - at->data.sequence.items.start);
+    if (at->type == YAML_MAPPING_NODE)
+        return (size_t)(at->data.mapping.pairs.top - at->data.mapping.pairs.start);
+    return 0;
+}
+
+int scene_tree_item(const struct scene_tree *tree, int list, size_t i)
+{
+    return scene_tree_node(tree, list)->data.sequence.items.start[i];
+}
+
+yaml_node_pair_t scene_tree_pair(const struct scene_tree *tree, int map, size_t i)
+{
+    return scene_tree_node(tree, map)->data.mapping.pairs.start[i];
+}
+
+int scene_tree_get(const struct scene_tree *tree, int map, const char *key)
+{
+    for (size_t i = 0; i < scene_tree_length(tree, map); i++) {
+        yaml_node_pair_t pair = scene_tree_pair(tree, map, i);
+        const char *name = scene_tree_scalar(tree, pair.key);
+        if (name && !strcmp(name, key))
+            return pair.value;
+    }
+    return 0;
+}
+
+void scene_tree_position(const struct scene_tree *tree, int node, int *line, int *column)
+{
+    const yaml_mark_t *mark = &scene_tree_node(tree, node)->start_mark;
+    bool file = mark->index < SCENE_BY_DEFAULT;
+    *line = file ? (int)mark->line + 1 : 0;
+    *column = file ? (int)mark->column + 1 : 0;
+}
+
+int scene_tree_fail(const struct scene_tree *tree, int node, struct cloth_error *error,
+                    const char *format, ...)
+{
+    char text[900];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    const yaml_mark_t *mark = &scene_tree_node(tree, node)->start_mark;
+    if (mark->index == SCENE_BY_DEFAULT)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s: %s", tree->path, text);
+    if (mark->index != SCENE_BY_SET)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s:%zu:%zu: %s", tree->path, mark->line + 1,
+                          mark->column + 1, text);
+    const struct scene_set *set = &tree->sets[mark->line];
+    if (set->option)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s: %s", set->option, text);
+    return cloth_fail(error, CLOTH_E_INPUT, "--set %s: %s", set->text, text);
+}
+
+double scene_tree_number(const struct scene_tree *tree, int map, const char *key)
+{
+    double value = 0;
+    scene_scalar_number(scene_tree_scalar(tree, scene_tree_get(tree, map, key)), &value);
+    return value;
+}
+
+uint32_t scene_tree_integer(const struct scene_tree *tree, int map, const char *key)
+{
+    uint32_t value = 0;
+    scene_scalar_integer(scene_tree_scalar(tree, scene_tree_get(tree, map, key)), &value);
+    return value;
+}
+
+const char *scene_tree_text(const struct scene_tree *tree, int map, const char *key)
+{
+    int node = scene_tree_get(tree, map, key);
+    return node ? scene_tree_scalar(tree, node) : NULL;
+}
+
+void scene_tree_vector(const struct scene_tree *tree, int list, size_t n, double *value)
+{
+    for (size_t i = 0; i < n; i++)
+        scene_scalar_number(scene_tree_scalar(tree, scene_tree_item(tree, list, i)), &value[i]);
+}

@@ -1,0 +1,57 @@
+#ifndef CLOTH_SCENE_YAML_TREE_H
+#define CLOTH_SCENE_YAML_TREE_H
+
+#include "cloth/base/error.h"
+#include "cloth/scene/scene.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <yaml.h>
+
+/* A scene's document. Nodes are known by their number (1 is the root, 0 is none), since additions
+ * move them. */
+struct scene_tree {
+    yaml_document_t document;
+    bool loaded;
+    const char *path;             /* of the file, as the user wrote it */
+    size_t n_sets;                /* of the caller */
+    const struct scene_set *sets; /* of the caller */
+};
+
+/* Where a node came from when not from the file. It is kept in its mark: index is one of these,
+ * line the set's number. */
+#define SCENE_BY_SET     (SIZE_MAX)
+#define SCENE_BY_DEFAULT (SIZE_MAX - 1)
+
+/* Reads the one document of a file; its root is a map. Errors: CLOTH_E_INPUT with file:line:column.
+ */
+int scene_tree_load(struct scene_tree *tree, const char *path, struct cloth_error *error);
+void scene_tree_free(struct scene_tree *tree);
+
+/* Fails with CLOTH_E_INPUT and "place: sentence", where the place is the file, line and column of a
+ * node, or the option it came by. */
+int scene_tree_fail(const struct scene_tree *tree, int node, struct cloth_error *error,
+                    const char *format, ...) __attribute__((format(printf, 4, 5)));
+
+/* The node's type and parts. A scalar's value is a string that lives as long as the tree is not
+ * changed. */
+yaml_node_t *scene_tree_node(const struct scene_tree *tree, int node);
+bool scene_tree_is(const struct scene_tree *tree, int node, yaml_node_type_t type);
+const char *scene_tree_scalar(const struct scene_tree *tree, int node); /* NULL: not a scalar */
+bool scene_tree_empty(const struct scene_tree *tree, int node);    /* null: '', '~' or 'null' */
+size_t scene_tree_length(const struct scene_tree *tree, int node); /* of a list or a map */
+int scene_tree_item(const struct scene_tree *tree, int list, size_t i);
+yaml_node_pair_t scene_tree_pair(const struct scene_tree *tree, int map, size_t i);
+int scene_tree_get(const struct scene_tree *tree, int map, const char *key); /* 0: no such key */
+
+/* Line and column (from 1) of a node in the file; 0 0 if it did not come from there. */
+void scene_tree_position(const struct scene_tree *tree, int node, int *line, int *column);
+
+/* Values of a document that the schema has accepted. */
+double scene_tree_number(const struct scene_tree *tree, int map, const char *key);
+uint32_t scene_tree_integer(const struct scene_tree *tree, int map, const char *key);
+const char *scene_tree_text(const struct scene_tree *tree, int map,
+                            const char *key); /* NULL: none */
+void scene_tree_vector(const struct scene_tree *tree, int list, size_t n, double *value);
+
+#endif

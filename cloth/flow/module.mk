@@ -1,0 +1,16 @@
+libduite_cloth_la_SOURCES += \
+    cloth/flow/model.c cloth/flow/model.h \
+    cloth/flow/run.c cloth/flow/run.h \
+    cloth/flow/tables/particles.c \
+    cloth/flow/tables/springs.c \
+    cloth/flow/tables/tables.c cloth/flow/tables/tables.h \
+    cloth/flow/tasks/bodies.h \
+    cloth/flow/tasks/cg.c \
+    cloth/flow/tasks/finish.c \
+    cloth/flow/tasks/frames.c \
+    cloth/flow/tasks/kernels_cg.c \
+    cloth/flow/tasks/kernels_report.c \
+    cloth/flow/tasks/kernels_step.c \
+    cloth/flow/tasks/objects.c \
+    cloth/flow/tasks/step.c \
+    cloth/flow/tasks/tasks.h

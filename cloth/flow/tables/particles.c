@@ -1,0 +1,230 @@
+/* Particles carry what a vertex is on its own: mass, drag, load, whether a pin holds it. Vertices
+ * that no face or edge uses stay where they are, at rest, and are never asked for a mass. */
+#include "cloth/flow/tables/tables.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* "line 3, column 7: ", or nothing where the scene does not say. */
+static const char *where(char text[64], int line, int column)
+{
+    text[0] = 0;
+    if (line > 0)
+        snprintf(text, 64, "line %d, column %d: ", line, column);
+    return text;
+}
+
+static int outside(const struct model_cloth *cloth, const char *what, uint32_t vertex, int line,
+                   int column, struct cloth_error *error)
+{
+    char at[64];
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "%s%s of cloth '%s' names vertex %u; its mesh has the vertices 0 to %u",
+                      where(at, line, column), what, cloth->name, vertex,
+                      cloth->mesh.n_vertices - 1);
+}
+
+static int hold(struct flow_particles *p, uint32_t vertex)
+{
+    p->free[vertex] = 0;
+    p->velocity[vertex] = (phys_vec){0};
+    return CLOTH_OK;
+}
+
+static int pin_vertices(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
+                        const struct model_pin *pin, struct cloth_error *error)
+{
+    for (uint32_t i = 0; i < pin->n_vertices; i++) {
+        if (pin->vertices[i] >= cloth->mesh.n_vertices)
+            return outside(cloth, "a pin", pin->vertices[i], pin->line, pin->column, error);
+        hold(p, first + pin->vertices[i]);
+    }
+    return CLOTH_OK;
+}
+
+/* The used vertex nearest to the pin's point, the first of equals. */
+static int pin_nearest(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
+                       const struct model_pin *pin, struct cloth_error *error)
+{
+    const phys_vec point = {pin->point[0], pin->point[1], pin->point[2], 0};
+    uint32_t best = UINT32_MAX;
+    double least = 0;
+    for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
+        const phys_vec d = p->position[v] - point;
+        const double distance = phys_dot(&d, &d);
+        if (p->used[v] && (best == UINT32_MAX || distance < least)) {
+            best = v;
+            least = distance;
+        }
+    }
+    if (best == UINT32_MAX)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "cloth '%s' has a pin but neither a face nor an edge", cloth->name);
+    return hold(p, best);
+}
+
+static int pin_box(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
+                   const struct model_pin *pin, struct cloth_error *error)
+{
+    uint32_t inside = 0;
+    for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
+        int in = p->used[v];
+        for (int c = 0; c < 3; c++) { /* any two opposite corners */
+            const double x = p->position[v][c], from = pin->box[0][c], to = pin->box[1][c];
+            in = in && ((x >= from && x <= to) || (x <= from && x >= to));
+        }
+        if (!in)
+            continue;
+        hold(p, v);
+        inside++;
+    }
+    char at[64];
+    if (!inside)
+        return cloth_fail(error, CLOTH_E_INPUT, "%sthe box of a pin of cloth '%s' holds no vertex",
+                          where(at, pin->line, pin->column), cloth->name);
+    return CLOTH_OK;
+}
+
+static int pins(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
+                struct cloth_error *error)
+{
+    for (uint32_t i = 0; i < cloth->n_pins; i++) {
+        const struct model_pin *pin = cloth->pins + i;
+        int code = CLOTH_OK;
+        switch (pin->kind) {
+        case MODEL_PIN_VERTICES:
+            code = pin_vertices(p, first, cloth, pin, error);
+            break;
+        case MODEL_PIN_NEAREST:
+            code = pin_nearest(p, first, cloth, pin, error);
+            break;
+        case MODEL_PIN_BOX:
+            code = pin_box(p, first, cloth, pin, error);
+            break;
+        }
+        if (code)
+            return code;
+    }
+    return CLOTH_OK;
+}
+
+static int loads(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
+                 struct cloth_error *error)
+{
+    for (uint32_t i = 0; i < cloth->n_loads; i++) {
+        const struct model_load *load = cloth->loads + i;
+        const phys_vec force = {load->force[0], load->force[1], load->force[2], 0};
+        for (uint32_t j = 0; j < load->n_vertices; j++) {
+            if (load->vertices[j] >= cloth->mesh.n_vertices)
+                return outside(cloth, "a load", load->vertices[j], load->line, load->column, error);
+            p->load[first + load->vertices[j]] += force;
+        }
+    }
+    return CLOTH_OK;
+}
+
+/* Mass, drag and gravity of the vertices of one cloth. */
+static int masses(struct flow_particles *p, uint32_t first, const struct model *model,
+                  const struct model_cloth *cloth, struct cloth_error *error)
+{
+    const struct model_material *material = model->materials + cloth->material;
+    const phys_vec gravity = {model->gravity[0], model->gravity[1], model->gravity[2], 0};
+    if (!(cloth->mass_per_vertex > 0))
+        mesh_add_mass(&cloth->mesh, material->density, p->mass + first);
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
+        const uint32_t v = first + i;
+        if (cloth->mass_per_vertex > 0)
+            p->mass[v] = cloth->mass_per_vertex;
+        if (p->used[v] && !(p->mass[v] > 0))
+            return cloth_fail(
+                error, CLOTH_E_INPUT,
+                "vertex %u of cloth '%s' has no mass: its triangles have no area, or it has edges "
+                "only; give mass_per_vertex",
+                i, cloth->name);
+        p->drag[v] = material->damping_viscous + material->damping_mass * p->mass[v];
+        p->load[v] = p->mass[v] * gravity;
+    }
+    return CLOTH_OK;
+}
+
+static int cloth_particles(struct flow_particles *p, uint32_t first, const struct model *model,
+                           const struct model_cloth *cloth, struct cloth_error *error)
+{
+    mesh_used(&cloth->mesh, p->used + first);
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
+        const double *x = cloth->mesh.position + 3 * (size_t)i, *v = cloth->velocity;
+        p->position[first + i] = (phys_vec){x[0], x[1], x[2], 0};
+        p->free[first + i] = 1;
+        if (p->used[first + i])
+            p->velocity[first + i] = (phys_vec){v[0], v[1], v[2], 0};
+        else
+            p->n_unused++;
+    }
+    int code = masses(p, first, model, cloth, error);
+    if (!code)
+        code = loads(p, first, cloth, error);
+    if (!code)
+        code = pins(p, first, cloth, error);
+    return code;
+}
+
+static phys_vec *vectors(size_t n)
+{
+    phys_vec *v = aligned_alloc(sizeof *v, (n + 1) * sizeof *v);
+    if (v)
+        memset(v, 0, (n + 1) * sizeof *v);
+    return v;
+}
+
+static int allocate(struct flow_particles *p, uint32_t n, struct cloth_error *error)
+{
+    const size_t some = (size_t)n + 1;
+    p->n = n;
+    p->used = calloc(some, 1);
+    p->mass = calloc(some, sizeof *p->mass);
+    p->drag = calloc(some, sizeof *p->drag);
+    p->free = calloc(some, sizeof *p->free);
+    p->position = vectors(n);
+    p->velocity = vectors(n);
+    p->load = vectors(n);
+    if (!p->used || !p->mass || !p->drag || !p->free || !p->position || !p->velocity || !p->load)
+        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %u vertices", n);
+    return CLOTH_OK;
+}
+
+int flow_particles_make(struct flow_particles *particles, const struct model *model,
+                        struct cloth_error *error)
+{
+    *particles = (struct flow_particles){0};
+    size_t n = 0;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        n += model->cloths[c].mesh.n_vertices;
+    if (n >= UINT32_MAX)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%zu vertices are too many; at most 4294967294 are possible", n);
+    int code = allocate(particles, (uint32_t)n, error);
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
+        code = cloth_particles(particles, first, model, model->cloths + c, error);
+        first += model->cloths[c].mesh.n_vertices;
+    }
+    if (!code && particles->n_unused == particles->n)
+        code = cloth_fail(error, CLOTH_E_INPUT,
+                          "nothing to simulate: no vertex is used by a face or an edge");
+    if (code)
+        flow_particles_free(particles);
+    return code;
+}
+
+void flow_particles_free(struct flow_particles *particles)
+{
+    free(particles->used);
+    free(particles->mass);
+    free(particles->drag);
+    free(particles->free);
+    free(particles->position);
+    free(particles->velocity);
+    free(particles->load);
+    *particles = (struct flow_particles){0};
+}

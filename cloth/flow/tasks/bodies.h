@@ -1,0 +1,46 @@
+#ifndef CLOTH_FLOW_TASKS_BODIES_H
+#define CLOTH_FLOW_TASKS_BODIES_H
+
+#include "cloth/flow/tasks/tasks.h"
+
+/* What the bodies of kernels have in common. Local functions. */
+
+static inline struct flow *flow_of(const duite_call *call)
+{
+    return call->context;
+}
+
+static inline const struct flow_args *flow_args_of(const duite_call *call)
+{
+    return call->args;
+}
+
+static inline const struct flow_table *flow_table_of(const duite_call *call)
+{
+    return flow_of(call)->tables.block + flow_args_of(call)->block;
+}
+
+/* Copies the rows that neighbours need. rim: n_rim rows. */
+static inline void flow_write_rim(const struct flow_table *table, const phys_vec *y, phys_vec *rim)
+{
+    for (uint32_t i = 0; i < table->n_rim; i++)
+        rim[i] = y[table->rim[i]];
+}
+
+/* Runs a body and adds its seconds to a part of the step, on this worker's line. */
+static inline int flow_timed(const duite_call *call, duite_body *body, enum flow_part part)
+{
+    const double start = flow_now();
+    const int code = body(call);
+    flow_of(call)->clock[call->worker].seconds[part] += flow_now() - start;
+    return code;
+}
+
+/* Defines NAME_timed, the body that a kernel lists. */
+#define FLOW_TIMED(name, part)                                                                     \
+    static int name##_timed(const duite_call *call)                                                \
+    {                                                                                              \
+        return flow_timed(call, name, part);                                                       \
+    }
+
+#endif

@@ -1,0 +1,99 @@
+/* Kernels that look at a run and change nothing of it. Frames are written by rank 0, one after the
+ * other: each frame's task holds the token. */
+#include "cloth/flow/tasks/bodies.h"
+
+static int status(const duite_call *call)
+{
+    if (atomic_load_explicit(&flow_of(call)->stop, memory_order_relaxed))
+        duite_out(call, 0, double)[FLOW_STOP] = 1;
+    return 0;
+}
+const duite_kernel flow_status = {
+    .name = "status", .body = status, .access = {DUITE_CW}, .args_size = sizeof(struct flow_args)};
+
+static int frame(const duite_call *call)
+{
+    struct flow *flow = flow_of(call);
+    const struct flow_args *args = flow_args_of(call);
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
+        const phys_vec *x = duite_in(call, 1 + b, phys_vec);
+        const struct flow_table *t = flow->tables.block + b;
+        for (uint32_t i = 0; i < t->n; i++)
+            for (int c = 0; c < 3; c++)
+                flow->frame_position[3 * (size_t)flow->blocks.vertex[t->first + i] + (size_t)c] =
+                    x[i][c];
+    }
+    struct cloth_error error = {0};
+    if (flow->output &&
+        flow->output->frame(flow->output->context, args->frame, args->step * flow->model->h,
+                            flow->frame_position, &error))
+        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", error.text);
+    flow->frames = args->frame + 1;
+    return 0;
+}
+FLOW_TIMED(frame, FLOW_OUTPUT)
+const duite_kernel flow_frame = {.name = "frame",
+                                 .body = frame_timed,
+                                 .access = {DUITE_RW},
+                                 .rest = DUITE_R,
+                                 .args_size = sizeof(struct flow_args)};
+
+static int stretch(const duite_call *call)
+{
+    const struct flow_table *t = flow_table_of(call);
+    const phys_vec *x = duite_in(call, 0, phys_vec);
+    struct phys_springs springs = flow_table_inner(t);
+    double most = phys_springs_stretch(&springs, t->stretch, x, x);
+    for (uint32_t s = 0; s < t->n_slots; s++) {
+        springs = flow_table_cut(t, s);
+        const double there = phys_springs_stretch(&springs, t->stretch + t->n_inner + t->cut[s], x,
+                                                  duite_in(call, 2 + s, phys_vec));
+        most = there > most ? there : most;
+    }
+    *duite_out(call, 1, double) = most;
+    return 0;
+}
+const duite_kernel flow_stretch = {.name = "stretch",
+                                   .body = stretch,
+                                   .access = {DUITE_R, DUITE_W},
+                                   .rest = DUITE_R,
+                                   .args_size = sizeof(struct flow_args)};
+
+static int most(const duite_call *call)
+{
+    double largest = 0;
+    for (size_t i = 1; i < call->n_params; i++)
+        largest = *duite_in(call, i, double) > largest ? *duite_in(call, i, double) : largest;
+    *duite_out(call, 0, double) = largest;
+    return 0;
+}
+const duite_kernel flow_most = {.name = "stretch_most",
+                                .body = most,
+                                .access = {DUITE_W},
+                                .rest = DUITE_R,
+                                .args_size = sizeof(struct flow_args)};
+
+/* Runs when nothing else does. */
+static int seconds(const duite_call *call)
+{
+    const struct flow *flow = flow_of(call);
+    double *sum = duite_out(call, 0, double);
+    for (unsigned w = 0; w < flow->n_clocks; w++)
+        for (int part = 0; part < FLOW_PARTS; part++)
+            sum[part] += flow->clock[w].seconds[part];
+    return 0;
+}
+const duite_kernel flow_seconds = {.name = "seconds",
+                                   .body = seconds,
+                                   .access = {DUITE_CW},
+                                   .args_size = sizeof(struct flow_args)};
+
+static int tell(const duite_call *call)
+{
+    uint64_t *told = duite_out(call, 0, uint64_t);
+    told[FLOW_TELL_FRAMES] = flow_of(call)->frames;
+    told[FLOW_TELL_HASH] = flow_of(call)->hash;
+    return 0;
+}
+const duite_kernel flow_tell = {
+    .name = "tell", .body = tell, .access = {DUITE_W}, .args_size = sizeof(struct flow_args)};

@@ -1,0 +1,139 @@
+/* A block's objects live where its positions live; the graph that mappings see is the one of the
+ * blocks: a block weighs its vertices, and two blocks exchange their rims. */
+#include "cloth/flow/tasks/tasks.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+
+/* Makes an object of some rows (at least one) beside a block's x. A failure is returned once more
+ * by the next get. */
+static void make(duite *rt, size_t rows, duite_object x, duite_object *object)
+{
+    duite_new(rt, DUITE_F64, 4 * (rows ? rows : 1), object);
+    duite_follow(rt, *object, x);
+}
+
+static void make_block(duite *rt, const struct flow_table *t, struct flow_objects *o)
+{
+    duite_new(rt, DUITE_F64, 4 * (size_t)t->n, &o->x);
+    make(rt, t->n, o->x, &o->v);
+    make(rt, t->n, o->x, &o->f);
+    make(rt, (size_t)t->n_inner + t->n_cut, o->x, &o->a);
+    make(rt, t->n, o->x, &o->dv);
+    make(rt, t->n, o->x, &o->r);
+    make(rt, t->n, o->x, &o->p);
+    make(rt, t->n, o->x, &o->q);
+    make(rt, t->n_rim, o->x, &o->rim_x);
+    make(rt, t->n_rim, o->x, &o->rim_v);
+    make(rt, t->n_rim, o->x, &o->rim_p);
+    duite_new(rt, DUITE_F64, 1, &o->stretch);
+    duite_follow(rt, o->stretch, o->x);
+}
+
+/* bytes: room for one number a neighbour. */
+static void hint(struct flow_state *state, uint32_t b, double *bytes)
+{
+    const struct flow_tables *tables = &state->flow->tables;
+    const struct flow_table *t = tables->block + b;
+    for (uint32_t s = 0; s < t->n_slots; s++) {
+        state->refs[s] = state->block[t->slot[s]].x;
+        bytes[s] = (double)(t->n_rim + tables->block[t->slot[s]].n_rim) * sizeof(phys_vec);
+    }
+    duite_hint(state->rt, state->block[b].x, t->n, t->n_slots, state->refs, bytes);
+}
+
+/* An object of the whole run, beside the first block. */
+static void make_shared(struct flow_state *state, duite_type type, size_t count,
+                        duite_object *object)
+{
+    duite_new(state->rt, type, count, object);
+    duite_follow(state->rt, *object, state->block[0].x);
+}
+
+static int allocate(struct flow_state *state, double **bytes)
+{
+    const struct flow_tables *tables = &state->flow->tables;
+    size_t slots = 0;
+    for (uint32_t b = 0; b < tables->n_blocks; b++)
+        slots = tables->block[b].n_slots > slots ? tables->block[b].n_slots : slots;
+    const size_t refs = tables->n_blocks > 2 * slots ? tables->n_blocks : 2 * slots;
+    state->block = calloc(tables->n_blocks, sizeof *state->block);
+    state->refs = calloc(refs + DUITE_MAX_ACCESS, sizeof *state->refs);
+    *bytes = calloc(slots + 1, sizeof **bytes);
+    return state->block && state->refs && *bytes ? DUITE_OK : DUITE_E_MEMORY;
+}
+
+int flow_objects_make(struct flow_state *state)
+{
+    const struct flow_tables *tables = &state->flow->tables;
+    double *bytes = NULL;
+    const int code = allocate(state, &bytes);
+    if (!code) {
+        for (uint32_t b = 0; b < tables->n_blocks; b++)
+            make_block(state->rt, tables->block + b, state->block + b);
+        for (uint32_t b = 0; b < tables->n_blocks; b++)
+            hint(state, b, bytes);
+        for (int i = 0; i < 2; i++) {
+            make_shared(state, DUITE_F64, 1, state->pq + i);
+            make_shared(state, DUITE_F64, 1, state->rho + i);
+            make_shared(state, DUITE_F64, FLOW_STATUS, state->status + i);
+        }
+        make_shared(state, DUITE_I64, 1, &state->token);
+        make_shared(state, DUITE_F64, 1, &state->most);
+        make_shared(state, DUITE_F64, FLOW_PARTS, &state->seconds);
+        make_shared(state, DUITE_I64, FLOW_TELL, &state->told);
+    }
+    free(bytes);
+    return code;
+}
+
+/* Frees what was made; the others are the zero object. Returns the first failure. */
+static int release(duite *rt, size_t n, const duite_object *object)
+{
+    int code = DUITE_OK;
+    for (size_t i = 0; i < n; i++) {
+        const int failed = object[i].generation ? duite_free(rt, object[i]) : DUITE_OK;
+        code = code ? code : failed;
+    }
+    return code;
+}
+
+int flow_objects_free(struct flow_state *state)
+{
+    int code = DUITE_OK;
+    for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
+        const struct flow_objects *o = state->block + b;
+        const duite_object all[] = {o->x, o->v, o->f,     o->a,     o->dv,    o->r,
+                                    o->p, o->q, o->rim_x, o->rim_v, o->rim_p, o->stretch};
+        const int failed = release(state->rt, sizeof all / sizeof *all, all);
+        code = code ? code : failed;
+    }
+    const duite_object all[] = {state->pq[0],     state->pq[1],     state->rho[0], state->rho[1],
+                                state->status[0], state->status[1], state->token,  state->most,
+                                state->seconds,   state->told};
+    const int failed = release(state->rt, sizeof all / sizeof *all, all);
+    free(state->block);
+    free(state->refs);
+    state->block = NULL;
+    state->refs = NULL;
+    return code ? code : failed;
+}
+
+static duite_object at_offset(const struct flow_objects *objects, long offset)
+{
+    return *(const duite_object *)(const void *)((const char *)objects + offset);
+}
+
+int flow_fork(struct flow_state *state, const duite_kernel *kernel, const struct flow_args *args,
+              size_t n, const duite_object *objects, long offset, long offset2)
+{
+    const struct flow_table *t = state->flow->tables.block + args->block;
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        state->refs[count++] = objects[i];
+    for (uint32_t s = 0; offset != FLOW_NO_RIM && s < t->n_slots; s++)
+        state->refs[count++] = at_offset(state->block + t->slot[s], offset);
+    for (uint32_t s = 0; offset2 != FLOW_NO_RIM && s < t->n_slots; s++)
+        state->refs[count++] = at_offset(state->block + t->slot[s], offset2);
+    return duite_fork(state->rt, kernel, args, count, state->refs);
+}

@@ -1,0 +1,148 @@
+#ifndef CLOTH_FLOW_TASKS_TASKS_H
+#define CLOTH_FLOW_TASKS_TASKS_H
+
+#include "cloth/flow/run.h"
+#include "cloth/flow/tables/tables.h"
+
+#include <stdatomic.h>
+
+/* What the bodies of tasks share (struct flow, the runtime's context) and what the main program
+ * keeps of a run (struct flow_state). Bodies see objects, arguments and the constant part of the
+ * flow; what else they touch is said here. */
+
+/* Parts of a step whose seconds the report gives. */
+enum flow_part {
+    FLOW_FORCE,
+    FLOW_ACCELERATION,
+    FLOW_MATRIX,
+    FLOW_CG,
+    FLOW_VELOCITY,
+    FLOW_POSITION,
+    FLOW_COLLIDE,
+    FLOW_OUTPUT,
+    FLOW_PARTS
+};
+
+/* Seconds in bodies on one worker; each on its own cache line, written by that worker only. */
+struct flow_clock {
+    _Alignas(64) double seconds[FLOW_PARTS];
+};
+
+/* Codes of bodies that fail; the last one is the main program's. */
+enum { FLOW_DIVERGED = 1, FLOW_INDEFINITE, FLOW_NOT_WRITTEN, FLOW_NOT_CONVERGED };
+
+/* Positions and speeds of this size (m, m/s) are no cloth's: the run diverged. */
+#define FLOW_BOUND 1e6
+
+struct flow {
+    const struct model *model;
+    uint32_t n_vertices, n_triangles, n_unused;
+    phys_vec *start; /* n_vertices: where the vertices start */
+    struct mesh_blocks blocks;
+    struct flow_tables tables;
+    uint64_t n_steps;
+
+    /* Of the run that is on. */
+    unsigned n_clocks;
+    struct flow_clock *clock; /* a worker */
+    /* On rank 0: written by the tasks `frame`, one at a time, and by the main thread when no task
+     * runs. */
+    const struct flow_output *output;
+    double *frame_position; /* n_vertices x 3 */
+    uint64_t frames;        /* written */
+    uint64_t hash;
+    atomic_int stop; /* set by the main thread, read by the task `status` */
+};
+
+/* Arguments of every kernel; those that a kernel does not name are zero. */
+struct flow_args {
+    uint32_t block;
+    uint32_t step;
+    uint64_t frame;
+};
+
+/* Indices into the status of a step, F64 x 8, zero before the step and summed by its tasks. */
+enum { FLOW_LOST = 0 /* three: sum of b - A dv over free rows */, FLOW_STOP = 3, FLOW_STATUS = 8 };
+/* Indices into what rank 0 tells, I64 x 2. */
+enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
+
+/* Kernels. Objects in order; "rims" are one of each neighbour, in slot order. Vectors are rows of
+ * four doubles. */
+extern const duite_kernel flow_initial;  /* w x, w v, w rim of x, w rim of v */
+extern const duite_kernel flow_force;    /* r x, r v, w f; rims of x, rims of v */
+extern const duite_kernel flow_explicit; /* rw f: acceleration */
+extern const duite_kernel flow_implicit; /* r x, r v, rw f: right-hand side; rims of x, rims of v */
+extern const duite_kernel flow_matrix;   /* r x, w a; rims of x */
+extern const duite_kernel flow_start;    /* r f, w dv, w r, w p, w rim of p, cw rho */
+extern const duite_kernel flow_matvec;   /* r p, r a, w q, cw pq; rims of p */
+extern const duite_kernel flow_update;   /* r pq, r rho, r p, r q, rw dv, rw r, cw new rho */
+extern const duite_kernel flow_direction;   /* r new rho, r rho, r r, rw p, w rim of p */
+extern const duite_kernel flow_velocity_dv; /* r f, r a, r dv, rw v, w rim of v, cw status */
+extern const duite_kernel flow_velocity_a;  /* r f, rw v, w rim of v, cw status */
+extern const duite_kernel flow_position;    /* r v, rw x, w rim of x, cw status */
+extern const duite_kernel flow_collide;     /* rw x, rw v, w rim of x, w rim of v */
+extern const duite_kernel flow_status;      /* cw status: on rank 0, whether a stop was asked for */
+extern const duite_kernel flow_frame;       /* rw token; x of all blocks: on rank 0 */
+extern const duite_kernel flow_stretch;     /* r x, w stretch; rims of x */
+extern const duite_kernel flow_most;        /* w stretch; stretch of all blocks */
+extern const duite_kernel flow_seconds;     /* cw seconds: of this rank */
+extern const duite_kernel flow_tell;        /* w told: what rank 0 knows */
+
+/* Shared objects of a block. */
+struct flow_objects {
+    duite_object x, v, f, a, dv, r, p, q, rim_x, rim_v, rim_p, stretch;
+};
+
+/* A run as the main program sees it; the same on every rank. */
+struct flow_state {
+    struct flow *flow;
+    duite *rt;
+    const struct flow_output *output;
+    const struct flow_progress *progress;
+    struct flow_report *report;
+    struct cloth_error *error;
+    struct flow_objects *block;
+    duite_object pq[2], rho[2], status[2], token, most, seconds, told;
+    duite_object *refs; /* room for the objects of any task */
+    uint64_t next_frame;
+    uint64_t iterations; /* CG's, of the last step whose solve is done */
+    bool stopping;       /* a stop was agreed: ends after the next frame */
+    char text[512];      /* why the main program itself gave up; empty: ask duite_message */
+};
+
+/* Functions of the main program. Collective. They return 0 or what duite returned, which flow_run
+ * turns into a sentence. */
+int flow_objects_make(struct flow_state *state);
+int flow_objects_free(struct flow_state *state);
+
+/* Forks `kernel` on one block: first the objects given, then the neighbours' objects at `offset` in
+ * struct flow_objects (and at `offset2`); FLOW_NO_RIM: none. */
+enum { FLOW_NO_RIM = -1 };
+int flow_fork(struct flow_state *state, const duite_kernel *kernel, const struct flow_args *args,
+              size_t n, const duite_object *objects, long offset, long offset2);
+
+/* Forks the start of all blocks. */
+int flow_initialise(struct flow_state *state);
+/* Forks a step (0, 1, ...) and waits for the one before it. */
+int flow_step(struct flow_state *state, uint64_t step);
+/* Waits for a step that was forked whole; adds what it says of itself to the report and shows it to
+ * the program. */
+int flow_step_status(struct flow_state *state, uint64_t step);
+/* Solves for dv, waiting for all but the last tasks; the step before is waited for when the solve
+ * has begun. */
+int flow_cg(struct flow_state *state, uint64_t step);
+
+/* The step after which a frame is written. */
+uint64_t flow_frame_step(const struct model *model, uint64_t frame);
+/* Forks the frames that are due after so many steps. */
+int flow_frames(struct flow_state *state, uint64_t steps);
+
+/* Fills the parts of the report that need the whole state, when no task runs. */
+int flow_finish(struct flow_state *state);
+/* The number of frames written, from rank 0 to all. */
+int flow_last_frame(struct flow_state *state);
+
+/* Seconds since some start. Local. */
+double flow_now(void);
+
+#endif

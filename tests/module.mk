@@ -11,7 +11,8 @@ LOG_DRIVER = env AM_TAP_AWK='$(AWK)' $(SHELL) $(top_srcdir)/build-aux/tap-driver
 LOG_COMPILER = $(SHELL) $(srcdir)/tests/support/run.sh
 AM_TESTS_ENVIRONMENT = \
     CC='$(CC)'; CFLAGS='$(CFLAGS) $(SANITIZE_FLAGS)'; PKG_CONFIG='$(PKG_CONFIG)'; MAKE='$(MAKE)'; \
-    export CC CFLAGS PKG_CONFIG MAKE; \
+    MPIRUN='$(MPIRUN)'; MPI_CFLAGS='$(MPI_CFLAGS)'; MPI_LIBS='$(MPI_LIBS)'; \
+    export CC CFLAGS PKG_CONFIG MAKE MPIRUN MPI_CFLAGS MPI_LIBS; \
     DUITE_QUICK=$${DUITE_QUICK-$(DUITE_QUICK)}; export DUITE_QUICK; \
     support=`cd '$(srcdir)/tests/support' && pwd`; \
     LSAN_OPTIONS=suppressions=$$support/lsan.supp:print_suppressions=0; export LSAN_OPTIONS; \
@@ -28,11 +29,17 @@ check-TESTS: $(check_PROGRAMS)
 
 check-long:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)' TEST_SUITE_LOG=test-suite-long.log
-.PHONY: check-long
+
+# For ThreadSanitizer: the test programs of what has threads, without the scripts that start ranks.
+check-threads:
+	$(MAKE) $(AM_MAKEFLAGS) check TESTS="`for test in $(TESTS); do case $$test in *.sh) ;; \
+	  tests/runtime/* | tests/cloth/flow/* | tests/support/*) echo $$test;; esac; done | tr '\n' ' '`"
+check-programs: $(check_PROGRAMS)
+.PHONY: check-long check-threads check-programs
 
 EXTRA_DIST += tests/arrows.txt tests/support/tap.sh tests/support/run.sh tests/support/count.sh tests/support/lsan.supp tests/support/tsan.supp
-dist_check_SCRIPTS += tests/arrows.sh
-TESTS += tests/arrows.sh
+dist_check_SCRIPTS += tests/arrows.sh tests/install.sh tests/readme.sh
+TESTS += tests/arrows.sh tests/readme.sh
 
 if HAVE_CHECK
 check_LTLIBRARIES += tests/support/libunit.la

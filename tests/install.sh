@@ -1,0 +1,59 @@
+#!/bin/sh
+# What a user of the library meets: make install, pkg-config duite, a program of a few lines, and no symbols but ours.
+. "${srcdir:-.}/tests/support/tap.sh"
+
+prefix=$scratch/usr
+PKG_CONFIG_PATH=$prefix/lib/pkgconfig${PKG_CONFIG_PATH:+:$PKG_CONFIG_PATH}
+LD_LIBRARY_PATH=$prefix/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+export PKG_CONFIG_PATH LD_LIBRARY_PATH
+
+install_here() { # into the prefix, whatever configure was given
+    ${MAKE:-make} install prefix="$prefix" exec_prefix="$prefix" libdir="$prefix/lib" includedir="$prefix/include" \
+        datadir="$prefix/share" pkgconfigdir="$prefix/lib/pkgconfig"
+}
+
+install_staged() { # for packagers: nothing outside DESTDIR
+    ${MAKE:-make} install prefix=/opt/duite exec_prefix=/opt/duite DESTDIR="$scratch/stage" &&
+        test -f "$scratch/stage/opt/duite/include/duite.h" && test ! -e /opt/duite/include/duite.h
+}
+
+pc() { ${PKG_CONFIG:-pkg-config} --define-variable=prefix="$prefix" --define-variable=libdir="$prefix/lib" "$@" duite; }
+
+compile() {
+    cat > "$scratch/three.c" << 'EOF'
+#include <duite.h>
+#include <stdio.h>
+int main(void) { return puts(duite_code_text(DUITE_OK)) < 0 || duite_scheduler_find("no such") != NULL; }
+EOF
+    # shellcheck disable=SC2046,SC2086 # lists of flags
+    ${CC:-cc} ${CFLAGS:-} -o "$scratch/three" "$scratch/three.c" $(pc --cflags --libs)
+}
+
+exports_ours_only() {
+    nm -D --defined-only "$prefix/lib/libduite.so" | awk '{ print $3 }' > "$scratch/symbols"
+    grep -q '^duite_fork$' "$scratch/symbols" && ! grep -v '^duite_' "$scratch/symbols"
+}
+
+complete() { # everything that duite.h and duite_policy.h declare is there
+    sed -n 's/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p' "$prefix/include/duite.h" "$prefix/include/duite_policy.h" |
+        grep -v -e '_body$' | sort -u > "$scratch/declared"
+    sort -u "$scratch/symbols" | comm -23 "$scratch/declared" - > "$scratch/absent"
+    cat "$scratch/absent"
+    test -s "$scratch/declared" && test ! -s "$scratch/absent"
+}
+
+uninstalled() {
+    ${MAKE:-make} uninstall prefix="$prefix" exec_prefix="$prefix" libdir="$prefix/lib" includedir="$prefix/include" \
+        datadir="$prefix/share" pkgconfigdir="$prefix/lib/pkgconfig" && test -z "$(find "$prefix" -type f)"
+}
+
+unset MAKEFLAGS MFLAGS MAKELEVEL
+plan_later
+ok "make install" install_here
+ok "pkg-config knows duite and where mpi.h is" pc --exists
+ok "a program compiles with pkg-config's flags" compile
+ok "and runs" limited "$scratch/three"
+ok "libduite.so exports duite_* only" exports_ours_only
+ok "libduite.so has everything that its headers declare" complete
+ok "make install DESTDIR" install_staged
+ok "make uninstall leaves no file" uninstalled

@@ -1,0 +1,111 @@
+#!/bin/sh
+# README.md tells the truth: its first program compiles, runs and prints what the block after it says, and every command in
+# its sh blocks runs, in a scratch folder that has the tree's cloth/ and tests/, the build's programs and an installed duite.
+# The set-up lines are left to .ci/run and make check-long; other targets of make than install are only looked up.
+. "${srcdir:-.}/tests/support/tap.sh"
+
+readme=$srcdir/README.md
+test -f "$readme" || skip_all "there is no README.md yet"
+build=$PWD
+make=${MAKE:-make}
+home=$scratch/home
+usr=$scratch/usr
+unset MAKEFLAGS MFLAGS MAKELEVEL
+
+# block LANGUAGES NTH: the text of the NTH fenced block in one of the languages ("text" also stands for none).
+block() {
+    awk -v want=" $1 " -v nth="$2" '
+        /^```/ && !inside { lang = substr($0, 4); if (lang == "") lang = "text"; inside = 1
+                            hit = index(want, " " lang " ") && ++count == nth; next }
+        /^```/ { inside = 0; if (hit) exit; next }
+        hit' "$readme"
+}
+
+# The commands of all sh blocks, one a line: continued lines joined, comments and prompts left out.
+commands() {
+    awk '
+        /^```sh[[:space:]]*$/ { inside = 1; next }
+        /^```/ { inside = 0; next }
+        inside { sub(/^\$ /, ""); sub(/(^|[[:space:]]+)#([[:space:]].*)?$/, "")
+                 if (sub(/\\$/, "")) { held = held $0; next }
+                 line = held $0; held = ""
+                 if (line !~ /^[[:space:]]*$/) print line }' "$readme"
+}
+
+# What README says the first program prints: the first text block after the first C block.
+expected() {
+    awk '
+        /^```/ && !inside { inside = 1; lang = substr($0, 4); next }
+        /^```/ { inside = 0; if (lang == "c") after = 1; else if (hit) exit; next }
+        inside && after && (lang == "" || lang == "text") { hit = 1; print }' "$readme"
+}
+
+prepare() {
+    mkdir -p "$home" "$scratch/bin" &&
+        ln -s "$srcdir/cloth" "$srcdir/tests" "$srcdir/docs" "$srcdir/bootstrap" "$home" || return
+    for program in duite-cloth duite-view; do
+        test ! -x "$build/$program" || ln -s "$build/$program" "$home"
+    done
+    cat > "$scratch/bin/make" << EOF
+#!/bin/sh
+case \$* in
+    install | 'DESTDIR='*' install') exec $make -C '$build' "\$@" $(locations) ;;
+    *) exec $make -n -C '$build' "\$@" > /dev/null ;;
+esac
+EOF
+    chmod +x "$scratch/bin/make" && "$scratch/bin/make" install
+}
+
+locations() { echo "prefix=$usr exec_prefix=$usr libdir=$usr/lib includedir=$usr/include datadir=$usr/share" \
+    "pkgconfigdir=$usr/lib/pkgconfig"; }
+
+# The file name under which README's commands compile the first program.
+program_name() { commands | grep -o '[a-z_]*\.c\>' | head -n 1; }
+
+compile() {
+    # shellcheck disable=SC2086 # lists of flags
+    ${CC:-cc} ${CFLAGS:-} -Wall -Wextra -Werror -I"$srcdir/runtime" ${MPI_CFLAGS:-} -o "$scratch/first" "$home/$name" \
+        -L"$build/.libs" -Wl,-rpath,"$build/.libs" -lduite ${MPI_LIBS:-} -lm
+}
+
+prints_what_it_says() {
+    limited "$scratch/first" > "$scratch/printed" && expected > "$scratch/expected" && test -s "$scratch/expected" &&
+        diff -u "$scratch/expected" "$scratch/printed"
+}
+
+sets_up() { # in the right form, one of the two commands of README that prepare a machine
+    case $1 in
+        './bootstrap && make demo' | './bootstrap && make check') return 0 ;;
+    esac
+    return 1
+}
+
+here() { (cd "$home" && limited sh -c "$1"); }
+
+plan_later
+ok "duite installs into the scratch folder" prepare
+PATH=$scratch/bin:$usr/bin:$PATH
+PKG_CONFIG_PATH=$usr/lib/pkgconfig
+LD_LIBRARY_PATH=$usr/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+export PATH PKG_CONFIG_PATH LD_LIBRARY_PATH
+
+name=$(program_name)
+name=${name:-first.c}
+block c 1 > "$home/$name"
+ok "there is a first program" test -s "$home/$name"
+ok "the first program compiles against the library as built" compile
+ok "the first program prints what README says" prints_what_it_says
+
+commands > "$scratch/commands"
+ok "README has the demo's command" grep -qxF './bootstrap && make demo' "$scratch/commands"
+ok "README has the tests' command" grep -qxF './bootstrap && make check' "$scratch/commands"
+while IFS= read -r command; do
+    sets_up "$command" && continue
+    case $command in
+        'git clone '* | 'sudo '* | 'cd '*) skip "$command" "only for a machine of one's own" ;;
+        '.ci/run'* | './bootstrap'*) ok "$command" sh -n "$srcdir/${command%% *}" ;;
+        './duite-view '* | 'duite-view '*)
+            if test -x "$build/duite-view"; then ok "$command" here "$command"; else skip "$command" "no viewer"; fi ;;
+        *) ok "$command" here "$command" ;;
+    esac
+done < "$scratch/commands"

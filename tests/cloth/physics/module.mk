@@ -1,0 +1,8 @@
+if HAVE_CHECK
+check_PROGRAMS += tests/cloth/physics/test_particle tests/cloth/physics/test_spring
+tests_cloth_physics_test_particle_SOURCES = tests/cloth/physics/test_particle.c
+tests_cloth_physics_test_particle_LDADD = $(CLOTH_TEST_LIBS)
+tests_cloth_physics_test_spring_SOURCES = tests/cloth/physics/test_spring.c
+tests_cloth_physics_test_spring_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/physics/test_particle tests/cloth/physics/test_spring
+endif

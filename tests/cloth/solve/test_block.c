@@ -1,0 +1,304 @@
+/* The matvec of two blocks against a dense matrix that is put together here from the same springs,
+ * and conjugate gradients by these kernels against elimination. */
+#include "cloth/solve/block.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Ten particles, two blocks of five; springs between all pairs but some. Every particle is in a
+ * rim. */
+enum { ROWS = 5, N = 2 * ROWS, DOFS = 3 * N };
+
+struct half {
+    uint32_t row[ROWS + 1], column[ROWS * ROWS], end[ROWS * ROWS][2], held[ROWS * N][2];
+    double diagonal[ROWS], free[ROWS];
+    phys_vec value[2 * ROWS * ROWS];
+    uint32_t n_inner, n_cut;
+    struct solve_block block;
+    struct solve_cut cut;
+    struct solve_held hold;
+};
+
+static struct half half[2];
+static double dense[DOFS][DOFS]; /* A, without the filter */
+
+static double draw(void)
+{
+    return (double)(rand() % 20001 - 10000) / 10000;
+}
+
+static int joined(int a, int b)
+{
+    return a != b && (a + b) % 7 != 3;
+}
+
+/* alpha I + w w' into the rows and columns of a and b. */
+static void add_dense(int a, int b, const phys_vec *value)
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            const double k = (*value)[i] * (*value)[j] + (i == j ? (*value)[3] : 0);
+            dense[3 * a + i][3 * a + j] += k;
+            dense[3 * b + i][3 * b + j] += k;
+            dense[3 * a + i][3 * b + j] -= k;
+            dense[3 * b + i][3 * a + j] -= k;
+        }
+}
+
+static void add_held(struct half *h, const struct half *far, int row, int other, uint32_t place)
+{
+    if (h->free[row] != 0 && far->free[other] == 0) {
+        h->held[h->hold.n][0] = (uint32_t)row;
+        h->held[h->hold.n++][1] = place;
+    }
+}
+
+/* Cut springs follow the inner ones; the value of a spring between the halves is kept for both. */
+static void build(void)
+{
+    phys_vec value[N][N];
+    srand(7);
+    memset(half, 0, sizeof half);
+    memset(dense, 0, sizeof dense);
+    for (int a = 0; a < N; a++) {
+        half[a / ROWS].diagonal[a % ROWS] = 1 + 0.5 * draw();
+        half[a / ROWS].free[a % ROWS] = a == 1 || a == 8 ? 0 : 1;
+        for (int c = 0; c < 3; c++)
+            dense[3 * a + c][3 * a + c] += half[a / ROWS].diagonal[a % ROWS];
+        for (int b = a + 1; b < N; b++) {
+            value[a][b] = (phys_vec){draw(), draw(), draw(), 1 + draw()};
+            value[b][a] = value[a][b];
+            if (joined(a, b))
+                add_dense(a, b, &value[a][b]);
+        }
+    }
+    for (int s = 0; s < 2; s++) {
+        struct half *h = half + s;
+        for (int a = 0; a < ROWS; a++) {
+            h->row[a] = h->n_inner;
+            for (int b = a + 1; b < ROWS; b++)
+                if (joined(s * ROWS + a, s * ROWS + b)) {
+                    add_held(h, h, a, b, h->n_inner);
+                    add_held(h, h, b, a, h->n_inner);
+                    h->value[h->n_inner] = value[s * ROWS + a][s * ROWS + b];
+                    h->column[h->n_inner++] = (uint32_t)b;
+                }
+        }
+        h->row[ROWS] = h->n_inner;
+        for (int a = 0; a < ROWS; a++)
+            for (int b = 0; b < ROWS; b++)
+                if (joined(s * ROWS + a, (1 - s) * ROWS + b)) {
+                    add_held(h, half + 1 - s, a, b, h->n_inner + h->n_cut);
+                    h->value[h->n_inner + h->n_cut] = value[s * ROWS + a][(1 - s) * ROWS + b];
+                    h->end[h->n_cut][0] = (uint32_t)a;
+                    h->end[h->n_cut++][1] = (uint32_t)b;
+                }
+        h->block = (struct solve_block){ROWS, h->diagonal, h->free, h->row, h->column};
+        h->cut = (struct solve_cut){h->n_cut, (const uint32_t(*)[2])h->end};
+        h->hold.at = (const uint32_t(*)[2])h->held;
+    }
+}
+
+/* q = S A p over both halves; returns p . q. */
+static double matvec(const phys_vec *p, phys_vec *q)
+{
+    double dot = 0;
+    memset(q, 0, N * sizeof *q);
+    for (int s = 0; s < 2; s++) {
+        const struct half *h = half + s;
+        phys_vec *own = q + s * ROWS;
+        solve_matvec_cut(&h->cut, h->value + h->n_inner, p + s * ROWS, p + (1 - s) * ROWS, own);
+        dot += solve_matvec(&h->block, h->value, p + s * ROWS, own);
+    }
+    return dot;
+}
+
+static double is_free(int dof)
+{
+    const int particle = dof / 3;
+    return half[particle / ROWS].free[particle % ROWS];
+}
+
+static void random_vector(phys_vec *p)
+{
+    for (int i = 0; i < N; i++)
+        p[i] = (phys_vec){draw(), draw(), draw(), 0} * is_free(3 * i);
+}
+
+START_TEST(matvec_is_the_dense_product)
+{
+    phys_vec p[N], q[N];
+    build();
+    for (int trial = 0; trial < 20; trial++) {
+        random_vector(p);
+        const double dot = matvec(p, q);
+        double sum = 0;
+        for (int i = 0; i < DOFS; i++) {
+            double y = 0;
+            for (int j = 0; j < DOFS; j++)
+                y += dense[i][j] * p[j / 3][j % 3];
+            y *= is_free(i);
+            sum += y * p[i / 3][i % 3];
+            ck_assert_double_eq_tol(q[i / 3][i % 3], y, 1e-13);
+        }
+        ck_assert_double_eq_tol(dot, sum, 1e-12);
+        ck_assert_double_gt(dot, 0);
+        for (int i = 0; i < N; i++)
+            ck_assert_double_eq(q[i][3], 0);
+    }
+}
+END_TEST
+
+START_TEST(matvec_is_symmetric)
+{
+    phys_vec p[N], q[N], ap[N], aq[N];
+    build();
+    random_vector(p);
+    random_vector(q);
+    matvec(p, ap);
+    matvec(q, aq);
+    double one = 0, other = 0;
+    for (int i = 0; i < N; i++) {
+        one += phys_dot(q + i, ap + i);
+        other += phys_dot(p + i, aq + i);
+    }
+    ck_assert_double_eq_tol(one, other, 1e-12);
+}
+END_TEST
+
+/* Without pins, what moves as a whole feels its diagonal and nothing else, to the last bit. */
+START_TEST(rigid_motion_feels_the_mass_alone)
+{
+    phys_vec p[N], q[N];
+    build();
+    for (int i = 0; i < N; i++) {
+        half[i / ROWS].free[i % ROWS] = 1;
+        p[i] = (phys_vec){0.1, 0.7, -0.3, 0};
+    }
+    matvec(p, q);
+    for (int i = 0; i < N; i++)
+        for (int c = 0; c < 3; c++)
+            ck_assert_double_eq(q[i][c], half[i / ROWS].diagonal[i % ROWS] * p[i][c]);
+}
+END_TEST
+
+/* x of the free rows and columns of A x = S b, by elimination with row exchange; zero elsewhere. */
+static void eliminate(const phys_vec *b, double *x)
+{
+    static double a[DOFS][DOFS + 1];
+    for (int i = 0; i < DOFS; i++) {
+        for (int j = 0; j < DOFS; j++)
+            a[i][j] = is_free(i) != 0 && is_free(j) != 0 ? dense[i][j] : i == j;
+        a[i][DOFS] = b[i / 3][i % 3] * is_free(i);
+    }
+    for (int k = 0; k < DOFS; k++) {
+        int best = k;
+        for (int i = k; i < DOFS; i++)
+            best = fabs(a[i][k]) > fabs(a[best][k]) ? i : best;
+        for (int j = 0; j <= DOFS; j++) {
+            const double swap = a[k][j];
+            a[k][j] = a[best][j];
+            a[best][j] = swap;
+        }
+        for (int i = 0; i < DOFS; i++)
+            for (int j = DOFS; j >= k && i != k; j--)
+                a[i][j] -= a[i][k] / a[k][k] * a[k][j];
+    }
+    for (int i = 0; i < DOFS; i++)
+        x[i] = a[i][DOFS] / a[i][i];
+}
+
+/* So many iterations of conjugate gradients from zero. Returns r . r. */
+static double iterate(const phys_vec *b, phys_vec *dv, int count)
+{
+    phys_vec r[N], p[N], q[N];
+    double rho = 0;
+    for (int s = 0; s < 2; s++) {
+        const int at = s * ROWS;
+        rho += solve_start(ROWS, half[s].free, b + at, dv + at, r + at, p + at);
+    }
+    for (int k = 0; k < count; k++) {
+        const double alpha = rho / matvec(p, q), before = rho;
+        rho = 0;
+        for (int s = 0; s < 2; s++)
+            rho +=
+                solve_update(ROWS, alpha, p + s * ROWS, q + s * ROWS, dv + s * ROWS, r + s * ROWS);
+        for (int s = 0; s < 2; s++)
+            solve_direction(ROWS, rho / before, r + s * ROWS, p + s * ROWS);
+    }
+    return rho;
+}
+
+START_TEST(cg_solves)
+{
+    phys_vec b[N], dv[N];
+    double x[DOFS];
+    build();
+    for (int i = 0; i < N; i++)
+        b[i] = (phys_vec){draw(), draw(), draw(), 0};
+    eliminate(b, x);
+    ck_assert_double_lt(iterate(b, dv, DOFS), 1e-20);
+    for (int i = 0; i < DOFS; i++)
+        ck_assert_double_eq_tol(dv[i / 3][i % 3], x[i], 1e-10);
+    ck_assert_double_eq(dv[1][0], 0);
+    ck_assert_double_eq(dv[8][2], 0);
+}
+END_TEST
+
+/* An unfinished solve: the momentum it lost is the sum of b - A dv, with A applied in full. */
+START_TEST(lost_is_the_sum_of_the_residual)
+{
+    phys_vec b[N], dv[N], q[N];
+    build();
+    for (int i = 0; i < N; i++)
+        b[i] = (phys_vec){draw(), draw(), draw(), 0};
+    iterate(b, dv, 3);
+    matvec(dv, q);
+    double lost[3] = {0}, sum[3] = {0};
+    for (int s = 0; s < 2; s++)
+        solve_lost(&half[s].block, &half[s].hold, half[s].value, b + s * ROWS, dv + s * ROWS, lost);
+    for (int i = 0; i < N; i++)
+        for (int c = 0; c < 3; c++)
+            sum[c] += is_free(3 * i) * (b[i][c] - q[i][c]);
+    for (int c = 0; c < 3; c++) {
+        ck_assert_double_gt(fabs(sum[c]), 1e-3);
+        ck_assert_double_eq_tol(lost[c], sum[c], 1e-13);
+    }
+}
+END_TEST
+
+/* The interleaved sums of the update cover every row, whatever the remainder by four. */
+START_TEST(update_at_every_size)
+{
+    for (size_t n = 0; n < 12; n++) {
+        phys_vec p[12] = {{0}}, q[12] = {{0}}, dv[12] = {{0}}, r[12] = {{0}};
+        for (size_t i = 0; i < n; i++) {
+            p[i] = (phys_vec){1, 2, 3, 0};
+            q[i] = (phys_vec){1, 1, 1, 0};
+            r[i] = (phys_vec){(double)i, 1, 3, 0};
+        }
+        double sum = 0;
+        for (size_t i = 0; i < n; i++)
+            sum += ((double)i - 2) * ((double)i - 2) + 1 + 1;
+        ck_assert_double_eq(solve_update(n, 2, p, q, dv, r), sum);
+        for (size_t i = 0; i < n; i++)
+            ck_assert(dv[i][2] == 6 && r[i][0] == (double)i - 2);
+    }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("block");
+    TCase *cases = tcase_create("block");
+    tcase_add_test(cases, matvec_is_the_dense_product);
+    tcase_add_test(cases, matvec_is_symmetric);
+    tcase_add_test(cases, rigid_motion_feels_the_mass_alone);
+    tcase_add_test(cases, cg_solves);
+    tcase_add_test(cases, lost_is_the_sum_of_the_residual);
+    tcase_add_test(cases, update_at_every_size);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -49,3 +49,6 @@ tests_support_test_unit_SOURCES = tests/support/test_unit.c
 tests_support_test_unit_LDADD = $(DUITE_TEST_LIBS)
 TESTS += tests/support/test_unit
 endif
+
+include tests/cloth/physics/module.mk
+include tests/cloth/solve/module.mk

@@ -13,9 +13,10 @@
  * Calls marked "collective" are made by all ranks in the same order; "local" calls concern this rank only.
  * Forking and everything that changes objects is done by the main thread.
  *
- * Every call returns DUITE_OK or a code; duite_message() then has the sentence. A failed fork, new, set, hint or
- * free does nothing, and its error is returned once more by the next get, wait or stop: a program may check
- * only these. The library never exits or aborts. */
+ * Every call returns DUITE_OK or a code; duite_message() then has the sentence. A failed fork, new, set, hint, follow or
+ * free does nothing, and the first such error is returned once more, with its sentence, by the next get, wait or stop, which
+ * otherwise does its work: a program may check only these. (Calls from a body or another thread, DUITE_E_STATE, are not
+ * remembered.) The library never exits or aborts. */
 
 #include <mpi.h>
 #include <stddef.h>
@@ -48,15 +49,18 @@ const char *duite_code_text(int code);
 
 typedef struct duite duite; /* a running runtime */
 
-/* Names a shared object: a value, freely copied, the same on all ranks. {0, 0} names none. */
+/* Names a shared object: a value, freely copied, the same on all ranks. */
 typedef struct duite_object {
     uint32_t slot, generation;
 } duite_object;
 
+/* Names none; what duite_new leaves behind when it fails. */
+#define DUITE_NO_OBJECT ((duite_object){0, 0})
+
 /* Element types of objects. */
 typedef enum duite_type {
     DUITE_BYTE = 1, /* bytes without arithmetic: cannot be accumulated into */
-    DUITE_I32,
+    DUITE_I32,      /* sums of integers wrap around */
     DUITE_I64,
     DUITE_F32,
     DUITE_F64
@@ -74,8 +78,9 @@ typedef enum duite_mode {
 /* ---- Kernels ---------------------------------------------------------------------------------------- */
 
 typedef struct duite_param {
-    void *data;   /* 64-byte aligned; const under DUITE_R; dies with the body */
-    size_t count; /* elements */
+    void *data;      /* 64-byte aligned; const under DUITE_R; dies with the body */
+    size_t count;    /* elements */
+    duite_type type; /* of the elements */
 } duite_param;
 
 /* What a body is given. */
@@ -89,14 +94,16 @@ typedef struct duite_call {
     struct duite_call_private *own;
 } duite_call;
 
-/* Parameter i of a call as elements of a C type, for reading and for writing. */
+/* Parameter i of a call as elements of a C type: for reading, and (not under DUITE_R) for writing. */
 #define duite_in(call, i, type) ((const type *)(call)->param[i].data)
 #define duite_out(call, i, type) ((type *)(call)->param[i].data)
 #define duite_count(call, i) ((call)->param[i].count)
 
-/* A task's body. Returns 0, or a positive code of the program: then everything the task writes is poisoned,
- * tasks that read it do not run and poison what they write in turn, and the next duite_wait, or duite_get of
- * something poisoned, returns the code on all ranks. Bodies may not call duite_ functions but duite_fail. */
+/* A task's body. Returns 0, or a code of the program (not 0, better positive): then everything the task writes is poisoned;
+ * tasks that read it do not run and poison what they write in turn, until a w, which does not read, overwrites it. The
+ * next duite_wait, and every duite_get of something poisoned, returns the code on all ranks. A contribution that failed
+ * poisons the object; contributing to a poisoned object is possible and does not heal it.
+ * Bodies may call no duite_ function but duite_fail. */
 typedef int duite_body(const duite_call *call);
 
 /* Gives the failure of a body its sentence (printf form, at most 200 bytes are kept). Returns code. */
@@ -105,7 +112,7 @@ int duite_fail(const duite_call *call, int code, const char *format, ...)
 
 enum { DUITE_MAX_ACCESS = 16 };
 
-/* A kernel: constant, alive from start to stop, listed at start in the same order on every rank. */
+/* A kernel: constant, alive from start to stop, listed at start in the same order on every rank. Names are unique. */
 typedef struct duite_kernel {
     const char *name;
     duite_body *body;
@@ -121,7 +128,7 @@ struct duite_mapping;
 
 typedef struct duite_options {
     MPI_Comm comm;                      /* who takes part; duplicated. Default MPI_COMM_WORLD */
-    const duite_kernel *const *kernels; /* ended by NULL */
+    const duite_kernel *const *kernels; /* ended by NULL; the list is copied, the kernels are not */
     void *context;                      /* given to every body; may differ between ranks */
     unsigned threads;                   /* workers of this rank, the main thread among them; 0: its share of the cores */
     const struct duite_scheduler *scheduler; /* default: steal */
@@ -144,7 +151,7 @@ const char *const *duite_mapping_names(void);
 int duite_start(duite **rt, const duite_options *options);
 
 /* Waits for all tasks, ends the workers and frees everything; finalises MPI if start initialised it. *rt becomes
- * NULL whatever is returned. Returns the error that a wait would, or DUITE_E_NOT_FREED. Collective. */
+ * NULL whatever is returned. Returns the error that a wait would, else DUITE_E_NOT_FREED if objects are left. Collective. */
 int duite_stop(duite **rt);
 
 /* This rank, the number of ranks, the workers of this rank. Local. */
@@ -154,40 +161,47 @@ unsigned duite_threads(const duite *rt);
 
 /* ---- Shared objects --------------------------------------------------------------------------------- */
 
-/* Makes an object of count elements, all zero. Collective; no communication. At most 2 GiB with several ranks. */
+/* Makes an object of count elements, all zero. Collective; no communication. */
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
 
 /* Frees an object after the last earlier access; `object` names nothing afterwards. Collective. */
 int duite_free(duite *rt, duite_object object);
 
-/* Overwrites the object, in fork order, with a copy of `values` (count elements, the same on every rank). */
+/* Overwrites the object, in fork order, with a copy of `values` (count elements, the same on every rank), or with zeros if
+ * `values` is NULL. Collective; returns at once. */
 int duite_set(duite *rt, duite_object object, const void *values);
 
-/* Copies the object, as the tasks forked so far leave it, into `values` (count elements) on every rank; returns
- * when it is there. Later forks wait for this call only. Collective. */
+/* Copies the object, as the tasks forked so far leave it, into `values` (count elements) on every rank. Returns when the bytes
+ * are there; other tasks go on. Of a poisoned object: the code of the failure that is first in fork order among those it
+ * descends from, and `values` stays as it was. Collective. */
 int duite_get(duite *rt, duite_object object, void *values);
 
-/* The same on one rank only; on the others `values` is ignored and the call returns at once. Collective. */
+/* The same on one rank only; the others ignore `values` and return DUITE_OK at once, even if the object is poisoned, so a program
+ * may not branch on the result. Collective. */
 int duite_get_at(duite *rt, duite_object object, int rank, void *values);
 
-/* Tells mappings about the object: its share of work, and what it exchanges (weights >= 0) with n neighbours.
- * Means something before the first fork that comes after the object was made. Collective. */
+/* Tells mappings about the object: its share of work, and the bytes it exchanges with n neighbours, which exist already
+ * (edge_weights NULL: 1 each). An edge may be told from either end; told twice it adds up. A second hint replaces the
+ * weight and adds edges. Hints count before the first fork after the object was made, and change nothing later.
+ * Collective. */
 int duite_hint(duite *rt, duite_object object, double weight, size_t n, const duite_object *neighbours,
                const double *edge_weights);
 
-/* The object gets the home of `leader`, whatever the mapping; same moment as duite_hint. Collective. */
+/* The object gets the home of `leader` (or of its leader in turn), whatever the mapping; counts like a hint. Following in a
+ * ring is DUITE_E_ARGUMENT. Collective. */
 int duite_follow(duite *rt, duite_object object, duite_object leader);
 
-/* The rank that keeps the object, as the mapping decided; -1 for no such object. Collective, since it settles the
- * homes of all objects made so far. */
+/* Settles the homes of all objects made so far, as the first fork does, and returns the rank that keeps this one; -1 for no such
+ * object. Collective. */
 int duite_home(duite *rt, duite_object object);
 
 /* ---- Tasks ------------------------------------------------------------------------------------------ */
 
-/* Forks a task on n objects, in the order of the kernel's modes. It runs where its first w or rw object lives,
- * else its first r object, else on rank 0. Contributions (cw) between two other accesses of an object are
- * summed in fork order by a fixed tree: complete subtrees as in a binary counter, the rest folded from the
- * right; then the sum is added to the object. Collective; returns at once. */
+/* Forks a task on n objects, in the order of the kernel's modes; a task names an object once. `args` points to the kernel's
+ * args_size bytes (ignored if 0). It runs where its first w or rw object lives, else its first r object, else on rank 0.
+ * Contributions (cw) between two other accesses of an object (by tasks, set, get or free; waits do not count) are summed
+ * in fork order by a fixed tree: complete subtrees as in a binary counter, the rest folded from the right; then
+ * the sum is added to the object: old + (A + (B + C)). Collective; returns at once. */
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects);
 
@@ -195,19 +209,23 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
                   const duite_object *objects);
 
-/* duite_fork with the objects written out: DUITE_FORK(rt, &DOT, NULL, x, y, sum). */
+/* duite_fork with the objects, and a structure of arguments, written out:
+ * DUITE_FORK(rt, &AXPY, DUITE_ARGS(struct axpy, .alpha = 2, .first = 7), x, y). */
+#define DUITE_ARGS(type, ...) (&(const type){__VA_ARGS__})
 #define DUITE_FORK(rt, kernel, args, ...)                                                              \
     duite_fork(rt, kernel, args, sizeof((duite_object[]){__VA_ARGS__}) / sizeof(duite_object),         \
                (duite_object[]){__VA_ARGS__})
 
 /* Waits for all tasks forked so far, on all ranks. Returns the error of the task that is first in fork order
- * among those that failed since the last wait, the same on all ranks. Collective. */
+ * among those that failed themselves since the last wait, the same on all ranks; or DUITE_E_DIFFERENT on all ranks if they did
+ * not fork the same tasks since the last wait. (A remembered error goes first; a task's then waits for the next.)
+ * Collective. */
 int duite_wait(duite *rt);
 
 /* ---- Counters --------------------------------------------------------------------------------------- */
 
 typedef struct duite_counters {
-    uint64_t tasks;    /* bodies run */
+    uint64_t tasks;    /* bodies run; not those that poison kept from running */
     uint64_t placed;   /* tasks put in a queue by the scheduler */
     uint64_t stolen;   /* tasks taken from another worker's queue */
     uint64_t chained;  /* tasks run directly after the one that made them ready */

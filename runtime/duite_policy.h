@@ -15,7 +15,8 @@ extern "C" {
 /* ---- Schedulers: which worker, which task next ------------------------------------------------------- */
 
 /* Queues: one a worker, numbered like the workers, and one that all share. */
-enum { DUITE_SHARED_QUEUE = 0xfffffffeu, DUITE_NO_QUEUE = 0xffffffffu };
+#define DUITE_SHARED_QUEUE 0xfffffffeu
+#define DUITE_NO_QUEUE 0xffffffffu
 
 typedef enum duite_end { DUITE_NEWEST, DUITE_OLDEST } duite_end;
 
@@ -36,8 +37,9 @@ typedef struct duite_scheduler {
     unsigned (*place)(void *state, const duite_ready *task);
     /* From which end a worker serves its own queue and the shared one. */
     duite_end (*serve)(void *state);
-    /* The queue that an idle worker tries at its attempt-th try in a row (0, 1, ...); DUITE_NO_QUEUE ends the
-     * round, and the worker idles for a moment. The worker's own queue was found empty before attempt 0. */
+    /* The worker's queue that an idle worker steals the oldest task from at its attempt-th try in a row (0, 1, ...);
+     * DUITE_NO_QUEUE ends the round, and the worker idles for a moment. Its own queue and the shared one were found
+     * empty before attempt 0; they are always served, so that a policy cannot lose a task. */
     unsigned (*victim)(void *state, unsigned attempt);
     /* Whether a task that just became ready may run directly after the one that made it so. */
     int (*chain)(void *state, const duite_ready *task);
@@ -48,6 +50,7 @@ typedef struct duite_scheduler {
 /* The objects to map: a graph in compressed rows, symmetric, with the program's hints. */
 typedef struct duite_object_graph {
     size_t n;                  /* objects, in the order they were made */
+    uint64_t before;           /* objects that were mapped before these */
     const double *weight;      /* n: share of the work */
     const size_t *start;       /* n + 1 */
     const uint32_t *neighbour; /* start[n] */

@@ -1,0 +1,40 @@
+/* All memory of the runtime comes from here, on cache-line boundaries, so that no two allocations share a line. */
+#include "runtime/base/memory.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+void *base_alloc(size_t size)
+{
+    if (size > SIZE_MAX - BASE_LINE)
+        return NULL;
+    size_t lines = (size + BASE_LINE - 1) / BASE_LINE;
+    return aligned_alloc(BASE_LINE, (lines ? lines : 1) * BASE_LINE);
+}
+
+void *base_alloc_zero(size_t size)
+{
+    void *memory = base_alloc(size);
+    if (memory)
+        memset(memory, 0, size);
+    return memory;
+}
+
+void base_free(void *memory)
+{
+    free(memory);
+}
+
+void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
+{
+    if (needed <= *capacity)
+        return array;
+    size_t wanted = *capacity ? *capacity : 16;
+    while (wanted < needed)
+        wanted *= 2;
+    void *moved = wanted <= SIZE_MAX / element ? realloc(array, wanted * element) : NULL;
+    if (moved)
+        *capacity = wanted;
+    return moved;
+}

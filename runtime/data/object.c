@@ -1,0 +1,169 @@
+/* A slot's generation is odd while an object lives in it and grows by one at birth and at death, so that a stale name
+ * never fits again (until 2^31 objects have lived in one slot). */
+#include "runtime/data/object.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int data_table_start(struct data_table *table, int n_ranks)
+{
+    memset(table, 0, sizeof *table);
+    table->n_ranks = n_ranks;
+    table->words = ((size_t)n_ranks + 63) / 64;
+    table->n_slots = 1;
+    struct data_object *object =
+        base_grow(NULL, &table->capacity, table->n_slots, sizeof *table->object);
+    uint64_t *copies = base_grow(NULL, &table->copies_capacity, table->words, sizeof *copies);
+    table->object = object;
+    table->copies = copies;
+    if (!object || !copies)
+        return base_no_memory("the table of objects");
+    memset(&object[0], 0, sizeof object[0]);
+    return DUITE_OK;
+}
+
+static void hint_clear(struct data_hint *hint)
+{
+    free(hint->neighbour);
+    free(hint->edge_weight);
+    memset(hint, 0, sizeof *hint);
+}
+
+void data_table_stop(struct data_table *table)
+{
+    for (size_t i = 0; i < table->n_unsettled; i++)
+        hint_clear(&table->unsettled[i]);
+    free(table->unsettled);
+    free(table->vacant);
+    free(table->copies);
+    free(table->object);
+    memset(table, 0, sizeof *table);
+}
+
+/* Room for one more slot and its bookkeeping. */
+static int reserve(struct data_table *table)
+{
+    void *moved = base_grow(table->object, &table->capacity, (size_t)table->n_slots + 1,
+                            sizeof *table->object);
+    if (!moved)
+        return base_no_memory("the table of objects");
+    table->object = moved;
+    moved = base_grow(table->copies, &table->copies_capacity,
+                      ((size_t)table->n_slots + 1) * table->words, sizeof *table->copies);
+    if (!moved)
+        return base_no_memory("the table of objects");
+    table->copies = moved;
+    moved = base_grow(table->vacant, &table->vacant_capacity, (size_t)table->n_slots + 1,
+                      sizeof *table->vacant);
+    if (!moved)
+        return base_no_memory("the table of objects");
+    table->vacant = moved;
+    moved = base_grow(table->unsettled, &table->unsettled_capacity, table->n_unsettled + 1,
+                      sizeof *table->unsettled);
+    if (!moved)
+        return base_no_memory("the table of objects");
+    table->unsettled = moved;
+    return DUITE_OK;
+}
+
+static int check_shape(duite_type type, size_t count)
+{
+    size_t size = data_type_size(type);
+    if (!size)
+        return base_error(DUITE_E_ARGUMENT, "duite_new: %d is no element type", (int)type);
+    if (!count)
+        return base_error(DUITE_E_ARGUMENT, "duite_new: an object has at least one element");
+    if (count > DATA_MOST_BYTES / size)
+        return base_error(DUITE_E_ARGUMENT, "duite_new: %zu elements of %zu bytes are more than %zu bytes",
+                          count, size, DATA_MOST_BYTES);
+    return DUITE_OK;
+}
+
+int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name)
+{
+    *name = (duite_object){0, 0};
+    int code = check_shape(type, count);
+    if (!code)
+        code = reserve(table);
+    if (code)
+        return code;
+    uint32_t slot = table->n_vacant ? table->vacant[--table->n_vacant] : table->n_slots;
+    struct data_object *object = &table->object[slot];
+    if (slot == table->n_slots) {
+        table->n_slots++;
+        memset(object, 0, sizeof *object);
+    }
+    uint32_t generation = object->generation + 1;
+    *object = (struct data_object){.generation = generation,
+                                   .type = type,
+                                   .count = count,
+                                   .bytes = count * data_type_size(type),
+                                   .home = -1,
+                                   .hint = (uint32_t)table->n_unsettled,
+                                   .holder = -1};
+    table->unsettled[table->n_unsettled++] =
+        (struct data_hint){.slot = slot, .leader = slot, .weight = 1};
+    table->n_alive++;
+    *name = (duite_object){slot, generation};
+    return DUITE_OK;
+}
+
+struct data_object *data_object_find(struct data_table *table, duite_object name)
+{
+    struct data_object *object = name.slot < table->n_slots ? &table->object[name.slot] : NULL;
+    if (object && object->generation == name.generation && name.generation % 2)
+        return object;
+    if (!name.slot)
+        base_error(DUITE_E_OBJECT, "the object names nothing: was it made?");
+    else if (object && name.generation < object->generation)
+        base_error(DUITE_E_OBJECT, "object %u.%u was freed", name.slot, name.generation);
+    else
+        base_error(DUITE_E_OBJECT, "object %u.%u was never made", name.slot, name.generation);
+    return NULL;
+}
+
+struct data_hint *data_hint_find(struct data_table *table, duite_object name)
+{
+    const struct data_object *object = &table->object[name.slot];
+    return object->home < 0 ? &table->unsettled[object->hint] : NULL;
+}
+
+void data_object_drop(struct data_table *table, duite_object name)
+{
+    struct data_object *object = &table->object[name.slot];
+    object->generation++;
+    object->current = NULL;
+    table->vacant[table->n_vacant++] = name.slot;
+    table->n_alive--;
+}
+
+static uint64_t *copies_of(const struct data_table *table, const struct data_object *object)
+{
+    return table->copies + (size_t)(object - table->object) * table->words;
+}
+
+bool data_object_has_copy(const struct data_table *table, const struct data_object *object,
+                          int rank)
+{
+    if (rank == object->holder || !object->copied)
+        return rank == object->holder;
+    return copies_of(table, object)[rank / 64] >> (rank % 64) & 1;
+}
+
+void data_object_add_copy(struct data_table *table, struct data_object *object, int rank)
+{
+    uint64_t *copies = copies_of(table, object);
+    if (!object->copied)
+        memset(copies, 0, table->words * sizeof *copies);
+    object->copied = true;
+    copies[rank / 64] |= UINT64_C(1) << (rank % 64);
+}
+
+void data_object_moved(struct data_object *object, int holder)
+{
+    object->holder = holder;
+    object->copied = false;
+}

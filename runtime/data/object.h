@@ -1,0 +1,72 @@
+#ifndef DUITE_DATA_OBJECT_H
+#define DUITE_DATA_OBJECT_H
+
+#include "runtime/data/sum.h"
+
+/* Shared objects as every rank knows them. The main thread alone reads and writes this table; what it says about other
+ * ranks follows from the forks, which are the same everywhere, and is never asked for. */
+struct data_object {
+    uint32_t generation; /* even: the slot is free */
+    duite_type type;
+    size_t count, bytes;
+    int home;                     /* -1: not decided yet */
+    uint32_t hint;                /* while home is -1: its place in `unsettled` */
+    int holder;                   /* the rank that has the current version for certain */
+    uint64_t number;              /* of the current version: writes so far */
+    uint64_t mark;                /* the last fork that named it: one task names an object once */
+    struct data_version *current; /* this rank's copy of the current version, or NULL */
+    uint64_t leaves;              /* contributions forked since the last other access */
+    struct data_sum *sum;         /* those that concern this rank, or NULL */
+    bool copied;                  /* some rank beside the holder has a copy: `copies` says which */
+};
+
+/* What mappings are told; empty once the homes are settled. */
+struct data_hint {
+    uint32_t slot, leader;
+    double weight;
+    size_t n;
+    uint32_t *neighbour; /* slots */
+    double *edge_weight;
+};
+
+struct data_table {
+    int n_ranks;
+    struct data_object *object; /* by slot; slot 0 stays free, so that {0, 0} names nothing */
+    uint64_t *copies;           /* `words` a slot: ranks with a copy of the current version */
+    size_t words, capacity, copies_capacity;
+    uint32_t n_slots, n_alive;
+    uint32_t *vacant; /* freed slots */
+    size_t n_vacant, vacant_capacity;
+    struct data_hint *unsettled; /* objects without a home, in the order they were made */
+    size_t n_unsettled, unsettled_capacity;
+    uint64_t settled; /* objects that got a home by the mapping so far */
+};
+
+int data_table_start(struct data_table *table, int n_ranks);
+void data_table_stop(struct data_table *table);
+
+/* Makes an object without home. Errors: type, count, memory. */
+int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name);
+
+/* The object of that name, or NULL with the error's sentence set. */
+struct data_object *data_object_find(struct data_table *table, duite_object name);
+
+/* Takes the name out of use. The caller has released `current`. */
+void data_object_drop(struct data_table *table, duite_object name);
+
+/* Whether a rank has a copy of the current version; notes that it has one; only the new holder has one. */
+bool data_object_has_copy(const struct data_table *table, const struct data_object *object,
+                          int rank);
+void data_object_add_copy(struct data_table *table, struct data_object *object, int rank);
+void data_object_moved(struct data_object *object, int holder);
+
+/* The hint of an object whose home is not settled yet, or NULL. */
+struct data_hint *data_hint_find(struct data_table *table, duite_object name);
+
+static inline duite_object data_object_name(const struct data_table *table,
+                                            const struct data_object *object)
+{
+    return (duite_object){(uint32_t)(object - table->object), object->generation};
+}
+
+#endif

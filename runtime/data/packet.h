@@ -1,0 +1,43 @@
+#ifndef DUITE_DATA_PACKET_H
+#define DUITE_DATA_PACKET_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* The bytes of one version of an object, with room for a message header in front of them, so that they are sent and
+ * received where they lie. */
+enum data_packet_kind { DATA_VALUE = 1, DATA_PIECES = 2, DATA_POISON = 3 };
+
+/* Names a version on all ranks: the object and how many writes it had. */
+struct data_key {
+    uint32_t slot, generation;
+    uint64_t number;
+};
+
+struct data_packet {
+    struct data_key key;
+    uint64_t bytes; /* of what follows */
+    uint32_t kind;
+    uint32_t pieces; /* DATA_PIECES: how many */
+    struct data_packet *next; /* for whoever holds it; means nothing to the receiver */
+    uint64_t unused[3];
+};
+_Static_assert(sizeof(struct data_packet) == 64, "a header takes one cache line");
+
+/* Packets are allocated and sent in whole cache lines: the int counts of MPI then reach far beyond 2 GiB. */
+#define DATA_MOST_BYTES ((size_t)1 << 36)
+static inline size_t data_packet_lines(size_t bytes)
+{
+    return 1 + (bytes + 63) / 64;
+}
+
+/* A packet for so many bytes, payload zeroed or not; NULL without memory. Freed by base_free. */
+struct data_packet *data_packet_new(size_t bytes, bool zero);
+
+static inline void *data_payload(struct data_packet *packet)
+{
+    return packet + 1;
+}
+
+#endif

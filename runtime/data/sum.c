@@ -1,0 +1,185 @@
+/* The order of additions comes from the places of the leaves in fork order and from nothing else. */
+#include "runtime/data/sum.h"
+
+#include "runtime/base/memory.h"
+
+#include <stdlib.h>
+
+size_t data_type_size(duite_type type)
+{
+    switch (type) {
+    case DUITE_BYTE:
+        return 1;
+    case DUITE_I32:
+    case DUITE_F32:
+        return 4;
+    case DUITE_I64:
+    case DUITE_F64:
+        return 8;
+    }
+    return 0;
+}
+
+/* left += right, element by element. Integers wrap around. */
+static void add(duite_type type, size_t count, void *left, const void *right)
+{
+#define ADD(T)                                                                                     \
+    do {                                                                                           \
+        T *l = left;                                                                               \
+        const T *r = right;                                                                        \
+        for (size_t i = 0; i < count; i++)                                                         \
+            l[i] += r[i];                                                                          \
+    } while (0)
+    switch (type) {
+    case DUITE_I32:
+        ADD(uint32_t);
+        break;
+    case DUITE_I64:
+        ADD(uint64_t);
+        break;
+    case DUITE_F32:
+        ADD(float);
+        break;
+    case DUITE_F64:
+        ADD(double);
+        break;
+    case DUITE_BYTE:
+        break;
+    }
+#undef ADD
+}
+
+static size_t words(int n_ranks)
+{
+    return ((size_t)n_ranks + 63) / 64;
+}
+
+struct data_sum *data_sum_new(int n_ranks)
+{
+    struct data_sum *sum = base_alloc_zero(sizeof *sum + words(n_ranks) * sizeof(uint64_t));
+    if (!sum)
+        return NULL;
+    atomic_init(&sum->pending, 1);
+    atomic_init(&sum->arrived, NULL);
+    return sum;
+}
+
+static void free_pieces(struct data_piece *piece)
+{
+    while (piece) {
+        struct data_piece *next = piece->next;
+        base_free(piece->packet);
+        base_free(piece);
+        piece = next;
+    }
+}
+
+void data_sum_free(struct data_sum *sum)
+{
+    free_pieces(sum->pieces);
+    free_pieces(atomic_load_explicit(&sum->arrived, memory_order_acquire));
+    base_free(sum);
+}
+
+void data_sum_sender(struct data_sum *sum, int rank)
+{
+    uint64_t *word = &sum->senders_mask[rank / 64], bit = UINT64_C(1) << (rank % 64);
+    sum->senders += !(*word & bit);
+    *word |= bit;
+}
+
+struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first)
+{
+    struct data_piece *leaf = base_alloc_zero(sizeof *leaf);
+    if (!leaf)
+        return NULL;
+    leaf->first = first;
+    leaf->next = sum->pieces;
+    sum->pieces = leaf;
+    atomic_fetch_add_explicit(&sum->pending, 1, memory_order_relaxed);
+    return leaf;
+}
+
+void data_sum_arrive(struct data_sum *sum, struct data_piece *piece)
+{
+    struct data_piece *first = atomic_load_explicit(&sum->arrived, memory_order_relaxed);
+    do
+        piece->next = first;
+    while (!atomic_compare_exchange_weak_explicit(&sum->arrived, &first, piece,
+                                                  memory_order_release, memory_order_relaxed));
+}
+
+struct data_waiter *data_sum_release(struct data_sum *sum)
+{
+    if (atomic_fetch_sub_explicit(&sum->pending, 1, memory_order_acq_rel) != 1)
+        return NULL;
+    return sum->closer;
+}
+
+static int by_first(const void *a, const void *b)
+{
+    const struct data_piece *l = *(struct data_piece *const *)a;
+    const struct data_piece *r = *(struct data_piece *const *)b;
+    return (l->first > r->first) - (l->first < r->first);
+}
+
+/* The two halves of one complete subtree? */
+static bool siblings(const struct data_piece *l, const struct data_piece *r)
+{
+    uint64_t half = UINT64_C(1) << l->level;
+    return l->level == r->level && l->first + half == r->first && l->first % (2 * half) == 0;
+}
+
+/* All pieces, local and arrived, in one array by `first`; NULL without memory. */
+static struct data_piece **collect(struct data_sum *sum, size_t *n)
+{
+    struct data_piece *lists[2] = {
+        sum->pieces, atomic_load_explicit(&sum->arrived, memory_order_acquire)};
+    size_t total = 0;
+    for (int i = 0; i < 2; i++)
+        for (const struct data_piece *p = lists[i]; p; p = p->next)
+            total++;
+    struct data_piece **all = base_alloc(total * sizeof(struct data_piece *));
+    *n = 0;
+    for (int i = 0; all && i < 2; i++)
+        for (struct data_piece *p = lists[i]; p; p = p->next)
+            all[(*n)++] = p;
+    if (all)
+        qsort(all, *n, sizeof all[0], by_first);
+    return all;
+}
+
+const struct data_failure *data_sum_reduce(struct data_sum *sum, duite_type type, size_t count,
+                                           struct data_piece ***out, size_t *n, int *code)
+{
+    size_t total;
+    struct data_piece **all = collect(sum, &total);
+    *out = all;
+    *n = 0;
+    *code = all ? DUITE_OK : DUITE_E_MEMORY;
+    if (!all)
+        return NULL;
+    const struct data_failure *failure = NULL;
+    for (size_t i = 0; i < total; i++)
+        failure = data_first(failure, all[i]->failure);
+    if (failure)
+        return failure;
+    size_t top = 0;
+    for (size_t i = 0; i < total; i++) {
+        all[top++] = all[i];
+        for (; top > 1 && siblings(all[top - 2], all[top - 1]); top--) {
+            add(type, count, all[top - 2]->value, all[top - 1]->value);
+            all[top - 2]->level++;
+        }
+    }
+    *n = top;
+    return NULL;
+}
+
+void data_sum_finish(struct data_piece **pieces, size_t n, duite_type type, size_t count,
+                     void *value)
+{
+    for (size_t i = n - 1; i > 0; i--)
+        add(type, count, pieces[i - 1]->value, pieces[i]->value);
+    add(type, count, value, pieces[0]->value);
+}

@@ -1,0 +1,54 @@
+/* The last release sees every access to the bytes: acquire and release on `holds`; a reader that did not wait sees the
+ * producer's writes through `waiters`. */
+#include "runtime/data/version.h"
+
+#include "runtime/base/memory.h"
+
+static struct data_waiter produced_mark;
+#define DATA_PRODUCED (&produced_mark)
+
+struct data_version *data_version_new(void)
+{
+    struct data_version *version = base_alloc(sizeof *version);
+    if (!version)
+        return NULL;
+    atomic_init(&version->waiters, NULL);
+    atomic_init(&version->holds, 2);
+    version->heir = NULL;
+    version->packet = NULL;
+    version->failure = NULL;
+    return version;
+}
+
+bool data_version_await(struct data_version *version, struct data_waiter *waiter)
+{
+    struct data_waiter *first = atomic_load_explicit(&version->waiters, memory_order_acquire);
+    do {
+        if (first == DATA_PRODUCED)
+            return false;
+        waiter->next = first;
+    } while (!atomic_compare_exchange_weak_explicit(
+        &version->waiters, &first, waiter, memory_order_acq_rel, memory_order_acquire));
+    return true;
+}
+
+struct data_waiter *data_version_produced(struct data_version *version)
+{
+    return atomic_exchange_explicit(&version->waiters, DATA_PRODUCED, memory_order_acq_rel);
+}
+
+bool data_version_is_produced(struct data_version *version)
+{
+    return atomic_load_explicit(&version->waiters, memory_order_acquire) == DATA_PRODUCED;
+}
+
+struct data_waiter *data_version_release(struct data_version *version)
+{
+    if (atomic_fetch_sub_explicit(&version->holds, 1, memory_order_acq_rel) != 1)
+        return NULL;
+    if (version->heir)
+        return version->heir;
+    base_free(version->packet);
+    base_free(version);
+    return NULL;
+}

@@ -1,0 +1,177 @@
+/* Dependences: a task waits through its accesses for versions, and is ready when `pending`, which also counts a hold of the
+ * fork itself, comes to 0. Whoever takes the last one hands the task on. */
+#include "runtime/graph/internal.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+static size_t align16(size_t bytes)
+{
+    return (bytes + 15) / 16 * 16;
+}
+
+struct graph_task *graph_task_new(struct graph *graph, enum graph_kind kind, size_t n, size_t extra)
+{
+    struct graph_task *task;
+    size_t access = align16(sizeof *task + n * sizeof task->access[0]);
+    size_t param = align16(n * sizeof task->param[0]);
+    task = base_alloc(access + param + extra);
+    if (!task) {
+        base_no_memory("a task");
+        graph_break(graph);
+        return NULL;
+    }
+    atomic_init(&task->pending, (uint32_t)n + 1);
+    task->n = (uint32_t)n;
+    task->next = NULL;
+    task->kind = kind;
+    task->kernel = UINT32_MAX;
+    task->number = graph->forks;
+    task->param = (void *)((char *)task + access);
+    task->args = extra ? (char *)task + access + param : NULL;
+    for (size_t i = 0; i < n; i++)
+        task->access[i] = (struct graph_access){.waiter.task = task};
+    atomic_fetch_add_explicit(&graph->unfinished, 1, memory_order_relaxed);
+    return task;
+}
+
+static void take(struct graph *graph, void *worker, struct graph_task *task, uint32_t taken)
+{
+    if (atomic_fetch_sub_explicit(&task->pending, taken, memory_order_acq_rel) == taken)
+        graph->hooks.ready(graph->hooks.context, worker, task);
+}
+
+void graph_settled(struct graph *graph, void *worker, struct graph_task *task, uint32_t done)
+{
+    take(graph, worker, task, done + 1);
+}
+
+void graph_wake(struct graph *graph, void *worker, struct data_waiter *waiter)
+{
+    if (waiter)
+        take(graph, worker, waiter->task, 1);
+}
+
+void graph_release(struct graph *graph, void *worker, struct data_version *version)
+{
+    graph_wake(graph, worker, data_version_release(version));
+}
+
+void graph_publish(struct graph *graph, void *worker, struct data_version *version)
+{
+    struct data_waiter *waiter = data_version_produced(version);
+    while (waiter) {
+        struct data_waiter *next = waiter->next; /* the task may run and be freed once woken */
+        graph_wake(graph, worker, waiter);
+        waiter = next;
+    }
+    graph_release(graph, worker, version);
+}
+
+void graph_read(struct graph_task *task, size_t i, struct data_version *version, uint32_t *done)
+{
+    struct graph_access *access = &task->access[i];
+    data_version_hold(version);
+    access->in = version;
+    *done += !data_version_await(version, &access->waiter);
+}
+
+int graph_overwrite(struct graph *graph, struct graph_task *task, size_t i,
+                    struct data_object *object, struct data_version *version, uint32_t *done)
+{
+    struct graph_access *access = &task->access[i];
+    access->out = data_version_new();
+    if (!access->out) {
+        base_no_memory("a version");
+        return graph_break(graph);
+    }
+    access->in = version;
+    object->current = access->out;
+    if (version)
+        version->heir = &access->waiter;
+    *done += !version || data_version_release(version) != NULL;
+    return DUITE_OK;
+}
+
+struct data_version *graph_local(struct graph *graph, struct data_object *object, bool bytes)
+{
+    if (object->current)
+        return object->current;
+    struct data_version *version = data_version_new();
+    if (version && bytes)
+        version->packet = data_packet_new(object->bytes, true);
+    if (!version || (bytes && !version->packet)) {
+        base_free(version);
+        base_no_memory("an object");
+        graph_break(graph);
+        return NULL;
+    }
+    data_version_produced(version);
+    data_version_release(version); /* nobody produced these zeros: the object alone holds them */
+    return object->current = version;
+}
+
+static int send_copy(struct graph *graph, void *worker, struct data_object *object, int to)
+{
+    struct data_version *version = graph_local(graph, object, true);
+    struct graph_task *task =
+        version ? graph_task_new(graph, GRAPH_SEND, 1, sizeof *task->send) : NULL;
+    if (!task)
+        return DUITE_E_MEMORY;
+    *task->send = (struct graph_send){.key = graph_key(graph, object), .to = to};
+    uint32_t done = 0;
+    task->access[0].mode = DUITE_R;
+    graph_read(task, 0, version, &done);
+    graph_settled(graph, worker, task, done);
+    return DUITE_OK;
+}
+
+static int await_copy(struct graph *graph, void *worker, struct data_object *object)
+{
+    struct data_version *version = data_version_new();
+    if (!version) {
+        base_no_memory("a version");
+        return graph_break(graph);
+    }
+    object->current = version;
+    int code = graph->hooks.expect(graph->hooks.context, worker, graph_key(graph, object), version,
+                                   NULL, 1);
+    return code ? graph_break(graph) : DUITE_OK;
+}
+
+int graph_fetch(struct graph *graph, void *worker, struct data_object *object, int to)
+{
+    if (data_object_has_copy(&graph->table, object, to))
+        return DUITE_OK;
+    data_object_add_copy(&graph->table, object, to);
+    if (graph->rank == to)
+        return await_copy(graph, worker, object);
+    if (graph->rank == object->holder)
+        return send_copy(graph, worker, object, to);
+    return DUITE_OK;
+}
+
+void graph_forget(struct graph *graph, void *worker, struct data_object *object)
+{
+    if (!object->current)
+        return;
+    graph_release(graph, worker, object->current);
+    object->current = NULL;
+}
+
+struct data_packet *graph_send_packet(struct graph_task *send, bool *own)
+{
+    const struct data_version *version = send->access[0].in;
+    *own = version->failure != NULL;
+    if (*own)
+        return graph_poison_packet(send->send->key, version->failure);
+    /* The same bytes may be on their way to another rank already: then the header says just this. */
+    struct data_packet *packet = version->packet;
+    struct data_key key = send->send->key;
+    if (packet->kind != DATA_VALUE || packet->key.slot != key.slot ||
+        packet->key.generation != key.generation || packet->key.number != key.number) {
+        packet->kind = DATA_VALUE;
+        packet->key = key;
+    }
+    return packet;
+}

@@ -1,0 +1,141 @@
+/* The life of the graph itself, its kernels, and the failures of tasks, which are kept until stop so that poison can point
+ * at them. */
+#include "runtime/graph/internal.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct graph_failure {
+    struct graph_failure *next;
+    struct data_failure failure;
+};
+
+static int check_kernel(const duite_kernel *kernel, uint32_t index, uint32_t *n_fixed)
+{
+    if (!kernel->name || !kernel->name[0])
+        return base_error(DUITE_E_KERNEL, "kernel %u of the list has no name", index);
+    if (!kernel->body)
+        return base_error(DUITE_E_KERNEL, "kernel %s has no body", kernel->name);
+    *n_fixed = 0;
+    for (uint32_t i = 0; i < DUITE_MAX_ACCESS; i++) {
+        duite_mode mode = kernel->access[i];
+        if ((int)mode < DUITE_NONE || mode > DUITE_CW)
+            return base_error(DUITE_E_KERNEL, "kernel %s: parameter %u has no such mode: %d",
+                              kernel->name, i, (int)mode);
+        if (mode != DUITE_NONE && i != *n_fixed)
+            return base_error(DUITE_E_KERNEL, "kernel %s: parameter %u has a mode after DUITE_NONE",
+                              kernel->name, i);
+        *n_fixed += mode != DUITE_NONE;
+    }
+    if ((int)kernel->rest < DUITE_NONE || kernel->rest > DUITE_CW)
+        return base_error(DUITE_E_KERNEL, "kernel %s: `rest` has no such mode: %d", kernel->name,
+                          (int)kernel->rest);
+    return DUITE_OK;
+}
+
+static int check_unique(const duite_kernel *const *kernels, uint32_t index)
+{
+    for (uint32_t i = 0; i < index; i++)
+        if (!strcmp(kernels[i]->name, kernels[index]->name))
+            return base_error(DUITE_E_KERNEL, "two kernels of the list have the name %s",
+                              kernels[i]->name);
+    return DUITE_OK;
+}
+
+static int take_kernels(struct graph *graph, const duite_kernel *const *kernels)
+{
+    while (kernels[graph->n_kernels])
+        graph->n_kernels++;
+    size_t n = graph->n_kernels;
+    graph->kernels = base_alloc(n * sizeof graph->kernels[0]);
+    graph->n_fixed = base_alloc(n * sizeof *graph->n_fixed);
+    if (!graph->kernels || !graph->n_fixed)
+        return base_no_memory("the list of kernels");
+    memcpy(graph->kernels, kernels, n * sizeof graph->kernels[0]);
+    for (uint32_t i = 0; i < n; i++) {
+        int code = check_kernel(kernels[i], i, &graph->n_fixed[i]);
+        if (!code)
+            code = check_unique(kernels, i);
+        if (code)
+            return code;
+    }
+    return DUITE_OK;
+}
+
+int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels,
+                const struct graph_hooks *hooks)
+{
+    memset(graph, 0, sizeof *graph);
+    graph->rank = rank;
+    graph->n_ranks = n_ranks;
+    graph->hooks = *hooks;
+    atomic_init(&graph->unfinished, 0);
+    pthread_mutex_init(&graph->lock, NULL); /* cannot fail with default attributes */
+    int code = data_table_start(&graph->table, n_ranks);
+    return code ? code : take_kernels(graph, kernels);
+}
+
+void graph_stop(struct graph *graph)
+{
+    for (struct graph_failure *node = graph->failures, *next; node; node = next) {
+        next = node->next;
+        base_free(node);
+    }
+    base_free(graph->n_fixed);
+    base_free(graph->kernels);
+    data_table_stop(&graph->table);
+    pthread_mutex_destroy(&graph->lock);
+}
+
+const struct data_failure *graph_fail(struct graph *graph, const struct data_failure *failure,
+                                      bool report)
+{
+    static const struct data_failure unrecorded = {
+        .code = DUITE_E_MEMORY, .text = "and there was no memory to record which task failed"};
+    struct graph_failure *node = base_alloc(sizeof *node);
+    if (node)
+        node->failure = *failure;
+    const struct data_failure *kept = node ? &node->failure : &unrecorded;
+    pthread_mutex_lock(&graph->lock);
+    if (node) {
+        node->next = graph->failures;
+        graph->failures = node;
+    }
+    if (report)
+        graph->first_failure = data_first(graph->first_failure, kept);
+    pthread_mutex_unlock(&graph->lock);
+    return kept;
+}
+
+const struct data_failure *graph_fail_memory(struct graph *graph, const struct graph_task *task)
+{
+    struct data_failure failure = {.code = DUITE_E_MEMORY,
+                                   .rank = graph->rank,
+                                   .number = task->number,
+                                   .kernel = task->kernel,
+                                   .text = "no memory for what it writes"};
+    return graph_fail(graph, &failure, true);
+}
+
+struct data_packet *graph_poison_packet(struct data_key key, const struct data_failure *failure)
+{
+    struct data_packet *packet = data_packet_new(sizeof *failure, false);
+    if (!packet)
+        return NULL;
+    packet->key = key;
+    packet->kind = DATA_POISON;
+    memcpy(data_payload(packet), failure, sizeof *failure);
+    return packet;
+}
+
+int graph_failure_error(const struct graph *graph, const struct data_failure *failure)
+{
+    const char *kernel =
+        failure->kernel < graph->n_kernels ? graph->kernels[failure->kernel]->name : "of duite";
+    return base_error(failure->code, "task %llu (kernel %s) failed on rank %d with code %d%s%s",
+                      (unsigned long long)failure->number, kernel, failure->rank, failure->code,
+                      failure->text[0] ? ": " : "", failure->text);
+}

@@ -1,0 +1,151 @@
+#ifndef DUITE_GRAPH_GRAPH_H
+#define DUITE_GRAPH_GRAPH_H
+
+#include "runtime/data/object.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+/* Tasks and what they wait for, on one rank.
+ *
+ * The main thread forks: it derives from the accesses, in fork order, which rank runs a task, which versions it reads
+ * and makes here, and which of them must be sent or awaited. Workers run what is ready and publish what it wrote. Nothing but
+ * versions and sums joins the two sides. */
+
+enum graph_kind {
+    GRAPH_BODY,    /* a task of the program */
+    GRAPH_COMBINE, /* adds the contributions to an object */
+    GRAPH_PIECES,  /* sends this rank's contributions to where they are added */
+    GRAPH_SEND,    /* sends a version to another rank */
+    GRAPH_COPY     /* duite_get: copies a version to the main program */
+};
+
+/* One parameter of a task. */
+struct graph_access {
+    struct data_waiter waiter; /* waits for `in`, as a reader or as its heir */
+    duite_mode mode;
+    struct data_version *in;  /* what is read or overwritten; NULL: a w without bytes to reuse */
+    struct data_version *out; /* what is written */
+    struct data_sum *sum;     /* cw: what is contributed to */
+    struct data_piece *leaf;  /* cw: this task's part of it */
+    size_t bytes;
+};
+
+struct graph_task {
+    _Atomic uint32_t pending; /* accesses that wait, and 1 while it is being forked */
+    uint32_t n;
+    struct graph_task *next; /* a link for whoever holds the task: queues, lists */
+    enum graph_kind kind;
+    uint32_t kernel; /* index in the list given at start */
+    uint64_t number; /* in fork order */
+    union {
+        void *args;              /* BODY: its copy of the arguments */
+        struct graph_sum *sum;   /* COMBINE, PIECES */
+        struct graph_send *send; /* SEND */
+        struct graph_copy *copy; /* COPY */
+    };
+    duite_param *param; /* n */
+    struct graph_access access[];
+};
+
+/* COMBINE and PIECES: the contributions to close. */
+struct graph_sum {
+    struct data_waiter waiter; /* waits for them all */
+    struct data_sum *sum;
+    duite_type type;
+    size_t count;
+    struct data_key key; /* the version they make */
+    int to;              /* PIECES: the rank that adds */
+};
+
+/* SEND: a version and where it goes. */
+struct graph_send {
+    struct data_key key;
+    int to;
+};
+
+/* COPY: where a value goes. `done` is set last. */
+struct graph_copy {
+    void *values;
+    size_t bytes;
+    const struct data_failure *failure;
+    _Atomic int done;
+};
+
+/* What lies above: handed over at start. `worker` is whoever calls, passed through untouched. */
+struct graph_hooks {
+    void *context;
+    /* A task may run; a SEND may be posted, and ends with graph_finish when its bytes are gone. */
+    void (*ready)(void *context, void *worker, struct graph_task *task);
+    /* Something the main program may be waiting for happened. */
+    void (*notify)(void *context);
+    /* Sends a packet of this rank's own (pieces, poison) and frees it. */
+    void (*send_packet)(void *context, void *worker, struct data_packet *packet, int to);
+    /* The version or the pieces of that key come from elsewhere: call graph_arrived or graph_pieces_arrived with each
+     * packet. 0, or DUITE_E_MEMORY. */
+    int (*expect)(void *context, void *worker, struct data_key key, struct data_version *version,
+                  struct data_sum *sum, uint32_t packets);
+};
+
+struct graph {
+    int rank, n_ranks;
+    struct data_table table;
+    const duite_kernel **kernels;
+    uint32_t *n_fixed; /* parameters in each kernel's `access` */
+    uint32_t n_kernels;
+    struct graph_hooks hooks;
+    uint64_t forks;              /* so far, on all ranks the same */
+    uint64_t fingerprint;        /* of the forks since the last wait */
+    int broken;                  /* memory ran out in the middle of a fork: the code of every later call */
+    _Atomic uint64_t unfinished; /* tasks of this rank */
+    pthread_mutex_t lock;        /* failures */
+    struct graph_failure *failures;
+    const struct data_failure *first_failure; /* in fork order, since the last wait */
+};
+
+/* kernels: ended by NULL, checked, the list copied. Errors: DUITE_E_KERNEL, memory. */
+int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels,
+                const struct graph_hooks *hooks);
+void graph_stop(struct graph *graph);
+
+/* ---- Main thread, collective in the sense of duite.h; the homes of all objects are settled ------------- */
+
+enum { GRAPH_ANYWHERE = -1 };
+
+int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *kernel,
+               const void *args, size_t n, const duite_object *objects);
+int graph_free(struct graph *graph, void *worker, duite_object object);
+
+/* Starts copying an object to `copy` on rank `to`, or on all ranks with GRAPH_ANYWHERE. The caller waits for copy->done on the
+ * ranks it goes to. */
+int graph_copy(struct graph *graph, void *worker, duite_object object, int to,
+               struct graph_copy *copy);
+
+/* ---- Any worker ---------------------------------------------------------------------------------------- */
+
+/* What the running body may say of its failure. */
+struct duite_call_private {
+    char text[sizeof((struct data_failure *)0)->text];
+};
+
+/* Runs a ready task (not a SEND), which graph_finish then ends. `call` has context, rank, worker and own set. Returns whether
+ * a body ran. */
+bool graph_run(struct graph *graph, void *worker, struct graph_task *task, duite_call *call);
+
+/* The task is over: publishes what it wrote, makes its successors ready, frees it. */
+void graph_finish(struct graph *graph, void *worker, struct graph_task *task);
+
+/* A packet came for an expected version or sum; the callee owns it. */
+void graph_arrived(struct graph *graph, void *worker, struct data_version *version,
+                   struct data_packet *packet);
+void graph_pieces_arrived(struct graph *graph, void *worker, struct data_sum *sum,
+                          struct data_packet *packet);
+
+/* The bytes of a ready SEND, under its key: the version itself, or a poison packet that the caller frees once sent
+ * (*own = true). NULL without memory. */
+struct data_packet *graph_send_packet(struct graph_task *send, bool *own);
+
+/* Sets the sentence of a failure; returns its code. */
+int graph_failure_error(const struct graph *graph, const struct data_failure *failure);
+
+#endif

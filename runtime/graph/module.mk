@@ -1,0 +1,2 @@
+libduite_core_la_SOURCES += runtime/graph/depend.c runtime/graph/fork.c runtime/graph/graph.c \
+	runtime/graph/graph.h runtime/graph/internal.h runtime/graph/run.c runtime/graph/sum.c

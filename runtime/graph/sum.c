@@ -1,0 +1,195 @@
+/* Contributions: leaves run wherever their tasks do, without waiting for one another or for the object; the first other access
+ * closes the run, and then the leaves are added where the object's value is (its holder). */
+#include "runtime/graph/internal.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <string.h>
+
+/* A piece on its way: where it stands in the tree; the values follow all of these. */
+struct piece_place {
+    uint64_t first, level;
+};
+
+int graph_contribute(struct graph *graph, struct data_object *object, int at,
+                     struct graph_task *task, size_t i)
+{
+    bool adder = object->holder == graph->rank;
+    uint64_t first = object->leaves++;
+    if (!object->sum && (adder || task) && !(object->sum = data_sum_new(graph->n_ranks))) {
+        base_no_memory("contributions");
+        return graph_break(graph);
+    }
+    if (adder && !task)
+        data_sum_sender(object->sum, at);
+    if (!task)
+        return DUITE_OK;
+    struct graph_access *access = &task->access[i];
+    access->sum = object->sum;
+    access->leaf = data_sum_leaf(object->sum, first);
+    if (access->leaf)
+        return DUITE_OK;
+    base_no_memory("a contribution");
+    return graph_break(graph);
+}
+
+/* A task that waits for all contributions; pending counts them as one. */
+static struct graph_task *closer(struct graph *graph, struct data_object *object,
+                                 enum graph_kind kind, size_t n)
+{
+    struct graph_task *task = graph_task_new(graph, kind, n, sizeof *task->sum);
+    if (!task)
+        return NULL;
+    *task->sum = (struct graph_sum){.waiter.task = task,
+                                    .sum = object->sum,
+                                    .type = object->type,
+                                    .count = object->count,
+                                    .key = graph_key(graph, object),
+                                    .to = object->holder};
+    atomic_fetch_add_explicit(&task->pending, 1, memory_order_relaxed);
+    object->sum->closer = &task->sum->waiter;
+    return task;
+}
+
+static int combine_here(struct graph *graph, void *worker, struct data_object *object)
+{
+    struct data_sum *sum = object->sum;
+    struct data_version *version = graph_local(graph, object, true);
+    struct graph_task *task = version ? closer(graph, object, GRAPH_COMBINE, 1) : NULL;
+    if (!task)
+        return DUITE_E_MEMORY;
+    uint32_t done = 0;
+    task->access[0].mode = DUITE_RW;
+    int code = graph_overwrite(graph, task, 0, object, version, &done);
+    if (!code && sum->senders) {
+        atomic_fetch_add_explicit(&sum->pending, sum->senders, memory_order_relaxed);
+        code = graph->hooks.expect(graph->hooks.context, worker, task->sum->key, NULL, sum,
+                                   sum->senders);
+    }
+    if (code)
+        return graph_break(graph);
+    graph_wake(graph, worker, data_sum_release(sum));
+    graph_settled(graph, worker, task, done);
+    return DUITE_OK;
+}
+
+static int send_pieces(struct graph *graph, void *worker, struct data_object *object)
+{
+    struct data_sum *sum = object->sum;
+    struct graph_task *task = closer(graph, object, GRAPH_PIECES, 0);
+    if (!task)
+        return DUITE_E_MEMORY;
+    graph_wake(graph, worker, data_sum_release(sum));
+    graph_settled(graph, worker, task, 0);
+    return DUITE_OK;
+}
+
+int graph_close(struct graph *graph, void *worker, struct data_object *object)
+{
+    int code = DUITE_OK;
+    object->number++;
+    if (object->holder == graph->rank) {
+        code = combine_here(graph, worker, object);
+    } else {
+        if (object->sum)
+            code = send_pieces(graph, worker, object);
+        graph_forget(graph, worker, object);
+    }
+    object->leaves = 0;
+    object->sum = NULL;
+    data_object_moved(object, object->holder);
+    return code;
+}
+
+void graph_run_combine(struct graph *graph, struct graph_task *task)
+{
+    struct graph_sum *sum = task->sum;
+    struct data_version *in = task->access[0].in, *out = task->access[0].out;
+    struct data_piece **pieces;
+    size_t n;
+    int code;
+    const struct data_failure *failure =
+        data_sum_reduce(sum->sum, sum->type, sum->count, &pieces, &n, &code);
+    out->packet = in->packet;
+    out->failure = data_first(in->failure, failure);
+    base_free(in);
+    if (code)
+        out->failure = graph_fail_memory(graph, task);
+    if (!out->failure)
+        data_sum_finish(pieces, n, sum->type, sum->count, data_payload(out->packet));
+    base_free(pieces);
+    data_sum_free(sum->sum);
+}
+
+static struct data_packet *pack(const struct graph_sum *sum, struct data_piece *const *pieces,
+                                size_t n)
+{
+    size_t bytes = sum->count * data_type_size(sum->type);
+    struct data_packet *packet = data_packet_new(n * (sizeof(struct piece_place) + bytes), false);
+    if (!packet)
+        return NULL;
+    packet->key = sum->key;
+    packet->kind = DATA_PIECES;
+    packet->pieces = (uint32_t)n;
+    struct piece_place *places = data_payload(packet);
+    char *values = (char *)(places + n);
+    for (size_t i = 0; i < n; i++) {
+        places[i] = (struct piece_place){pieces[i]->first, pieces[i]->level};
+        memcpy(values + i * bytes, pieces[i]->value, bytes);
+    }
+    return packet;
+}
+
+void graph_run_pieces(struct graph *graph, void *worker, struct graph_task *task)
+{
+    struct graph_sum *sum = task->sum;
+    struct data_piece **pieces;
+    struct data_packet *packet = NULL;
+    size_t n;
+    int code;
+    const struct data_failure *failure =
+        data_sum_reduce(sum->sum, sum->type, sum->count, &pieces, &n, &code);
+    if (!code && !failure)
+        packet = pack(sum, pieces, n);
+    if (!packet)
+        packet = graph_poison_packet(sum->key, failure ? failure : graph_fail_memory(graph, task));
+    base_free(pieces);
+    data_sum_free(sum->sum);
+    graph->hooks.send_packet(graph->hooks.context, worker, packet, sum->to);
+}
+
+static void add_piece(struct graph *graph, struct data_sum *sum, struct data_piece piece)
+{
+    struct data_piece *node = base_alloc(sizeof *node);
+    if (!node) { /* the sum must not be taken for complete: poison what is there */
+        struct data_failure failure = {
+            .code = DUITE_E_MEMORY, .rank = graph->rank, .kernel = UINT32_MAX};
+        if (sum->pieces)
+            sum->pieces->failure = graph_fail(graph, &failure, true);
+        return;
+    }
+    *node = piece;
+    data_sum_arrive(sum, node);
+}
+
+void graph_pieces_arrived(struct graph *graph, void *worker, struct data_sum *sum,
+                          struct data_packet *packet)
+{
+    if (packet->kind == DATA_POISON) {
+        const struct data_failure *failure = graph_fail(graph, data_payload(packet), false);
+        add_piece(graph, sum, (struct data_piece){.failure = failure});
+        base_free(packet);
+    } else {
+        struct piece_place *places = data_payload(packet);
+        char *values = (char *)(places + packet->pieces);
+        size_t bytes = packet->bytes / packet->pieces - sizeof *places;
+        for (uint32_t i = 0; i < packet->pieces; i++)
+            add_piece(graph, sum,
+                      (struct data_piece){.first = places[i].first,
+                                          .level = (uint32_t)places[i].level,
+                                          .packet = i ? NULL : packet,
+                                          .value = values + i * bytes});
+    }
+    graph_wake(graph, worker, data_sum_release(sum));
+}

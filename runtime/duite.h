@@ -3,20 +3,23 @@
 
 /* duite: tasks that declare what they read and write, on threads and MPI ranks.
  *
- * A program makes shared objects, lists its kernels (a body and the access modes of its parameters) and forks
- * tasks. The runtime derives the dependences from the accesses in fork order, runs tasks on its workers as they
- * become ready, and moves objects between ranks as the accesses need. The result is the one of running the
- * tasks one after the other in fork order, to the last bit, for any number of ranks and threads.
+ * A program makes shared objects, lists its kernels (a body and the access modes of its parameters)
+ * and forks tasks. The runtime derives the dependences from the accesses in fork order, runs tasks
+ * on its workers as they become ready, and moves objects between ranks as the accesses need. The
+ * result is the one of running the tasks one after the other in fork order, to the last bit, for
+ * any number of ranks and threads.
  *
- * Every rank runs the same program and forks the same tasks in the same order; a task runs on one rank.
+ * Every rank runs the same program and forks the same tasks in the same order; a task runs on one
+ * rank.
  *
- * Calls marked "collective" are made by all ranks in the same order; "local" calls concern this rank only.
- * Forking and everything that changes objects is done by the main thread.
+ * Calls marked "collective" are made by all ranks in the same order; "local" calls concern this
+ * rank only. Forking and everything that changes objects is done by the main thread.
  *
- * Every call returns DUITE_OK or a code; duite_message() then has the sentence. A failed fork, new, set, hint, follow or
- * free does nothing, and the first such error is returned once more, with its sentence, by the next get, wait or stop, which
- * otherwise does its work: a program may check only these. (Calls from a body or another thread, DUITE_E_STATE, are not
- * remembered.) The library never exits or aborts. */
+ * Every call returns DUITE_OK or a code; duite_message() then has the sentence. A failed fork, new,
+ * set, hint, follow or free does nothing, and the first such error is returned once more, with its
+ * sentence, by the next get, wait or stop, which otherwise does its work: a program may check only
+ * these. (Calls from a body or another thread, DUITE_E_STATE, are not remembered.) The library
+ * never exits or aborts. */
 
 #include <mpi.h>
 #include <stddef.h>
@@ -29,19 +32,22 @@ extern "C" {
 /* Codes. Positive codes belong to the bodies of the program and are passed on as they are. */
 enum {
     DUITE_OK = 0,
-    DUITE_E_ARGUMENT = -1,  /* an argument that makes no sense: NULL, unknown type, too large */
-    DUITE_E_MEMORY = -2,    /* out of memory */
-    DUITE_E_OBJECT = -3,    /* no such object: never made, or already freed */
-    DUITE_E_KERNEL = -4,    /* a kernel that was not listed at start, or one that is malformed */
-    DUITE_E_ACCESS = -5,    /* number of objects or type does not fit the kernel; one object twice in a task */
-    DUITE_E_MPI = -6,       /* an MPI call failed, or MPI gives less thread support than SERIALIZED */
+    DUITE_E_ARGUMENT = -1, /* an argument that makes no sense: NULL, unknown type, too large */
+    DUITE_E_MEMORY = -2,   /* out of memory */
+    DUITE_E_OBJECT = -3,   /* no such object: never made, or already freed */
+    DUITE_E_KERNEL = -4,   /* a kernel that was not listed at start, or one that is malformed */
+    DUITE_E_ACCESS =
+        -5, /* number of objects or type does not fit the kernel; one object twice in a task */
+    DUITE_E_MPI = -6, /* an MPI call failed, or MPI gives less thread support than SERIALIZED */
     DUITE_E_DIFFERENT = -7, /* the ranks run different programs: other kernels, forks or options */
-    DUITE_E_STATE = -8,     /* a call that is not allowed here: from a task's body, or from another thread */
+    DUITE_E_STATE =
+        -8, /* a call that is not allowed here: from a task's body, or from another thread */
     DUITE_E_NOT_FREED = -9, /* stop found objects that were not freed */
     DUITE_E_SYSTEM = -10    /* threads, topology: the operating system refused */
 };
 
-/* The sentence of the last call of this thread that failed; never NULL. Valid until the next failure. Local. */
+/* The sentence of the last call of this thread that failed; never NULL. Valid until the next
+ * failure. Local. */
 const char *duite_message(void);
 
 /* What a code means, in a few words; for codes of bodies "error of the program". Local. */
@@ -72,10 +78,12 @@ typedef enum duite_mode {
     DUITE_R,        /* reads */
     DUITE_W,        /* overwrites the whole object; finds unspecified bytes */
     DUITE_RW,       /* reads and writes */
-    DUITE_CW        /* accumulates: finds zeros, and what it leaves is added to the object (see duite_fork) */
+    DUITE_CW /* accumulates: finds zeros, and what it leaves is added to the object (see duite_fork)
+              */
 } duite_mode;
 
-/* ---- Kernels ---------------------------------------------------------------------------------------- */
+/* ---- Kernels
+ * ---------------------------------------------------------------------------------------- */
 
 typedef struct duite_param {
     void *data;      /* 64-byte aligned; const under DUITE_R; dies with the body */
@@ -85,8 +93,8 @@ typedef struct duite_param {
 
 /* What a body is given. */
 typedef struct duite_call {
-    const void *args;         /* the copy of the arguments made at the fork; NULL if the kernel has none */
-    void *context;            /* as given at start */
+    const void *args; /* the copy of the arguments made at the fork; NULL if the kernel has none */
+    void *context;    /* as given at start */
     const duite_param *param; /* n_params of them, in the order of the fork */
     size_t n_params;
     int rank;        /* where the task runs */
@@ -94,34 +102,39 @@ typedef struct duite_call {
     struct duite_call_private *own;
 } duite_call;
 
-/* Parameter i of a call as elements of a C type: for reading, and (not under DUITE_R) for writing. */
-#define duite_in(call, i, type) ((const type *)(call)->param[i].data)
+/* Parameter i of a call as elements of a C type: for reading, and (not under DUITE_R) for writing.
+ */
+#define duite_in(call, i, type)  ((const type *)(call)->param[i].data)
 #define duite_out(call, i, type) ((type *)(call)->param[i].data)
-#define duite_count(call, i) ((call)->param[i].count)
+#define duite_count(call, i)     ((call)->param[i].count)
 
-/* A task's body. Returns 0, or a code of the program (not 0, better positive): then everything the task writes is poisoned;
- * tasks that read it do not run and poison what they write in turn, until a w, which does not read, overwrites it. The
- * next duite_wait, and every duite_get of something poisoned, returns the code on all ranks. A contribution that failed
- * poisons the object; contributing to a poisoned object is possible and does not heal it.
- * Bodies may call no duite_ function but duite_fail. */
+/* A task's body. Returns 0, or a code of the program (not 0, better positive): then everything the
+ * task writes is poisoned; tasks that read it do not run and poison what they write in turn, until
+ * a w, which does not read, overwrites it. The next duite_wait, and every duite_get of something
+ * poisoned, returns the code on all ranks. A contribution that failed poisons the object;
+ * contributing to a poisoned object is possible and does not heal it. Bodies may call no duite_
+ * function but duite_fail. */
 typedef int duite_body(const duite_call *call);
 
-/* Gives the failure of a body its sentence (printf form, at most 200 bytes are kept). Returns code. */
+/* Gives the failure of a body its sentence (printf form, at most 200 bytes are kept). Returns code.
+ */
 int duite_fail(const duite_call *call, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 enum { DUITE_MAX_ACCESS = 16 };
 
-/* A kernel: constant, alive from start to stop, listed at start in the same order on every rank. Names are unique. */
+/* A kernel: constant, alive from start to stop, listed at start in the same order on every rank.
+ * Names are unique. */
 typedef struct duite_kernel {
     const char *name;
     duite_body *body;
     duite_mode access[DUITE_MAX_ACCESS]; /* modes of the first parameters, ended by DUITE_NONE */
-    duite_mode rest;                     /* mode of any number of further ones; DUITE_NONE: none allowed */
-    size_t args_size;                    /* bytes of arguments, copied at the fork; no pointers inside */
+    duite_mode rest;  /* mode of any number of further ones; DUITE_NONE: none allowed */
+    size_t args_size; /* bytes of arguments, copied at the fork; no pointers inside */
 } duite_kernel;
 
-/* ---- Start and stop --------------------------------------------------------------------------------- */
+/* ---- Start and stop
+ * --------------------------------------------------------------------------------- */
 
 struct duite_scheduler; /* duite_policy.h */
 struct duite_mapping;
@@ -130,28 +143,31 @@ typedef struct duite_options {
     MPI_Comm comm;                      /* who takes part; duplicated. Default MPI_COMM_WORLD */
     const duite_kernel *const *kernels; /* ended by NULL; the list is copied, the kernels are not */
     void *context;                      /* given to every body; may differ between ranks */
-    unsigned threads;                   /* workers of this rank, the main thread among them; 0: its share of the cores */
+    unsigned
+        threads; /* workers of this rank, the main thread among them; 0: its share of the cores */
     const struct duite_scheduler *scheduler; /* default: steal */
     const struct duite_mapping *mapping;     /* default: metis */
-    uint64_t seed;                      /* of everything random in policies. Default 1 */
-    double spin_seconds;                /* how long an idle worker spins before it sleeps. Default 100e-6 */
-    int bind;                           /* bind workers to cores where the rank owns enough. Default 1 */
+    uint64_t seed;                           /* of everything random in policies. Default 1 */
+    double spin_seconds; /* how long an idle worker spins before it sleeps. Default 100e-6 */
+    int bind;            /* bind workers to cores where the rank owns enough. Default 1 */
 } duite_options;
 
 duite_options duite_options_default(void);
 
-/* The built-in policies by name; NULL if there is none of that name. Names: ended by NULL. Local. */
+/* The built-in policies by name; NULL if there is none of that name. Names: ended by NULL. Local.
+ */
 const struct duite_scheduler *duite_scheduler_find(const char *name);
 const struct duite_mapping *duite_mapping_find(const char *name);
 const char *const *duite_scheduler_names(void);
 const char *const *duite_mapping_names(void);
 
-/* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. Collective over comm.
- * On failure *rt is NULL on all ranks. */
+/* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. Collective
+ * over comm. On failure *rt is NULL on all ranks. */
 int duite_start(duite **rt, const duite_options *options);
 
-/* Waits for all tasks, ends the workers and frees everything; finalises MPI if start initialised it. *rt becomes
- * NULL whatever is returned. Returns the error that a wait would, else DUITE_E_NOT_FREED if objects are left. Collective. */
+/* Waits for all tasks, ends the workers and frees everything; start and stop may repeat (MPI, if
+ * start initialised it, is finalised when the process ends). *rt becomes NULL whatever is returned.
+ * Returns the error that a wait would, else DUITE_E_NOT_FREED if objects are left. Collective. */
 int duite_stop(duite **rt);
 
 /* This rank, the number of ranks, the workers of this rank. Local. */
@@ -159,7 +175,12 @@ int duite_rank(const duite *rt);
 int duite_ranks(const duite *rt);
 unsigned duite_threads(const duite *rt);
 
-/* ---- Shared objects --------------------------------------------------------------------------------- */
+/* 1 if the workers of this host outnumber the cores they may use: then they neither spin nor bind.
+ * Local. */
+int duite_oversubscribed(const duite *rt);
+
+/* ---- Shared objects
+ * --------------------------------------------------------------------------------- */
 
 /* Makes an object of count elements, all zero. Collective; no communication. */
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
@@ -167,40 +188,43 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
 /* Frees an object after the last earlier access; `object` names nothing afterwards. Collective. */
 int duite_free(duite *rt, duite_object object);
 
-/* Overwrites the object, in fork order, with a copy of `values` (count elements, the same on every rank), or with zeros if
- * `values` is NULL. Collective; returns at once. */
+/* Overwrites the object, in fork order, with a copy of `values` (count elements, the same on every
+ * rank), or with zeros if `values` is NULL. Collective; returns at once. */
 int duite_set(duite *rt, duite_object object, const void *values);
 
-/* Copies the object, as the tasks forked so far leave it, into `values` (count elements) on every rank. Returns when the bytes
- * are there; other tasks go on. Of a poisoned object: the code of the failure that is first in fork order among those it
- * descends from, and `values` stays as it was. Collective. */
+/* Copies the object, as the tasks forked so far leave it, into `values` (count elements) on every
+ * rank. Returns when the bytes are there; other tasks go on. Of a poisoned object: the code of the
+ * failure that is first in fork order among those it descends from, and `values` stays as it was.
+ * Collective. */
 int duite_get(duite *rt, duite_object object, void *values);
 
-/* The same on one rank only; the others ignore `values` and return DUITE_OK at once, even if the object is poisoned, so a program
- * may not branch on the result. Collective. */
+/* The same on one rank only; the others ignore `values` and return DUITE_OK at once, even if the
+ * object is poisoned, so a program may not branch on the result. Collective. */
 int duite_get_at(duite *rt, duite_object object, int rank, void *values);
 
-/* Tells mappings about the object: its share of work, and the bytes it exchanges with n neighbours, which exist already
- * (edge_weights NULL: 1 each). An edge may be told from either end; told twice it adds up. A second hint replaces the
- * weight and adds edges. Hints count before the first fork after the object was made, and change nothing later.
- * Collective. */
-int duite_hint(duite *rt, duite_object object, double weight, size_t n, const duite_object *neighbours,
-               const double *edge_weights);
+/* Tells mappings about the object: its share of work, and the bytes it exchanges with n neighbours,
+ * which exist already (edge_weights NULL: 1 each). An edge may be told from either end; told twice
+ * it adds up. A second hint replaces the weight and adds edges. Hints count before the first fork
+ * after the object was made, and change nothing later. Collective. */
+int duite_hint(duite *rt, duite_object object, double weight, size_t n,
+               const duite_object *neighbours, const double *edge_weights);
 
-/* The object gets the home of `leader` (or of its leader in turn), whatever the mapping; counts like a hint. Following in a
- * ring is DUITE_E_ARGUMENT. Collective. */
+/* The object gets the home of `leader` (or of its leader in turn), whatever the mapping; counts
+ * like a hint. Following in a ring is DUITE_E_ARGUMENT. Collective. */
 int duite_follow(duite *rt, duite_object object, duite_object leader);
 
-/* Settles the homes of all objects made so far, as the first fork does, and returns the rank that keeps this one; -1 for no such
- * object. Collective. */
+/* Settles the homes of all objects made so far, as the first fork does, and returns the rank that
+ * keeps this one; -1 for no such object. Collective. */
 int duite_home(duite *rt, duite_object object);
 
-/* ---- Tasks ------------------------------------------------------------------------------------------ */
+/* ---- Tasks
+ * ------------------------------------------------------------------------------------------ */
 
-/* Forks a task on n objects, in the order of the kernel's modes; a task names an object once. `args` points to the kernel's
- * args_size bytes (ignored if 0). It runs where its first w or rw object lives, else its first r object, else on rank 0.
- * Contributions (cw) between two other accesses of an object (by tasks, set, get or free; waits do not count) are summed
- * in fork order by a fixed tree: complete subtrees as in a binary counter, the rest folded from the right; then
+/* Forks a task on n objects, in the order of the kernel's modes; a task names an object once.
+ * `args` points to the kernel's args_size bytes (ignored if 0). It runs where its first w or rw
+ * object lives, else its first r object, else on rank 0. Contributions (cw) between two other
+ * accesses of an object (by tasks, set, get or free; waits do not count) are summed in fork order
+ * by a fixed tree: complete subtrees as in a binary counter, the rest folded from the right; then
  * the sum is added to the object: old + (A + (B + C)). Collective; returns at once. */
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects);
@@ -212,17 +236,18 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
 /* duite_fork with the objects, and a structure of arguments, written out:
  * DUITE_FORK(rt, &AXPY, DUITE_ARGS(struct axpy, .alpha = 2, .first = 7), x, y). */
 #define DUITE_ARGS(type, ...) (&(const type){__VA_ARGS__})
-#define DUITE_FORK(rt, kernel, args, ...)                                                              \
-    duite_fork(rt, kernel, args, sizeof((duite_object[]){__VA_ARGS__}) / sizeof(duite_object),         \
+#define DUITE_FORK(rt, kernel, args, ...)                                                          \
+    duite_fork(rt, kernel, args, sizeof((duite_object[]){__VA_ARGS__}) / sizeof(duite_object),     \
                (duite_object[]){__VA_ARGS__})
 
-/* Waits for all tasks forked so far, on all ranks. Returns the error of the task that is first in fork order
- * among those that failed themselves since the last wait, the same on all ranks; or DUITE_E_DIFFERENT on all ranks if they did
- * not fork the same tasks since the last wait. (A remembered error goes first; a task's then waits for the next.)
- * Collective. */
+/* Waits for all tasks forked so far, on all ranks. Returns the error of the task that is first in
+ * fork order among those that failed themselves since the last wait, the same on all ranks; or
+ * DUITE_E_DIFFERENT on all ranks if they did not fork the same tasks since the last wait. (A
+ * remembered error goes first; a task's then waits for the next.) Collective. */
 int duite_wait(duite *rt);
 
-/* ---- Counters --------------------------------------------------------------------------------------- */
+/* ---- Counters
+ * --------------------------------------------------------------------------------------- */
 
 typedef struct duite_counters {
     uint64_t tasks;    /* bodies run; not those that poison kept from running */
@@ -235,7 +260,8 @@ typedef struct duite_counters {
     double idle;       /* seconds without a task, over all workers, while the main program waited */
 } duite_counters;
 
-/* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective. */
+/* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.
+ */
 int duite_count_all(duite *rt, duite_counters *counters);
 
 #ifdef __cplusplus

@@ -1,9 +1,10 @@
 #ifndef DUITE_POLICY_H
 #define DUITE_POLICY_H
 
-/* For authors of schedulers and mappings: the tables of functions that the runtime asks. The built-in policies use
- * exactly these. A policy decides; the runtime owns queues, stealing, sleep, wake-up and messages.
- * Functions of a table take no locks, read no clock, and draw random numbers only from their own state. */
+/* For authors of schedulers and mappings: the tables of functions that the runtime asks. The
+ * built-in policies use exactly these. A policy decides; the runtime owns queues, stealing, sleep,
+ * wake-up and messages. Functions of a table take no locks, read no clock, and draw random numbers
+ * only from their own state. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -12,11 +13,12 @@
 extern "C" {
 #endif
 
-/* ---- Schedulers: which worker, which task next ------------------------------------------------------- */
+/* ---- Schedulers: which worker, which task next
+ * ------------------------------------------------------- */
 
 /* Queues: one a worker, numbered like the workers, and one that all share. */
 #define DUITE_SHARED_QUEUE 0xfffffffeu
-#define DUITE_NO_QUEUE 0xffffffffu
+#define DUITE_NO_QUEUE     0xffffffffu
 
 typedef enum duite_end { DUITE_NEWEST, DUITE_OLDEST } duite_end;
 
@@ -29,7 +31,8 @@ typedef struct duite_ready {
 typedef struct duite_scheduler {
     const char *name;
     const char *summary;
-    size_t state_size; /* bytes of private state a worker; zeroed before start; used by that worker only */
+    size_t state_size; /* bytes of private state a worker; zeroed before start; used by that worker
+                          only */
 
     /* Prepares the state of one worker. Optional. */
     void (*start)(void *state, unsigned worker, unsigned n_workers, uint64_t seed);
@@ -37,15 +40,17 @@ typedef struct duite_scheduler {
     unsigned (*place)(void *state, const duite_ready *task);
     /* From which end a worker serves its own queue and the shared one. */
     duite_end (*serve)(void *state);
-    /* The worker's queue that an idle worker steals the oldest task from at its attempt-th try in a row (0, 1, ...);
-     * DUITE_NO_QUEUE ends the round, and the worker idles for a moment. Its own queue and the shared one were found
-     * empty before attempt 0; they are always served, so that a policy cannot lose a task. */
+    /* The worker's queue that an idle worker steals the oldest task from at its attempt-th try in a
+     * row (0, 1, ...); DUITE_NO_QUEUE ends the round, and the worker idles for a moment. Its own
+     * queue and the shared one were found empty before attempt 0; they are always served, so that a
+     * policy cannot lose a task. */
     unsigned (*victim)(void *state, unsigned attempt);
     /* Whether a task that just became ready may run directly after the one that made it so. */
     int (*chain)(void *state, const duite_ready *task);
 } duite_scheduler;
 
-/* ---- Mappings: which rank keeps an object ------------------------------------------------------------ */
+/* ---- Mappings: which rank keeps an object
+ * ------------------------------------------------------------ */
 
 /* The objects to map: a graph in compressed rows, symmetric, with the program's hints. */
 typedef struct duite_object_graph {
@@ -60,12 +65,13 @@ typedef struct duite_object_graph {
 typedef struct duite_mapping {
     const char *name;
     const char *summary;
-    /* Writes home[n], each in 0 .. n_ranks - 1. Deterministic: called with the same graph on every rank.
-     * Returns 0, or a duite code. */
+    /* Writes home[n], each in 0 .. n_ranks - 1. Deterministic: called with the same graph on every
+     * rank. Returns 0, or a duite code. */
     int (*map)(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
 } duite_mapping;
 
-/* A random number and the next state (SplitMix64: Steele, Lea, Flood 2014). Any state is a good seed. */
+/* A random number and the next state (SplitMix64: Steele, Lea, Flood 2014). Any state is a good
+ * seed. */
 static inline uint64_t duite_random(uint64_t *state)
 {
     uint64_t z = (*state += 0x9e3779b97f4a7c15u);

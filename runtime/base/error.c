@@ -1,4 +1,5 @@
-/* The sentence of the last failed call, one a thread: written by the failing call, read by duite_message(). */
+/* The sentence of the last failed call, one a thread: written by the failing call, read by
+ * duite_message(). */
 #include "runtime/base/error.h"
 
 #include <stdarg.h>

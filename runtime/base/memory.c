@@ -1,4 +1,5 @@
-/* All memory of the runtime comes from here, on cache-line boundaries, so that no two allocations share a line. */
+/* All memory of the runtime comes from here, on cache-line boundaries, so that no two allocations
+ * share a line. */
 #include "runtime/base/memory.h"
 
 #include <stdint.h>

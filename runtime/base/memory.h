@@ -5,14 +5,15 @@
 
 enum { BASE_LINE = 64 }; /* bytes of a cache line: the alignment of everything allocated here */
 
-/* size bytes, aligned to a cache line; NULL if there are none. Freed by base_free from any thread. */
+/* size bytes, aligned to a cache line; NULL if there are none. Freed by base_free from any thread.
+ */
 void *base_alloc(size_t size);
 /* The same, all zero. */
 void *base_alloc_zero(size_t size);
 void base_free(void *memory);
 
-/* Makes room for `needed` elements in a growing array: doubles *capacity. Returns the array, maybe moved, or NULL
- * and leaves everything as it was. */
+/* Makes room for `needed` elements in a growing array: doubles *capacity. Returns the array, maybe
+ * moved, or NULL and leaves everything as it was. */
 void *base_grow(void *array, size_t *capacity, size_t needed, size_t element);
 
 #endif

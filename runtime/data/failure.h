@@ -3,7 +3,8 @@
 
 #include <stdint.h>
 
-/* Why a value is poisoned: the task that failed. Plain bytes: it travels between ranks in place of the value. */
+/* Why a value is poisoned: the task that failed. Plain bytes: it travels between ranks in place of
+ * the value. */
 struct data_failure {
     int32_t code;    /* of the body, or of the runtime (memory) */
     int32_t rank;    /* where the task ran */

@@ -1,5 +1,5 @@
-/* A slot's generation is odd while an object lives in it and grows by one at birth and at death, so that a stale name
- * never fits again (until 2^31 objects have lived in one slot). */
+/* A slot's generation is odd while an object lives in it and grows by one at birth and at death, so
+ * that a stale name never fits again (until 2^31 objects have lived in one slot). */
 #include "runtime/data/object.h"
 
 #include "runtime/base/error.h"
@@ -77,8 +77,9 @@ static int check_shape(duite_type type, size_t count)
     if (!count)
         return base_error(DUITE_E_ARGUMENT, "duite_new: an object has at least one element");
     if (count > DATA_MOST_BYTES / size)
-        return base_error(DUITE_E_ARGUMENT, "duite_new: %zu elements of %zu bytes are more than %zu bytes",
-                          count, size, DATA_MOST_BYTES);
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_new: %zu elements of %zu bytes are more than %zu bytes", count,
+                          size, DATA_MOST_BYTES);
     return DUITE_OK;
 }
 
@@ -125,10 +126,32 @@ struct data_object *data_object_find(struct data_table *table, duite_object name
     return NULL;
 }
 
-struct data_hint *data_hint_find(struct data_table *table, duite_object name)
+struct data_hint *data_hint_find(struct data_table *table, uint32_t slot)
 {
-    const struct data_object *object = &table->object[name.slot];
-    return object->home < 0 ? &table->unsettled[object->hint] : NULL;
+    const struct data_object *object = &table->object[slot];
+    bool settled = object->generation % 2 == 0 || object->home >= 0;
+    return settled ? NULL : &table->unsettled[object->hint];
+}
+
+uint32_t data_hint_leader(struct data_table *table, uint32_t slot)
+{
+    for (;;) {
+        const struct data_hint *hint = data_hint_find(table, slot);
+        if (!hint || hint->leader == slot)
+            return slot;
+        slot = hint->leader;
+    }
+}
+
+void data_hints_settled(struct data_table *table)
+{
+    for (size_t i = 0; i < table->n_unsettled; i++) {
+        struct data_object *object = &table->object[table->unsettled[i].slot];
+        if (object->home < 0)
+            object->home = object->holder;
+        hint_clear(&table->unsettled[i]);
+    }
+    table->n_unsettled = 0;
 }
 
 void data_object_drop(struct data_table *table, duite_object name)

@@ -3,8 +3,9 @@
 
 #include "runtime/data/sum.h"
 
-/* Shared objects as every rank knows them. The main thread alone reads and writes this table; what it says about other
- * ranks follows from the forks, which are the same everywhere, and is never asked for. */
+/* Shared objects as every rank knows them. The main thread alone reads and writes this table; what
+ * it says about other ranks follows from the forks, which are the same everywhere, and is never
+ * asked for. */
 struct data_object {
     uint32_t generation; /* even: the slot is free */
     duite_type type;
@@ -54,14 +55,22 @@ struct data_object *data_object_find(struct data_table *table, duite_object name
 /* Takes the name out of use. The caller has released `current`. */
 void data_object_drop(struct data_table *table, duite_object name);
 
-/* Whether a rank has a copy of the current version; notes that it has one; only the new holder has one. */
+/* Whether a rank has a copy of the current version; notes that it has one; only the new holder has
+ * one. */
 bool data_object_has_copy(const struct data_table *table, const struct data_object *object,
                           int rank);
 void data_object_add_copy(struct data_table *table, struct data_object *object, int rank);
 void data_object_moved(struct data_object *object, int holder);
 
-/* The hint of an object whose home is not settled yet, or NULL. */
-struct data_hint *data_hint_find(struct data_table *table, duite_object name);
+/* The hint of the object in a slot, or NULL if its home is settled or the slot is free. */
+struct data_hint *data_hint_find(struct data_table *table, uint32_t slot);
+
+/* The end of its chain of leaders: a slot without home that follows nobody, or one with a home. */
+uint32_t data_hint_leader(struct data_table *table, uint32_t slot);
+
+/* The holders of all objects without home have been decided: these become their homes, and all
+ * hints are forgotten. */
+void data_hints_settled(struct data_table *table);
 
 static inline duite_object data_object_name(const struct data_table *table,
                                             const struct data_object *object)

@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The bytes of one version of an object, with room for a message header in front of them, so that they are sent and
- * received where they lie. */
+/* The bytes of one version of an object, with room for a message header in front of them, so that
+ * they are sent and received where they lie. */
 enum data_packet_kind { DATA_VALUE = 1, DATA_PIECES = 2, DATA_POISON = 3 };
 
 /* Names a version on all ranks: the object and how many writes it had. */
@@ -19,13 +19,14 @@ struct data_packet {
     struct data_key key;
     uint64_t bytes; /* of what follows */
     uint32_t kind;
-    uint32_t pieces; /* DATA_PIECES: how many */
+    uint32_t pieces;          /* DATA_PIECES: how many */
     struct data_packet *next; /* for whoever holds it; means nothing to the receiver */
     uint64_t unused[3];
 };
 _Static_assert(sizeof(struct data_packet) == 64, "a header takes one cache line");
 
-/* Packets are allocated and sent in whole cache lines: the int counts of MPI then reach far beyond 2 GiB. */
+/* Packets are allocated and sent in whole cache lines: the int counts of MPI then reach far beyond
+ * 2 GiB. */
 #define DATA_MOST_BYTES ((size_t)1 << 36)
 static inline size_t data_packet_lines(size_t bytes)
 {

@@ -1,4 +1,5 @@
-/* The order of additions comes from the places of the leaves in fork order and from nothing else. */
+/* The order of additions comes from the places of the leaves in fork order and from nothing else.
+ */
 #include "runtime/data/sum.h"
 
 #include "runtime/base/memory.h"
@@ -133,8 +134,8 @@ static bool siblings(const struct data_piece *l, const struct data_piece *r)
 /* All pieces, local and arrived, in one array by `first`; NULL without memory. */
 static struct data_piece **collect(struct data_sum *sum, size_t *n)
 {
-    struct data_piece *lists[2] = {
-        sum->pieces, atomic_load_explicit(&sum->arrived, memory_order_acquire)};
+    struct data_piece *lists[2] = {sum->pieces,
+                                   atomic_load_explicit(&sum->arrived, memory_order_acquire)};
     size_t total = 0;
     for (int i = 0; i < 2; i++)
         for (const struct data_piece *p = lists[i]; p; p = p->next)

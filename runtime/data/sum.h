@@ -7,25 +7,27 @@
 
 /* Contributions (cw) to an object between two other accesses, the leaves of a tree in fork order.
  *
- * The tree: equal complete subtrees combine as in a binary counter, the rest folds from the right; its shape depends on the
- * number of leaves only. A piece is the value of a complete subtree: leaves first .. first + 2^level - 1. A rank combines
- * what it has into the largest complete subtrees and sends only these. */
+ * The tree: equal complete subtrees combine as in a binary counter, the rest folds from the right;
+ * its shape depends on the number of leaves only. A piece is the value of a complete subtree:
+ * leaves first .. first + 2^level - 1. A rank combines what it has into the largest complete
+ * subtrees and sends only these. */
 struct data_piece {
     struct data_piece *next;
     uint64_t first;
     uint32_t level;
-    struct data_packet *packet;         /* owns the bytes of value, unless it is shared with other pieces */
-    void *value;                        /* NULL until the task ran, or if poisoned */
+    struct data_packet *packet; /* owns the bytes of value, unless it is shared with other pieces */
+    void *value;                /* NULL until the task ran, or if poisoned */
     const struct data_failure *failure; /* poison, or NULL */
 };
 
 struct data_sum {
     struct data_piece *pieces;            /* of this rank; complete once pending is 0 */
     _Atomic(struct data_piece *) arrived; /* pieces from other ranks */
-    _Atomic uint32_t pending;   /* leaves not run, messages not arrived, and 1 while it is open */
-    uint32_t senders;           /* other ranks with leaves, counted where the object's value is */
-    struct data_waiter *closer; /* the task that combines or sends; set before the open hold is released */
-    uint64_t senders_mask[];    /* a bit a rank */
+    _Atomic uint32_t pending; /* leaves not run, messages not arrived, and 1 while it is open */
+    uint32_t senders;         /* other ranks with leaves, counted where the object's value is */
+    struct data_waiter
+        *closer; /* the task that combines or sends; set before the open hold is released */
+    uint64_t senders_mask[]; /* a bit a rank */
 };
 
 /* An open sum without leaves, for so many ranks. NULL without memory. */
@@ -45,9 +47,10 @@ void data_sum_arrive(struct data_sum *sum, struct data_piece *piece);
 /* One of `pending` is done. Returns the closer if it was the last. */
 struct data_waiter *data_sum_release(struct data_sum *sum);
 
-/* Combines the pieces (pending is 0) as far as complete subtrees go, in place. Writes them into *out in order of `first`,
- * and their number into *n. *out is an array of the caller, freed by base_free. Returns the first failure among
- * them, which poisons the whole; DUITE_E_MEMORY in *code without memory. */
+/* Combines the pieces (pending is 0) as far as complete subtrees go, in place. Writes them into
+ * *out in order of `first`, and their number into *n. *out is an array of the caller, freed by
+ * base_free. Returns the first failure among them, which poisons the whole; DUITE_E_MEMORY in *code
+ * without memory. */
 const struct data_failure *data_sum_reduce(struct data_sum *sum, duite_type type, size_t count,
                                            struct data_piece ***out, size_t *n, int *code);
 

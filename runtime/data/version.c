@@ -1,5 +1,5 @@
-/* The last release sees every access to the bytes: acquire and release on `holds`; a reader that did not wait sees the
- * producer's writes through `waiters`. */
+/* The last release sees every access to the bytes: acquire and release on `holds`; a reader that
+ * did not wait sees the producer's writes through `waiters`. */
 #include "runtime/data/version.h"
 
 #include "runtime/base/memory.h"
@@ -27,8 +27,8 @@ bool data_version_await(struct data_version *version, struct data_waiter *waiter
         if (first == DATA_PRODUCED)
             return false;
         waiter->next = first;
-    } while (!atomic_compare_exchange_weak_explicit(
-        &version->waiters, &first, waiter, memory_order_acq_rel, memory_order_acquire));
+    } while (!atomic_compare_exchange_weak_explicit(&version->waiters, &first, waiter,
+                                                    memory_order_acq_rel, memory_order_acquire));
     return true;
 }
 

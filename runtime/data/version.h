@@ -17,25 +17,30 @@ struct data_waiter {
 
 /* The value of an object between two writes, on one rank.
  *
- * A version is held by its producer (a task, or a message on its way), by the object while it is the current one, and by
- * each task that reads it. Whoever releases the last hold passes the version on: to its heir, the task that
- * overwrites the bytes in place and frees the version, or, if there is none, to the allocator.
- * So a writer waits for one thing only, and no list of readers is kept. */
+ * A version is held by its producer (a task, or a message on its way), by the object while it is
+ * the current one, and by each task that reads it. Whoever releases the last hold passes the
+ * version on: to its heir, the task that overwrites the bytes in place and frees the version, or,
+ * if there is none, to the allocator. So a writer waits for one thing only, and no list of readers
+ * is kept. */
 struct data_version {
-    _Atomic(struct data_waiter *) waiters; /* tasks that want to read; DATA_PRODUCED once they may */
+    _Atomic(struct data_waiter *)
+        waiters; /* tasks that want to read; DATA_PRODUCED once they may */
     _Atomic uint32_t holds;
-    struct data_waiter *heir;           /* set before the object's hold is released */
-    struct data_packet *packet;         /* NULL: no bytes yet; they are undefined, or the version is poisoned */
+    struct data_waiter *heir; /* set before the object's hold is released */
+    struct data_packet
+        *packet; /* NULL: no bytes yet; they are undefined, or the version is poisoned */
     const struct data_failure *failure; /* poison, or NULL; set before it is produced */
 };
 
 /* A version held by its producer and by its object. NULL without memory. */
 struct data_version *data_version_new(void);
 
-/* Lets `waiter` wait for the value. False if the value is there already: then nothing is kept. The caller holds it. */
+/* Lets `waiter` wait for the value. False if the value is there already: then nothing is kept. The
+ * caller holds it. */
 bool data_version_await(struct data_version *version, struct data_waiter *waiter);
 
-/* The value is there: returns the list of waiters, linked by next. The producer still holds the version. */
+/* The value is there: returns the list of waiters, linked by next. The producer still holds the
+ * version. */
 struct data_waiter *data_version_produced(struct data_version *version);
 
 /* True once produced. */
@@ -46,7 +51,8 @@ static inline void data_version_hold(struct data_version *version)
     atomic_fetch_add_explicit(&version->holds, 1, memory_order_relaxed);
 }
 
-/* Releases a hold. Returns the heir if this was the last one, and NULL otherwise; frees a version without heir. */
+/* Releases a hold. Returns the heir if this was the last one, and NULL otherwise; frees a version
+ * without heir. */
 struct data_waiter *data_version_release(struct data_version *version);
 
 #endif

@@ -1,5 +1,6 @@
-/* Dependences: a task waits through its accesses for versions, and is ready when `pending`, which also counts a hold of the
- * fork itself, comes to 0. Whoever takes the last one hands the task on. */
+/* Dependences: a task waits through its accesses for versions, and is ready when `pending`, which
+ * also counts a hold of the fork itself, comes to 0. Whoever takes the last one hands the task on.
+ */
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
@@ -165,7 +166,8 @@ struct data_packet *graph_send_packet(struct graph_task *send, bool *own)
     *own = version->failure != NULL;
     if (*own)
         return graph_poison_packet(send->send->key, version->failure);
-    /* The same bytes may be on their way to another rank already: then the header says just this. */
+    /* The same bytes may be on their way to another rank already: then the header says just this.
+     */
     struct data_packet *packet = version->packet;
     struct data_key key = send->send->key;
     if (packet->kind != DATA_VALUE || packet->key.slot != key.slot ||

@@ -1,5 +1,6 @@
-/* Forking: every rank comes through here for every task, in the same order, and draws the same conclusions about where it
- * runs and which versions move; it keeps only what it runs, sends or receives itself. */
+/* Forking: every rank comes through here for every task, in the same order, and draws the same
+ * conclusions about where it runs and which versions move; it keeps only what it runs, sends or
+ * receives itself. */
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
@@ -62,11 +63,13 @@ static int check_objects(struct graph *graph, const duite_kernel *kernel, size_t
                               kernel->name, i, objects[i].slot, objects[i].generation,
                               objects[i].slot ? "was freed or never made" : "names nothing");
         if (object->mark == mark)
-            return base_error(DUITE_E_ACCESS, "kernel %s, parameter %zu: the task names object %u.%u twice",
+            return base_error(DUITE_E_ACCESS,
+                              "kernel %s, parameter %zu: the task names object %u.%u twice",
                               kernel->name, i, objects[i].slot, objects[i].generation);
         if (mode_of(kernel, i) == DUITE_CW && object->type == DUITE_BYTE)
-            return base_error(DUITE_E_ACCESS, "kernel %s, parameter %zu: bytes cannot be accumulated",
-                              kernel->name, i);
+            return base_error(DUITE_E_ACCESS,
+                              "kernel %s, parameter %zu: bytes cannot be accumulated", kernel->name,
+                              i);
         object->mark = mark;
     }
     return DUITE_OK;

@@ -1,5 +1,5 @@
-/* The life of the graph itself, its kernels, and the failures of tasks, which are kept until stop so that poison can point
- * at them. */
+/* The life of the graph itself, its kernels, and the failures of tasks, which are kept until stop
+ * so that poison can point at them. */
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
@@ -36,7 +36,7 @@ static int check_kernel(const duite_kernel *kernel, uint32_t index, uint32_t *n_
     return DUITE_OK;
 }
 
-static int check_unique(const duite_kernel *const *kernels, uint32_t index)
+static int check_unique(const duite_kernel *const kernels[], uint32_t index)
 {
     for (uint32_t i = 0; i < index; i++)
         if (!strcmp(kernels[i]->name, kernels[index]->name))
@@ -47,31 +47,31 @@ static int check_unique(const duite_kernel *const *kernels, uint32_t index)
 
 static int take_kernels(struct graph *graph, const duite_kernel *const *kernels)
 {
-    while (kernels[graph->n_kernels])
-        graph->n_kernels++;
-    size_t n = graph->n_kernels;
-    graph->kernels = base_alloc(n * sizeof graph->kernels[0]);
-    graph->n_fixed = base_alloc(n * sizeof *graph->n_fixed);
+    size_t n = 0;
+    while (kernels[n])
+        n++;
+    graph->kernels = base_alloc((n + 1) * sizeof graph->kernels[0]);
+    graph->n_fixed = base_alloc((n + 1) * sizeof *graph->n_fixed);
     if (!graph->kernels || !graph->n_fixed)
         return base_no_memory("the list of kernels");
     memcpy(graph->kernels, kernels, n * sizeof graph->kernels[0]);
-    for (uint32_t i = 0; i < n; i++) {
-        int code = check_kernel(kernels[i], i, &graph->n_fixed[i]);
+    graph->kernels[n] = &graph_set_kernel;
+    graph->n_kernels = (uint32_t)n + 1;
+    for (uint32_t i = 0; i <= n; i++) {
+        int code = check_kernel(graph->kernels[i], i, &graph->n_fixed[i]);
         if (!code)
-            code = check_unique(kernels, i);
+            code = check_unique(graph->kernels, i);
         if (code)
             return code;
     }
     return DUITE_OK;
 }
 
-int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels,
-                const struct graph_hooks *hooks)
+int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels)
 {
     memset(graph, 0, sizeof *graph);
     graph->rank = rank;
     graph->n_ranks = n_ranks;
-    graph->hooks = *hooks;
     atomic_init(&graph->unfinished, 0);
     pthread_mutex_init(&graph->lock, NULL); /* cannot fail with default attributes */
     int code = data_table_start(&graph->table, n_ranks);
@@ -80,6 +80,12 @@ int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *
 
 void graph_stop(struct graph *graph)
 {
+    for (uint32_t slot = 1; slot < graph->table.n_slots; slot++) {
+        struct data_object *object = &graph->table.object[slot];
+        graph_forget(graph, NULL, object);
+        if (object->sum)
+            data_sum_free(object->sum);
+    }
     for (struct graph_failure *node = graph->failures, *next; node; node = next) {
         next = node->next;
         base_free(node);

@@ -8,9 +8,9 @@
 
 /* Tasks and what they wait for, on one rank.
  *
- * The main thread forks: it derives from the accesses, in fork order, which rank runs a task, which versions it reads
- * and makes here, and which of them must be sent or awaited. Workers run what is ready and publish what it wrote. Nothing but
- * versions and sums joins the two sides. */
+ * The main thread forks: it derives from the accesses, in fork order, which rank runs a task, which
+ * versions it reads and makes here, and which of them must be sent or awaited. Workers run what is
+ * ready and publish what it wrote. Nothing but versions and sums joins the two sides. */
 
 enum graph_kind {
     GRAPH_BODY,    /* a task of the program */
@@ -80,9 +80,9 @@ struct graph_hooks {
     /* Something the main program may be waiting for happened. */
     void (*notify)(void *context);
     /* Sends a packet of this rank's own (pieces, poison) and frees it. */
-    void (*send_packet)(void *context, void *worker, struct data_packet *packet, int to);
-    /* The version or the pieces of that key come from elsewhere: call graph_arrived or graph_pieces_arrived with each
-     * packet. 0, or DUITE_E_MEMORY. */
+    void (*send_packet)(void *context, struct data_packet *packet, int to);
+    /* The version or the pieces of that key come from elsewhere: call graph_arrived or
+     * graph_pieces_arrived with each packet. 0, or DUITE_E_MEMORY. */
     int (*expect)(void *context, void *worker, struct data_key key, struct data_version *version,
                   struct data_sum *sum, uint32_t packets);
 };
@@ -94,43 +94,48 @@ struct graph {
     uint32_t *n_fixed; /* parameters in each kernel's `access` */
     uint32_t n_kernels;
     struct graph_hooks hooks;
-    uint64_t forks;              /* so far, on all ranks the same */
-    uint64_t fingerprint;        /* of the forks since the last wait */
-    int broken;                  /* memory ran out in the middle of a fork: the code of every later call */
+    uint64_t forks;       /* so far, on all ranks the same */
+    uint64_t fingerprint; /* of the forks since the last wait */
+    int broken;           /* memory ran out in the middle of a fork: the code of every later call */
     _Atomic uint64_t unfinished; /* tasks of this rank */
     pthread_mutex_t lock;        /* failures */
     struct graph_failure *failures;
     const struct data_failure *first_failure; /* in fork order, since the last wait */
 };
 
-/* kernels: ended by NULL, checked, the list copied. Errors: DUITE_E_KERNEL, memory. */
-int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels,
-                const struct graph_hooks *hooks);
+/* kernels: ended by NULL, checked, the list copied. `hooks` are set by whoever runs the tasks.
+ * Errors: DUITE_E_KERNEL, memory; graph_stop is due all the same. */
+int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels);
+/* No task is left. Frees everything, objects that were not freed among it. */
 void graph_stop(struct graph *graph);
 
-/* ---- Main thread, collective in the sense of duite.h; the homes of all objects are settled ------------- */
+/* ---- Main thread, collective in the sense of duite.h; the homes of all objects are settled
+ * ------------- */
 
 enum { GRAPH_ANYWHERE = -1 };
 
 int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *kernel,
                const void *args, size_t n, const duite_object *objects);
+/* Overwrites with a copy of values, or with zeros if they are NULL. */
+int graph_set(struct graph *graph, void *worker, duite_object object, const void *values);
 int graph_free(struct graph *graph, void *worker, duite_object object);
 
-/* Starts copying an object to `copy` on rank `to`, or on all ranks with GRAPH_ANYWHERE. The caller waits for copy->done on the
- * ranks it goes to. */
+/* Starts copying an object to `copy` on rank `to`, or on all ranks with GRAPH_ANYWHERE. The caller
+ * waits for copy->done on the ranks it goes to. */
 int graph_copy(struct graph *graph, void *worker, duite_object object, int to,
                struct graph_copy *copy);
 
-/* ---- Any worker ---------------------------------------------------------------------------------------- */
+/* ---- Any worker
+ * ---------------------------------------------------------------------------------------- */
 
 /* What the running body may say of its failure. */
 struct duite_call_private {
     char text[sizeof((struct data_failure *)0)->text];
 };
 
-/* Runs a ready task (not a SEND), which graph_finish then ends. `call` has context, rank, worker and own set. Returns whether
- * a body ran. */
-bool graph_run(struct graph *graph, void *worker, struct graph_task *task, duite_call *call);
+/* Runs a ready task (not a SEND), which graph_finish then ends. `call` has context, rank, worker
+ * and own set. Returns whether a body ran. */
+bool graph_run(struct graph *graph, struct graph_task *task, duite_call *call);
 
 /* The task is over: publishes what it wrote, makes its successors ready, frees it. */
 void graph_finish(struct graph *graph, void *worker, struct graph_task *task);
@@ -141,7 +146,8 @@ void graph_arrived(struct graph *graph, void *worker, struct data_version *versi
 void graph_pieces_arrived(struct graph *graph, void *worker, struct data_sum *sum,
                           struct data_packet *packet);
 
-/* The bytes of a ready SEND, under its key: the version itself, or a poison packet that the caller frees once sent
+/* The bytes of a ready SEND, under its key: the version itself, or a poison packet that the caller
+ * frees once sent
  * (*own = true). NULL without memory. */
 struct data_packet *graph_send_packet(struct graph_task *send, bool *own);
 

@@ -5,8 +5,8 @@
 
 /* Shared by the files of this folder only. */
 
-/* A task with n accesses and `extra` bytes behind them (in task->args); pending is n + 1; counted as unfinished. NULL without
- * memory: then the graph is broken. */
+/* A task with n accesses and `extra` bytes behind them (in task->args); pending is n + 1; counted
+ * as unfinished. NULL without memory: then the graph is broken. */
 struct graph_task *graph_task_new(struct graph *graph, enum graph_kind kind, size_t n,
                                   size_t extra);
 
@@ -22,14 +22,14 @@ void graph_release(struct graph *graph, void *worker, struct data_version *versi
 /* The version is there: wakes its readers, releases the producer's hold. */
 void graph_publish(struct graph *graph, void *worker, struct data_version *version);
 
-/* Makes access i of the task a reader of `version`, or its heir that writes the new version returned by
- * graph_overwrite. *done grows by one if there is nothing to wait for. */
+/* Makes access i of the task a reader of `version`, or its heir that writes the new version
+ * returned by graph_overwrite. *done grows by one if there is nothing to wait for. */
 void graph_read(struct graph_task *task, size_t i, struct data_version *version, uint32_t *done);
 int graph_overwrite(struct graph *graph, struct graph_task *task, size_t i,
                     struct data_object *object, struct data_version *version, uint32_t *done);
 
-/* This rank's copy of the current version, which is to be here or on its way (graph_fetch). `bytes`: a version that was never
- * written must have its zeros. NULL: out of memory, broken. */
+/* This rank's copy of the current version, which is to be here or on its way (graph_fetch).
+ * `bytes`: a version that was never written must have its zeros. NULL: out of memory, broken. */
 struct data_version *graph_local(struct graph *graph, struct data_object *object, bool bytes);
 
 /* Sees to it that rank `to` gets the current version: sends, awaits, or notes that others do. */
@@ -38,12 +38,13 @@ int graph_fetch(struct graph *graph, void *worker, struct data_object *object, i
 /* The object has a new version on another rank: this rank's copy is stale. */
 void graph_forget(struct graph *graph, void *worker, struct data_object *object);
 
-/* Contributions: adds a leaf for access i (task NULL: it runs elsewhere, on rank `at`), and ends the run of them. */
+/* Contributions: adds a leaf for access i (task NULL: it runs elsewhere, on rank `at`), and ends
+ * the run of them. */
 int graph_contribute(struct graph *graph, struct data_object *object, int at,
                      struct graph_task *task, size_t i);
 int graph_close(struct graph *graph, void *worker, struct data_object *object);
 void graph_run_combine(struct graph *graph, struct graph_task *task);
-void graph_run_pieces(struct graph *graph, void *worker, struct graph_task *task);
+void graph_run_pieces(struct graph *graph, struct graph_task *task);
 
 /* Keeps a failure until stop; `report`: the next wait tells it. Never NULL. */
 const struct data_failure *graph_fail(struct graph *graph, const struct data_failure *failure,
@@ -51,6 +52,8 @@ const struct data_failure *graph_fail(struct graph *graph, const struct data_fai
 /* The failure of a task for want of memory. */
 const struct data_failure *graph_fail_memory(struct graph *graph, const struct graph_task *task);
 struct data_packet *graph_poison_packet(struct data_key key, const struct data_failure *failure);
+
+extern const duite_kernel graph_set_kernel;
 
 static inline struct data_key graph_key(const struct graph *graph, const struct data_object *object)
 {

@@ -1,2 +1,3 @@
-libduite_core_la_SOURCES += runtime/graph/depend.c runtime/graph/fork.c runtime/graph/graph.c \
-	runtime/graph/graph.h runtime/graph/internal.h runtime/graph/run.c runtime/graph/sum.c
+libduite_la_SOURCES += runtime/graph/depend.c runtime/graph/fork.c runtime/graph/graph.c \
+	runtime/graph/graph.h runtime/graph/internal.h runtime/graph/run.c runtime/graph/set.c \
+	runtime/graph/sum.c

@@ -1,4 +1,5 @@
-/* Running: a ready task alone touches the bytes of what it writes; when it is over they are published once. */
+/* Running: a ready task alone touches the bytes of what it writes; when it is over they are
+ * published once. */
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/memory.h"
@@ -103,7 +104,7 @@ static void run_copy(struct graph *graph, struct graph_task *task)
     graph->hooks.notify(graph->hooks.context);
 }
 
-bool graph_run(struct graph *graph, void *worker, struct graph_task *task, duite_call *call)
+bool graph_run(struct graph *graph, struct graph_task *task, duite_call *call)
 {
     const struct data_failure *failure;
     bool ran = false;
@@ -120,7 +121,7 @@ bool graph_run(struct graph *graph, void *worker, struct graph_task *task, duite
         graph_run_combine(graph, task);
         break;
     case GRAPH_PIECES:
-        graph_run_pieces(graph, worker, task);
+        graph_run_pieces(graph, task);
         break;
     case GRAPH_COPY:
         run_copy(graph, task);

@@ -1,5 +1,6 @@
-/* Contributions: leaves run wherever their tasks do, without waiting for one another or for the object; the first other access
- * closes the run, and then the leaves are added where the object's value is (its holder). */
+/* Contributions: leaves run wherever their tasks do, without waiting for one another or for the
+ * object; the first other access closes the run, and then the leaves are added where the object's
+ * value is (its holder). */
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
@@ -141,7 +142,7 @@ static struct data_packet *pack(const struct graph_sum *sum, struct data_piece *
     return packet;
 }
 
-void graph_run_pieces(struct graph *graph, void *worker, struct graph_task *task)
+void graph_run_pieces(struct graph *graph, struct graph_task *task)
 {
     struct graph_sum *sum = task->sum;
     struct data_piece **pieces;
@@ -156,7 +157,7 @@ void graph_run_pieces(struct graph *graph, void *worker, struct graph_task *task
         packet = graph_poison_packet(sum->key, failure ? failure : graph_fail_memory(graph, task));
     base_free(pieces);
     data_sum_free(sum->sum);
-    graph->hooks.send_packet(graph->hooks.context, worker, packet, sum->to);
+    graph->hooks.send_packet(graph->hooks.context, packet, sum->to);
 }
 
 static void add_piece(struct graph *graph, struct data_sum *sum, struct data_piece piece)

@@ -1,0 +1,120 @@
+/* An entry lives while its target waits for packets or its packets wait for a target, never both.
+ */
+#include "runtime/comm/arrivals.h"
+
+#include "runtime/base/memory.h"
+
+#include <stdlib.h>
+
+#define HASH_NONFATAL_OOM          1
+#define uthash_nonfatal_oom(entry) ((entry)->lost = true)
+#include <uthash.h>
+
+struct comm_arrival {
+    struct data_key key;
+    struct comm_target target;
+    uint32_t wanted;             /* packets still to come; 0: no target yet */
+    bool lost;                   /* the table had no memory for it */
+    struct data_packet *packets; /* came early */
+    UT_hash_handle hh;
+};
+
+void comm_arrivals_start(struct comm_arrivals *arrivals)
+{
+    pthread_mutex_init(&arrivals->lock, NULL);
+    arrivals->table = NULL;
+}
+
+static void free_packets(struct data_packet *packet)
+{
+    while (packet) {
+        struct data_packet *next = packet->next;
+        base_free(packet);
+        packet = next;
+    }
+}
+
+void comm_arrivals_stop(struct comm_arrivals *arrivals)
+{
+    struct comm_arrival *arrival, *next;
+    HASH_ITER(hh, arrivals->table, arrival, next)
+    {
+        HASH_DEL(arrivals->table, arrival);
+        free_packets(arrival->packets);
+        base_free(arrival);
+    }
+    pthread_mutex_destroy(&arrivals->lock);
+}
+
+static struct comm_arrival *find(struct comm_arrivals *arrivals, struct data_key key)
+{
+    struct comm_arrival *arrival;
+    HASH_FIND(hh, arrivals->table, &key, sizeof key, arrival);
+    return arrival;
+}
+
+static void drop(struct comm_arrivals *arrivals, struct comm_arrival *arrival)
+{
+    HASH_DEL(arrivals->table, arrival);
+    base_free(arrival);
+}
+
+/* A new entry in the table, or NULL. */
+static struct comm_arrival *add(struct comm_arrivals *arrivals, struct data_key key)
+{
+    struct comm_arrival *arrival = base_alloc_zero(sizeof *arrival);
+    if (!arrival)
+        return NULL;
+    arrival->key = key;
+    HASH_ADD(hh, arrivals->table, key, sizeof key, arrival);
+    if (!arrival->lost)
+        return arrival;
+    base_free(arrival);
+    return NULL;
+}
+
+bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
+                          struct comm_target target, uint32_t packets, struct data_packet **early)
+{
+    *early = NULL;
+    pthread_mutex_lock(&arrivals->lock);
+    struct comm_arrival *arrival = find(arrivals, key);
+    if (arrival) {
+        *early = arrival->packets;
+        arrival->packets = NULL;
+        for (const struct data_packet *packet = *early; packet; packet = packet->next)
+            packets--;
+        if (!packets)
+            drop(arrivals, arrival);
+    } else {
+        arrival = add(arrivals, key);
+    }
+    bool kept = arrival != NULL;
+    if (kept && packets) {
+        arrival->target = target;
+        arrival->wanted = packets;
+    }
+    pthread_mutex_unlock(&arrivals->lock);
+    return kept;
+}
+
+bool comm_arrivals_take(struct comm_arrivals *arrivals, struct data_packet *packet,
+                        struct comm_target *target, bool *lost)
+{
+    pthread_mutex_lock(&arrivals->lock);
+    struct comm_arrival *arrival = find(arrivals, packet->key);
+    if (!arrival)
+        arrival = add(arrivals, packet->key);
+    *lost = !arrival;
+    bool wanted = arrival && arrival->wanted;
+    if (wanted) {
+        *target = arrival->target;
+        if (--arrival->wanted == 0)
+            drop(arrivals, arrival);
+    } else if (arrival) {
+        packet->next = arrival->packets;
+        arrival->packets = packet;
+    }
+    pthread_mutex_unlock(&arrivals->lock);
+    return wanted;
+}

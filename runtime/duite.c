@@ -1,0 +1,297 @@
+/* Start and stop: the parts are started from the bottom up and stopped from the top down; what
+ * failed half-way is stopped by the same path. All ranks agree on whether a start succeeded. */
+#include "runtime/instance.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/comm/host.h"
+#include "runtime/map/map.h"
+#include "runtime/sched/sched.h"
+#include "runtime/workers/cores.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+
+duite_options duite_options_default(void)
+{
+    return (duite_options){.comm = MPI_COMM_WORLD,
+                           .scheduler = &sched_steal,
+                           .mapping = &map_metis,
+                           .seed = 1,
+                           .spin_seconds = 100e-6,
+                           .bind = 1};
+}
+
+/* ---- MPI
+ * -------------------------------------------------------------------------------------------------
+ */
+
+/* MPI cannot be initialised twice: what start initialised stays until the process ends, so that
+ * start and stop may repeat. */
+static void finalise_at_exit(void)
+{
+    int over = 1;
+    if (!MPI_Finalized(&over) && !over)
+        MPI_Finalize();
+}
+
+static int start_mpi(void)
+{
+    int running = 0, over = 0, level = 0;
+    if (MPI_Initialized(&running) || MPI_Finalized(&over))
+        return base_error(DUITE_E_MPI, "MPI_Initialized failed");
+    if (over)
+        return base_error(DUITE_E_MPI, "MPI was finalised before duite_start");
+    if (!running) {
+        if (MPI_Init_thread(NULL, NULL, MPI_THREAD_SERIALIZED, &level))
+            return base_error(DUITE_E_MPI, "MPI_Init_thread failed");
+        atexit(finalise_at_exit);
+    }
+    if (MPI_Query_thread(&level) || level < MPI_THREAD_SERIALIZED)
+        return base_error(DUITE_E_MPI,
+                          "MPI gives thread support %d, less than MPI_THREAD_SERIALIZED: "
+                          "initialise it by MPI_Init_thread, or leave it to duite_start",
+                          level);
+    return DUITE_OK;
+}
+
+/* ---- Start
+ * -----------------------------------------------------------------------------------------------
+ */
+
+static int check_options(const duite_options *options)
+{
+    if (!options)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: no options; begin with duite_options_default()");
+    if (options->comm == MPI_COMM_NULL)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: the communicator is MPI_COMM_NULL");
+    return DUITE_OK;
+}
+
+/* The rest of the options may be wrong on one rank alone: all ranks come to agree() nevertheless.
+ */
+static int check_rest(const duite_options *options)
+{
+    const duite_scheduler *s = options->scheduler;
+    if (!options->kernels)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: no list of kernels");
+    if (!s || !s->place || !s->serve || !s->victim || !s->chain)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: no scheduler, or one without all its functions");
+    if (!options->mapping || !options->mapping->map)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: no mapping");
+    if (options->threads > 4096)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: %u threads are more than 4096",
+                          options->threads);
+    if (!(options->spin_seconds >= 0))
+        return base_error(DUITE_E_ARGUMENT, "duite_start: spin_seconds is not >= 0");
+    return DUITE_OK;
+}
+
+static uint64_t hash_kernels(const struct graph *graph)
+{
+    uint64_t hash = 0;
+    for (uint32_t i = 0; i < graph->n_kernels; i++) {
+        const duite_kernel *k = graph->kernels[i];
+        uint64_t args_size = k->args_size;
+        hash = XXH64(k->name, strlen(k->name) + 1, hash);
+        hash = XXH64(k->access, sizeof k->access, hash);
+        hash = XXH64(&k->rest, sizeof k->rest, hash);
+        hash = XXH64(&args_size, sizeof args_size, hash);
+    }
+    return hash;
+}
+
+/* What must be the same on all ranks, and whether it went well there. */
+struct started {
+    int64_t code;
+    uint64_t kernels, seed, scheduler, mapping;
+};
+
+static const char *difference(const struct started *a, const struct started *b)
+{
+    if (a->kernels != b->kernels)
+        return "kernels";
+    if (a->seed != b->seed)
+        return "seeds";
+    if (a->scheduler != b->scheduler)
+        return "schedulers";
+    return a->mapping != b->mapping ? "mappings" : NULL;
+}
+
+static int compare(const struct started *all, int n, int rank, int code)
+{
+    for (int i = 0; i < n && !code; i++)
+        if (all[i].code)
+            return base_error(DUITE_E_DIFFERENT, "duite_start failed on rank %d: %s", i,
+                              duite_code_text((int)all[i].code));
+    for (int i = 1; i < n && !code; i++)
+        if (difference(&all[0], &all[i]))
+            return base_error(DUITE_E_DIFFERENT,
+                              "ranks 0 and %d start with different %s (seen on rank %d)", i,
+                              difference(&all[0], &all[i]), rank);
+    return code;
+}
+
+/* All ranks succeed or all fail. */
+static int agree(duite *rt, const duite_options *options, int code)
+{
+    int n = rt->graph.n_ranks;
+    if (n == 1)
+        return code;
+    struct started own = {.code = code, .kernels = hash_kernels(&rt->graph), .seed = options->seed};
+    if (!code) {
+        own.scheduler = XXH64(options->scheduler->name, strlen(options->scheduler->name), 0);
+        own.mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0);
+    }
+    struct started *all = base_alloc((size_t)n * sizeof *all);
+    if (!all)
+        return base_no_memory("the ranks");
+    int mpi = MPI_Allgather(&own, sizeof own, MPI_BYTE, all, sizeof own, MPI_BYTE, rt->mpi);
+    code = mpi ? base_error(DUITE_E_MPI, "MPI_Allgather failed")
+               : compare(all, n, rt->graph.rank, code);
+    base_free(all);
+    return code;
+}
+
+static int start_graph(duite *rt, const duite_options *options)
+{
+    int rank, n;
+    MPI_Comm_set_errhandler(rt->mpi, MPI_ERRORS_RETURN);
+    if (MPI_Comm_rank(rt->mpi, &rank) || MPI_Comm_size(rt->mpi, &n))
+        return base_error(DUITE_E_MPI, "MPI_Comm_rank failed");
+    rt->mapping = options->mapping;
+    rt->seed = options->seed;
+    rt->words = base_alloc((size_t)n * sizeof *rt->words);
+    static const duite_kernel *const none[] = {NULL};
+    int code = check_rest(options);
+    int started = graph_start(&rt->graph, rank, n, code ? none : options->kernels);
+    if (!code)
+        code = started;
+    if (!code && !rt->words)
+        code = base_no_memory("the ranks");
+    if (!code && n > 1)
+        code = comm_start(&rt->comm, rt->mpi, &rt->graph);
+    return code;
+}
+
+static int start_workers(duite *rt, const duite_options *options, int code)
+{
+    struct work_cores cores = {0};
+    struct comm_host host = {.ranks = 1};
+    unsigned threads = options->threads;
+    if (!code)
+        code = work_cores_find(&cores);
+    /* Collective: a rank that failed takes part. */
+    int asked = comm_host_find(&host, rt->mpi, cores.hash, cores.n, &threads);
+    if (!code)
+        code = asked;
+    rt->threads = threads;
+    rt->oversubscribed = host.total > cores.n;
+    bool bind = options->bind && !rt->oversubscribed;
+    if (!code)
+        code = work_start(
+            &rt->pool,
+            &(struct work_setup){.graph = &rt->graph,
+                                 .comm = rt->comm,
+                                 .scheduler = options->scheduler,
+                                 .context = options->context,
+                                 .threads = threads,
+                                 .seed = options->seed,
+                                 .spin_seconds = rt->oversubscribed ? 0 : options->spin_seconds,
+                                 .cores = bind ? cores.unit + host.before : NULL});
+    work_cores_free(&cores);
+    return code;
+}
+
+static void end(duite *rt)
+{
+    work_stop(rt->pool);
+    comm_stop(rt->comm);
+    graph_stop(&rt->graph);
+    if (rt->mpi != MPI_COMM_NULL)
+        MPI_Comm_free(&rt->mpi);
+    base_free(rt->words);
+    base_free(rt);
+}
+
+int duite_start(duite **out, const duite_options *options)
+{
+    if (!out)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: nowhere to put the runtime");
+    *out = NULL;
+    int code = check_options(options);
+    if (!code)
+        code = start_mpi();
+    duite *rt = code ? NULL : base_alloc_zero(sizeof *rt);
+    if (!rt)
+        return code ? code : base_no_memory("the runtime");
+    if (MPI_Comm_dup(options->comm, &rt->mpi)) {
+        base_free(rt);
+        return base_error(DUITE_E_MPI, "MPI_Comm_dup failed");
+    }
+    code = start_graph(rt, options);
+    code = start_workers(rt, options, code);
+    code = agree(rt, options, code);
+    if (code)
+        end(rt);
+    else
+        *out = rt;
+    return code;
+}
+
+/* ---- Stop
+ * ------------------------------------------------------------------------------------------------
+ */
+
+static int not_freed(const duite *rt)
+{
+    const struct data_table *table = &rt->graph.table;
+    for (uint32_t slot = 1; slot < table->n_slots; slot++)
+        if (table->object[slot].generation % 2)
+            return base_error(
+                DUITE_E_NOT_FREED, "%u objects were not freed; the first is %u.%u, %zu bytes",
+                table->n_alive, slot, table->object[slot].generation, table->object[slot].bytes);
+    return DUITE_OK;
+}
+
+int duite_stop(duite **out)
+{
+    if (!out || !*out)
+        return base_error(DUITE_E_ARGUMENT, "duite_stop: no runtime");
+    duite *rt = *out;
+    if (!work_may_fork(rt->pool))
+        return base_error(DUITE_E_STATE, "duite_stop is for the main thread, outside of bodies");
+    int code = duite_wait(rt);
+    if (!code)
+        code = not_freed(rt);
+    end(rt);
+    *out = NULL;
+    return code;
+}
+
+/* ---- Who am I
+ * -------------------------------------------------------------------------------------------- */
+
+int duite_rank(const duite *rt)
+{
+    return rt ? rt->graph.rank : -1;
+}
+
+int duite_ranks(const duite *rt)
+{
+    return rt ? rt->graph.n_ranks : -1;
+}
+
+unsigned duite_threads(const duite *rt)
+{
+    return rt ? rt->threads : 0;
+}
+
+int duite_oversubscribed(const duite *rt)
+{
+    return rt ? rt->oversubscribed : 0;
+}

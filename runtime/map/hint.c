@@ -1,0 +1,75 @@
+/* What the program tells about objects that have no home yet. Every rank is told the same. */
+#include "runtime/map/map.h"
+
+#include "runtime/base/error.h"
+
+#include <stdlib.h>
+
+static int check_weight(const char *what, double weight)
+{
+    if (weight >= 0 && weight <= 1e300)
+        return DUITE_OK;
+    return base_error(DUITE_E_ARGUMENT, "duite_hint: %s %g is not a finite number >= 0", what,
+                      weight);
+}
+
+static int check_edges(struct data_table *table, size_t n, const duite_object *neighbours,
+                       const double *edge_weights)
+{
+    if (n && !neighbours)
+        return base_error(DUITE_E_ARGUMENT, "duite_hint: no neighbours given");
+    for (size_t i = 0; i < n; i++) {
+        if (!data_object_find(table, neighbours[i]))
+            return DUITE_E_OBJECT;
+        int code = check_weight("edge weight", edge_weights ? edge_weights[i] : 1);
+        if (code)
+            return code;
+    }
+    return DUITE_OK;
+}
+
+static int add_edges(struct data_hint *hint, size_t n, const duite_object *neighbours,
+                     const double *edge_weights)
+{
+    uint32_t *neighbour = realloc(hint->neighbour, (hint->n + n) * sizeof *neighbour);
+    if (neighbour)
+        hint->neighbour = neighbour;
+    double *edge = realloc(hint->edge_weight, (hint->n + n) * sizeof *edge);
+    if (edge)
+        hint->edge_weight = edge;
+    if (!neighbour || !edge)
+        return base_no_memory("a hint");
+    for (size_t i = 0; i < n; i++) {
+        neighbour[hint->n] = neighbours[i].slot;
+        edge[hint->n++] = edge_weights ? edge_weights[i] : 1;
+    }
+    return DUITE_OK;
+}
+
+int map_hint(struct data_table *table, duite_object object, double weight, size_t n,
+             const duite_object *neighbours, const double *edge_weights)
+{
+    if (!data_object_find(table, object))
+        return DUITE_E_OBJECT;
+    int code = check_weight("weight", weight);
+    if (!code)
+        code = check_edges(table, n, neighbours, edge_weights);
+    struct data_hint *hint = code ? NULL : data_hint_find(table, object.slot);
+    if (!hint)
+        return code;
+    hint->weight = weight;
+    return n ? add_edges(hint, n, neighbours, edge_weights) : DUITE_OK;
+}
+
+int map_follow(struct data_table *table, duite_object object, duite_object leader)
+{
+    if (!data_object_find(table, object) || !data_object_find(table, leader))
+        return DUITE_E_OBJECT;
+    struct data_hint *hint = data_hint_find(table, object.slot);
+    if (data_hint_leader(table, leader.slot) == object.slot)
+        return base_error(DUITE_E_ARGUMENT, "duite_follow: object %u.%u would follow itself",
+                          object.slot, object.generation);
+    if (hint)
+        hint->leader = leader.slot;
+    return DUITE_OK;
+}

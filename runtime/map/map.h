@@ -1,0 +1,22 @@
+#ifndef DUITE_MAP_MAP_H
+#define DUITE_MAP_MAP_H
+
+#include "runtime/data/object.h"
+
+#include <duite_policy.h>
+
+/* The built-in mappings. */
+extern const duite_mapping map_metis, map_cyclic;
+
+/* Notes a hint: the weight, and edges to n neighbours; or a leader. Homes that are settled stay.
+ * Main thread, collective. Errors: objects, arguments, memory. */
+int map_hint(struct data_table *table, duite_object object, double weight, size_t n,
+             const duite_object *neighbours, const double *edge_weights);
+int map_follow(struct data_table *table, duite_object object, duite_object leader);
+
+/* Gives a home to all objects without one: leaders by the mapping, followers with them. Main
+ * thread, collective. Errors: those of the mapping; memory; DUITE_E_ARGUMENT for a home that is no
+ * rank. */
+int map_settle(struct data_table *table, const duite_mapping *mapping, uint64_t seed);
+
+#endif

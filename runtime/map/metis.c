@@ -1,0 +1,86 @@
+/* metis: equal weights, few bytes between ranks: METIS' recursive bisection of the hinted graph
+ * (Karypis & Kumar, SIAM J. Sci. Comput. 20(1), 1998), with the seed of the run. Objects without
+ * edges are dealt out in contiguous ranges of equal weight. */
+#include "runtime/map/map.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <metis.h>
+#include <string.h>
+
+/* METIS counts in integers: weights are scaled so that their sum stays far below its range. */
+static void scale(size_t n, const double *from, idx_t *to)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += from[i];
+    double factor = sum > 0 ? 1e8 / sum : 0;
+    for (size_t i = 0; i < n; i++)
+        to[i] = 1 + (idx_t)(from[i] * factor);
+}
+
+/* Contiguous ranges: object i goes where the middle of its weight falls; fewer objects than ranks
+ * go round. */
+static void deal(const duite_object_graph *graph, int n_ranks, int *home)
+{
+    double sum = 0, before = 0;
+    for (size_t i = 0; i < graph->n; i++)
+        sum += graph->weight[i];
+    for (size_t i = 0; i < graph->n; i++) {
+        double middle = sum > 0 ? (before + 0.5 * graph->weight[i]) / sum : 0;
+        int rank = (int)(middle * n_ranks);
+        if (graph->n < (size_t)n_ranks)
+            rank = (int)((graph->before + i) % (uint64_t)n_ranks);
+        home[i] = rank < n_ranks ? rank : n_ranks - 1;
+        before += graph->weight[i];
+    }
+}
+
+static int partition(const duite_object_graph *graph, int n_ranks, uint64_t seed, idx_t *work,
+                     int *home)
+{
+    size_t n = graph->n, edges = graph->start[n];
+    idx_t *start = work, *neighbour = start + n + 1, *weight = neighbour + edges,
+          *edge_weight = weight + n, *part = edge_weight + edges;
+    for (size_t i = 0; i <= n; i++)
+        start[i] = (idx_t)graph->start[i];
+    for (size_t i = 0; i < edges; i++)
+        neighbour[i] = (idx_t)graph->neighbour[i];
+    scale(n, graph->weight, weight);
+    scale(edges, graph->edge_weight, edge_weight);
+    idx_t options[METIS_NOPTIONS], count = (idx_t)n, constraints = 1, parts = n_ranks, cut;
+    METIS_SetDefaultOptions(options);
+    options[METIS_OPTION_SEED] = (idx_t)(seed & 0x7fffffff);
+    int code = METIS_PartGraphRecursive(&count, &constraints, start, neighbour, weight, NULL,
+                                        edge_weight, &parts, NULL, NULL, options, &cut, part);
+    if (code != METIS_OK)
+        return base_error(DUITE_E_SYSTEM, "METIS failed with code %d on %zu objects and %d ranks",
+                          code, n, n_ranks);
+    for (size_t i = 0; i < n; i++)
+        home[i] = (int)part[i];
+    return DUITE_OK;
+}
+
+static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+{
+    size_t n = graph->n, edges = graph->start[n];
+    if (!edges || n <= (size_t)n_ranks) {
+        deal(graph, n_ranks, home);
+        return DUITE_OK;
+    }
+    if (edges > 0x3fffffff)
+        return base_error(DUITE_E_ARGUMENT, "metis: %zu edges are too many", edges);
+    idx_t *work = base_alloc((3 * n + 1 + 2 * edges) * sizeof *work);
+    if (!work)
+        return base_no_memory("the mapping");
+    int code = partition(graph, n_ranks, seed, work, home);
+    base_free(work);
+    return code;
+}
+
+const duite_mapping map_metis = {
+    .name = "metis",
+    .summary = "METIS on the hinted objects: equal weights, few bytes between ranks",
+    .map = map,
+};

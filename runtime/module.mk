@@ -1,0 +1,1 @@
+libduite_la_SOURCES += runtime/duite.c runtime/instance.h runtime/program.c

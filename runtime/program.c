@@ -1,0 +1,285 @@
+/* The calls of the main program: each checks that it may be made, settles the homes of new objects
+ * where they matter, and leaves the work to graph/. An error of a call that returns at once is
+ * remembered for the next get, wait or stop. */
+#include "runtime/instance.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/map/map.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* May this call be made now? */
+static int enter(duite *rt, const char *call)
+{
+    if (!rt)
+        return base_error(DUITE_E_ARGUMENT, "%s: no runtime", call);
+    if (!work_may_fork(rt->pool))
+        return base_error(DUITE_E_STATE, "%s is for the main thread, outside of bodies", call);
+    if (rt->graph.broken)
+        return base_error(rt->graph.broken, "%s: memory ran out in an earlier call", call);
+    return rt->comm ? comm_broken(rt->comm) : DUITE_OK;
+}
+
+static int remember(duite *rt, int code)
+{
+    if (!code || rt->remembered)
+        return code;
+    rt->remembered = code;
+    snprintf(rt->sentence, sizeof rt->sentence, "%s", duite_message());
+    return code;
+}
+
+/* The remembered error, which is told once. */
+static int recall(duite *rt)
+{
+    int code = rt->remembered;
+    rt->remembered = DUITE_OK;
+    return code ? base_error(code, "%s", rt->sentence) : DUITE_OK;
+}
+
+static int settle(duite *rt)
+{
+    return map_settle(&rt->graph.table, rt->mapping, rt->seed);
+}
+
+/* ---- Objects
+ * --------------------------------------------------------------------------------------------- */
+
+int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
+{
+    if (object)
+        *object = DUITE_NO_OBJECT;
+    int code = enter(rt, "duite_new");
+    if (code)
+        return code;
+    if (!object)
+        return remember(rt, base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
+    return remember(rt, data_object_new(&rt->graph.table, type, count, object));
+}
+
+int duite_hint(duite *rt, duite_object object, double weight, size_t n,
+               const duite_object *neighbours, const double *edge_weights)
+{
+    int code = enter(rt, "duite_hint");
+    if (code)
+        return code;
+    return remember(rt, map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights));
+}
+
+int duite_follow(duite *rt, duite_object object, duite_object leader)
+{
+    int code = enter(rt, "duite_follow");
+    return code ? code : remember(rt, map_follow(&rt->graph.table, object, leader));
+}
+
+int duite_home(duite *rt, duite_object object)
+{
+    if (enter(rt, "duite_home") || settle(rt))
+        return -1;
+    const struct data_object *found = data_object_find(&rt->graph.table, object);
+    return found ? found->home : -1;
+}
+
+int duite_free(duite *rt, duite_object object)
+{
+    int code = enter(rt, "duite_free");
+    if (!code)
+        code = remember(rt, settle(rt));
+    if (!code)
+        code = remember(rt, graph_free(&rt->graph, work_main(rt->pool), object));
+    return code;
+}
+
+/* ---- Tasks
+ * -----------------------------------------------------------------------------------------------
+ */
+
+static int fork_task(duite *rt, int at, const duite_kernel *kernel, const void *args, size_t n,
+                     const duite_object *objects)
+{
+    int code = settle(rt);
+    if (!code)
+        code = graph_fork(&rt->graph, work_main(rt->pool), at, kernel, args, n, objects);
+    work_tick(rt->pool);
+    return remember(rt, code);
+}
+
+int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
+               const duite_object *objects)
+{
+    int code = enter(rt, "duite_fork");
+    return code ? code : fork_task(rt, GRAPH_ANYWHERE, kernel, args, n, objects);
+}
+
+int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
+                  const duite_object *objects)
+{
+    int code = enter(rt, "duite_fork_at");
+    if (code)
+        return code;
+    if (rank < 0)
+        return remember(rt,
+                        base_error(DUITE_E_ARGUMENT, "duite_fork_at: there is no rank %d", rank));
+    return fork_task(rt, rank, kernel, args, n, objects);
+}
+
+int duite_set(duite *rt, duite_object object, const void *values)
+{
+    int code = enter(rt, "duite_set");
+    if (!code)
+        code = remember(rt, settle(rt));
+    if (!code)
+        code = remember(rt, graph_set(&rt->graph, work_main(rt->pool), object, values));
+    return code;
+}
+
+/* ---- Waiting
+ * --------------------------------------------------------------------------------------------- */
+
+static bool copy_done(void *context)
+{
+    return atomic_load_explicit(&((struct graph_copy *)context)->done, memory_order_acquire);
+}
+
+static int get(duite *rt, duite_object object, int rank, void *values, const char *call)
+{
+    bool here = rank == GRAPH_ANYWHERE || rank == rt->graph.rank;
+    struct graph_copy copy = {.values = values};
+    int code = settle(rt);
+    if (!code && here && !values)
+        return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the values", call);
+    if (!code)
+        code = graph_copy(&rt->graph, work_main(rt->pool), object, rank, &copy);
+    work_tick(rt->pool);
+    if (code || !here)
+        return code;
+    work_until(rt->pool, copy_done, &copy);
+    if (!copy_done(&copy))
+        return comm_broken(rt->comm);
+    return copy.failure ? graph_failure_error(&rt->graph, copy.failure) : DUITE_OK;
+}
+
+/* The get does its work, whatever was remembered. */
+static int get_and_recall(duite *rt, duite_object object, int rank, void *values, const char *call)
+{
+    int code = enter(rt, call);
+    if (code)
+        return code;
+    code = get(rt, object, rank, values, call);
+    int before = recall(rt);
+    return before ? before : code;
+}
+
+int duite_get(duite *rt, duite_object object, void *values)
+{
+    return get_and_recall(rt, object, GRAPH_ANYWHERE, values, "duite_get");
+}
+
+int duite_get_at(duite *rt, duite_object object, int rank, void *values)
+{
+    if (rank < 0)
+        return base_error(DUITE_E_ARGUMENT, "duite_get_at: there is no rank %d", rank);
+    return get_and_recall(rt, object, rank, values, "duite_get_at");
+}
+
+static bool drained(void *context)
+{
+    struct graph *graph = context;
+    return atomic_load_explicit(&graph->unfinished, memory_order_acquire) == 0;
+}
+
+static void between(void *context)
+{
+    work_once(context);
+}
+
+/* What this rank tells the others at a wait. */
+static struct comm_word own_word(const struct graph *graph)
+{
+    struct comm_word own = {.forks = graph->forks, .fingerprint = graph->fingerprint};
+    if (graph->first_failure) {
+        own.failed = graph->first_failure->number + 1;
+        own.failure = *graph->first_failure;
+    }
+    return own;
+}
+
+static int compare(const duite *rt)
+{
+    const struct comm_word *words = rt->words;
+    for (int i = 1; i < rt->graph.n_ranks; i++)
+        if (words[i].fingerprint != words[0].fingerprint)
+            return base_error(
+                DUITE_E_DIFFERENT,
+                "ranks 0 and %d forked different tasks since the last wait (%llu and %llu "
+                "tasks since start)",
+                i, (unsigned long long)words[0].forks, (unsigned long long)words[i].forks);
+    return DUITE_OK;
+}
+
+/* The failure that is first in fork order on any rank, or NULL. */
+static const struct data_failure *first_failure(const duite *rt)
+{
+    const struct comm_word *first = NULL;
+    for (int i = 0; i < rt->graph.n_ranks; i++)
+        if (rt->words[i].failed && (!first || rt->words[i].failed < first->failed))
+            first = &rt->words[i];
+    return first ? &first->failure : NULL;
+}
+
+int duite_wait(duite *rt)
+{
+    int code = enter(rt, "duite_wait");
+    if (code)
+        return code;
+    struct graph *graph = &rt->graph;
+    work_tick(rt->pool);
+    work_until(rt->pool, drained, graph);
+    code = rt->comm ? comm_broken(rt->comm) : DUITE_OK;
+    if (code)
+        return code;
+    struct comm_word own = rt->words[0] = own_word(graph);
+    if (rt->comm)
+        code = comm_agree(rt->comm, &own, rt->words, between, rt->pool);
+    if (!code)
+        code = compare(rt);
+    graph->fingerprint = 0;
+    if (!code)
+        code = recall(rt);
+    const struct data_failure *failure = first_failure(rt);
+    if (code || !failure)
+        return code;
+    graph->first_failure = NULL;
+    return graph_failure_error(graph, failure);
+}
+
+/* ---- Counters
+ * -------------------------------------------------------------------------------------------- */
+
+int duite_count_all(duite *rt, duite_counters *counters)
+{
+    int code = enter(rt, "duite_count_all");
+    if (code || !counters)
+        return code ? code
+                    : base_error(DUITE_E_ARGUMENT, "duite_count_all: nowhere to put the counters");
+    duite_counters own = {0};
+    work_count(rt->pool, &own);
+    if (rt->comm)
+        comm_count(rt->comm, &own.messages, &own.bytes);
+    double sums[] = {
+        (double)own.tasks,    (double)own.placed, (double)own.stolen, (double)own.chained,
+        (double)own.messages, (double)own.bytes,  own.busy,           own.idle};
+    if (rt->comm)
+        code = comm_sum(rt->comm, sums, sizeof sums / sizeof sums[0], between, rt->pool);
+    *counters = (duite_counters){.tasks = (uint64_t)sums[0],
+                                 .placed = (uint64_t)sums[1],
+                                 .stolen = (uint64_t)sums[2],
+                                 .chained = (uint64_t)sums[3],
+                                 .messages = (uint64_t)sums[4],
+                                 .bytes = (uint64_t)sums[5],
+                                 .busy = sums[6],
+                                 .idle = sums[7]};
+    return code;
+}

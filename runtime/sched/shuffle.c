@@ -1,0 +1,57 @@
+/* shuffle: an adversary for tests. Every decision is a coin toss from the seed: any queue, either
+ * end, any victim or none, so that tasks run in orders that no sensible scheduler would choose. */
+#include "runtime/sched/sched.h"
+
+struct state {
+    uint64_t random;
+    unsigned n_workers;
+};
+
+static void start(void *state, unsigned worker, unsigned n_workers, uint64_t seed)
+{
+    struct state *own = state;
+    *own = (struct state){.random = seed * 1000003 + worker, .n_workers = n_workers};
+}
+
+static unsigned draw(void *state, unsigned below)
+{
+    return (unsigned)(duite_random(&((struct state *)state)->random) % below);
+}
+
+static unsigned place(void *state, const duite_ready *task)
+{
+    (void)task;
+    unsigned n_workers = ((struct state *)state)->n_workers;
+    unsigned queue = draw(state, n_workers + 1);
+    return queue == n_workers ? DUITE_SHARED_QUEUE : queue;
+}
+
+static duite_end serve(void *state)
+{
+    return draw(state, 2) ? DUITE_NEWEST : DUITE_OLDEST;
+}
+
+static unsigned victim(void *state, unsigned attempt)
+{
+    unsigned n_workers = ((struct state *)state)->n_workers;
+    if (attempt >= n_workers || draw(state, 8) == 0)
+        return DUITE_NO_QUEUE;
+    return draw(state, n_workers);
+}
+
+static int chain(void *state, const duite_ready *task)
+{
+    (void)task;
+    return (int)draw(state, 2);
+}
+
+const duite_scheduler sched_shuffle = {
+    .name = "shuffle",
+    .summary = "random decisions from the seed, for tests",
+    .state_size = sizeof(struct state),
+    .start = start,
+    .place = place,
+    .serve = serve,
+    .victim = victim,
+    .chain = chain,
+};

@@ -1,0 +1,73 @@
+/* Everything about cores is asked once, at start. */
+#include "runtime/workers/cores.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <hwloc.h>
+#include <sched.h>
+#include <xxhash.h>
+
+static int list(struct work_cores *cores, hwloc_topology_t topology)
+{
+    hwloc_bitmap_t allowed = hwloc_bitmap_alloc();
+    if (!allowed)
+        return base_no_memory("the list of cores");
+    if (hwloc_get_cpubind(topology, allowed, HWLOC_CPUBIND_PROCESS))
+        hwloc_bitmap_copy(allowed, hwloc_topology_get_allowed_cpuset(topology));
+    hwloc_obj_type_t type = HWLOC_OBJ_CORE;
+    if (hwloc_get_nbobjs_by_type(topology, type) < 1)
+        type = HWLOC_OBJ_PU;
+    unsigned most = (unsigned)hwloc_get_nbobjs_by_type(topology, type);
+    cores->unit = base_alloc(most * sizeof *cores->unit);
+    hwloc_obj_t core = NULL;
+    while (cores->unit && (core = hwloc_get_next_obj_by_type(topology, type, core))) {
+        hwloc_bitmap_t here = hwloc_bitmap_dup(core->cpuset);
+        if (!here)
+            continue;
+        hwloc_bitmap_and(here, here, allowed);
+        int first = hwloc_bitmap_first(here);
+        if (first >= 0)
+            cores->unit[cores->n++] = first;
+        hwloc_bitmap_free(here);
+    }
+    hwloc_bitmap_free(allowed);
+    return cores->unit ? DUITE_OK : base_no_memory("the list of cores");
+}
+
+int work_cores_find(struct work_cores *cores)
+{
+    *cores = (struct work_cores){0};
+    hwloc_topology_t topology;
+    if (hwloc_topology_init(&topology))
+        return base_error(DUITE_E_SYSTEM, "hwloc cannot start");
+    hwloc_topology_set_all_types_filter(topology, HWLOC_TYPE_FILTER_KEEP_NONE);
+    hwloc_topology_set_type_filter(topology, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL);
+    int code = hwloc_topology_load(topology)
+                   ? base_error(DUITE_E_SYSTEM, "hwloc cannot read the machine's topology")
+                   : list(cores, topology);
+    hwloc_topology_destroy(topology);
+    if (!code && !cores->n)
+        code = base_error(DUITE_E_SYSTEM, "hwloc finds no core that this process may use");
+    if (code)
+        work_cores_free(cores);
+    else
+        cores->hash = XXH64(cores->unit, cores->n * sizeof *cores->unit, 0);
+    return code;
+}
+
+void work_cores_free(struct work_cores *cores)
+{
+    base_free(cores->unit);
+    *cores = (struct work_cores){0};
+}
+
+void work_cores_bind(int unit)
+{
+    cpu_set_t set;
+    if (unit < 0)
+        return;
+    CPU_ZERO(&set);
+    CPU_SET((size_t)unit, &set);
+    sched_setaffinity(0, sizeof set, &set);
+}

@@ -1,0 +1,35 @@
+#ifndef DUITE_WORKERS_DEQUE_H
+#define DUITE_WORKERS_DEQUE_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+struct graph_task;
+
+/* A work-stealing deque: its owner pushes and takes at the new end, anybody takes at the old end,
+ * nobody locks. Chase & Lev, SPAA 2005, with the fences of Lê, Pop, Cohen & Zappa Nardelli, PPoPP
+ * 2013. */
+struct work_ring {
+    uint64_t mask;
+    struct work_ring *older; /* rings that were outgrown: thieves may still read them */
+    _Atomic(struct graph_task *) slot[];
+};
+
+struct work_deque {
+    _Alignas(64) _Atomic int64_t oldest; /* thieves take here */
+    _Alignas(64) _Atomic int64_t newest; /* the owner pushes here: one past the last */
+    _Atomic(struct work_ring *) ring;
+};
+
+bool work_deque_start(struct work_deque *deque); /* false without memory */
+void work_deque_stop(struct work_deque *deque);
+
+/* Owner only. False without memory: nothing was pushed. */
+bool work_deque_push(struct work_deque *deque, struct graph_task *task);
+/* Owner only. NULL if it is empty. */
+struct graph_task *work_deque_take_newest(struct work_deque *deque);
+/* Anybody. NULL if it is empty or another thief was faster (*again is set then). */
+struct graph_task *work_deque_take_oldest(struct work_deque *deque, bool *again);
+
+#endif

@@ -1,0 +1,97 @@
+/* A task is in one place: the inbox or the deque of one queue. Only the owner moves tasks from
+ * inbox to deque. */
+#include "runtime/workers/queue.h"
+
+bool work_queue_start(struct work_queue *queue)
+{
+    atomic_init(&queue->inbox, NULL);
+    atomic_flag_clear(&queue->token);
+    return work_deque_start(&queue->deque);
+}
+
+void work_queue_stop(struct work_queue *queue)
+{
+    work_deque_stop(&queue->deque);
+}
+
+void work_queue_put(struct work_queue *queue, struct graph_task *task)
+{
+    struct graph_task *first = atomic_load_explicit(&queue->inbox, memory_order_relaxed);
+    do
+        task->next = first;
+    while (!atomic_compare_exchange_weak_explicit(&queue->inbox, &first, task, memory_order_seq_cst,
+                                                  memory_order_relaxed));
+}
+
+void work_queue_push(struct work_queue *queue, struct graph_task *task)
+{
+    if (!work_deque_push(&queue->deque, task))
+        work_queue_put(queue, task); /* no memory for a larger ring: the inbox has no bound */
+}
+
+/* The inbox, oldest first. */
+static struct graph_task *empty_inbox(struct work_queue *queue)
+{
+    if (!atomic_load_explicit(&queue->inbox, memory_order_relaxed))
+        return NULL;
+    struct graph_task *task = atomic_exchange_explicit(&queue->inbox, NULL, memory_order_acquire);
+    struct graph_task *oldest = NULL;
+    while (task) {
+        struct graph_task *next = task->next;
+        task->next = oldest;
+        oldest = task;
+        task = next;
+    }
+    return oldest;
+}
+
+static void push_all(struct work_queue *queue, struct graph_task *task)
+{
+    while (task) {
+        struct graph_task *next = task->next;
+        work_queue_push(queue, task);
+        task = next;
+    }
+}
+
+static struct graph_task *take_oldest(struct work_deque *deque)
+{
+    bool again = true;
+    struct graph_task *task = NULL;
+    while (again)
+        task = work_deque_take_oldest(deque, &again);
+    return task;
+}
+
+static struct graph_task *take(struct work_queue *queue, duite_end end)
+{
+    push_all(queue, empty_inbox(queue));
+    return end == DUITE_NEWEST ? work_deque_take_newest(&queue->deque) : take_oldest(&queue->deque);
+}
+
+struct graph_task *work_queue_take(struct work_queue *queue, duite_end end)
+{
+    struct graph_task *task = take(queue, end);
+    /* A ring that could not grow leaves tasks in the inbox: run them from there. */
+    if (!task && (task = empty_inbox(queue)))
+        push_all(queue, task->next);
+    return task;
+}
+
+struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end end)
+{
+    if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_acquire))
+        return take_oldest(&queue->deque);
+    struct graph_task *task = work_queue_take(queue, end);
+    atomic_flag_clear_explicit(&queue->token, memory_order_release);
+    return task;
+}
+
+struct graph_task *work_queue_steal(struct work_queue *victim, struct work_queue *own)
+{
+    struct graph_task *task = take_oldest(&victim->deque);
+    if (task || !(task = empty_inbox(victim)))
+        return task;
+    push_all(own, task->next);
+    return task;
+}

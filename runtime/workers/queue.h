@@ -1,0 +1,32 @@
+#ifndef DUITE_WORKERS_QUEUE_H
+#define DUITE_WORKERS_QUEUE_H
+
+#include "runtime/graph/graph.h"
+#include "runtime/workers/deque.h"
+
+#include <duite_policy.h>
+
+/* A queue of ready tasks: a deque for its owner and thieves, and an inbox into which anybody puts.
+ * The shared queue has no owner: whoever gets `token` is it for a moment. */
+struct work_queue {
+    struct work_deque deque;
+    _Alignas(64) _Atomic(struct graph_task *) inbox; /* linked by next, newest first */
+    atomic_flag token;
+};
+
+bool work_queue_start(struct work_queue *queue); /* false without memory */
+void work_queue_stop(struct work_queue *queue);
+
+/* Anybody. */
+void work_queue_put(struct work_queue *queue, struct graph_task *task);
+/* The owner, without the detour over the inbox. */
+void work_queue_push(struct work_queue *queue, struct graph_task *task);
+/* The owner. NULL: empty. */
+struct graph_task *work_queue_take(struct work_queue *queue, duite_end end);
+/* Anybody, of a queue without owner. NULL: empty, or another one is at it and will look again. */
+struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end end);
+/* A thief, who may take the whole inbox of a busy owner: all but the first go to the thief's own
+ * queue. */
+struct graph_task *work_queue_steal(struct work_queue *victim, struct work_queue *own);
+
+#endif

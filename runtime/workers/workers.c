@@ -1,0 +1,439 @@
+/* A worker owns its queue, its scheduler's state and its counters; others reach it through its
+ * inbox and its park only. */
+#include "runtime/workers/workers.h"
+
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/workers/cores.h"
+#include "runtime/workers/park.h"
+#include "runtime/workers/queue.h"
+
+#include <sched.h>
+#include <string.h>
+
+enum { LONGEST_CHAIN = 64 }; /* tasks run one after another without a look at the queues */
+
+#define POLL_SECONDS        5e-6 /* between polls while there is work */
+#define FIRST_PAUSE_SECONDS 2e-5 /* between polls while there is none: doubles up to the longest   \
+                                  */
+#define LONGEST_PAUSE_SECONDS 1e-3
+#define YIELD_SECONDS                                                                              \
+    1e-4 /* a poller without a core of its own gives way so long before it pauses */
+
+struct counts {
+    _Atomic uint64_t tasks, placed, stolen, chained, busy, idle; /* the last two in ns */
+};
+
+struct work_worker {
+    struct work_queue queue;
+    struct work_park park;
+    struct work_pool *pool;
+    void *state; /* of the scheduler */
+    unsigned index;
+    bool finishing;          /* a task of this worker makes others ready right now */
+    bool in_body;            /* the main thread must not fork */
+    struct graph_task *next; /* chained: to run directly after this one */
+    double polled;           /* when */
+    double idle_since, pause;
+    duite_call call;
+    struct duite_call_private own;
+    struct counts counts;
+    pthread_t thread;
+    int unit;          /* to be bound to, or -1 */
+    cpu_set_t binding; /* of worker 0 before start */
+};
+
+struct work_pool {
+    struct work_setup setup;
+    struct work_worker *worker; /* setup.threads of them */
+    unsigned char *states;
+    unsigned started; /* threads, worker 0 among them */
+    pthread_t main;
+    struct work_queue shared;
+    _Alignas(64) _Atomic int stop;
+    _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
+    _Alignas(64) atomic_flag poller; /* held by the idle worker that polls */
+};
+
+static void bump(_Atomic uint64_t *count, uint64_t by)
+{
+    uint64_t now = atomic_load_explicit(count, memory_order_relaxed);
+    atomic_store_explicit(count, now + by, memory_order_relaxed);
+}
+
+static void pause_core(void)
+{
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
+#endif
+}
+
+/* ---- Ready tasks
+ * ----------------------------------------------------------------------------------------- */
+
+static duite_ready describe(const struct graph *graph, const struct graph_task *task)
+{
+    static const char *const own[] = {
+        [GRAPH_COMBINE] = "duite_sum", [GRAPH_PIECES] = "duite_sum", [GRAPH_COPY] = "duite_get"};
+    const char *name =
+        task->kind == GRAPH_BODY ? graph->kernels[task->kernel]->name : own[task->kind];
+    return (duite_ready){.kernel = name, .number = task->number};
+}
+
+/* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal
+ * it. */
+static void wake_one(struct work_pool *pool, unsigned queue)
+{
+    atomic_thread_fence(memory_order_seq_cst);
+    if (!atomic_load_explicit(&pool->parked, memory_order_relaxed))
+        return;
+    unsigned n = pool->setup.threads, first = queue < n ? queue : 0;
+    for (unsigned i = 0; i < n; i++)
+        if (work_park_wake(&pool->worker[(first + i) % n].park))
+            return;
+}
+
+static void place(struct work_worker *worker, struct graph_task *task, const duite_ready *ready)
+{
+    struct work_pool *pool = worker->pool;
+    unsigned queue = pool->setup.scheduler->place(worker->state, ready);
+    bump(&worker->counts.placed, 1);
+    if (queue == worker->index)
+        work_queue_push(&worker->queue, task);
+    else if (queue < pool->setup.threads)
+        work_queue_put(&pool->worker[queue].queue, task);
+    else
+        work_queue_put(&pool->shared, task);
+    wake_one(pool, queue);
+}
+
+static void on_ready(void *context, void *who, struct graph_task *task)
+{
+    struct work_pool *pool = context;
+    struct work_worker *worker = who;
+    if (task->kind == GRAPH_SEND) {
+        comm_send(pool->setup.comm, task);
+        return;
+    }
+    duite_ready ready = describe(pool->setup.graph, task);
+    if (worker->finishing && !worker->next && pool->setup.scheduler->chain(worker->state, &ready))
+        worker->next = task;
+    else
+        place(worker, task, &ready);
+}
+
+static void on_notify(void *context)
+{
+    struct work_pool *pool = context;
+    atomic_thread_fence(memory_order_seq_cst);
+    work_park_wake(&pool->worker[0].park);
+}
+
+static void on_send_packet(void *context, struct data_packet *packet, int to)
+{
+    struct work_pool *pool = context;
+    comm_send_packet(pool->setup.comm, packet, to);
+}
+
+static int on_expect(void *context, void *who, struct data_key key, struct data_version *version,
+                     struct data_sum *sum, uint32_t packets)
+{
+    struct work_pool *pool = context;
+    return comm_expect(pool->setup.comm, who, key, version, sum, packets);
+}
+
+/* ---- One worker's work
+ * ---------------------------------------------------------------------------------- */
+
+static struct graph_task *find(struct work_worker *worker)
+{
+    struct work_pool *pool = worker->pool;
+    const duite_scheduler *scheduler = pool->setup.scheduler;
+    duite_end end = scheduler->serve(worker->state);
+    struct graph_task *task = work_queue_take(&worker->queue, end);
+    if (!task)
+        task = work_queue_take_shared(&pool->shared, end);
+    for (unsigned attempt = 0; !task; attempt++) {
+        unsigned victim = scheduler->victim(worker->state, attempt);
+        if (victim >= pool->setup.threads)
+            break;
+        if (victim == worker->index)
+            continue;
+        task = work_queue_steal(&pool->worker[victim].queue, &worker->queue);
+        if (task)
+            bump(&worker->counts.stolen, 1);
+    }
+    return task;
+}
+
+static bool poll(struct work_worker *worker)
+{
+    struct comm *comm = worker->pool->setup.comm;
+    return comm && comm_poll(comm, worker);
+}
+
+/* Runs the task and what it chains. */
+static void run(struct work_worker *worker, struct graph_task *task)
+{
+    struct work_pool *pool = worker->pool;
+    struct graph *graph = pool->setup.graph;
+    struct comm *comm = pool->setup.comm;
+    for (unsigned length = 1; task; length++) {
+        double start = base_seconds();
+        worker->in_body = true;
+        bool body = graph_run(graph, task, &worker->call);
+        worker->in_body = false;
+        double end = base_seconds();
+        bump(&worker->counts.tasks, body);
+        bump(&worker->counts.busy, body ? (uint64_t)(1e9 * (end - start)) : 0);
+        worker->finishing = length < LONGEST_CHAIN;
+        graph_finish(graph, worker, task);
+        worker->finishing = false;
+        if (comm && (comm_posted(comm) || end - worker->polled > POLL_SECONDS)) {
+            worker->polled = end;
+            poll(worker);
+        }
+        task = worker->next;
+        worker->next = NULL;
+        bump(&worker->counts.chained, task != NULL);
+    }
+}
+
+/* ---- Idling
+ * ---------------------------------------------------------------------------------------------- */
+
+static void busy_again(struct work_worker *worker)
+{
+    if (worker->idle_since > 0)
+        bump(&worker->counts.idle, (uint64_t)(1e9 * (base_seconds() - worker->idle_since)));
+    worker->idle_since = 0;
+    worker->pause = FIRST_PAUSE_SECONDS;
+}
+
+/* Spins, or gives way, for the first moments; false once it is time to sleep. */
+static bool spin(struct work_worker *worker, bool polls)
+{
+    double now = base_seconds(), most = worker->pool->setup.spin_seconds;
+    if (worker->idle_since <= 0)
+        worker->idle_since = now;
+    double since = now - worker->idle_since;
+    if (since < most) {
+        pause_core();
+        return true;
+    }
+    if (polls && most <= 0 && since < YIELD_SECONDS) {
+        sched_yield();
+        return true;
+    }
+    return false;
+}
+
+/* Sleeps until woken; `seconds` > 0: at most so long. Returns a task if there was one at the last
+ * look. */
+static struct graph_task *doze(struct work_worker *worker, double seconds, bool (*done)(void *),
+                               void *context)
+{
+    struct work_pool *pool = worker->pool;
+    atomic_fetch_add(&pool->parked, 1);
+    work_park_announce(&worker->park);
+    struct graph_task *task = find(worker);
+    if (task || atomic_load(&pool->stop) || (done && done(context)))
+        work_park_cancel(&worker->park);
+    else
+        work_park_sleep(&worker->park, seconds);
+    atomic_fetch_sub(&pool->parked, 1);
+    return task;
+}
+
+/* Nothing to do: one moment of idling. Among idle workers one keeps polling; should it get work,
+ * the next takes over. */
+static void idle(struct work_worker *worker, bool (*done)(void *), void *context)
+{
+    struct work_pool *pool = worker->pool;
+    bool polls =
+        pool->setup.comm && !atomic_flag_test_and_set_explicit(&pool->poller, memory_order_acquire);
+    if (!spin(worker, polls)) {
+        struct graph_task *task = doze(worker, polls ? worker->pause : 0, done, context);
+        if (worker->pause < LONGEST_PAUSE_SECONDS)
+            worker->pause *= 2;
+        if (polls)
+            atomic_flag_clear_explicit(&pool->poller, memory_order_release);
+        if (task) {
+            busy_again(worker);
+            if (polls)
+                wake_one(pool, DUITE_NO_QUEUE);
+            run(worker, task);
+        }
+        return;
+    }
+    if (polls)
+        atomic_flag_clear_explicit(&pool->poller, memory_order_release);
+}
+
+/* Looks for work once; idles if there is none. */
+static void look(struct work_worker *worker, bool (*done)(void *), void *context)
+{
+    struct graph_task *task = find(worker);
+    if (task) {
+        busy_again(worker);
+        run(worker, task);
+    } else if (poll(worker)) {
+        busy_again(worker);
+    } else {
+        idle(worker, done, context);
+    }
+}
+
+void work_until(struct work_pool *pool, bool (*done)(void *), void *context)
+{
+    struct work_worker *worker = &pool->worker[0];
+    struct comm *comm = pool->setup.comm;
+    if (comm && comm_posted(comm))
+        poll(worker);
+    while (!done(context) && !(comm && comm_broken(comm)))
+        look(worker, done, context);
+    busy_again(worker);
+}
+
+static bool always(void *context)
+{
+    (void)context;
+    return true;
+}
+
+void work_once(struct work_pool *pool)
+{
+    look(&pool->worker[0], always, NULL);
+}
+
+void work_tick(struct work_pool *pool)
+{
+    struct work_worker *worker = &pool->worker[0];
+    struct comm *comm = pool->setup.comm;
+    if (!comm)
+        return;
+    double now = base_seconds();
+    if (!comm_posted(comm) && now - worker->polled < POLL_SECONDS)
+        return;
+    worker->polled = now;
+    poll(worker);
+}
+
+static void *thread_main(void *argument)
+{
+    struct work_worker *worker = argument;
+    struct work_pool *pool = worker->pool;
+    work_cores_bind(worker->unit);
+    while (!atomic_load_explicit(&pool->stop, memory_order_acquire))
+        look(worker, NULL, NULL);
+    return NULL;
+}
+
+/* ---- Start and stop
+ * -------------------------------------------------------------------------------------- */
+
+static bool prepare(struct work_pool *pool, unsigned index, int unit)
+{
+    const struct work_setup *setup = &pool->setup;
+    struct work_worker *worker = &pool->worker[index];
+    size_t lines = (setup->scheduler->state_size + BASE_LINE - 1) / BASE_LINE + 1;
+    worker->pool = pool;
+    worker->index = index;
+    worker->unit = unit;
+    worker->state = pool->states + index * lines * BASE_LINE;
+    worker->pause = FIRST_PAUSE_SECONDS;
+    worker->call = (duite_call){.context = setup->context,
+                                .rank = setup->graph->rank,
+                                .worker = index,
+                                .own = &worker->own};
+    if (setup->scheduler->start)
+        setup->scheduler->start(worker->state, index, setup->threads, setup->seed);
+    bool queue = work_queue_start(&worker->queue);
+    return work_park_start(&worker->park) && queue;
+}
+
+static int start_threads(struct work_pool *pool)
+{
+    sched_getaffinity(0, sizeof pool->worker[0].binding, &pool->worker[0].binding);
+    for (pool->started = 1; pool->started < pool->setup.threads; pool->started++) {
+        struct work_worker *worker = &pool->worker[pool->started];
+        if (pthread_create(&worker->thread, NULL, thread_main, worker))
+            return base_error(DUITE_E_SYSTEM, "cannot start worker thread %u of %u", pool->started,
+                              pool->setup.threads);
+    }
+    work_cores_bind(pool->worker[0].unit);
+    return DUITE_OK;
+}
+
+int work_start(struct work_pool **out, const struct work_setup *setup)
+{
+    unsigned n = setup->threads;
+    size_t lines = (setup->scheduler->state_size + BASE_LINE - 1) / BASE_LINE + 1;
+    struct work_pool *pool = *out = base_alloc_zero(sizeof *pool);
+    if (!pool)
+        return base_no_memory("the workers");
+    pool->setup = *setup;
+    pool->setup.cores = NULL; /* the caller's: copied to the workers */
+    pool->main = pthread_self();
+    atomic_flag_clear(&pool->poller);
+    pool->worker = base_alloc_zero(n * sizeof pool->worker[0]);
+    pool->states = base_alloc_zero(n * lines * BASE_LINE);
+    bool fine = pool->worker && pool->states && work_queue_start(&pool->shared);
+    for (unsigned i = 0; i < n && fine; i++)
+        fine = prepare(pool, i, setup->cores ? setup->cores[i] : -1);
+    setup->graph->hooks = (struct graph_hooks){.context = pool,
+                                               .ready = on_ready,
+                                               .notify = on_notify,
+                                               .send_packet = on_send_packet,
+                                               .expect = on_expect};
+    return fine ? start_threads(pool) : base_no_memory("the workers");
+}
+
+void work_stop(struct work_pool *pool)
+{
+    if (!pool)
+        return;
+    atomic_store(&pool->stop, 1);
+    for (unsigned i = 1; i < pool->started; i++) {
+        atomic_thread_fence(memory_order_seq_cst);
+        work_park_wake(&pool->worker[i].park);
+        pthread_join(pool->worker[i].thread, NULL);
+    }
+    if (pool->started && pool->worker[0].unit >= 0)
+        sched_setaffinity(0, sizeof pool->worker[0].binding, &pool->worker[0].binding);
+    for (unsigned i = 0; pool->worker && i < pool->setup.threads; i++) {
+        work_queue_stop(&pool->worker[i].queue);
+        if (pool->worker[i].pool)
+            work_park_stop(&pool->worker[i].park);
+    }
+    work_queue_stop(&pool->shared);
+    base_free(pool->worker);
+    base_free(pool->states);
+    base_free(pool);
+}
+
+struct work_worker *work_main(struct work_pool *pool)
+{
+    return &pool->worker[0];
+}
+
+bool work_may_fork(struct work_pool *pool)
+{
+    return pthread_equal(pthread_self(), pool->main) && !pool->worker[0].in_body;
+}
+
+void work_count(struct work_pool *pool, duite_counters *counters)
+{
+    for (unsigned i = 0; i < pool->setup.threads; i++) {
+        struct counts *counts = &pool->worker[i].counts;
+        counters->tasks += atomic_load_explicit(&counts->tasks, memory_order_relaxed);
+        counters->placed += atomic_load_explicit(&counts->placed, memory_order_relaxed);
+        counters->stolen += atomic_load_explicit(&counts->stolen, memory_order_relaxed);
+        counters->chained += atomic_load_explicit(&counts->chained, memory_order_relaxed);
+        counters->busy += 1e-9 * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
+        counters->idle += 1e-9 * (double)atomic_load_explicit(&counts->idle, memory_order_relaxed);
+    }
+}

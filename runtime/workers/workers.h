@@ -1,0 +1,51 @@
+#ifndef DUITE_WORKERS_WORKERS_H
+#define DUITE_WORKERS_WORKERS_H
+
+#include "runtime/comm/comm.h"
+#include "runtime/graph/graph.h"
+
+#include <duite_policy.h>
+
+/* The workers of a rank: worker 0 is the main thread, which works while the main program waits; the
+ * others are threads of ours. A worker runs what it finds (its own queue, the shared one, then
+ * those of the victims the scheduler names), polls for messages between tasks, and when it finds
+ * nothing spins for a while and then sleeps; one of the idle ones keeps polling. */
+struct work_pool;
+struct work_worker;
+
+struct work_setup {
+    struct graph *graph; /* its hooks are set by work_start */
+    struct comm *comm;   /* NULL: one rank */
+    const duite_scheduler *scheduler;
+    void *context; /* for bodies */
+    unsigned threads;
+    uint64_t seed;
+    double spin_seconds; /* 0: workers outnumber cores */
+    const int *cores; /* threads of them to bind to, as the operating system numbers them; NULL: no
+                         binding */
+};
+
+/* Errors: memory, DUITE_E_SYSTEM. The calling thread becomes worker 0. */
+int work_start(struct work_pool **pool, const struct work_setup *setup);
+/* All tasks are over. Frees the pool; the calling thread gets its old binding back. */
+void work_stop(struct work_pool *pool);
+
+/* Worker 0, for calls by the main thread. */
+struct work_worker *work_main(struct work_pool *pool);
+
+/* Works until done(context) or communication broke. Main thread. */
+void work_until(struct work_pool *pool, bool (*done)(void *context), void *context);
+
+/* One look around by the main thread: a task or a poll; idles a moment if there is nothing. */
+void work_once(struct work_pool *pool);
+
+/* Sends what was posted and, now and then, polls: the main thread calls it as it forks. */
+void work_tick(struct work_pool *pool);
+
+/* Counts of all workers of this rank. Exact when no task is left. */
+void work_count(struct work_pool *pool, duite_counters *counters);
+
+/* True if the calling thread is the main thread and not inside a body. */
+bool work_may_fork(struct work_pool *pool);
+
+#endif

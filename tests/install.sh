@@ -7,17 +7,12 @@ PKG_CONFIG_PATH=$prefix/lib/pkgconfig${PKG_CONFIG_PATH:+:$PKG_CONFIG_PATH}
 LD_LIBRARY_PATH=$prefix/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 export PKG_CONFIG_PATH LD_LIBRARY_PATH
 
-install_here() { # into the prefix, whatever configure was given
-    ${MAKE:-make} install prefix="$prefix" exec_prefix="$prefix" libdir="$prefix/lib" includedir="$prefix/include" \
-        datadir="$prefix/share" pkgconfigdir="$prefix/lib/pkgconfig"
-}
-
 install_staged() { # for packagers: nothing outside DESTDIR
     ${MAKE:-make} install prefix=/opt/duite exec_prefix=/opt/duite DESTDIR="$scratch/stage" &&
         test -f "$scratch/stage/opt/duite/include/duite.h" && test ! -e /opt/duite/include/duite.h
 }
 
-pc() { ${PKG_CONFIG:-pkg-config} --define-variable=prefix="$prefix" --define-variable=libdir="$prefix/lib" "$@" duite; }
+pc() { ${PKG_CONFIG:-pkg-config} "$@" duite; }
 
 compile() {
     cat > "$scratch/three.c" << 'EOF'
@@ -35,7 +30,7 @@ exports_ours_only() {
 }
 
 complete() { # everything that duite.h and duite_policy.h declare is there
-    sed -n 's/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p' "$prefix/include/duite.h" "$prefix/include/duite_policy.h" |
+    sed -n '/^static/d; s/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p' "$prefix/include/duite.h" "$prefix/include/duite_policy.h" |
         grep -v -e '_body$' | sort -u > "$scratch/declared"
     sort -u "$scratch/symbols" | comm -23 "$scratch/declared" - > "$scratch/absent"
     cat "$scratch/absent"
@@ -43,13 +38,13 @@ complete() { # everything that duite.h and duite_policy.h declare is there
 }
 
 uninstalled() {
-    ${MAKE:-make} uninstall prefix="$prefix" exec_prefix="$prefix" libdir="$prefix/lib" includedir="$prefix/include" \
-        datadir="$prefix/share" pkgconfigdir="$prefix/lib/pkgconfig" && test -z "$(find "$prefix" -type f)"
+    # shellcheck disable=SC2046 # a list of settings
+    ${MAKE:-make} uninstall $(locations "$prefix") && test -z "$(find "$prefix" ! -type d)"
 }
 
 unset MAKEFLAGS MFLAGS MAKELEVEL
 plan_later
-ok "make install" install_here
+ok "make install" install_duite "$prefix"
 ok "pkg-config knows duite and where mpi.h is" pc --exists
 ok "a program compiles with pkg-config's flags" compile
 ok "and runs" limited "$scratch/three"

@@ -10,7 +10,7 @@ build=$PWD
 make=${MAKE:-make}
 home=$scratch/home
 usr=$scratch/usr
-unset MAKEFLAGS MFLAGS MAKELEVEL
+unset MAKEFLAGS MFLAGS MAKELEVEL # the makes in here are nobody's children
 
 # block LANGUAGES NTH: the text of the NTH fenced block in one of the languages ("text" also stands for none).
 block() {
@@ -49,15 +49,12 @@ prepare() {
     cat > "$scratch/bin/make" << EOF
 #!/bin/sh
 case \$* in
-    install | 'DESTDIR='*' install') exec $make -C '$build' "\$@" $(locations) ;;
+    install | 'DESTDIR='*' install') exec $make -C '$build' "\$@" $(locations "$usr") ;;
     *) exec $make -n -C '$build' "\$@" > /dev/null ;;
 esac
 EOF
-    chmod +x "$scratch/bin/make" && "$scratch/bin/make" install
+    chmod +x "$scratch/bin/make" && install_duite "$usr"
 }
-
-locations() { echo "prefix=$usr exec_prefix=$usr libdir=$usr/lib includedir=$usr/include datadir=$usr/share" \
-    "pkgconfigdir=$usr/lib/pkgconfig"; }
 
 # The file name under which README's commands compile the first program.
 program_name() { commands | grep -o '[a-z_]*\.c\>' | head -n 1; }

@@ -12,6 +12,7 @@
 #     limited COMMAND...               COMMAND with the same time limit
 #     quick                            whether only the quick subset is wanted (DUITE_QUICK=1)
 #     skip_unless FILE                 skip_all unless the program FILE was built
+#     install_duite PREFIX             make install there, whatever configure was told; `locations PREFIX` are its settings
 # $scratch is a folder of the test's own, removed at its end. $DUITE_CLOTH and $DUITE_VIEW are the programs.
 
 srcdir=$(cd "${srcdir:-.}" && pwd) || exit 99
@@ -109,4 +110,16 @@ ranks() {
     tap_n=$1
     shift
     limited "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n "$tap_n" "$@"
+}
+
+locations() {
+    echo "prefix=$1 exec_prefix=$1 bindir=$1/bin libdir=$1/lib includedir=$1/include datarootdir=$1/share" \
+        "datadir=$1/share mandir=$1/share/man pkgconfigdir=$1/lib/pkgconfig"
+}
+
+install_duite() {
+    # shellcheck disable=SC2046 # a list of settings
+    env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL "${MAKE:-make}" install $(locations "$1") &&
+        sed -e "s|^prefix=.*|prefix=$1|" -e "s|^libdir=.*|libdir=$1/lib|" -e "s|^includedir=.*|includedir=$1/include|" \
+            runtime/duite.pc > "$1/lib/pkgconfig/duite.pc"
 }

@@ -14,6 +14,8 @@ static void *out_of_memory(size_t n, size_t size, struct cloth_error *error)
 
 void *cloth_alloc(size_t n, size_t size, struct cloth_error *error)
 {
+    if (size && n > SIZE_MAX / size)
+        return out_of_memory(n, size, error);
     void *block = calloc(n ? n : 1, size ? size : 1);
     return block ? block : out_of_memory(n, size, error);
 }

@@ -20,8 +20,7 @@ struct mesh {
     uint32_t *face_corner; /* vertices of the polygons, as in the input */
 
     uint32_t n_triangles;
-    uint32_t
-        *triangle; /* n_triangles x 3: polygons fanned from their first corner, in face order */
+    uint32_t *triangle; /* n_triangles x 3: polygons fanned from their first corner, in order */
 
     uint32_t n_lone_edges;
     uint32_t *lone_edge; /* n_lone_edges x 2: edges given without triangles */

@@ -1,0 +1,167 @@
+/* Grids, what all meshes can do with their vertices, and the frame they stand in. */
+#include "cloth/mesh/detail/vector.h"
+#include "tests/cloth/mesh/tools.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+START_TEST(numbering)
+{
+    struct mesh mesh = grid(2, 3, 3, 4);
+    ck_assert_uint_eq(mesh.n_vertices, 12);
+    ck_assert_uint_eq(mesh.grid_nx, 3);
+    ck_assert_uint_eq(mesh.grid_ny, 4);
+    for (uint32_t j = 0; j < 4; j++) {
+        for (uint32_t i = 0; i < 3; i++) {
+            const double *x = mesh.position + 3 * (j * 3 + i), *uv = mesh.uv + 2 * (j * 3 + i);
+            ck_assert_double_eq(x[0], -1.0 + i);
+            ck_assert_double_eq(x[1], 0);
+            ck_assert_double_eq(x[2], -1.5 + j);
+            ck_assert_double_eq(uv[0], i);
+            ck_assert_double_eq(uv[1], j);
+        }
+    }
+    const uint32_t first[6] = {0, 3, 4, 0, 4, 1}; /* the diagonal is 0-4 */
+    ck_assert_mem_eq(mesh.triangle, first, sizeof first);
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(triangles)
+{
+    struct mesh mesh = grid(1, 1, 150, 150);
+    ck_assert_uint_eq(mesh.n_triangles, 44402);
+    ck_assert_uint_eq(mesh.n_faces, 44402);
+    ck_assert_uint_eq(mesh.face_start[44402], 3 * 44402);
+    ck_assert_mem_eq(mesh.triangle, mesh.face_corner, 3 * 44402 * sizeof(uint32_t));
+    for (size_t t = 0; t < mesh.n_triangles; t++) { /* y of (q - p) x (r - p) */
+        const double *p = mesh.position + 3 * mesh.triangle[3 * t];
+        const double *q = mesh.position + 3 * mesh.triangle[3 * t + 1];
+        const double *r = mesh.position + 3 * mesh.triangle[3 * t + 2];
+        ck_assert_double_gt((q[2] - p[2]) * (r[0] - p[0]) - (q[0] - p[0]) * (r[2] - p[2]), 0);
+    }
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(centred_to_the_bit)
+{
+    struct mesh mesh = grid(0.7, 1.3, 37, 8);
+    uint32_t n = mesh.n_vertices;
+    for (uint32_t v = 0; v < n; v++) {
+        ck_assert(mesh.position[3 * v] == -mesh.position[3 * (n - 1 - v)]);
+        ck_assert(mesh.position[3 * v + 2] == -mesh.position[3 * (n - 1 - v) + 2]);
+    }
+    ck_assert(mesh.position[0] == -0.35);
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(wrong_sizes)
+{
+    const struct {
+        double width, height;
+        uint32_t nx, ny;
+        const char *says;
+    } wrong[] = {
+        {0, 1, 2, 2, "must be positive"},
+        {1, -1, 2, 2, "must be positive"},
+        {NAN, 1, 2, 2, "must be positive"},
+        {1, INFINITY, 2, 2, "must be positive"},
+        {1, 1, 1, 2, "at least 2"},
+        {1, 1, 2, 0, "at least 2"},
+        {1, 1, 65536, 65536, "is too large"},
+        {1, 1, 4294967295u, 4294967295u, "is too large"},
+        {1, 1, 20000, 20000, "at most 357913941"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        struct cloth_error error = {0};
+        struct mesh mesh;
+        int code =
+            mesh_grid(&mesh, wrong[i].width, wrong[i].height, wrong[i].nx, wrong[i].ny, &error);
+        ck_assert_int_eq(code, CLOTH_E_INPUT);
+        ck_assert_ptr_nonnull(strstr(error.text, wrong[i].says));
+        ck_assert_ptr_null(mesh.position);
+    }
+}
+END_TEST
+
+START_TEST(mass_of_vertices)
+{
+    struct mesh mesh = grid(1.5, 0.8, 41, 23);
+    double *mass = calloc(mesh.n_vertices, sizeof *mass), sum = 0;
+    mass[0] = 1; /* is added to */
+    mesh_add_mass(&mesh, 0.25, mass);
+    for (uint32_t v = 0; v < mesh.n_vertices; v++)
+        sum += mass[v];
+    ck_assert_double_eq_tol(sum, 1 + 1.5 * 0.8 * 0.25, 1e-13);
+    double cell = 1.5 / 40 * 0.8 / 22 * 0.25;
+    ck_assert_double_eq_tol(mass[0], 1 + cell / 3, 1e-15);   /* two triangles */
+    ck_assert_double_eq_tol(mass[40], cell / 6, 1e-15);      /* one */
+    ck_assert_double_eq_tol(mass[41 * 10 + 7], cell, 1e-15); /* six */
+    ck_assert_double_eq_tol(mass[20], cell / 2, 1e-15);      /* three */
+    free(mass);
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(identity_keeps_bits)
+{
+    double x[6] = {-0.0, 5e-324, 0.1, -1e308, 3.0, -0.0}, before[6];
+    struct mesh mesh = {.n_vertices = 2, .position = x};
+    struct mesh_transform same = mesh_identity;
+    memcpy(before, x, sizeof x);
+    mesh_apply(&mesh, &same);
+    ck_assert_mem_eq(x, before, sizeof x);
+    same.rotate[0] = -3; /* also the identity, not normalised */
+    same.translate[1] = -0.0;
+    mesh_apply(&mesh, &same);
+    ck_assert_mem_eq(x, before, sizeof x);
+    memset(same.rotate, 0, sizeof same.rotate);
+    mesh_apply(&mesh, &same);
+    ck_assert_mem_eq(x, before, sizeof x);
+}
+END_TEST
+
+START_TEST(scale_then_rotate_then_translate)
+{
+    double x[6] = {1, 2, 3, 0, 0, 1};
+    struct mesh mesh = {.n_vertices = 2, .position = x};
+    /* a quarter turn about y: z -> x, x -> -z */
+    struct mesh_transform transform = {{2, 3, 4}, {5, 0, 5, 0}, {10, 20, 30}};
+    mesh_apply(&mesh, &transform);
+    const double expected[6] = {22, 26, 28, 14, 20, 30};
+    for (int i = 0; i < 6; i++)
+        ck_assert_double_eq_tol(x[i], expected[i], 1e-13);
+    double y[3] = {0, 1, 0};
+    struct mesh one = {.n_vertices = 1, .position = y};
+    struct mesh_transform about_x = {
+        {1, 1, 1}, {sqrt(0.75), 0.5, 0, 0}, {0, 0, 0}}; /* 60 degrees */
+    mesh_apply(&one, &about_x);
+    ck_assert_double_eq_tol(y[1], 0.5, 1e-15);
+    ck_assert_double_eq_tol(y[2], sqrt(0.75), 1e-15);
+}
+END_TEST
+
+START_TEST(areas)
+{
+    const double x[9] = {0, 0, 0, 3, 0, 0, 0, 0, 4};
+    const uint32_t corner[3] = {0, 1, 2};
+    ck_assert_double_eq(mesh_area(x, corner), 6);
+    ck_assert_double_eq(mesh_distance(x, 1, 2), 5);
+}
+END_TEST
+
+START_TEST(free_twice)
+{
+    struct mesh mesh = {0};
+    mesh_free(&mesh);
+    mesh = grid(1, 1, 2, 2);
+    mesh_free(&mesh);
+    mesh_free(&mesh);
+    ck_assert_uint_eq(mesh.n_vertices, 0);
+}
+END_TEST
+
+RUN("grid", numbering, triangles, centred_to_the_bit, wrong_sizes, mass_of_vertices,
+    identity_keeps_bits, scale_then_rotate_then_translate, areas, free_twice)

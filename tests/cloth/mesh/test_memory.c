@@ -1,0 +1,140 @@
+/* Every allocation fails once: the code says so, nothing is left over, and nothing is lost (the
+ * sanitizer looks). The linker puts the functions below in the place of malloc's family
+ * (module.mk). */
+#include "cloth/base/memory.h"
+#include "cloth/mesh/blocks.h"
+#include "cloth/mesh/lattice.h"
+#include "tests/cloth/mesh/tools.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+
+static long left = -1; /* allocations until one fails; negative: none does any more */
+static int armed;      /* only while the code under test runs: check allocates, too */
+
+static int fails_now(void)
+{
+    return armed && left >= 0 && left-- == 0;
+}
+
+#define TRY(call) (armed = 1, code = (call), armed = 0, code)
+
+void *__real_malloc(size_t n);
+void *__real_calloc(size_t n, size_t size);
+void *__real_realloc(void *block, size_t n);
+void *__wrap_malloc(size_t n);
+void *__wrap_calloc(size_t n, size_t size);
+void *__wrap_realloc(void *block, size_t n);
+
+void *__wrap_malloc(size_t n)
+{
+    return fails_now() ? NULL : __real_malloc(n);
+}
+
+void *__wrap_calloc(size_t n, size_t size)
+{
+    return fails_now() ? NULL : __real_calloc(n, size);
+}
+
+void *__wrap_realloc(void *block, size_t n)
+{
+    return fails_now() ? NULL : __real_realloc(block, n);
+}
+
+static const char TEXT[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 2\nvt 0 0\nvt 1 1\n"
+                           "f 1/1 2/1 3/2 4/1\nl 4 5\n";
+
+/* One way through all functions; each result is freed and was empty if its function failed. */
+static int all(struct cloth_error *error, const char *path)
+{
+    struct mesh mesh, sheet = {0}, copy = {0};
+    struct mesh_lattice lattice = {0};
+    struct mesh_blocks blocks = {0};
+    struct mesh_moduli moduli = {1, 1, 1, 1};
+    static const uint32_t chain[] = {0, 1, 1, 2, 2, 3};
+    static unsigned char used[64];
+    int code;
+    memset(used, 1, sizeof used);
+    if (TRY(mesh_read_obj(&mesh, path, error)))
+        ck_assert(!mesh.position && !mesh.triangle && !mesh.lone_edge && !mesh.uv);
+    else
+        ck_assert(mesh.uv && mesh.n_triangles == 2 && mesh.n_lone_edges == 1);
+    if (!code && TRY(mesh_lattice_build(&lattice, &mesh, &moduli, error)))
+        ck_assert(!lattice.spring && lattice.n == 0);
+    if (!code && TRY(mesh_grid(&sheet, 1, 1, 8, 8, error)))
+        ck_assert(!sheet.position && !sheet.triangle);
+    if (!code && TRY(mesh_inline(&copy, 4, mesh.position, 1, chain, 1, mesh.triangle, error)))
+        ck_assert(!copy.position && !copy.triangle);
+    if (!code && TRY(mesh_blocks_cut(&blocks, 64, used, 3, chain, 1, error)))
+        ck_assert(!blocks.start && !blocks.vertex && !blocks.place);
+    mesh_blocks_free(&blocks);
+    mesh_free(&copy);
+    mesh_free(&sheet);
+    mesh_lattice_free(&lattice);
+    mesh_free(&mesh);
+    return code;
+}
+
+START_TEST(each_fails_once)
+{
+    struct file file = file_new(TEXT, strlen(TEXT));
+    int failures = 0;
+    for (long n = 0;; n++) {
+        struct cloth_error error = {0};
+        left = n;
+        int code = all(&error, file.path);
+        int failed = left < 0;
+        if (!failed) {
+            ck_assert_int_eq(code, CLOTH_OK);
+            break;
+        }
+        if (code == CLOTH_OK)
+            continue; /* an array was to be made smaller, and stayed as it was */
+        ck_assert_int_eq(code, CLOTH_E_MEMORY);
+        ck_assert_int_eq(error.code, CLOTH_E_MEMORY);
+        ck_assert_msg(strstr(error.text, "out of memory") != NULL, "%s", error.text);
+        failures++;
+    }
+    ck_assert_int_gt(failures, 60);
+    close(file.descriptor);
+}
+END_TEST
+
+START_TEST(lists)
+{
+    struct cloth_list list = {0};
+    for (uint32_t i = 0; i < 1000; i++) {
+        uint32_t *to = cloth_list_add(&list, sizeof *to, i % 3, NULL);
+        ck_assert_ptr_nonnull(to);
+        for (uint32_t k = 0; k < i % 3; k++)
+            to[k] = i;
+    }
+    ck_assert_uint_eq(list.n, 999);
+    ck_assert_uint_le(list.n, list.capacity);
+    const uint32_t *items = list.items;
+    for (uint32_t i = 0, at = 0; i < 1000; i++)
+        for (uint32_t k = 0; k < i % 3; k++)
+            ck_assert_uint_eq(items[at++], i);
+    struct cloth_error error = {0};
+    ck_assert_ptr_null(cloth_list_add(&list, 8, SIZE_MAX / 8, &error)); /* would wrap around */
+    ck_assert_int_eq(error.code, CLOTH_E_MEMORY);
+    ck_assert_uint_eq(list.n, 999);
+    free(list.items);
+    ck_assert_ptr_null(cloth_alloc(SIZE_MAX / 2, 4, NULL));
+    void *none = cloth_alloc(0, 4, NULL);
+    ck_assert_ptr_nonnull(none);
+    free(none);
+}
+END_TEST
+
+START_TEST(the_first_error_stays)
+{
+    struct cloth_error error = {0};
+    ck_assert_int_eq(cloth_fail(&error, CLOTH_E_IO, "first %d", 1), CLOTH_E_IO);
+    ck_assert_int_eq(cloth_fail(&error, CLOTH_E_INPUT, "second"), CLOTH_E_IO);
+    ck_assert_str_eq(error.text, "first 1");
+    ck_assert_int_eq(cloth_fail(NULL, CLOTH_E_INPUT, "third"), CLOTH_E_INPUT);
+}
+END_TEST
+
+RUN("memory", each_fails_once, lists, the_first_error_stays)

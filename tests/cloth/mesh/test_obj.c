@@ -1,0 +1,193 @@
+/* What the OBJ reader makes of good files, however they are written. */
+#include "tests/cloth/mesh/tools.h"
+
+#include <locale.h>
+#include <stdlib.h>
+
+#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+
+static void corners_are(const struct mesh *mesh, size_t n, const uint32_t *corners)
+{
+    ck_assert_uint_eq(mesh->n_triangles * 3, n);
+    ck_assert_mem_eq(mesh->triangle, corners, n * sizeof *corners);
+}
+
+START_TEST(polygons_are_fanned)
+{
+    struct mesh mesh =
+        read_text(SQUARE "v 2 0 0\nv 2 2 0\nv 3 3 0\nf 3 4 1 2\nf 2 5 6\nf 6 5 7 4 3\n");
+    const uint32_t start[] = {0, 4, 7, 12}, corner[] = {2, 3, 0, 1, 1, 4, 5, 5, 4, 6, 3, 2};
+    const uint32_t fans[] = {2, 3, 0, 2, 0, 1, 1, 4, 5, 5, 4, 6, 5, 6, 3, 5, 3, 2};
+    ck_assert_uint_eq(mesh.n_faces, 3);
+    ck_assert_mem_eq(mesh.face_start, start, sizeof start);
+    ck_assert_mem_eq(mesh.face_corner, corner, sizeof corner);
+    corners_are(&mesh, 18, fans);
+    ck_assert_uint_eq(mesh.grid_nx, 0);
+    ck_assert_ptr_null(mesh.uv);
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(every_way_to_write_a_corner)
+{
+    const uint32_t same[] = {0, 1, 2, 0, 2, 3};
+    const char *faces[] = {
+        "f 1 2 3 4\n",
+        "f 1/1 2/1 3/1 4/1\n",
+        "f 1//9 2//9 3//9 4//9\n",
+        "f 1/1/9 2/1/9 3/1/1 4/1/1\n",
+        "f -4 -3 -2 -1\n",
+        "f -4/-1 -3/-1/7 3//-1 4/\n",
+        "f\t1  2 \t3 4 \r\n",
+        "  f 1 2 3 4",
+        "f 1 2 3 4 # 5 6",
+        "f 1 2 \\\n3 4\n",
+        "f 1 2 \\\r\n3 \\\r\n4\r\n",
+        "f 1 2 3 4\\",
+        "f +1 2 3 4",
+        "f 1// 2 3 4\n",
+    };
+    for (size_t i = 0; i < sizeof faces / sizeof *faces; i++) {
+        char text[256];
+        snprintf(text, sizeof text, SQUARE "vn 0 0 1\nvt 0.5 0.5\n%s", faces[i]);
+        struct mesh mesh = read_text(text);
+        corners_are(&mesh, 6, same);
+        mesh_free(&mesh);
+    }
+}
+END_TEST
+
+START_TEST(numbers)
+{
+    struct mesh mesh = read_text("\xef\xbb\xbfv 1e-3 -.5 +2. 0.1 0.2 0.3\n"
+                                 "v 1 2 3 1.0\nv 4 5 6 red\nv 0.1 1E2 5e-324\n");
+    const double x[] = {1e-3, -0.5, 2, 1, 2, 3, 4, 5, 6, 0.1, 100, 5e-324};
+    ck_assert_uint_eq(mesh.n_vertices, 4);
+    ck_assert_mem_eq(mesh.position, x, sizeof x);
+    ck_assert_uint_eq(mesh.n_faces, 0);
+    ck_assert_uint_eq(mesh.face_start[0], 0);
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(the_locale_does_not_matter)
+{
+    setlocale(LC_ALL, "de_DE.UTF-8"); /* where it exists, strtod wants commas */
+    struct mesh mesh = read_text("v 1.5 0 0\n");
+    ck_assert_double_eq(mesh.position[0], 1.5);
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(all_else_is_skipped)
+{
+    struct mesh mesh = read_text("# a comment that ends with C:\\\n"
+                                 "mtllib a.mtl\no thing\n\n   \n" SQUARE "g a b\nusemtl x\ns off\n"
+                                 "vp 0 0\nvertex 1\nfoo\nf 1 2 3\np 1\nfo 1 2 4\ncurv 0 1 1 2\n#");
+    ck_assert_uint_eq(mesh.n_vertices, 4);
+    ck_assert_uint_eq(mesh.n_triangles, 1);
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(faces_may_come_first)
+{
+    struct mesh mesh = read_text("f 1/1 2/2 3/3\nvt 0 0\nvt 1 0\nvt 0 1\n" SQUARE);
+    const uint32_t corner[] = {0, 1, 2};
+    corners_are(&mesh, 3, corner);
+    ck_assert_double_eq(mesh.uv[2], 1);
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(lone_edges)
+{
+    struct mesh mesh = read_text(SQUARE "l 1 2 3\nl -1/7 -4\nvt 0 0\nvt 0 0\nvt 0 0\nvt 0 0\n"
+                                        "vt 0 0\nvt 0 0\nvt 0 0\n");
+    const uint32_t edges[] = {0, 1, 1, 2, 3, 0};
+    ck_assert_uint_eq(mesh.n_lone_edges, 3);
+    ck_assert_mem_eq(mesh.lone_edge, edges, sizeof edges);
+    ck_assert_uint_eq(mesh.n_triangles, 0);
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(unused_vertices_are_kept)
+{
+    struct mesh mesh = read_text("v 9 9 9\n" SQUARE "v 8 8 8\nv 7 7 7\nf 2 3 4\nl 5 6\n");
+    unsigned char used[7] = {5, 5, 5, 5, 5, 5, 5};
+    const unsigned char expected[7] = {0, 1, 1, 1, 1, 1, 0};
+    ck_assert_uint_eq(mesh.n_vertices, 7);
+    mesh_used(&mesh, used);
+    ck_assert_mem_eq(used, expected, 7);
+    mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(uv_of_vertices)
+{
+    const struct {
+        const char *text;
+        int has;
+    } files[] = {
+        {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n", 1},
+        {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/4\n", 0}, /* a seam */
+        {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4\n", 0},
+        {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1 2 3 4\n", 0},
+        {SQUARE "vt 0 0\n", 0},
+        /* equal values under two numbers are one uv; w and a lone v = 0 */
+        {SQUARE "vt 0\nvt 1 0 0.5\nvt 1 1\nvt 0 1\nvt 0 0\nf 1/1 2/2 3/3\nf 1/5 3/3 4/4\n", 1},
+    };
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        struct mesh mesh = read_text(files[i].text);
+        const double uv[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+        ck_assert_msg((mesh.uv != NULL) == files[i].has, "file %zu", i);
+        if (mesh.uv)
+            ck_assert_mem_eq(mesh.uv, uv, sizeof uv);
+        mesh_free(&mesh);
+    }
+}
+END_TEST
+
+START_TEST(very_long_lines)
+{
+    enum { N = 300000 }; /* corners of one face, over several of the reader's chunks */
+    size_t room = (size_t)N * 40, n = 0;
+    char *text = malloc(room);
+    for (int i = 0; i < N; i++)
+        n += (size_t)snprintf(text + n, room - n, "v %d %d 0\n", i, i % 1000);
+    n += (size_t)snprintf(text + n, room - n, "f");
+    for (int i = 0; i < N; i++)
+        n += (size_t)snprintf(text + n, room - n, i % 1000 ? " %d" : " \\\n%d", i + 1);
+    struct mesh mesh = read_text(text);
+    ck_assert_uint_eq(mesh.n_vertices, N);
+    ck_assert_uint_eq(mesh.n_faces, 1);
+    ck_assert_uint_eq(mesh.n_triangles, N - 2);
+    ck_assert_uint_eq(mesh.face_corner[N - 1], N - 1);
+    mesh_free(&mesh);
+    free(text);
+}
+END_TEST
+
+/* Chunks of the reader end anywhere, also between CR and LF and inside numbers. */
+START_TEST(lines_across_chunks)
+{
+    enum { N = 40000 };
+    char *text = malloc((size_t)N * 32);
+    for (int shift = 0; shift < 5; shift++) {
+        size_t n = (size_t)sprintf(text, "#%*s\r\n", shift, "");
+        for (int i = 0; i < N; i++)
+            n += (size_t)sprintf(text + n, "v %d 0.25 -1\r\n", i);
+        struct mesh mesh = read_text(text);
+        ck_assert_uint_eq(mesh.n_vertices, N);
+        for (int i = 0; i < N; i++)
+            ck_assert(mesh.position[3 * i] == i && mesh.position[3 * i + 1] == 0.25);
+        mesh_free(&mesh);
+    }
+    free(text);
+}
+END_TEST
+
+RUN("obj", polygons_are_fanned, every_way_to_write_a_corner, numbers, the_locale_does_not_matter,
+    all_else_is_skipped, faces_may_come_first, lone_edges, unused_vertices_are_kept, uv_of_vertices,
+    very_long_lines, lines_across_chunks)

@@ -1,0 +1,126 @@
+/* Garments of others, found beside the source tree; skipped where they are not. */
+#include "cloth/mesh/blocks.h"
+#include "cloth/mesh/lattice.h"
+#include "tests/cloth/mesh/tools.h"
+
+#include <stdlib.h>
+
+static const struct garment {
+    const char *name;
+    uint32_t vertices, triangles, edges;
+} GARMENTS[] = {
+    {"dress-v17k-f34k.obj", 17562, 34099, 51665},
+    {"skirt4925.obj", 2565, 4925, 7490},
+    {"tshirt1900.obj", 1921, 3726, 5649},
+};
+
+static const char *path_of(const char *name)
+{
+    static char path[4096];
+    const char *top = getenv("srcdir");
+    snprintf(path, sizeof path, "%s/../shared/data/meshes/%s", top ? top : ".", name);
+    return path;
+}
+
+static int by_value(const void *left, const void *right)
+{
+    uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
+    return (a > b) - (a < b);
+}
+
+/* Counts edges another way than the code does. */
+static uint32_t count_edges(const struct mesh *mesh)
+{
+    size_t n = 3 * (size_t)mesh->n_triangles;
+    uint64_t *keys = malloc(n * sizeof *keys);
+    for (size_t i = 0; i < n; i++) {
+        uint64_t a = mesh->triangle[i], b = mesh->triangle[i % 3 == 2 ? i - 2 : i + 1];
+        keys[i] = a < b ? a << 32 | b : b << 32 | a;
+    }
+    qsort(keys, n, sizeof *keys, by_value);
+    uint32_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += i == 0 || keys[i] != keys[i - 1];
+    free(keys);
+    return count;
+}
+
+static void check_edges(const struct mesh *mesh, const struct garment *garment)
+{
+    struct mesh_edges edges;
+    ck_assert_int_eq(mesh_edges_find(&edges, mesh, NULL), CLOTH_OK);
+    ck_assert_uint_eq(edges.n, garment->edges);
+    ck_assert_uint_eq(edges.n, count_edges(mesh));
+    uint32_t border = 0;
+    double area = 0, mass = 0, *masses = calloc(mesh->n_vertices, sizeof *masses);
+    for (uint32_t e = 0; e < edges.n; e++) {
+        border += edges.edge[e].opposite[1] == UINT32_MAX;
+        area += edges.edge[e].area / 3;
+    }
+    ck_assert_uint_eq(2 * edges.n - border, 3 * mesh->n_triangles);
+    mesh_add_mass(mesh, 0.2, masses);
+    for (uint32_t v = 0; v < mesh->n_vertices; v++)
+        mass += masses[v];
+    ck_assert_double_eq_tol(mass, 0.2 * area, 1e-11 * mass);
+    free(masses);
+    mesh_edges_free(&edges);
+}
+
+static void check_blocks(const struct mesh *mesh)
+{
+    struct mesh_moduli moduli = {1000, 1000, 1, 1};
+    struct mesh_lattice lattice;
+    struct mesh_blocks blocks;
+    unsigned char *used = malloc(mesh->n_vertices);
+    mesh_used(mesh, used);
+    ck_assert_int_eq(mesh_lattice_build(&lattice, mesh, &moduli, NULL), CLOTH_OK);
+    uint32_t *pairs = malloc(2 * (size_t)lattice.n * sizeof *pairs);
+    for (size_t s = 0; s < lattice.n; s++) {
+        pairs[2 * s] = lattice.spring[s].a;
+        pairs[2 * s + 1] = lattice.spring[s].b;
+    }
+    ck_assert_int_eq(mesh_blocks_cut(&blocks, mesh->n_vertices, used, lattice.n, pairs, 500, NULL),
+                     CLOTH_OK);
+    double mean = (double)blocks.n_places / blocks.n_blocks;
+    for (uint32_t b = 0; b < blocks.n_blocks; b++) {
+        ck_assert_double_lt(blocks.start[b + 1] - blocks.start[b], 1.02 * mean);
+        ck_assert_double_gt(blocks.start[b + 1] - blocks.start[b], 0.98 * mean);
+    }
+    mesh_blocks_free(&blocks);
+    mesh_lattice_free(&lattice);
+    free(pairs);
+    free(used);
+}
+
+START_TEST(a_garment)
+{
+    const struct garment *garment = &GARMENTS[_i];
+    struct cloth_error error = {0};
+    struct mesh mesh;
+    int code = mesh_read_obj(&mesh, path_of(garment->name), &error);
+    ck_assert_msg(code == CLOTH_OK, "%s", error.text);
+    ck_assert_uint_eq(mesh.n_vertices, garment->vertices);
+    ck_assert_uint_eq(mesh.n_triangles, garment->triangles);
+    ck_assert_uint_eq(mesh.n_faces, garment->triangles);
+    ck_assert_uint_eq(mesh.n_lone_edges, 0);
+    check_edges(&mesh, garment);
+    check_blocks(&mesh);
+    mesh_free(&mesh);
+}
+END_TEST
+
+int main(void)
+{
+    int n = sizeof GARMENTS / sizeof *GARMENTS;
+    for (int i = 0; i < n; i++) {
+        if (access(path_of(GARMENTS[i].name), R_OK) != 0) {
+            printf("1..0 # SKIP %s is not there\n", path_of(GARMENTS[i].name));
+            return 77;
+        }
+    }
+    TCase *cases = tcase_create("garments");
+    tcase_add_loop_test(cases, a_garment, 0, n);
+    Suite *suite = suite_create("garments");
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -50,5 +50,6 @@ tests_support_test_unit_LDADD = $(DUITE_TEST_LIBS)
 TESTS += tests/support/test_unit
 endif
 
+include tests/cloth/mesh/module.mk
 include tests/cloth/physics/module.mk
 include tests/cloth/solve/module.mk

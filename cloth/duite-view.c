@@ -1,0 +1,201 @@
+/* The command line of the viewer: reads what is asked for, hands it on, says what failed. */
+#include "config.h"
+
+#include "cloth/output/output.h"
+#include "cloth/view/view.h"
+
+#include <argp.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *argp_program_version = "duite-view " PACKAGE_VERSION;
+
+enum { LAST_FRAME = -1, FITTED_FRAMES = 100 };
+
+struct options {
+    const char *folder, *png;
+    long long frame; /* LAST_FRAME: the last */
+    int width, height;
+    double azimuth, elevation, zoom;
+};
+
+static const struct argp_option OPTIONS[] = {
+    {"png", 'o', "FILE", 0, "Write a picture to FILE", 0},
+    {"frame", 'f', "N", 0, "Frame to show, counted from 0, or `last' (the default)", 0},
+    {"size", 's', "WxH", 0, "Pixels of the picture (1280x720)", 0},
+    {"camera", 'c', "AZIMUTH,ELEVATION[,ZOOM]", 0,
+     "Where to look from, in degrees: 0,0 is from +z, 90,0 from +x (32,20,1)", 0},
+    {0}};
+
+static int parse_frame(const char *text, struct options *options)
+{
+    char *end = NULL;
+    options->frame = LAST_FRAME;
+    if (strcmp(text, "last") == 0)
+        return 0;
+    options->frame = strtoll(text, &end, 10);
+    return *text < '0' || *text > '9' || *end;
+}
+
+static int parse_size(const char *text, struct options *options)
+{
+    int end = 0;
+    int n = sscanf(text, "%5dx%5d%n", &options->width, &options->height, &end);
+    return n != 2 || text[end] || options->width < 1 || options->height < 1;
+}
+
+static int parse_camera(const char *text, struct options *options)
+{
+    int end = 0;
+    if (sscanf(text, "%lf,%lf%n", &options->azimuth, &options->elevation, &end) != 2)
+        return 1;
+    text += end;
+    options->zoom = 1;
+    if (*text && (sscanf(text, ",%lf%n", &options->zoom, &end) != 1 || text[end]))
+        return 1;
+    return !isfinite(options->azimuth) || !(fabs(options->elevation) <= 89) ||
+           !(options->zoom > 0 && options->zoom <= 1000);
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    struct options *options = state->input;
+    switch (key) {
+    case 'o':
+        options->png = arg;
+        return 0;
+    case 'f':
+        if (parse_frame(arg, options))
+            argp_error(state, "--frame takes a number from 0 or `last', not `%s'", arg);
+        return 0;
+    case 's':
+        if (parse_size(arg, options))
+            argp_error(state, "--size takes WIDTHxHEIGHT, such as 1280x720, not `%s'", arg);
+        return 0;
+    case 'c':
+        if (parse_camera(arg, options))
+            argp_error(state,
+                       "--camera takes AZIMUTH,ELEVATION[,ZOOM], the elevation within +-89 and "
+                       "the zoom above 0 and up to 1000, not `%s'",
+                       arg);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (options->folder)
+            argp_error(state, "one folder at a time: `%s' is one too many", arg);
+        options->folder = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->folder)
+            argp_error(state, "say which folder of frames to show");
+        if (!options->png)
+            argp_error(state, "say where the picture goes: --png FILE");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* All frames share one camera: it is fitted to them all, or to a hundred spread evenly over a long
+ * run. */
+static int fit_camera(struct output_cache *cache, const struct options *options, double *position,
+                      struct view_camera *camera, struct cloth_error *error)
+{
+    struct view_fit fit;
+    view_fit_start(&fit, options->azimuth, options->elevation,
+                   (double)options->width / options->height, options->zoom);
+    uint64_t n = cache->n_frames < FITTED_FRAMES ? cache->n_frames : FITTED_FRAMES;
+    for (uint64_t i = 0; i < n; i++) {
+        uint64_t frame = n > 1 ? i * (cache->n_frames - 1) / (n - 1) : 0;
+        int code = output_cache_frame(cache, frame, position, error);
+        if (code)
+            return code;
+        view_fit_add(&fit, cache->mesh.n_vertices, position);
+    }
+    view_fit_planes(&fit, cache->n_planes, (const double(*)[6])cache->planes);
+    view_fit_camera(&fit, camera);
+    return 0;
+}
+
+static int draw(const struct output_cache *cache, const struct options *options,
+                const double *position, const struct view_camera *camera, struct cloth_error *error)
+{
+    struct view_shape shape = {.n_vertices = cache->mesh.n_vertices,
+                               .n_triangles = cache->mesh.n_triangles,
+                               .n_lines = cache->mesh.n_lone_edges,
+                               .triangle = cache->mesh.triangle,
+                               .line = cache->mesh.lone_edge,
+                               .n_planes = cache->n_planes,
+                               .planes = (const double(*)[6])cache->planes};
+    struct view_picture picture = {options->width, options->height, NULL};
+    struct view_context *context = NULL;
+    struct view_scene *scene = NULL;
+    int code = view_context_open(&context, error);
+    code = code ? code : view_scene_new(&scene, &shape, error);
+    code = code ? code : view_scene_move(scene, position, error);
+    code = code ? code : view_picture_draw(&picture, scene, camera, error);
+    code = code ? code : view_picture_write(&picture, options->png, error);
+    view_picture_free(&picture);
+    view_scene_free(scene);
+    view_context_close(context);
+    return code;
+}
+
+static int check_frame(const struct output_cache *cache, const struct options *options,
+                       struct cloth_error *error)
+{
+    uint64_t n = cache->n_frames;
+    if (n == 0)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s has no finished frame", options->folder);
+    if (options->frame != LAST_FRAME && (uint64_t)options->frame >= n)
+        return cloth_fail(error, CLOTH_E_INPUT, "%s has %ju frames, 0 to %ju: no frame %lld",
+                          options->folder, (uintmax_t)n, (uintmax_t)(n - 1), options->frame);
+    return 0;
+}
+
+static int show(struct output_cache *cache, const struct options *options,
+                struct cloth_error *error)
+{
+    int code = check_frame(cache, options, error);
+    if (code)
+        return code;
+    double *position = malloc((size_t)3 * cache->mesh.n_vertices * sizeof *position);
+    if (!position)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for %u vertices",
+                          cache->mesh.n_vertices);
+    uint64_t frame = options->frame == LAST_FRAME ? cache->n_frames - 1 : (uint64_t)options->frame;
+    struct view_camera camera;
+    code = fit_camera(cache, options, position, &camera, error);
+    code = code ? code : output_cache_frame(cache, frame, position, error);
+    code = code ? code : draw(cache, options, position, &camera, error);
+    free(position);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    static const struct argp argp = {
+        OPTIONS,
+        parse,
+        "DIR",
+        "Makes a picture of a frame of a simulated cloth; DIR is what duite-cloth --output wrote.",
+        NULL,
+        NULL,
+        NULL};
+    struct options options = {.frame = LAST_FRAME,
+                              .width = 1280,
+                              .height = 720,
+                              .azimuth = 32,
+                              .elevation = 20,
+                              .zoom = 1};
+    argp_err_exit_status = 2;
+    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    struct cloth_error error = {0};
+    struct output_cache cache;
+    int code = output_cache_open(&cache, options.folder, &error);
+    code = code ? code : show(&cache, &options, &error);
+    output_cache_close(&cache);
+    if (code)
+        fprintf(stderr, "duite-view: %s\n", error.text);
+    return code == CLOTH_E_INPUT ? 2 : code != 0;
+}

@@ -1,0 +1,114 @@
+/* The card's vertices are those of the last move; the faces never change. */
+#include "cloth/view/draw/draw.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void upload_indices(const struct draw_mesh *mesh, const uint32_t *line)
+{
+    size_t triangles = (size_t)12 * mesh->n_triangles, lines = (size_t)8 * mesh->n_lines;
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(triangles + lines), NULL, GL_STATIC_DRAW);
+    glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, 0, (GLsizeiptr)triangles, mesh->triangle);
+    glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, (GLintptr)triangles, (GLsizeiptr)lines, line);
+}
+
+int draw_mesh_make(struct draw_mesh *mesh, uint32_t n_vertices, uint32_t n_triangles,
+                   const uint32_t *triangle, uint32_t n_lines, const uint32_t *line,
+                   struct cloth_error *error)
+{
+    *mesh = (struct draw_mesh){.n_vertices = n_vertices,
+                               .n_triangles = n_triangles,
+                               .n_lines = n_lines,
+                               .triangle = triangle};
+    mesh->vertex = calloc((size_t)n_vertices + 1, 6 * sizeof *mesh->vertex);
+    if (!mesh->vertex)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory to draw %u vertices", n_vertices);
+    glGenVertexArrays(1, &mesh->array);
+    glGenBuffers(1, &mesh->vertices);
+    glGenBuffers(1, &mesh->indices);
+    glBindVertexArray(mesh->array);
+    glBindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->indices);
+    upload_indices(mesh, line);
+    for (GLuint i = 0; i < 2; i++) {
+        glEnableVertexAttribArray(i);
+        glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float),
+                              (const void *)(i * 3 * sizeof(float)));
+    }
+    return 0;
+}
+
+void draw_normals(uint32_t n_vertices, float *vertex, uint32_t n_triangles,
+                  const uint32_t *triangle)
+{
+    for (size_t v = 0; v < n_vertices; v++)
+        memset(vertex + 6 * v + 3, 0, 3 * sizeof *vertex);
+    for (size_t t = 0; t < n_triangles; t++) {
+        float *p[3], e[2][3];
+        for (size_t i = 0; i < 3; i++)
+            p[i] = vertex + 6 * (size_t)triangle[3 * t + i];
+        for (int k = 0; k < 3; k++) {
+            e[0][k] = p[1][k] - p[0][k];
+            e[1][k] = p[2][k] - p[0][k];
+        }
+        for (int k = 0; k < 3; k++) {
+            int a = (k + 1) % 3, b = (k + 2) % 3;
+            float n = e[0][a] * e[1][b] - e[0][b] * e[1][a]; /* twice the area */
+            for (int i = 0; i < 3; i++)
+                p[i][3 + k] += n;
+        }
+    }
+    for (size_t v = 0; v < n_vertices; v++) {
+        float *n = vertex + 6 * v + 3;
+        float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int k = 0; k < 3; k++)
+            n[k] = length > 0 ? n[k] / length : (float)(k == 1);
+    }
+}
+
+static void find_sphere(struct draw_mesh *mesh)
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t v = 0; v < mesh->n_vertices; v++)
+        for (size_t k = 0; k < 3; k++) {
+            low[k] = fminf(low[k], mesh->vertex[6 * v + k]);
+            high[k] = fmaxf(high[k], mesh->vertex[6 * v + k]);
+        }
+    float square = 0;
+    for (int k = 0; k < 3; k++) {
+        mesh->center[k] = 0.5f * (low[k] + high[k]);
+        square += (high[k] - low[k]) * (high[k] - low[k]);
+    }
+    mesh->radius = fmaxf(0.5f * sqrtf(square), 1e-6f);
+}
+
+void draw_mesh_move(struct draw_mesh *mesh, const double *position)
+{
+    for (size_t v = 0; v < mesh->n_vertices; v++)
+        for (size_t k = 0; k < 3; k++)
+            mesh->vertex[6 * v + k] = (float)position[3 * v + k];
+    draw_normals(mesh->n_vertices, mesh->vertex, mesh->n_triangles, mesh->triangle);
+    find_sphere(mesh);
+    glBindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
+    glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((size_t)mesh->n_vertices * 6 * sizeof *mesh->vertex),
+                 mesh->vertex, GL_DYNAMIC_DRAW);
+}
+
+void draw_mesh_draw(const struct draw_mesh *mesh)
+{
+    glBindVertexArray(mesh->array);
+    glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->n_triangles), GL_UNSIGNED_INT, NULL);
+    if (mesh->n_lines)
+        glDrawElements(GL_LINES, (GLsizei)(2 * mesh->n_lines), GL_UNSIGNED_INT,
+                       (const void *)((size_t)12 * mesh->n_triangles));
+}
+
+void draw_mesh_free(struct draw_mesh *mesh)
+{
+    glDeleteVertexArrays(1, &mesh->array);
+    glDeleteBuffers(1, &mesh->vertices);
+    glDeleteBuffers(1, &mesh->indices);
+    free(mesh->vertex);
+    mesh->vertex = NULL;
+}

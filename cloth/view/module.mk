@@ -1,0 +1,25 @@
+# Pictures are optional: configure says what they need.
+if HAVE_VIEW
+noinst_LTLIBRARIES += libduite_view.la
+libduite_view_la_SOURCES = \
+	cloth/view/view.h \
+	cloth/view/camera.c \
+	cloth/view/context.c \
+	cloth/view/image.c \
+	cloth/view/picture.c \
+	cloth/view/scene.c \
+	cloth/view/draw/draw.h \
+	cloth/view/draw/lights.c \
+	cloth/view/draw/mesh.c \
+	cloth/view/draw/program.c \
+	cloth/view/draw/shaders.c
+libduite_view_la_CPPFLAGS = $(AM_CPPFLAGS) $(EPOXY_CFLAGS) $(EGL_CFLAGS) $(PNG_CFLAGS)
+# epoxy opens libEGL itself, so that its absence can be told.
+libduite_view_la_LIBADD = $(EPOXY_LIBS) $(PNG_LIBS) -lm
+
+bin_PROGRAMS += duite-view
+dist_man_MANS += cloth/duite-view.1
+duite_view_SOURCES = cloth/duite-view.c
+duite_view_LDADD = libduite_view.la libduite_cloth.la
+endif
+EXTRA_DIST += cloth/duite-view.1

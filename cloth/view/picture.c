@@ -1,0 +1,115 @@
+/* A picture is drawn into a framebuffer with several samples a pixel, which is averaged into a
+ * plain one and read. All that is made here is deleted here, whatever fails. */
+#include "cloth/view/view.h"
+
+#include <epoxy/gl.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SAMPLES = 4 };
+
+struct target {
+    GLuint frame, color, depth;
+};
+
+static int target_make(struct target *target, const struct view_picture *picture, int samples,
+                       struct cloth_error *error)
+{
+    glGenFramebuffers(1, &target->frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->frame);
+    glGenRenderbuffers(1, &target->color);
+    glBindRenderbuffer(GL_RENDERBUFFER, target->color);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, picture->width,
+                                     picture->height);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target->color);
+    glGenRenderbuffers(1, &target->depth);
+    glBindRenderbuffer(GL_RENDERBUFFER, target->depth);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, picture->width,
+                                     picture->height);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target->depth);
+    GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
+    return status == GL_FRAMEBUFFER_COMPLETE
+               ? 0
+               : cloth_fail(error, CLOTH_E_LIBRARY, "OpenGL gives no framebuffer of %d x %d (0x%x)",
+                            picture->width, picture->height, status);
+}
+
+static void target_free(const struct target *target)
+{
+    glDeleteFramebuffers(1, &target->frame);
+    glDeleteRenderbuffers(1, &target->color);
+    glDeleteRenderbuffers(1, &target->depth);
+}
+
+/* OpenGL's rows go up, ours go down. */
+static void flip(struct view_picture *picture, unsigned char *row)
+{
+    size_t n = (size_t)3 * (size_t)picture->width;
+    for (int low = 0, high = picture->height - 1; low < high; low++, high--) {
+        unsigned char *a = picture->rgb + (size_t)low * n, *b = picture->rgb + (size_t)high * n;
+        memcpy(row, a, n);
+        memcpy(a, b, n);
+        memcpy(b, row, n);
+    }
+}
+
+static int read_back(struct view_picture *picture, struct cloth_error *error)
+{
+    size_t row_size = (size_t)3 * (size_t)picture->width;
+    unsigned char *row = malloc(row_size);
+    picture->rgb = malloc(row_size * (size_t)picture->height);
+    if (!row || !picture->rgb) {
+        free(row);
+        view_picture_free(picture);
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a picture of %d x %d",
+                          picture->width, picture->height);
+    }
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, picture->width, picture->height, GL_RGB, GL_UNSIGNED_BYTE, picture->rgb);
+    flip(picture, row);
+    free(row);
+    return 0;
+}
+
+static int check_size(const struct view_picture *picture, struct cloth_error *error)
+{
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
+    if (picture->width > 0 && picture->height > 0 && picture->width <= most &&
+        picture->height <= most)
+        return 0;
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "a picture may be 1 x 1 to %d x %d pixels here, not %d x %d", most, most,
+                      picture->width, picture->height);
+}
+
+int view_picture_draw(struct view_picture *picture, const struct view_scene *scene,
+                      const struct view_camera *camera, struct cloth_error *error)
+{
+    picture->rgb = NULL;
+    int code = check_size(picture, error);
+    if (code)
+        return code;
+    struct target fine = {0}, plain = {0};
+    GLint samples = 0;
+    glGetIntegerv(GL_MAX_SAMPLES, &samples);
+    code = target_make(&plain, picture, 0, error);
+    code = code ? code : target_make(&fine, picture, samples < SAMPLES ? samples : SAMPLES, error);
+    if (!code) {
+        view_scene_draw(scene, camera, picture->width, picture->height);
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, fine.frame);
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, plain.frame);
+        glBlitFramebuffer(0, 0, picture->width, picture->height, 0, 0, picture->width,
+                          picture->height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, plain.frame);
+        code = read_back(picture, error);
+    }
+    GLenum trouble = glGetError();
+    if (!code && trouble != GL_NO_ERROR) {
+        view_picture_free(picture);
+        code = cloth_fail(error, CLOTH_E_LIBRARY, "OpenGL failed to draw (0x%x)", trouble);
+    }
+    target_free(&fine);
+    target_free(&plain);
+    return code;
+}

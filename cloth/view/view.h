@@ -1,0 +1,86 @@
+#ifndef CLOTH_VIEW_VIEW_H
+#define CLOTH_VIEW_VIEW_H
+
+#include "cloth/base/error.h"
+
+#include <cglm/types.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Pictures of cloth with desktop OpenGL 3.3 core. Right-handed, metres, +y up. One thread; a
+ * context must be open while scenes and pictures are made, drawn and freed. */
+
+/* --- camera.c: where to look from. Pure functions. --- */
+
+struct view_camera {
+    mat4 clip;    /* from the world to clip coordinates */
+    float eye[3]; /* m */
+    float reach;  /* largest extent of what was fitted, m; > 0 */
+};
+
+/* Gathers points that the picture must show, seen from one direction. */
+struct view_fit {
+    double side[3][3]; /* right, up, back of the camera: orthonormal rows */
+    double tangent[2]; /* of half the angle of view that the points may fill, x and y */
+    double aspect, zoom;
+    double
+        most[4]; /* the largest x + tz, tz - x, y + tz, tz - y of the points, in the rows of side */
+    double low[3], high[3]; /* box of the points in the world */
+    double near, far;       /* largest and smallest coordinate along back */
+};
+
+/* azimuth: degrees around +y, 0 looks from +z, 90 from +x; elevation: degrees above the horizon,
+ * within +-89; aspect: width / height; zoom: 1 shows everything, 2 half of it. */
+void view_fit_start(struct view_fit *fit, double azimuth, double elevation, double aspect,
+                    double zoom);
+/* position: n x 3 */
+void view_fit_add(struct view_fit *fit, size_t n, const double *position);
+/* Adds what lies under the points on the planes (point, normal) that they are near to. */
+void view_fit_planes(struct view_fit *fit, size_t n, const double (*planes)[6]);
+/* The nearest camera of that direction that has all points within its margins. */
+void view_fit_camera(const struct view_fit *fit, struct view_camera *camera);
+
+/* --- context.c: OpenGL without a display --- */
+
+struct view_context;
+/* EGL surfaceless (Mesa) or the first EGL device that works. CLOTH_E_LIBRARY says which packages to
+ * install. */
+int view_context_open(struct view_context **context, struct cloth_error *error);
+void view_context_close(struct view_context *context);
+
+/* --- scene.c: what is drawn, into whatever framebuffer is bound --- */
+
+struct view_shape {
+    uint32_t n_vertices, n_triangles, n_lines;
+    const uint32_t *triangle,
+        *line; /* x 3, x 2; read during view_scene_new only but for triangle */
+    size_t n_planes;
+    const double (*planes)[6]; /* (point, normal) */
+};
+
+struct view_scene;
+/* The arrays must outlive the scene. */
+int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
+                   struct cloth_error *error);
+/* position: n_vertices x 3 of the frame to be drawn */
+int view_scene_move(struct view_scene *scene, const double *position, struct cloth_error *error);
+void view_scene_draw(const struct view_scene *scene, const struct view_camera *camera, int width,
+                     int height);
+void view_scene_free(struct view_scene *scene);
+
+/* --- picture.c, image.c --- */
+
+struct view_picture {
+    int width, height;
+    unsigned char *rgb; /* height x width x 3, from the top */
+};
+/* Draws off screen with four samples a pixel; picture->width and height are the caller's, rgb is
+ * made here. */
+int view_picture_draw(struct view_picture *picture, const struct view_scene *scene,
+                      const struct view_camera *camera, struct cloth_error *error);
+/* A PNG file, written whole or not at all. */
+int view_picture_write(const struct view_picture *picture, const char *path,
+                       struct cloth_error *error);
+void view_picture_free(struct view_picture *picture);
+
+#endif

@@ -19,8 +19,8 @@ struct draw_light_block {
     float direction[DRAW_LIGHTS][4]; /* towards the light, length 1 */
     float colour[DRAW_LIGHTS][4];    /* linear */
     float row[3 * DRAW_LIGHTS][4];   /* world to map: x, y, depth in 0 .. 1 */
-    float bias[4]; /* x: metres off the surface where shadows are looked up; y: blur, of a map's
-                      width */
+    /* x: metres off the surface where shadows are looked up; y: blur, of a map's width */
+    float bias[4];
 };
 
 struct draw_lights {

@@ -140,7 +140,7 @@ void draw_lights_aim(struct draw_lights *lights, const float center[3], float ra
         cast(context);
     }
     lights->block.bias[0] = 3.0f * 2 * radius / DRAW_MAP;
-    lights->block.bias[1] = 1.5f / DRAW_MAP;
+    lights->block.bias[1] = 2.0f / DRAW_MAP;
     glBindBuffer(GL_UNIFORM_BUFFER, lights->buffer);
     glBufferData(GL_UNIFORM_BUFFER, sizeof lights->block, &lights->block, GL_DYNAMIC_DRAW);
     glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)frame);

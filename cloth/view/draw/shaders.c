@@ -7,6 +7,7 @@
 const char DRAW_COMMON[] =
     "#version 330 core\n"
     "#define LIGHTS 48\n"
+    "#define SUN 24\n"
     "uniform mat4 clip;\n"
     "uniform vec3 eye;\n"
     "uniform vec2 size;\n"
@@ -24,21 +25,22 @@ const char DRAW_COMMON[] =
     /* A soft shoulder, the display's curve, and half a step of noise against bands. */
     "vec4 encode(vec3 c, vec2 p)\n"
     "{\n"
-    "    c = 1.12 * c / (1.0 + 0.45 * c);\n"
+    "    c = 1.05 * c / (1.0 + 0.40 * c);\n"
     "    vec3 low = 12.92 * c, high = 1.055 * pow(max(c, 0.0), vec3(1.0 / 2.4)) - 0.055;\n"
     "    return vec4(mix(high, low, lessThan(c, vec3(0.0031308))) + (noise(p) - 0.5) / 255.0, 1.0);\n"
     "}\n"
-    /* Light that reaches both sides of a surface at `at`, as irradiance / pi. */
-    "void gather(vec3 at, vec3 n, vec2 p, out vec3 front, out vec3 back)\n"
+    /* Light that reaches both sides of a surface at `at`, as irradiance / pi. The sky is few directions: where it falls on
+     * what throws no shadow itself, its maps are blurred so that their edges melt. */
+    "void gather(vec3 at, vec3 n, vec2 p, float blur, out vec3 front, out vec3 back)\n"
     "{\n"
     "    front = back = vec3(0.0);\n"
-    "    float turn = 6.2831853 * noise(p);\n"
+    "    float turn = 6.2831853 * noise(p), grain = sqrt(noise(p.yx + 37.0));\n"
     "    for (int i = 0; i < LIGHTS; i++) {\n"
     "        float c = dot(n, direction[i].xyz);\n"
     "        vec4 q = vec4(at + n * (c < 0.0 ? -bias.x : bias.x), 1.0);\n"
     "        vec3 m = vec3(dot(row[3 * i], q), dot(row[3 * i + 1], q), dot(row[3 * i + 2], q));\n"
     "        float a = turn + 2.3999632 * float(i);\n"
-    "        m.xy += bias.y * vec2(cos(a), sin(a));\n"
+    "        m.xy += (i < SUN ? bias.y : bias.y * blur * grain) * vec2(cos(a), sin(a));\n"
     "        vec3 e = colour[i].rgb * (abs(c) * texture(maps, vec4(m.xy, float(i), m.z)));\n"
     "        if (c < 0.0) back += e; else front += e;\n"
     "    }\n"
@@ -76,17 +78,17 @@ const char DRAW_CLOTH_VERTEX[] =
 const char DRAW_CLOTH_FRAGMENT[] =
     "in vec3 at, up;\n"
     "out vec4 shade;\n"
-    "const vec3 FRONT = vec3(0.53, 0.085, 0.06), BACK = vec3(0.60, 0.22, 0.105);\n"
+    "const vec3 FRONT = vec3(0.40, 0.030, 0.028), BACK = vec3(0.46, 0.120, 0.050);\n"
     "void main()\n"
     "{\n"
     "    vec3 n = normalize(up) * (gl_FrontFacing ? 1.0 : -1.0);\n"
     "    vec3 v = normalize(eye - at), lit, behind;\n"
-    "    gather(at, n, gl_FragCoord.xy, lit, behind);\n"
+    "    gather(at, n, gl_FragCoord.xy, 1.0, lit, behind);\n"
     "    vec3 albedo = gl_FrontFacing ? FRONT : BACK;\n"
     "    lit += vec3(0.26, 0.25, 0.24) * (0.5 - 0.5 * n.y);\n" /* from the floor */
     "    float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 4.0);\n"
     "    vec3 c = albedo * (lit + 0.22 * behind);\n"
-    "    c += rim * 0.30 * mix(albedo, vec3(0.6), 0.35) * lit;\n"
+    "    c += rim * 0.22 * mix(albedo, vec3(0.6), 0.25) * lit;\n"
     "    shade = encode(c, gl_FragCoord.xy);\n"
     "}\n";
 
@@ -111,7 +113,7 @@ const char DRAW_GROUND_FRAGMENT[] =
     "    if (far >= 1.0)\n"
     "        discard;\n"
     "    vec3 lit, behind;\n"
-    "    gather(at, n, gl_FragCoord.xy, lit, behind);\n"
+    "    gather(at, n, gl_FragCoord.xy, 8.0, lit, behind);\n"
     "    vec3 c = vec3(0.36, 0.355, 0.345) * lit;\n"
     "    shade = encode(mix(c, background(gl_FragCoord.xy), far), gl_FragCoord.xy);\n"
     "}\n";

@@ -1,0 +1,96 @@
+/* The helpers fail the test themselves when the file system does not do its part. */
+#include "tests/cloth/output/sample.h"
+
+#include "tests/support/unit.h"
+
+#include <ftw.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char QUAD[] = "v 2 0 0\nv 3 0 0\nv 3 1 0\nv 2 1 0\nf 1 2 3 4\nl 1 3\n";
+static const double PLANE[1][6] = {{0, -0.1, 0, 0, 1, 0}};
+static const char *const NAMES[2] = {"sheet", "a\npatch"};
+
+void sample_make(struct sample *sample)
+{
+    struct cloth_error error = {0};
+    memset(sample, 0, sizeof *sample);
+    strcpy(sample->folder, "/tmp/duite-output.XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(sample->folder));
+    snprintf(sample->frames, sizeof sample->frames, "%s/frames", sample->folder);
+    char quad[96];
+    snprintf(quad, sizeof quad, "%s/quad.obj", sample->folder);
+    sample_write(quad, QUAD, strlen(QUAD));
+    ck_assert_msg(mesh_grid(&sample->mesh[0], 1, 1, 4, 3, &error) == 0, "%s", error.text);
+    ck_assert_msg(mesh_read_obj(&sample->mesh[1], quad, &error) == 0, "%s", error.text);
+    sample->meshes[0] = &sample->mesh[0];
+    sample->meshes[1] = &sample->mesh[1];
+    sample->setup = (struct output_setup){.folder = sample->frames,
+                                          .n_meshes = 2,
+                                          .meshes = sample->meshes,
+                                          .names = NAMES,
+                                          .fps = 25,
+                                          .n_planes = 1,
+                                          .planes = PLANE};
+}
+
+static int remove_one(const char *path, const struct stat *status, int kind, struct FTW *place)
+{
+    (void)status;
+    (void)kind;
+    (void)place;
+    return remove(path);
+}
+
+void sample_free(struct sample *sample)
+{
+    mesh_free(&sample->mesh[0]);
+    mesh_free(&sample->mesh[1]);
+    nftw(sample->folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
+}
+
+void sample_positions(unsigned run, uint64_t frame, double *position)
+{
+    for (int i = 0; i < 3 * SAMPLE_POINTS; i++)
+        position[i] = 1000.0 * run + (double)frame + i / 64.0;
+}
+
+const char *sample_path(const struct sample *sample, const char *name)
+{
+    static char path[128];
+    snprintf(path, sizeof path, "%s/%s", sample->frames, name);
+    return path;
+}
+
+size_t sample_read(const char *path, char *bytes, size_t size)
+{
+    FILE *file = fopen(path, "rb");
+    ck_assert_msg(file != NULL, "%s is not there", path);
+    size_t n = fread(bytes, 1, size - 1, file);
+    bytes[n] = '\0';
+    fclose(file);
+    return n;
+}
+
+void sample_write(const char *path, const char *bytes, size_t size)
+{
+    FILE *file = fopen(path, "wb");
+    ck_assert_msg(file != NULL, "%s cannot be written", path);
+    ck_assert_uint_eq(fwrite(bytes, 1, size, file), size);
+    ck_assert_int_eq(fclose(file), 0);
+}
+
+void sample_run(struct sample *sample, unsigned run, uint64_t n)
+{
+    struct cloth_error error = {0};
+    struct output_frames *frames = NULL;
+    double position[3 * SAMPLE_POINTS];
+    ck_assert_msg(output_open(&frames, &sample->setup, &error) == 0, "%s", error.text);
+    for (uint64_t i = 0; i < n; i++) {
+        sample_positions(run, i, position);
+        ck_assert_msg(output_frame(frames, i, (double)i / 25, position, &error) == 0, "%s",
+                      error.text);
+    }
+    ck_assert_msg(output_close(&frames, &error) == 0, "%s", error.text);
+    ck_assert_ptr_null(frames);
+}

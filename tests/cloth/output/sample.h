@@ -1,0 +1,32 @@
+#ifndef TESTS_CLOTH_OUTPUT_SAMPLE_H
+#define TESTS_CLOTH_OUTPUT_SAMPLE_H
+
+#include "cloth/output/output.h"
+
+/* Two small cloths, a folder to write them to, and positions that tell frame and run apart. */
+
+enum { SAMPLE_POINTS = 12 + 4 };
+
+struct sample {
+    char folder[64]; /* of the test's own */
+    char frames[80]; /* a folder in it that is not there yet */
+    struct mesh mesh[2];
+    const struct mesh *meshes[2];
+    struct output_setup setup;
+};
+
+/* A grid of 4 x 3 with uv, and a quadrilateral without; one plane. */
+void sample_make(struct sample *sample);
+/* Removes the folder with all in it. */
+void sample_free(struct sample *sample);
+/* `SAMPLE_POINTS` x 3 positions of a frame, exact as floats. */
+void sample_positions(unsigned run, uint64_t frame, double *position);
+/* The file in the frames folder; a static buffer. */
+const char *sample_path(const struct sample *sample, const char *name);
+/* Reads up to size bytes of a file and ends them with '\0'; returns their number. */
+size_t sample_read(const char *path, char *bytes, size_t size);
+void sample_write(const char *path, const char *bytes, size_t size);
+/* Opens the folder, writes n frames of a run, closes. */
+void sample_run(struct sample *sample, unsigned run, uint64_t n);
+
+#endif

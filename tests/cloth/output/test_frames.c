@@ -1,0 +1,236 @@
+/* What a frames folder holds, byte by byte where others read it, and what is read back or refused.
+ */
+#include "tests/cloth/output/sample.h"
+#include "tests/support/unit.h"
+
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static struct sample sample;
+
+static void start(void)
+{
+    sample_make(&sample);
+}
+
+static void end(void)
+{
+    sample_free(&sample);
+}
+
+START_TEST(comes_back)
+{
+    struct cloth_error error = {0};
+    struct output_cache cache;
+    double want[3 * SAMPLE_POINTS], got[3 * SAMPLE_POINTS];
+    sample_run(&sample, 1, 3);
+    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    ck_assert_uint_eq(cache.n_frames, 3);
+    ck_assert_uint_eq(cache.mesh.n_vertices, SAMPLE_POINTS);
+    ck_assert_uint_eq(cache.mesh.n_faces, sample.mesh[0].n_faces + 1);
+    ck_assert_uint_eq(cache.mesh.n_lone_edges, 1);
+    ck_assert(cache.fps == 25 && cache.n_planes == 1 && cache.planes[0][1] == -0.1);
+    ck_assert_mem_eq(cache.planes[0], sample.setup.planes[0], sizeof cache.planes[0]);
+    ck_assert_mem_eq(cache.mesh.position, sample.mesh[0].position, 12 * 3 * sizeof(double));
+    for (uint64_t i = 3; i-- > 0;) {
+        sample_positions(1, i, want);
+        ck_assert_int_eq(output_cache_frame(&cache, i, got, &error), 0);
+        ck_assert_mem_eq(got, want, sizeof want);
+        ck_assert(cache.time[i] == (double)i / 25);
+    }
+    ck_assert_int_eq(output_cache_frame(&cache, 3, got, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "3 frames"));
+    output_cache_close(&cache);
+}
+END_TEST
+
+START_TEST(header_is_exact)
+{
+    static const char WANT[36] = "POINTCACHE2\0"
+                                 "\1\0\0\0"
+                                 "\20\0\0\0"     /* 16 points */
+                                 "\0\0\0\0"      /* from frame 0 */
+                                 "\0\0\200\77"   /* 1.0f */
+                                 "\2\0\0\0"      /* 2 frames */
+                                 "\0\0\372\104"; /* 2000.0f */
+    char got[4096];
+    sample_run(&sample, 2, 2);
+    size_t n = sample_read(sample_path(&sample, "cloth.pc2"), got, sizeof got);
+    ck_assert_uint_eq(n, 32 + 2 * 12 * SAMPLE_POINTS);
+    ck_assert_mem_eq(got, WANT, 36);
+}
+END_TEST
+
+START_TEST(obj_keeps_faces)
+{
+    char text[4096];
+    sample_run(&sample, 1, 0);
+    sample_read(sample_path(&sample, "cloth.obj"), text, sizeof text);
+    ck_assert_ptr_eq(strstr(text, "o sheet\nv -0.5 0 -0.5\n"), text);
+    ck_assert_ptr_nonnull(strstr(text, "\no a_patch\nv 2 0 0\n"));
+    ck_assert_ptr_nonnull(strstr(text, "\nf 13 14 15 16\nl 13 15\n"));
+    ck_assert_ptr_nonnull(strstr(text, " 12/12"));
+    sample_read(sample_path(&sample, "frames.csv"), text, sizeof text);
+    ck_assert_str_eq(text, "frame,time\n");
+}
+END_TEST
+
+START_TEST(index_tells_time)
+{
+    char text[256];
+    sample_run(&sample, 1, 3);
+    sample_read(sample_path(&sample, "frames.csv"), text, sizeof text);
+    ck_assert_str_eq(text, "frame,time\n0,0\n1,0.040000000000000001\n2,0.080000000000000002\n");
+}
+END_TEST
+
+START_TEST(replaces_an_earlier_run)
+{
+    struct cloth_error error = {0};
+    struct output_cache cache;
+    sample_run(&sample, 1, 5);
+    sample_run(&sample, 2, 1);
+    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    ck_assert_uint_eq(cache.n_frames, 1);
+    output_cache_close(&cache);
+}
+END_TEST
+
+/* The bytes of a frame and its line are there, but the count was not rewritten. */
+START_TEST(interrupted_frame_is_ignored)
+{
+    struct cloth_error error = {0};
+    struct output_cache cache;
+    sample_run(&sample, 1, 2);
+    FILE *file = fopen(sample_path(&sample, "cloth.pc2"), "ab");
+    fwrite("half a frame", 1, 12, file);
+    fclose(file);
+    file = fopen(sample_path(&sample, "frames.csv"), "ab");
+    fputs("2,0.0", file);
+    fclose(file);
+    ck_assert_msg(output_cache_open(&cache, sample.frames, &error) == 0, "%s", error.text);
+    ck_assert_uint_eq(cache.n_frames, 2);
+    output_cache_close(&cache);
+}
+END_TEST
+
+START_TEST(refuses_bad_frames)
+{
+    struct cloth_error error = {0};
+    struct output_frames *frames = NULL;
+    double position[3 * SAMPLE_POINTS];
+    sample_positions(1, 0, position);
+    ck_assert_int_eq(output_open(&frames, &sample.setup, &error), 0);
+    ck_assert_int_eq(output_frame(frames, 1, 0, position, &error), CLOTH_E_RUN);
+    error.code = 0;
+    position[4] = 1e39; /* no float */
+    ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), CLOTH_E_RUN);
+    ck_assert_ptr_nonnull(strstr(error.text, "vertex 1 "));
+    error.code = 0;
+    position[4] = 0;
+    ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), 0);
+    ck_assert_int_eq(output_close(&frames, &error), 0);
+}
+END_TEST
+
+START_TEST(folder_in_the_way)
+{
+    struct cloth_error error = {0};
+    struct output_frames *frames = NULL;
+    char file[96], below[112];
+    snprintf(file, sizeof file, "%s/file", sample.folder);
+    snprintf(below, sizeof below, "%s/frames", file);
+    sample_write(file, "mine", 4);
+    sample.setup.folder = file;
+    ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, file));
+    ck_assert_ptr_nonnull(strstr(error.text, "Not a directory"));
+    error.code = 0;
+    sample.setup.folder = below;
+    ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "Not a directory"));
+    ck_assert_ptr_null(frames);
+    char text[8];
+    sample_read(file, text, sizeof text);
+    ck_assert_str_eq(text, "mine");
+}
+END_TEST
+
+START_TEST(makes_parents)
+{
+    char deep[128];
+    snprintf(deep, sizeof deep, "%s/a/b/c/", sample.folder);
+    sample.setup.folder = deep;
+    sample_run(&sample, 1, 1);
+}
+END_TEST
+
+/* A file of a folder, the place in it where other text is put, and what the refusal must say. */
+static const struct damage {
+    const char *file;
+    long at; /* -1: the file becomes the text */
+    const char *text, *says;
+} DAMAGES[] = {
+    {"cloth.pc2", 0, "Q", "not a point cache"},
+    {"cloth.pc2", 12, "\2", "not a point cache"},
+    {"cloth.pc2", 16, "\21", "17 points"},
+    {"cloth.pc2", 28, "\3", "cut off"},
+    {"cloth.pc2", -1, "POINTCACHE2", "not a point cache"},
+    {"frames.csv", -1, "frame,time\n0,0\n", "frames.csv:3:"},
+    {"frames.csv", -1, "frame,time\n0,0\n2,0.04\n", "frames.csv:3:"},
+    {"frames.csv", -1, "frame,time\n0,0\n1,nan\n", "frames.csv:3:"},
+    {"frames.csv", -1, "frame,times\n0,0\n1,0\n", "frames.csv:1:"},
+    {"scene.json", -1, "", "scene.json:1: expected '{'"},
+    {"scene.json", -1, "{\"fps\": 25,\n\"plane\": []}", "scene.json:2: expected \"planes\""},
+    {"scene.json", -1, "{\"fps\": inf, \"planes\": []}", "expected a number"},
+    {"scene.json", -1, "{\"fps\": 0x10, \"planes\": []}", "expected a number"},
+    {"scene.json", -1, "{\"fps\": 25, \"planes\": []} x", "expected the end"},
+    {"scene.json", -1, "{\"fps\": 25, \"planes\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 0]}]}",
+     "not zero"},
+    {"cloth.obj", -1, "v 0 0\n", "cloth.obj"},
+};
+
+START_TEST(refuses_damage)
+{
+    const struct damage *damage = &DAMAGES[_i];
+    struct cloth_error error = {0};
+    struct output_cache cache;
+    sample_run(&sample, 1, 2);
+    FILE *file = fopen(sample_path(&sample, damage->file), damage->at < 0 ? "wb" : "r+b");
+    fseek(file, damage->at < 0 ? 0 : damage->at, SEEK_SET);
+    fputs(damage->text, file);
+    fclose(file);
+    ck_assert_int_eq(output_cache_open(&cache, sample.frames, &error), CLOTH_E_INPUT);
+    ck_assert_msg(strstr(error.text, damage->says) != NULL, "%s", error.text);
+}
+END_TEST
+
+START_TEST(refuses_no_folder)
+{
+    struct cloth_error error = {0};
+    struct output_cache cache;
+    ck_assert_int_eq(output_cache_open(&cache, sample.frames, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "No such file"));
+}
+END_TEST
+
+int main(void)
+{
+    TCase *c = tcase_create("frames");
+    tcase_add_checked_fixture(c, start, end);
+    tcase_add_test(c, comes_back);
+    tcase_add_test(c, header_is_exact);
+    tcase_add_test(c, obj_keeps_faces);
+    tcase_add_test(c, index_tells_time);
+    tcase_add_test(c, replaces_an_earlier_run);
+    tcase_add_test(c, interrupted_frame_is_ignored);
+    tcase_add_test(c, refuses_bad_frames);
+    tcase_add_test(c, folder_in_the_way);
+    tcase_add_test(c, makes_parents);
+    tcase_add_loop_test(c, refuses_damage, 0, sizeof DAMAGES / sizeof *DAMAGES);
+    tcase_add_test(c, refuses_no_folder);
+    Suite *s = suite_create("output");
+    suite_add_tcase(s, c);
+    return unit_run(s);
+}

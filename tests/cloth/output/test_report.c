@@ -1,0 +1,137 @@
+/* A report is valid JSON whatever is put into it, and its numbers read back as they were. */
+#include "tests/cloth/output/sample.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static struct sample sample;
+static struct output_report *report;
+static struct cloth_error error;
+static char path[96], text[4096];
+
+static void start(void)
+{
+    memset(&error, 0, sizeof error);
+    sample_make(&sample);
+    snprintf(path, sizeof path, "%s/report.json", sample.folder);
+    ck_assert_int_eq(output_report_new(&report, &error), 0);
+}
+
+static void end(void)
+{
+    output_report_free(report);
+    sample_free(&sample);
+}
+
+static void check_written(const char *want)
+{
+    ck_assert_msg(output_report_write(report, path, &error) == 0, "%s", error.text);
+    sample_read(path, text, sizeof text);
+    ck_assert_str_eq(text, want);
+}
+
+START_TEST(empty)
+{
+    check_written("{}\n");
+}
+END_TEST
+
+START_TEST(keeps_order)
+{
+    output_report_text(report, "scene", "sheet.yaml");
+    output_report_integer(report, "steps", UINT64_MAX);
+    output_report_null(report, "messages");
+    output_report_number(report, "h", 0.5);
+    output_report_number(report, "lost", NAN);
+    output_report_number(report, "most", -INFINITY);
+    check_written("{\n  \"scene\": \"sheet.yaml\",\n  \"steps\": 18446744073709551615,\n"
+                  "  \"messages\": null,\n  \"h\": 0.5,\n  \"lost\": null,\n  \"most\": null\n}\n");
+}
+END_TEST
+
+START_TEST(escapes)
+{
+    output_report_text(report, "a\"b", "\\ \" \n \t \1 \x7f");
+    output_report_text(report, "utf8", "d\xc3\xa9j\xc3\xa0 \xe2\x82\xac \xf0\x9f\x98\x80");
+    output_report_text(report, "not utf8", "\xff \xc3( \xc0\xaf \xed\xa0\x80 \xe2\x82");
+    check_written("{\n  \"a\\\"b\": \"\\\\ \\\" \\n \\t \\u0001 \\u007f\",\n"
+                  "  \"utf8\": \"d\xc3\xa9j\xc3\xa0 \xe2\x82\xac \xf0\x9f\x98\x80\",\n"
+                  "  \"not utf8\": \"\\ufffd \\ufffd( \\ufffd\\ufffd \\ufffd\\ufffd\\ufffd "
+                  "\\ufffd\\ufffd\"\n}\n");
+}
+END_TEST
+
+START_TEST(numbers_come_back)
+{
+    static const double value[] = {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, -0.0, 1e22};
+    for (size_t i = 0; i < sizeof value / sizeof *value; i++)
+        output_report_number(report, "x", value[i]);
+    ck_assert_int_eq(output_report_write(report, path, &error), 0);
+    sample_read(path, text, sizeof text);
+    const char *next = text;
+    for (size_t i = 0; i < sizeof value / sizeof *value; i++) {
+        next = strchr(next, ':') + 1;
+        double got = strtod(next, NULL);
+        ck_assert_mem_eq(&got, &value[i], sizeof got);
+    }
+}
+END_TEST
+
+START_TEST(keeps_a_link)
+{
+    char link[96];
+    snprintf(link, sizeof link, "%s/link.json", sample.folder);
+    sample_write(path, "old", 3);
+    ck_assert_int_eq(symlink("report.json", link), 0);
+    ck_assert_int_eq(output_report_write(report, link, &error), 0);
+    struct stat status;
+    ck_assert_int_eq(lstat(link, &status), 0);
+    ck_assert(S_ISLNK(status.st_mode));
+    sample_read(path, text, sizeof text);
+    ck_assert_str_eq(text, "{}\n");
+}
+END_TEST
+
+START_TEST(does_not_replace_a_device)
+{
+    struct stat status;
+    ck_assert_int_eq(output_report_write(report, "/dev/null", &error), 0);
+    ck_assert_int_eq(stat("/dev/null", &status), 0);
+    ck_assert(S_ISCHR(status.st_mode));
+    ck_assert_int_eq(output_report_write(report, "/dev/full", &error), CLOTH_E_IO);
+    ck_assert_ptr_nonnull(strstr(error.text, "No space left"));
+}
+END_TEST
+
+START_TEST(says_what_is_in_the_way)
+{
+    ck_assert_int_eq(output_report_write(report, sample.folder, &error), CLOTH_E_IO);
+    ck_assert_ptr_nonnull(strstr(error.text, "Is a directory"));
+    error.code = 0;
+    sample_write(path, "old", 3);
+    char below[112];
+    snprintf(below, sizeof below, "%s/x.json", path);
+    ck_assert_int_eq(output_report_write(report, below, &error), CLOTH_E_IO);
+    ck_assert_ptr_nonnull(strstr(error.text, "Not a directory"));
+}
+END_TEST
+
+int main(void)
+{
+    TCase *c = tcase_create("report");
+    tcase_add_checked_fixture(c, start, end);
+    tcase_add_test(c, empty);
+    tcase_add_test(c, keeps_order);
+    tcase_add_test(c, escapes);
+    tcase_add_test(c, numbers_come_back);
+    tcase_add_test(c, keeps_a_link);
+    tcase_add_test(c, does_not_replace_a_device);
+    tcase_add_test(c, says_what_is_in_the_way);
+    Suite *s = suite_create("report");
+    suite_add_tcase(s, c);
+    return unit_run(s);
+}

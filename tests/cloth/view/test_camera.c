@@ -1,0 +1,159 @@
+/* The camera of a fit: all points inside the margins and as near as they allow, looking from where
+ * it was told. */
+#include "cloth/view/view.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+
+enum { POINTS = 50 };
+static const double MARGIN = 0.86; /* of half the picture, as camera.c has it */
+
+/* Points of a small repeatable cloud off the origin. */
+static void cloud(double *position)
+{
+    unsigned state = 1;
+    for (int i = 0; i < 3 * POINTS; i++) {
+        state = state * 1664525u + 1013904223u;
+        position[i] = 3.0 + (state >> 8) / 16777216.0 * (i % 3 + 1);
+    }
+}
+
+static void fit_cloud(double azimuth, double elevation, double aspect, double zoom,
+                      struct view_camera *camera)
+{
+    struct view_fit fit;
+    double position[3 * POINTS];
+    cloud(position);
+    view_fit_start(&fit, azimuth, elevation, aspect, zoom);
+    view_fit_add(&fit, POINTS, position);
+    view_fit_camera(&fit, camera);
+}
+
+/* To normalised device coordinates. */
+static void project(const struct view_camera *camera, const double *p, double at[3])
+{
+    double clip[4];
+    for (int i = 0; i < 4; i++) {
+        clip[i] = (double)camera->clip[3][i];
+        for (int k = 0; k < 3; k++)
+            clip[i] += (double)camera->clip[k][i] * p[k];
+    }
+    for (int i = 0; i < 3; i++)
+        at[i] = clip[i] / clip[3];
+}
+
+static void cloud_bounds(const struct view_camera *camera, double low[3], double high[3])
+{
+    double position[3 * POINTS], at[3];
+    cloud(position);
+    for (int i = 0; i < 3; i++) {
+        low[i] = INFINITY;
+        high[i] = -INFINITY;
+    }
+    for (int v = 0; v < POINTS; v++) {
+        project(camera, position + 3 * v, at);
+        for (int i = 0; i < 3; i++) {
+            low[i] = fmin(low[i], at[i]);
+            high[i] = fmax(high[i], at[i]);
+        }
+    }
+}
+
+START_TEST(fits_tightly)
+{
+    struct view_camera camera;
+    double low[3], high[3];
+    fit_cloud(37 * _i, 25 * (_i - 2), _i % 2 ? 1.778 : 0.4, 1, &camera);
+    cloud_bounds(&camera, low, high);
+    double most = 0;
+    for (int i = 0; i < 2; i++) {
+        most = fmax(most, fmin(high[i], -low[i])); /* it touches both margins of one direction */
+        ck_assert(high[i] <= MARGIN + 1e-4 && low[i] >= -MARGIN - 1e-4);
+    }
+    ck_assert_double_eq_tol(most, MARGIN, 1e-4);
+    ck_assert(low[2] > -1 && high[2] < 1);
+}
+END_TEST
+
+START_TEST(zooms)
+{
+    struct view_camera camera;
+    double low[3], high[3];
+    fit_cloud(20, 30, 1.5, 2, &camera);
+    cloud_bounds(&camera, low, high);
+    ck_assert_double_eq_tol(fmax(high[0], high[1]), 2 * MARGIN, 1e-3);
+}
+END_TEST
+
+START_TEST(looks_from_where_it_is_told)
+{
+    static const double from[4][2] = {{0, 0}, {90, 0}, {0, 89}, {180, 0}};
+    static const int axis[4] = {2, 0, 1, 2}, sign[4] = {1, 1, 1, -1};
+    struct view_camera camera;
+    double low[3], high[3], centre[3] = {3.5, 4.0, 4.5};
+    fit_cloud(from[_i][0], from[_i][1], 1.5, 1, &camera);
+    cloud_bounds(&camera, low, high);
+    for (int k = 0; k < 3; k++) {
+        double away = (double)camera.eye[k] - centre[k];
+        if (k == axis[_i])
+            ck_assert(away * sign[_i] > 3);
+        else
+            ck_assert(fabs(away) < 1);
+    }
+    double above[3] = {3.5, 4.4, 4.5}, at[2][3];
+    project(&camera, centre, at[0]);
+    project(&camera, above, at[1]);
+    ck_assert(_i == 2 || at[1][1] > at[0][1]); /* up is up */
+}
+END_TEST
+
+START_TEST(one_point_is_enough)
+{
+    struct view_fit fit;
+    struct view_camera camera;
+    static const double point[3] = {5, -2, 1};
+    double at[3];
+    view_fit_start(&fit, 32, 20, 1.5, 1);
+    view_fit_add(&fit, 1, point);
+    view_fit_camera(&fit, &camera);
+    project(&camera, point, at);
+    ck_assert(fabs(at[0]) < 1e-2 && fabs(at[1]) < 1e-2 && fabs(at[2]) < 1);
+}
+END_TEST
+
+/* A floor just below is in the picture, one far below does not push the camera away. */
+START_TEST(shows_the_near_floor)
+{
+    struct view_camera alone, near, far;
+    struct view_fit fit;
+    double position[3 * POINTS], at[3];
+    static const double floors[2][1][6] = {{{0, 2, 0, 0, 2, 0}}, {{0, -20, 0, 0, 1, 0}}};
+    cloud(position);
+    view_fit_start(&fit, 0, 20, 1, 1);
+    view_fit_add(&fit, POINTS, position);
+    view_fit_camera(&fit, &alone);
+    view_fit_planes(&fit, 1, floors[1]);
+    view_fit_camera(&fit, &far);
+    ck_assert_mem_eq(&far, &alone, sizeof far.eye);
+    view_fit_planes(&fit, 1, floors[0]);
+    view_fit_camera(&fit, &near);
+    static const double foot[3] = {3.5, 2, 5.5};
+    project(&near, foot, at);
+    ck_assert(at[1] > -0.9);
+    project(&alone, foot, at);
+    ck_assert(at[1] < -0.9);
+}
+END_TEST
+
+int main(void)
+{
+    TCase *c = tcase_create("camera");
+    tcase_add_loop_test(c, fits_tightly, 0, 5);
+    tcase_add_test(c, zooms);
+    tcase_add_loop_test(c, looks_from_where_it_is_told, 0, 4);
+    tcase_add_test(c, one_point_is_enough);
+    tcase_add_test(c, shows_the_near_floor);
+    Suite *s = suite_create("camera");
+    suite_add_tcase(s, c);
+    return unit_run(s);
+}

@@ -1,0 +1,259 @@
+/* A small sheet over a floor is drawn, and what is in the picture is compared with what the camera
+ * says. */
+#include "cloth/view/view.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <png.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { N = 12, WIDTH = 320, HEIGHT = 200 };
+static const double PLANE[1][6] = {{0, -0.3, 0, 0, 1, 0}};
+
+static struct view_context *context;
+static struct view_scene *scene;
+static struct view_camera camera;
+static struct view_picture picture;
+static double position[3 * N * N];
+static uint32_t triangle[6 * (N - 1) * (N - 1)];
+
+/* A sheet of 1 m, a little wavy, its front up. */
+static void make_sheet(void)
+{
+    for (int j = 0; j < N; j++)
+        for (int i = 0; i < N; i++) {
+            double *p = position + 3 * (j * N + i);
+            p[0] = i / (N - 1.0) - 0.5;
+            p[1] = 0.05 * sin(7 * p[0]);
+            p[2] = j / (N - 1.0) - 0.5;
+        }
+    uint32_t *t = triangle;
+    for (uint32_t j = 0; j + 1 < N; j++)
+        for (uint32_t i = 0; i + 1 < N; i++) {
+            uint32_t v = j * N + i, corner[6] = {v, v + N, v + N + 1, v, v + N + 1, v + 1};
+            memcpy(t, corner, sizeof corner);
+            t += 6;
+        }
+}
+
+static void draw(double elevation, size_t n_planes)
+{
+    struct cloth_error error = {0};
+    struct view_shape shape = {.n_vertices = N * N,
+                               .n_triangles = 2 * (N - 1) * (N - 1),
+                               .triangle = triangle,
+                               .n_planes = n_planes,
+                               .planes = PLANE};
+    struct view_fit fit;
+    view_fit_start(&fit, 30, elevation, (double)WIDTH / HEIGHT, 1);
+    view_fit_add(&fit, N * N, position);
+    view_fit_planes(&fit, n_planes, PLANE);
+    view_fit_camera(&fit, &camera);
+    ck_assert_msg(view_scene_new(&scene, &shape, &error) == 0, "%s", error.text);
+    ck_assert_msg(view_scene_move(scene, position, &error) == 0, "%s", error.text);
+    picture = (struct view_picture){WIDTH, HEIGHT, NULL};
+    ck_assert_msg(view_picture_draw(&picture, scene, &camera, &error) == 0, "%s", error.text);
+}
+
+static void start(void)
+{
+    struct cloth_error error = {0};
+    ck_assert_msg(view_context_open(&context, &error) == 0, "%s", error.text);
+    make_sheet();
+}
+
+static void end(void)
+{
+    view_picture_free(&picture);
+    view_scene_free(scene);
+    view_context_close(context);
+}
+
+/* Pixels from the left and the top. */
+static void pixel_of(const double *p, double at[2])
+{
+    double clip[4];
+    for (int i = 0; i < 4; i++) {
+        clip[i] = (double)camera.clip[3][i];
+        for (int k = 0; k < 3; k++)
+            clip[i] += (double)camera.clip[k][i] * p[k];
+    }
+    at[0] = (0.5 + 0.5 * clip[0] / clip[3]) * WIDTH;
+    at[1] = (0.5 - 0.5 * clip[1] / clip[3]) * HEIGHT;
+}
+
+static const unsigned char *pixel(int x, int y)
+{
+    return picture.rgb + 3 * (y * WIDTH + x);
+}
+
+/* The cloth is red, all else is nearly grey. */
+static int is_cloth(int x, int y)
+{
+    const unsigned char *p = pixel(x, y);
+    return p[0] > 1.4 * p[1];
+}
+
+static int brightness(int x, int y)
+{
+    const unsigned char *p = pixel(x, y);
+    return p[0] + p[1] + p[2];
+}
+
+START_TEST(cloth_is_where_the_camera_says)
+{
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, at[2];
+    int left = WIDTH, right = -1, top = HEIGHT, bottom = -1, n = 0;
+    draw(_i ? -35 : 35, 1); /* its front, its back */
+    for (int v = 0; v < N * N; v++) {
+        pixel_of(position + 3 * v, at);
+        for (int i = 0; i < 2; i++) {
+            low[i] = fmin(low[i], at[i]);
+            high[i] = fmax(high[i], at[i]);
+        }
+    }
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            if (is_cloth(x, y)) {
+                left = x < left ? x : left;
+                right = x > right ? x : right;
+                top = y < top ? y : top;
+                bottom = y > bottom ? y : bottom;
+                n++;
+            }
+    ck_assert_int_gt(n, 3000);
+    ck_assert_double_eq_tol(left, low[0], 2.5);
+    ck_assert_double_eq_tol(right + 1, high[0], 2.5);
+    ck_assert_double_eq_tol(top, low[1], 2.5);
+    ck_assert_double_eq_tol(bottom + 1, high[1], 2.5);
+}
+END_TEST
+
+START_TEST(throws_a_shadow)
+{
+    static const double shaded[3] = {0.28, -0.3, -0.05}, lit[3] = {-0.9, -0.3, 0.2};
+    double at[2][2];
+    draw(8, 1);
+    pixel_of(shaded, at[0]);
+    pixel_of(lit, at[1]);
+    for (int i = 0; i < 2; i++)
+        ck_assert(!is_cloth((int)at[i][0], (int)at[i][1]));
+    int dark = brightness((int)at[0][0], (int)at[0][1]);
+    int light = brightness((int)at[1][0], (int)at[1][1]);
+    ck_assert_msg(dark < 0.75 * light, "%d in the shadow, %d beside it", dark, light);
+}
+END_TEST
+
+START_TEST(front_and_back_differ)
+{
+    unsigned char seen[2][3];
+    double at[2];
+    for (int i = 0; i < 2; i++) {
+        draw(i ? -40 : 40, 0);
+        pixel_of(position + 3 * (N * N / 2 + N / 2), at);
+        memcpy(seen[i], pixel((int)at[0], (int)at[1]), 3);
+        view_picture_free(&picture);
+        view_scene_free(scene);
+        scene = NULL;
+    }
+    ck_assert_int_gt(abs(seen[0][0] - seen[1][0]) + abs(seen[0][1] - seen[1][1]), 20);
+}
+END_TEST
+
+/* A chain of two edges without triangles. */
+START_TEST(draws_lines)
+{
+    struct cloth_error error = {0};
+    static const uint32_t line[4] = {0, 1, 1, 2};
+    static const double place[9] = {0, 0, 0, 0.5, 0.2, 0, 1, 0, 0};
+    struct view_shape shape = {.n_vertices = 3, .n_lines = 2, .line = line};
+    struct view_fit fit;
+    view_fit_start(&fit, 0, 0, (double)WIDTH / HEIGHT, 1);
+    view_fit_add(&fit, 3, place);
+    view_fit_camera(&fit, &camera);
+    ck_assert_int_eq(view_scene_new(&scene, &shape, &error), 0);
+    ck_assert_int_eq(view_scene_move(scene, place, &error), 0);
+    picture = (struct view_picture){WIDTH, HEIGHT, NULL};
+    ck_assert_msg(view_picture_draw(&picture, scene, &camera, &error) == 0, "%s", error.text);
+    int n = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        n += is_cloth(i % WIDTH, i / WIDTH);
+    ck_assert_int_gt(n, 150);
+    ck_assert_int_lt(n, 2000);
+}
+END_TEST
+
+START_TEST(png_holds_the_picture)
+{
+    struct cloth_error error = {0};
+    char path[] = "/tmp/duite-view.XXXXXX";
+    close(mkstemp(path));
+    draw(20, 1);
+    ck_assert_msg(view_picture_write(&picture, path, &error) == 0, "%s", error.text);
+    png_image image = {.version = PNG_IMAGE_VERSION};
+    ck_assert_int_ne(png_image_begin_read_from_file(&image, path), 0);
+    ck_assert(image.width == WIDTH && image.height == HEIGHT);
+    image.format = PNG_FORMAT_RGB;
+    unsigned char *back = malloc(PNG_IMAGE_SIZE(image));
+    ck_assert_int_ne(png_image_finish_read(&image, NULL, back, 0, NULL), 0);
+    ck_assert_mem_eq(back, picture.rgb, PNG_IMAGE_SIZE(image));
+    free(back);
+    unlink(path);
+}
+END_TEST
+
+START_TEST(refuses_what_it_cannot_write)
+{
+    struct cloth_error error = {0};
+    draw(20, 1);
+    ck_assert_int_eq(view_picture_write(&picture, "/tmp", &error), CLOTH_E_IO);
+    ck_assert_ptr_nonnull(strstr(error.text, "Is a directory"));
+    ck_assert_int_ne(access("/tmp.part", F_OK), 0);
+    error.code = 0;
+    ck_assert_int_eq(view_picture_write(&picture, "/dev/full", &error), CLOTH_E_IO);
+    ck_assert_ptr_nonnull(strstr(error.text, "No space left"));
+    error.code = 0;
+    struct view_picture huge = {1 << 20, 1, NULL};
+    ck_assert_int_eq(view_picture_draw(&huge, scene, &camera, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_null(huge.rgb);
+}
+END_TEST
+
+/* In a process of its own, so that the tests' processes start without a driver's threads. */
+static int has_egl(void)
+{
+    fflush(NULL);
+    pid_t child = fork();
+    if (child == 0) {
+        struct cloth_error error = {0};
+        int code = view_context_open(&context, &error);
+        if (code)
+            printf("1..0 # SKIP %s\n", error.text);
+        view_context_close(context);
+        fflush(stdout);
+        _exit(code != 0);
+    }
+    int status = 0;
+    return waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+int main(void)
+{
+    if (!has_egl())
+        return 77;
+    TCase *c = tcase_create("picture");
+    tcase_add_checked_fixture(c, start, end);
+    tcase_add_loop_test(c, cloth_is_where_the_camera_says, 0, 2);
+    tcase_add_test(c, throws_a_shadow);
+    tcase_add_test(c, front_and_back_differ);
+    tcase_add_test(c, draws_lines);
+    tcase_add_test(c, png_holds_the_picture);
+    tcase_add_test(c, refuses_what_it_cannot_write);
+    Suite *s = suite_create("picture");
+    suite_add_tcase(s, c);
+    return unit_run(s);
+}

@@ -1,0 +1,63 @@
+#!/bin/sh
+# The viewer's command line: what it makes, what it refuses and how it ends.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_VIEW"
+plan_later
+
+# A triangle in two frames, the second 1 m higher.
+dir=$scratch/frames
+mkdir "$dir"
+printf 'o t\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > "$dir/cloth.obj"
+printf 'frame,time\n0,0\n1,0.04\n' > "$dir/frames.csv"
+printf '{"fps": 25, "planes": [{"point": [0, 0, 0], "normal": [0, 1, 0]}]}\n' > "$dir/scene.json"
+one='\0\0\200\77' nil='\0\0\0\0'
+{
+    printf 'POINTCACHE2\0\1\0\0\0\3\0\0\0\0\0\0\0\0\0\200\77\2\0\0\0'
+    printf "$nil$nil$nil$one$nil$nil$nil$one$nil"
+    printf "$nil$one$nil$one$one$nil$nil$one$one"
+} > "$dir/cloth.pc2"
+
+# says NAME TEXT: passes when the last command printed TEXT.
+printed() { grep -q -- "$1" "$scratch/output"; }
+says() {
+    printed "$2"
+    tap_result $? "$1"
+}
+view() { limited "$DUITE_VIEW" "$@"; }
+picture() { view "$dir" --size 64x48 "$@"; }
+is_png() { test "$(head -c 4 "$1" | tail -c 3)" = PNG; }
+
+ok "help" view --help
+says "help names the folder" 'DIR'
+ok "version" view --version
+says "version says the name" '^duite-view [0-9]'
+exits 2 "nothing to show" view
+exits 2 "no place for the picture" view "$dir"
+says "says the option" '--png'
+exits 2 "no such folder" view "$scratch/none" --png "$scratch/x.png"
+says "names the folder" "$scratch/none: No such file"
+exits 2 "a frame that is not there" picture --png "$scratch/x.png" --frame 2
+says "says how many there are" '2 frames, 0 to 1'
+for bad in --frame=-1 --frame=1x --frame= --size=0x10 --size=10 --size=10x10x --camera=1 --camera=0,90 --camera=0,0,0 \
+    --camera=0,0x --camera=nan,0; do
+    exits 2 "refuses $bad" picture --png "$scratch/x.png" "$bad"
+done
+exits 1 "without a driver" env __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null "$DUITE_VIEW" "$dir" --png "$scratch/x.png"
+says "says which packages are missing" 'libegl-mesa0'
+ok "nothing is written when it fails" test ! -e "$scratch/x.png"
+
+tap_run picture --png "$scratch/0.png" --frame 0
+if test $tap_got = 1 && printed 'libegl-mesa0'; then
+    skip "pictures" "no EGL here"
+    exit 0
+fi
+tap_result $tap_got "a picture"
+ok "it is a PNG" is_png "$scratch/0.png"
+ok "the last frame" picture --png "$scratch/last.png" --frame last
+ok "a frame by its number" picture --png "$scratch/1.png" --frame 1
+ok "the last frame is frame 1" cmp "$scratch/last.png" "$scratch/1.png"
+not_ok_expected "frames differ" cmp "$scratch/0.png" "$scratch/1.png"
+ok "another camera" picture --png "$scratch/c.png" --frame 1 --camera=-40,10,1.5
+not_ok_expected "cameras differ" cmp "$scratch/c.png" "$scratch/1.png"
+exits 1 "a folder that is not there for the picture" picture --png "$scratch/none/x.png"
+says "names it" "$scratch/none/x.png"

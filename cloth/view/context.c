@@ -100,7 +100,6 @@ void view_context_close(struct view_context *context)
         eglMakeCurrent(context->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(context->display, context->context);
     }
-    eglTerminate(context->display);
     eglReleaseThread();
-    free(context);
+    free(context); /* the display is the process's: EGL gives the same one to all who ask */
 }

@@ -1,3 +1,16 @@
+noinst_LTLIBRARIES += libduite_cloth.la
+libduite_cloth_la_SOURCES =
+libduite_cloth_la_LIBADD = $(YAML_LIBS) $(METIS_LIBS) $(XXHASH_LIBS) -lm
+
+include cloth/base/module.mk
+include cloth/mesh/module.mk
+include cloth/physics/module.mk
+include cloth/solve/module.mk
+include cloth/flow/module.mk
+include cloth/scene/module.mk
+include cloth/output/module.mk
+include cloth/view/module.mk
+
 scenesdir = $(pkgdatadir)/scenes
 dist_scenes_DATA =
 EXTRA_DIST += cloth/demo.sh

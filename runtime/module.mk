@@ -1,1 +1,19 @@
+# libduite for users exports duite_* only; the tree itself links libduite_core, the same objects with all symbols.
+lib_LTLIBRARIES += libduite.la
+noinst_LTLIBRARIES += libduite_core.la
+include_HEADERS = runtime/duite.h runtime/duite_policy.h
+pkgconfig_DATA = runtime/duite.pc
+libduite_la_SOURCES = $(include_HEADERS)
+libduite_la_LIBADD = $(METIS_LIBS) $(HWLOC_LIBS) $(XXHASH_LIBS) $(MPI_LIBS) -lm
+libduite_la_LDFLAGS = $(AM_LDFLAGS) -version-info 0:0:0 -export-symbols-regex '^duite_'
+libduite_core_la_SOURCES = $(libduite_la_SOURCES)
+libduite_core_la_LIBADD = $(libduite_la_LIBADD)
+
 libduite_la_SOURCES += runtime/duite.c runtime/instance.h runtime/program.c
+include runtime/base/module.mk
+include runtime/data/module.mk
+include runtime/graph/module.mk
+include runtime/sched/module.mk
+include runtime/map/module.mk
+include runtime/comm/module.mk
+include runtime/workers/module.mk

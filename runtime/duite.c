@@ -24,9 +24,7 @@ duite_options duite_options_default(void)
                            .bind = 1};
 }
 
-/* ---- MPI
- * -------------------------------------------------------------------------------------------------
- */
+/* ---- MPI ---- */
 
 /* MPI cannot be initialised twice: what start initialised stays until the process ends, so that
  * start and stop may repeat. */
@@ -57,9 +55,7 @@ static int start_mpi(void)
     return DUITE_OK;
 }
 
-/* ---- Start
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- Start ---- */
 
 static int check_options(const duite_options *options)
 {
@@ -243,9 +239,7 @@ int duite_start(duite **out, const duite_options *options)
     return code;
 }
 
-/* ---- Stop
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- Stop ---- */
 
 static int not_freed(const duite *rt)
 {
@@ -273,8 +267,7 @@ int duite_stop(duite **out)
     return code;
 }
 
-/* ---- Who am I
- * -------------------------------------------------------------------------------------------- */
+/* ---- Who am I ---- */
 
 int duite_rank(const duite *rt)
 {

@@ -82,8 +82,7 @@ typedef enum duite_mode {
               */
 } duite_mode;
 
-/* ---- Kernels
- * ---------------------------------------------------------------------------------------- */
+/* ---- Kernels ---- */
 
 typedef struct duite_param {
     void *data;      /* 64-byte aligned; const under DUITE_R; dies with the body */
@@ -133,8 +132,7 @@ typedef struct duite_kernel {
     size_t args_size; /* bytes of arguments, copied at the fork; no pointers inside */
 } duite_kernel;
 
-/* ---- Start and stop
- * --------------------------------------------------------------------------------- */
+/* ---- Start and stop ---- */
 
 struct duite_scheduler; /* duite_policy.h */
 struct duite_mapping;
@@ -179,8 +177,7 @@ unsigned duite_threads(const duite *rt);
  * Local. */
 int duite_oversubscribed(const duite *rt);
 
-/* ---- Shared objects
- * --------------------------------------------------------------------------------- */
+/* ---- Shared objects ---- */
 
 /* Makes an object of count elements, all zero. Collective; no communication. */
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
@@ -217,8 +214,7 @@ int duite_follow(duite *rt, duite_object object, duite_object leader);
  * keeps this one; -1 for no such object. Collective. */
 int duite_home(duite *rt, duite_object object);
 
-/* ---- Tasks
- * ------------------------------------------------------------------------------------------ */
+/* ---- Tasks ---- */
 
 /* Forks a task on n objects, in the order of the kernel's modes; a task names an object once.
  * `args` points to the kernel's args_size bytes (ignored if 0). It runs where its first w or rw
@@ -246,8 +242,7 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
  * remembered error goes first; a task's then waits for the next.) Collective. */
 int duite_wait(duite *rt);
 
-/* ---- Counters
- * --------------------------------------------------------------------------------------- */
+/* ---- Counters ---- */
 
 typedef struct duite_counters {
     uint64_t tasks;    /* bodies run; not those that poison kept from running */

@@ -13,8 +13,7 @@
 extern "C" {
 #endif
 
-/* ---- Schedulers: which worker, which task next
- * ------------------------------------------------------- */
+/* ---- Schedulers: which worker, which task next ---- */
 
 /* Queues: one a worker, numbered like the workers, and one that all share. */
 #define DUITE_SHARED_QUEUE 0xfffffffeu
@@ -49,8 +48,7 @@ typedef struct duite_scheduler {
     int (*chain)(void *state, const duite_ready *task);
 } duite_scheduler;
 
-/* ---- Mappings: which rank keeps an object
- * ------------------------------------------------------------ */
+/* ---- Mappings: which rank keeps an object ---- */
 
 /* The objects to map: a graph in compressed rows, symmetric, with the program's hints. */
 typedef struct duite_object_graph {

@@ -44,8 +44,7 @@ static int settle(duite *rt)
     return map_settle(&rt->graph.table, rt->mapping, rt->seed);
 }
 
-/* ---- Objects
- * --------------------------------------------------------------------------------------------- */
+/* ---- Objects ---- */
 
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
 {
@@ -92,9 +91,7 @@ int duite_free(duite *rt, duite_object object)
     return code;
 }
 
-/* ---- Tasks
- * -----------------------------------------------------------------------------------------------
- */
+/* ---- Tasks ---- */
 
 static int fork_task(duite *rt, int at, const duite_kernel *kernel, const void *args, size_t n,
                      const duite_object *objects)
@@ -135,8 +132,7 @@ int duite_set(duite *rt, duite_object object, const void *values)
     return code;
 }
 
-/* ---- Waiting
- * --------------------------------------------------------------------------------------------- */
+/* ---- Waiting ---- */
 
 static bool copy_done(void *context)
 {
@@ -255,8 +251,7 @@ int duite_wait(duite *rt)
     return graph_failure_error(graph, failure);
 }
 
-/* ---- Counters
- * -------------------------------------------------------------------------------------------- */
+/* ---- Counters ---- */
 
 int duite_count_all(duite *rt, duite_counters *counters)
 {

@@ -112,8 +112,7 @@ void comm_stop(struct comm *comm)
     base_free(comm);
 }
 
-/* ---- Requests: only under the lock
- * ---------------------------------------------------------------------- */
+/* ---- Requests: only under the lock ---- */
 
 /* A place for one more request, counted by requests_add; NULL without memory. */
 static MPI_Request *requests_place(struct comm *comm, struct requests *requests)
@@ -160,8 +159,7 @@ static int requests_test(struct comm *comm, struct requests *requests)
     return last - requests->n;
 }
 
-/* ---- Sending
- * ------------------------------------------------------------------------------------------- */
+/* ---- Sending ---- */
 
 static void push(struct comm *comm, struct post *post)
 {
@@ -247,8 +245,7 @@ static void start_sends(struct comm *comm, struct found *found)
     }
 }
 
-/* ---- Receiving
- * ----------------------------------------------------------------------------------------- */
+/* ---- Receiving ---- */
 
 static bool start_receive(struct comm *comm)
 {
@@ -336,8 +333,7 @@ int comm_expect(struct comm *comm, void *worker, struct data_key key, struct dat
     return DUITE_OK;
 }
 
-/* ---- Progress
- * ------------------------------------------------------------------------------------------ */
+/* ---- Progress ---- */
 
 static bool try_lock(struct comm *comm)
 {

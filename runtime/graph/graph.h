@@ -109,8 +109,7 @@ int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *
 /* No task is left. Frees everything, objects that were not freed among it. */
 void graph_stop(struct graph *graph);
 
-/* ---- Main thread, collective in the sense of duite.h; the homes of all objects are settled
- * ------------- */
+/* ---- Main thread, collective; the homes of all objects are settled ---- */
 
 enum { GRAPH_ANYWHERE = -1 };
 
@@ -125,8 +124,7 @@ int graph_free(struct graph *graph, void *worker, duite_object object);
 int graph_copy(struct graph *graph, void *worker, duite_object object, int to,
                struct graph_copy *copy);
 
-/* ---- Any worker
- * ---------------------------------------------------------------------------------------- */
+/* ---- Any worker ---- */
 
 /* What the running body may say of its failure. */
 struct duite_call_private {

@@ -14,12 +14,13 @@
 
 enum { LONGEST_CHAIN = 64 }; /* tasks run one after another without a look at the queues */
 
-#define POLL_SECONDS        5e-6 /* between polls while there is work */
-#define FIRST_PAUSE_SECONDS 2e-5 /* between polls while there is none: doubles up to the longest   \
-                                  */
+/* Seconds between polls while there is work, and while there is none: the pause doubles up to the
+ * longest. */
+#define POLL_SECONDS          5e-6
+#define FIRST_PAUSE_SECONDS   2e-5
 #define LONGEST_PAUSE_SECONDS 1e-3
-#define YIELD_SECONDS                                                                              \
-    1e-4 /* a poller without a core of its own gives way so long before it pauses */
+/* A poller without a core of its own gives way for so long before it pauses. */
+#define YIELD_SECONDS 1e-4
 
 struct counts {
     _Atomic uint64_t tasks, placed, stolen, chained, busy, idle; /* the last two in ns */
@@ -71,8 +72,7 @@ static void pause_core(void)
 #endif
 }
 
-/* ---- Ready tasks
- * ----------------------------------------------------------------------------------------- */
+/* ---- Ready tasks ---- */
 
 static duite_ready describe(const struct graph *graph, const struct graph_task *task)
 {
@@ -145,8 +145,7 @@ static int on_expect(void *context, void *who, struct data_key key, struct data_
     return comm_expect(pool->setup.comm, who, key, version, sum, packets);
 }
 
-/* ---- One worker's work
- * ---------------------------------------------------------------------------------- */
+/* ---- One worker's work ---- */
 
 static struct graph_task *find(struct work_worker *worker)
 {
@@ -202,8 +201,7 @@ static void run(struct work_worker *worker, struct graph_task *task)
     }
 }
 
-/* ---- Idling
- * ---------------------------------------------------------------------------------------------- */
+/* ---- Idling ---- */
 
 static void busy_again(struct work_worker *worker)
 {
@@ -332,8 +330,7 @@ static void *thread_main(void *argument)
     return NULL;
 }
 
-/* ---- Start and stop
- * -------------------------------------------------------------------------------------- */
+/* ---- Start and stop ---- */
 
 static bool prepare(struct work_pool *pool, unsigned index, int unit)
 {

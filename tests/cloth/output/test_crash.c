@@ -181,8 +181,9 @@ END_TEST
 
 START_TEST(report_is_whole_or_not_at_all)
 {
-    char path[96], text[64];
+    char path[96], part[112], text[64];
     snprintf(path, sizeof path, "%s/report.json", sample.folder);
+    snprintf(part, sizeof part, "%s.part", path);
     int through = 0;
     for (long n = 0; !through; n++) {
         ck_assert_int_lt(n, 50);
@@ -199,6 +200,7 @@ START_TEST(report_is_whole_or_not_at_all)
         output_report_free(report);
         ck_assert_int_eq(code, through ? 0 : CLOTH_E_IO);
         sample_read(path, text, sizeof text);
+        ck_assert_int_ne(access(part, F_OK), 0);
         ck_assert_str_eq(text, through ? "{\n  \"steps\": 3\n}\n" : "old");
     }
 }

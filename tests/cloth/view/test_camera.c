@@ -100,10 +100,15 @@ START_TEST(looks_from_where_it_is_told)
         else
             ck_assert(fabs(away) < 1);
     }
-    double above[3] = {3.5, 4.4, 4.5}, at[2][3];
+    static const double right[4][3] = {{1, 0, 0}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}};
+    double above[3] = {3.5, 4.4, 4.5}, aside[3], at[3][3];
+    for (int k = 0; k < 3; k++)
+        aside[k] = centre[k] + 0.4 * right[_i][k];
     project(&camera, centre, at[0]);
     project(&camera, above, at[1]);
-    ck_assert(_i == 2 || at[1][1] > at[0][1]); /* up is up */
+    project(&camera, aside, at[2]);
+    ck_assert(_i == 2 || at[1][1] > at[0][1] + 0.05); /* up is up, and nothing is mirrored */
+    ck_assert(at[2][0] > at[0][0] + 0.05);
 }
 END_TEST
 
@@ -134,7 +139,7 @@ START_TEST(shows_the_near_floor)
     view_fit_camera(&fit, &alone);
     view_fit_planes(&fit, 1, floors[1]);
     view_fit_camera(&fit, &far);
-    ck_assert_mem_eq(&far, &alone, sizeof far.eye);
+    ck_assert_mem_eq(far.eye, alone.eye, sizeof far.eye);
     view_fit_planes(&fit, 1, floors[0]);
     view_fit_camera(&fit, &near);
     static const double foot[3] = {3.5, 2, 5.5};

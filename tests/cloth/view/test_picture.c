@@ -160,7 +160,8 @@ START_TEST(front_and_back_differ)
         view_scene_free(scene);
         scene = NULL;
     }
-    ck_assert_int_gt(abs(seen[0][0] - seen[1][0]) + abs(seen[0][1] - seen[1][1]), 20);
+    double hue[2] = {(double)seen[0][1] / seen[0][0], (double)seen[1][1] / seen[1][0]};
+    ck_assert_msg(hue[1] > hue[0] + 0.1, "green to red is %g, %g", hue[0], hue[1]);
 }
 END_TEST
 

@@ -54,4 +54,5 @@ include tests/cloth/mesh/module.mk
 include tests/cloth/physics/module.mk
 include tests/cloth/solve/module.mk
 include tests/cloth/output/module.mk
+include tests/cloth/scene/module.mk
 include tests/cloth/view/module.mk

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double MOST_STEPS = 4294967294; /* of a run: steps are counted in 32 bits */
+
 void *scene_build_array(size_t n, size_t size, struct cloth_error *error)
 {
     void *array = calloc(n ? n : 1, size);
@@ -111,7 +113,6 @@ static int build_obstacles(struct model *model, const struct scene_tree *tree,
     return code;
 }
 
-/* Time is counted in h / 1024 in 64 bits, so there is an end to the number of steps. */
 static int build_time(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
 {
     int time = scene_tree_get(tree, 1, "time"), end = scene_tree_get(tree, time, "end");
@@ -124,9 +125,10 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
                                "time.end is %g, less than half a step; at least time.h = %g is "
                                "expected",
                                model->end, model->h);
-    if (!(steps <= 0x1p50))
+    if (!(steps <= MOST_STEPS))
         return scene_tree_fail(tree, end, error,
-                               "time.end / time.h is %g steps; at most 2^50 are possible", steps);
+                               "time.end / time.h is %g steps; at most %.0f are possible", steps,
+                               MOST_STEPS);
     return CLOTH_OK;
 }
 

@@ -138,20 +138,27 @@ static int check_values(struct walk *walk, const struct place *at, const struct 
     return CLOTH_OK;
 }
 
-static int add_defaults(struct walk *walk, const struct place *at, const struct scene_rule *keys,
-                        int map)
+/* A default is walked like what a file says, since a map among them has defaults of its own. */
+static int add_default(struct walk *walk, const struct place *here, const struct scene_rule *rule,
+                       int map)
+{
+    int code = scene_edit_default(walk->tree, map, rule->key, rule->fallback, walk->error);
+    return code ? code : check(walk, here, rule, scene_tree_get(walk->tree, map, rule->key));
+}
+
+static int add_missing(struct walk *walk, const struct place *at, const struct scene_rule *keys,
+                       int map)
 {
     char path[200], expected[300];
     for (const struct scene_rule *rule = keys; rule->key; rule++) {
+        struct place here = {at, rule->key, 0};
         if (scene_tree_get(walk->tree, map, rule->key))
             continue;
-        path_of(&(struct place){at, rule->key, 0}, path, sizeof path);
+        path_of(&here, path, sizeof path);
         if (rule->required)
             return scene_tree_fail(walk->tree, map, walk->error, "%s is missing; %s is expected",
                                    path, scene_rule_expected(rule, expected, sizeof expected));
-        int code = rule->fallback
-                       ? scene_edit_default(walk->tree, map, rule->key, rule->fallback, walk->error)
-                       : CLOTH_OK;
+        int code = rule->fallback ? add_default(walk, &here, rule, map) : CLOTH_OK;
         if (code)
             return code;
     }
@@ -164,7 +171,7 @@ static int check_map(struct walk *walk, const struct place *at, const struct sce
     int code = check_names(walk, at, node);
     if (!code)
         code = check_values(walk, at, rule->inside, node);
-    return code ? code : add_defaults(walk, at, rule->inside, node);
+    return code ? code : add_missing(walk, at, rule->inside, node);
 }
 
 static int check_one_of(struct walk *walk, const struct place *at, const struct scene_rule *rule,

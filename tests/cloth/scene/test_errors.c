@@ -1,0 +1,361 @@
+/* Every wrong scene has its own sentence, with the line and column where it is wrong. Each case
+ * changes one place of the scene that is right and expects the whole text of the error. */
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct wrong {
+    const char *from, *to; /* the change of the file; NULL: none */
+    const char *set;       /* NULL: none */
+    const char *error;     /* after the path of the file, or all of it when there is a set */
+};
+
+static void expect_text(const char *text, const char *set, const char *error)
+{
+    struct model model;
+    struct cloth_error got = {0};
+    const struct scene_set sets[] = {{.text = set}};
+    int code = scene_read_text(&model, text, set ? 1 : 0, sets, &got);
+    size_t path = strlen(scene_path());
+    bool in_file = strncmp(got.text, scene_path(), path) == 0;
+    ck_assert_str_eq(in_file ? got.text + path : got.text, error);
+    ck_assert_int_eq(code, CLOTH_E_INPUT);
+    model_free(&model);
+}
+
+static void expect(const struct wrong *wrong, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        char *text = wrong[i].from ? scene_changed(scene_right, wrong[i].from, wrong[i].to)
+                                   : strdup(scene_right);
+        expect_text(text, wrong[i].set, wrong[i].error);
+        free(text);
+    }
+}
+
+#define EXPECT(...)                                                                                \
+    do {                                                                                           \
+        static const struct wrong all[] = {__VA_ARGS__};                                           \
+        expect(all, sizeof all / sizeof all[0]);                                                   \
+    } while (0)
+
+START_TEST(values_out_of_range)
+{
+    EXPECT(
+        {"h: 0.001", "h: 0", .error = ":12:11: time.h is 0; a finite number > 0 (s) is expected"},
+        {"h: 0.001", "h: -1", .error = ":12:11: time.h is -1; a finite number > 0 (s) is expected"},
+        {"end: 0.1", "end: -0",
+         .error = ":12:23: time.end is -0; a finite number > 0 (s) is expected"},
+        {"end: 0.1", "end: 0.0004",
+         .error = ":12:23: time.end is 0.0004, less than half a step; at least time.h = 0.001 is "
+                  "expected"},
+        {"end: 0.1", "end: 1e9",
+         .error = ":12:23: time.end / time.h is 1e+12 steps; at most 4294967294 are possible"},
+        {"end: 0.1", "end: 0.1, fps: 0",
+         .error = ":12:33: time.fps is 0; a finite number > 0 (1/s) is expected"},
+        {"density: 0.2", "density: 0",
+         .error =
+             ":10:21: materials.cotton.density is 0; a finite number > 0 (kg/m^2) is expected"},
+        {"stretch: 50", "stretch: -1",
+         .error = ":10:35: materials.cotton.stretch is -1; a finite number >= 0 (N/m) is expected"},
+        {"mass: 0.1", "mass: -0.1",
+         .error = ":10:55: materials.cotton.damping.mass is -0.1; a finite number >= 0 (1/s) is "
+                  "expected"},
+        {"nx: 4", "nx: 1",
+         .error =
+             ":5:44: cloths[0].mesh.grid.nx is 1; a whole number from 2 to 4294967295 is expected"},
+        {"nx: 4, ny: 3", "nx: 65536, ny: 65536",
+         .error = ":5:44: nx times ny is 4294967296; at most 2^31 vertices are possible"},
+        {"schema: 1", "schema: 1\ngrain: 0",
+         .error = ":2:8: grain is 0; a whole number from 1 to 4294967295 is expected"},
+        {"schema: 1", "schema: 1\nsolver: {stop: {relative: 0}}",
+         .error = ":2:27: solver.stop.relative is 0; a finite number > 0 is expected"},
+        {"schema: 1", "schema: 1\nsolver: {stop: {count: 0}}",
+         .error = ":2:24: solver.stop.count is 0; a whole number from 1 to 4294967295 is expected"},
+        {"normal: [0, 3, 4]", "normal: [0, 0, 0]",
+         .error = ":11:49: the normal of a plane is zero; a direction is expected"},
+        {"material: cotton", "material: cotton\n    transform: {rotate: [0, 0, 0, 0]}",
+         .error = ":7:25: the quaternion [w, x, y, z] has no direction; its length must be neither "
+                  "zero nor huge"},
+        {"material: cotton", "material: cotton\n    transform: {scale: 0}",
+         .error = ":7:24: cloths[0].transform.scale is 0; a finite number > 0 or a list of 3 of "
+                  "them is expected"},
+        {"material: cotton", "material: cotton\n    transform: {scale: [1, 1, -1]}",
+         .error = ":7:31: cloths[0].transform.scale[2] is -1; a finite number > 0 is expected"},
+        {"material: cotton", "material: cotton\n    mass_per_vertex: 0",
+         .error = ":7:22: cloths[0].mass_per_vertex is 0; a finite number > 0 (kg) is expected"});
+}
+END_TEST
+
+START_TEST(what_is_no_number)
+{
+    static const char *const not_numbers[] = {".nan",  "nan", "NaN",   ".inf", "-inf", "0x10",
+                                              "1_000", "1e",  "1e+",   ".",    "-",    "1.2.3",
+                                              "1 2",   "abc", "1e999", "true"};
+    for (size_t i = 0; i < sizeof not_numbers / sizeof not_numbers[0]; i++) {
+        char to[64], error[200];
+        snprintf(to, sizeof to, "stretch: %s", not_numbers[i]);
+        snprintf(error, sizeof error,
+                 ":10:35: materials.cotton.stretch is %s; a finite number >= 0 (N/m) is expected",
+                 not_numbers[i]);
+        expect(&(struct wrong){"stretch: 50", to, NULL, error}, 1);
+    }
+    EXPECT(
+        {"stretch: 50", "stretch: '50'",
+         .error = ":10:35: materials.cotton.stretch is the text '50'; a finite number >= 0 (N/m) "
+                  "is expected"},
+        {"stretch: 50", "stretch: ",
+         .error =
+             ":10:35: materials.cotton.stretch is empty; a finite number >= 0 (N/m) is expected"},
+        {"nx: 4", "nx: 4.0",
+         .error = ":5:44: cloths[0].mesh.grid.nx is 4.0; a whole number from 2 to 4294967295 is "
+                  "expected"},
+        {"nx: 4", "nx: 4294967296",
+         .error = ":5:44: cloths[0].mesh.grid.nx is 4294967296; a whole number from 2 to "
+                  "4294967295 is expected"},
+        {"vertices: [0, 3]", "vertices: [0, -1]",
+         .error = ":7:27: cloths[0].pins[0].vertices[1] is -1; a whole number from 0 to 4294967295 "
+                  "is expected"});
+}
+END_TEST
+
+START_TEST(wrong_kinds)
+{
+    EXPECT({"gravity: [0, -9.81, 0]", "gravity: 9.81",
+            .error = ":2:10: gravity is 9.81; a list of 3 numbers (m/s^2) is expected"},
+           {"gravity: [0, -9.81, 0]", "gravity: [0, 1]",
+            .error = ":2:10: gravity is a list of 2; a list of 3 numbers (m/s^2) is expected"},
+           {"gravity: [0, -9.81, 0]", "gravity: [0, {a: 1}, 0]",
+            .error = ":2:14: gravity[1] is a map of 1; a finite number is expected"},
+           {"time: {h: 0.001, end: 0.1}", "time: 3",
+            .error = ":12:7: time is 3; a map of h, end, fps is expected"},
+           {"name: sheet", "name: ''",
+            .error = ":4:11: cloths[0].name is the text ''; a text is expected"},
+           {"name: sheet", "name: [a]",
+            .error = ":4:11: cloths[0].name is a list of 1; a text is expected"},
+           {"name: sheet", "name: !mine a",
+            .error = ":4:11: cloths[0].name has the tag !mine; a value without a tag is expected"},
+           {"gravity: [0, -9.81, 0]", "integrator: rk4",
+            .error = ":2:13: integrator is rk4; implicit_euler or explicit_euler is expected"},
+           {"gravity: [0, -9.81, 0]", "contact: filter",
+            .error = ":2:10: contact is filter; project is expected"},
+           {"[{vertices: [0, 3]}]", "[]\n    loads: []",
+            .error = ":9:5: loads is twice in cloths[0]; each key is allowed once"},
+           {"pins: [{vertices: [0, 3]}]", "pins: [{}]",
+            .error = ":7:12: cloths[0].pins[0] has 0 keys; a map with exactly one of vertices, "
+                     "nearest, box is expected"},
+           {"{vertices: [0, 3]}", "{vertices: [0], nearest: [0, 0, 0]}",
+            .error = ":7:28: cloths[0].pins[0] has 2 keys; a map with exactly one of vertices, "
+                     "nearest, box is expected"},
+           {"vertices: [0, 3]", "vertices: []",
+            .error = ":7:23: cloths[0].pins[0].vertices is an empty list; a non-empty list of "
+                     "whole numbers is expected"});
+}
+END_TEST
+
+START_TEST(unknown_and_missing_keys)
+{
+    EXPECT({"time:", "tiem:",
+            .error = ":12:1: tiem is not a key of the scene; did you mean 'time'? Allowed: schema, "
+                     "name, gravity, cloths, "
+                     "materials, obstacles, contact, time, integrator, solver, grain"},
+           {"h: 0.001", "h: 0.001, dt: 1",
+            .error = ":12:18: dt is not a key of time; allowed: h, end, fps"},
+           {"stretch: 50", "strech: 50",
+            .error = ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
+                     "Allowed: density, stretch, "
+                     "shear, bend, damping, diagonals"},
+           {"vertices: [11]", "vertex: [11]",
+            .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, force"},
+           {"plane:", "plan:",
+            .error =
+                ":11:14: plan is not a key of obstacles[0]; did you mean 'plane'? Allowed: plane"},
+           {"end: 0.1", "fps: 1",
+            .error = ":12:7: time.end is missing; a finite number > 0 (s) is expected"},
+           {"schema: 1\n", "", .error = ":1:1: schema is missing; 1 is expected"},
+           {"schema: 1", "schema: 2\nfuture: 1", .error = ":1:9: schema is 2; 1 is expected"},
+           {"    material: cotton\n", "",
+            .error = ":4:5: cloths[0].material is missing; a text is expected"},
+           {"h: 0.001", "h: 0.001, h: 0.002",
+            .error = ":12:18: h is twice in time; each key is allowed once"},
+           {"name: sheet", "[1]: sheet",
+            .error = ":4:5: a key of cloths[0] is a list of 1; a text is expected"},
+           {"  cotton: {", "  cotton: {}\n  cotton: {",
+            .error = ":11:3: cotton is twice in materials; each key is allowed once"});
+}
+END_TEST
+
+START_TEST(names_and_indices)
+{
+    EXPECT({"material: cotton", "material: coton",
+            .error = ":6:15: there is no material 'coton'; did you mean 'cotton'? Allowed: cotton"},
+           {"material: cotton", "material: silk",
+            .error = ":6:15: there is no material 'silk'; allowed: cotton"},
+           {"materials:\n",
+            "  - {name: sheet, mesh: {grid: {width: 1, height: 1, nx: 2, ny: 2}}, material: "
+            "cotton}\nmaterials:\n",
+            .error = ":9:12: a second cloth is named 'sheet'; names must differ"},
+           {"vertices: [0, 3]", "vertices: [0, 12]",
+            .error = ":7:27: vertex 12 is outside the mesh of cloth 'sheet', which has 12 "
+                     "vertices; 0 to 11 are allowed"},
+           {"vertices: [11]", "vertices: [99]",
+            .error = ":8:25: vertex 99 is outside the mesh of cloth 'sheet', which has 12 "
+                     "vertices; 0 to 11 are allowed"},
+           {"{vertices: [0, 3]}", "{box: [[9, 9, 9], [8, 8, 8]]}",
+            .error = ":7:18: the box holds no vertex of cloth 'sheet'; it is meant for positions "
+                     "after the transform"});
+}
+END_TEST
+
+START_TEST(meshes_that_cannot_be_used)
+{
+    struct model model;
+    struct cloth_error error = {0};
+    char *text =
+        scene_changed(scene_right, "grid: {width: 1, height: 2, nx: 4, ny: 3}", "file: a.obj");
+    scene_path();
+    ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "scene.yaml:5:18: mesh: "));
+    ck_assert_ptr_nonnull(strstr(error.text, "a.obj"));
+    model_free(&model);
+    error = (struct cloth_error){0};
+    scene_write_file("a.obj", "v 0 0 0\nv nan 0 0\n", 18);
+    ck_assert_int_eq(scene_read(&model, scene_path(), 0, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "scene.yaml:5:18: mesh: "));
+    ck_assert_ptr_nonnull(strstr(error.text, "a.obj:2"));
+    model_free(&model);
+    free(text);
+    text = scene_changed(scene_right, "grid: {width: 1, height: 2, nx: 4, ny: 3}",
+                         "inline: {vertices: [[0, 0, 0]], edges: [[0, 7]]}");
+    error = (struct cloth_error){0};
+    ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "scene.yaml:5:20: mesh: "));
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
+START_TEST(files_that_are_no_scenes)
+{
+    expect_text("", NULL, ":1:1: the file is empty; a scene starts with 'schema: 1'");
+    expect_text("# nothing\n", NULL, ":1:1: the file is empty; a scene starts with 'schema: 1'");
+    expect_text("---\n...\n", NULL, ":2:1: the file is empty; a scene starts with 'schema: 1'");
+    expect_text("- 1\n", NULL, ":1:1: the file is not a map; a scene starts with 'schema: 1'");
+    expect_text("schema: 1\n--- \nschema: 1\n", NULL,
+                ":2:1: a second document starts here; a scene file holds one");
+    expect_text("schema: 1\ntime: {h: 1\n", NULL,
+                ":3:1: not YAML: did not find expected ',' or '}', while parsing a flow mapping");
+    expect_text("schema: 1\n\tname: a\n", NULL,
+                ":2:1: not YAML: found a tab character that violates indentation, while scanning a "
+                "plain scalar");
+    expect_text("schema: *nobody\n", NULL, ":1:9: not YAML: found undefined alias");
+    expect_text(
+        "schema: 1\nname: \303\244\377b\n", NULL,
+        ":2:8: not readable as text: invalid leading UTF-8 octet; a scene is YAML in UTF-8");
+    expect_text("a: &a [*a]\n", NULL,
+                ":1:1: a is not a key of the scene; allowed: schema, name, gravity, cloths, "
+                "materials, obstacles, contact, "
+                "time, integrator, solver, grain");
+    expect_text("schema: 1\ncloths: &a [*a]\n", NULL,
+                ":2:9: cloths[0] is a list of 1; a map of name, mesh, transform, material, "
+                "mass_per_vertex, velocity, "
+                "pins, loads is expected");
+}
+END_TEST
+
+START_TEST(files_that_cannot_be_read)
+{
+    struct model model;
+    struct cloth_error error = {0};
+    ck_assert_int_eq(scene_read(&model, "/nowhere/x.yaml", 0, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_str_eq(error.text,
+                     "/nowhere/x.yaml: cannot open the scene file: No such file or directory");
+    model_free(&model);
+    error = (struct cloth_error){0};
+    ck_assert_int_eq(scene_read(&model, "/tmp", 0, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_str_eq(error.text, "/tmp: cannot read the scene file: Is a directory");
+    model_free(&model);
+    ck_assert_int_eq(scene_read(&model, "/tmp", 0, NULL, NULL), CLOTH_E_INPUT);
+    model_free(&model);
+}
+END_TEST
+
+/* With a set, the option stands in the place of file, line and column. */
+START_TEST(sets_that_are_wrong)
+{
+    static const struct {
+        const char *set, *error;
+    } all[] = {
+        {"time.h=-1", "time.h is -1; a finite number > 0 (s) is expected"},
+        {"time.hh=1", "hh is not a key of time; did you mean 'h'? Allowed: h, end, fps"},
+        {"time.h.x=1", "'time.h' is not a map"},
+        {"cloths.x=1", "'cloths' is not a map"},
+        {"time[0]=1", "'time' is not a list"},
+        {"cloths[7].name=a", "'cloths' has 1 entries; an index from 0 to 1 is expected"},
+        {"cloths[-1].name=a", "an index is written [0], [1], ..."},
+        {"cloths[0.name=a", "an index is written [0], [1], ..."},
+        {"cloths[1].name=a",
+         "cloths[1].mesh is missing; a map with exactly one of grid, file, inline is expected"},
+        {"cloths[0].pins[0].vertices[0]=12", "vertex 12 is outside the mesh of cloth 'sheet', "
+                                             "which has 12 vertices; 0 to 11 are allowed"},
+        {"cloths[0].pins[0].nearest=[0, 0, 0]", "cloths[0].pins[0] has 2 keys; a map with exactly "
+                                                "one of vertices, nearest, box is expected"},
+        {"time", "KEY=VALUE is expected, such as time.h=0.002"},
+        {"", "KEY=VALUE is expected, such as time.h=0.002"},
+        {"=1", "KEY=VALUE is expected, such as time.h=0.002"},
+        {"[0]=1", "KEY=VALUE is expected, such as time.h=0.002"},
+        {".time=1", "KEY=VALUE is expected, such as time.h=0.002"},
+        {"time..h=1", "KEY=VALUE is expected, such as time.h=0.002"},
+        {"time.=1", "KEY=VALUE is expected, such as time.h=0.002"},
+        {"time.h=", "there is no value; KEY=VALUE is expected"},
+        {"time.h=[1", "the value is not YAML: did not find expected ',' or ']'"},
+        {"time.h=*a", "the value is not YAML: found undefined alias"},
+        {"time.h=!t 1", "time.h has the tag !t; a value without a tag is expected"},
+        {"name=&a [*a]", "name is a list of 1; a text is expected"},
+        {"materials={}", "materials is an empty map; a non-empty map of names is expected"},
+        {"cloths=[]", "cloths is an empty list; a non-empty list of maps is expected"}};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        char error[300];
+        snprintf(error, sizeof error, "--set %s: %s", all[i].set, all[i].error);
+        expect_text(scene_right, all[i].set, error);
+    }
+}
+END_TEST
+
+START_TEST(sets_of_other_options)
+{
+    struct model model;
+    struct cloth_error error = {0};
+    const struct scene_set sets[] = {{"time.h=1e-3", NULL}, {"grain=0", "--grain 0"}};
+    ck_assert_int_eq(scene_read_text(&model, scene_right, 2, sets, &error), CLOTH_E_INPUT);
+    ck_assert_str_eq(error.text,
+                     "--grain 0: grain is 0; a whole number from 1 to 4294967295 is expected");
+    model_free(&model);
+    error = (struct cloth_error){0};
+    const struct scene_set open[] = {{"time.end=[", "--end ["}};
+    ck_assert_int_eq(scene_read_text(&model, scene_right, 1, open, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_eq(strstr(error.text, "--end [: the value is not YAML: "), error.text);
+    model_free(&model);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("scene errors");
+    TCase *cases = tcase_create("errors");
+    tcase_add_test(cases, values_out_of_range);
+    tcase_add_test(cases, what_is_no_number);
+    tcase_add_test(cases, wrong_kinds);
+    tcase_add_test(cases, unknown_and_missing_keys);
+    tcase_add_test(cases, names_and_indices);
+    tcase_add_test(cases, meshes_that_cannot_be_used);
+    tcase_add_test(cases, files_that_are_no_scenes);
+    tcase_add_test(cases, files_that_cannot_be_read);
+    tcase_add_test(cases, sets_that_are_wrong);
+    tcase_add_test(cases, sets_of_other_options);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -1,0 +1,291 @@
+/* What a scene says arrives in the model: every key, every default, aliases, sets. */
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct model read_with(const char *text, size_t n_sets, const struct scene_set *sets)
+{
+    struct model model;
+    struct cloth_error error = {0};
+    int code = scene_read_text(&model, text, n_sets, sets, &error);
+    ck_assert_msg(code == CLOTH_OK, "%s", error.text);
+    return model;
+}
+
+static struct model read_changed(const char *from, const char *to)
+{
+    char *text = scene_changed(scene_right, from, to);
+    struct model model = read_with(text, 0, NULL);
+    free(text);
+    return model;
+}
+
+static struct model read_set(const char *set)
+{
+    return read_with(scene_right, 1, &(struct scene_set){.text = set});
+}
+
+static void same_vector(const double *a, double x, double y, double z)
+{
+    ck_assert_double_eq(a[0], x);
+    ck_assert_double_eq(a[1], y);
+    ck_assert_double_eq(a[2], z);
+}
+
+START_TEST(world_and_time)
+{
+    struct model model = read_with(scene_right, 0, NULL);
+    ck_assert_str_eq(model.name, "scene");
+    same_vector(model.gravity, 0, -9.81, 0);
+    ck_assert_double_eq(model.h, 0.001);
+    ck_assert_double_eq(model.end, 0.1);
+    ck_assert_double_eq(model.fps, 25);
+    ck_assert_int_eq(model.integrator, MODEL_IMPLICIT_EULER);
+    ck_assert_int_eq(model.stop, MODEL_STOP_RELATIVE);
+    ck_assert_double_eq(model.tolerance, 0.001);
+    ck_assert_uint_eq(model.max_iterations, 10000);
+    ck_assert_uint_eq(model.grain, 1000);
+    ck_assert_uint_eq(model.n_planes, 1);
+    same_vector(model.planes[0].point, 0, -1, 0);
+    same_vector(model.planes[0].normal, 0, 3. / 4 / 1.25, 1 / 1.25);
+    model_free(&model);
+}
+END_TEST
+
+START_TEST(cloth_and_material)
+{
+    struct model model = read_with(scene_right, 0, NULL);
+    ck_assert_uint_eq(model.n_cloths, 1);
+    const struct model_cloth *cloth = &model.cloths[0];
+    ck_assert_str_eq(cloth->name, "sheet");
+    ck_assert_uint_eq(cloth->mesh.n_vertices, 12);
+    ck_assert_uint_eq(cloth->mesh.grid_nx, 4);
+    ck_assert_uint_eq(cloth->mesh.grid_ny, 3);
+    same_vector(cloth->mesh.position, -0.5, 0, -1);
+    ck_assert_double_eq(cloth->mass_per_vertex, 0);
+    same_vector(cloth->velocity, 0, 0, 0);
+    ck_assert_uint_eq(cloth->n_pins, 1);
+    ck_assert_int_eq(cloth->pins[0].kind, MODEL_PIN_VERTICES);
+    ck_assert_uint_eq(cloth->pins[0].n_vertices, 2);
+    ck_assert_uint_eq(cloth->pins[0].vertices[1], 3);
+    ck_assert_int_eq(cloth->pins[0].line, 7);
+    ck_assert_int_eq(cloth->pins[0].column, 12);
+    ck_assert_uint_eq(cloth->n_loads, 1);
+    ck_assert_uint_eq(cloth->loads[0].vertices[0], 11);
+    same_vector(cloth->loads[0].force, 0, 1, 0);
+    ck_assert_int_eq(cloth->loads[0].line, 8);
+    const struct model_material *material = &model.materials[cloth->material];
+    ck_assert_str_eq(material->name, "cotton");
+    ck_assert_double_eq(material->density, 0.2);
+    ck_assert_double_eq(material->stretch, 50);
+    ck_assert_double_eq(material->shear, 0);
+    ck_assert_double_eq(material->bend, 0);
+    ck_assert_double_eq(material->damping_viscous, 0);
+    ck_assert_double_eq(material->damping_mass, 0.1);
+    ck_assert_double_eq(material->damping_stiffness, 0);
+    ck_assert_int_eq(material->both_diagonals, 1);
+    model_free(&model);
+}
+END_TEST
+
+START_TEST(every_other_key)
+{
+    struct model model =
+        read_changed("  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
+                     "  silk: &silk {density: 1, stretch: 2, shear: 3, bend: 4, diagonals: one,\n"
+                     "               damping: {viscous: 5, mass: 6, stiffness: 7}}\n"
+                     "  cotton: *silk\n"
+                     "name: more\ngrain: 7\nintegrator: explicit_euler\ncontact: project\n"
+                     "solver: {stop: {absolute: 1e-9}, max_iterations: 12}\n");
+    ck_assert_str_eq(model.name, "more");
+    ck_assert_uint_eq(model.grain, 7);
+    ck_assert_int_eq(model.integrator, MODEL_EXPLICIT_EULER);
+    ck_assert_int_eq(model.stop, MODEL_STOP_ABSOLUTE);
+    ck_assert_double_eq(model.tolerance, 1e-9);
+    ck_assert_uint_eq(model.max_iterations, 12);
+    ck_assert_uint_eq(model.n_materials, 2);
+    ck_assert_uint_eq(model.cloths[0].material, 1);
+    for (int i = 0; i < 2; i++) {
+        const struct model_material *material = &model.materials[i];
+        ck_assert_double_eq(material->shear, 3);
+        ck_assert_double_eq(material->bend, 4);
+        ck_assert_double_eq(material->damping_viscous, 5);
+        ck_assert_double_eq(material->damping_mass, 6);
+        ck_assert_double_eq(material->damping_stiffness, 7);
+        ck_assert_int_eq(material->both_diagonals, 0);
+    }
+    model_free(&model);
+}
+END_TEST
+
+START_TEST(cloths_of_every_mesh)
+{
+    const char *triangle = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
+    char *text = scene_changed(
+        scene_right, "materials:\n",
+        "  - {mesh: {file: a.obj}, material: cotton, mass_per_vertex: 0.5, velocity: [1, 2, 3]}\n"
+        "  - mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}\n"
+        "    material: cotton\n"
+        "    transform: {scale: [1, 2, 3], rotate: [0, 0, 2, 0], translate: [0, 0, 5]}\n"
+        "    pins: [{nearest: [0, 0, 4]}, {box: [[1, 1, 9], [-2, 0, 0]]}]\n"
+        "  - {mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], triangles: [[2, 1, "
+        "0]]}},\n"
+        "     material: cotton, transform: {scale: 2}}\n"
+        "materials:\n");
+    scene_path();
+    struct model model;
+    struct cloth_error error = {0};
+    int code = scene_read_text(&model, text, 0, NULL, &error);
+    ck_assert_int_eq(code, CLOTH_E_INPUT); /* a.obj is not there yet */
+    model_free(&model);
+    scene_write_file("a.obj", triangle, strlen(triangle));
+    error = (struct cloth_error){0};
+    code = scene_read(&model, scene_path(), 0, NULL, &error);
+    ck_assert_msg(code == CLOTH_OK, "%s", error.text);
+    ck_assert_uint_eq(model.n_cloths, 4);
+    ck_assert_str_eq(model.cloths[1].name, "cloth2");
+    ck_assert_uint_eq(model.cloths[1].mesh.n_triangles, 1);
+    ck_assert_double_eq(model.cloths[1].mass_per_vertex, 0.5);
+    same_vector(model.cloths[1].velocity, 1, 2, 3);
+    const struct model_cloth *chain = &model.cloths[2];
+    ck_assert_uint_eq(chain->mesh.n_lone_edges, 1);
+    same_vector(chain->mesh.position + 3, -1, 0, 5); /* turned by half a circle about y */
+    ck_assert_int_eq(chain->pins[0].kind, MODEL_PIN_NEAREST);
+    same_vector(chain->pins[0].point, 0, 0, 4);
+    ck_assert_int_eq(chain->pins[1].kind, MODEL_PIN_BOX);
+    same_vector(chain->pins[1].box[0], -2, 0, 0);
+    same_vector(chain->pins[1].box[1], 1, 1, 9);
+    ck_assert_uint_eq(model.cloths[3].mesh.triangle[0], 2);
+    same_vector(model.cloths[3].mesh.position + 6, 0, 0, 2);
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
+START_TEST(numbers_of_every_form)
+{
+    static const struct {
+        const char *text;
+        double value;
+    } forms[] = {{"3", 3},  {"+3", 3},      {"-3", -3},    {".5", 0.5},    {"-.5e1", -5},
+                 {"1.", 1}, {"1e-3", 1e-3}, {"1E+3", 1e3}, {"2.5e2", 250}, {"0", 0}};
+    for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
+        char set[64];
+        snprintf(set, sizeof set, "gravity[0]=%s", forms[i].text);
+        struct model model = read_set(set);
+        ck_assert_double_eq(model.gravity[0], forms[i].value);
+        model_free(&model);
+    }
+}
+END_TEST
+
+START_TEST(sets_change_values)
+{
+    struct model model = read_set("time.h=0.002");
+    ck_assert_double_eq(model.h, 0.002);
+    model_free(&model);
+    model = read_set("cloths[0].mesh.grid.nx=40");
+    ck_assert_uint_eq(model.cloths[0].mesh.n_vertices, 120);
+    model_free(&model);
+    model = read_set("obstacles[0].plane={point: [0, 0, 0], normal: [1, 0, 0]}");
+    same_vector(model.planes[0].normal, 1, 0, 0);
+    model_free(&model);
+    model = read_set("solver.stop={count: 10}");
+    ck_assert_int_eq(model.stop, MODEL_STOP_COUNT);
+    ck_assert_uint_eq(model.max_iterations, 10);
+    model_free(&model);
+    model = read_set("name=a=b");
+    ck_assert_str_eq(model.name, "a=b");
+    model_free(&model);
+}
+END_TEST
+
+START_TEST(sets_make_and_append)
+{
+    struct model model = read_set("materials.cotton.damping.viscous=2");
+    ck_assert_double_eq(model.materials[0].damping_viscous, 2);
+    ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
+    model_free(&model);
+    model = read_set("solver.stop.absolute=0.5"); /* neither solver nor stop is in the file */
+    ck_assert_int_eq(model.stop, MODEL_STOP_ABSOLUTE);
+    model_free(&model);
+    model = read_set("cloths[0].pins[1].nearest=[0, 0, 0]");
+    ck_assert_uint_eq(model.cloths[0].n_pins, 2);
+    ck_assert_int_eq(model.cloths[0].pins[1].line, 0);
+    model_free(&model);
+    model = read_set("cloths[0].pins[0].vertices[2]=5");
+    ck_assert_uint_eq(model.cloths[0].pins[0].n_vertices, 3);
+    ck_assert_uint_eq(model.cloths[0].pins[0].vertices[2], 5);
+    model_free(&model);
+    const struct scene_set both[] = {{.text = "materials.wool={density: 1, stretch: 1}"},
+                                     {.text = "cloths[0].material=wool"},
+                                     {.text = "materials.wool.density=3"}};
+    model = read_with(scene_right, 3, both);
+    ck_assert_double_eq(model.materials[model.cloths[0].material].density, 3);
+    model_free(&model);
+}
+END_TEST
+
+START_TEST(sets_leave_aliases_alone)
+{
+    char *text =
+        scene_changed(scene_right, "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}",
+                      "  cotton: &c {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n"
+                      "  other: *c");
+    const struct scene_set sets[] = {{.text = "materials.other.damping.mass=9"},
+                                     {.text = "materials.cotton.stretch=1"}};
+    struct model model = read_with(text, 2, sets);
+    ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
+    ck_assert_double_eq(model.materials[0].stretch, 1);
+    ck_assert_double_eq(model.materials[1].damping_mass, 9);
+    ck_assert_double_eq(model.materials[1].stretch, 50);
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
+START_TEST(shared_empty_map_takes_defaults)
+{
+    char *text = scene_changed(scene_right, "    material: cotton",
+                               "    transform: &e {}\n    material: cotton");
+    char *more = scene_changed(text, "damping: {mass: 0.1}", "damping: *e");
+    struct model model = read_with(more, 0, NULL);
+    ck_assert_double_eq(model.materials[0].damping_mass, 0);
+    ck_assert_double_eq(model.cloths[0].mesh.position[0], -0.5);
+    model_free(&model);
+    free(text);
+    free(more);
+}
+END_TEST
+
+START_TEST(huge_and_tiny_normals)
+{
+    struct model model = read_changed("normal: [0, 3, 4]", "normal: [0, 3e300, 4e300]");
+    ck_assert_double_eq_tol(model.planes[0].normal[1], 0.6, 1e-15);
+    model_free(&model);
+    model = read_changed("normal: [0, 3, 4]", "normal: [0, 3e-300, 4e-300]");
+    ck_assert_double_eq_tol(model.planes[0].normal[2], 0.8, 1e-15);
+    model_free(&model);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("scene values");
+    TCase *cases = tcase_create("values");
+    tcase_add_test(cases, world_and_time);
+    tcase_add_test(cases, cloth_and_material);
+    tcase_add_test(cases, every_other_key);
+    tcase_add_test(cases, cloths_of_every_mesh);
+    tcase_add_test(cases, numbers_of_every_form);
+    tcase_add_test(cases, sets_change_values);
+    tcase_add_test(cases, sets_make_and_append);
+    tcase_add_test(cases, sets_leave_aliases_alone);
+    tcase_add_test(cases, shared_empty_map_takes_defaults);
+    tcase_add_test(cases, huge_and_tiny_normals);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -215,6 +215,7 @@ static double iterate(const phys_vec *b, phys_vec *dv, int count)
 {
     phys_vec r[N], p[N], q[N];
     double rho = 0;
+    memset(dv, 0x55, N * sizeof *dv);
     for (int s = 0; s < 2; s++) {
         const int at = s * ROWS;
         rho += solve_start(ROWS, half[s].free, b + at, dv + at, r + at, p + at);

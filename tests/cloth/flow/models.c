@@ -1,0 +1,181 @@
+/* A failure of the machinery (memory, MPI) ends the test program at once: no case is about it. */
+#include "tests/cloth/flow/models.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void die(const char *why)
+{
+    fprintf(stderr, "%s\n", why);
+    exit(99);
+}
+
+static void setup_common(struct setup *s)
+{
+    s->model.name = "test";
+    s->model.n_materials = s->model.n_cloths = 1;
+    s->model.materials = &s->material;
+    s->model.cloths = &s->cloth;
+    s->model.planes = &s->plane;
+    s->model.gravity[1] = -9.81;
+    s->model.h = 0.001;
+    s->model.end = 0.01;
+    s->model.fps = 1000;
+    s->model.integrator = MODEL_IMPLICIT_EULER;
+    s->model.stop = MODEL_STOP_RELATIVE;
+    s->model.tolerance = 1e-3;
+    s->model.max_iterations = 10000;
+    s->model.grain = 30;
+    s->material.name = "test";
+    s->cloth.name = "test";
+    s->cloth.pins = &s->pin;
+    s->cloth.loads = &s->load;
+}
+
+void setup_sheet(struct setup *s, uint32_t n)
+{
+    struct cloth_error error = {0};
+    memset(s, 0, sizeof *s);
+    setup_common(s);
+    s->material.density = 0.2;
+    s->material.stretch = 50;
+    s->material.shear = 25;
+    s->material.bend = 5;
+    s->material.damping_stiffness = 0.01;
+    if (mesh_grid(&s->cloth.mesh, 1, 1, n, n, &error))
+        die(error.text);
+}
+
+void setup_weight(struct setup *s)
+{
+    static const double vertices[] = {0, 0, 0, 0, -1, 0};
+    static const uint32_t edge[] = {0, 1};
+    struct cloth_error error = {0};
+    memset(s, 0, sizeof *s);
+    setup_common(s);
+    s->material.density = 1;
+    s->material.stretch = 40;
+    s->material.damping_stiffness = 0.002;
+    s->cloth.mass_per_vertex = 0.1;
+    if (mesh_inline(&s->cloth.mesh, 2, vertices, 1, edge, 0, NULL, &error))
+        die(error.text);
+    setup_pin(s, 1, (const uint32_t[]){0});
+}
+
+void setup_pin(struct setup *s, uint32_t n, const uint32_t *vertices)
+{
+    memcpy(s->pinned, vertices, n * sizeof *vertices);
+    s->pin.kind = MODEL_PIN_VERTICES;
+    s->pin.n_vertices = n;
+    s->pin.vertices = s->pinned;
+    s->cloth.n_pins = 1;
+}
+
+void setup_load(struct setup *s, uint32_t vertex, double x, double y, double z)
+{
+    s->loaded[0] = vertex;
+    s->load = (struct model_load){.n_vertices = 1, .vertices = s->loaded, .force = {x, y, z}};
+    s->cloth.n_loads = 1;
+}
+
+void setup_free(struct setup *s)
+{
+    mesh_free(&s->cloth.mesh);
+}
+
+static int keep_frame(void *context, uint64_t frame, double time, const double *position,
+                      struct cloth_error *error)
+{
+    struct record *r = context;
+    if (frame > 0 && frame == r->break_frame)
+        return cloth_fail(error, CLOTH_E_IO, "the disk is full");
+    if (frame != r->frames)
+        die("frames out of order");
+    const size_t size = 3 * r->vertices * sizeof *position;
+    r->position = realloc(r->position, (r->frames + 1) * size);
+    r->time = realloc(r->time, (r->frames + 1) * sizeof *r->time);
+    if (!r->position || !r->time)
+        die("out of memory");
+    memcpy(r->position + 3 * r->vertices * r->frames, position, size);
+    r->time[r->frames++] = time;
+    return CLOTH_OK;
+}
+
+static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t iterations)
+{
+    struct record *r = context;
+    (void)steps;
+    (void)iterations;
+    if (step != r->shown + 1)
+        die("steps out of order");
+    r->shown = step;
+}
+
+static int ask_stop(void *context)
+{
+    const struct record *r = context;
+    return r->stop_after > 0 && r->shown >= r->stop_after;
+}
+
+static void end_mpi(void)
+{
+    MPI_Finalize();
+}
+
+static void begin_mpi(void)
+{
+    int begun = 0, provided = 0;
+    MPI_Initialized(&begun);
+    if (begun)
+        return;
+    if (MPI_Init_thread(NULL, NULL, MPI_THREAD_SERIALIZED, &provided))
+        die("MPI does not start");
+    atexit(end_mpi);
+}
+
+static void run_prepared(struct record *r, struct flow *flow)
+{
+    const struct flow_output output = {r, keep_frame};
+    const struct flow_progress progress = {r, show_step, ask_stop};
+    duite_options options = duite_options_default();
+    duite *rt = NULL;
+    options.kernels = flow_kernels();
+    options.context = flow;
+    options.threads = r->threads ? r->threads : 1;
+    options.bind = 0;
+    if (r->scheduler)
+        options.scheduler = duite_scheduler_find(r->scheduler);
+    if (duite_start(&rt, &options))
+        die(duite_message());
+    r->vertices = flow_vertices(flow);
+    r->code = flow_run(flow, rt, &output, &progress, &r->report, &r->error);
+    if (duite_stop(&rt))
+        die(duite_message());
+}
+
+void record_run(struct record *r, const struct model *model)
+{
+    struct flow *flow = NULL;
+    int ranks = 1;
+    begin_mpi();
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    r->code = flow_prepare(&flow, model, ranks, &r->error);
+    if (!r->code)
+        run_prepared(r, flow);
+    flow_free(flow);
+}
+
+double record_at(const struct record *r, size_t frame, size_t vertex, size_t c)
+{
+    if (frame >= r->frames || vertex >= r->vertices)
+        die("no such frame or vertex");
+    return r->position[3 * (r->vertices * frame + vertex) + c];
+}
+
+void record_free(struct record *r)
+{
+    free(r->position);
+    free(r->time);
+    memset(r, 0, sizeof *r);
+}

@@ -1,0 +1,55 @@
+#ifndef TESTS_CLOTH_FLOW_MODELS_H
+#define TESTS_CLOTH_FLOW_MODELS_H
+
+#include "cloth/flow/run.h"
+
+#include <stdbool.h>
+
+/* Models for the tests of cloth/flow, made in C, and their runs with every frame kept. A model
+ * points into the setup it was made from, which stays where it is while the model is used. */
+struct setup {
+    struct model model;
+    struct model_material material;
+    struct model_cloth cloth;
+    struct model_plane plane;
+    struct model_pin pin;
+    struct model_load load;
+    uint32_t pinned[4], loaded[4];
+};
+
+/* A square sheet of n x n vertices and 1 m, level at y = 0, gravity, springs with damping, no pins,
+ * loads or planes; implicit, h = 1 ms, 10 steps, a frame a step, relative tolerance 1e-3, blocks
+ * of 30. What differs is set afterwards. */
+void setup_sheet(struct setup *setup, uint32_t n);
+
+/* Two vertices joined by an edge of 1 m that hangs down from a pin: 0.1 kg, 40 N/m, damped along
+ * the spring. */
+void setup_weight(struct setup *setup);
+
+void setup_pin(struct setup *setup, uint32_t n, const uint32_t *vertices);
+void setup_load(struct setup *setup, uint32_t vertex, double x, double y, double z);
+void setup_free(struct setup *setup);
+
+/* What a run left. */
+struct record {
+    int code;
+    struct cloth_error error;
+    struct flow_report report;
+    size_t vertices, frames;
+    double *position; /* frames x vertices x 3 */
+    double *time;     /* frames */
+    uint64_t shown;   /* steps that the progress was told of */
+    /* Set before the run: */
+    uint64_t stop_after;   /* asks for a stop once so many steps were shown; 0: never */
+    uint64_t break_frame;  /* writing this frame fails; 0: none */
+    unsigned threads;      /* 0: 1 */
+    const char *scheduler; /* NULL: the default */
+};
+
+/* Prepares, runs and frees. Starts MPI if it is not; it ends with the process. */
+void record_run(struct record *record, const struct model *model);
+/* Component c of a vertex in a frame. */
+double record_at(const struct record *record, size_t frame, size_t vertex, size_t c);
+void record_free(struct record *record);
+
+#endif

@@ -1,0 +1,366 @@
+/* What a run does besides moving cloth: frames and their times, the hash, stopping, and every way
+ * to fail, each with a sentence that says where. */
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <xxhash.h>
+
+static void says(const struct record *record, int code, const char *part)
+{
+    ck_assert_msg(record->code == code && record->error.code == code, "code %d, '%s'", record->code,
+                  record->error.text);
+    ck_assert_msg(strstr(record->error.text, part) != NULL, "'%s' is not in '%s'", part,
+                  record->error.text);
+}
+
+/* Frame k after the step nearest to k / fps; h and fps that do not divide each other. */
+START_TEST(frames_at_their_steps)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 5);
+    setup.model.integrator = MODEL_EXPLICIT_EULER;
+    setup.model.h = 0.003;
+    setup.model.end = 0.1; /* 33.3 steps: 33 are made */
+    setup.model.fps = 60;  /* 16.67 ms, 5.56 steps */
+    setup.material.stretch = setup.material.shear = setup.material.bend = 0;
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    ck_assert_uint_eq(record.report.steps, 33);
+    ck_assert_double_eq_tol(record.report.simulated_seconds, 0.099, 1e-15);
+    const double steps[] = {0, 6, 11, 17, 22, 28, 33};
+    ck_assert_uint_eq(record.frames, 7);
+    ck_assert_uint_eq(record.report.frames, 7);
+    ck_assert_uint_eq(record.report.last_frame, 6);
+    for (size_t k = 0; k < 7; k++) {
+        const double n = steps[k];
+        ck_assert_double_eq_tol(record.time[k], n * 0.003, 1e-15);
+        ck_assert_double_eq_tol(record_at(&record, k, 7, 1),
+                                -9.81 * 0.003 * 0.003 * n * (n - 1) / 2, 1e-13);
+    }
+    ck_assert_uint_eq(record.shown, 33);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+/* No step at all: the hash is that of the start, which is known. */
+START_TEST(hash_of_positions_then_velocities)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 4);
+    setup.model.grain = 5;
+    setup.model.h = 1;
+    setup.model.end = 0.4;
+    setup.cloth.velocity[0] = 0.25;
+    setup.cloth.velocity[2] = -3;
+    setup_pin(&setup, 1, (const uint32_t[]){2});
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    double state[2][16][3];
+    memcpy(state[0], setup.cloth.mesh.position, sizeof state[0]);
+    for (size_t v = 0; v < 16; v++)
+        for (size_t c = 0; c < 3; c++)
+            state[1][v][c] = v == 2 ? 0 : setup.cloth.velocity[c];
+    ck_assert_uint_eq(record.report.steps, 0);
+    ck_assert_uint_eq(record.report.state_hash,
+                      XXH64(state, sizeof state, 0)); /* little-endian machines */
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+START_TEST(count_makes_exactly_so_many_iterations)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 10);
+    setup.model.stop = MODEL_STOP_COUNT;
+    setup.model.max_iterations = 7;
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    ck_assert_uint_eq(record.report.cg_iterations_total, 70);
+    ck_assert_uint_eq(record.report.cg_iterations_max, 7);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+/* Without forces the right-hand side is zero: no iteration is made, and where a count asks for them
+ * they change nothing. */
+START_TEST(nothing_to_do)
+{
+    for (int count = 0; count < 2; count++) {
+        struct setup setup;
+        struct record record = {0};
+        setup_sheet(&setup, 6);
+        setup.model.gravity[1] = 0;
+        if (count) {
+            setup.model.stop = MODEL_STOP_COUNT;
+            setup.model.max_iterations = 5;
+        }
+        record_run(&record, &setup.model);
+        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        ck_assert_uint_eq(record.report.cg_iterations_total, count ? 50 : 0);
+        for (size_t v = 0; v < record.vertices; v++)
+            ck_assert_double_eq(record_at(&record, 10, v, 1), 0);
+        record_free(&record);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
+START_TEST(absolute_tolerance)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 6);
+    setup.model.stop = MODEL_STOP_ABSOLUTE;
+    setup.model.tolerance = 1;
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    ck_assert_uint_eq(record.report.cg_iterations_total,
+                      0); /* |b| = 2 mm/s times 0.2 kg over all vertices */
+    record_free(&record);
+    setup.model.tolerance = 1e-9;
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    ck_assert_uint_ge(record.report.cg_iterations_total, 10);
+    ck_assert_double_lt(record.report.momentum_lost, 1e-9 * 6);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+/* Asked for after step 3, the stop comes with the next frame; frames are 5 steps apart. */
+START_TEST(stop_finishes_the_frame)
+{
+    struct setup setup;
+    struct record record = {.stop_after = 3};
+    setup_sheet(&setup, 6);
+    setup.model.fps = 200;
+    setup.model.end = 0.1;
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    ck_assert(record.report.stopped);
+    ck_assert_uint_eq(record.report.steps % 5, 0);
+    ck_assert_uint_le(record.report.steps, 10);
+    ck_assert_uint_eq(record.frames, record.report.steps / 5 + 1);
+    ck_assert_uint_eq(record.report.last_frame, record.frames - 1);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+START_TEST(unused_vertices_stay)
+{
+    static const double vertices[] = {0, 0, 0, 9, 8, 7, 1, 0, 0, 0, 0, 1};
+    static const uint32_t triangle[] = {0, 2, 3};
+    struct cloth_error error = {0};
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 2);
+    setup_free(&setup);
+    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 4, vertices, 0, NULL, 1, triangle, &error), 0);
+    setup.cloth.velocity[0] = 1;
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    for (size_t f = 0; f < record.frames; f++)
+        for (size_t c = 0; c < 3; c++)
+            ck_assert_double_eq(record_at(&record, f, 1, c), vertices[3 + c]);
+    ck_assert_double_eq_tol(record_at(&record, 10, 3, 0), 0.01, 1e-12);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+/* Two cloths in one run know nothing of each other; vertices are numbered one cloth after the
+ * other. */
+START_TEST(two_cloths)
+{
+    struct setup setup, other;
+    struct record record = {0};
+    setup_sheet(&setup, 5);
+    setup_sheet(&other, 4);
+    other.cloth.velocity[0] = 2;
+    struct model_cloth cloths[2] = {setup.cloth, other.cloth};
+    setup.model.cloths = cloths;
+    setup.model.n_cloths = 2;
+    setup.model.tolerance = 1e-13;
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    ck_assert_uint_eq(record.report.vertices, 41);
+    ck_assert_uint_eq(record.report.triangles, 32 + 18);
+    const double drop = 9.81 * 1e-6 * 55;
+    for (size_t v = 0; v < 41; v++) {
+        ck_assert_double_eq_tol(record_at(&record, 10, v, 0) - record_at(&record, 0, v, 0),
+                                v < 25 ? 0 : 0.02, 1e-12);
+        ck_assert_double_eq_tol(record_at(&record, 10, v, 1), -drop, 1e-12);
+    }
+    record_free(&record);
+    setup_free(&setup);
+    setup_free(&other);
+}
+END_TEST
+
+/* ---- Failures
+ * --------------------------------------------------------------------------------------- */
+
+START_TEST(divergence_names_step_block_and_frame)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 10);
+    setup.model.integrator = MODEL_EXPLICIT_EULER;
+    setup.model.h = 0.1;
+    setup.model.end = 100;
+    setup.model.fps = 10;
+    setup_pin(&setup, 1, (const uint32_t[]){0});
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_RUN, "diverged");
+    says(&record, CLOTH_E_RUN, "block ");
+    ck_assert_uint_lt(record.report.steps, 1000);
+    ck_assert_uint_gt(record.report.steps, 1);
+    char step[64], frame[64];
+    snprintf(step, sizeof step, "step %u:", (unsigned)record.report.steps + 1);
+    snprintf(frame, sizeof frame, "the last frame written is %u", (unsigned)record.frames - 1);
+    says(&record, CLOTH_E_RUN, step);
+    says(&record, CLOTH_E_RUN, frame);
+    ck_assert_uint_eq(record.report.last_frame, record.frames - 1);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+START_TEST(a_solve_that_does_not_converge)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 10);
+    setup.model.max_iterations = 2;
+    setup.model.tolerance = 1e-10;
+    setup_pin(&setup, 1, (const uint32_t[]){0});
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_RUN, "step 1: conjugate gradients");
+    says(&record, CLOTH_E_RUN, "after 2 iterations");
+    says(&record, CLOTH_E_RUN, "the last frame written is 0");
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+START_TEST(a_frame_that_cannot_be_written)
+{
+    struct setup setup;
+    struct record record = {.break_frame = 4};
+    setup_sheet(&setup, 6);
+    setup.model.end = 1;
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_IO, "the disk is full");
+    says(&record, CLOTH_E_IO, "the last frame written is 3");
+    ck_assert_uint_eq(record.frames, 4);
+    ck_assert_uint_lt(record.report.steps, 100);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+START_TEST(pins_and_loads_outside)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 3);
+    setup_pin(&setup, 1, (const uint32_t[]){9});
+    setup.pin.line = 12;
+    setup.pin.column = 5;
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "line 12, column 5: ");
+    says(&record, CLOTH_E_INPUT, "vertex 9");
+    says(&record, CLOTH_E_INPUT, "0 to 8");
+    record_free(&record);
+    setup.pin = (struct model_pin){.kind = MODEL_PIN_BOX, .box = {{2, 0, 0}, {3, 1, 1}}};
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "holds no vertex");
+    record_free(&record);
+    setup.cloth.n_pins = 0;
+    setup_load(&setup, 10, 0, 1, 0);
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "vertex 10");
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+START_TEST(pins_by_place)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 3);
+    setup.cloth.n_pins = 2;
+    struct model_pin pins[2] = {{.kind = MODEL_PIN_NEAREST, .point = {-0.4, 2, 0.4}},
+                                {.kind = MODEL_PIN_BOX, .box = {{0.1, -1, -1}, {1, 1, 0}}}};
+    setup.cloth.pins = pins;
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    for (size_t v = 0; v < 9; v++) /* row-major, from (-0.5, -0.5) */
+        ck_assert_int_eq(record_at(&record, 10, v, 1) == 0, v == 6 || v == 2 || v == 5);
+    record_free(&record);
+    setup.cloth.pins = &setup.pin;
+    setup_free(&setup);
+}
+END_TEST
+
+START_TEST(no_mass)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_weight(&setup);
+    setup.cloth.mass_per_vertex = 0;
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "mass_per_vertex");
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+START_TEST(more_ranks_than_blocks)
+{
+    struct setup setup;
+    struct cloth_error error = {0};
+    struct flow *flow = NULL;
+    setup_sheet(&setup, 8); /* 64 vertices, 3 blocks of 30 */
+    ck_assert_int_eq(flow_prepare(&flow, &setup.model, 3, &error), 0);
+    flow_free(flow);
+    ck_assert_int_eq(flow_prepare(&flow, &setup.model, 4, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_null(flow);
+    ck_assert_msg(strstr(error.text, "4 ranks") && strstr(error.text, "3 blocks"), "%s",
+                  error.text);
+    setup_free(&setup);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("run");
+    TCase *cases = tcase_create("run");
+    tcase_add_test(cases, frames_at_their_steps);
+    tcase_add_test(cases, hash_of_positions_then_velocities);
+    tcase_add_test(cases, count_makes_exactly_so_many_iterations);
+    tcase_add_test(cases, nothing_to_do);
+    tcase_add_test(cases, absolute_tolerance);
+    tcase_add_test(cases, stop_finishes_the_frame);
+    tcase_add_test(cases, unused_vertices_stay);
+    tcase_add_test(cases, two_cloths);
+    tcase_add_test(cases, divergence_names_step_block_and_frame);
+    tcase_add_test(cases, a_solve_that_does_not_converge);
+    tcase_add_test(cases, a_frame_that_cannot_be_written);
+    tcase_add_test(cases, pins_and_loads_outside);
+    tcase_add_test(cases, pins_by_place);
+    tcase_add_test(cases, no_mass);
+    tcase_add_test(cases, more_ranks_than_blocks);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

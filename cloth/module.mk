@@ -13,6 +13,7 @@ include cloth/view/module.mk
 
 scenesdir = $(pkgdatadir)/scenes
 dist_scenes_DATA =
+include cloth/scenes/module.mk
 EXTRA_DIST += cloth/demo.sh
 
 demo: all

@@ -53,6 +53,7 @@ endif
 include tests/cloth/mesh/module.mk
 include tests/cloth/physics/module.mk
 include tests/cloth/solve/module.mk
+include tests/cloth/flow/module.mk
 include tests/cloth/output/module.mk
 include tests/cloth/scene/module.mk
 include tests/cloth/view/module.mk

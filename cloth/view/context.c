@@ -2,7 +2,9 @@
  * framebuffer objects. */
 #include "cloth/view/view.h"
 
+#include <dlfcn.h>
 #include <epoxy/egl.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 struct view_context {
@@ -10,7 +12,18 @@ struct view_context {
     EGLContext context;
 };
 
-static const char ADVICE[] = "install libegl1, libegl-mesa0 and libgl1-mesa-dri (Debian's names)";
+static const char ADVICE[] =
+    "install libegl1, libegl-mesa0, libgl1 and libgl1-mesa-dri (Debian's names)";
+
+/* epoxy opens these itself at the first call, and ends the program where they are missing. */
+static bool has_libraries(void)
+{
+    void *gl = dlopen("libOpenGL.so.0", RTLD_LAZY);
+    gl = gl ? gl : dlopen("libGL.so.1", RTLD_LAZY);
+    if (gl)
+        dlclose(gl);
+    return gl && epoxy_has_egl();
+}
 
 static EGLDisplay initialised(EGLDisplay display)
 {
@@ -70,8 +83,8 @@ static EGLContext make_context(EGLDisplay display)
 int view_context_open(struct view_context **context, struct cloth_error *error)
 {
     *context = NULL;
-    if (!epoxy_has_egl())
-        return cloth_fail(error, CLOTH_E_LIBRARY, "no EGL library for pictures: %s", ADVICE);
+    if (!has_libraries())
+        return cloth_fail(error, CLOTH_E_LIBRARY, "pictures need OpenGL and EGL: %s", ADVICE);
     struct view_context *made = calloc(1, sizeof *made);
     if (!made)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for OpenGL");

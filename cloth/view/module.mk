@@ -14,8 +14,8 @@ libduite_view_la_SOURCES = \
 	cloth/view/draw/program.c \
 	cloth/view/draw/shaders.c
 libduite_view_la_CPPFLAGS = $(AM_CPPFLAGS) $(EPOXY_CFLAGS) $(EGL_CFLAGS) $(PNG_CFLAGS)
-# epoxy opens libEGL itself, so that its absence can be told.
-libduite_view_la_LIBADD = $(EPOXY_LIBS) $(PNG_LIBS) -lm
+# epoxy opens libEGL and libGL itself, so that their absence can be told.
+libduite_view_la_LIBADD = $(EPOXY_LIBS) $(PNG_LIBS) -ldl -lm
 
 bin_PROGRAMS += duite-view
 dist_man_MANS += cloth/duite-view.1

@@ -44,6 +44,14 @@ for bad in --frame=-1 --frame=1x --frame= --size=0x10 --size=10 --size=10x10x --
 done
 exits 1 "without a driver" env __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null "$DUITE_VIEW" "$dir" --png "$scratch/x.png"
 says "says which packages are missing" 'libegl-mesa0'
+# An empty file in front of a library hides it.
+for hidden in libEGL.so.1 "libGL.so.1 libOpenGL.so.0"; do
+    mkdir "$scratch/hide"
+    (cd "$scratch/hide" && touch $hidden)
+    exits 1 "without $hidden" env LD_LIBRARY_PATH="$scratch/hide" "$DUITE_VIEW" "$dir" --png "$scratch/x.png"
+    says "says which packages to install" 'libgl1-mesa-dri'
+    rm -r "$scratch/hide"
+done
 ok "nothing is written when it fails" test ! -e "$scratch/x.png"
 
 tap_run picture --png "$scratch/0.png" --frame 0

@@ -1,4 +1,4 @@
-/* The helpers fail the test themselves when the file system does not do its part. */
+/* Everything here fails the test itself when the file system does not do its part. */
 #include "tests/cloth/output/sample.h"
 
 #include "tests/support/unit.h"

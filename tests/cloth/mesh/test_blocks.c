@@ -242,6 +242,15 @@ START_TEST(order_inside_a_block)
     ck_assert_mem_eq(blocks.vertex, expected, sizeof expected);
     mesh_blocks_free(&blocks);
     graph_free(&two);
+
+    struct graph tree =
+        graph_new(6, 5); /* the walk from 4 meets 2, then 5 before 3, which has more neighbours */
+    const uint32_t branches[] = {0, 3, 3, 1, 3, 2, 2, 4, 2, 5}, turned[] = {1, 0, 3, 5, 2, 4};
+    memcpy(tree.pairs, branches, sizeof branches);
+    blocks = cut(&tree, 6, &smallest, &largest);
+    ck_assert_mem_eq(blocks.vertex, turned, sizeof turned);
+    mesh_blocks_free(&blocks);
+    graph_free(&tree);
 }
 END_TEST
 
@@ -320,16 +329,17 @@ END_TEST
 START_TEST(pieces_of_full_parts)
 {
     const struct {
-        uint32_t n, size[6], pieces[6];
+        uint32_t n, size[8], pieces[8];
     } cases[] = {
         {3, {4, 0, 2}, {2, 0, 1}},
         {4, {9, 0, 0, 1}, {3, 0, 0, 1}},
         {6, {3, 0, 0, 1, 2, 0}, {3, 0, 0, 1, 2, 0}},
         {6, {2, 0, 2, 0, 2, 2}, {2, 0, 2, 0, 1, 1}}, /* lower parts first */
         {2, {0, 2}, {0, 2}},
+        {8, {30, 0, 0, 0, 0, 0, 0, 1}, {7, 0, 0, 0, 0, 0, 0, 1}},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        uint32_t pieces[6];
+        uint32_t pieces[8];
         mesh_pieces(cases[i].n, cases[i].size, pieces);
         ck_assert_mem_eq(pieces, cases[i].pieces, cases[i].n * sizeof *pieces);
     }

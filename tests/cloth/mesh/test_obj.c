@@ -81,8 +81,8 @@ END_TEST
 
 START_TEST(all_else_is_skipped)
 {
-    struct mesh mesh = read_text("# a comment that ends with C:\\\n"
-                                 "mtllib a.mtl\no thing\n\n   \n" SQUARE "g a b\nusemtl x\ns off\n"
+    struct mesh mesh = read_text("# a comment that ends with C:\\\n" SQUARE
+                                 "mtllib a.mtl\no thing\n\n   \ng a b\nusemtl x\ns off\n"
                                  "vp 0 0\nvertex 1\nfoo\nf 1 2 3\np 1\nfo 1 2 4\ncurv 0 1 1 2\n#");
     ck_assert_uint_eq(mesh.n_vertices, 4);
     ck_assert_uint_eq(mesh.n_triangles, 1);
@@ -132,6 +132,7 @@ START_TEST(uv_of_vertices)
     } files[] = {
         {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n", 1},
         {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/4\n", 0}, /* a seam */
+        {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/4 3/3 4/4\n", 0},
         {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4\n", 0},
         {SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1 2 3 4\n", 0},
         {SQUARE "vt 0 0\n", 0},

@@ -235,6 +235,28 @@ START_TEST(divergence_names_step_block_and_frame)
 }
 END_TEST
 
+/* Slow enough in each step, too far after the second. */
+START_TEST(a_run_that_leaves_the_world)
+{
+    for (int explicit = 0; explicit < 2; explicit ++) {
+        struct setup setup;
+        struct record record = {0};
+        setup_sheet(&setup, 4);
+        setup.model.integrator = explicit ? MODEL_EXPLICIT_EULER : MODEL_IMPLICIT_EULER;
+        setup.model.gravity[1] = 0;
+        setup.model.h = 1;
+        setup.model.end = 10;
+        setup.model.fps = 1;
+        setup.cloth.velocity[2] = 9e5;
+        record_run(&record, &setup.model);
+        says(&record, CLOTH_E_RUN, "step 2: the position of vertex");
+        says(&record, CLOTH_E_RUN, "the last frame written is 1");
+        record_free(&record);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
 START_TEST(a_solve_that_does_not_converge)
 {
     struct setup setup;
@@ -355,6 +377,7 @@ int main(void)
     tcase_add_test(cases, unused_vertices_stay);
     tcase_add_test(cases, two_cloths);
     tcase_add_test(cases, divergence_names_step_block_and_frame);
+    tcase_add_test(cases, a_run_that_leaves_the_world);
     tcase_add_test(cases, a_solve_that_does_not_converge);
     tcase_add_test(cases, a_frame_that_cannot_be_written);
     tcase_add_test(cases, pins_and_loads_outside);

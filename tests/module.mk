@@ -57,3 +57,4 @@ include tests/cloth/flow/module.mk
 include tests/cloth/output/module.mk
 include tests/cloth/scene/module.mk
 include tests/cloth/view/module.mk
+include tests/whole/module.mk

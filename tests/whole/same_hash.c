@@ -1,0 +1,170 @@
+/* One scene, one hash: runs it over ranks x threads x schedulers x mappings, and over seeds of
+ * `shuffle`, in one job of MPI, and compares every state_hash with that of one rank and one thread.
+ *
+ *   mpirun -n N same_hash SCENE all|some SEEDS [KEY=VALUE]...
+ *
+ * all: every product of 1 .. N ranks, 1, 2 and 4 threads, schedulers and mappings; some: a dozen
+ * that meet each of them. */
+#include "cloth/flow/run.h"
+#include "cloth/scene/scene.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+struct config {
+    int ranks;
+    unsigned threads;
+    const char *scheduler, *mapping;
+    uint64_t seed;
+};
+
+struct checks {
+    const struct model *model;
+    int world_rank, world_size;
+    uint64_t expected;
+    int n, failed;
+};
+
+static duite_options options_of(const struct config *config, struct flow *flow, MPI_Comm comm)
+{
+    duite_options options = duite_options_default();
+    options.comm = comm;
+    options.kernels = flow_kernels();
+    options.context = flow;
+    options.threads = config->threads;
+    options.scheduler = duite_scheduler_find(config->scheduler);
+    options.mapping = duite_mapping_find(config->mapping);
+    options.seed = config->seed;
+    options.bind = 0; /* the ranks that wait for this run would be in the way */
+    return options;
+}
+
+/* Returns the hash, or 0 with the sentence in *error. */
+static uint64_t run(const struct model *model, const struct config *config, MPI_Comm comm,
+                    struct cloth_error *error)
+{
+    struct flow *flow;
+    struct flow_report report = {0};
+    duite *rt;
+    if (flow_prepare(&flow, model, config->ranks, error))
+        return 0;
+    const duite_options options = options_of(config, flow, comm);
+    int code = duite_start(&rt, &options);
+    if (!code) {
+        flow_run(flow, rt, NULL, NULL, &report, error);
+        code = duite_stop(&rt);
+    }
+    if (code)
+        cloth_fail(error, CLOTH_E_LIBRARY, "%s", duite_message());
+    flow_free(flow);
+    return error->code ? 0 : report.state_hash;
+}
+
+static void check(struct checks *checks, const struct config *config)
+{
+    MPI_Comm comm;
+    const bool in = checks->world_rank < config->ranks;
+    struct cloth_error error = {0};
+    uint64_t hash = 0;
+    MPI_Comm_split(MPI_COMM_WORLD, in ? 0 : MPI_UNDEFINED, checks->world_rank, &comm);
+    if (in) {
+        hash = run(checks->model, config, comm, &error);
+        MPI_Comm_free(&comm);
+    }
+    /* Ranks that are not needed wait without getting in the way. */
+    MPI_Request all;
+    int done = 0;
+    MPI_Ibarrier(MPI_COMM_WORLD, &all);
+    while (!done) {
+        MPI_Test(&all, &done, MPI_STATUS_IGNORE);
+        if (!done)
+            nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    }
+    if (checks->world_rank)
+        return;
+    if (!checks->expected)
+        checks->expected = hash;
+    const bool same = hash && hash == checks->expected;
+    checks->failed += !same;
+    printf("%s %d - %d ranks, %u threads, %s, %s, seed %" PRIu64 ": %016" PRIx64 " %s\n",
+           same ? "ok" : "not ok", ++checks->n, config->ranks, config->threads, config->scheduler,
+           config->mapping, config->seed, hash, error.text);
+    fflush(stdout);
+}
+
+static void check_all(struct checks *checks)
+{
+    struct config config = {.seed = 1};
+    for (config.ranks = 1; config.ranks <= checks->world_size; config.ranks++)
+        for (config.threads = 1; config.threads <= 4; config.threads *= 2)
+            for (const char *const *s = duite_scheduler_names(); *s; s++)
+                for (const char *const *m = duite_mapping_names(); *m; m++) {
+                    config.scheduler = *s;
+                    config.mapping = *m;
+                    check(checks, &config);
+                }
+}
+
+static void check_some(struct checks *checks)
+{
+    static const struct config some[] = {
+        {1, 1, "steal", "metis", 1},  {1, 2, "fifo", "metis", 1},    {1, 4, "shuffle", "cyclic", 2},
+        {2, 1, "steal", "cyclic", 1}, {2, 1, "shuffle", "metis", 3}, {2, 2, "fifo", "metis", 1},
+        {2, 2, "steal", "metis", 4},  {3, 1, "fifo", "cyclic", 1},   {3, 2, "shuffle", "metis", 5},
+        {4, 1, "steal", "metis", 1},  {4, 1, "fifo", "cyclic", 1},   {4, 2, "shuffle", "cyclic", 6},
+    };
+    for (size_t i = 0; i < sizeof some / sizeof *some; i++)
+        if (some[i].ranks <= checks->world_size)
+            check(checks, &some[i]);
+}
+
+static void check_seeds(struct checks *checks, uint64_t seeds)
+{
+    for (uint64_t seed = 1; seed <= seeds; seed++)
+        check(checks, &(struct config){.ranks = 1 + (int)(seed % (uint64_t)checks->world_size),
+                                       .threads = 1U << seed % 3,
+                                       .scheduler = "shuffle",
+                                       .mapping = seed % 2 ? "metis" : "cyclic",
+                                       .seed = seed});
+}
+
+/* Reads the scene with the sets that follow on the command line. */
+static int read_scene(struct model *model, int argc, char **argv, struct cloth_error *error)
+{
+    struct scene_set sets[16] = {{0}};
+    size_t n = 0;
+    if (argc < 4 || argc > 4 + 16)
+        return cloth_fail(error, CLOTH_E_INPUT, "same_hash SCENE all|some SEEDS [KEY=VALUE]...");
+    for (int i = 4; i < argc; i++)
+        sets[n++].text = argv[i];
+    return scene_read(model, argv[1], n, sets, error);
+}
+
+int main(int argc, char **argv)
+{
+    int level;
+    struct model model = {0};
+    struct cloth_error error = {0};
+    struct checks checks = {.model = &model};
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &level);
+    MPI_Comm_rank(MPI_COMM_WORLD, &checks.world_rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &checks.world_size);
+    if (read_scene(&model, argc, argv, &error)) {
+        printf("Bail out! %s\n", error.text);
+        checks.failed = 1;
+    } else {
+        if (!strcmp(argv[2], "all"))
+            check_all(&checks);
+        else
+            check_some(&checks);
+        check_seeds(&checks, strtoull(argv[3], NULL, 10));
+        if (!checks.world_rank)
+            printf("1..%d\n", checks.n);
+    }
+    model_free(&model);
+    MPI_Finalize();
+    return checks.failed != 0;
+}

@@ -1,0 +1,23 @@
+#!/bin/sh
+# A small sheet, implicit and explicit, has one state_hash over ranks, threads, schedulers, mappings and seeds of `shuffle`;
+# the sheet of 22,500 vertices over a dozen of them. With DUITE_LONG=1: the large one over all.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless tests/whole/same_hash
+scene=$srcdir/cloth/scenes/sheet.yaml
+small='cloths[0].mesh.grid.nx=40 cloths[0].mesh.grid.ny=40 grain=100 time.end=0.004'
+
+plan_later
+if test "${DUITE_LONG:-}" = 1; then
+    DUITE_TIMEOUT=4000
+    export DUITE_TIMEOUT
+    ok "sheet, everything" ranks 4 tests/whole/same_hash "$scene" all 20 time.end=0.01
+elif quick; then
+    # shellcheck disable=SC2086 # a list of settings
+    ok "40 x 40, implicit, some" ranks 4 tests/whole/same_hash "$scene" some 2 $small
+else
+    # shellcheck disable=SC2086
+    ok "40 x 40, implicit, everything" ranks 4 tests/whole/same_hash "$scene" all 20 $small
+    # shellcheck disable=SC2086
+    ok "40 x 40, explicit, everything" ranks 4 tests/whole/same_hash "$scene" all 20 $small integrator=explicit_euler
+    ok "sheet, a dozen" ranks 4 tests/whole/same_hash "$scene" some 0 time.end=0.01
+fi

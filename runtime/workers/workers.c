@@ -229,16 +229,22 @@ static bool spin(struct work_worker *worker, bool polls)
     return false;
 }
 
-/* Sleeps until woken; `seconds` > 0: at most so long. Returns a task if there was one at the last
- * look. */
-static struct graph_task *doze(struct work_worker *worker, double seconds, bool (*done)(void *),
-                               void *context)
+/* What an idle worker waits for beside tasks, and how it may sleep meanwhile. */
+struct wish {
+    bool (*done)(void *context); /* NULL: nothing */
+    void *context;
+    bool unheard; /* nobody wakes the worker for it: sleep for a pause at most */
+};
+
+/* Sleeps until woken, or for so many seconds if they are > 0. Returns a task if there was one at
+ * the last look. */
+static struct graph_task *doze(struct work_worker *worker, double seconds, const struct wish *wish)
 {
     struct work_pool *pool = worker->pool;
     atomic_fetch_add(&pool->parked, 1);
     work_park_announce(&worker->park);
     struct graph_task *task = find(worker);
-    if (task || atomic_load(&pool->stop) || (done && done(context)))
+    if (task || atomic_load(&pool->stop) || (wish->done && wish->done(wish->context)))
         work_park_cancel(&worker->park);
     else
         work_park_sleep(&worker->park, seconds);
@@ -248,31 +254,29 @@ static struct graph_task *doze(struct work_worker *worker, double seconds, bool 
 
 /* Nothing to do: one moment of idling. Among idle workers one keeps polling; should it get work,
  * the next takes over. */
-static void idle(struct work_worker *worker, bool (*done)(void *), void *context)
+static void idle(struct work_worker *worker, const struct wish *wish)
 {
     struct work_pool *pool = worker->pool;
+    struct graph_task *task = NULL;
     bool polls =
         pool->setup.comm && !atomic_flag_test_and_set_explicit(&pool->poller, memory_order_acquire);
     if (!spin(worker, polls)) {
-        struct graph_task *task = doze(worker, polls ? worker->pause : 0, done, context);
+        task = doze(worker, polls || wish->unheard ? worker->pause : 0, wish);
         if (worker->pause < LONGEST_PAUSE_SECONDS)
             worker->pause *= 2;
-        if (polls)
-            atomic_flag_clear_explicit(&pool->poller, memory_order_release);
-        if (task) {
-            busy_again(worker);
-            if (polls)
-                wake_one(pool, DUITE_NO_QUEUE);
-            run(worker, task);
-        }
-        return;
     }
     if (polls)
         atomic_flag_clear_explicit(&pool->poller, memory_order_release);
+    if (!task)
+        return;
+    busy_again(worker);
+    if (polls)
+        wake_one(pool, DUITE_NO_QUEUE);
+    run(worker, task);
 }
 
 /* Looks for work once; idles if there is none. */
-static void look(struct work_worker *worker, bool (*done)(void *), void *context)
+static void look(struct work_worker *worker, const struct wish *wish)
 {
     struct graph_task *task = find(worker);
     if (task) {
@@ -281,7 +285,7 @@ static void look(struct work_worker *worker, bool (*done)(void *), void *context
     } else if (poll(worker)) {
         busy_again(worker);
     } else {
-        idle(worker, done, context);
+        idle(worker, wish);
     }
 }
 
@@ -289,22 +293,17 @@ void work_until(struct work_pool *pool, bool (*done)(void *), void *context)
 {
     struct work_worker *worker = &pool->worker[0];
     struct comm *comm = pool->setup.comm;
+    const struct wish wish = {.done = done, .context = context};
     if (comm && comm_posted(comm))
         poll(worker);
     while (!done(context) && !(comm && comm_broken(comm)))
-        look(worker, done, context);
+        look(worker, &wish);
     busy_again(worker);
-}
-
-static bool always(void *context)
-{
-    (void)context;
-    return true;
 }
 
 void work_once(struct work_pool *pool)
 {
-    look(&pool->worker[0], always, NULL);
+    look(&pool->worker[0], &(struct wish){.unheard = true});
 }
 
 void work_tick(struct work_pool *pool)
@@ -326,7 +325,7 @@ static void *thread_main(void *argument)
     struct work_pool *pool = worker->pool;
     work_cores_bind(worker->unit);
     while (!atomic_load_explicit(&pool->stop, memory_order_acquire))
-        look(worker, NULL, NULL);
+        look(worker, &(struct wish){0});
     return NULL;
 }
 

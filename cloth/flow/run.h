@@ -8,14 +8,17 @@
 
 /* Runs a model on a duite runtime. The same on every rank. */
 
-/* What was run and how long it took; filled on every rank, the same on all of them but for times. */
+/* What was run and how long it took; filled on every rank, the same on all of them but for times.
+ */
 struct flow_report {
     uint64_t vertices, triangles, blocks, grain, partition_hash;
     uint64_t steps, frames, cg_iterations_total, cg_iterations_max;
     double simulated_seconds, wall_seconds;
     double seconds_force, seconds_acceleration, seconds_matrix, seconds_cg, seconds_velocity,
-        seconds_position, seconds_collide, seconds_output; /* in task bodies, over all workers and ranks */
-    double momentum_lost; /* largest |sum of b - A dv| of a step, kg m/s; NaN for an explicit run */
+        seconds_position, seconds_collide,
+        seconds_output;   /* in task bodies, over all workers and ranks */
+    double momentum_lost; /* largest |sum of b - A dv over the vertices not held| of a step, kg m/s,
+                           * of the dv that the step used; NaN for an explicit run */
     double max_stretch;   /* largest length / rest length of any stretch spring at the end */
     uint64_t state_hash;
     uint64_t last_frame; /* the last frame written */
@@ -23,20 +26,23 @@ struct flow_report {
     duite_counters counters;
 };
 
-/* Where frames go: handed over by the program. Called on rank 0 only, in frame order, from one task at a time. */
+/* Where frames go: handed over by the program. Called on rank 0 only, in frame order, from one task
+ * at a time. */
 struct flow_output {
     void *context;
-    /* position: vertices x 3 in the numbering of the input meshes, cloth after cloth. time in seconds.
-     * Returns 0 or a code and fills error. */
+    /* position: vertices x 3 in the numbering of the input meshes, cloth after cloth. time in
+     * seconds. Returns 0 or a code and fills error. */
     int (*frame)(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
 };
 
-/* What a run says while it goes on; called by the main thread of rank 0 after each step. May be NULL. */
+/* What a run says while it goes on; called by the main thread of rank 0 after each step, when the
+ * next one is under way. cg_iterations: of this step. May be NULL. */
 struct flow_progress {
     void *context;
     void (*step)(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations);
-    /* Nonzero asks the run to finish its frame and stop. Asked on rank 0 after each step. May be NULL. */
+    /* Nonzero asks the run to finish its frame and stop. Asked on rank 0 after each step. May be
+     * NULL. */
     int (*stop)(void *context);
 };
 
@@ -45,18 +51,23 @@ const duite_kernel *const *flow_kernels(void);
 
 struct flow; /* a model made ready: blocks, springs, objects */
 
-/* Cuts the model into blocks and prepares the tables that do not change. No runtime needed. Checks what a scene alone
- * cannot: pins inside the mesh, masses, more ranks than blocks. The model must outlive the flow. Local, the same result
- * on every rank. */
-int flow_prepare(struct flow **flow, const struct model *model, int ranks, struct cloth_error *error);
+/* Cuts the model into blocks and prepares the tables that do not change. No runtime needed. Checks
+ * what a scene alone cannot: pins inside the mesh, masses, more ranks than blocks. The model must
+ * outlive the flow. Local, the same result on every rank. */
+int flow_prepare(struct flow **flow, const struct model *model, int ranks,
+                 struct cloth_error *error);
 
-/* Runs it to the end on a runtime that was started with flow_kernels() and `flow` as its context. Collective. On failure
- * `report` still says which step, and which frame was written last. */
+/* Runs it to the end on a runtime that was started with flow_kernels() and `flow` as its context.
+ * Collective, the same result on every rank. On failure `report` still says how many steps were
+ * done and which frame was written last. Errors: CLOTH_E_RUN (diverged; a matrix that is not
+ * positive definite; a solve that needs more than max_iterations), CLOTH_E_IO (a frame was not
+ * written), CLOTH_E_MEMORY, CLOTH_E_LIBRARY. A flow may run again. */
 int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
              const struct flow_progress *progress, struct flow_report *report,
              struct cloth_error *error);
 
-/* Vertices and triangles of all cloths together, and vertices that no face or edge uses (for a warning). Local. */
+/* Vertices and triangles of all cloths together, and vertices that no face or edge uses (for a
+ * warning). Local. */
 uint64_t flow_vertices(const struct flow *flow);
 uint64_t flow_unused(const struct flow *flow);
 

@@ -88,6 +88,12 @@ static int not_converged(struct flow_state *state, uint64_t step, double rho, do
     return FLOW_NOT_CONVERGED;
 }
 
+/* What is not a number is not small: the next iteration's update fails on it. */
+static bool small_enough(double rho, double wanted)
+{
+    return rho <= wanted && isfinite(rho);
+}
+
 /* Exactly so many iterations, without a look at the residual. */
 static int iterate_count(struct flow_state *state, struct flow_args args)
 {
@@ -115,7 +121,7 @@ static int iterate(struct flow_state *state, struct flow_args args, uint64_t ste
         code = duite_get(state->rt, state->rho[0], &rho);
     const double wanted = goal(state->flow->model, rho);
     uint64_t i = 0;
-    for (; !code && rho > wanted && i < most; i++) {
+    for (; !code && !small_enough(rho, wanted) && i < most; i++) {
         code = fork_update(state, args, i);
         if (!code)
             code = fork_direction(state, args, i);
@@ -125,7 +131,7 @@ static int iterate(struct flow_state *state, struct flow_args args, uint64_t ste
             code = duite_get(state->rt, state->rho[(i + 1) % 2], &rho);
     }
     state->iterations = i;
-    return !code && rho > wanted ? not_converged(state, step, rho, wanted) : code;
+    return !code && !small_enough(rho, wanted) ? not_converged(state, step, rho, wanted) : code;
 }
 
 int flow_cg(struct flow_state *state, uint64_t step)

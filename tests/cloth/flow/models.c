@@ -26,7 +26,7 @@ static void setup_common(struct setup *s)
     s->model.stop = MODEL_STOP_RELATIVE;
     s->model.tolerance = 1e-3;
     s->model.max_iterations = 10000;
-    s->model.grain = 30;
+    s->model.grain = 8;
     s->material.name = "test";
     s->cloth.name = "test";
     s->cloth.pins = &s->pin;
@@ -58,6 +58,7 @@ void setup_weight(struct setup *s)
     s->material.stretch = 40;
     s->material.damping_stiffness = 0.002;
     s->cloth.mass_per_vertex = 0.1;
+    s->model.grain = 1;
     if (mesh_inline(&s->cloth.mesh, 2, vertices, 1, edge, 0, NULL, &error))
         die(error.text);
     setup_pin(s, 1, (const uint32_t[]){0});
@@ -136,6 +137,23 @@ static void begin_mpi(void)
         atexit(end_mpi);
 }
 
+/* What rank 0 alone was told, to all. */
+static void share(struct record *r)
+{
+    uint64_t counts[2] = {r->frames, r->shown};
+    MPI_Bcast(counts, 2, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+    r->shown = counts[1];
+    if (!r->position && counts[0]) {
+        r->frames = counts[0];
+        r->position = malloc(3 * r->vertices * r->frames * sizeof *r->position);
+        r->time = malloc(r->frames * sizeof *r->time);
+        if (!r->position || !r->time)
+            die("out of memory");
+    }
+    MPI_Bcast(r->position, (int)(3 * r->vertices * r->frames), MPI_DOUBLE, 0, MPI_COMM_WORLD);
+    MPI_Bcast(r->time, (int)r->frames, MPI_DOUBLE, 0, MPI_COMM_WORLD);
+}
+
 static void run_prepared(struct record *r, struct flow *flow)
 {
     const struct flow_output output = {r, keep_frame};
@@ -154,6 +172,7 @@ static void run_prepared(struct record *r, struct flow *flow)
     r->code = flow_run(flow, rt, &output, &progress, &r->report, &r->error);
     if (duite_stop(&rt))
         die(duite_message());
+    share(r);
 }
 
 void record_run(struct record *r, const struct model *model)

@@ -46,7 +46,8 @@ struct record {
     const char *scheduler; /* NULL: the default */
 };
 
-/* Prepares, runs and frees. Starts MPI if it is not; it ends with the process. */
+/* Prepares, runs and frees; every rank has the whole record then. Starts MPI if it is not; it ends
+ * with the process. Collective. */
 void record_run(struct record *record, const struct model *model);
 /* Component c of a vertex in a frame. */
 double record_at(const struct record *record, size_t frame, size_t vertex, size_t c);

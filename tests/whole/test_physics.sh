@@ -1,0 +1,12 @@
+#!/bin/sh
+# The cases of motion, failure and stop once more, with the cloth spread over two ranks.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless tests/cloth/flow/test_motion
+skip_unless tests/cloth/flow/test_run
+plan_later
+
+export CK_RUN_CASE
+CK_RUN_CASE=motion
+ok "closed forms on 2 ranks" ranks 2 tests/cloth/flow/test_motion
+CK_RUN_CASE=run
+ok "frames, stops and failures on 2 ranks" ranks 2 tests/cloth/flow/test_run

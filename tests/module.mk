@@ -15,6 +15,7 @@ AM_TESTS_ENVIRONMENT = \
     export CC CFLAGS PKG_CONFIG MAKE MPIRUN MPI_CFLAGS MPI_LIBS; \
     DUITE_QUICK=$${DUITE_QUICK-$(DUITE_QUICK)}; export DUITE_QUICK; \
     support=`cd '$(srcdir)/tests/support' && pwd`; \
+    ASAN_OPTIONS=fast_unwind_on_malloc=0:$$ASAN_OPTIONS; export ASAN_OPTIONS; \
     LSAN_OPTIONS=suppressions=$$support/lsan.supp:print_suppressions=0; export LSAN_OPTIONS; \
     TSAN_OPTIONS=suppressions=$$support/tsan.supp; export TSAN_OPTIONS;
 AM_DISTCHECK_CONFIGURE_FLAGS = DUITE_QUICK=1

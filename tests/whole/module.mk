@@ -4,3 +4,5 @@ tests_whole_same_hash_LDADD = libduite_cloth.la libduite_core.la
 dist_check_SCRIPTS += tests/whole/test_same_hash.sh tests/whole/test_same_hash_long.sh tests/whole/test_dress.sh
 TESTS += tests/whole/test_same_hash.sh tests/whole/test_dress.sh
 LONG_TESTS += tests/whole/test_same_hash_long.sh
+dist_check_SCRIPTS += tests/whole/test_physics.sh
+TESTS += tests/whole/test_physics.sh

@@ -1,0 +1,182 @@
+/* The body of every random kernel. What it writes depends on every byte it reads, on their order
+ * and on its seed; floating-point values differ in magnitude so much that another summation tree
+ * leaves other bits, and stay far from infinity, since the bits of a NaN are nobody's promise. */
+
+#include "tests/runtime/random_program.h"
+
+#include <sched.h>
+#include <string.h>
+
+size_t prog_size(duite_type type)
+{
+    switch (type) {
+    case DUITE_BYTE:
+        return 1;
+    case DUITE_I32:
+    case DUITE_F32:
+        return 4;
+    case DUITE_I64:
+    case DUITE_F64:
+        return 8;
+    }
+    return 0;
+}
+
+static uint64_t digest(uint64_t hash, const void *data, size_t size)
+{
+    const unsigned char *bytes = data;
+
+    for (size_t i = 0; i < size; i += 8) {
+        uint64_t word = 0;
+
+        memcpy(&word, bytes + i, size - i < 8 ? size - i : 8);
+        hash = (hash ^ word) * 0x9fb21c651e98df25u;
+        hash ^= hash >> 29;
+    }
+    return (hash ^ size) * 0xff51afd7ed558ccdu;
+}
+
+/* +- 2^-20 .. 2^21 with a full mantissa. */
+static double double_of(uint64_t bits)
+{
+    const uint64_t exponent = 1023 - 20 + (bits >> 52 & 0x7ff) % 41;
+    const uint64_t raw = (bits & 0x800fffffffffffffu) | exponent << 52;
+    double value;
+
+    memcpy(&value, &raw, sizeof value);
+    return value;
+}
+
+/* +- 2^-12 .. 2^13. */
+static float float_of(uint64_t bits)
+{
+    const uint32_t exponent = (uint32_t)(127 - 12 + (bits >> 32 & 0xff) % 25);
+    const uint32_t raw = ((uint32_t)bits & 0x807fffffu) | exponent << 23;
+    float value;
+
+    memcpy(&value, &raw, sizeof value);
+    return value;
+}
+
+/* Element i becomes bits (w), is mixed with them (rw), or they are added to it (cw). */
+static void put(duite_type type, duite_mode mode, void *data, size_t i, uint64_t bits)
+{
+    uint8_t *byte = data;
+    uint32_t *word = data;
+    uint64_t *big = data;
+    float *f32 = data;
+    double *f64 = data;
+    const unsigned odd = mode == DUITE_W ? 0 : mode == DUITE_RW ? 17 : 1;
+
+    switch (type) {
+    case DUITE_BYTE:
+        byte[i] = (uint8_t)(odd ? byte[i] * odd + bits : bits);
+        break;
+    case DUITE_I32:
+        word[i] = odd ? word[i] * odd + (uint32_t)bits : (uint32_t)bits;
+        break;
+    case DUITE_I64:
+        big[i] = odd ? big[i] * odd + bits : bits;
+        break;
+    case DUITE_F32:
+        f32[i] = !odd ? float_of(bits) : (odd == 1 ? f32[i] : f32[i] * 0.5f) + float_of(bits);
+        break;
+    case DUITE_F64:
+        f64[i] = !odd ? double_of(bits) : (odd == 1 ? f64[i] : f64[i] * 0.5) + double_of(bits);
+        break;
+    }
+}
+
+void prog_values(duite_type type, size_t count, uint64_t seed, void *values)
+{
+    for (size_t i = 0; i < count; i++)
+        put(type, DUITE_W, values, i, duite_random(&seed));
+}
+
+static void waste(unsigned pause)
+{
+    if (pause == 1)
+        sched_yield();
+    for (volatile unsigned i = 0; i < pause; i++)
+        ;
+}
+
+/* The line of the first of the call's promises that is broken; 0 if none is. */
+static int broken(const duite_call *call, const struct prog_args *args,
+                  const struct prog_context *context)
+{
+    if (call->n_params != args->n)
+        return __LINE__;
+    if (call->rank != context->rank || (args->rank >= 0 && args->rank != call->rank))
+        return __LINE__;
+    if (call->worker >= context->threads)
+        return __LINE__;
+    for (size_t i = 0; i < call->n_params; i++) {
+        if ((uintptr_t)call->param[i].data % 64 != 0 || !call->param[i].data)
+            return __LINE__;
+        if (call->param[i].count != args->count[i] || call->param[i].type != args->type[i])
+            return __LINE__;
+        for (size_t j = 0; j < i; j++)
+            if (call->param[i].data == call->param[j].data)
+                return __LINE__;
+    }
+    for (size_t i = 0; i < call->n_params; i++)
+        for (size_t e = 0; args->mode[i] == DUITE_CW && e < call->param[i].count; e++)
+            if (digest(0, duite_in(call, i, char) + e * prog_size(args->type[i]),
+                       prog_size(args->type[i])) !=
+                digest(0, (char[8]){0}, prog_size(args->type[i])))
+                return __LINE__;
+    return 0;
+}
+
+static void watch(const duite_call *call, const struct prog_args *args,
+                  struct prog_context *context)
+{
+    const int line = broken(call, args, context);
+    int none = 0;
+
+    if (line)
+        atomic_compare_exchange_strong(&context->wrong, &none, line);
+    atomic_fetch_add(&context->ran[args->number], 1);
+    waste(args->pause);
+}
+
+int prog_body(const duite_call *call)
+{
+    const struct prog_args *args = call->args;
+    uint64_t hash = args->seed;
+
+    if (call->context)
+        watch(call, args, call->context);
+    for (size_t i = 0; i < args->n; i++)
+        if (args->mode[i] == DUITE_R || args->mode[i] == DUITE_RW)
+            hash = digest(hash, call->param[i].data, args->count[i] * prog_size(args->type[i]));
+    for (size_t i = 0; i < args->n; i++) {
+        const size_t stride = args->mode[i] == DUITE_CW && hash % 4 == 0 ? 3 : 1;
+        uint64_t state = hash + i;
+
+        if (args->mode[i] == DUITE_R)
+            continue;
+        for (size_t e = 0; e < args->count[i]; e += stride)
+            put(args->type[i], args->mode[i], call->param[i].data, e, duite_random(&state));
+    }
+    if (args->fails && call->context)
+        return duite_fail(call, args->fails, "fork %u fails", args->number);
+    return args->fails;
+}
+
+void prog_args_fill(const struct prog *prog, const struct prog_op *op, struct prog_args *args)
+{
+    memset(args, 0, sizeof *args);
+    args->seed = op->seed;
+    args->fails = op->fails;
+    args->rank = op->rank;
+    args->pause = op->pause;
+    args->number = op->number;
+    args->n = op->n;
+    for (unsigned i = 0; i < op->n; i++) {
+        args->count[i] = (uint32_t)prog->objects[op->objects[i]].count;
+        args->type[i] = (uint8_t)prog->objects[op->objects[i]].type;
+        args->mode[i] = (uint8_t)prog_mode(&prog->kernel[op->kernel], i);
+    }
+}

@@ -1,0 +1,135 @@
+#ifndef TESTS_RUNTIME_RANDOM_PROGRAM_H
+#define TESTS_RUNTIME_RANDOM_PROGRAM_H
+
+/* Random programs against duite.h: made from a seed, interpreted one task after the other from the
+ * contract alone, run on the runtime, compared bit for bit. The interpreter shares with the runtime
+ * nothing but the bodies. */
+
+#include <duite.h>
+#include <duite_policy.h>
+
+#include <stdatomic.h>
+#include <stdint.h>
+#include <stdio.h>
+
+enum { PROG_MAX_PARAMS = 32, PROG_MAX_KERNELS = 8, PROG_ARGS_PADDING = 64 };
+
+enum prog_kind {
+    PROG_SKIP, /* left out by shrinking */
+    PROG_NEW,
+    PROG_FREE,
+    PROG_SET,
+    PROG_FORK, /* at a rank if rank >= 0 */
+    PROG_GET,
+    PROG_GET_AT,
+    PROG_WAIT,
+    PROG_HINT,
+    PROG_FOLLOW,
+    PROG_HOME,
+    PROG_WRONG /* a fork that must be refused; the next get or wait returns its error once more */
+};
+
+/* Objects are named by the order in which the program makes them; no number is used twice. */
+struct prog_op {
+    enum prog_kind kind;
+    unsigned object;
+    unsigned n,
+        objects[PROG_MAX_PARAMS]; /* fork: parameters; hint: neighbours; follow: the leader */
+    unsigned kernel;
+    unsigned number; /* forks: place in fork order */
+    int rank;        /* fork, get_at; -1: none named */
+    duite_type type; /* new */
+    size_t count;    /* new: elements */
+    uint64_t seed;   /* set: of the values, 0: zeros; fork: of the body */
+    unsigned pause;  /* fork: how the body wastes time */
+    int fails;       /* fork: the code the body returns */
+    double weight;   /* hint */
+};
+
+/* What a body is told: it cannot ask the program, which it must not see. */
+struct prog_args {
+    uint64_t seed;
+    int fails, rank;
+    unsigned pause, number, n;
+    uint32_t count[PROG_MAX_PARAMS];
+    uint8_t type[PROG_MAX_PARAMS], mode[PROG_MAX_PARAMS];
+    char padding[PROG_ARGS_PADDING]; /* kernels copy some of it, so that argument sizes vary */
+};
+
+struct prog_object {
+    duite_type type;
+    size_t count;
+    int leader; /* follows this object for certain; -1: none */
+};
+
+struct prog {
+    uint64_t seed;
+    int n_ranks;
+    size_t n_kernels, n_ops, n_objects, n_forks;
+    char name[PROG_MAX_KERNELS][16];
+    duite_kernel kernel[PROG_MAX_KERNELS];
+    const duite_kernel *list[PROG_MAX_KERNELS + 1];
+    struct prog_op *ops;
+    struct prog_object *objects;
+};
+
+/* What an operation must give. */
+struct prog_expect {
+    int code;
+    unsigned char *bytes; /* get, get_at: the object; NULL if it is poisoned */
+};
+
+struct prog_answers {
+    struct prog_expect *op; /* n_ops */
+    unsigned char *runs;    /* n_forks: whether the body runs */
+    uint64_t n_runs;
+    int stop;
+};
+
+/* What bodies share on one rank. */
+struct prog_context {
+    int rank, n_ranks;
+    unsigned threads;
+    atomic_uchar *ran; /* n_forks: how often a body ran on this rank */
+    atomic_int wrong;  /* the first thing a body found wrong: a line of random_bodies.c */
+};
+
+struct prog_setup {
+    MPI_Comm comm;
+    unsigned threads;
+    const char *scheduler, *mapping;
+    uint64_t seed;
+    double spin;
+    int verbose;
+};
+
+/* What a run found: an empty text if all is as it should be. */
+struct prog_report {
+    size_t op;
+    char text[600];
+};
+
+/* A program for n_ranks ranks; NULL without memory. The same on every rank. */
+struct prog *prog_make(uint64_t seed, int n_ranks);
+void prog_free(struct prog *prog);
+void prog_print(FILE *file, const struct prog *prog, size_t op);
+/* The mode of parameter i of a kernel. */
+duite_mode prog_mode(const duite_kernel *kernel, size_t i);
+
+/* The body of every kernel; with a NULL context nothing is checked, counted or wasted. */
+int prog_body(const duite_call *call);
+size_t prog_size(duite_type type);
+/* The values of a set. */
+void prog_values(duite_type type, size_t count, uint64_t seed, void *values);
+void prog_args_fill(const struct prog *prog, const struct prog_op *op, struct prog_args *args);
+
+/* Interprets a program; NULL without memory. */
+struct prog_answers *prog_interpret(const struct prog *prog);
+void prog_answers_free(const struct prog *prog, struct prog_answers *answers);
+
+/* Runs a program and compares. Collective over the communicator; the reports differ between ranks.
+ * `where` is kept up to date with the operation that is being run. */
+void prog_run(const struct prog *prog, const struct prog_answers *answers,
+              const struct prog_setup *setup, struct prog_report *report, volatile size_t *where);
+
+#endif

@@ -1,0 +1,305 @@
+/* Runs random programs on groups of 1 to 4 of the ranks of one job, each group on its own. A
+ * program is its seed and the number of ranks; threads, scheduler and mapping follow from the seed
+ * too unless they are given. */
+
+#include "tests/runtime/random_program.h"
+
+#include <getopt.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct settings {
+    uint64_t seed; /* of one program, or the first of many */
+    int one, ranks, threads, verbose;
+    unsigned long programs, repeat;
+    const char *scheduler, *mapping;
+};
+
+static char running[256]; /* the program that runs, for the handler */
+static volatile size_t where;
+
+/* Says what was running when the job hangs. */
+static void last_words(int number)
+{
+    char line[320] = "# hangs: ", digits[24], *d = digits + sizeof digits - 1;
+    size_t at = where;
+
+    (void)number;
+    *d = '\0';
+    do
+        *--d = (char)('0' + at % 10);
+    while (at /= 10);
+    strcat(strcat(strcat(strcat(line, running), " operation "), d), "\n");
+    if (write(STDERR_FILENO, line, strlen(line)) < 0)
+        _exit(4);
+    _exit(3);
+}
+
+static size_t count_names(const char *const *names)
+{
+    size_t n = 0;
+
+    while (names[n])
+        n++;
+    return n;
+}
+
+static struct prog_setup draw_setup(const struct settings *settings, uint64_t seed, MPI_Comm comm)
+{
+    static const double SPINS[] = {0, 1e-6, 100e-6};
+    const char *const *schedulers = duite_scheduler_names(), *const *mappings =
+                                                                 duite_mapping_names();
+    struct prog_setup setup = {.comm = comm, .verbose = settings->verbose};
+    uint64_t random = ~seed;
+
+    setup.seed = duite_random(&random);
+    setup.threads = 1 + (unsigned)(duite_random(&random) % 4);
+    setup.spin = SPINS[duite_random(&random) % 3];
+    setup.scheduler = schedulers[duite_random(&random) % count_names(schedulers)];
+    setup.mapping = mappings[duite_random(&random) % count_names(mappings)];
+    if (settings->threads > 0)
+        setup.threads = (unsigned)settings->threads;
+    if (settings->scheduler)
+        setup.scheduler = settings->scheduler;
+    if (settings->mapping)
+        setup.mapping = settings->mapping;
+    return setup;
+}
+
+/* The rank of the group that found something first; -1 if none did. */
+static int finder(const struct prog_setup *setup, const struct prog_report *report)
+{
+    unsigned long long mine = ~0ull, first;
+    int rank;
+
+    MPI_Comm_rank(setup->comm, &rank);
+    if (report->text[0])
+        mine = (unsigned long long)report->op << 16 | (unsigned)rank;
+    MPI_Allreduce(&mine, &first, 1, MPI_UNSIGNED_LONG_LONG, MPI_MIN, setup->comm);
+    return first == ~0ull ? -1 : (int)(first & 0xffff);
+}
+
+/* Interprets and runs `repeat` times; returns whether something was found, the same on the whole
+ * group. */
+static int try_program(const struct prog *prog, const struct prog_setup *setup,
+                       unsigned long repeat, struct prog_report *report)
+{
+    struct prog_answers *answers = prog_interpret(prog);
+    int wrong = 0;
+
+    for (unsigned long i = 0; i < repeat && !wrong; i++) {
+        *report = (struct prog_report){0, "out of memory"};
+        if (answers)
+            prog_run(prog, answers, setup, report, &where);
+        wrong = finder(setup, report) >= 0;
+    }
+    prog_answers_free(prog, answers);
+    return wrong;
+}
+
+/* Tries without n operations from `at` on; keeps them if the program is then right. */
+static void leave_out(struct prog *prog, const struct prog_setup *setup, unsigned long repeat,
+                      size_t at, size_t n)
+{
+    enum prog_kind *kept = calloc(n, sizeof *kept);
+    struct prog_report report;
+    int changed = 0;
+
+    for (size_t i = 0; kept && i < n; i++) {
+        enum prog_kind *kind = &prog->ops[at + i].kind;
+
+        kept[i] = *kind;
+        if (*kind == PROG_NEW || *kind == PROG_FREE || *kind == PROG_SKIP)
+            continue;
+        *kind = PROG_SKIP;
+        changed = 1;
+    }
+    if (changed && !try_program(prog, setup, repeat, &report))
+        for (size_t i = 0; i < n; i++)
+            prog->ops[at + i].kind = kept[i];
+    free(kept);
+}
+
+/* Leaves out of a failing program whatever can go while it still fails, and prints the rest. */
+static void shrink(struct prog *prog, struct prog_setup setup, unsigned long repeat)
+{
+    int rank;
+
+    MPI_Comm_rank(setup.comm, &rank);
+    setup.verbose = 0;
+    for (size_t n = prog->n_ops; n > 0; n /= 2)
+        for (size_t at = 0; at < prog->n_ops; at += n)
+            leave_out(prog, &setup, repeat, at, prog->n_ops - at < n ? prog->n_ops - at : n);
+    if (rank == 0)
+        printf("# still wrong with these operations only:\n");
+    for (size_t i = 0; rank == 0 && i < prog->n_ops; i++)
+        if (prog->ops[i].kind != PROG_SKIP)
+            prog_print(stdout, prog, i);
+}
+
+static void tell(const struct prog *prog, const struct prog_setup *setup,
+                 const struct prog_report *report)
+{
+    const int first = finder(setup, report);
+    int rank;
+
+    MPI_Comm_rank(setup->comm, &rank);
+    if (rank != first)
+        return;
+    printf("# WRONG: %s on rank %d: %s\n", running, rank, report->text);
+    if (report->op < prog->n_ops)
+        prog_print(stdout, prog, report->op);
+    fflush(stdout);
+}
+
+/* Returns whether the program went wrong, the same on the whole group. */
+static int run_seed(const struct settings *settings, uint64_t seed, MPI_Comm comm)
+{
+    const struct prog_setup setup = draw_setup(settings, seed, comm);
+    struct prog_report report;
+    struct prog *prog;
+    int ranks, wrong;
+
+    MPI_Comm_size(comm, &ranks);
+    snprintf(running, sizeof running,
+             "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s",
+             (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping);
+    alarm(settings->one ? 600 : 120);
+    prog = prog_make(seed, ranks);
+    if (!prog)
+        MPI_Abort(MPI_COMM_WORLD, 99);
+    wrong = try_program(prog, &setup, settings->repeat, &report);
+    if (wrong)
+        tell(prog, &setup, &report);
+    if (wrong && settings->one)
+        shrink(prog, setup, settings->repeat < 20 ? 20 : settings->repeat);
+    prog_free(prog);
+    alarm(0);
+    return wrong;
+}
+
+/* Ways to cut four ranks into groups, and how many programs a group of each runs: mostly small
+ * groups, since more ranks than cores take long. */
+static const struct way {
+    int group[4];
+    unsigned share;
+} WAYS[] = {{{0, 1, 2, 3}, 12},
+            {{0, 1, 2, 2}, 8},
+            {{0, 0, 1, 1}, 10},
+            {{0, 1, 1, 1}, 5},
+            {{0, 0, 0, 0}, 5}};
+enum { SHARES = 4 * 12 + 3 * 8 + 2 * 10 + 2 * 5 + 5 };
+
+/* Adds to done[0] the programs that a group ran, to done[1] the wrong ones, on its first rank. */
+static void run_group(const struct settings *settings, unsigned group, unsigned long n,
+                      MPI_Comm comm, unsigned long *done)
+{
+    unsigned long wrong = 0;
+    int member;
+
+    MPI_Comm_rank(comm, &member);
+    for (unsigned long i = 0; i < n && wrong < 20; i++) {
+        wrong += (unsigned)run_seed(settings, settings->seed + group * 1000000ull + i, comm);
+        done[0] += member == 0;
+    }
+    done[1] += member == 0 ? wrong : 0;
+}
+
+/* Four ranks are cut into groups; fewer are one group. */
+static void run_many(const struct settings *settings, int rank, int size, unsigned long *done)
+{
+    if (size < 4) {
+        run_group(settings, 0, settings->programs, MPI_COMM_WORLD, done);
+        return;
+    }
+    for (unsigned w = 0; w < sizeof WAYS / sizeof *WAYS; w++) {
+        const unsigned group = (unsigned)WAYS[w].group[rank];
+        MPI_Comm comm;
+
+        MPI_Comm_split(MPI_COMM_WORLD, (int)group, 0, &comm);
+        run_group(settings, w * 4 + group, settings->programs * WAYS[w].share / SHARES + 1, comm,
+                  done);
+        MPI_Comm_free(&comm);
+    }
+}
+
+static int read_options(int argc, char **argv, struct settings *settings)
+{
+    static const struct option OPTIONS[] = {{"seed", 1, NULL, 's'},      {"base", 1, NULL, 'b'},
+                                            {"ranks", 1, NULL, 'r'},     {"threads", 1, NULL, 't'},
+                                            {"repeat", 1, NULL, 'n'},    {"programs", 1, NULL, 'p'},
+                                            {"mapping", 1, NULL, 'm'},   {"verbose", 0, NULL, 'v'},
+                                            {"scheduler", 1, NULL, 'q'}, {NULL, 0, NULL, 0}};
+
+    for (int c; (c = getopt_long(argc, argv, "", OPTIONS, NULL)) != -1;) {
+        settings->one |= c == 's';
+        if (c == 's' || c == 'b')
+            settings->seed = strtoull(optarg, NULL, 10);
+        else if (c == 'r')
+            settings->ranks = atoi(optarg);
+        else if (c == 't')
+            settings->threads = atoi(optarg);
+        else if (c == 'n')
+            settings->repeat = strtoul(optarg, NULL, 10);
+        else if (c == 'p')
+            settings->programs = strtoul(optarg, NULL, 10);
+        else if (c == 'm')
+            settings->mapping = optarg;
+        else if (c == 'q')
+            settings->scheduler = optarg;
+        else if (c == 'v')
+            settings->verbose = 1;
+        else
+            return 1;
+    }
+    return (settings->scheduler && !duite_scheduler_find(settings->scheduler)) ||
+           (settings->mapping && !duite_mapping_find(settings->mapping));
+}
+
+static int run_one(const struct settings *settings, int rank)
+{
+    MPI_Comm comm;
+    int wrong;
+
+    MPI_Comm_split(MPI_COMM_WORLD, rank < settings->ranks ? 0 : MPI_UNDEFINED, 0, &comm);
+    if (comm == MPI_COMM_NULL)
+        return 0;
+    wrong = run_seed(settings, settings->seed, comm);
+    MPI_Comm_free(&comm);
+    return rank == 0 && wrong;
+}
+
+int main(int argc, char **argv)
+{
+    struct settings settings = {.seed = 1, .ranks = 1, .programs = 500, .repeat = 1};
+    unsigned long mine[2] = {0, 0}, sum[2];
+    int rank, size, given;
+
+    signal(SIGALRM, last_words);
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &given);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    if (read_options(argc, argv, &settings) || settings.ranks > size || settings.ranks < 1 ||
+        (!settings.one && size > 4)) {
+        fprintf(
+            stderr,
+            "%s: --base SEED --programs N, on 1 to 4 ranks; or --seed SEED --ranks R [--threads T] "
+            "[--scheduler S] [--mapping M] [--repeat N] [--verbose], on R ranks or more\n",
+            argv[0]);
+        MPI_Abort(MPI_COMM_WORLD, 2);
+    }
+    if (settings.one) {
+        mine[0] = rank == 0;
+        mine[1] = (unsigned)run_one(&settings, rank);
+    } else {
+        run_many(&settings, rank, size, mine);
+    }
+    MPI_Allreduce(mine, sum, 2, MPI_UNSIGNED_LONG, MPI_SUM, MPI_COMM_WORLD);
+    if (rank == 0)
+        printf("%sok 1 - %lu random programs, %lu wrong\n1..1\n", sum[1] ? "not " : "", sum[0],
+               sum[1]);
+    MPI_Finalize();
+    return sum[1] != 0;
+}

@@ -1,0 +1,301 @@
+/* Runs a program on duite and compares. Nothing is decided by what the runtime answers, so that
+ * every rank goes through the same calls whatever it finds; the first thing found is kept. */
+
+#include "tests/runtime/random_program.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { UNTOUCHED = 0xa5 };
+
+struct run {
+    const struct prog *prog;
+    const struct prog_answers *answers;
+    struct prog_report *report;
+    duite *rt;
+    int rank;
+    size_t at;
+    duite_object *object; /* n_objects */
+    int *home;            /* n_objects: when last asked; -1 before */
+    unsigned char *bytes; /* for the largest object */
+    size_t largest;
+};
+
+__attribute__((format(printf, 2, 3))) static void found(struct run *run, const char *format, ...)
+{
+    va_list list;
+
+    if (run->report->text[0])
+        return;
+    va_start(list, format);
+    vsnprintf(run->report->text, sizeof run->report->text, format, list);
+    va_end(list);
+    run->report->op = run->at;
+}
+
+static void expect(struct run *run, const char *call, int code, int expected)
+{
+    if (code != expected)
+        found(run, "%s returned %d (%s), expected %d", call, code, code ? duite_message() : "ok",
+              expected);
+}
+
+static void print_element(duite_type type, const void *data, size_t i, char *text, size_t size)
+{
+    switch (type) {
+    case DUITE_BYTE:
+        snprintf(text, size, "%u", ((const uint8_t *)data)[i]);
+        break;
+    case DUITE_I32:
+        snprintf(text, size, "%d", ((const int32_t *)data)[i]);
+        break;
+    case DUITE_I64:
+        snprintf(text, size, "%lld", (long long)((const int64_t *)data)[i]);
+        break;
+    case DUITE_F32:
+        snprintf(text, size, "%.9g (%a)", (double)((const float *)data)[i],
+                 (double)((const float *)data)[i]);
+        break;
+    case DUITE_F64:
+        snprintf(text, size, "%.17g (%a)", ((const double *)data)[i], ((const double *)data)[i]);
+        break;
+    }
+}
+
+static void compare(struct run *run, unsigned number, const unsigned char *expected)
+{
+    const struct prog_object *object = &run->prog->objects[number];
+    const size_t size = prog_size(object->type);
+    char is[80] = "", should[80] = "";
+    size_t i = 0, different = 0, first = 0;
+
+    for (; i < object->count; i++)
+        if (memcmp(run->bytes + i * size, expected + i * size, size) != 0 && different++ == 0)
+            first = i;
+    if (!different)
+        return;
+    print_element(object->type, run->bytes, first, is, sizeof is);
+    print_element(object->type, expected, first, should, sizeof should);
+    found(run, "object %u: %zu of %zu elements differ, first [%zu]: %s, expected %s", number,
+          different, object->count, first, is, should);
+}
+
+static void get(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
+{
+    memset(run->bytes, UNTOUCHED, run->largest);
+    const int here = op->kind == PROG_GET || op->rank == run->rank;
+    void *values = here ? run->bytes : NULL;
+    const int code = op->kind == PROG_GET
+                         ? duite_get(run->rt, run->object[op->object], values)
+                         : duite_get_at(run->rt, run->object[op->object], op->rank, values);
+
+    expect(run, op->kind == PROG_GET ? "get" : "get_at", code, here ? answer->code : DUITE_OK);
+    if (here && answer->bytes && code == answer->code)
+        compare(run, op->object, answer->bytes);
+}
+
+static void fork_task(struct run *run, const struct prog_op *op)
+{
+    const duite_kernel *kernel = &run->prog->kernel[op->kernel];
+    duite_object objects[PROG_MAX_PARAMS];
+    struct prog_args args;
+    int code;
+
+    prog_args_fill(run->prog, op, &args);
+    for (unsigned i = 0; i < op->n; i++)
+        objects[i] = run->object[op->objects[i]];
+    if (op->rank < 0)
+        code = duite_fork(run->rt, kernel, &args, op->n, objects);
+    else
+        code = duite_fork_at(run->rt, op->rank, kernel, &args, op->n, objects);
+    memset(&args, 0xee, sizeof args); /* the runtime has its copy */
+    memset(objects, 0xee, sizeof objects);
+    expect(run, "fork", code, DUITE_OK);
+}
+
+/* A kernel of one parameter that is given one object twice. */
+static void wrong_fork(struct run *run, const struct prog_op *op)
+{
+    const duite_object object = run->object[op->object];
+    const struct prog_args args = {0};
+
+    expect(run, "fork", DUITE_FORK(run->rt, &run->prog->kernel[0], &args, object, object),
+           DUITE_E_ACCESS);
+}
+
+static void hint(struct run *run, const struct prog_op *op)
+{
+    duite_object neighbours[PROG_MAX_PARAMS];
+    double weights[PROG_MAX_PARAMS];
+
+    for (unsigned i = 0; i < op->n; i++) {
+        neighbours[i] = run->object[op->objects[i]];
+        weights[i] = i;
+    }
+    expect(run, "hint",
+           duite_hint(run->rt, run->object[op->object], op->weight, op->n, neighbours, weights),
+           DUITE_OK);
+}
+
+static void ask_home(struct run *run, unsigned number)
+{
+    const int home = duite_home(run->rt, run->object[number]);
+
+    if (home < 0 || home >= run->prog->n_ranks)
+        found(run, "object %u has home %d", number, home);
+    if (run->home[number] >= 0 && run->home[number] != home)
+        found(run, "object %u moved from %d to %d", number, run->home[number], home);
+    run->home[number] = home;
+}
+
+static void set(struct run *run, const struct prog_op *op)
+{
+    const struct prog_object *object = &run->prog->objects[op->object];
+
+    prog_values(object->type, object->count, op->seed, run->bytes);
+    expect(run, "set", duite_set(run->rt, run->object[op->object], op->seed ? run->bytes : NULL),
+           DUITE_OK);
+    memset(run->bytes, 0xee, object->count * prog_size(object->type));
+}
+
+static void operation(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
+{
+    duite_object *object = &run->object[op->object];
+
+    switch (op->kind) {
+    case PROG_NEW:
+        expect(run, "new", duite_new(run->rt, op->type, op->count, object), DUITE_OK);
+        break;
+    case PROG_FREE:
+        ask_home(run, op->object);
+        expect(run, "free", duite_free(run->rt, *object), DUITE_OK);
+        break;
+    case PROG_SET:
+        set(run, op);
+        break;
+    case PROG_FORK:
+        fork_task(run, op);
+        break;
+    case PROG_GET:
+    case PROG_GET_AT:
+        get(run, op, answer);
+        break;
+    case PROG_WAIT:
+        expect(run, "wait", duite_wait(run->rt), answer->code);
+        break;
+    case PROG_HINT:
+        hint(run, op);
+        break;
+    case PROG_FOLLOW:
+        expect(run, "follow", duite_follow(run->rt, *object, run->object[op->objects[0]]),
+               DUITE_OK);
+        break;
+    case PROG_HOME:
+        ask_home(run, op->object);
+        break;
+    case PROG_WRONG:
+        wrong_fork(run, op);
+        break;
+    case PROG_SKIP:
+        break;
+    }
+}
+
+/* The rank on which a task must have run. */
+static int owner(const struct run *run, const struct prog_op *op)
+{
+    const duite_kernel *kernel = &run->prog->kernel[op->kernel];
+
+    if (op->rank >= 0)
+        return op->rank;
+    for (unsigned i = 0; i < op->n; i++)
+        if (prog_mode(kernel, i) == DUITE_W || prog_mode(kernel, i) == DUITE_RW)
+            return run->home[op->objects[i]];
+    for (unsigned i = 0; i < op->n; i++)
+        if (prog_mode(kernel, i) == DUITE_R)
+            return run->home[op->objects[i]];
+    return 0;
+}
+
+/* Every task ran once, where it should; followers live with their leaders. */
+static void check_places(struct run *run, const struct prog_context *context)
+{
+    for (size_t i = 0; i < run->prog->n_ops; i++) {
+        const struct prog_op *op = &run->prog->ops[i];
+
+        run->at = i;
+        if (op->kind == PROG_FOLLOW && run->home[op->object] != run->home[op->objects[0]])
+            found(run, "object %u does not live with %u", op->object, op->objects[0]);
+        if (op->kind != PROG_FORK)
+            continue;
+        const int ran = atomic_load(&context->ran[op->number]);
+        const int should = run->answers->runs[op->number] && owner(run, op) == run->rank;
+
+        if (ran != should)
+            found(run, "task %u ran %d times here, expected %d", op->number, ran, should);
+    }
+}
+
+static void run_operations(struct run *run, const struct prog_setup *setup,
+                           struct prog_context *context, volatile size_t *where)
+{
+    const struct prog *prog = run->prog;
+    duite_options options = duite_options_default();
+
+    options.comm = setup->comm;
+    options.kernels = prog->list;
+    options.context = context;
+    options.threads = setup->threads;
+    options.scheduler = duite_scheduler_find(setup->scheduler);
+    options.mapping = duite_mapping_find(setup->mapping);
+    options.seed = setup->seed;
+    options.spin_seconds = setup->spin;
+    options.bind = 0;
+    const int code = duite_start(&run->rt, &options);
+
+    expect(run, "start", code, DUITE_OK);
+    if (code)
+        return;
+    for (run->at = 0; run->at < prog->n_ops; run->at++) {
+        *where = run->at;
+        if (setup->verbose && run->rank == 0)
+            prog_print(stdout, prog, run->at);
+        operation(run, &prog->ops[run->at], &run->answers->op[run->at]);
+    }
+    for (unsigned i = 0; i < prog->n_objects; i++)
+        if (run->home[i] < 0)
+            ask_home(run, i);
+    expect(run, "stop", duite_stop(&run->rt), run->answers->stop);
+    if (run->rt)
+        found(run, "stop left *rt");
+    check_places(run, context);
+}
+
+void prog_run(const struct prog *prog, const struct prog_answers *answers,
+              const struct prog_setup *setup, struct prog_report *report, volatile size_t *where)
+{
+    struct run run = {.prog = prog, .answers = answers, .report = report, .largest = 1};
+    struct prog_context context = {.n_ranks = prog->n_ranks, .threads = setup->threads};
+
+    *report = (struct prog_report){0};
+    MPI_Comm_rank(setup->comm, &run.rank);
+    context.rank = run.rank;
+    for (size_t i = 0; i < prog->n_objects; i++)
+        if (prog->objects[i].count * prog_size(prog->objects[i].type) > run.largest)
+            run.largest = prog->objects[i].count * prog_size(prog->objects[i].type);
+    run.object = calloc(prog->n_objects + 1, sizeof *run.object);
+    run.home = malloc((prog->n_objects + 1) * sizeof *run.home);
+    run.bytes = malloc(run.largest);
+    context.ran = calloc(prog->n_forks + 1, sizeof *context.ran);
+    if (run.object && run.home && run.bytes && context.ran) {
+        memset(run.home, 0xff, (prog->n_objects + 1) * sizeof *run.home);
+        run_operations(&run, setup, &context, where);
+        if (context.wrong)
+            found(&run, "a body was called wrongly: random_bodies.c:%d", context.wrong);
+    }
+    free(run.object);
+    free(run.home);
+    free(run.bytes);
+    free(context.ran);
+}

@@ -1,0 +1,9 @@
+#!/bin/sh
+# Random programs on groups of 1 to 4 ranks with 1 to 4 threads, every scheduler and mapping, against the interpreter.
+# A program that goes wrong is printed with the options that run it again.
+. "${srcdir:-.}/tests/support/tap.sh"
+plan_later
+
+programs=10000
+if quick; then programs=500; fi
+ok "$programs random programs" ranks 4 tests/runtime/random_programs --base 1 --programs $programs

@@ -1,0 +1,125 @@
+/* The kernels do so little that what a test sees is the runtime's doing. */
+
+#include "tests/negative/misuse.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static int set_body(const duite_call *call)
+{
+    for (size_t i = 0; i < duite_count(call, 0); i++)
+        duite_out(call, 0, int32_t)[i] = *(const int32_t *)call->args;
+    return 0;
+}
+
+static int copy_body(const duite_call *call)
+{
+    duite_out(call, 1, int32_t)[0] = duite_in(call, 0, int32_t)[0] + 1;
+    return 0;
+}
+
+static int add_body(const duite_call *call)
+{
+    duite_out(call, 0, int32_t)[0] += 1;
+    return 0;
+}
+
+static int fail_body(const duite_call *call)
+{
+    const int32_t code = *(const int32_t *)call->args;
+
+    duite_out(call, 0, int32_t)[0] = -1;
+    return duite_fail(call, code, "sentence %d of a body", code);
+}
+
+static int empty_body(const duite_call *call)
+{
+    (void)call;
+    return 0;
+}
+
+const duite_kernel SET = {
+    .name = "set", .body = set_body, .access = {DUITE_W}, .args_size = sizeof(int32_t)};
+const duite_kernel COPY = {.name = "copy", .body = copy_body, .access = {DUITE_R, DUITE_W}};
+const duite_kernel ADD = {.name = "add", .body = add_body, .access = {DUITE_CW}};
+const duite_kernel FAIL = {
+    .name = "fail", .body = fail_body, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
+const duite_kernel MANY = {
+    .name = "many", .body = empty_body, .access = {DUITE_R}, .rest = DUITE_R};
+const duite_kernel EMPTY = {.name = "empty", .body = empty_body};
+const duite_kernel UNLISTED = {.name = "unlisted", .body = empty_body, .access = {DUITE_RW}};
+
+static void finalise(void)
+{
+    MPI_Finalize();
+}
+
+void misuse_mpi(void)
+{
+    int is, given;
+
+    MPI_Initialized(&is);
+    if (is)
+        return;
+    MPI_Init_thread(NULL, NULL, MPI_THREAD_SERIALIZED, &given);
+    atexit(finalise);
+}
+
+duite_options misuse_options(MPI_Comm comm)
+{
+    static const duite_kernel *const LIST[] = {&SET, &COPY, &ADD, &FAIL, &MANY, &EMPTY, NULL};
+    duite_options options = duite_options_default();
+
+    options.comm = comm;
+    options.kernels = LIST;
+    options.threads = 2;
+    options.bind = 0;
+    return options;
+}
+
+duite *misuse_start(MPI_Comm comm, unsigned threads)
+{
+    duite_options options = misuse_options(comm);
+    duite *rt = NULL;
+
+    misuse_mpi();
+    options.threads = threads;
+    if (duite_start(&rt, &options))
+        fprintf(stderr, "# start: %s\n", duite_message());
+    return rt;
+}
+
+duite_object misuse_new(duite *rt, size_t count)
+{
+    duite_object object = DUITE_NO_OBJECT;
+
+    duite_new(rt, DUITE_I32, count, &object);
+    return object;
+}
+
+static int n_cases, n_wrong;
+
+void tap_case(int right, const char *name)
+{
+    int rank, all;
+
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Allreduce(&right, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    n_cases++;
+    n_wrong += !all;
+    if (!right)
+        fprintf(stderr, "# rank %d: wrong: %s (last message: %s)\n", rank, name, duite_message());
+    if (rank == 0)
+        printf("%sok %d - %s\n", all ? "" : "not ", n_cases, name);
+    fflush(stdout);
+}
+
+int tap_done(void)
+{
+    int rank;
+
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    if (rank == 0)
+        printf("1..%d\n", n_cases);
+    return n_wrong != 0;
+}

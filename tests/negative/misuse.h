@@ -1,0 +1,30 @@
+#ifndef TESTS_NEGATIVE_MISUSE_H
+#define TESTS_NEGATIVE_MISUSE_H
+
+/* What the tests of misuse share: a few kernels, a runtime started with them, and TAP over ranks.
+ */
+
+#include <duite.h>
+
+/* Kernels: SET writes its argument; COPY adds 1 to what it reads; ADD contributes 1; FAIL writes
+ * and fails with its argument; MANY reads one and any number more; EMPTY has no parameters.
+ * UNLISTED is not listed. */
+extern const duite_kernel SET, COPY, ADD, FAIL, MANY, EMPTY, UNLISTED;
+
+/* Initialises MPI unless it is, to be finalised at exit. */
+void misuse_mpi(void);
+/* Options with all kernels listed on a communicator. */
+duite_options misuse_options(MPI_Comm comm);
+/* Initialises MPI and starts a runtime with them and this many threads; NULL if it does not start.
+ */
+duite *misuse_start(MPI_Comm comm, unsigned threads);
+/* An object of count integers (DUITE_I32). */
+duite_object misuse_new(duite *rt, size_t count);
+
+/* Prints one TAP line on rank 0 of the world, ok if `right` on every rank; the others say on stderr
+ * that they are wrong. Collective over MPI_COMM_WORLD. */
+void tap_case(int right, const char *name);
+/* Prints the plan; returns the exit status, the same on every rank. */
+int tap_done(void);
+
+#endif

@@ -1,0 +1,27 @@
+MISUSE = tests/negative/misuse.c tests/negative/misuse.h
+check_PROGRAMS += tests/negative/ranks_failures tests/negative/ranks_different tests/negative/ranks_groups
+tests_negative_ranks_failures_SOURCES = tests/negative/ranks_failures.c $(MISUSE)
+tests_negative_ranks_failures_LDADD = libduite_core.la
+tests_negative_ranks_different_SOURCES = tests/negative/ranks_different.c $(MISUSE)
+tests_negative_ranks_different_LDADD = libduite_core.la
+tests_negative_ranks_groups_SOURCES = tests/negative/ranks_groups.c $(MISUSE)
+tests_negative_ranks_groups_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/negative/test_ranks.sh
+TESTS += tests/negative/test_ranks.sh
+
+if HAVE_CHECK
+NEGATIVE_TESTS = tests/negative/test_arguments tests/negative/test_accesses tests/negative/test_start \
+                 tests/negative/test_state tests/negative/test_failures
+check_PROGRAMS += $(NEGATIVE_TESTS)
+TESTS += $(NEGATIVE_TESTS)
+tests_negative_test_arguments_SOURCES = tests/negative/test_arguments.c $(MISUSE)
+tests_negative_test_arguments_LDADD = $(DUITE_TEST_LIBS)
+tests_negative_test_accesses_SOURCES = tests/negative/test_accesses.c $(MISUSE)
+tests_negative_test_accesses_LDADD = $(DUITE_TEST_LIBS)
+tests_negative_test_start_SOURCES = tests/negative/test_start.c $(MISUSE)
+tests_negative_test_start_LDADD = $(DUITE_TEST_LIBS)
+tests_negative_test_state_SOURCES = tests/negative/test_state.c $(MISUSE)
+tests_negative_test_state_LDADD = $(DUITE_TEST_LIBS)
+tests_negative_test_failures_SOURCES = tests/negative/test_failures.c $(MISUSE)
+tests_negative_test_failures_LDADD = $(DUITE_TEST_LIBS)
+endif

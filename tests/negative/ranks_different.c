@@ -1,0 +1,148 @@
+/* Ranks that run different programs are told so, all of them; nothing hangs. */
+
+#include "tests/negative/misuse.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+static int rank, ranks;
+
+static int start_with(const duite_kernel *const *kernels)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = (duite *)&options;
+
+    options.kernels = kernels;
+    const int code = duite_start(&rt, &options);
+
+    if (code == DUITE_OK)
+        duite_stop(&rt);
+    return rt ? 12345 : code;
+}
+
+/* The last rank lists other kernels than the others. */
+static void different_kernels(void)
+{
+    const int last = rank == ranks - 1;
+    duite_kernel other = ADD;
+
+    tap_case(start_with((const duite_kernel *[]){&SET, last ? NULL : &ADD, NULL}) ==
+                 DUITE_E_DIFFERENT,
+             "a kernel less");
+    tap_case(start_with((const duite_kernel *[]){last ? &SET : &ADD, last ? &ADD : &SET, NULL}) ==
+                 DUITE_E_DIFFERENT,
+             "another order");
+    tap_case(strlen(duite_message()) > 0, "with a sentence");
+    other.name = last ? "other" : "add";
+    tap_case(start_with((const duite_kernel *[]){&other, NULL}) == DUITE_E_DIFFERENT,
+             "another name");
+    other = ADD;
+    other.access[0] = last ? DUITE_RW : DUITE_CW;
+    tap_case(start_with((const duite_kernel *[]){&other, NULL}) == DUITE_E_DIFFERENT,
+             "another mode");
+    other = ADD;
+    other.rest = last ? DUITE_R : DUITE_NONE;
+    tap_case(start_with((const duite_kernel *[]){&other, NULL}) == DUITE_E_DIFFERENT,
+             "another rest");
+    other = ADD;
+    other.args_size = last ? 8 : 4;
+    tap_case(start_with((const duite_kernel *[]){&other, NULL}) == DUITE_E_DIFFERENT,
+             "another size of arguments");
+    tap_case(start_with((const duite_kernel *[]){&ADD, NULL}) == DUITE_OK, "and then the same");
+}
+
+/* A mistake of one rank alone is everybody's error. */
+static void different_options(void)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite_kernel broken = ADD;
+    duite *rt = NULL;
+
+    broken.body = rank == 0 ? NULL : ADD.body;
+    const int code = start_with((const duite_kernel *[]){&broken, NULL});
+
+    tap_case(code == DUITE_E_KERNEL || (rank != 0 && code == DUITE_E_DIFFERENT),
+             "a kernel broken on one rank");
+    options.mapping = duite_mapping_find(rank == 0 ? "metis" : "cyclic");
+    tap_case(duite_start(&rt, &options) == DUITE_E_DIFFERENT && !rt, "another mapping");
+    options = misuse_options(MPI_COMM_WORLD);
+    options.seed = rank == 0 ? 5 : 6;
+    tap_case(duite_start(&rt, &options) == DUITE_E_DIFFERENT && !rt, "another seed");
+    options = misuse_options(MPI_COMM_WORLD);
+    options.threads = 1 + (unsigned)rank % 3;
+    tap_case(duite_start(&rt, &options) == DUITE_OK && rt, "numbers of threads may differ");
+    tap_case(duite_stop(&rt) == DUITE_OK, "and stop");
+}
+
+enum difference {
+    ONE_MORE,
+    ANOTHER_KERNEL,
+    ANOTHER_OBJECT,
+    ANOTHER_RANK,
+    ONE_OBJECT_MORE,
+    ANOTHER_SIZE,
+    ONE_SET_MORE
+};
+
+static void differ(duite *rt, enum difference what, duite_object a, duite_object b)
+{
+    const int odd = rank == ranks - 1;
+    duite_object made;
+
+    if (what == ONE_MORE && odd)
+        duite_fork(rt, &ADD, NULL, 1, &a);
+    if (what == ANOTHER_KERNEL)
+        duite_fork(rt, odd ? &ADD : &MANY, NULL, 1, &a);
+    if (what == ANOTHER_OBJECT)
+        duite_fork(rt, &ADD, NULL, 1, odd ? &a : &b);
+    if (what == ANOTHER_RANK)
+        duite_fork_at(rt, odd, &ADD, NULL, 1, &a);
+    if (what == ONE_OBJECT_MORE && odd)
+        duite_new(rt, DUITE_I32, 1, &made);
+    if (what == ANOTHER_SIZE)
+        duite_new(rt, DUITE_I32, odd ? 5 : 6, &made);
+    if (what == ONE_SET_MORE && odd)
+        duite_set(rt, a, NULL);
+}
+
+/* Some tasks that agree, one thing that does not: the wait says so everywhere, and the runtime can
+ * be stopped. */
+static void different_forks(enum difference what, const char *name, int at_stop)
+{
+    duite *rt = misuse_start(MPI_COMM_WORLD, 2);
+    const duite_object a = misuse_new(rt, 4), b = misuse_new(rt, 4);
+    char line[100];
+
+    for (int i = 0; i < 20; i++)
+        duite_fork_at(rt, i % ranks, i % 3 ? &ADD : &COPY, NULL, i % 3 ? 1 : 2,
+                      (duite_object[]){a, b});
+    if (!at_stop)
+        duite_wait(rt);
+    differ(rt, what, a, b);
+    snprintf(line, sizeof line, "%s, found by %s", name, at_stop ? "stop" : "wait");
+    if (at_stop) {
+        tap_case(duite_stop(&rt) == DUITE_E_DIFFERENT && !rt, line);
+        return;
+    }
+    tap_case(duite_wait(rt) == DUITE_E_DIFFERENT && strlen(duite_message()) > 0, line);
+    duite_stop(&rt);
+    tap_case(rt == NULL, "stops afterwards");
+}
+
+int main(void)
+{
+    static const char *const NAMES[] = {"a fork more",  "another kernel", "another object",
+                                        "another rank", "an object more", "another size",
+                                        "a set more"};
+
+    misuse_mpi();
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    different_kernels();
+    different_options();
+    for (int what = ONE_MORE; what <= ONE_SET_MORE; what++)
+        for (int at_stop = 0; at_stop < 2; at_stop++)
+            different_forks((enum difference)what, NAMES[what], at_stop);
+    return tap_done();
+}

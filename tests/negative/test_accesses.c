@@ -1,0 +1,168 @@
+/* Forks whose objects do not fit their kernel, and objects that are not there. */
+
+#include "tests/negative/misuse.h"
+#include "tests/support/unit.h"
+
+#include <stdint.h>
+
+static duite *rt;
+static duite_object a, b;
+
+static void begin(void)
+{
+    rt = misuse_start(MPI_COMM_WORLD, 2);
+    ck_assert_ptr_nonnull(rt);
+    a = misuse_new(rt, 4);
+    b = misuse_new(rt, 4);
+}
+
+static void end(void)
+{
+    duite_free(rt, a);
+    duite_free(rt, b);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}
+
+static void refused(int code, int expected)
+{
+    ck_assert_int_eq(code, expected);
+    ck_assert_int_eq(duite_wait(rt), expected);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+}
+
+START_TEST(number_of_objects)
+{
+    refused(duite_fork(rt, &COPY, NULL, 1, &a), DUITE_E_ACCESS);
+    refused(DUITE_FORK(rt, &COPY, NULL, a, b, a), DUITE_E_ACCESS);
+    refused(duite_fork(rt, &MANY, NULL, 0, NULL), DUITE_E_ACCESS);
+    refused(duite_fork(rt, &EMPTY, NULL, 1, &a), DUITE_E_ACCESS);
+    ck_assert_int_eq(duite_fork(rt, &MANY, NULL, 1, &a), DUITE_OK);
+}
+END_TEST
+
+START_TEST(one_object_twice)
+{
+    refused(DUITE_FORK(rt, &COPY, NULL, a, a), DUITE_E_ACCESS);
+    refused(DUITE_FORK(rt, &MANY, NULL, a, b, a), DUITE_E_ACCESS);
+}
+END_TEST
+
+/* Any number of further parameters is any number. */
+START_TEST(many_objects)
+{
+    enum { MANY_OBJECTS = 200 };
+    duite_object objects[MANY_OBJECTS];
+
+    for (int i = 0; i < MANY_OBJECTS; i++)
+        objects[i] = misuse_new(rt, 1);
+    ck_assert_int_eq(duite_fork(rt, &MANY, NULL, MANY_OBJECTS, objects), DUITE_OK);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    const duite_object last = objects[MANY_OBJECTS - 1];
+
+    objects[MANY_OBJECTS - 1] = objects[7];
+    refused(duite_fork(rt, &MANY, NULL, MANY_OBJECTS, objects), DUITE_E_ACCESS);
+    objects[MANY_OBJECTS - 1] = last;
+    for (int i = 0; i < MANY_OBJECTS; i++)
+        ck_assert_int_eq(duite_free(rt, objects[i]), DUITE_OK);
+}
+END_TEST
+
+START_TEST(bytes_do_not_add)
+{
+    duite_object bytes;
+
+    ck_assert_int_eq(duite_new(rt, DUITE_BYTE, 8, &bytes), DUITE_OK);
+    refused(duite_fork(rt, &ADD, NULL, 1, &bytes), DUITE_E_ACCESS);
+    ck_assert_int_eq(duite_free(rt, bytes), DUITE_OK);
+}
+END_TEST
+
+START_TEST(kernel_not_listed)
+{
+    const duite_kernel copy_of_add = ADD;
+
+    refused(duite_fork(rt, &UNLISTED, NULL, 1, &a), DUITE_E_KERNEL);
+    refused(duite_fork(rt, &copy_of_add, NULL, 1, &a), DUITE_E_KERNEL);
+}
+END_TEST
+
+static void all_refuse(duite_object gone)
+{
+    int32_t value[4] = {0};
+
+    refused(duite_fork(rt, &ADD, NULL, 1, &gone), DUITE_E_OBJECT);
+    refused(DUITE_FORK(rt, &COPY, NULL, a, gone), DUITE_E_OBJECT);
+    refused(duite_set(rt, gone, value), DUITE_E_OBJECT);
+    refused(duite_free(rt, gone), DUITE_E_OBJECT);
+    refused(duite_hint(rt, gone, 1, 0, NULL, NULL), DUITE_E_OBJECT);
+    ck_assert_int_eq(duite_get(rt, gone, value), DUITE_E_OBJECT);
+    ck_assert_int_eq(duite_get_at(rt, gone, 0, value), DUITE_E_OBJECT);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    ck_assert_int_eq(duite_home(rt, gone), -1);
+}
+
+START_TEST(no_such_object)
+{
+    all_refuse(DUITE_NO_OBJECT);
+    all_refuse((duite_object){1000000, 1});
+    all_refuse((duite_object){0xffffffffu, 0xffffffffu});
+    all_refuse((duite_object){a.slot, a.generation + 1});
+}
+END_TEST
+
+/* A freed name stays dead when its place is taken by others. */
+START_TEST(use_after_free)
+{
+    duite_object gone = misuse_new(rt, 4), next[8];
+
+    ck_assert_int_eq(duite_fork(rt, &ADD, NULL, 1, &gone), DUITE_OK);
+    ck_assert_int_eq(duite_free(rt, gone), DUITE_OK);
+    all_refuse(gone);
+    for (int i = 0; i < 8; i++)
+        next[i] = misuse_new(rt, 4);
+    all_refuse(gone);
+    for (int i = 0; i < 8; i++) {
+        int32_t value[4] = {1, 1, 1, 1};
+
+        ck_assert_int_eq(duite_get(rt, next[i], value), DUITE_OK);
+        ck_assert_int_eq(value[0], 0);
+        ck_assert_int_eq(duite_free(rt, next[i]), DUITE_OK);
+    }
+}
+END_TEST
+
+/* What was refused has left no trace. */
+START_TEST(refused_forks_do_nothing)
+{
+    int32_t value[4];
+
+    for (int i = 0; i < 3; i++) {
+        DUITE_FORK(rt, &ADD, NULL, a);
+        DUITE_FORK(rt, &ADD, NULL, a, b);
+        DUITE_FORK(rt, &UNLISTED, NULL, a);
+    }
+    ck_assert_int_eq(duite_wait(rt), DUITE_E_ACCESS);
+    ck_assert_int_eq(duite_get(rt, a, value), DUITE_OK);
+    ck_assert_int_eq(value[0], 3);
+    ck_assert_int_eq(duite_get(rt, b, value), DUITE_OK);
+    ck_assert_int_eq(value[0], 0);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("accesses");
+    TCase *cases = tcase_create("accesses");
+
+    tcase_add_checked_fixture(cases, begin, end);
+    tcase_add_test(cases, number_of_objects);
+    tcase_add_test(cases, one_object_twice);
+    tcase_add_test(cases, many_objects);
+    tcase_add_test(cases, bytes_do_not_add);
+    tcase_add_test(cases, kernel_not_listed);
+    tcase_add_test(cases, no_such_object);
+    tcase_add_test(cases, use_after_free);
+    tcase_add_test(cases, refused_forks_do_nothing);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

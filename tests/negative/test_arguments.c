@@ -1,0 +1,183 @@
+/* Arguments that make no sense are refused with their own code, change nothing, and a refused fork,
+ * new, set, hint or free comes back once more with the next get or wait. */
+
+#include "tests/negative/misuse.h"
+#include "tests/support/unit.h"
+
+#include <stdint.h>
+#include <string.h>
+
+static duite *rt;
+static duite_object a, b;
+static const int32_t SEVEN = 7;
+
+static void begin(void)
+{
+    rt = misuse_start(MPI_COMM_WORLD, 2);
+    ck_assert_ptr_nonnull(rt);
+    a = misuse_new(rt, 4);
+    b = misuse_new(rt, 4);
+}
+
+static void end(void)
+{
+    duite_free(rt, a);
+    duite_free(rt, b);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+    ck_assert_ptr_null(rt);
+}
+
+/* Refused now with a sentence, refused once more by the wait, then forgotten. */
+static void refused(int code, int expected)
+{
+    char sentence[256];
+
+    ck_assert_int_eq(code, expected);
+    strncpy(sentence, duite_message(), sizeof sentence - 1);
+    sentence[sizeof sentence - 1] = '\0';
+    ck_assert_str_ne(sentence, "");
+    ck_assert_int_eq(duite_wait(rt), expected);
+    ck_assert_str_eq(duite_message(), sentence);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+}
+
+START_TEST(no_runtime)
+{
+    duite *none = NULL;
+    duite_object object;
+    duite_counters counters;
+    int32_t value = 0;
+
+    ck_assert_int_eq(duite_start(NULL, &(duite_options){0}), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_stop(NULL), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_stop(&none), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_new(NULL, DUITE_I32, 1, &object), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_free(NULL, a), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_set(NULL, a, &value), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_get(NULL, a, &value), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_get_at(NULL, a, 0, &value), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_hint(NULL, a, 1, 0, NULL, NULL), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_follow(NULL, a, b), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_home(NULL, a), -1);
+    ck_assert_int_eq(duite_fork(NULL, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_fork_at(NULL, 0, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_wait(NULL), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_count_all(NULL, &counters), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+}
+END_TEST
+
+START_TEST(null_pointers)
+{
+    int32_t value[4];
+
+    refused(duite_new(rt, DUITE_I32, 1, NULL), DUITE_E_ARGUMENT);
+    refused(duite_fork(rt, NULL, NULL, 0, NULL), DUITE_E_ARGUMENT);
+    refused(duite_fork(rt, &ADD, NULL, 1, NULL), DUITE_E_ARGUMENT);
+    refused(duite_fork(rt, &SET, NULL, 1, &a), DUITE_E_ARGUMENT);
+    refused(duite_hint(rt, a, 1, 1, NULL, NULL), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_get(rt, a, NULL), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_get_at(rt, a, 0, NULL), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_count_all(rt, NULL), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_get(rt, a, value), DUITE_OK);
+    ck_assert_int_eq(duite_fork(rt, &EMPTY, NULL, 0, NULL), DUITE_OK);
+}
+END_TEST
+
+START_TEST(types_and_sizes)
+{
+    duite_object object = a;
+
+    refused(duite_new(rt, (duite_type)0, 1, &object), DUITE_E_ARGUMENT);
+    ck_assert(object.slot == 0 && object.generation == 0);
+    refused(duite_new(rt, (duite_type)6, 1, &object), DUITE_E_ARGUMENT);
+    refused(duite_new(rt, DUITE_F64, 0, &object), DUITE_E_ARGUMENT);
+    refused(duite_new(rt, DUITE_F64, SIZE_MAX / 8 + 2, &object), DUITE_E_ARGUMENT);
+    refused(duite_new(rt, DUITE_BYTE, SIZE_MAX, &object), DUITE_E_ARGUMENT);
+    ck_assert(object.slot == 0 && object.generation == 0);
+}
+END_TEST
+
+START_TEST(ranks_outside)
+{
+    int32_t value[4];
+
+    refused(duite_fork_at(rt, 1, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
+    refused(duite_fork_at(rt, -1, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_get_at(rt, a, 1, value), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_get_at(rt, a, -1, value), DUITE_E_ARGUMENT);
+}
+END_TEST
+
+START_TEST(hints_and_leaders)
+{
+    refused(duite_hint(rt, a, -1, 0, NULL, NULL), DUITE_E_ARGUMENT);
+    refused(duite_hint(rt, a, 1, 1, &b, &(double){-1}), DUITE_E_ARGUMENT);
+    refused(duite_hint(rt, a, 1, 1, &b, &(double){__builtin_nan("")}), DUITE_E_ARGUMENT);
+    refused(duite_hint(rt, a, __builtin_inf(), 0, NULL, NULL), DUITE_E_ARGUMENT);
+    refused(duite_hint(rt, a, 1, 1, &DUITE_NO_OBJECT, &(double){1}), DUITE_E_OBJECT);
+    refused(duite_follow(rt, a, DUITE_NO_OBJECT), DUITE_E_OBJECT);
+    refused(duite_follow(rt, DUITE_NO_OBJECT, a), DUITE_E_OBJECT);
+    refused(duite_follow(rt, a, a), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_follow(rt, a, b), DUITE_OK);
+    refused(duite_follow(rt, b, a), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_home(rt, a), 0);
+    ck_assert_int_eq(duite_hint(rt, b, 1, 1, &a, NULL), DUITE_OK);
+    ck_assert_int_eq(duite_home(rt, DUITE_NO_OBJECT), -1);
+}
+END_TEST
+
+/* The first of several refusals comes back, with a get or a stop as well, and the get has done its
+ * work. */
+START_TEST(refused_once_more)
+{
+    int32_t value[4] = {0};
+
+    ck_assert_int_eq(duite_fork(rt, &SET, &SEVEN, 1, &a), DUITE_OK);
+    ck_assert_int_eq(duite_fork(rt, &UNLISTED, NULL, 1, &a), DUITE_E_KERNEL);
+    ck_assert_int_eq(duite_fork(rt, &ADD, NULL, 0, NULL), DUITE_E_ACCESS);
+    ck_assert_int_eq(duite_get(rt, a, value), DUITE_E_KERNEL);
+    ck_assert_int_eq(value[3], 7);
+    ck_assert_int_eq(duite_get(rt, a, value), DUITE_OK);
+    ck_assert_int_eq(duite_free(rt, DUITE_NO_OBJECT), DUITE_E_OBJECT);
+    ck_assert_int_eq(duite_get(rt, a, value), DUITE_E_OBJECT);
+    ck_assert_int_eq(duite_set(rt, DUITE_NO_OBJECT, value), DUITE_E_OBJECT);
+    duite_free(rt, a);
+    duite_free(rt, b);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_E_OBJECT);
+    ck_assert_ptr_null(rt);
+    begin();
+}
+END_TEST
+
+START_TEST(words)
+{
+    ck_assert_ptr_nonnull(duite_message());
+    for (int code = DUITE_E_SYSTEM; code <= 0; code++)
+        for (int other = DUITE_E_SYSTEM; other < code; other++)
+            ck_assert_str_ne(duite_code_text(code), duite_code_text(other));
+    ck_assert_str_eq(duite_code_text(12), "error of the program");
+    ck_assert_ptr_nonnull(duite_code_text(-1000));
+    ck_assert_ptr_null(duite_scheduler_find("no such"));
+    ck_assert_ptr_null(duite_mapping_find("no such"));
+    ck_assert_ptr_null(duite_scheduler_find(NULL));
+    ck_assert_ptr_null(duite_mapping_find(NULL));
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("arguments");
+    TCase *cases = tcase_create("arguments");
+
+    tcase_add_checked_fixture(cases, begin, end);
+    tcase_add_test(cases, no_runtime);
+    tcase_add_test(cases, null_pointers);
+    tcase_add_test(cases, types_and_sizes);
+    tcase_add_test(cases, ranks_outside);
+    tcase_add_test(cases, hints_and_leaders);
+    tcase_add_test(cases, refused_once_more);
+    tcase_add_test(cases, words);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

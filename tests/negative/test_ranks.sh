@@ -1,0 +1,12 @@
+#!/bin/sh
+# Misuse and failures with several ranks: the programs print TAP of their own; here they must end well, on time.
+. "${srcdir:-.}/tests/support/tap.sh"
+plan_later
+
+DUITE_TIMEOUT=${DUITE_TIMEOUT:-60}
+for n in 2 3; do
+    ok "failures on $n ranks" ranks $n tests/negative/ranks_failures
+    ok "different programs on $n ranks" ranks $n tests/negative/ranks_different
+    ok "groups of $n ranks" ranks $n tests/negative/ranks_groups
+done
+quick || ok "groups of 4 ranks" ranks 4 tests/negative/ranks_groups

@@ -1,0 +1,206 @@
+/* Starting and stopping: malformed kernels and options, objects left over, many runtimes after one
+ * another. */
+
+#include "tests/negative/misuse.h"
+#include "tests/support/unit.h"
+
+#include <stdint.h>
+#include <string.h>
+
+/* Starting with this kernel beside a good one is refused with a sentence, and leaves no runtime. */
+static void refuses(duite_kernel kernel, const char *word)
+{
+    const duite_kernel *list[] = {&SET, &kernel, NULL};
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = (duite *)&options;
+
+    misuse_mpi();
+    options.kernels = list;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_KERNEL);
+    ck_assert_ptr_null(rt);
+    ck_assert_msg(strstr(duite_message(), word) != NULL, "'%s' does not say '%s'", duite_message(),
+                  word);
+}
+
+START_TEST(malformed_kernels)
+{
+    duite_kernel kernel = ADD;
+
+    kernel.body = NULL;
+    refuses(kernel, "add");
+    kernel = ADD;
+    kernel.name = NULL;
+    refuses(kernel, "name");
+    kernel = COPY;
+    kernel.access[5] = DUITE_R;
+    refuses(kernel, "copy");
+    kernel = COPY;
+    kernel.access[1] = (duite_mode)17;
+    refuses(kernel, "copy");
+    kernel = MANY;
+    kernel.rest = (duite_mode)-1;
+    refuses(kernel, "many");
+}
+END_TEST
+
+START_TEST(kernel_twice)
+{
+    const duite_kernel *list[] = {&SET, &ADD, &SET, NULL};
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt;
+
+    misuse_mpi();
+    options.kernels = list;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_KERNEL);
+    ck_assert_ptr_null(rt);
+    refuses((duite_kernel){.name = "set", .body = ADD.body}, "set");
+}
+END_TEST
+
+START_TEST(malformed_options)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = (duite *)&options;
+
+    misuse_mpi();
+    ck_assert_int_eq(duite_start(&rt, NULL), DUITE_E_ARGUMENT);
+    ck_assert_ptr_null(rt);
+    options.kernels = NULL;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
+    options = misuse_options(MPI_COMM_NULL);
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
+    options = misuse_options(MPI_COMM_WORLD);
+    options.spin_seconds = -1;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
+    options.spin_seconds = __builtin_nan("");
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
+    options = misuse_options(MPI_COMM_WORLD);
+    options.threads = 1000000;
+    ck_assert_int_ne(duite_start(&rt, &options), DUITE_OK);
+    ck_assert_ptr_null(rt);
+}
+END_TEST
+
+/* After refusals a start works. */
+static void one_life(MPI_Comm comm, unsigned threads)
+{
+    duite *rt = misuse_start(comm, threads);
+    int32_t value = 5;
+
+    ck_assert_ptr_nonnull(rt);
+    ck_assert_uint_ge(duite_threads(rt), 1);
+    if (threads)
+        ck_assert_uint_eq(duite_threads(rt), threads);
+    ck_assert_int_eq(duite_rank(rt), 0);
+    ck_assert_int_eq(duite_ranks(rt), 1);
+    const duite_object a = misuse_new(rt, 1), b = misuse_new(rt, 1);
+
+    ck_assert_int_eq(duite_fork(rt, &SET, &value, 1, &a), DUITE_OK);
+    for (int i = 0; i < 20; i++)
+        ck_assert_int_eq(duite_fork(rt, &ADD, NULL, 1, &a), DUITE_OK);
+    ck_assert_int_eq(DUITE_FORK(rt, &COPY, NULL, a, b), DUITE_OK);
+    ck_assert_int_eq(duite_get(rt, b, &value), DUITE_OK);
+    ck_assert_int_eq(value, 26);
+    ck_assert_int_eq(duite_free(rt, a), DUITE_OK);
+    ck_assert_int_eq(duite_free(rt, b), DUITE_OK);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+    ck_assert_ptr_null(rt);
+}
+
+START_TEST(fifty_lives)
+{
+    for (unsigned i = 0; i < 50; i++) {
+        one_life(MPI_COMM_WORLD, 1 + i % 4);
+        if (i % 10 == 0)
+            refuses((duite_kernel){.name = "nothing"}, "nothing");
+    }
+}
+END_TEST
+
+START_TEST(threads_by_default)
+{
+    one_life(MPI_COMM_WORLD, 0);
+    one_life(MPI_COMM_SELF, 0);
+}
+END_TEST
+
+START_TEST(every_policy)
+{
+    for (const char *const *scheduler = duite_scheduler_names(); *scheduler; scheduler++)
+        for (const char *const *mapping = duite_mapping_names(); *mapping; mapping++) {
+            duite_options options = misuse_options(MPI_COMM_WORLD);
+            duite *rt = NULL;
+
+            misuse_mpi();
+            options.scheduler = duite_scheduler_find(*scheduler);
+            options.mapping = duite_mapping_find(*mapping);
+            ck_assert_ptr_nonnull(options.scheduler);
+            ck_assert_ptr_nonnull(options.mapping);
+            ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+            ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+        }
+}
+END_TEST
+
+/* MPI is initialised by start if nobody else has, and lasts for further starts. */
+START_TEST(mpi_of_our_own)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    int is = 0;
+    duite *rt;
+
+    for (int i = 0; i < 3; i++) {
+        ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+        MPI_Initialized(&is);
+        ck_assert(is);
+        ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+        MPI_Finalized(&is);
+        ck_assert(!is);
+    }
+}
+END_TEST
+
+START_TEST(mpi_is_over)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = (duite *)&options;
+
+    MPI_Init(NULL, NULL);
+    MPI_Finalize();
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_MPI);
+    ck_assert_ptr_null(rt);
+}
+END_TEST
+
+START_TEST(not_freed)
+{
+    duite *rt = misuse_start(MPI_COMM_WORLD, 2);
+    const duite_object a = misuse_new(rt, 1);
+
+    misuse_new(rt, 1);
+    misuse_new(rt, 1);
+    ck_assert_int_eq(duite_free(rt, a), DUITE_OK);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_E_NOT_FREED);
+    ck_assert_ptr_null(rt);
+    ck_assert_msg(strstr(duite_message(), "2") != NULL, "'%s' does not say how many",
+                  duite_message());
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("start and stop");
+    TCase *cases = tcase_create("start and stop");
+
+    tcase_add_test(cases, malformed_kernels);
+    tcase_add_test(cases, kernel_twice);
+    tcase_add_test(cases, malformed_options);
+    tcase_add_test(cases, fifty_lives);
+    tcase_add_test(cases, threads_by_default);
+    tcase_add_test(cases, every_policy);
+    tcase_add_test(cases, mpi_of_our_own);
+    tcase_add_test(cases, mpi_is_over);
+    tcase_add_test(cases, not_freed);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -59,3 +59,6 @@ include tests/cloth/output/module.mk
 include tests/cloth/scene/module.mk
 include tests/cloth/view/module.mk
 include tests/whole/module.mk
+include tests/runtime/module.mk
+include tests/negative/module.mk
+include tests/examples/module.mk

@@ -11,6 +11,16 @@ include cloth/scene/module.mk
 include cloth/output/module.mk
 include cloth/view/module.mk
 
+bin_PROGRAMS += duite-cloth
+dist_man_MANS += cloth/duite-cloth.1
+duite_cloth_SOURCES = \
+	cloth/duite-cloth.c \
+	cloth/simulate.h \
+	cloth/simulate.c \
+	cloth/summary.h \
+	cloth/summary.c
+duite_cloth_LDADD = libduite_cloth.la libduite_core.la
+
 scenesdir = $(pkgdatadir)/scenes
 dist_scenes_DATA =
 include cloth/scenes/module.mk

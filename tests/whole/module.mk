@@ -6,3 +6,5 @@ TESTS += tests/whole/test_same_hash.sh tests/whole/test_dress.sh
 LONG_TESTS += tests/whole/test_same_hash_long.sh
 dist_check_SCRIPTS += tests/whole/test_physics.sh
 TESTS += tests/whole/test_physics.sh
+dist_check_SCRIPTS += tests/whole/test_input.sh tests/whole/test_options.sh
+TESTS += tests/whole/test_input.sh tests/whole/test_options.sh

@@ -164,6 +164,8 @@ START_TEST(unknown_and_missing_keys)
                      "materials, obstacles, contact, time, integrator, solver, grain"},
            {"h: 0.001", "h: 0.001, dt: 1",
             .error = ":12:18: dt is not a key of time; allowed: h, end, fps"},
+           {"h: 0.001", "h: 0.001, fsp: 1",
+            .error = ":12:18: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps"},
            {"stretch: 50", "strech: 50",
             .error = ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
                      "Allowed: density, stretch, "

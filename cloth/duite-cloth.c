@@ -1,0 +1,274 @@
+/* The command line of duite-cloth. It is read after MPI has started, on every rank alike, and only
+ * rank 0 prints, so that a mistake is said once and every rank ends with the same code. */
+#include "cloth/simulate.h"
+
+#include <config.h>
+
+#include <argp.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    END = 256,
+    GRAIN,
+    KEYS,
+    MAPPING,
+    OUTPUT,
+    QUIET,
+    REPORT,
+    SCHEDULER,
+    SEED,
+    SET,
+    THREADS,
+    USAGE
+};
+
+static const struct argp_option OPTIONS[] = {
+    {"output", OUTPUT, "DIR", 0, "write frames into this folder, which is made", 1},
+    {"report", REPORT, "FILE", 0, "write the figures of the run as flat JSON", 1},
+    {"quiet", QUIET, NULL, 0, "neither progress nor summary", 1},
+    {"end", END, "SECONDS", 0, "simulated time, instead of the scene's time.end", 2},
+    {"grain", GRAIN, "VERTICES", 0, "vertices a block, instead of the scene's grain", 2},
+    {"set", SET, "KEY=VALUE", 0,
+     "change a value of the scene, such as time.h=0.002 or cloths[0].mesh.grid.nx=40; may be "
+     "given several times",
+     2},
+    {"threads", THREADS, "N", 0, "workers of each rank (default: its share of the cores)", 3},
+    {"scheduler", SCHEDULER, "NAME", 0, "which worker runs which task next (default: steal)", 3},
+    {"mapping", MAPPING, "NAME", 0, "which rank keeps which block (default: metis)", 3},
+    {"seed", SEED, "N", 0, "of all that is random in schedulers and mappings (default: 1)", 3},
+    {"keys", KEYS, NULL, 0, "list the keys of scene files, with units, ranges and defaults", 4},
+    {"help", '?', NULL, 0, "this text", 4},
+    {"usage", USAGE, NULL, 0, "a short text", 4},
+    {"version", 'V', NULL, 0, "the version", 4},
+    {0}};
+
+struct command {
+    struct simulate_options run;
+    char **texts; /* of the sets made here, two for each set */
+    size_t n_texts;
+    bool talks; /* this rank prints */
+    bool done;  /* nothing is to be run: help, version, keys */
+};
+
+static int whole_number(struct argp_state *state, const char *option, const char *text,
+                        uint64_t least, uint64_t most, uint64_t *value)
+{
+    char *end;
+    errno = 0;
+    *value = strtoull(text, &end, 10);
+    if (*text >= '0' && *text <= '9' && !*end && !errno && *value >= least && *value <= most)
+        return 0;
+    argp_failure(state, 0, 0, "--%s %s: a whole number from %" PRIu64 " to %" PRIu64 " is expected",
+                 option, text, least, most);
+    return EINVAL;
+}
+
+/* Joins the names of policies for a sentence. */
+static const char *join(const char *const *names, char *text, size_t size)
+{
+    *text = 0;
+    for (size_t i = 0; names[i]; i++) {
+        size_t used = strlen(text);
+        snprintf(text + used, size - used, "%s%s", i ? ", " : "", names[i]);
+    }
+    return text;
+}
+
+static int choose_scheduler(struct argp_state *state, struct simulate_options *run,
+                            const char *name)
+{
+    char known[200];
+    run->scheduler_name = name;
+    run->scheduler = duite_scheduler_find(name);
+    if (run->scheduler)
+        return 0;
+    argp_failure(state, 0, 0, "--scheduler %s: there is no scheduler of this name; known are %s",
+                 name, join(duite_scheduler_names(), known, sizeof known));
+    return EINVAL;
+}
+
+static int choose_mapping(struct argp_state *state, struct simulate_options *run, const char *name)
+{
+    char known[200];
+    run->mapping_name = name;
+    run->mapping = duite_mapping_find(name);
+    if (run->mapping)
+        return 0;
+    argp_failure(state, 0, 0, "--mapping %s: there is no mapping of this name; known are %s", name,
+                 join(duite_mapping_names(), known, sizeof known));
+    return EINVAL;
+}
+
+static int add_set(struct command *command, const char *text, const char *option)
+{
+    struct simulate_options *run = &command->run;
+    struct scene_set *sets = realloc(run->sets, (run->n_sets + 1) * sizeof *sets);
+    if (!sets)
+        return ENOMEM;
+    sets[run->n_sets++] = (struct scene_set){text, option};
+    run->sets = sets;
+    return 0;
+}
+
+/* An option that stands for a key of the scene: the schema checks it, errors name the option. */
+static int add_key(struct command *command, const char *option, const char *key, const char *value)
+{
+    char **texts = realloc(command->texts, (command->n_texts + 2) * sizeof *texts);
+    if (!texts)
+        return ENOMEM;
+    command->texts = texts;
+    char **text = texts + command->n_texts, **name = text + 1;
+    if (asprintf(text, "%s=%s", key, value) < 0)
+        return ENOMEM;
+    command->n_texts++;
+    if (asprintf(name, "--%s %s", option, value) < 0)
+        return ENOMEM;
+    command->n_texts++;
+    return add_set(command, *text, *name);
+}
+
+static void print_version(FILE *file)
+{
+    fprintf(file, "duite-cloth (%s)\n", PACKAGE_STRING);
+}
+
+/* Options that print and end the program. */
+static int answer(struct command *command, struct argp_state *state, int key)
+{
+    command->done = true;
+    if (!command->talks)
+        return 0;
+    if (key == 'V')
+        print_version(stdout);
+    else if (key == KEYS)
+        scene_print_keys(stdout);
+    else
+        argp_state_help(state, stdout,
+                        key == USAGE ? ARGP_HELP_USAGE
+                                     : ARGP_HELP_LONG | ARGP_HELP_DOC | ARGP_HELP_USAGE);
+    return 0;
+}
+
+static error_t parse_number(struct command *command, struct argp_state *state, int key,
+                            const char *value)
+{
+    uint64_t number = 0;
+    bool threads = key == THREADS;
+    int code = whole_number(state, threads ? "threads" : "seed", value, threads ? 1 : 0,
+                            threads ? 1024 : UINT64_MAX, &number);
+    if (code)
+        return code;
+    if (threads)
+        command->run.threads = (unsigned)number;
+    else
+        command->run.seed = number;
+    return 0;
+}
+
+static error_t parse_scene(struct command *command, struct argp_state *state, const char *path)
+{
+    if (command->run.scene) {
+        argp_failure(state, 0, 0, "%s: a second scene file; one is expected", path);
+        return EINVAL;
+    }
+    command->run.scene = path;
+    return 0;
+}
+
+static error_t parse(int key, char *value, struct argp_state *state)
+{
+    struct command *command = state->input;
+    switch (key) {
+    case OUTPUT:
+        command->run.output = value;
+        return 0;
+    case REPORT:
+        command->run.report = value;
+        return 0;
+    case QUIET:
+        command->run.quiet = true;
+        return 0;
+    case END:
+        return add_key(command, "end", "time.end", value);
+    case GRAIN:
+        return add_key(command, "grain", "grain", value);
+    case SET:
+        return add_set(command, value, NULL);
+    case SCHEDULER:
+        return choose_scheduler(state, &command->run, value);
+    case MAPPING:
+        return choose_mapping(state, &command->run, value);
+    case THREADS:
+    case SEED:
+        return parse_number(command, state, key, value);
+    case KEYS:
+    case USAGE:
+    case 'V':
+    case '?':
+        return answer(command, state, key);
+    case ARGP_KEY_ARG:
+        return parse_scene(command, state, value);
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp ARGP = {
+    .options = OPTIONS,
+    .parser = parse,
+    .args_doc = "SCENE.yaml",
+    .doc = "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "
+           "result is the same, to the "
+           "last bit.\v"
+           "Exit codes: 0 done (or stopped by SIGUSR1 after a whole frame), 1 the run failed, 2 "
+           "the input or the command "
+           "line is wrong. Scene files are described in docs/scene.md and by --keys."};
+
+/* Returns an exit code. */
+static int command_line(struct command *command, int argc, char **argv)
+{
+    /* --help and the like are options of our own: argp's would end the process of one rank. */
+    unsigned flags = ARGP_NO_EXIT | ARGP_NO_HELP | (command->talks ? 0 : ARGP_NO_ERRS);
+    error_t error = argp_parse(&ARGP, argc, argv, flags, NULL, command);
+    if (error == ENOMEM && command->talks)
+        fprintf(stderr, "duite-cloth: out of memory\n");
+    if (error)
+        return error == ENOMEM ? SIMULATE_FAILED : SIMULATE_BAD_INPUT;
+    if (command->done || command->run.scene)
+        return SIMULATE_OK;
+    if (command->talks)
+        fprintf(stderr, "duite-cloth: a scene file is expected; see duite-cloth --help\n");
+    return SIMULATE_BAD_INPUT;
+}
+
+static void free_command(struct command *command)
+{
+    for (size_t i = 0; i < command->n_texts; i++)
+        free(command->texts[i]);
+    free(command->texts);
+    free(command->run.sets);
+}
+
+int main(int argc, char **argv)
+{
+    int provided, rank;
+    simulate_catch_signals();
+    if (MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
+        return SIMULATE_FAILED;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    struct command command = {.run = {.scheduler = duite_scheduler_find("steal"),
+                                      .scheduler_name = "steal",
+                                      .mapping = duite_mapping_find("metis"),
+                                      .mapping_name = "metis",
+                                      .seed = 1},
+                              .talks = rank == 0};
+    int code = command_line(&command, argc, argv);
+    if (code == SIMULATE_OK && !command.done)
+        code = simulate(&command.run);
+    free_command(&command);
+    MPI_Finalize();
+    return code;
+}

@@ -1,0 +1,241 @@
+/* Between duite_start and duite_stop MPI belongs to the runtime; before and after, the ranks agree
+ * here about errors, so that all of them leave by the same way and one of them prints. */
+#include "cloth/simulate.h"
+#include "cloth/output/output.h"
+#include "cloth/summary.h"
+
+#include <errno.h>
+#include <mpi.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+struct run {
+    const struct simulate_options *options;
+    int rank, ranks;
+    unsigned threads;
+    struct model model;
+    struct flow *flow;
+    struct output_frames *frames; /* rank 0, when frames are wanted */
+    struct summary_progress progress;
+    struct flow_report report;
+};
+
+static volatile sig_atomic_t stop_requested;
+
+static void request_stop(int signal)
+{
+    (void)signal;
+    stop_requested = 1;
+}
+
+void simulate_catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = request_stop, .sa_flags = SA_RESTART};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGUSR1, &action, NULL);
+}
+
+/* The code of the lowest rank that failed, on all ranks; that rank prints its sentence. Collective.
+ */
+static int agree(const struct run *run, const struct cloth_error *error)
+{
+    int first = error->code ? run->rank : run->ranks, code = error->code;
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    if (first == run->ranks)
+        return CLOTH_OK;
+    MPI_Bcast(&code, 1, MPI_INT, first, MPI_COMM_WORLD);
+    if (run->rank != first)
+        return code;
+    if (first > 0)
+        fprintf(stderr, "duite-cloth: rank %d: %s\n", first, error->text);
+    else
+        fprintf(stderr, "duite-cloth: %s\n", error->text);
+    return code;
+}
+
+/* Found before the run, so that its figures are not lost after it. */
+static int check_report(const char *path, struct cloth_error *error)
+{
+    struct stat status;
+    const char *slash = strrchr(path, '/');
+    int length = slash ? (int)(slash - path) + 1 : 2;
+    char folder[4096];
+    snprintf(folder, sizeof folder, "%.*s", length, slash ? path : "./");
+    if (!*path || (!stat(path, &status) && S_ISDIR(status.st_mode)))
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--report %s: this is a folder; the name of a file is expected", path);
+    if (access(folder, W_OK | X_OK))
+        return cloth_fail(error, CLOTH_E_INPUT, "--report %s: cannot write in its folder: %s", path,
+                          strerror(errno));
+    return CLOTH_OK;
+}
+
+static int open_output(struct run *run, struct cloth_error *error)
+{
+    const struct model *model = &run->model;
+    const struct mesh **meshes = calloc(model->n_cloths, sizeof *meshes);
+    const char **names = calloc(model->n_cloths, sizeof *names);
+    double(*planes)[6] = calloc(model->n_planes + 1, sizeof *planes);
+    int code = CLOTH_E_MEMORY;
+    if (meshes && names && planes) {
+        for (uint32_t i = 0; i < model->n_cloths; i++) {
+            meshes[i] = &model->cloths[i].mesh;
+            names[i] = model->cloths[i].name;
+        }
+        for (uint32_t i = 0; i < model->n_planes; i++) {
+            memcpy(planes[i], model->planes[i].point, 3 * sizeof(double));
+            memcpy(planes[i] + 3, model->planes[i].normal, 3 * sizeof(double));
+        }
+        const struct output_setup setup = {.folder = run->options->output,
+                                           .n_meshes = model->n_cloths,
+                                           .meshes = meshes,
+                                           .names = names,
+                                           .fps = model->fps,
+                                           .n_planes = model->n_planes,
+                                           .planes = (const double(*)[6])planes};
+        code = output_open(&run->frames, &setup, error);
+    } else {
+        cloth_fail(error, code, "out of memory before the first frame");
+    }
+    free(meshes);
+    free(names);
+    free(planes);
+    return code;
+}
+
+/* All that can be wrong with the input, then the folder of frames. */
+static int prepare(struct run *run)
+{
+    const struct simulate_options *options = run->options;
+    struct cloth_error error = {0};
+    int code = scene_read(&run->model, options->scene, options->n_sets, options->sets, &error);
+    if (!code)
+        code = flow_prepare(&run->flow, &run->model, run->ranks, &error);
+    if (!code && run->rank == 0 && options->report)
+        code = check_report(options->report, &error);
+    code = agree(run, &error);
+    if (code)
+        return code;
+    if (run->rank == 0 && flow_unused(run->flow) > 0)
+        fprintf(
+            stderr,
+            "duite-cloth: warning: vertices that belong to no face or edge: %llu; they are kept "
+            "and stay where they are\n",
+            (unsigned long long)flow_unused(run->flow));
+    if (run->rank == 0 && options->output)
+        open_output(run, &error);
+    return agree(run, &error);
+}
+
+static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations)
+{
+    summary_progress_step(context, step, steps, cg_iterations);
+}
+
+static int stop_wanted(void *context)
+{
+    (void)context;
+    return stop_requested;
+}
+
+static int runtime_fails(struct cloth_error *error, int code)
+{
+    return code ? cloth_fail(error, CLOTH_E_LIBRARY, "%s", duite_message()) : CLOTH_OK;
+}
+
+static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
+{
+    const struct flow_output output = {run->frames, output_frame};
+    const struct flow_progress progress = {&run->progress, run->options->quiet ? NULL : show_step,
+                                           stop_wanted};
+    run->threads = duite_threads(rt);
+    summary_progress_begin(&run->progress);
+    flow_run(run->flow, rt, run->options->output ? &output : NULL, &progress, &run->report, error);
+    summary_progress_end(&run->progress);
+}
+
+static int execute(struct run *run)
+{
+    struct cloth_error error = {0};
+    duite *rt = NULL;
+    duite_options options = duite_options_default();
+    options.kernels = flow_kernels();
+    options.context = run->flow;
+    options.threads = run->options->threads;
+    options.scheduler = run->options->scheduler;
+    options.mapping = run->options->mapping;
+    options.seed = run->options->seed;
+    if (!runtime_fails(&error, duite_start(&rt, &options))) {
+        run_flow(run, rt, &error);
+        int code = duite_stop(&rt);
+        if (!error.code)
+            runtime_fails(&error, code);
+    }
+    if (run->frames)
+        output_close(&run->frames, &error);
+    return agree(run, &error);
+}
+
+static void say_stopped(const struct run *run)
+{
+    const struct flow_report *report = &run->report;
+    fprintf(stderr, "duite-cloth: stopped as asked by SIGUSR1 after step %llu, at %g of %g s",
+            (unsigned long long)report->steps, report->simulated_seconds, run->model.end);
+    if (run->options->output)
+        fprintf(stderr, "; the last frame is %llu", (unsigned long long)report->last_frame);
+    fputc('\n', stderr);
+}
+
+static int conclude(const struct run *run)
+{
+    struct cloth_error error = {0};
+    struct rusage usage = {0};
+    getrusage(RUSAGE_SELF, &usage);
+    uint64_t sums[2] = {run->threads, 1024 * (uint64_t)usage.ru_maxrss}; /* Linux counts KiB */
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+    if (run->rank == 0) {
+        const struct summary summary = {.options = run->options,
+                                        .model = &run->model,
+                                        .report = &run->report,
+                                        .ranks = run->ranks,
+                                        .threads = run->threads,
+                                        .workers = sums[0],
+                                        .memory_bytes = sums[1]};
+        if (run->report.stopped)
+            say_stopped(run);
+        if (!run->options->quiet)
+            summary_print(stdout, &summary);
+        if (run->options->report)
+            summary_write(&summary, run->options->report, &error);
+    }
+    return agree(run, &error);
+}
+
+int simulate(const struct simulate_options *options)
+{
+    struct run run = {.options = options};
+    int code = SIMULATE_BAD_INPUT;
+    MPI_Comm_rank(MPI_COMM_WORLD, &run.rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &run.ranks);
+    int failure = prepare(&run);
+    if (failure == CLOTH_E_MEMORY || failure == CLOTH_E_LIBRARY)
+        code = SIMULATE_FAILED;
+    if (!failure) {
+        failure = execute(&run);
+        if (!failure)
+            failure = conclude(&run);
+        code = failure ? SIMULATE_FAILED : SIMULATE_OK;
+    }
+    if (run.frames) {
+        struct cloth_error ignored = {0};
+        output_close(&run.frames, &ignored);
+    }
+    flow_free(run.flow);
+    model_free(&run.model);
+    return code;
+}

@@ -1,0 +1,36 @@
+#ifndef CLOTH_SIMULATE_H
+#define CLOTH_SIMULATE_H
+
+#include "cloth/scene/scene.h"
+
+#include <duite.h>
+#include <stdbool.h>
+
+/* What duite-cloth does once its command line is read: the whole run of one scene. */
+
+struct simulate_options {
+    const char *scene; /* path of the scene file */
+    size_t n_sets;     /* changes to it, in the order given */
+    struct scene_set *sets;
+    const char *output, *report;             /* folder of frames, JSON file; NULL: none */
+    const struct duite_scheduler *scheduler; /* never NULL */
+    const struct duite_mapping *mapping;     /* never NULL */
+    const char *scheduler_name, *mapping_name;
+    unsigned threads; /* 0: the rank's share of the cores */
+    uint64_t seed;
+    bool quiet; /* neither progress nor summary */
+};
+
+/* Exit codes of the program. */
+enum { SIMULATE_OK = 0, SIMULATE_FAILED = 1, SIMULATE_BAD_INPUT = 2 };
+
+/* From now on SIGUSR1 asks a run to finish its frame and stop, instead of ending the process.
+ * Local. */
+void simulate_catch_signals(void);
+
+/* Reads, runs, reports. Every input error is found before anything is written, and printed by one
+ * rank. MPI is initialised by the caller. Returns the exit code, the same on all ranks. Collective
+ * over MPI_COMM_WORLD. */
+int simulate(const struct simulate_options *options);
+
+#endif

@@ -1,0 +1,212 @@
+/* Everything printed here comes from the report of the run; nothing is measured but the progress
+ * line's time. */
+#include "cloth/summary.h"
+#include "cloth/output/output.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <time.h>
+#include <unistd.h>
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* NaN where there is nothing to divide by: printed as null. */
+static double ratio(double a, double b)
+{
+    return b > 0 ? a / b : NAN;
+}
+
+static double iterations_mean(const struct summary *summary)
+{
+    const struct flow_report *report = summary->report;
+    bool implicit = summary->model->integrator == MODEL_IMPLICIT_EULER;
+    return implicit ? ratio((double)report->cg_iterations_total, (double)report->steps) : NAN;
+}
+
+static void print_times(FILE *file, const struct flow_report *report)
+{
+    const struct {
+        const char *name;
+        double seconds;
+    } rows[] = {
+        {"force", report->seconds_force},       {"acceleration", report->seconds_acceleration},
+        {"matrix", report->seconds_matrix},     {"CG", report->seconds_cg},
+        {"velocity", report->seconds_velocity}, {"position", report->seconds_position},
+        {"collide", report->seconds_collide},   {"output", report->seconds_output}};
+    fprintf(file, "  seconds in tasks, over all workers\n");
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        fprintf(file, "    %-14s %12.4f\n", rows[i].name, rows[i].seconds);
+}
+
+void summary_print(FILE *file, const struct summary *summary)
+{
+    const struct flow_report *report = summary->report;
+    const struct model *model = summary->model;
+    fprintf(file, "%s\n", model->name);
+    fprintf(file, "  vertices         %" PRIu64 ", triangles %" PRIu64 "\n", report->vertices,
+            report->triangles);
+    fprintf(file,
+            "  blocks           %" PRIu64 " of about %" PRIu64 " vertices, partition %016" PRIx64
+            "\n",
+            report->blocks, report->grain, report->partition_hash);
+    fprintf(file, "  ran on           %d ranks x %u threads, scheduler %s, mapping %s\n",
+            summary->ranks, summary->threads, summary->options->scheduler_name,
+            summary->options->mapping_name);
+    fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
+            model->h, report->simulated_seconds);
+    fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
+            ratio(report->wall_seconds, (double)report->steps));
+    print_times(file, report);
+    if (model->integrator == MODEL_IMPLICIT_EULER) {
+        fprintf(file, "  CG iterations    %.2f a step on average, %" PRIu64 " at most\n",
+                iterations_mean(summary), report->cg_iterations_max);
+        fprintf(file, "  momentum lost    %.3e kg m/s at most in a step\n", report->momentum_lost);
+    }
+    fprintf(file, "  largest stretch  %.6f times the length at rest\n", report->max_stretch);
+    fprintf(file, "  state hash       %016" PRIx64 "\n", report->state_hash);
+    if (summary->options->output)
+        fprintf(file, "  frames           %" PRIu64 " in %s\n", report->frames,
+                summary->options->output);
+    else
+        fprintf(file, "  frames           not written (--output DIR)\n");
+}
+
+static void add_hash(struct output_report *json, const char *key, uint64_t hash)
+{
+    char text[17];
+    snprintf(text, sizeof text, "%016" PRIx64, hash);
+    output_report_text(json, key, text);
+}
+
+static void add_setting(struct output_report *json, const struct summary *summary)
+{
+    const struct flow_report *report = summary->report;
+    output_report_text(json, "scene", summary->model->name);
+    output_report_integer(json, "vertices", report->vertices);
+    output_report_integer(json, "triangles", report->triangles);
+    output_report_integer(json, "blocks", report->blocks);
+    output_report_integer(json, "grain", report->grain);
+    add_hash(json, "partition_hash", report->partition_hash);
+    output_report_integer(json, "ranks", (uint64_t)summary->ranks);
+    output_report_integer(json, "threads", summary->threads);
+    output_report_text(json, "scheduler", summary->options->scheduler_name);
+    output_report_text(json, "mapping", summary->options->mapping_name);
+    output_report_null(json, "balance");
+}
+
+static void add_times(struct output_report *json, const struct flow_report *report)
+{
+    output_report_integer(json, "steps", report->steps);
+    output_report_number(json, "simulated_seconds", report->simulated_seconds);
+    output_report_number(json, "wall_seconds", report->wall_seconds);
+    output_report_number(json, "seconds_per_step",
+                         ratio(report->wall_seconds, (double)report->steps));
+    output_report_number(json, "seconds_per_frame",
+                         ratio(report->wall_seconds, (double)report->frames));
+    output_report_number(json, "seconds_force", report->seconds_force);
+    output_report_number(json, "seconds_acceleration", report->seconds_acceleration);
+    output_report_number(json, "seconds_matrix", report->seconds_matrix);
+    output_report_number(json, "seconds_cg", report->seconds_cg);
+    output_report_number(json, "seconds_velocity", report->seconds_velocity);
+    output_report_number(json, "seconds_position", report->seconds_position);
+    output_report_number(json, "seconds_collide", report->seconds_collide);
+    output_report_number(json, "seconds_output", report->seconds_output);
+}
+
+static void add_solver(struct output_report *json, const struct summary *summary)
+{
+    const struct flow_report *report = summary->report;
+    output_report_number(json, "cg_iterations_mean", iterations_mean(summary));
+    if (summary->model->integrator == MODEL_IMPLICIT_EULER)
+        output_report_integer(json, "cg_iterations_max", report->cg_iterations_max);
+    else
+        output_report_null(json, "cg_iterations_max");
+    output_report_null(json, "mass_norm_error");
+    output_report_number(json, "momentum_lost", report->momentum_lost);
+}
+
+static void add_runtime(struct output_report *json, const struct summary *summary)
+{
+    const duite_counters *counters = &summary->report->counters;
+    double total = summary->report->wall_seconds * (double)summary->workers;
+    double overhead = 1e9 * (total - counters->busy - counters->idle);
+    output_report_integer(json, "tasks", counters->tasks);
+    output_report_integer(json, "tasks_placed", counters->placed);
+    output_report_integer(json, "tasks_stolen", counters->stolen);
+    output_report_integer(json, "tasks_chained", counters->chained);
+    output_report_null(json, "graphs_recorded");
+    output_report_integer(json, "messages", counters->messages);
+    output_report_integer(json, "bytes_moved", counters->bytes);
+    output_report_null(json, "delegated_tasks");
+    output_report_null(json, "migrated_objects");
+    output_report_number(json, "busy_fraction", ratio(counters->busy, total));
+    output_report_number(json, "idle_fraction", ratio(counters->idle, total));
+    output_report_number(json, "overhead_ns_per_task", ratio(overhead, (double)counters->tasks));
+    output_report_null(json, "communication_hidden_fraction");
+    output_report_null(json, "critical_path_seconds");
+    output_report_null(json, "lower_bound_seconds");
+    output_report_null(json, "steps_halved");
+    output_report_integer(json, "peak_memory_bytes", summary->memory_bytes);
+}
+
+int summary_write(const struct summary *summary, const char *path, struct cloth_error *error)
+{
+    struct output_report *json = NULL;
+    int code = output_report_new(&json, error);
+    if (code)
+        return code;
+    add_setting(json, summary);
+    add_times(json, summary->report);
+    add_solver(json, summary);
+    add_runtime(json, summary);
+    output_report_number(json, "max_stretch", summary->report->max_stretch);
+    add_hash(json, "state_hash", summary->report->state_hash);
+    code = output_report_write(json, path, error);
+    output_report_free(json);
+    return code;
+}
+
+void summary_progress_begin(struct summary_progress *progress)
+{
+    *progress = (struct summary_progress){.terminal = isatty(STDERR_FILENO) == 1};
+    progress->begun = progress->shown = now();
+}
+
+static void write_duration(char *text, size_t size, double seconds)
+{
+    if (seconds < 120)
+        snprintf(text, size, "%.0f s", seconds);
+    else if (seconds < 7200)
+        snprintf(text, size, "%.0f min", seconds / 60);
+    else
+        snprintf(text, size, "%.1f h", seconds / 3600);
+}
+
+void summary_progress_step(struct summary_progress *progress, uint64_t step, uint64_t steps,
+                           uint64_t cg_iterations)
+{
+    double time = now(), pause = progress->terminal ? 0.1 : 10;
+    if (time - progress->shown < pause && !(progress->terminal && step == steps))
+        return;
+    char left[32];
+    double each = ratio(time - progress->begun, (double)step);
+    write_duration(left, sizeof left, each * (double)(steps - step));
+    fprintf(stderr, "%sstep %" PRIu64 " of %" PRIu64 ", %" PRIu64 " iterations, %s left%s",
+            progress->terminal ? "\r\033[K" : "", step, steps, cg_iterations, left,
+            progress->terminal ? "" : "\n");
+    fflush(stderr);
+    progress->shown = time;
+    progress->open = progress->terminal;
+}
+
+void summary_progress_end(struct summary_progress *progress)
+{
+    if (progress->open)
+        fputc('\n', stderr);
+    progress->open = false;
+}

@@ -1,0 +1,37 @@
+#ifndef CLOTH_SUMMARY_H
+#define CLOTH_SUMMARY_H
+
+#include "cloth/flow/run.h"
+#include "cloth/simulate.h"
+
+#include <stdio.h>
+
+/* What a finished run says about itself. Local; called on rank 0. */
+struct summary {
+    const struct simulate_options *options;
+    const struct model *model;
+    const struct flow_report *report;
+    int ranks;
+    unsigned threads;      /* of rank 0 */
+    uint64_t workers;      /* of all ranks together */
+    uint64_t memory_bytes; /* the largest resident sizes of all ranks, summed */
+};
+
+/* A table for people. */
+void summary_print(FILE *file, const struct summary *summary);
+
+/* The flat JSON that the man page describes. Errors: CLOTH_E_IO, CLOTH_E_MEMORY. */
+int summary_write(const struct summary *summary, const char *path, struct cloth_error *error);
+
+/* The progress line on standard error: on a terminal rewritten ten times a second, else a line
+ * every ten seconds. */
+struct summary_progress {
+    double begun, shown; /* seconds of a clock that only goes forward */
+    bool terminal, open; /* open: the line on the terminal is not ended yet */
+};
+void summary_progress_begin(struct summary_progress *progress);
+void summary_progress_step(struct summary_progress *progress, uint64_t step, uint64_t steps,
+                           uint64_t cg_iterations);
+void summary_progress_end(struct summary_progress *progress);
+
+#endif

@@ -1,0 +1,92 @@
+#!/bin/sh
+# Wrong input ends duite-cloth with exit code 2 on one rank and on two, says why in one sentence printed once, and leaves
+# nothing on the disk.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+cd "$scratch" || exit 99 # so that sentences have short paths
+
+cat > scene.yaml << 'END'
+schema: 1
+cloths:
+  - mesh: {grid: {width: 1, height: 1, nx: 8, ny: 8}}
+    material: cotton
+    pins: [{vertices: [0, 7]}]
+materials:
+  cotton: {density: 0.2, stretch: 500}
+time: {h: 0.001, end: 0.004}
+END
+
+# changed NAME FROM TO: another scene, NAME.yaml, with FROM replaced.
+changed() {
+    sed "s|$2|$3|" scene.yaml > "$1.yaml"
+    cmp -s scene.yaml "$1.yaml" && echo "$1.yaml" >> unchanged
+}
+
+# says RANKS SENTENCE ARGUMENT...: duite-cloth fails with 2, prints the sentence after its own name once, nothing else of
+# its own (mpirun adds a text about the exit code), and writes nothing.
+says() {
+    says_ranks=$1 says_what="duite-cloth: $2"
+    shift 2
+    set -- "$DUITE_CLOTH" --output frames --report report.json "$@"
+    test "$says_ranks" = 1 || set -- ranks "$says_ranks" "$@"
+    status=0
+    "$@" > said.out 2> said.err < /dev/null || status=$?
+    echo "exit status $status"
+    cat said.out said.err
+    test $status = 2 && test ! -s said.out && test ! -e frames && test ! -e report.json &&
+        test "$(grep -c 'duite-cloth: ' said.err)" = 1 && grep -qxF "$says_what" said.err &&
+        ! grep -q MPI_ABORT said.err || return 1
+    test "$says_ranks" != 1 || test "$(wc -l < said.err)" -eq 1
+}
+
+# refused NAME SENTENCE ARGUMENT...
+refused() {
+    refused_name=$1
+    shift
+    ok "$refused_name" says 1 "$@"
+    ok "$refused_name, 2 ranks" says 2 "$@"
+}
+
+changed step 'h: 0.001' 'h: 0'
+refused "a step of zero" "step.yaml:8:11: time.h is 0; a finite number > 0 (s) is expected" step.yaml
+changed back 'h: 0.001' 'h: -0.001'
+refused "a step back" "back.yaml:8:11: time.h is -0.001; a finite number > 0 (s) is expected" back.yaml
+changed nan 'stretch: 500' 'stretch: .nan'
+refused "a stiffness that is no number" \
+    "nan.yaml:7:35: materials.cotton.stretch is .nan; a finite number >= 0 (N/m) is expected" nan.yaml
+changed pin '\[0, 7\]' '[0, 64]'
+refused "a pin outside the mesh" \
+    "pin.yaml:5:27: vertex 64 is outside the mesh of cloth 'cloth1', which has 64 vertices; 0 to 63 are allowed" pin.yaml
+changed grain 'schema: 1' 'grain: 0'
+refused "a grain of zero" "grain.yaml:1:8: grain is 0; a whole number from 1 to 4294967295 is expected" grain.yaml
+refused "a grain of zero on the command line" \
+    "--grain 0: grain is 0; a whole number from 1 to 4294967295 is expected" scene.yaml --grain 0
+changed key 'end: 0.004' 'end: 0.004, fsp: 30'
+refused "an unknown key" "key.yaml:8:30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps" key.yaml
+refused "an unknown key on the command line" \
+    "--set time.fsp=30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps" scene.yaml --set time.fsp=30
+refused "a missing scene" "none.yaml: cannot open the scene file: No such file or directory" none.yaml
+printf 'schema: 1\ntime: [\n' > broken.yaml
+refused "a broken scene" \
+    "broken.yaml:3:1: not YAML: did not find expected node content, while parsing a flow node" broken.yaml
+: > empty.yaml
+refused "an empty scene" "empty.yaml:1:1: the file is empty; a scene starts with 'schema: 1'" empty.yaml
+changed mesh 'grid: {width.*ny: 8}' 'file: mesh.obj'
+refused "a missing mesh" "mesh.yaml:3:18: mesh: mesh.obj: cannot be opened: No such file or directory" mesh.yaml
+printf 'v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 9\n' > mesh.obj
+ok "a bad mesh is told with both places" sh -c '
+    "$0" mesh.yaml 2> said.err
+    status=$?
+    cat said.err
+    test $status = 2 && grep -q "^duite-cloth: mesh.yaml:3:18: mesh: mesh.obj:4: " said.err' "$DUITE_CLOTH"
+ok "more ranks than blocks, 2 ranks" says 2 \
+    "2 ranks are more than the 1 blocks that 64 vertices make at a grain of 1000; start fewer ranks or give a smaller grain" \
+    scene.yaml
+refused "a folder of frames that is a file" "cannot make the folder scene.yaml: Not a directory" scene.yaml --grain 20 \
+    --output scene.yaml
+refused "a report without a folder" "--report none/x.json: cannot write in its folder: No such file or directory" scene.yaml \
+    --grain 20 --report none/x.json
+
+ok "every change was one" test ! -e unchanged
+ok "the scene itself is right" limited "$DUITE_CLOTH" scene.yaml --quiet

@@ -1,0 +1,164 @@
+#!/bin/sh
+# What the options of duite-cloth do, what it prints and writes, and how it ends.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+top=$srcdir
+cd "$scratch" || exit 99
+
+cat > scene.yaml << 'END'
+schema: 1
+name: handkerchief
+cloths:
+  - mesh: {grid: {width: 1, height: 1, nx: 8, ny: 8}}
+    material: cotton
+    pins: [{vertices: [0, 7]}]
+materials:
+  cotton: {density: 0.2, stretch: 500, damping: {mass: 1}}
+time: {h: 0.001, end: 0.08, fps: 50}
+END
+
+run() { limited "$DUITE_CLOTH" "$@"; }
+value() { sed -n "s/^ *\"$1\": \"\{0,1\}\([^\",]*\)\"\{0,1\},\{0,1\}\$/\1/p" report.json; } # of a key of the report
+is() { test "$(value "$1")" = "$2" || { echo "$1 is '$(value "$1")', not '$2'" && return 1; }; }
+prints() { "$@" > printed 2> complained; }
+
+# ---- Words
+
+short_answer() { # WORD OPTION: a text on standard output, nothing else, without a scene
+    prints run "$2" && grep -q -e "$1" printed && test ! -s complained
+}
+ok "--help lists the options" short_answer '--scheduler' --help
+ok "--usage is short" short_answer 'SCENE.yaml' --usage
+ok "--version names the version" short_answer '^duite-cloth (duite [0-9]' --version
+ok "--keys lists keys, units and defaults" short_answer '^gravity: a list of 3 numbers (m/s^2); default' --keys
+ok "--keys knows deep keys" short_answer '^cloths\[\].pins\[\].nearest: ' --keys
+said_once() { prints ranks 2 "$DUITE_CLOTH" "$1" && cat printed && test "$(wc -l < printed)" -eq 1 && test ! -s complained; }
+ok "--version is said once on 2 ranks" said_once --version
+
+documented() { # every option of --help stands in the manual page
+    run --help | grep -o -e '--[a-z]*' | sort -u > options
+    test "$(wc -l < options)" -gt 10 || return 1
+    while read -r option; do
+        grep -q -e "$option" "$top/cloth/duite-cloth.1" || { echo "$option is not in the page" && return 1; }
+    done < options
+}
+ok "the manual page has all options" documented
+
+# ---- Wrong command lines
+
+wrong() { # SENTENCE ARGUMENT...: status 2, the sentence once, nothing on standard output; on one rank and on two
+    wrong_what=$1
+    shift
+    for wrong_run in run "ranks 2 $DUITE_CLOTH"; do
+        status=0
+        # shellcheck disable=SC2086 # two words and more
+        prints $wrong_run "$@" || status=$?
+        echo "exit status $status"
+        cat complained
+        test $status = 2 && test ! -s printed && test "$(grep -c -F -e "$wrong_what" complained)" = 1 || return 1
+    done
+}
+ok "no scene" wrong "duite-cloth: a scene file is expected; see duite-cloth --help"
+ok "two scenes" wrong "duite-cloth: other.yaml: a second scene file; one is expected" scene.yaml other.yaml
+ok "an unknown option" wrong "unrecognized option '--frames'" scene.yaml --frames 3
+ok "an option without its value" wrong "option '--end' requires an argument" scene.yaml --end
+ok "no threads" wrong "duite-cloth: --threads 0: a whole number from 1 to 1024 is expected" scene.yaml --threads 0
+ok "half a number" wrong "duite-cloth: --threads 2x: a whole number from 1 to 1024 is expected" scene.yaml --threads 2x
+ok "a negative seed" wrong "duite-cloth: --seed -1: a whole number from 0 to 18446744073709551615 is expected" scene.yaml \
+    --seed -1
+ok "a scheduler of no name" wrong "duite-cloth: --scheduler lazy: there is no scheduler of this name; known are " scene.yaml \
+    --scheduler lazy
+ok "a mapping of no name" wrong "duite-cloth: --mapping flat: there is no mapping of this name; known are " scene.yaml \
+    --mapping flat
+ok "a time that is none" wrong "duite-cloth: --end soon: time.end is soon; a finite number > 0 (s) is expected" scene.yaml \
+    --end soon
+
+# ---- Runs
+
+ok "a run" prints run scene.yaml --report report.json --output frames --grain 20
+hash=$(value state_hash)
+ok "the summary names scene, hash and folder" sh -c 'grep -q "^handkerchief$" printed && grep -q "state hash  *$1$" printed &&
+    grep -q "frames .* in frames$" printed' sh "$hash"
+ok "the report says what was run" eval 'is scene handkerchief && is vertices 64 && is triangles 98 && is grain 20 &&
+    is blocks 4 && is ranks 1 && is scheduler steal && is mapping metis && is steps 80 && is balance null'
+ok "hashes have 16 digits" eval 'echo "$hash $(value partition_hash)" | grep -qxE "[0-9a-f]{16} [0-9a-f]{16}"'
+
+all_keys() { # exactly the keys of the manual page, in its order
+    sed -n '/^\.SH REPORT/,/^\.SH SIGNALS/s/^\.B //p' "$top/cloth/duite-cloth.1" | tr -d ' ' | tr ',' '\n' > documented
+    sed -n 's/^ *"\([a-z_]*\)":.*/\1/p' report.json > reported
+    sort documented > documented.sorted
+    sort reported | diff documented.sorted - && test "$(wc -l < reported)" -eq 47
+}
+ok "the report has every key" all_keys
+frames_are() { # LAST: their index and the cache end with it
+    cat frames/frames.csv
+    test "$(tail -n 1 frames/frames.csv | cut -d , -f 1)" = "$1" && test -s frames/cloth.obj &&
+        test "$(wc -c < frames/cloth.pc2)" -eq $((32 + 12 * 64 * ($1 + 1)))
+}
+ok "the frames are there" frames_are 4
+
+again() { # ARGUMENT...: the same state whatever the machine does
+    rm -f report.json
+    "$@" --report report.json --grain 20 --quiet && is state_hash "$hash"
+}
+ok "the same on 2 ranks" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 1
+ok "the same on 2 ranks with 2 threads, cyclic, shuffled" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 2 \
+    --mapping cyclic --scheduler shuffle --seed 7
+ok "the report names them" eval 'is ranks 2 && is threads 2 && is scheduler shuffle && is mapping cyclic'
+
+quietly() { prints run scene.yaml --end 0.002 --quiet && test ! -s printed && test ! -s complained; }
+ok "--quiet says nothing" quietly
+ok "--end ends" eval 'run scene.yaml --end 0.01 --report report.json && is steps 10 && is simulated_seconds 0.01'
+ok "--set sets, in the order given" eval 'run scene.yaml --end 1 --set time.end=0.03 --set time.h=0.002 \
+    --set "cloths[0].mesh.grid.nx=9" --report report.json && is steps 15 && is vertices 72'
+ok "--set solver.stop" eval 'run scene.yaml --set "solver.stop={count: 3}" --report report.json && is cg_iterations_max 3 &&
+    is cg_iterations_mean 3'
+ok "an explicit run has no iterations" eval 'run scene.yaml --set integrator=explicit_euler --set time.h=1e-4 --end 0.001 \
+    --report report.json && is cg_iterations_mean null && is momentum_lost null'
+
+awk '/^```yaml/ { inside = 1; next } /^```/ { inside = 0 } inside' "$top/docs/scene.md" > example.yaml
+ok "the example of docs/scene.md runs" run example.yaml --end 0.003
+
+# ---- Ends
+
+fails() { # a step that is much too long for an explicit run
+    status=0
+    prints run scene.yaml --set integrator=explicit_euler --set time.h=0.1 --set time.end=500 --output diverged || status=$?
+    cat complained
+    test $status = 1 && test "$(grep -c '^duite-cloth: ' complained)" = 1 &&
+        grep -q '^duite-cloth: .*step [0-9]*: .* block [0-9]* .*; the last frame written is [0-9]*$' complained
+}
+ok "a run that diverges names step, block and last frame" fails
+
+unused() {
+    printf 'v 0 0 0\nv 1 0 0\nv 0 0 1\nv 5 5 5\nf 1 2 3\n' > one.obj
+    prints run scene.yaml --set 'cloths[0].mesh={file: one.obj}' --set 'cloths[0].pins=[]' --end 0.002 &&
+        grep -q '^duite-cloth: warning: vertices that belong to no face or edge: 1;' complained
+}
+ok "vertices that nothing uses are warned about" unused
+
+stopped() { # COMMAND...: SIGUSR1 after the first frames; status 0, a sentence, whole files
+    rm -rf frames
+    "$@" scene.yaml --end 100000 --grain 20 --output frames > printed 2> complained &
+    job=$!
+    for _ in $(seq 300); do
+        test "$(wc -l < frames/frames.csv 2> /dev/null || echo 0)" -lt 3 || break
+        sleep 0.1
+    done
+    kill -USR1 $job
+    for _ in $(seq 300); do
+        kill -0 $job 2> /dev/null || break
+        sleep 0.1
+    done
+    kill -KILL $job 2> /dev/null
+    status=0
+    wait $job || status=$?
+    echo "exit status $status"
+    cat complained
+    frame=$(sed -n 's/^duite-cloth: stopped as asked by SIGUSR1 .*; the last frame is \([0-9]*\)$/\1/p' complained)
+    test $status = 0 && test -n "$frame" && test "$(tail -n 1 frames/frames.csv | cut -d , -f 1)" = "$frame" &&
+        test "$(wc -c < frames/cloth.pc2)" -eq $((32 + 12 * 64 * (frame + 1)))
+}
+ok "SIGUSR1 finishes the frame" stopped "$DUITE_CLOTH"
+ok "SIGUSR1 finishes the frame, 2 ranks" stopped "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n 2 "$DUITE_CLOTH"

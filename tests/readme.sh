@@ -7,7 +7,7 @@
 readme=$srcdir/README.md
 test -f "$readme" || skip_all "there is no README.md yet"
 build=$PWD
-make=${MAKE:-make}
+make=$(command -v "${MAKE:-make}") # a path, since a make of our own comes before it
 home=$scratch/home
 usr=$scratch/usr
 unset MAKEFLAGS MFLAGS MAKELEVEL # the makes in here are nobody's children
@@ -49,8 +49,8 @@ prepare() {
     cat > "$scratch/bin/make" << EOF
 #!/bin/sh
 case \$* in
-    install | 'DESTDIR='*' install') exec $make -C '$build' "\$@" $(locations "$usr") ;;
-    *) exec $make -n -C '$build' "\$@" > /dev/null ;;
+    install) exec $make -C '$build' install $(locations "$usr") ;;
+    *) for target; do grep -q "^\$target:" '$build/Makefile' || { echo "no target \$target" && exit 1; }; done ;;
 esac
 EOF
     chmod +x "$scratch/bin/make" && install_duite "$usr"

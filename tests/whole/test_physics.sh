@@ -3,10 +3,13 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless tests/cloth/flow/test_motion
 skip_unless tests/cloth/flow/test_run
+skip_unless tests/cloth/flow/test_failures
 plan_later
 
 export CK_RUN_CASE
 CK_RUN_CASE=motion
 ok "closed forms on 2 ranks" ranks 2 tests/cloth/flow/test_motion
 CK_RUN_CASE=run
-ok "frames, stops and failures on 2 ranks" ranks 2 tests/cloth/flow/test_run
+ok "frames and stops on 2 ranks" ranks 2 tests/cloth/flow/test_run
+CK_RUN_CASE=failures
+ok "failures on 2 ranks" ranks 2 tests/cloth/flow/test_failures

@@ -1,9 +1,11 @@
 if HAVE_CHECK
 FLOW_TEST_MODELS = tests/cloth/flow/models.c tests/cloth/flow/models.h
-check_PROGRAMS += tests/cloth/flow/test_motion tests/cloth/flow/test_run
+check_PROGRAMS += tests/cloth/flow/test_failures tests/cloth/flow/test_motion tests/cloth/flow/test_run
+tests_cloth_flow_test_failures_SOURCES = tests/cloth/flow/test_failures.c $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_failures_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_motion_SOURCES = tests/cloth/flow/test_motion.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_motion_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_run_SOURCES = tests/cloth/flow/test_run.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_run_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/flow/test_motion tests/cloth/flow/test_run
+TESTS += tests/cloth/flow/test_failures tests/cloth/flow/test_motion tests/cloth/flow/test_run
 endif

@@ -1,20 +1,11 @@
-/* What a run does besides moving cloth: frames and their times, the hash, stopping, and every way
- * to fail, each with a sentence that says where. */
+/* What a run does besides moving cloth: frames and their times, the hash, counts of iterations,
+ * stops, pins and vertices by number. */
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <xxhash.h>
-
-static void says(const struct record *record, int code, const char *part)
-{
-    ck_assert_msg(record->code == code && record->error.code == code, "code %d, '%s'", record->code,
-                  record->error.text);
-    ck_assert_msg(strstr(record->error.text, part) != NULL, "'%s' is not in '%s'", part,
-                  record->error.text);
-}
 
 /* Frame k after the step nearest to k / fps; h and fps that do not divide each other. */
 START_TEST(frames_at_their_steps)
@@ -147,19 +138,18 @@ START_TEST(absolute_tolerance)
 }
 END_TEST
 
-/* Asked for after step 3, the stop comes with the next frame; frames are 5 steps apart. */
+/* Asked for after step 1, the stop comes with the next frame; frames are 5 steps apart. */
 START_TEST(stop_finishes_the_frame)
 {
     struct setup setup;
-    struct record record = {.stop_after = 3};
+    struct record record = {.stop_after = 1};
     setup_sheet(&setup, 6);
     setup.model.fps = 200;
     setup.model.end = 0.1;
     record_run(&record, &setup.model);
     ck_assert_msg(record.code == 0, "%s", record.error.text);
     ck_assert(record.report.stopped);
-    ck_assert_uint_eq(record.report.steps % 5, 0);
-    ck_assert_uint_le(record.report.steps, 10);
+    ck_assert_uint_eq(record.report.steps, 5);
     ck_assert_uint_eq(record.frames, record.report.steps / 5 + 1);
     ck_assert_uint_eq(record.report.last_frame, record.frames - 1);
     record_free(&record);
@@ -244,165 +234,6 @@ START_TEST(threads_and_schedulers_change_no_bit)
 }
 END_TEST
 
-/* ---- Failures
- * --------------------------------------------------------------------------------------- */
-
-START_TEST(divergence_names_step_block_and_frame)
-{
-    struct setup setup;
-    struct record record = {0};
-    setup_sheet(&setup, 10);
-    setup.model.integrator = MODEL_EXPLICIT_EULER;
-    setup.model.h = 0.1;
-    setup.model.end = 100;
-    setup.model.fps = 10;
-    setup_pin(&setup, 1, (const uint32_t[]){0});
-    record_run(&record, &setup.model);
-    says(&record, CLOTH_E_RUN, "diverged");
-    says(&record, CLOTH_E_RUN, "block ");
-    ck_assert_uint_lt(record.report.steps, 1000);
-    ck_assert_uint_gt(record.report.steps, 1);
-    char step[64], frame[64];
-    snprintf(step, sizeof step, "step %u:", (unsigned)record.report.steps + 1);
-    snprintf(frame, sizeof frame, "the last frame written is %u", (unsigned)record.frames - 1);
-    says(&record, CLOTH_E_RUN, step);
-    says(&record, CLOTH_E_RUN, frame);
-    ck_assert_uint_eq(record.report.last_frame, record.frames - 1);
-    record_free(&record);
-    setup_free(&setup);
-}
-END_TEST
-
-/* Slow enough in each step, too far after the second. */
-START_TEST(a_run_that_leaves_the_world)
-{
-    for (int explicit = 0; explicit < 2; explicit ++) {
-        struct setup setup;
-        struct record record = {0};
-        setup_sheet(&setup, 4);
-        setup.model.integrator = explicit ? MODEL_EXPLICIT_EULER : MODEL_IMPLICIT_EULER;
-        setup.model.gravity[1] = 0;
-        setup.model.h = 1;
-        setup.model.end = 10;
-        setup.model.fps = 1;
-        setup.cloth.velocity[2] = 9e5;
-        record_run(&record, &setup.model);
-        says(&record, CLOTH_E_RUN, "step 2: the position of vertex");
-        says(&record, CLOTH_E_RUN, "the last frame written is 1");
-        record_free(&record);
-        setup_free(&setup);
-    }
-}
-END_TEST
-
-START_TEST(a_solve_that_does_not_converge)
-{
-    struct setup setup;
-    struct record record = {0};
-    setup_sheet(&setup, 10);
-    setup.model.max_iterations = 2;
-    setup.model.tolerance = 0.01;
-    setup_pin(&setup, 1, (const uint32_t[]){0});
-    record_run(&record, &setup.model);
-    says(&record, CLOTH_E_RUN, "step 1: conjugate gradients");
-    says(&record, CLOTH_E_RUN, "after 2 iterations");
-    says(&record, CLOTH_E_RUN, "the last frame written is 0");
-    record_free(&record);
-    setup_free(&setup);
-}
-END_TEST
-
-START_TEST(a_frame_that_cannot_be_written)
-{
-    struct setup setup;
-    struct record record = {.break_frame = 4};
-    setup_sheet(&setup, 6);
-    setup.model.end = 1;
-    record_run(&record, &setup.model);
-    says(&record, CLOTH_E_IO, "the disk is full");
-    says(&record, CLOTH_E_IO, "the last frame written is 3");
-    ck_assert_uint_eq(record.frames, 4);
-    ck_assert_uint_lt(record.report.steps, 100);
-    record_free(&record);
-    setup_free(&setup);
-}
-END_TEST
-
-START_TEST(pins_and_loads_outside)
-{
-    struct setup setup;
-    struct record record = {0};
-    setup_sheet(&setup, 3);
-    setup_pin(&setup, 1, (const uint32_t[]){9});
-    setup.pin.line = 12;
-    setup.pin.column = 5;
-    record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "line 12, column 5: ");
-    says(&record, CLOTH_E_INPUT, "vertex 9");
-    says(&record, CLOTH_E_INPUT, "0 to 8");
-    record_free(&record);
-    setup.pin = (struct model_pin){.kind = MODEL_PIN_BOX, .box = {{2, 0, 0}, {3, 1, 1}}};
-    record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "holds no vertex");
-    record_free(&record);
-    setup.cloth.n_pins = 0;
-    setup_load(&setup, 10, 0, 1, 0);
-    record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "vertex 10");
-    record_free(&record);
-    setup_free(&setup);
-}
-END_TEST
-
-START_TEST(pins_by_place)
-{
-    struct setup setup;
-    struct record record = {0};
-    setup_sheet(&setup, 3);
-    setup.cloth.n_pins = 2;
-    struct model_pin pins[2] = {{.kind = MODEL_PIN_NEAREST, .point = {-0.4, 2, 0.4}},
-                                {.kind = MODEL_PIN_BOX, .box = {{0.1, -1, -1}, {1, 1, 0}}}};
-    setup.cloth.pins = pins;
-    record_run(&record, &setup.model);
-    ck_assert_msg(record.code == 0, "%s", record.error.text);
-    for (size_t v = 0; v < 9; v++) /* row-major, from (-0.5, -0.5) */
-        ck_assert_int_eq(record_at(&record, 10, v, 1) == 0, v == 6 || v == 2 || v == 5);
-    record_free(&record);
-    setup.cloth.pins = &setup.pin;
-    setup_free(&setup);
-}
-END_TEST
-
-START_TEST(no_mass)
-{
-    struct setup setup;
-    struct record record = {0};
-    setup_weight(&setup);
-    setup.cloth.mass_per_vertex = 0;
-    record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "mass_per_vertex");
-    record_free(&record);
-    setup_free(&setup);
-}
-END_TEST
-
-START_TEST(more_ranks_than_blocks)
-{
-    struct setup setup;
-    struct cloth_error error = {0};
-    struct flow *flow = NULL;
-    setup_sheet(&setup, 8);
-    setup.model.grain = 30; /* 64 vertices, 3 blocks */
-    ck_assert_int_eq(flow_prepare(&flow, &setup.model, 3, &error), 0);
-    flow_free(flow);
-    ck_assert_int_eq(flow_prepare(&flow, &setup.model, 4, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_null(flow);
-    ck_assert_msg(strstr(error.text, "4 ranks") && strstr(error.text, "3 blocks"), "%s",
-                  error.text);
-    setup_free(&setup);
-}
-END_TEST
-
 int main(void)
 {
     Suite *suite = suite_create("run");
@@ -416,14 +247,6 @@ int main(void)
     tcase_add_test(cases, unused_vertices_stay);
     tcase_add_test(cases, two_cloths);
     tcase_add_test(cases, threads_and_schedulers_change_no_bit);
-    tcase_add_test(cases, divergence_names_step_block_and_frame);
-    tcase_add_test(cases, a_run_that_leaves_the_world);
-    tcase_add_test(cases, a_solve_that_does_not_converge);
-    tcase_add_test(cases, a_frame_that_cannot_be_written);
-    tcase_add_test(cases, pins_and_loads_outside);
-    tcase_add_test(cases, pins_by_place);
-    tcase_add_test(cases, no_mass);
-    tcase_add_test(cases, more_ranks_than_blocks);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -61,7 +61,7 @@ program_name() { commands | grep -o '[a-z_]*\.c\>' | head -n 1; }
 
 compile() {
     # shellcheck disable=SC2086 # lists of flags
-    ${CC:-cc} ${CFLAGS:-} -Wall -Wextra -Werror -I"$srcdir/runtime" ${MPI_CFLAGS:-} -o "$scratch/first" "$home/$name" \
+    ${CC:-cc} ${CFLAGS:-} -Wall -Werror -I"$srcdir/runtime" ${MPI_CFLAGS:-} -o "$scratch/first" "$home/$name" \
         -L"$build/.libs" -Wl,-rpath,"$build/.libs" -lduite ${MPI_LIBS:-} -lm
 }
 

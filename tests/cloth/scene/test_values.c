@@ -135,16 +135,8 @@ START_TEST(cloths_of_every_mesh)
         "0]]}},\n"
         "     material: cotton, transform: {scale: 2}}\n"
         "materials:\n");
-    scene_path();
-    struct model model;
-    struct cloth_error error = {0};
-    int code = scene_read_text(&model, text, 0, NULL, &error);
-    ck_assert_int_eq(code, CLOTH_E_INPUT); /* a.obj is not there yet */
-    model_free(&model);
     scene_write_file("a.obj", triangle, strlen(triangle));
-    error = (struct cloth_error){0};
-    code = scene_read(&model, scene_path(), 0, NULL, &error);
-    ck_assert_msg(code == CLOTH_OK, "%s", error.text);
+    struct model model = read_with(text, 0, NULL);
     ck_assert_uint_eq(model.n_cloths, 4);
     ck_assert_str_eq(model.cloths[1].name, "cloth2");
     ck_assert_uint_eq(model.cloths[1].mesh.n_triangles, 1);

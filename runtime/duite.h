@@ -237,9 +237,10 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
                (duite_object[]){__VA_ARGS__})
 
 /* Waits for all tasks forked so far, on all ranks. Returns the error of the task that is first in
- * fork order among those that failed themselves since the last wait, the same on all ranks; or
- * DUITE_E_DIFFERENT on all ranks if they did not fork the same tasks since the last wait. (A
- * remembered error goes first; a task's then waits for the next.) Collective. */
+ * fork order among those that failed themselves since the last wait, the same on all ranks. If the
+ * ranks did not make the same calls since the last wait it returns DUITE_E_DIFFERENT on all of
+ * them, and only duite_stop is left. (A remembered error goes first; a task's then waits for the
+ * next.) Collective. */
 int duite_wait(duite *rt);
 
 /* ---- Counters ---- */

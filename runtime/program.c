@@ -18,7 +18,9 @@ static int enter(duite *rt, const char *call)
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "%s is for the main thread, outside of bodies", call);
     if (rt->graph.broken)
-        return base_error(rt->graph.broken, "%s: memory ran out in an earlier call", call);
+        return base_error(rt->graph.broken,
+                          "%s: an earlier call failed beyond repair (%s); only duite_stop is left",
+                          call, duite_code_text(rt->graph.broken));
     return rt->comm ? comm_broken(rt->comm) : DUITE_OK;
 }
 
@@ -55,7 +57,14 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
         return code;
     if (!object)
         return remember(rt, base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
+    graph_mix(&rt->graph, count);
+    graph_mix(&rt->graph, (uint64_t)type);
     return remember(rt, data_object_new(&rt->graph.table, type, count, object));
+}
+
+static void mix_name(duite *rt, duite_object object)
+{
+    graph_mix(&rt->graph, (uint64_t)object.slot << 32 | object.generation);
 }
 
 int duite_hint(duite *rt, duite_object object, double weight, size_t n,
@@ -64,13 +73,19 @@ int duite_hint(duite *rt, duite_object object, double weight, size_t n,
     int code = enter(rt, "duite_hint");
     if (code)
         return code;
+    mix_name(rt, object);
+    graph_mix(&rt->graph, n);
     return remember(rt, map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights));
 }
 
 int duite_follow(duite *rt, duite_object object, duite_object leader)
 {
     int code = enter(rt, "duite_follow");
-    return code ? code : remember(rt, map_follow(&rt->graph.table, object, leader));
+    if (code)
+        return code;
+    mix_name(rt, object);
+    mix_name(rt, leader);
+    return remember(rt, map_follow(&rt->graph.table, object, leader));
 }
 
 int duite_home(duite *rt, duite_object object)
@@ -191,10 +206,10 @@ static void between(void *context)
     work_once(context);
 }
 
-/* What this rank tells the others at a wait. */
+/* What this rank tells the others of its failures. */
 static struct comm_word own_word(const struct graph *graph)
 {
-    struct comm_word own = {.forks = graph->forks, .fingerprint = graph->fingerprint};
+    struct comm_word own = {0};
     if (graph->first_failure) {
         own.failed = graph->first_failure->number + 1;
         own.failure = *graph->first_failure;
@@ -202,17 +217,24 @@ static struct comm_word own_word(const struct graph *graph)
     return own;
 }
 
-static int compare(const duite *rt)
+/* Have all ranks forked the same? Asked before anything is waited for: a rank that waits for data
+ * which another one never thinks of sending would wait for ever. */
+static int compare(duite *rt)
 {
-    const struct comm_word *words = rt->words;
-    for (int i = 1; i < rt->graph.n_ranks; i++)
+    struct graph *graph = &rt->graph;
+    const struct comm_word own = {.forks = graph->forks, .fingerprint = graph->fingerprint},
+                           *words = rt->words;
+    int code = comm_agree(rt->comm, &own, rt->words, between, rt->pool);
+    for (int i = 1; i < graph->n_ranks && !code; i++)
         if (words[i].fingerprint != words[0].fingerprint)
-            return base_error(
-                DUITE_E_DIFFERENT,
-                "ranks 0 and %d forked different tasks since the last wait (%llu and %llu "
-                "tasks since start)",
-                i, (unsigned long long)words[0].forks, (unsigned long long)words[i].forks);
-    return DUITE_OK;
+            code = graph->broken = base_error(DUITE_E_DIFFERENT,
+                                              "ranks 0 and %d forked different tasks, or made "
+                                              "different objects, since the last wait (%llu "
+                                              "and %llu tasks since start)",
+                                              i, (unsigned long long)words[0].forks,
+                                              (unsigned long long)words[i].forks);
+    graph->fingerprint = 0;
+    return code;
 }
 
 /* The failure that is first in fork order on any rank, or NULL. */
@@ -232,16 +254,14 @@ int duite_wait(duite *rt)
         return code;
     struct graph *graph = &rt->graph;
     work_tick(rt->pool);
-    work_until(rt->pool, drained, graph);
-    code = rt->comm ? comm_broken(rt->comm) : DUITE_OK;
-    if (code)
+    if (rt->comm && (code = compare(rt)))
         return code;
-    struct comm_word own = rt->words[0] = own_word(graph);
+    work_until(rt->pool, drained, graph);
+    const struct comm_word own = rt->words[0] = own_word(graph);
     if (rt->comm)
+        code = comm_broken(rt->comm);
+    if (rt->comm && !code)
         code = comm_agree(rt->comm, &own, rt->words, between, rt->pool);
-    if (!code)
-        code = compare(rt);
-    graph->fingerprint = 0;
     if (!code)
         code = recall(rt);
     const struct data_failure *failure = first_failure(rt);

@@ -8,7 +8,7 @@
 #include <duite_policy.h>
 #include <string.h>
 
-static void mix(struct graph *graph, uint64_t value)
+void graph_mix(struct graph *graph, uint64_t value)
 {
     uint64_t state = graph->fingerprint ^ value;
     graph->fingerprint = duite_random(&state);
@@ -164,14 +164,14 @@ int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *ke
         return code;
     }
     graph->forks++;
-    mix(graph, (uint64_t)index << 32 | (uint32_t)at);
+    graph_mix(graph, (uint64_t)index << 32 | (uint32_t)at);
     if (at == GRAPH_ANYWHERE)
         at = place(graph, kernel, n, objects);
     struct graph_task *task = NULL;
     if (at == graph->rank && !(task = body_task(graph, index, args, n)))
         return DUITE_E_MEMORY;
     for (size_t i = 0; i < n && !code; i++) {
-        mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
+        graph_mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         code = use(graph, worker, at, mode_of(kernel, i), objects[i], task, i, &done);
     }
     if (task && !code)
@@ -184,7 +184,7 @@ int graph_free(struct graph *graph, void *worker, duite_object name)
     struct data_object *object = data_object_find(&graph->table, name);
     if (!object)
         return DUITE_E_OBJECT;
-    mix(graph, (uint64_t)name.slot << 32 | name.generation);
+    graph_mix(graph, (uint64_t)name.slot << 32 | name.generation);
     int code = object->leaves ? graph_close(graph, worker, object) : DUITE_OK;
     graph_forget(graph, worker, object);
     data_object_drop(&graph->table, name);
@@ -200,7 +200,7 @@ int graph_copy(struct graph *graph, void *worker, duite_object name, int to,
     if (to < GRAPH_ANYWHERE || to >= graph->n_ranks)
         return base_error(DUITE_E_ARGUMENT, "duite_get_at: there is no rank %d, only 0 to %d", to,
                           graph->n_ranks - 1);
-    mix(graph, (uint64_t)name.slot << 32 | (uint32_t)to);
+    graph_mix(graph, (uint64_t)name.slot << 32 | (uint32_t)to);
     int code = object->leaves ? graph_close(graph, worker, object) : DUITE_OK;
     for (int rank = 0; rank < graph->n_ranks && !code; rank++)
         if (to == GRAPH_ANYWHERE || to == rank)

@@ -111,6 +111,10 @@ void graph_stop(struct graph *graph);
 
 /* ---- Main thread, collective; the homes of all objects are settled ---- */
 
+/* Makes something that all ranks do alike part of the fingerprint. Forks, sets, frees and copies do
+ * so themselves. */
+void graph_mix(struct graph *graph, uint64_t value);
+
 enum { GRAPH_ANYWHERE = -1 };
 
 int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *kernel,

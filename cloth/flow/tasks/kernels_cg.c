@@ -48,7 +48,9 @@ static int update(const duite_call *call)
     const double pq = *duite_in(call, 0, double), rho = *duite_in(call, 1, double);
     if (!(pq > 0) && !(rho == 0))
         return duite_fail(call, FLOW_INDEFINITE,
-                          "step %u: the matrix is not positive definite (p.Ap = %g with r.r = %g)",
+                          "step %u: conjugate gradients broke down (p.Ap = %g, r.r = %g): the "
+                          "matrix is not positive definite, or forces are beyond "
+                          "all measure",
                           flow_args_of(call)->step + 1, pq, rho);
     *duite_out(call, 6, double) = solve_update(
         t->n, rho == 0 ? 0 : rho / pq, duite_in(call, 2, phys_vec), duite_in(call, 3, phys_vec),

@@ -62,6 +62,20 @@ START_TEST(a_run_that_leaves_the_world)
 }
 END_TEST
 
+/* The square of the right-hand side is infinite: no residual may pass for small. */
+START_TEST(a_load_beyond_all_measure)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 4);
+    setup_load(&setup, 3, 1e200, 0, 0);
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_RUN, "step 1: conjugate gradients broke down");
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
 START_TEST(a_solve_that_does_not_converge)
 {
     struct setup setup;
@@ -113,9 +127,9 @@ START_TEST(pins_and_loads_outside)
     says(&record, CLOTH_E_INPUT, "holds no vertex");
     record_free(&record);
     setup.cloth.n_pins = 0;
-    setup_load(&setup, 10, 0, 1, 0);
+    setup_load(&setup, 9, 0, 1, 0);
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "vertex 10");
+    says(&record, CLOTH_E_INPUT, "a load of cloth 'test' names vertex 9");
     record_free(&record);
     setup_free(&setup);
 }
@@ -202,6 +216,7 @@ int main(void)
     TCase *cases = tcase_create("failures");
     tcase_add_test(cases, divergence_names_step_block_and_frame);
     tcase_add_test(cases, a_run_that_leaves_the_world);
+    tcase_add_test(cases, a_load_beyond_all_measure);
     tcase_add_test(cases, a_solve_that_does_not_converge);
     tcase_add_test(cases, a_frame_that_cannot_be_written);
     tcase_add_test(cases, pins_and_loads_outside);

@@ -112,7 +112,7 @@ START_TEST(nothing_to_do)
 }
 END_TEST
 
-/* From rest b = h m g: an absolute tolerance of 0.01 |b| is a relative one of 0.01. */
+/* From rest b = h (m g + load): an absolute tolerance of 0.01 |b| is a relative one of 0.01. */
 START_TEST(absolute_tolerance)
 {
     struct setup setup;
@@ -121,11 +121,13 @@ START_TEST(absolute_tolerance)
     setup_sheet(&setup, 6);
     setup.model.end = setup.model.h;
     mesh_add_mass(&setup.cloth.mesh, setup.material.density, mass);
+    setup_load(&setup, 8, 0.04, 0, 0);
     for (size_t v = 0; v < 36; v++)
-        square += mass[v] * mass[v];
+        square += 9.81 * mass[v] * 9.81 * mass[v];
+    square += 0.04 * 0.04;
     for (int i = 0; i < 2; i++) {
         setup.model.stop = i ? MODEL_STOP_ABSOLUTE : MODEL_STOP_RELATIVE;
-        setup.model.tolerance = i ? 0.01 * setup.model.h * 9.81 * sqrt(square) : 0.01;
+        setup.model.tolerance = i ? 0.01 * setup.model.h * sqrt(square) : 0.01;
         record_run(record + i, &setup.model);
         ck_assert_msg(record[i].code == 0, "%s", record[i].error.text);
     }

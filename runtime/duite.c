@@ -205,10 +205,13 @@ static int start_workers(duite *rt, const duite_options *options, int code)
 
 static void end(duite *rt)
 {
+    /* Messages may be on their way after a break: then MPI must not reuse the communicator, and it
+     * is never freed. */
+    bool quiet = !rt->graph.broken && !(rt->comm && comm_broken(rt->comm));
     work_stop(rt->pool);
     comm_stop(rt->comm);
     graph_stop(&rt->graph);
-    if (rt->mpi != MPI_COMM_NULL)
+    if (quiet)
         MPI_Comm_free(&rt->mpi);
     base_free(rt->words);
     base_free(rt);

@@ -34,7 +34,7 @@ check-long:
 # For ThreadSanitizer: the test programs of what has threads, without the scripts that start ranks.
 check-threads:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS="`for test in $(TESTS); do case $$test in *.sh) ;; \
-	  tests/runtime/* | tests/cloth/flow/* | tests/support/*) echo $$test;; esac; done | tr '\n' ' '`"
+	  tests/runtime/* | tests/negative/* | tests/cloth/flow/* | tests/support/*) echo $$test;; esac; done | tr '\n' ' '`"
 check-programs: $(check_PROGRAMS)
 .PHONY: check-long check-threads check-programs
 

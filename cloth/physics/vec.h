@@ -1,11 +1,24 @@
 #ifndef CLOTH_PHYSICS_VEC_H
 #define CLOTH_PHYSICS_VEC_H
 
+#include <stdint.h>
+
 /* Vectors of the state are rows of four doubles, x y z 0, aligned to 32 bytes: one AVX register,
  * two of SSE2 or NEON. The fourth lane of every vector of the state is zero. The compiler lowers
  * the type to what the processor has; lanes are independent, so the bits are the same everywhere.
  * Helpers are always inlined: no vector is passed by value. */
 typedef double phys_vec __attribute__((vector_size(32)));
+
+/* Before a function whose loops carry the run: compiled twice, with and without AVX2, and chosen
+ * when the program starts. The bits are the same, since fused multiply-adds stay off. GCC only:
+ * calls from other files do not find what clang 14 makes of it. Not with sanitizers, which are not
+ * yet there when the choice is made. */
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && !defined(__AVX2__) &&      \
+    !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+#define PHYS_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define PHYS_CLONES
+#endif
 
 #define PHYS_INLINE static inline __attribute__((always_inline, unused))
 

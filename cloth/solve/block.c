@@ -12,6 +12,7 @@ PHYS_INLINE void spring(const phys_vec *value, const phys_vec *d, phys_vec *y)
     *y = (*value)[3] * *d + phys_lanes(&product) * *value;
 }
 
+PHYS_CLONES
 void solve_matvec_cut(const struct solve_cut *cut, const phys_vec *value, const phys_vec *p,
                       const phys_vec *p_other, phys_vec *q)
 {
@@ -41,6 +42,7 @@ PHYS_INLINE void row(const struct solve_block *block, size_t a, const phys_vec *
     *sum = total;
 }
 
+PHYS_CLONES
 double solve_matvec(const struct solve_block *block, const phys_vec *restrict value,
                     const phys_vec *restrict p, phys_vec *restrict q)
 {
@@ -55,6 +57,7 @@ double solve_matvec(const struct solve_block *block, const phys_vec *restrict va
     return phys_lanes(&dot);
 }
 
+PHYS_CLONES
 double solve_start(size_t n, const double *restrict free, const phys_vec *restrict b,
                    phys_vec *restrict dv, phys_vec *restrict r, phys_vec *restrict p)
 {
@@ -79,6 +82,7 @@ PHYS_INLINE void update(size_t a, double alpha, const phys_vec *p, const phys_ve
     *dot += left * left;
 }
 
+PHYS_CLONES
 double solve_update(size_t n, double alpha, const phys_vec *restrict p, const phys_vec *restrict q,
                     phys_vec *restrict dv, phys_vec *restrict r)
 {
@@ -96,6 +100,7 @@ double solve_update(size_t n, double alpha, const phys_vec *restrict p, const ph
     return phys_lanes(&all);
 }
 
+PHYS_CLONES
 void solve_direction(size_t n, double beta, const phys_vec *restrict r, phys_vec *restrict p)
 {
     for (size_t a = 0; a < n; a++)

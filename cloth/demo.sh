@@ -8,7 +8,8 @@ frames=demo/frames
 if test "$(id -u)" = 0; then # Open MPI refuses root unless told twice
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
-export HWLOC_HIDE_ERRORS=2 # silent about a cache size that a virtual machine reports wrongly
+# hwloc: silent about caches that a virtual machine reports wrongly, and no look for graphics cards on X displays.
+export HWLOC_HIDE_ERRORS=2 HWLOC_COMPONENTS="${HWLOC_COMPONENTS:--gl}"
 
 mkdir -p demo
 rm -f demo/sheet-*.png

@@ -12,7 +12,7 @@ LOG_COMPILER = $(SHELL) $(srcdir)/tests/support/run.sh
 AM_TESTS_ENVIRONMENT = \
     CC='$(CC)'; CFLAGS='$(CFLAGS) $(SANITIZE_FLAGS)'; PKG_CONFIG='$(PKG_CONFIG)'; MAKE='$(MAKE)'; \
     MPIRUN='$(MPIRUN)'; MPI_CFLAGS='$(MPI_CFLAGS)'; MPI_LIBS='$(MPI_LIBS)'; \
-    export CC CFLAGS PKG_CONFIG MAKE MPIRUN MPI_CFLAGS MPI_LIBS; \
+    SANITIZER='$(SANITIZE_FLAGS)'; export SANITIZER CC CFLAGS PKG_CONFIG MAKE MPIRUN MPI_CFLAGS MPI_LIBS; \
     DUITE_QUICK=$${DUITE_QUICK-$(DUITE_QUICK)}; export DUITE_QUICK; \
     support=`cd '$(srcdir)/tests/support' && pwd`; \
     ASAN_OPTIONS=fast_unwind_on_malloc=0:$$ASAN_OPTIONS; export ASAN_OPTIONS; \

@@ -7,27 +7,27 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What is to be simulated, as a scene file or a program says it: SI units, right-handed, +y up. Everything is owned by
- * the model and freed by model_free. Every rank holds the same model. */
+/* What is to be simulated, as a scene file or a program says it: SI units, right-handed, +y up.
+ * Everything is owned by the model and freed by model_free. Every rank holds the same model. */
 
 struct model_material {
     char *name;
-    double density;           /* kg/m^2, > 0 */
+    double density;              /* kg/m^2, > 0 */
     double stretch, shear, bend; /* membrane moduli of springs, N/m, >= 0 */
-    double damping_viscous;   /* kg/s a vertex */
-    double damping_mass;      /* 1/s: a force -damping_mass * m * v */
-    double damping_stiffness; /* s: along each spring, times its k */
-    int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
+    double damping_viscous;      /* kg/s a vertex */
+    double damping_mass;         /* 1/s: a force -damping_mass * m * v */
+    double damping_stiffness;    /* s: along each spring, times its k */
+    int both_diagonals;          /* grids: shear springs along both diagonals of a cell */
 };
 
 /* Holds vertices where they start. */
 struct model_pin {
     enum { MODEL_PIN_VERTICES, MODEL_PIN_NEAREST, MODEL_PIN_BOX } kind;
     uint32_t n_vertices;
-    uint32_t *vertices;      /* of the cloth's mesh */
-    double point[3];         /* nearest: the vertex nearest to it after the transform, the first of equals */
-    double box[2][3];        /* box: every vertex inside or on it after the transform */
-    int line, column;        /* where the scene says it; 0: not from a file */
+    uint32_t *vertices; /* of the cloth's mesh */
+    double point[3];    /* nearest: its nearest vertex after the transform, the first of equals */
+    double box[2][3];   /* box: every vertex inside or on it after the transform */
+    int line, column;   /* where the scene says it; 0: not from a file */
 };
 
 /* A constant force on vertices, newton each. */
@@ -66,10 +66,11 @@ struct model {
 
     double h;   /* s; time is an integer count of h/1024 */
     double end; /* s; N = round(end / h) steps */
-    double fps; /* frames a second; frame k is written after the step whose end is nearest to k / fps */
+    double fps; /* frames a second; frame k follows the step that ends nearest to k / fps */
     enum model_integrator integrator;
 
-    enum model_stop stop;    /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s); count: no test */
+    enum model_stop stop; /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s);
+                             count: no test */
     double tolerance;
     uint32_t max_iterations; /* count: exactly so many */
 

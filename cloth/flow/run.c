@@ -27,8 +27,7 @@ const duite_kernel *const *flow_kernels(void)
     return all;
 }
 
-/* ---- Preparing
- * -------------------------------------------------------------------------------------- */
+/* ---- Preparing ---- */
 
 static int cut(struct flow *flow, const struct flow_particles *particles,
                const struct flow_springs *springs, struct cloth_error *error)
@@ -121,8 +120,7 @@ uint64_t flow_unused(const struct flow *flow)
     return flow->n_unused;
 }
 
-/* ---- Running
- * ---------------------------------------------------------------------------------------- */
+/* ---- Running ---- */
 
 static int run_begin(struct flow_state *state)
 {

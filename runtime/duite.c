@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
 #include "runtime/comm/host.h"
 #include "runtime/map/map.h"
 #include "runtime/sched/sched.h"
@@ -215,6 +216,7 @@ static void end(duite *rt)
         MPI_Comm_free(&rt->mpi);
     base_free(rt->words);
     base_free(rt);
+    base_pool_leave();
 }
 
 int duite_start(duite **out, const duite_options *options)
@@ -232,6 +234,7 @@ int duite_start(duite **out, const duite_options *options)
         base_free(rt);
         return base_error(DUITE_E_MPI, "MPI_Comm_dup failed");
     }
+    base_pool_enter();
     code = start_graph(rt, options);
     code = start_workers(rt, options, code);
     code = agree(rt, options, code);

@@ -2,7 +2,7 @@
  */
 #include "runtime/comm/arrivals.h"
 
-#include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
 
 #include <stdlib.h>
 
@@ -29,7 +29,7 @@ static void free_packets(struct data_packet *packet)
 {
     while (packet) {
         struct data_packet *next = packet->next;
-        base_free(packet);
+        data_packet_free(packet);
         packet = next;
     }
 }
@@ -41,7 +41,7 @@ void comm_arrivals_stop(struct comm_arrivals *arrivals)
     {
         HASH_DEL(arrivals->table, arrival);
         free_packets(arrival->packets);
-        base_free(arrival);
+        base_pool_give(arrival, sizeof *arrival);
     }
     pthread_mutex_destroy(&arrivals->lock);
 }
@@ -56,20 +56,20 @@ static struct comm_arrival *find(struct comm_arrivals *arrivals, struct data_key
 static void drop(struct comm_arrivals *arrivals, struct comm_arrival *arrival)
 {
     HASH_DEL(arrivals->table, arrival);
-    base_free(arrival);
+    base_pool_give(arrival, sizeof *arrival);
 }
 
 /* A new entry in the table, or NULL. */
 static struct comm_arrival *add(struct comm_arrivals *arrivals, struct data_key key)
 {
-    struct comm_arrival *arrival = base_alloc_zero(sizeof *arrival);
+    struct comm_arrival *arrival = base_pool_take(sizeof *arrival);
     if (!arrival)
         return NULL;
-    arrival->key = key;
+    *arrival = (struct comm_arrival){.key = key};
     HASH_ADD(hh, arrivals->table, key, sizeof key, arrival);
     if (!arrival->lost)
         return arrival;
-    base_free(arrival);
+    base_pool_give(arrival, sizeof *arrival);
     return NULL;
 }
 

@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
 #include "runtime/comm/arrivals.h"
 
 #include <stdio.h>
@@ -173,11 +174,11 @@ static void push(struct comm *comm, struct post *post)
 static void send_post(struct comm *comm, struct graph_task *task, struct data_packet *packet,
                       int to)
 {
-    struct post *post = base_alloc(sizeof *post);
+    struct post *post = base_pool_take(sizeof *post);
     if (!post || (!task && !packet)) {
         broke(comm, DUITE_E_MEMORY, "a message", 0);
-        base_free(post);
-        base_free(packet);
+        base_pool_give(post, sizeof *post);
+        data_packet_free(packet);
         return;
     }
     *post = (struct post){.task = task, .packet = packet, .to = to};
@@ -263,12 +264,12 @@ static bool start_receive(struct comm *comm)
     MPI_Request *request = packet ? requests_place(comm, &comm->receives) : NULL;
     if (!request) {
         broke(comm, DUITE_E_MEMORY, "a message", 0);
-        base_free(packet);
+        data_packet_free(packet);
         return false;
     }
     mpi = MPI_Imrecv(packet, lines, comm->line, &message, request);
     if (!mpi_ok(comm, mpi, "MPI_Imrecv")) {
-        base_free(packet);
+        data_packet_free(packet);
         return false;
     }
     comm->receives.what[comm->receives.n++] = packet;
@@ -313,8 +314,8 @@ static void deliver(struct comm *comm, void *worker, struct found *found)
         found->sent = post->next;
         if (post->task)
             graph_finish(comm->graph, worker, post->task);
-        base_free(post->packet);
-        base_free(post);
+        data_packet_free(post->packet);
+        base_pool_give(post, sizeof *post);
     }
 }
 

@@ -1,7 +1,7 @@
 /* A packet owns its bytes; whoever holds the packet's only pointer may write them. */
 #include "runtime/data/packet.h"
 
-#include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
 
 #include <string.h>
 
@@ -10,7 +10,7 @@ struct data_packet *data_packet_new(size_t bytes, bool zero)
     if (bytes > DATA_MOST_BYTES)
         return NULL;
     size_t lines = data_packet_lines(bytes);
-    struct data_packet *packet = base_alloc(lines * sizeof *packet);
+    struct data_packet *packet = base_pool_take(lines * sizeof *packet);
     if (!packet)
         return NULL;
     memset(packet, 0, sizeof *packet);
@@ -20,4 +20,10 @@ struct data_packet *data_packet_new(size_t bytes, bool zero)
     else if (lines > 1) /* the last line is sent whole */
         memset(packet + lines - 1, 0, sizeof *packet);
     return packet;
+}
+
+void data_packet_free(struct data_packet *packet)
+{
+    if (packet)
+        base_pool_give(packet, data_packet_lines(packet->bytes) * sizeof *packet);
 }

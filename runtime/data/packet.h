@@ -33,8 +33,9 @@ static inline size_t data_packet_lines(size_t bytes)
     return 1 + (bytes + 63) / 64;
 }
 
-/* A packet for so many bytes, payload zeroed or not; NULL without memory. Freed by base_free. */
+/* A packet for so many bytes, payload zeroed or not; NULL without memory. */
 struct data_packet *data_packet_new(size_t bytes, bool zero);
+void data_packet_free(struct data_packet *packet); /* NULL is fine */
 
 static inline void *data_payload(struct data_packet *packet)
 {

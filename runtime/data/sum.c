@@ -3,6 +3,7 @@
 #include "runtime/data/sum.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
 
 #include <stdlib.h>
 
@@ -65,12 +66,25 @@ struct data_sum *data_sum_new(int n_ranks)
     return sum;
 }
 
+struct data_piece *data_piece_new(void)
+{
+    struct data_piece *piece = base_pool_take(sizeof *piece);
+    if (piece)
+        *piece = (struct data_piece){0};
+    return piece;
+}
+
+static void piece_free(struct data_piece *piece)
+{
+    base_pool_give(piece, sizeof *piece);
+}
+
 static void free_pieces(struct data_piece *piece)
 {
     while (piece) {
         struct data_piece *next = piece->next;
-        base_free(piece->packet);
-        base_free(piece);
+        data_packet_free(piece->packet);
+        piece_free(piece);
         piece = next;
     }
 }
@@ -91,7 +105,7 @@ void data_sum_sender(struct data_sum *sum, int rank)
 
 struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first)
 {
-    struct data_piece *leaf = base_alloc_zero(sizeof *leaf);
+    struct data_piece *leaf = data_piece_new();
     if (!leaf)
         return NULL;
     leaf->first = first;

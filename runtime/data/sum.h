@@ -41,6 +41,9 @@ void data_sum_sender(struct data_sum *sum, int rank);
 /* Adds leaf `first`, to be run on this rank: its task fills value. NULL without memory. */
 struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first);
 
+/* An empty piece, to be given away by data_sum_arrive. NULL without memory. */
+struct data_piece *data_piece_new(void);
+
 /* Adds a piece from another rank; from any thread. */
 void data_sum_arrive(struct data_sum *sum, struct data_piece *piece);
 

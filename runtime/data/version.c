@@ -2,14 +2,14 @@
  * did not wait sees the producer's writes through `waiters`. */
 #include "runtime/data/version.h"
 
-#include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
 
 static struct data_waiter produced_mark;
 #define DATA_PRODUCED (&produced_mark)
 
 struct data_version *data_version_new(void)
 {
-    struct data_version *version = base_alloc(sizeof *version);
+    struct data_version *version = base_pool_take(sizeof *version);
     if (!version)
         return NULL;
     atomic_init(&version->waiters, NULL);
@@ -48,7 +48,12 @@ struct data_waiter *data_version_release(struct data_version *version)
         return NULL;
     if (version->heir)
         return version->heir;
-    base_free(version->packet);
-    base_free(version);
+    data_packet_free(version->packet);
+    data_version_free(version);
     return NULL;
+}
+
+void data_version_free(struct data_version *version)
+{
+    base_pool_give(version, sizeof *version);
 }

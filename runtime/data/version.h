@@ -55,4 +55,7 @@ static inline void data_version_hold(struct data_version *version)
  * without heir. */
 struct data_waiter *data_version_release(struct data_version *version);
 
+/* Frees a version whose bytes were taken over by its heir, or that never had any. */
+void data_version_free(struct data_version *version);
+
 #endif

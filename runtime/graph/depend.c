@@ -4,7 +4,7 @@
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
-#include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
 
 static size_t align16(size_t bytes)
 {
@@ -16,12 +16,13 @@ struct graph_task *graph_task_new(struct graph *graph, enum graph_kind kind, siz
     struct graph_task *task;
     size_t access = align16(sizeof *task + n * sizeof task->access[0]);
     size_t param = align16(n * sizeof task->param[0]);
-    task = base_alloc(access + param + extra);
+    task = base_pool_take(access + param + extra);
     if (!task) {
         base_no_memory("a task");
         graph_break(graph);
         return NULL;
     }
+    task->size = access + param + extra;
     atomic_init(&task->pending, (uint32_t)n + 1);
     task->n = (uint32_t)n;
     task->next = NULL;
@@ -102,7 +103,8 @@ struct data_version *graph_local(struct graph *graph, struct data_object *object
     if (version && bytes)
         version->packet = data_packet_new(object->bytes, true);
     if (!version || (bytes && !version->packet)) {
-        base_free(version);
+        if (version)
+            data_version_free(version);
         base_no_memory("an object");
         graph_break(graph);
         return NULL;

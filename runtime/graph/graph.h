@@ -44,6 +44,7 @@ struct graph_task {
         struct graph_send *send; /* SEND */
         struct graph_copy *copy; /* COPY */
     };
+    size_t size;        /* of all of it, in bytes */
     duite_param *param; /* n */
     struct graph_access access[];
 };

@@ -2,7 +2,7 @@
  * published once. */
 #include "runtime/graph/internal.h"
 
-#include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -25,7 +25,7 @@ static const struct data_failure *inherit(struct graph *graph, struct graph_task
     if (access->in) {
         access->out->packet = access->in->packet;
         failure = access->mode == DUITE_RW ? access->in->failure : NULL;
-        base_free(access->in);
+        data_version_free(access->in);
         access->in = NULL;
     }
     if (!access->out->packet && !failure &&
@@ -143,7 +143,7 @@ void graph_finish(struct graph *graph, void *worker, struct graph_task *task)
         else
             graph_release(graph, worker, access->in);
     }
-    base_free(task);
+    base_pool_give(task, task->size);
     if (atomic_fetch_sub_explicit(&graph->unfinished, 1, memory_order_acq_rel) == 1)
         graph->hooks.notify(graph->hooks.context);
 }
@@ -153,7 +153,7 @@ void graph_arrived(struct graph *graph, void *worker, struct data_version *versi
 {
     if (packet->kind == DATA_POISON) {
         version->failure = graph_fail(graph, data_payload(packet), false);
-        base_free(packet);
+        data_packet_free(packet);
     } else {
         version->packet = packet;
     }

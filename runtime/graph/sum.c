@@ -114,7 +114,7 @@ void graph_run_combine(struct graph *graph, struct graph_task *task)
         data_sum_reduce(sum->sum, sum->type, sum->count, &pieces, &n, &code);
     out->packet = in->packet;
     out->failure = data_first(in->failure, failure);
-    base_free(in);
+    data_version_free(in);
     if (code)
         out->failure = graph_fail_memory(graph, task);
     if (!out->failure)
@@ -162,7 +162,7 @@ void graph_run_pieces(struct graph *graph, struct graph_task *task)
 
 static void add_piece(struct graph *graph, struct data_sum *sum, struct data_piece piece)
 {
-    struct data_piece *node = base_alloc(sizeof *node);
+    struct data_piece *node = data_piece_new();
     if (!node) { /* the sum must not be taken for complete: poison what is there */
         struct data_failure failure = {
             .code = DUITE_E_MEMORY, .rank = graph->rank, .kernel = UINT32_MAX};
@@ -180,7 +180,7 @@ void graph_pieces_arrived(struct graph *graph, void *worker, struct data_sum *su
     if (packet->kind == DATA_POISON) {
         const struct data_failure *failure = graph_fail(graph, data_payload(packet), false);
         add_piece(graph, sum, (struct data_piece){.failure = failure});
-        base_free(packet);
+        data_packet_free(packet);
     } else {
         struct piece_place *places = data_payload(packet);
         char *values = (char *)(places + packet->pieces);

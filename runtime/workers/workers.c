@@ -5,6 +5,7 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
 #include "runtime/workers/cores.h"
 #include "runtime/workers/park.h"
 #include "runtime/workers/queue.h"
@@ -326,6 +327,7 @@ static void *thread_main(void *argument)
     work_cores_bind(worker->unit);
     while (!atomic_load_explicit(&pool->stop, memory_order_acquire))
         look(worker, &(struct wish){0});
+    base_pool_thread_end();
     return NULL;
 }
 

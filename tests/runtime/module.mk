@@ -5,3 +5,10 @@ tests_runtime_random_programs_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_long.sh
 TESTS += tests/runtime/random_programs tests/runtime/test_random.sh
 LONG_TESTS += tests/runtime/test_random_long.sh
+
+if HAVE_CHECK
+check_PROGRAMS += tests/runtime/test_pool
+tests_runtime_test_pool_SOURCES = tests/runtime/test_pool.c
+tests_runtime_test_pool_LDADD = $(DUITE_TEST_LIBS)
+TESTS += tests/runtime/test_pool
+endif

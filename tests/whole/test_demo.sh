@@ -1,0 +1,27 @@
+#!/bin/sh
+# make demo does what README says: the sheet falls to its end on two ranks, and pictures, frames and a report lie in demo/.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+
+report() { # KEY VALUE
+    grep -qF "\"$1\": $2," demo/report.json || { cat demo/report.json; return 1; }
+}
+
+pictures() {
+    for frame in 000 006 012; do
+        test "$(wc -c < "demo/sheet-$frame.png")" -gt 100000 || return 1
+    done
+}
+
+plan_later
+unset MAKEFLAGS MFLAGS MAKELEVEL # a make of its own
+rm -rf demo
+DUITE_TIMEOUT=1800
+export DUITE_TIMEOUT
+ok "make demo" limited "${MAKE:-make}" demo
+ok "it ran to the end" report steps 480
+ok "on two ranks" report ranks 2
+ok "with as many iterations as the scene says" \
+    awk -F': ' '/"cg_iterations_mean"/ { n = $2 + 0 } END { exit !(n >= 550 && n <= 750) }' demo/report.json
+ok "thirteen frames" test "$(tail -n 1 demo/frames/frames.csv | cut -d , -f 1)" = 12
+if test -x "$DUITE_VIEW"; then ok "three pictures" pictures; else skip "three pictures" "no viewer"; fi

@@ -9,6 +9,10 @@ CLOTH_TEST_LIBS = tests/support/libunit.la libduite_cloth.la libduite_core.la $(
 
 LOG_DRIVER = env AM_TAP_AWK='$(AWK)' $(SHELL) $(top_srcdir)/build-aux/tap-driver.sh
 LOG_COMPILER = $(SHELL) $(srcdir)/tests/support/run.sh
+# An extension, so that the scripts of LONG_TESTS have a rule, too.
+TEST_EXTENSIONS = .sh
+SH_LOG_DRIVER = $(LOG_DRIVER)
+SH_LOG_COMPILER = $(LOG_COMPILER)
 AM_TESTS_ENVIRONMENT = \
     CC='$(CC)'; CFLAGS='$(CFLAGS) $(SANITIZE_FLAGS)'; PKG_CONFIG='$(PKG_CONFIG)'; MAKE='$(MAKE)'; \
     MPIRUN='$(MPIRUN)'; MPI_CFLAGS='$(MPI_CFLAGS)'; MPI_LIBS='$(MPI_LIBS)'; \

@@ -223,7 +223,7 @@ int simulate(const struct simulate_options *options)
     MPI_Comm_rank(MPI_COMM_WORLD, &run.rank);
     MPI_Comm_size(MPI_COMM_WORLD, &run.ranks);
     int failure = prepare(&run);
-    if (failure == CLOTH_E_MEMORY || failure == CLOTH_E_LIBRARY)
+    if (failure == CLOTH_E_MEMORY || failure == CLOTH_E_LIBRARY || failure == CLOTH_E_IO)
         code = SIMULATE_FAILED;
     if (!failure) {
         failure = execute(&run);

@@ -75,10 +75,10 @@ static int check_rest(const duite_options *options)
     const duite_scheduler *s = options->scheduler;
     if (!options->kernels)
         return base_error(DUITE_E_ARGUMENT, "duite_start: no list of kernels");
-    if (!s || !s->place || !s->serve || !s->victim || !s->chain)
+    if (!s || !s->name || !s->place || !s->serve || !s->victim || !s->chain)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: no scheduler, or one without all its functions");
-    if (!options->mapping || !options->mapping->map)
+    if (!options->mapping || !options->mapping->name || !options->mapping->map)
         return base_error(DUITE_E_ARGUMENT, "duite_start: no mapping");
     if (options->threads > 4096)
         return base_error(DUITE_E_ARGUMENT, "duite_start: %u threads are more than 4096",
@@ -139,8 +139,9 @@ static int agree(duite *rt, const duite_options *options, int code)
     int n = rt->graph.n_ranks;
     if (n == 1)
         return code;
-    struct started own = {.code = code, .kernels = hash_kernels(&rt->graph), .seed = options->seed};
+    struct started own = {.code = code, .seed = options->seed};
     if (!code) {
+        own.kernels = hash_kernels(&rt->graph);
         own.scheduler = XXH64(options->scheduler->name, strlen(options->scheduler->name), 0);
         own.mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0);
     }
@@ -238,10 +239,12 @@ int duite_start(duite **out, const duite_options *options)
     code = start_graph(rt, options);
     code = start_workers(rt, options, code);
     code = agree(rt, options, code);
-    if (code)
+    if (code) {
         end(rt);
-    else
+    } else {
+        comm_open(rt->comm);
         *out = rt;
+    }
     return code;
 }
 

@@ -159,8 +159,10 @@ const struct duite_mapping *duite_mapping_find(const char *name);
 const char *const *duite_scheduler_names(void);
 const char *const *duite_mapping_names(void);
 
-/* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. Collective
- * over comm. On failure *rt is NULL on all ranks. */
+/* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. On several
+ * ranks its workers call MPI at any time until duite_stop: a program that calls MPI meanwhile needs
+ * MPI_THREAD_MULTIPLE. One runtime at a time in a process, unless it has MPI_THREAD_MULTIPLE.
+ * Collective over comm. On failure *rt is NULL on all ranks. */
 int duite_start(duite **rt, const duite_options *options);
 
 /* Waits for all tasks, ends the workers and frees everything; start and stop may repeat (MPI, if
@@ -201,8 +203,9 @@ int duite_get_at(duite *rt, duite_object object, int rank, void *values);
 
 /* Tells mappings about the object: its share of work, and the bytes it exchanges with n neighbours,
  * which exist already (edge_weights NULL: 1 each). An edge may be told from either end; told twice
- * it adds up. A second hint replaces the weight and adds edges. Hints count before the first fork
- * after the object was made, and change nothing later. Collective. */
+ * it adds up. A second hint replaces the weight and adds edges. Hints count until
+ * the next fork, set, get, free or duite_home after the object was made settles its home, and
+ * change nothing later. Collective. */
 int duite_hint(duite *rt, duite_object object, double weight, size_t n,
                const duite_object *neighbours, const double *edge_weights);
 
@@ -253,7 +256,7 @@ typedef struct duite_counters {
     uint64_t messages; /* sent between ranks */
     uint64_t bytes;    /* sent between ranks, headers included */
     double busy;       /* seconds in bodies, over all workers */
-    double idle;       /* seconds without a task, over all workers, while the main program waited */
+    double idle;       /* seconds without a task, over all workers, up to each one's last task */
 } duite_counters;
 
 /* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.

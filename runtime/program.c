@@ -159,8 +159,6 @@ static int get(duite *rt, duite_object object, int rank, void *values, const cha
     bool here = rank == GRAPH_ANYWHERE || rank == rt->graph.rank;
     struct graph_copy copy = {.values = values};
     int code = settle(rt);
-    if (!code && here && !values)
-        return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the values", call);
     if (!code)
         code = graph_copy(&rt->graph, work_main(rt->pool), object, rank, &copy);
     work_tick(rt->pool);
@@ -169,6 +167,8 @@ static int get(duite *rt, duite_object object, int rank, void *values, const cha
     work_until(rt->pool, copy_done, &copy);
     if (!copy_done(&copy))
         return comm_broken(rt->comm);
+    if (!values) /* found out only now: the other ranks count on this one */
+        return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the values", call);
     return copy.failure ? graph_failure_error(&rt->graph, copy.failure) : DUITE_OK;
 }
 
@@ -225,6 +225,7 @@ static int compare(duite *rt)
     const struct comm_word own = {.forks = graph->forks, .fingerprint = graph->fingerprint},
                            *words = rt->words;
     int code = comm_agree(rt->comm, &own, rt->words, between, rt->pool);
+    work_idle_ends(rt->pool);
     for (int i = 1; i < graph->n_ranks && !code; i++)
         if (words[i].fingerprint != words[0].fingerprint)
             code = graph->broken = base_error(DUITE_E_DIFFERENT,
@@ -262,6 +263,7 @@ int duite_wait(duite *rt)
         code = comm_broken(rt->comm);
     if (rt->comm && !code)
         code = comm_agree(rt->comm, &own, rt->words, between, rt->pool);
+    work_idle_ends(rt->pool);
     if (!code)
         code = recall(rt);
     const struct data_failure *failure = first_failure(rt);
@@ -288,6 +290,7 @@ int duite_count_all(duite *rt, duite_counters *counters)
         (double)own.messages, (double)own.bytes,  own.busy,           own.idle};
     if (rt->comm)
         code = comm_sum(rt->comm, sums, sizeof sums / sizeof sums[0], between, rt->pool);
+    work_idle_ends(rt->pool);
     *counters = (duite_counters){.tasks = (uint64_t)sums[0],
                                  .placed = (uint64_t)sums[1],
                                  .stolen = (uint64_t)sums[2],

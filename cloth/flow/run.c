@@ -6,6 +6,7 @@
 #include "cloth/flow/tasks/tasks.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -187,11 +188,15 @@ static int code_of_cloth(int code)
  */
 static int explain(struct flow_state *state, int code)
 {
+    const char *message = duite_message();
     if (!state->text[0])
-        strncpy(state->text, duite_message(), sizeof state->text - 1);
+        snprintf(state->text, sizeof state->text, "%s",
+                 message[0] ? message : "out of memory for the run");
     if (code < 0) /* the runtime itself failed: no more is asked of it */
         return cloth_fail(state->error, code_of_cloth(code), "%s", state->text);
     duite_wait(state->rt); /* its error is the one in hand */
+    if (!state->output)
+        return cloth_fail(state->error, code_of_cloth(code), "%s", state->text);
     if (flow_last_frame(state) || !state->report->frames)
         return cloth_fail(state->error, code_of_cloth(code), "%s; no frame was written",
                           state->text);

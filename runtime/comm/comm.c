@@ -75,6 +75,16 @@ int comm_broken(struct comm *comm)
     return code ? base_error(code, "%s", comm->sentence) : DUITE_OK;
 }
 
+static bool try_lock(struct comm *comm)
+{
+    return !atomic_flag_test_and_set_explicit(&comm->lock, memory_order_acquire);
+}
+
+static void unlock(struct comm *comm)
+{
+    atomic_flag_clear_explicit(&comm->lock, memory_order_release);
+}
+
 int comm_start(struct comm **out, MPI_Comm mpi, struct graph *graph)
 {
     struct comm *comm = *out = base_alloc_zero(sizeof *comm);
@@ -82,7 +92,7 @@ int comm_start(struct comm **out, MPI_Comm mpi, struct graph *graph)
         return base_no_memory("communication");
     comm->graph = graph;
     comm->mpi = mpi;
-    atomic_flag_clear(&comm->lock);
+    atomic_flag_test_and_set(&comm->lock); /* until comm_open */
     atomic_init(&comm->posts, NULL);
     comm_arrivals_start(&comm->arrivals);
     if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
@@ -93,6 +103,12 @@ int comm_start(struct comm **out, MPI_Comm mpi, struct graph *graph)
         return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
     }
     return DUITE_OK;
+}
+
+void comm_open(struct comm *comm)
+{
+    if (comm)
+        unlock(comm);
 }
 
 static void requests_free(struct requests *requests)
@@ -115,7 +131,7 @@ void comm_stop(struct comm *comm)
 
 /* ---- Requests: only under the lock ---- */
 
-/* A place for one more request, counted by requests_add; NULL without memory. */
+/* A place for one more request, counted by whoever starts it; NULL without memory. */
 static MPI_Request *requests_place(struct comm *comm, struct requests *requests)
 {
     size_t needed = (size_t)requests->n + 1;
@@ -335,16 +351,6 @@ int comm_expect(struct comm *comm, void *worker, struct data_key key, struct dat
 }
 
 /* ---- Progress ---- */
-
-static bool try_lock(struct comm *comm)
-{
-    return !atomic_flag_test_and_set_explicit(&comm->lock, memory_order_acquire);
-}
-
-static void unlock(struct comm *comm)
-{
-    atomic_flag_clear_explicit(&comm->lock, memory_order_release);
-}
 
 bool comm_poll(struct comm *comm, void *worker)
 {

@@ -16,6 +16,10 @@ struct comm;
 /* On a duplicate of mpi. Collective. Errors: DUITE_E_MPI, memory. */
 int comm_start(struct comm **comm, MPI_Comm mpi, struct graph *graph);
 
+/* From now on messages are sent and received. Before, the lock keeps workers out of MPI, so that
+ * the main thread may call it while it starts. NULL is fine. */
+void comm_open(struct comm *comm);
+
 /* Frees everything; all ranks have agreed (comm_agree) that nothing is on its way. Collective. */
 void comm_stop(struct comm *comm);
 

@@ -37,11 +37,6 @@ struct data_waiter *data_version_produced(struct data_version *version)
     return atomic_exchange_explicit(&version->waiters, DATA_PRODUCED, memory_order_acq_rel);
 }
 
-bool data_version_is_produced(struct data_version *version)
-{
-    return atomic_load_explicit(&version->waiters, memory_order_acquire) == DATA_PRODUCED;
-}
-
 struct data_waiter *data_version_release(struct data_version *version)
 {
     if (atomic_fetch_sub_explicit(&version->holds, 1, memory_order_acq_rel) != 1)

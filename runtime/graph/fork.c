@@ -77,11 +77,9 @@ static int check_objects(struct graph *graph, const duite_kernel *kernel, size_t
 
 static void unmark(struct graph *graph, size_t n, const duite_object *objects)
 {
-    for (size_t i = 0; i < n; i++) {
-        struct data_object *object = data_object_find(&graph->table, objects[i]);
-        if (object)
-            object->mark = 0;
-    }
+    for (size_t i = 0; i < n; i++)
+        if (objects[i].slot < graph->table.n_slots)
+            graph->table.object[objects[i].slot].mark = 0;
 }
 
 /* The owner rule. */

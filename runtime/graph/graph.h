@@ -67,7 +67,7 @@ struct graph_send {
 
 /* COPY: where a value goes. `done` is set last. */
 struct graph_copy {
-    void *values;
+    void *values; /* NULL: nowhere */
     size_t bytes;
     const struct data_failure *failure;
     _Atomic int done;

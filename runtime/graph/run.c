@@ -98,7 +98,7 @@ static void run_copy(struct graph *graph, struct graph_task *task)
     struct graph_copy *copy = task->copy;
     const struct data_version *version = task->access[0].in;
     copy->failure = version->failure;
-    if (!version->failure)
+    if (!version->failure && copy->values)
         memcpy(copy->values, data_payload(version->packet), copy->bytes);
     atomic_store_explicit(&copy->done, 1, memory_order_release);
     graph->hooks.notify(graph->hooks.context);

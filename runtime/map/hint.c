@@ -61,12 +61,24 @@ int map_hint(struct data_table *table, duite_object object, double weight, size_
     return n ? add_edges(hint, n, neighbours, edge_weights) : DUITE_OK;
 }
 
+/* Is `object` on the chain of leaders that begins with `slot`? */
+static bool follows(struct data_table *table, uint32_t slot, uint32_t object)
+{
+    while (slot != object) {
+        const struct data_hint *hint = data_hint_find(table, slot);
+        if (!hint || hint->leader == slot)
+            return false;
+        slot = hint->leader;
+    }
+    return true;
+}
+
 int map_follow(struct data_table *table, duite_object object, duite_object leader)
 {
     if (!data_object_find(table, object) || !data_object_find(table, leader))
         return DUITE_E_OBJECT;
     struct data_hint *hint = data_hint_find(table, object.slot);
-    if (data_hint_leader(table, leader.slot) == object.slot)
+    if (follows(table, leader.slot, object.slot))
         return base_error(DUITE_E_ARGUMENT, "duite_follow: object %u.%u would follow itself",
                           object.slot, object.generation);
     if (hint)

@@ -307,6 +307,11 @@ void work_once(struct work_pool *pool)
     look(&pool->worker[0], &(struct wish){.unheard = true});
 }
 
+void work_idle_ends(struct work_pool *pool)
+{
+    busy_again(&pool->worker[0]);
+}
+
 void work_tick(struct work_pool *pool)
 {
     struct work_worker *worker = &pool->worker[0];

@@ -39,6 +39,9 @@ void work_until(struct work_pool *pool, bool (*done)(void *context), void *conte
 /* One look around by the main thread: a task or a poll; idles a moment if there is nothing. */
 void work_once(struct work_pool *pool);
 
+/* The main thread has done with work_once: what follows is not idling. */
+void work_idle_ends(struct work_pool *pool);
+
 /* Sends what was posted and, now and then, polls: the main thread calls it as it forks. */
 void work_tick(struct work_pool *pool);
 

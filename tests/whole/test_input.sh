@@ -60,6 +60,11 @@ refused "a pin outside the mesh" \
     "pin.yaml:5:27: vertex 64 is outside the mesh of cloth 'cloth1', which has 64 vertices; 0 to 63 are allowed" pin.yaml
 changed grain 'schema: 1' 'grain: 0'
 refused "a grain of zero" "grain.yaml:1:8: grain is 0; a whole number from 1 to 4294967295 is expected" grain.yaml
+refused "a tolerance that nothing fails" \
+    "--set solver.stop={relative: 1}: solver.stop.relative is 1; a finite number > 0 and < 1 is expected" scene.yaml \
+    --set 'solver.stop={relative: 1}'
+refused "more frames than a disk holds" \
+    "--set time.fps=1e12: time.fps * time.end is 4e+09 frames; at most 2147483647 are possible" scene.yaml --set time.fps=1e12
 refused "a grain of zero on the command line" \
     "--grain 0: grain is 0; a whole number from 1 to 4294967295 is expected" scene.yaml --grain 0
 changed key 'end: 0.004' 'end: 0.004, fsp: 30'

@@ -122,6 +122,14 @@ ok "the example of docs/scene.md runs" run example.yaml --end 0.003
 
 # ---- Ends
 
+# The residual is down to nothing long before: what is left of it must not be taken for an indefinite matrix.
+ok "more iterations than there are digits" run scene.yaml --end 0.002 --set time.h=0.0001 --set 'solver.stop={count: 300}'
+ok "a cloth that comes to rest" run scene.yaml --set 'gravity=[0, 0, 0]' --set 'cloths[0].velocity=[1, 0, 0]' \
+    --set 'cloths[0].pins=[]' --set 'materials.cotton.damping={viscous: 20}' --set time.h=0.01 --end 10 \
+    --set 'solver.stop={relative: 1.0e-12}'
+few_frames() { run scene.yaml --set time.fps=1.0e-300 --output few && test "$(tail -n 1 few/frames.csv | cut -d , -f 1)" = 0; }
+ok "one frame where the next is never due" few_frames
+
 fails() { # a step that is much too long for an explicit run
     status=0
     prints run scene.yaml --set integrator=explicit_euler --set time.h=0.1 --set time.end=500 --output diverged || status=$?

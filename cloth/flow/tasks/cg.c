@@ -88,10 +88,11 @@ static int not_converged(struct flow_state *state, uint64_t step, double rho, do
     return FLOW_NOT_CONVERGED;
 }
 
-/* What is not a number is not small: the next iteration's update fails on it. */
+/* What is not a number is not small: the next iteration's update fails on it. The square of a small
+ * tolerance may be zero: then nothing is small enough. */
 static bool small_enough(double rho, double wanted)
 {
-    return rho <= wanted && isfinite(rho);
+    return isfinite(rho) && (rho <= wanted || rho < FLOW_NOTHING);
 }
 
 /* Exactly so many iterations, without a look at the residual. */

@@ -4,7 +4,10 @@
 
 uint64_t flow_frame_step(const struct model *model, uint64_t frame)
 {
-    return (uint64_t)((double)frame / (model->fps * model->h) + 0.5);
+    if (frame == 0)
+        return 0;
+    const double step = (double)frame / (model->fps * model->h) + 0.5;
+    return step < 0x1p63 ? (uint64_t)step : UINT64_MAX;
 }
 
 static int fork_frame(struct flow_state *state, uint64_t steps)

@@ -41,19 +41,20 @@ const duite_kernel flow_matvec = {.name = "cg_matvec",
                                   .rest = DUITE_R,
                                   .args_size = sizeof(struct flow_args)};
 
-/* Where r = 0 was reached exactly, nothing is left to do. */
+/* Where r is nothing, nothing is left to do. */
 static int update(const duite_call *call)
 {
     const struct flow_table *t = flow_table_of(call);
     const double pq = *duite_in(call, 0, double), rho = *duite_in(call, 1, double);
-    if (!(pq > 0) && !(rho == 0))
+    const bool done = rho < FLOW_NOTHING;
+    if (!(pq > 0) && !done)
         return duite_fail(call, FLOW_INDEFINITE,
                           "step %u: conjugate gradients broke down (p.Ap = %g, r.r = %g): the "
                           "matrix is not positive definite, or forces are beyond "
                           "all measure",
                           flow_args_of(call)->step + 1, pq, rho);
     *duite_out(call, 6, double) = solve_update(
-        t->n, rho == 0 ? 0 : rho / pq, duite_in(call, 2, phys_vec), duite_in(call, 3, phys_vec),
+        t->n, done ? 0 : rho / pq, duite_in(call, 2, phys_vec), duite_in(call, 3, phys_vec),
         duite_out(call, 4, phys_vec), duite_out(call, 5, phys_vec));
     return 0;
 }
@@ -69,7 +70,7 @@ static int direction(const duite_call *call)
     const struct flow_table *t = flow_table_of(call);
     const double rho_new = *duite_in(call, 0, double), rho = *duite_in(call, 1, double);
     phys_vec *p = duite_out(call, 3, phys_vec);
-    solve_direction(t->n, rho == 0 ? 0 : rho_new / rho, duite_in(call, 2, phys_vec), p);
+    solve_direction(t->n, rho < FLOW_NOTHING ? 0 : rho_new / rho, duite_in(call, 2, phys_vec), p);
     flow_write_rim(t, p, duite_out(call, 4, phys_vec));
     return 0;
 }

@@ -34,6 +34,10 @@ enum { FLOW_DIVERGED = 1, FLOW_INDEFINITE, FLOW_NOT_WRITTEN, FLOW_NOT_CONVERGED 
 /* Positions and speeds of this size (m, m/s) are no cloth's: the run diverged. */
 #define FLOW_BOUND 1e6
 
+/* A residual with r.r below this ((kg m/s)^2) is zero: p.Ap is about r.r times a mass, and would
+ * underflow before r.r does. */
+#define FLOW_NOTHING 1e-280
+
 struct flow {
     const struct model *model;
     uint32_t n_vertices, n_triangles, n_unused;

@@ -42,7 +42,7 @@ static int build_file(struct mesh *mesh, const struct scene_tree *tree, int node
         return error->code;
     int code = mesh_read_obj(mesh, path, inner);
     free(path);
-    return code;
+    return code == CLOTH_E_IO ? CLOTH_E_INPUT : code; /* a scene that names no readable file */
 }
 
 /* Lists of `width` whole numbers each, one after the other. NULL: out of memory. */

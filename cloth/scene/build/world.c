@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double MOST_STEPS = 4294967294; /* of a run: steps are counted in 32 bits */
+static const double MOST_STEPS = 4294967294;  /* of a run: steps are counted in 32 bits */
+static const double MOST_FRAMES = 2147483647; /* of a run: as many as PC2 can count */
 
 void *scene_build_array(size_t n, size_t size, struct cloth_error *error)
 {
@@ -129,6 +130,10 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
         return scene_tree_fail(tree, end, error,
                                "time.end / time.h is %g steps; at most %.0f are possible", steps,
                                MOST_STEPS);
+    if (!(model->fps * model->end <= MOST_FRAMES))
+        return scene_tree_fail(tree, scene_tree_get(tree, time, "fps"), error,
+                               "time.fps * time.end is %g frames; at most %.0f are possible",
+                               model->fps * model->end, MOST_FRAMES);
     return CLOTH_OK;
 }
 

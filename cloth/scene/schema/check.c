@@ -222,6 +222,8 @@ static bool number_fits(const struct scene_rule *rule, const char *text)
     double value;
     if (!scene_scalar_number(text, &value))
         return false;
+    if (rule->range == SCENE_FRACTION)
+        return value > 0 && value < 1;
     return rule->range == SCENE_ANY || value > 0 ||
            (rule->range == SCENE_NOT_NEGATIVE && value >= 0);
 }

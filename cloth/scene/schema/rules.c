@@ -118,7 +118,7 @@ static const struct scene_rule time_keys[] = {
     {0}};
 
 static const struct scene_rule stop_kinds[] = {
-    {"relative", SCENE_NUMBER, .range = SCENE_POSITIVE, .about = "residual against the right side"},
+    {"relative", SCENE_NUMBER, .range = SCENE_FRACTION, .about = "residual against the right side"},
     {"absolute", SCENE_NUMBER, "kg m/s", .range = SCENE_POSITIVE, .about = "residual"},
     {"count", SCENE_INTEGER, .least = 1, .about = "so many iterations, no test"},
     {0}};

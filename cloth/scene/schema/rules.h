@@ -19,7 +19,7 @@ enum scene_type {
     SCENE_CHOICE          /* one of the words `choices` */
 };
 
-enum scene_range { SCENE_ANY, SCENE_POSITIVE, SCENE_NOT_NEGATIVE };
+enum scene_range { SCENE_ANY, SCENE_POSITIVE, SCENE_NOT_NEGATIVE, SCENE_FRACTION };
 
 struct scene_rule {
     const char *key; /* NULL ends the keys of a map */

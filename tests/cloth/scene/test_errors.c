@@ -78,7 +78,7 @@ START_TEST(values_out_of_range)
         {"schema: 1", "schema: 1\ngrain: 0",
          .error = ":2:8: grain is 0; a whole number from 1 to 4294967295 is expected"},
         {"schema: 1", "schema: 1\nsolver: {stop: {relative: 0}}",
-         .error = ":2:27: solver.stop.relative is 0; a finite number > 0 is expected"},
+         .error = ":2:27: solver.stop.relative is 0; a finite number > 0 and < 1 is expected"},
         {"schema: 1", "schema: 1\nsolver: {stop: {count: 0}}",
          .error = ":2:24: solver.stop.count is 0; a whole number from 1 to 4294967295 is expected"},
         {"normal: [0, 3, 4]", "normal: [0, 0, 0]",

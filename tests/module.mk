@@ -35,7 +35,7 @@ check-TESTS: $(check_PROGRAMS)
 check-long:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)' TEST_SUITE_LOG=test-suite-long.log
 
-# For AddressSanitizer: all test programs, without the scripts, whose programs start ranks and print to be compared.
+# For AddressSanitizer: all test programs, without the scripts: on several ranks the runtime still leaks (docs/design.md).
 check-units:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS="`for test in $(TESTS); do case $$test in *.sh) ;; *) echo $$test;; esac; done | tr '\n' ' '`"
 

@@ -121,12 +121,9 @@ static int prepare(struct run *run)
     code = agree(run, &error);
     if (code)
         return code;
-    if (run->rank == 0 && flow_unused(run->flow) > 0)
-        fprintf(
-            stderr,
-            "duite-cloth: warning: vertices that belong to no face or edge: %llu; they are kept "
-            "and stay where they are\n",
-            (unsigned long long)flow_unused(run->flow));
+    const char *warning;
+    for (size_t i = 0; run->rank == 0 && (warning = flow_warning(run->flow, i)); i++)
+        fprintf(stderr, "duite-cloth: warning: %s\n", warning);
     if (run->rank == 0 && options->output)
         open_output(run, &error);
     return agree(run, &error);

@@ -1,17 +1,26 @@
 /* A model owns all that its pointers reach; a zeroed model owns nothing. */
 #include "cloth/flow/model.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 static void free_cloth(struct model_cloth *cloth)
 {
-    for (uint32_t i = 0; i < cloth->n_pins; i++)
+    for (uint32_t i = 0; i < cloth->n_pins; i++) {
         free(cloth->pins[i].vertices);
-    for (uint32_t i = 0; i < cloth->n_loads; i++)
+        free(cloth->pins[i].place);
+    }
+    for (uint32_t i = 0; i < cloth->n_loads; i++) {
         free(cloth->loads[i].vertices);
+        free(cloth->loads[i].place);
+    }
     free(cloth->pins);
     free(cloth->loads);
     free(cloth->name);
+    free(cloth->place);
+    free(cloth->mesh_place);
+    free(cloth->velocity_place);
     mesh_free(&cloth->mesh);
 }
 
@@ -26,4 +35,14 @@ void model_free(struct model *model)
     free(model->planes);
     free(model->name);
     *model = (struct model){0};
+}
+
+int model_fail(const char *place, struct cloth_error *error, const char *format, ...)
+{
+    char text[900];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    return cloth_fail(error, CLOTH_E_INPUT, "%s%s%s", place ? place : "", place ? ": " : "", text);
 }

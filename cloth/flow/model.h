@@ -20,6 +20,9 @@ struct model_material {
     int both_diagonals;          /* grids: shear springs along both diagonals of a cell */
 };
 
+/* A `place` is where the scene says a thing, for messages: "scene.yaml:4:11", or an option; NULL:
+ * it does not say. */
+
 /* Holds vertices where they start. */
 struct model_pin {
     enum { MODEL_PIN_VERTICES, MODEL_PIN_NEAREST, MODEL_PIN_BOX } kind;
@@ -27,15 +30,15 @@ struct model_pin {
     uint32_t *vertices; /* of the cloth's mesh */
     double point[3];    /* nearest: its nearest vertex after the transform, the first of equals */
     double box[2][3];   /* box: every vertex inside or on it after the transform */
-    int line, column;   /* where the scene says it; 0: not from a file */
+    char *place;
 };
 
 /* A constant force on vertices, newton each. */
 struct model_load {
     uint32_t n_vertices;
-    uint32_t *vertices;
+    uint32_t *vertices; /* one that stands twice gets it twice */
     double force[3];
-    int line, column;
+    char *place;
 };
 
 struct model_cloth {
@@ -47,6 +50,7 @@ struct model_cloth {
     uint32_t n_pins, n_loads;
     struct model_pin *pins;
     struct model_load *loads;
+    char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
 };
 
 struct model_plane {
@@ -79,5 +83,9 @@ struct model {
 
 /* Frees what the model owns and clears it. */
 void model_free(struct model *model);
+
+/* cloth_fail with CLOTH_E_INPUT and the place before the sentence, if there is one. */
+int model_fail(const char *place, struct cloth_error *error, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -46,6 +46,28 @@ static int cut(struct flow *flow, const struct flow_particles *particles,
     return code;
 }
 
+static void describe_odd(char *text, size_t size, const char *what, const struct flow_odd *odd,
+                         const char *effect)
+{
+    if (odd->n)
+        snprintf(text, size,
+                 "%.200s%s%s that no face or edge uses: %u, the first is vertex %u of cloth "
+                 "'%.60s'; %s",
+                 odd->place ? odd->place : "", odd->place ? ": " : "", what, odd->n, odd->vertex,
+                 odd->cloth->name, effect);
+}
+
+static void warn(struct flow *flow, const struct flow_particles *particles)
+{
+    const size_t size = sizeof flow->warning[0];
+    describe_odd(flow->warning[0], size, "vertices", &particles->unused,
+                 "they are kept and stay where they are");
+    describe_odd(flow->warning[1], size, "pinned vertices", &particles->pinned,
+                 "they stay where they are without a pin");
+    describe_odd(flow->warning[2], size, "loads on vertices", &particles->loaded,
+                 "they move nothing");
+}
+
 static int build(struct flow *flow, const struct flow_particles *particles,
                  const struct flow_springs *springs, int ranks, struct cloth_error *error)
 {
@@ -60,7 +82,7 @@ static int build(struct flow *flow, const struct flow_particles *particles,
         code = flow_tables_make(&flow->tables, particles, springs, &flow->blocks, flow->model->h,
                                 error);
     flow->n_vertices = particles->n;
-    flow->n_unused = particles->n_unused;
+    warn(flow, particles);
     flow->start = aligned_alloc(sizeof *flow->start, particles->n * sizeof *flow->start);
     if (!code && !flow->start)
         code = cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %u vertices", particles->n);
@@ -116,9 +138,12 @@ uint64_t flow_vertices(const struct flow *flow)
     return flow->n_vertices;
 }
 
-uint64_t flow_unused(const struct flow *flow)
+const char *flow_warning(const struct flow *flow, size_t i)
 {
-    return flow->n_unused;
+    for (size_t k = 0; k < sizeof flow->warning / sizeof *flow->warning; k++)
+        if (flow->warning[k][0] && i-- == 0)
+            return flow->warning[k];
+    return NULL;
 }
 
 /* ---- Running ---- */

@@ -52,7 +52,8 @@ const duite_kernel *const *flow_kernels(void);
 struct flow; /* a model made ready: blocks, springs, objects */
 
 /* Cuts the model into blocks and prepares the tables that do not change. No runtime needed. Checks
- * what a scene alone cannot: pins inside the mesh, masses, more ranks than blocks. The model must
+ * what a scene alone cannot: pins inside the mesh, masses, lengths of springs, starts out of
+ * bounds, more ranks than blocks; errors begin with the place that the model gives. The model must
  * outlive the flow. Local, the same result on every rank. */
 int flow_prepare(struct flow **flow, const struct model *model, int ranks,
                  struct cloth_error *error);
@@ -66,10 +67,12 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
              const struct flow_progress *progress, struct flow_report *report,
              struct cloth_error *error);
 
-/* Vertices and triangles of all cloths together, and vertices that no face or edge uses (for a
- * warning). Local. */
+/* Vertices of all cloths together. Local. */
 uint64_t flow_vertices(const struct flow *flow);
-uint64_t flow_unused(const struct flow *flow);
+
+/* What is odd about the model but no error: sentence i, counted from 0, with its place; NULL: there
+ * are no more. Lives as long as the flow. Local. */
+const char *flow_warning(const struct flow *flow, size_t i);
 
 void flow_free(struct flow *flow);
 

@@ -59,6 +59,30 @@ refused "a stiffness that is no number" \
 changed pin '\[0, 7\]' '[0, 64]'
 refused "a pin outside the mesh" \
     "pin.yaml:5:27: vertex 64 is outside the mesh of cloth 'cloth1', which has 64 vertices; 0 to 63 are allowed" pin.yaml
+changed load '    pins.*' '    loads: [{vertices: [1, 1], force: [0, 1, 0]}]'
+ok "a load that names a vertex twice" says 1 \
+    "load.yaml:5:28: vertex 1 stands twice in one load; to load it twice, write another load or a larger force" load.yaml
+# What only the whole model shows names its place in the scene, too.
+changed mass 'grid: {width.*ny: 8}' 'inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}'
+sed -i 's/    pins.*/    pins: []/' mass.yaml
+refused "a vertex without mass" \
+    "mass.yaml:3:5: vertex 0 of cloth 'cloth1' has no mass: its triangles have no area, or it has edges only; give$(
+    ) mass_per_vertex" mass.yaml --grain 1
+chain='cloths[0].mesh.inline.vertices=[[0, 0, 0], [0, 0, 0]]'
+ok "an edge of no length" says 1 \
+    "mass.yaml:3:20: cloth 'cloth1': vertices 0 and 1 (counted from 0) are 0 m apart; vertices that a spring joins need$(
+    ) a finite distance above 0" mass.yaml --set "$chain" --set 'cloths[0].mass_per_vertex=1'
+changed fast '    pins.*' '    velocity: [0, 1000000, 0]'
+ok "a start that is too fast" says 1 \
+    "fast.yaml:5:15: cloth 'cloth1' starts with the velocity (0, 1e+06, 0) m/s; less than 1e+06 m/s along each axis$(
+    ) is expected" fast.yaml
+changed far '    pins.*' '    transform: {scale: 1e7}'
+ok "a start that is too far" says 1 \
+    "far.yaml:3:18: vertex 0 of cloth 'cloth1' starts at (-5e+06, 0, -5e+06) m, after the transform; less than 1e+06 m$(
+    ) from the origin along each axis is expected" far.yaml
+ok "a value longer than a message" says 1 \
+    "--set gravity=$(printf %0192d 0)...: gravity is $(printf %060d 0); a list of 3 numbers (m/s^2) is expected" \
+    scene.yaml --set "gravity=$(printf %01200d 0)"
 changed grain 'schema: 1' 'grain: 0'
 refused "a grain of zero" "grain.yaml:1:8: grain is 0; a whole number from 1 to 4294967295 is expected" grain.yaml
 refused "a tolerance that nothing fails" \

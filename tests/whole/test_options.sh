@@ -141,10 +141,14 @@ ok "a run that diverges names step, block and last frame" fails
 
 unused() {
     printf 'v 0 0 0\nv 1 0 0\nv 0 0 1\nv 5 5 5\nf 1 2 3\n' > one.obj
-    prints run scene.yaml --set 'cloths[0].mesh={file: one.obj}' --set 'cloths[0].pins=[]' --end 0.002 &&
-        grep -q '^duite-cloth: warning: vertices that belong to no face or edge: 1;' complained
+    sed 's|grid: {.*}}|file: one.obj}|; s|\[0, 7\]|[3]|' scene.yaml > unused.yaml
+    prints run unused.yaml --end 0.002 --set 'cloths[0].loads=[{vertices: [3, 1], force: [0, 1, 0]}]' &&
+        cat complained && test "$(wc -l < complained)" = 3 &&
+        grep -q '^duite-cloth: warning: unused.yaml:4:18: vertices that no face or edge uses: 1, ' complained &&
+        grep -q '^duite-cloth: warning: unused.yaml:6:12: pinned vertices that no face or edge uses: 1, ' complained &&
+        grep -q '^duite-cloth: warning: --set .*\]: loads on vertices that no face or edge uses: 1, ' complained
 }
-ok "vertices that nothing uses are warned about" unused
+ok "vertices that nothing uses are warned about, with their pins and loads" unused
 
 stopped() { # COMMAND...: SIGUSR1 after the first frames; status 0, a sentence, whole files
     rm -rf frames

@@ -2,27 +2,24 @@
  * that no face or edge uses stay where they are, at rest, and are never asked for a mass. */
 #include "cloth/flow/tables/tables.h"
 
-#include <stdio.h>
+#include "cloth/physics/particle.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-/* "line 3, column 7: ", or nothing where the scene does not say. */
-static const char *where(char text[64], int line, int column)
+static int outside(const struct model_cloth *cloth, const char *what, uint32_t vertex,
+                   const char *place, struct cloth_error *error)
 {
-    text[0] = 0;
-    if (line > 0)
-        snprintf(text, 64, "line %d, column %d: ", line, column);
-    return text;
+    return model_fail(place, error,
+                      "%s of cloth '%.60s' names vertex %u; its mesh has the vertices 0 to %u",
+                      what, cloth->name, vertex, cloth->mesh.n_vertices - 1);
 }
 
-static int outside(const struct model_cloth *cloth, const char *what, uint32_t vertex, int line,
-                   int column, struct cloth_error *error)
+static void note(struct flow_odd *odd, const struct model_cloth *cloth, uint32_t vertex,
+                 const char *place)
 {
-    char at[64];
-    return cloth_fail(error, CLOTH_E_INPUT,
-                      "%s%s of cloth '%s' names vertex %u; its mesh has the vertices 0 to %u",
-                      where(at, line, column), what, cloth->name, vertex,
-                      cloth->mesh.n_vertices - 1);
+    if (odd->n++ == 0)
+        *odd = (struct flow_odd){1, vertex, cloth, place};
 }
 
 static int hold(struct flow_particles *p, uint32_t vertex)
@@ -37,7 +34,9 @@ static int pin_vertices(struct flow_particles *p, uint32_t first, const struct m
 {
     for (uint32_t i = 0; i < pin->n_vertices; i++) {
         if (pin->vertices[i] >= cloth->mesh.n_vertices)
-            return outside(cloth, "a pin", pin->vertices[i], pin->line, pin->column, error);
+            return outside(cloth, "a pin", pin->vertices[i], pin->place, error);
+        if (!p->used[first + pin->vertices[i]] && p->free[first + pin->vertices[i]] != 0)
+            note(&p->pinned, cloth, pin->vertices[i], pin->place);
         hold(p, first + pin->vertices[i]);
     }
     return CLOTH_OK;
@@ -59,8 +58,8 @@ static int pin_nearest(struct flow_particles *p, uint32_t first, const struct mo
         }
     }
     if (best == UINT32_MAX)
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "cloth '%s' has a pin but neither a face nor an edge", cloth->name);
+        return model_fail(pin->place, error,
+                          "cloth '%.60s' has a pin but neither a face nor an edge", cloth->name);
     return hold(p, best);
 }
 
@@ -79,10 +78,12 @@ static int pin_box(struct flow_particles *p, uint32_t first, const struct model_
         hold(p, v);
         inside++;
     }
-    char at[64];
     if (!inside)
-        return cloth_fail(error, CLOTH_E_INPUT, "%sthe box of a pin of cloth '%s' holds no vertex",
-                          where(at, pin->line, pin->column), cloth->name);
+        return model_fail(
+            pin->place, error,
+            "the box of a pin of cloth '%.60s' holds no vertex that a face or an edge "
+            "uses",
+            cloth->name);
     return CLOTH_OK;
 }
 
@@ -117,7 +118,9 @@ static int loads(struct flow_particles *p, uint32_t first, const struct model_cl
         const phys_vec force = {load->force[0], load->force[1], load->force[2], 0};
         for (uint32_t j = 0; j < load->n_vertices; j++) {
             if (load->vertices[j] >= cloth->mesh.n_vertices)
-                return outside(cloth, "a load", load->vertices[j], load->line, load->column, error);
+                return outside(cloth, "a load", load->vertices[j], load->place, error);
+            if (!p->used[first + load->vertices[j]])
+                note(&p->loaded, cloth, load->vertices[j], load->place);
             p->load[first + load->vertices[j]] += force;
         }
     }
@@ -137,14 +140,34 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
         if (cloth->mass_per_vertex > 0)
             p->mass[v] = cloth->mass_per_vertex;
         if (p->used[v] && !(p->mass[v] > 0))
-            return cloth_fail(
-                error, CLOTH_E_INPUT,
-                "vertex %u of cloth '%s' has no mass: its triangles have no area, or it has edges "
-                "only; give mass_per_vertex",
-                i, cloth->name);
+            return model_fail(cloth->place, error,
+                              "vertex %u of cloth '%.60s' has no mass: its triangles have no area, "
+                              "or it has edges only; give mass_per_vertex",
+                              i, cloth->name);
         p->drag[v] = material->damping_viscous + material->damping_mass * p->mass[v];
         p->load[v] = p->mass[v] * gravity;
     }
+    return CLOTH_OK;
+}
+
+/* A start that a run would take for divergence. */
+static int check_start(const struct flow_particles *p, uint32_t first,
+                       const struct model_cloth *cloth, struct cloth_error *error)
+{
+    const phys_vec *x = p->position + first;
+    const double *v = cloth->velocity;
+    const size_t bad = phys_diverged(cloth->mesh.n_vertices, FLOW_BOUND, x);
+    if (bad < cloth->mesh.n_vertices)
+        return model_fail(cloth->mesh_place, error,
+                          "vertex %zu of cloth '%.60s' starts at (%g, %g, %g) m, after the "
+                          "transform; less than %g m from the origin along each axis is expected",
+                          bad, cloth->name, x[bad][0], x[bad][1], x[bad][2], FLOW_BOUND);
+    const phys_vec velocity = {v[0], v[1], v[2], 0};
+    if (phys_diverged(1, FLOW_BOUND, &velocity) == 0)
+        return model_fail(cloth->velocity_place, error,
+                          "cloth '%.60s' starts with the velocity (%g, %g, %g) m/s; less than %g "
+                          "m/s along each axis is expected",
+                          cloth->name, v[0], v[1], v[2], FLOW_BOUND);
     return CLOTH_OK;
 }
 
@@ -159,9 +182,11 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
         if (p->used[first + i])
             p->velocity[first + i] = (phys_vec){v[0], v[1], v[2], 0};
         else
-            p->n_unused++;
+            note(&p->unused, cloth, i, cloth->mesh_place);
     }
-    int code = masses(p, first, model, cloth, error);
+    int code = check_start(p, first, cloth, error);
+    if (!code)
+        code = masses(p, first, model, cloth, error);
     if (!code)
         code = loads(p, first, cloth, error);
     if (!code)
@@ -209,8 +234,8 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
         code = cloth_particles(particles, first, model, model->cloths + c, error);
         first += model->cloths[c].mesh.n_vertices;
     }
-    if (!code && particles->n_unused == particles->n)
-        code = cloth_fail(error, CLOTH_E_INPUT,
+    if (!code && particles->unused.n == particles->n)
+        code = model_fail(model->n_cloths ? model->cloths[0].mesh_place : NULL, error,
                           "nothing to simulate: no vertex is used by a face or an edge");
     if (code)
         flow_particles_free(particles);

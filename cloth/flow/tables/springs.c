@@ -36,8 +36,13 @@ int flow_springs_make(struct flow_springs *springs, const struct model *model,
         const struct model_material *m = model->materials + cloth->material;
         const struct mesh_moduli moduli = {m->stretch, m->shear, m->bend, m->both_diagonals};
         struct mesh_lattice lattice = {0};
-        code = mesh_lattice_build(&lattice, &cloth->mesh, &moduli, error);
-        if (!code)
+        struct cloth_error inner = {0};
+        code = mesh_lattice_build(&lattice, &cloth->mesh, &moduli, &inner);
+        if (code == CLOTH_E_INPUT)
+            model_fail(cloth->mesh_place, error, "cloth '%.60s': %s", cloth->name, inner.text);
+        else if (code)
+            cloth_fail(error, code, "%s", inner.text);
+        else
             code = append(springs, &lattice, first, m->damping_stiffness, error);
         mesh_lattice_free(&lattice);
         first += cloth->mesh.n_vertices;

@@ -10,16 +10,28 @@
  * vertices are numbered cloth after cloth in the input's order, places block after block
  * (cloth/mesh/blocks.h). */
 
+/* Positions and speeds of this size (m, m/s, along an axis) are no cloth's: a run does not start
+ * with them, and a run that comes to them diverged. */
+#define FLOW_BOUND 1e6
+
+/* How many vertices are odd, and the first of them: in the numbering of its cloth's mesh. */
+struct flow_odd {
+    uint32_t n, vertex;
+    const struct model_cloth *cloth;
+    const char *place; /* of the mesh, pin or load that names it */
+};
+
 /* Particles by vertex, before the cut. Arrays of n. */
 struct flow_particles {
-    uint32_t n, n_unused;
+    uint32_t n;
+    struct flow_odd unused, pinned, loaded; /* that no face or edge uses: all; pinned; loaded */
     unsigned char *used;
     double *mass, *drag, *free; /* kg; kg/s, viscous + mass damping; 1 or 0 where a pin holds */
     phys_vec *position, *velocity, *load; /* m, m/s, N (gravity included) */
 };
 
-/* Errors: CLOTH_E_INPUT for pins and loads outside their mesh and for used vertices without mass;
- * CLOTH_E_MEMORY. Local. */
+/* Errors: CLOTH_E_INPUT for pins and loads outside their mesh, boxes without a vertex, starts
+ * beyond FLOW_BOUND and used vertices without mass; CLOTH_E_MEMORY. Local. */
 int flow_particles_make(struct flow_particles *particles, const struct model *model,
                         struct cloth_error *error);
 void flow_particles_free(struct flow_particles *particles);

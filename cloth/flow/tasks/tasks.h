@@ -31,17 +31,15 @@ struct flow_clock {
 /* Codes of bodies that fail; the last one is the main program's. */
 enum { FLOW_DIVERGED = 1, FLOW_INDEFINITE, FLOW_NOT_WRITTEN, FLOW_NOT_CONVERGED };
 
-/* Positions and speeds of this size (m, m/s) are no cloth's: the run diverged. */
-#define FLOW_BOUND 1e6
-
 /* A residual with r.r below this ((kg m/s)^2) is zero: p.Ap is about r.r times a mass, and would
  * underflow before r.r does. */
 #define FLOW_NOTHING 1e-280
 
 struct flow {
     const struct model *model;
-    uint32_t n_vertices, n_triangles, n_unused;
-    phys_vec *start; /* n_vertices: where the vertices start */
+    uint32_t n_vertices, n_triangles;
+    char warning[3][512]; /* of all vertices, pinned ones, loaded ones; empty: none */
+    phys_vec *start;      /* n_vertices: where the vertices start */
     struct mesh_blocks blocks;
     struct flow_tables tables;
     uint64_t n_steps;

@@ -22,5 +22,7 @@ int scene_build_mesh(struct mesh *mesh, const struct scene_tree *tree, int cloth
 /* n zeroed entries (at least one), or NULL with an error. */
 void *scene_build_array(size_t n, size_t size, struct cloth_error *error);
 char *scene_build_copy(const char *text, struct cloth_error *error);
+/* The place of a node, for the model. */
+char *scene_build_place(const struct scene_tree *tree, int node, struct cloth_error *error);
 
 #endif

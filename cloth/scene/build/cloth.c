@@ -63,7 +63,9 @@ static int build_pin(struct model_pin *pin, const struct scene_tree *tree, int n
 {
     yaml_node_pair_t kind = scene_tree_pair(tree, node, 0);
     const char *name = scene_tree_scalar(tree, kind.key);
-    scene_tree_position(tree, node, &pin->line, &pin->column);
+    pin->place = scene_build_place(tree, node, error);
+    if (!pin->place)
+        return error->code;
     if (!strcmp(name, "vertices")) {
         pin->kind = MODEL_PIN_VERTICES;
         return build_vertices(&pin->vertices, &pin->n_vertices, tree, kind.value, cloth, error);
@@ -92,24 +94,45 @@ static int build_pins(struct model_cloth *cloth, const struct scene_tree *tree, 
     return code;
 }
 
+/* seen: an entry for each vertex, the number of the last load that named it; number: of this load,
+ * from 1. */
+static int build_load(struct model_load *load, const struct scene_tree *tree, int node,
+                      const struct model_cloth *cloth, uint32_t *seen, uint32_t number,
+                      struct cloth_error *error)
+{
+    int list = scene_tree_get(tree, node, "vertices");
+    load->place = scene_build_place(tree, node, error);
+    if (!load->place)
+        return error->code;
+    scene_tree_vector(tree, scene_tree_get(tree, node, "force"), 3, load->force);
+    int code = build_vertices(&load->vertices, &load->n_vertices, tree, list, cloth, error);
+    for (uint32_t i = 0; !code && i < load->n_vertices; i++) {
+        uint32_t vertex = load->vertices[i];
+        if (seen[vertex] == number)
+            code = scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
+                                   "vertex %u stands twice in one load; to load it twice, write "
+                                   "another load or a larger force",
+                                   vertex);
+        seen[vertex] = number;
+    }
+    return code;
+}
+
 static int build_loads(struct model_cloth *cloth, const struct scene_tree *tree, int node,
                        struct cloth_error *error)
 {
-    int list = scene_tree_get(tree, node, "loads");
-    size_t n = scene_tree_length(tree, list);
+    int list = scene_tree_get(tree, node, "loads"), code = CLOTH_OK;
+    uint32_t n = (uint32_t)scene_tree_length(tree, list);
+    uint32_t *seen = scene_build_array(n ? cloth->mesh.n_vertices : 0, sizeof *seen, error);
     cloth->loads = scene_build_array(n, sizeof *cloth->loads, error);
-    if (!cloth->loads)
-        return error->code;
-    cloth->n_loads = (uint32_t)n;
-    int code = CLOTH_OK;
-    for (size_t i = 0; !code && i < n; i++) {
-        int item = scene_tree_item(tree, list, i);
-        struct model_load *load = &cloth->loads[i];
-        scene_tree_position(tree, item, &load->line, &load->column);
-        scene_tree_vector(tree, scene_tree_get(tree, item, "force"), 3, load->force);
-        code = build_vertices(&load->vertices, &load->n_vertices, tree,
-                              scene_tree_get(tree, item, "vertices"), cloth, error);
-    }
+    if (seen && cloth->loads)
+        cloth->n_loads = n;
+    else
+        code = error->code;
+    for (uint32_t i = 0; !code && i < n; i++)
+        code = build_load(&cloth->loads[i], tree, scene_tree_item(tree, list, i), cloth, seen,
+                          i + 1, error);
+    free(seen);
     return code;
 }
 
@@ -155,6 +178,17 @@ static int name_cloth(struct model *model, uint32_t i, const struct scene_tree *
     return model->cloths[i].name ? CLOTH_OK : error->code;
 }
 
+/* Where the scene says what flow_prepare may find wrong. */
+static int build_places(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                        struct cloth_error *error)
+{
+    yaml_node_pair_t mesh = scene_tree_pair(tree, scene_tree_get(tree, node, "mesh"), 0);
+    cloth->place = scene_build_place(tree, node, error);
+    cloth->mesh_place = scene_build_place(tree, mesh.value, error);
+    cloth->velocity_place = scene_build_place(tree, scene_tree_get(tree, node, "velocity"), error);
+    return cloth->place && cloth->mesh_place && cloth->velocity_place ? CLOTH_OK : error->code;
+}
+
 static int build_cloth(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
                        struct cloth_error *error)
 {
@@ -162,7 +196,9 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
     if (scene_tree_get(tree, node, "mass_per_vertex"))
         cloth->mass_per_vertex = scene_tree_number(tree, node, "mass_per_vertex");
     scene_tree_vector(tree, scene_tree_get(tree, node, "velocity"), 3, cloth->velocity);
-    int code = name_cloth(model, i, tree, node, error);
+    int code = build_places(cloth, tree, node, error);
+    if (!code)
+        code = name_cloth(model, i, tree, node, error);
     if (!code)
         code = find_material(cloth, model, tree, node, error);
     if (!code)

@@ -9,11 +9,16 @@
 static const double MOST_STEPS = 4294967294;  /* of a run: steps are counted in 32 bits */
 static const double MOST_FRAMES = 2147483647; /* of a run: as many as PC2 can count */
 
+static void out_of_memory(struct cloth_error *error)
+{
+    cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+}
+
 void *scene_build_array(size_t n, size_t size, struct cloth_error *error)
 {
     void *array = calloc(n ? n : 1, size);
     if (!array)
-        cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+        out_of_memory(error);
     return array;
 }
 
@@ -24,6 +29,14 @@ char *scene_build_copy(const char *text, struct cloth_error *error)
     if (copy)
         memcpy(copy, text, size);
     return copy;
+}
+
+char *scene_build_place(const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    char *place = scene_tree_place(tree, node);
+    if (!place)
+        out_of_memory(error);
+    return place;
 }
 
 /* The scene's name, else the file's without folder and ending. */

@@ -76,9 +76,12 @@ static int graft(struct edit *edit, const yaml_document_t *from)
 
 static int edit_fails(const struct edit *edit, const char *what)
 {
-    const struct scene_set *set = &edit->tree->sets[edit->mark.line];
-    cloth_fail(edit->error, CLOTH_E_INPUT, "%s%s: %s", set->option ? "" : "--set ",
-               set->option ? set->option : set->text, what);
+    char *place = scene_tree_mark_place(edit->tree, &edit->mark);
+    if (place)
+        cloth_fail(edit->error, CLOTH_E_INPUT, "%s: %s", place, what);
+    else
+        out_of_memory(edit->error);
+    free(place);
     return 0;
 }
 

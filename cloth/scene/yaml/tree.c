@@ -5,7 +5,10 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+enum { MOST_OF_SET = 200 }; /* bytes of a set that a message repeats: what is wrong must fit too */
 
 yaml_node_t *scene_tree_node(const struct scene_tree *tree, int node)
 {
@@ -63,32 +66,40 @@ int scene_tree_get(const struct scene_tree *tree, int map, const char *key)
     return 0;
 }
 
-void scene_tree_position(const struct scene_tree *tree, int node, int *line, int *column)
+char *scene_tree_mark_place(const struct scene_tree *tree, const yaml_mark_t *mark)
 {
-    const yaml_mark_t *mark = &scene_tree_node(tree, node)->start_mark;
-    bool file = mark->index < SCENE_BY_DEFAULT;
-    *line = file ? (int)mark->line + 1 : 0;
-    *column = file ? (int)mark->column + 1 : 0;
+    char *place = NULL;
+    int n;
+    if (mark->index == SCENE_BY_DEFAULT) {
+        n = asprintf(&place, "%s", tree->path);
+    } else if (mark->index != SCENE_BY_SET) {
+        n = asprintf(&place, "%s:%zu:%zu", tree->path, mark->line + 1, mark->column + 1);
+    } else if (tree->sets[mark->line].option) {
+        n = asprintf(&place, "%s", tree->sets[mark->line].option);
+    } else {
+        const char *text = tree->sets[mark->line].text;
+        n = asprintf(&place, "--set %.*s%s", MOST_OF_SET, text,
+                     strlen(text) > (size_t)MOST_OF_SET ? "..." : "");
+    }
+    return n < 0 ? NULL : place;
+}
+
+char *scene_tree_place(const struct scene_tree *tree, int node)
+{
+    return scene_tree_mark_place(tree, &scene_tree_node(tree, node)->start_mark);
 }
 
 int scene_tree_fail(const struct scene_tree *tree, int node, struct cloth_error *error,
                     const char *format, ...)
 {
-    char text[900];
+    char text[900], *place = scene_tree_place(tree, node);
     va_list list;
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    const yaml_mark_t *mark = &scene_tree_node(tree, node)->start_mark;
-    if (mark->index == SCENE_BY_DEFAULT)
-        return cloth_fail(error, CLOTH_E_INPUT, "%s: %s", tree->path, text);
-    if (mark->index != SCENE_BY_SET)
-        return cloth_fail(error, CLOTH_E_INPUT, "%s:%zu:%zu: %s", tree->path, mark->line + 1,
-                          mark->column + 1, text);
-    const struct scene_set *set = &tree->sets[mark->line];
-    if (set->option)
-        return cloth_fail(error, CLOTH_E_INPUT, "%s: %s", set->option, text);
-    return cloth_fail(error, CLOTH_E_INPUT, "--set %s: %s", set->text, text);
+    int code = cloth_fail(error, CLOTH_E_INPUT, "%s: %s", place ? place : tree->path, text);
+    free(place);
+    return code;
 }
 
 double scene_tree_number(const struct scene_tree *tree, int map, const char *key)

@@ -44,8 +44,10 @@ int scene_tree_item(const struct scene_tree *tree, int list, size_t i);
 yaml_node_pair_t scene_tree_pair(const struct scene_tree *tree, int map, size_t i);
 int scene_tree_get(const struct scene_tree *tree, int map, const char *key); /* 0: no such key */
 
-/* Line and column (from 1) of a node in the file; 0 0 if it did not come from there. */
-void scene_tree_position(const struct scene_tree *tree, int node, int *line, int *column);
+/* The place of a node, or of what has its mark, as scene_tree_fail names it; the caller frees it.
+ * NULL: out of memory. */
+char *scene_tree_place(const struct scene_tree *tree, int node);
+char *scene_tree_mark_place(const struct scene_tree *tree, const yaml_mark_t *mark);
 
 /* Values of a document that the schema has accepted. */
 double scene_tree_number(const struct scene_tree *tree, int map, const char *key);

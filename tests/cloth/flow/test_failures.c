@@ -3,6 +3,7 @@
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -115,21 +116,21 @@ START_TEST(pins_and_loads_outside)
     struct record record = {0};
     setup_sheet(&setup, 3);
     setup_pin(&setup, 1, (const uint32_t[]){9});
-    setup.pin.line = 12;
-    setup.pin.column = 5;
+    setup.pin.place = (char[]){"a.yaml:12:5"};
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "line 12, column 5: ");
-    says(&record, CLOTH_E_INPUT, "vertex 9");
+    says(&record, CLOTH_E_INPUT, "a.yaml:12:5: a pin of cloth 'test' names vertex 9");
     says(&record, CLOTH_E_INPUT, "0 to 8");
     record_free(&record);
-    setup.pin = (struct model_pin){.kind = MODEL_PIN_BOX, .box = {{2, 0, 0}, {3, 1, 1}}};
+    setup.pin = (struct model_pin){
+        .kind = MODEL_PIN_BOX, .box = {{2, 0, 0}, {3, 1, 1}}, .place = (char[]){"a.yaml:13:5"}};
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "holds no vertex");
+    says(&record, CLOTH_E_INPUT, "a.yaml:13:5: the box of a pin of cloth 'test' holds no vertex");
     record_free(&record);
     setup.cloth.n_pins = 0;
     setup_load(&setup, 9, 0, 1, 0);
+    setup.load.place = (char[]){"a.yaml:14:5"};
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "a load of cloth 'test' names vertex 9");
+    says(&record, CLOTH_E_INPUT, "a.yaml:14:5: a load of cloth 'test' names vertex 9");
     record_free(&record);
     setup_free(&setup);
 }
@@ -160,12 +161,59 @@ START_TEST(no_mass)
     struct record record = {0};
     setup_weight(&setup);
     setup.cloth.mass_per_vertex = 0;
+    setup.cloth.place = (char[]){"a.yaml:3:5"};
     record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "a.yaml:3:5: vertex 0 of cloth 'test' has no mass");
     says(&record, CLOTH_E_INPUT, "mass_per_vertex");
     record_free(&record);
     setup_free(&setup);
 }
 END_TEST
+
+START_TEST(springs_of_no_length)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_weight(&setup);
+    setup.cloth.mesh.position[4] = 0;
+    setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "a.yaml:4:9: cloth 'test': vertices 0 and 1 ");
+    says(&record, CLOTH_E_INPUT, "are 0 m apart");
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+START_TEST(starts_out_of_bounds)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 3);
+    setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
+    setup.cloth.velocity_place = (char[]){"a.yaml:5:9"};
+    setup.cloth.velocity[2] = -1e6;
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT,
+         "a.yaml:5:9: cloth 'test' starts with the velocity (0, 0, -1e+06)");
+    record_free(&record);
+    setup.cloth.velocity[2] = 0;
+    for (int i = 0; i < 2; i++) {
+        setup.cloth.mesh.position[3 * 7 + 1] = i ? NAN : 1e6;
+        record_run(&record, &setup.model);
+        says(&record, CLOTH_E_INPUT, "a.yaml:4:9: vertex 7 of cloth 'test' starts at (0, ");
+        record_free(&record);
+    }
+    setup_free(&setup);
+}
+END_TEST
+
+static void warns(const struct flow *flow, size_t i, const char *text)
+{
+    const char *warning = flow_warning(flow, i);
+    ck_assert_msg(warning && strncmp(warning, text, strlen(text)) == 0, "%s",
+                  warning ? warning : "no warning");
+}
 
 START_TEST(vertices_without_faces)
 {
@@ -177,19 +225,51 @@ START_TEST(vertices_without_faces)
         struct flow *flow = NULL;
         setup_sheet(&setup, 2);
         setup_free(&setup);
+        setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
         ck_assert_int_eq(
             mesh_inline(&setup.cloth.mesh, 4, vertices[0], 0, NULL, n, triangle, &error), 0);
         ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error),
                          n ? CLOTH_OK : CLOTH_E_INPUT);
         if (n) {
             ck_assert_uint_eq(flow_vertices(flow), 4);
-            ck_assert_uint_eq(flow_unused(flow), 1);
+            warns(flow, 0,
+                  "a.yaml:4:9: vertices that no face or edge uses: 1, the first is vertex 3 "
+                  "of cloth 'test'; ");
+            ck_assert_ptr_null(flow_warning(flow, 1));
         } else {
-            ck_assert_msg(strstr(error.text, "nothing to simulate") != NULL, "%s", error.text);
+            ck_assert_msg(strstr(error.text, "a.yaml:4:9: nothing to simulate") != NULL, "%s",
+                          error.text);
         }
         flow_free(flow);
         setup_free(&setup);
     }
+}
+END_TEST
+
+START_TEST(pins_and_loads_that_move_nothing)
+{
+    static const double vertices[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {5, 5, 5}, {6, 6, 6}};
+    static const uint32_t triangle[] = {0, 1, 2};
+    struct setup setup;
+    struct cloth_error error = {0};
+    struct flow *flow = NULL;
+    setup_sheet(&setup, 2);
+    setup_free(&setup);
+    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 5, vertices[0], 0, NULL, 1, triangle, &error),
+                     0);
+    setup_pin(&setup, 4, (const uint32_t[]){0, 4, 4, 3});
+    setup.pin.place = (char[]){"a.yaml:5:9"};
+    setup_load(&setup, 3, 0, 1, 0);
+    setup.load.place = (char[]){"a.yaml:6:9"};
+    ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);
+    warns(flow, 0, "vertices that no face or edge uses: 2, the first is vertex 3 ");
+    warns(flow, 1,
+          "a.yaml:5:9: pinned vertices that no face or edge uses: 2, the first is vertex 4 ");
+    warns(flow, 2,
+          "a.yaml:6:9: loads on vertices that no face or edge uses: 1, the first is vertex 3 ");
+    ck_assert_ptr_null(flow_warning(flow, 3));
+    flow_free(flow);
+    setup_free(&setup);
 }
 END_TEST
 
@@ -222,7 +302,10 @@ int main(void)
     tcase_add_test(cases, pins_and_loads_outside);
     tcase_add_test(cases, pins_by_place);
     tcase_add_test(cases, no_mass);
+    tcase_add_test(cases, springs_of_no_length);
+    tcase_add_test(cases, starts_out_of_bounds);
     tcase_add_test(cases, vertices_without_faces);
+    tcase_add_test(cases, pins_and_loads_that_move_nothing);
     tcase_add_test(cases, more_ranks_than_blocks);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

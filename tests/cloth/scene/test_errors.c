@@ -212,6 +212,9 @@ START_TEST(names_and_indices)
            {"vertices: [11]", "vertices: [99]",
             .error = ":8:25: vertex 99 is outside the mesh of cloth 'sheet', which has 12 "
                      "vertices; 0 to 11 are allowed"},
+           {"vertices: [11]", "vertices: [11, 4, 11]",
+            .error = ":8:32: vertex 11 stands twice in one load; to load it twice, write another "
+                     "load or a larger force"},
            {"{vertices: [0, 3]}", "{box: [[9, 9, 9], [8, 8, 8]]}",
             .error = ":7:18: the box holds no vertex of cloth 'sheet'; it is meant for positions "
                      "after the transform"});

@@ -28,6 +28,15 @@ static struct model read_set(const char *set)
     return read_with(scene_right, 1, &(struct scene_set){.text = set});
 }
 
+/* The scene's path and what follows it. */
+static void same_place(const char *place, const char *after)
+{
+    const size_t path = strlen(scene_path());
+    ck_assert_ptr_nonnull(place);
+    ck_assert(strncmp(place, scene_path(), path) == 0);
+    ck_assert_str_eq(place + path, after);
+}
+
 static void same_vector(const double *a, double x, double y, double z)
 {
     ck_assert_double_eq(a[0], x);
@@ -71,12 +80,14 @@ START_TEST(cloth_and_material)
     ck_assert_int_eq(cloth->pins[0].kind, MODEL_PIN_VERTICES);
     ck_assert_uint_eq(cloth->pins[0].n_vertices, 2);
     ck_assert_uint_eq(cloth->pins[0].vertices[1], 3);
-    ck_assert_int_eq(cloth->pins[0].line, 7);
-    ck_assert_int_eq(cloth->pins[0].column, 12);
+    same_place(cloth->pins[0].place, ":7:12");
     ck_assert_uint_eq(cloth->n_loads, 1);
     ck_assert_uint_eq(cloth->loads[0].vertices[0], 11);
     same_vector(cloth->loads[0].force, 0, 1, 0);
-    ck_assert_int_eq(cloth->loads[0].line, 8);
+    same_place(cloth->loads[0].place, ":8:13");
+    same_place(cloth->place, ":4:5");
+    same_place(cloth->mesh_place, ":5:18");
+    same_place(cloth->velocity_place, ""); /* a default */
     const struct model_material *material = &model.materials[cloth->material];
     ck_assert_str_eq(material->name, "cotton");
     ck_assert_double_eq(material->density, 0.2);
@@ -206,7 +217,7 @@ START_TEST(sets_make_and_append)
     model_free(&model);
     model = read_set("cloths[0].pins[1].nearest=[0, 0, 0]");
     ck_assert_uint_eq(model.cloths[0].n_pins, 2);
-    ck_assert_int_eq(model.cloths[0].pins[1].line, 0);
+    ck_assert_str_eq(model.cloths[0].pins[1].place, "--set cloths[0].pins[1].nearest=[0, 0, 0]");
     model_free(&model);
     model = read_set("cloths[0].pins[0].vertices[2]=5");
     ck_assert_uint_eq(model.cloths[0].pins[0].n_vertices, 3);

@@ -98,6 +98,7 @@ static uint64_t hash_kernels(const struct graph *graph)
         hash = XXH64(k->access, sizeof k->access, hash);
         hash = XXH64(&k->rest, sizeof k->rest, hash);
         hash = XXH64(&args_size, sizeof args_size, hash);
+        hash = data_law_hash_kernel(k, hash);
     }
     return hash;
 }
@@ -105,13 +106,15 @@ static uint64_t hash_kernels(const struct graph *graph)
 /* What must be the same on all ranks, and whether it went well there. */
 struct started {
     int64_t code;
-    uint64_t kernels, seed, scheduler, mapping;
+    uint64_t kernels, laws, seed, scheduler, mapping;
 };
 
 static const char *difference(const struct started *a, const struct started *b)
 {
     if (a->kernels != b->kernels)
         return "kernels";
+    if (a->laws != b->laws)
+        return "laws";
     if (a->seed != b->seed)
         return "seeds";
     if (a->scheduler != b->scheduler)
@@ -142,6 +145,7 @@ static int agree(duite *rt, const duite_options *options, int code)
     struct started own = {.code = code, .seed = options->seed};
     if (!code) {
         own.kernels = hash_kernels(&rt->graph);
+        own.laws = data_laws_hash(options->laws, 0);
         own.scheduler = XXH64(options->scheduler->name, strlen(options->scheduler->name), 0);
         own.mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0);
     }
@@ -166,7 +170,8 @@ static int start_graph(duite *rt, const duite_options *options)
     rt->words = base_alloc((size_t)n * sizeof *rt->words);
     static const duite_kernel *const none[] = {NULL};
     int code = check_rest(options);
-    int started = graph_start(&rt->graph, rank, n, code ? none : options->kernels);
+    int started = graph_start(&rt->graph, rank, n, code ? none : options->kernels,
+                              code ? NULL : options->laws);
     if (!code)
         code = started;
     if (!code && !rt->words)

@@ -43,7 +43,8 @@ enum {
     DUITE_E_STATE =
         -8, /* a call that is not allowed here: from a task's body, or from another thread */
     DUITE_E_NOT_FREED = -9, /* stop found objects that were not freed */
-    DUITE_E_SYSTEM = -10    /* threads, topology: the operating system refused */
+    DUITE_E_SYSTEM = -10,   /* threads, topology: the operating system refused */
+    DUITE_E_LAW = -12       /* a law that is malformed, not listed, or for another element type */
 };
 
 /* The sentence of the last call of this thread that failed; never NULL. Valid until the next
@@ -65,7 +66,7 @@ typedef struct duite_object {
 
 /* Element types of objects. */
 typedef enum duite_type {
-    DUITE_BYTE = 1, /* bytes without arithmetic: cannot be accumulated into */
+    DUITE_BYTE = 1, /* bytes without arithmetic: accumulated into by a law of the program only */
     DUITE_I32,      /* sums of integers wrap around */
     DUITE_I64,
     DUITE_F32,
@@ -78,9 +79,31 @@ typedef enum duite_mode {
     DUITE_R,        /* reads */
     DUITE_W,        /* overwrites the whole object; finds unspecified bytes */
     DUITE_RW,       /* reads and writes */
-    DUITE_CW /* accumulates: finds zeros, and what it leaves is added to the object (see duite_fork)
-              */
+    DUITE_CW /* accumulates: finds the law's neutral element (of sums: zeros), and what it leaves
+                is combined with the object (see duite_fork) */
 } duite_mode;
+
+/* ---- Laws ---- */
+
+/* How contributions (cw) to an object combine: constant, alive from start to stop, listed at start
+ * in the same order on every rank. Names are unique. A law must be pure; it need be neither
+ * associative nor commutative, since the tree of contributions is fixed (see duite_fork).
+ *
+ * A law for bytes may see structures in them: count is always that of the whole object, in bytes
+ * then, and values are aligned to 16 bytes. */
+typedef struct duite_law {
+    const char *name;
+    duite_type type; /* of the objects it is for; 0: any but bytes */
+    /* Writes count neutral elements, what a body finds under cw; NULL: zeros. */
+    void (*neutral)(void *values, size_t count, duite_type type);
+    /* left[i] becomes law(left[i], right[i]), for count elements; left is first in fork order. */
+    void (*combine)(void *left, const void *right, size_t count, duite_type type);
+} duite_law;
+
+/* Built-in laws, for any type but bytes; they need no listing. Of equal elements (0 and -0 are
+ * equal) min and max keep the first in fork order; one that is not a number wins against all that
+ * are, the last of several. (A body that compares by < drops it itself.) */
+extern const duite_law duite_sum, duite_min, duite_max;
 
 /* ---- Kernels ---- */
 
@@ -130,6 +153,8 @@ typedef struct duite_kernel {
     duite_mode access[DUITE_MAX_ACCESS]; /* modes of the first parameters, ended by DUITE_NONE */
     duite_mode rest;  /* mode of any number of further ones; DUITE_NONE: none allowed */
     size_t args_size; /* bytes of arguments, copied at the fork; no pointers inside */
+    const duite_law *law[DUITE_MAX_ACCESS]; /* of the parameters with DUITE_CW; NULL: duite_sum */
+    const duite_law *rest_law;              /* if rest is DUITE_CW; NULL: duite_sum */
 } duite_kernel;
 
 /* ---- Start and stop ---- */
@@ -140,6 +165,7 @@ struct duite_mapping;
 typedef struct duite_options {
     MPI_Comm comm;                      /* who takes part; duplicated. Default MPI_COMM_WORLD */
     const duite_kernel *const *kernels; /* ended by NULL; the list is copied, the kernels are not */
+    const duite_law *const *laws;       /* of the program, ended by NULL; default NULL: none */
     void *context;                      /* given to every body; may differ between ranks */
     unsigned
         threads; /* workers of this rank, the main thread among them; 0: its share of the cores */
@@ -222,9 +248,10 @@ int duite_home(duite *rt, duite_object object);
 /* Forks a task on n objects, in the order of the kernel's modes; a task names an object once.
  * `args` points to the kernel's args_size bytes (ignored if 0). It runs where its first w or rw
  * object lives, else its first r object, else on rank 0. Contributions (cw) between two other
- * accesses of an object (by tasks, set, get or free; waits do not count) are summed in fork order
- * by a fixed tree: complete subtrees as in a binary counter, the rest folded from the right; then
- * the sum is added to the object: old + (A + (B + C)). Collective; returns at once. */
+ * accesses of an object (by tasks, set, get or free; waits do not count) combine in fork order by
+ * a fixed tree: complete subtrees as in a binary counter, the rest folded from the right; then the
+ * result is combined with the object: under a sum old + (A + (B + C)). Contributions of another law
+ * are another access. Collective; returns at once. */
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects);
 

@@ -53,6 +53,8 @@ const char *duite_code_text(int code)
         return "objects were not freed";
     case DUITE_E_SYSTEM:
         return "the operating system refused";
+    case DUITE_E_LAW:
+        return "law does not fit";
     default:
         return "unknown code";
     }

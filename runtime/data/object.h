@@ -17,6 +17,7 @@ struct data_object {
     uint64_t mark;                /* the last fork that named it: one task names an object once */
     struct data_version *current; /* this rank's copy of the current version, or NULL */
     uint64_t leaves;              /* contributions forked since the last other access */
+    const duite_law *law;         /* of these */
     struct data_sum *sum;         /* those that concern this rank, or NULL */
     bool copied;                  /* some rank beside the holder has a copy: `copies` says which */
 };

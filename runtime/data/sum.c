@@ -1,5 +1,4 @@
-/* The order of additions comes from the places of the leaves in fork order and from nothing else.
- */
+/* The order in which leaves combine comes from their places in fork order and from nothing else. */
 #include "runtime/data/sum.h"
 
 #include "runtime/base/memory.h"
@@ -7,63 +6,27 @@
 
 #include <stdlib.h>
 
-size_t data_type_size(duite_type type)
-{
-    switch (type) {
-    case DUITE_BYTE:
-        return 1;
-    case DUITE_I32:
-    case DUITE_F32:
-        return 4;
-    case DUITE_I64:
-    case DUITE_F64:
-        return 8;
-    }
-    return 0;
-}
-
-/* left += right, element by element. Integers wrap around. */
-static void add(duite_type type, size_t count, void *left, const void *right)
-{
-#define ADD(T)                                                                                     \
-    do {                                                                                           \
-        T *l = left;                                                                               \
-        const T *r = right;                                                                        \
-        for (size_t i = 0; i < count; i++)                                                         \
-            l[i] += r[i];                                                                          \
-    } while (0)
-    switch (type) {
-    case DUITE_I32:
-        ADD(uint32_t);
-        break;
-    case DUITE_I64:
-        ADD(uint64_t);
-        break;
-    case DUITE_F32:
-        ADD(float);
-        break;
-    case DUITE_F64:
-        ADD(double);
-        break;
-    case DUITE_BYTE:
-        break;
-    }
-#undef ADD
-}
-
 static size_t words(int n_ranks)
 {
     return ((size_t)n_ranks + 63) / 64;
 }
 
-struct data_sum *data_sum_new(int n_ranks)
+struct data_sum *data_sum_new(int n_ranks, const duite_law *law, duite_type type, size_t count)
 {
     struct data_sum *sum = base_alloc_zero(sizeof *sum + words(n_ranks) * sizeof(uint64_t));
     if (!sum)
         return NULL;
+    sum->law = law;
+    sum->type = type;
+    sum->count = count;
     atomic_init(&sum->pending, 1);
     atomic_init(&sum->arrived, NULL);
     return sum;
+}
+
+static void combine(const struct data_sum *sum, void *left, const void *right)
+{
+    sum->law->combine(left, right, sum->count, sum->type);
 }
 
 struct data_piece *data_piece_new(void)
@@ -115,6 +78,18 @@ struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first)
     return leaf;
 }
 
+bool data_sum_open(const struct data_sum *sum, struct data_piece *leaf)
+{
+    size_t bytes = sum->count * data_type_size(sum->type);
+    leaf->packet = data_packet_new(bytes, !sum->law->neutral);
+    if (!leaf->packet)
+        return false;
+    leaf->value = data_payload(leaf->packet);
+    if (sum->law->neutral)
+        sum->law->neutral(leaf->value, sum->count, sum->type);
+    return true;
+}
+
 void data_sum_arrive(struct data_sum *sum, struct data_piece *piece)
 {
     struct data_piece *first = atomic_load_explicit(&sum->arrived, memory_order_relaxed);
@@ -164,8 +139,8 @@ static struct data_piece **collect(struct data_sum *sum, size_t *n)
     return all;
 }
 
-const struct data_failure *data_sum_reduce(struct data_sum *sum, duite_type type, size_t count,
-                                           struct data_piece ***out, size_t *n, int *code)
+const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_piece ***out,
+                                           size_t *n, int *code)
 {
     size_t total;
     struct data_piece **all = collect(sum, &total);
@@ -183,7 +158,7 @@ const struct data_failure *data_sum_reduce(struct data_sum *sum, duite_type type
     for (size_t i = 0; i < total; i++) {
         all[top++] = all[i];
         for (; top > 1 && siblings(all[top - 2], all[top - 1]); top--) {
-            add(type, count, all[top - 2]->value, all[top - 1]->value);
+            combine(sum, all[top - 2]->value, all[top - 1]->value);
             all[top - 2]->level++;
         }
     }
@@ -191,10 +166,9 @@ const struct data_failure *data_sum_reduce(struct data_sum *sum, duite_type type
     return NULL;
 }
 
-void data_sum_finish(struct data_piece **pieces, size_t n, duite_type type, size_t count,
-                     void *value)
+void data_sum_finish(const struct data_sum *sum, struct data_piece **pieces, size_t n, void *value)
 {
     for (size_t i = n - 1; i > 0; i--)
-        add(type, count, pieces[i - 1]->value, pieces[i]->value);
-    add(type, count, value, pieces[0]->value);
+        combine(sum, pieces[i - 1]->value, pieces[i]->value);
+    combine(sum, value, pieces[0]->value);
 }

@@ -1,9 +1,8 @@
 #ifndef DUITE_DATA_SUM_H
 #define DUITE_DATA_SUM_H
 
+#include "runtime/data/law.h"
 #include "runtime/data/version.h"
-
-#include <duite.h>
 
 /* Contributions (cw) to an object between two other accesses, the leaves of a tree in fork order.
  *
@@ -21,6 +20,9 @@ struct data_piece {
 };
 
 struct data_sum {
+    const duite_law *law; /* of all contributions */
+    duite_type type;      /* of the object */
+    size_t count;
     struct data_piece *pieces;            /* of this rank; complete once pending is 0 */
     _Atomic(struct data_piece *) arrived; /* pieces from other ranks */
     _Atomic uint32_t pending; /* leaves not run, messages not arrived, and 1 while it is open */
@@ -31,7 +33,7 @@ struct data_sum {
 };
 
 /* An open sum without leaves, for so many ranks. NULL without memory. */
-struct data_sum *data_sum_new(int n_ranks);
+struct data_sum *data_sum_new(int n_ranks, const duite_law *law, duite_type type, size_t count);
 /* Frees it with all its pieces. */
 void data_sum_free(struct data_sum *sum);
 
@@ -40,6 +42,10 @@ void data_sum_sender(struct data_sum *sum, int rank);
 
 /* Adds leaf `first`, to be run on this rank: its task fills value. NULL without memory. */
 struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first);
+
+/* The leaf's task is about to run: gives it a value, which is the law's neutral element. False
+ * without memory. */
+bool data_sum_open(const struct data_sum *sum, struct data_piece *leaf);
 
 /* An empty piece, to be given away by data_sum_arrive. NULL without memory. */
 struct data_piece *data_piece_new(void);
@@ -54,14 +60,10 @@ struct data_waiter *data_sum_release(struct data_sum *sum);
  * *out in order of `first`, and their number into *n. *out is an array of the caller, freed by
  * base_free. Returns the first failure among them, which poisons the whole; DUITE_E_MEMORY in *code
  * without memory. */
-const struct data_failure *data_sum_reduce(struct data_sum *sum, duite_type type, size_t count,
-                                           struct data_piece ***out, size_t *n, int *code);
+const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_piece ***out,
+                                           size_t *n, int *code);
 
-/* Folds the reduced pieces of a whole sum from the right and adds the result to value. */
-void data_sum_finish(struct data_piece **pieces, size_t n, duite_type type, size_t count,
-                     void *value);
-
-/* Bytes of an element; 0 for no type. */
-size_t data_type_size(duite_type type);
+/* Folds the reduced pieces of a whole sum from the right; value becomes law(value, result). */
+void data_sum_finish(const struct data_sum *sum, struct data_piece **pieces, size_t n, void *value);
 
 #endif

@@ -51,6 +51,18 @@ static int check_call(const struct graph *graph, int at, uint32_t index, const v
     return DUITE_OK;
 }
 
+static int check_law(const duite_kernel *kernel, size_t i, const struct data_object *object,
+                     duite_object name)
+{
+    const duite_law *law = data_law_of(kernel, i);
+    if (data_law_fits(law, object->type))
+        return DUITE_OK;
+    return base_error(DUITE_E_LAW,
+                      "kernel %s, parameter %zu: law %s is for %s, and object %u.%u has %s",
+                      kernel->name, i, law->name, data_type_name(law->type), name.slot,
+                      name.generation, data_type_name(object->type));
+}
+
 /* Every object exists, is named once, and can be accumulated into where it is. */
 static int check_objects(struct graph *graph, const duite_kernel *kernel, size_t n,
                          const duite_object *objects)
@@ -66,10 +78,11 @@ static int check_objects(struct graph *graph, const duite_kernel *kernel, size_t
             return base_error(DUITE_E_ACCESS,
                               "kernel %s, parameter %zu: the task names object %u.%u twice",
                               kernel->name, i, objects[i].slot, objects[i].generation);
-        if (mode_of(kernel, i) == DUITE_CW && object->type == DUITE_BYTE)
-            return base_error(DUITE_E_ACCESS,
-                              "kernel %s, parameter %zu: bytes cannot be accumulated", kernel->name,
-                              i);
+        if (mode_of(kernel, i) == DUITE_CW) {
+            int code = check_law(kernel, i, object, objects[i]);
+            if (code)
+                return code;
+        }
         object->mark = mark;
     }
     return DUITE_OK;
@@ -98,10 +111,11 @@ static int place(struct graph *graph, const duite_kernel *kernel, size_t n,
     return first_read < 0 ? 0 : first_read;
 }
 
-/* One access of a task that runs on rank `at`; `task` is NULL on the other ranks. */
-static int use(struct graph *graph, void *worker, int at, duite_mode mode, duite_object name,
-               struct graph_task *task, size_t i, uint32_t *done)
+/* Access i of a task that runs on rank `at`; `task` is NULL on the other ranks. */
+static int use(struct graph *graph, void *worker, int at, const duite_kernel *kernel, size_t i,
+               duite_object name, struct graph_task *task, uint32_t *done)
 {
+    duite_mode mode = mode_of(kernel, i);
     struct data_object *object = &graph->table.object[name.slot];
     int code = DUITE_OK;
     if (task) {
@@ -111,7 +125,7 @@ static int use(struct graph *graph, void *worker, int at, duite_mode mode, duite
     }
     if (mode == DUITE_CW) {
         *done += 1;
-        return graph_contribute(graph, object, at, task, i);
+        return graph_contribute(graph, worker, object, data_law_of(kernel, i), at, task, i);
     }
     if (object->leaves)
         code = graph_close(graph, worker, object);
@@ -170,7 +184,7 @@ int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *ke
         return DUITE_E_MEMORY;
     for (size_t i = 0; i < n && !code; i++) {
         graph_mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
-        code = use(graph, worker, at, mode_of(kernel, i), objects[i], task, i, &done);
+        code = use(graph, worker, at, kernel, i, objects[i], task, &done);
     }
     if (task && !code)
         graph_settled(graph, worker, task, done);

@@ -45,7 +45,8 @@ static int check_unique(const duite_kernel *const kernels[], uint32_t index)
     return DUITE_OK;
 }
 
-static int take_kernels(struct graph *graph, const duite_kernel *const *kernels)
+static int take_kernels(struct graph *graph, const duite_kernel *const *kernels,
+                        const duite_law *const *laws)
 {
     size_t n = 0;
     while (kernels[n])
@@ -61,13 +62,16 @@ static int take_kernels(struct graph *graph, const duite_kernel *const *kernels)
         int code = check_kernel(graph->kernels[i], i, &graph->n_fixed[i]);
         if (!code)
             code = check_unique(graph->kernels, i);
+        if (!code)
+            code = data_law_check_kernel(graph->kernels[i], laws);
         if (code)
             return code;
     }
     return DUITE_OK;
 }
 
-int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels)
+int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels,
+                const duite_law *const *laws)
 {
     memset(graph, 0, sizeof *graph);
     graph->rank = rank;
@@ -75,7 +79,9 @@ int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *
     atomic_init(&graph->unfinished, 0);
     pthread_mutex_init(&graph->lock, NULL); /* cannot fail with default attributes */
     int code = data_table_start(&graph->table, n_ranks);
-    return code ? code : take_kernels(graph, kernels);
+    if (!code)
+        code = data_laws_check(laws);
+    return code ? code : take_kernels(graph, kernels, laws);
 }
 
 void graph_stop(struct graph *graph)

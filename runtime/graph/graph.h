@@ -14,7 +14,7 @@
 
 enum graph_kind {
     GRAPH_BODY,    /* a task of the program */
-    GRAPH_COMBINE, /* adds the contributions to an object */
+    GRAPH_COMBINE, /* combines the contributions with an object */
     GRAPH_PIECES,  /* sends this rank's contributions to where they are added */
     GRAPH_SEND,    /* sends a version to another rank */
     GRAPH_COPY     /* duite_get: copies a version to the main program */
@@ -53,8 +53,6 @@ struct graph_task {
 struct graph_sum {
     struct data_waiter waiter; /* waits for them all */
     struct data_sum *sum;
-    duite_type type;
-    size_t count;
     struct data_key key; /* the version they make */
     int to;              /* PIECES: the rank that adds */
 };
@@ -104,9 +102,11 @@ struct graph {
     const struct data_failure *first_failure; /* in fork order, since the last wait */
 };
 
-/* kernels: ended by NULL, checked, the list copied. `hooks` are set by whoever runs the tasks.
- * Errors: DUITE_E_KERNEL, memory; graph_stop is due all the same. */
-int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels);
+/* kernels: ended by NULL, checked, the list copied; laws likewise, or NULL, not kept. `hooks` are
+ * set by whoever runs the tasks. Errors: DUITE_E_KERNEL, DUITE_E_LAW, memory; graph_stop is due all
+ * the same. */
+int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels,
+                const duite_law *const *laws);
 /* No task is left. Frees everything, objects that were not freed among it. */
 void graph_stop(struct graph *graph);
 

@@ -38,10 +38,10 @@ int graph_fetch(struct graph *graph, void *worker, struct data_object *object, i
 /* The object has a new version on another rank: this rank's copy is stale. */
 void graph_forget(struct graph *graph, void *worker, struct data_object *object);
 
-/* Contributions: adds a leaf for access i (task NULL: it runs elsewhere, on rank `at`), and ends
- * the run of them. */
-int graph_contribute(struct graph *graph, struct data_object *object, int at,
-                     struct graph_task *task, size_t i);
+/* Contributions: adds a leaf for access i (task NULL: it runs elsewhere, on rank `at`) after ending
+ * a run of another law, and ends the run of them. */
+int graph_contribute(struct graph *graph, void *worker, struct data_object *object,
+                     const duite_law *law, int at, struct graph_task *task, size_t i);
 int graph_close(struct graph *graph, void *worker, struct data_object *object);
 void graph_run_combine(struct graph *graph, struct graph_task *task);
 void graph_run_pieces(struct graph *graph, struct graph_task *task);

@@ -34,16 +34,6 @@ static const struct data_failure *inherit(struct graph *graph, struct graph_task
     return failure;
 }
 
-static const struct data_failure *open_leaf(struct graph *graph, struct graph_task *task,
-                                            struct graph_access *access)
-{
-    access->leaf->packet = data_packet_new(access->bytes, true);
-    if (!access->leaf->packet)
-        return graph_fail_memory(graph, task);
-    access->leaf->value = data_payload(access->leaf->packet);
-    return NULL;
-}
-
 /* Gives the body its parameters; returns the poison among them, or NULL. */
 static const struct data_failure *prepare(struct graph *graph, struct graph_task *task)
 {
@@ -55,7 +45,8 @@ static const struct data_failure *prepare(struct graph *graph, struct graph_task
             failure = data_first(failure, access->in->failure);
             packet = access->in->packet;
         } else if (access->mode == DUITE_CW) {
-            failure = data_first(failure, open_leaf(graph, task, access));
+            if (!data_sum_open(access->sum, access->leaf))
+                failure = data_first(failure, graph_fail_memory(graph, task));
             packet = access->leaf->packet;
         } else {
             failure = data_first(failure, inherit(graph, task, access));

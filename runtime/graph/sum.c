@@ -1,6 +1,6 @@
 /* Contributions: leaves run wherever their tasks do, without waiting for one another or for the
- * object; the first other access closes the run, and then the leaves are added where the object's
- * value is (its holder). */
+ * object; the first other access closes the run, and then the leaves are combined where the
+ * object's value is (its holder). */
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
@@ -8,19 +8,23 @@
 
 #include <string.h>
 
-/* A piece on its way: where it stands in the tree; the values follow all of these. */
+/* A piece on its way: where it stands in the tree; the values follow all of these, each filled up
+ * to a multiple of 16 bytes. */
 struct piece_place {
     uint64_t first, level;
 };
 
-int graph_contribute(struct graph *graph, struct data_object *object, int at,
-                     struct graph_task *task, size_t i)
+static int contribute(struct graph *graph, struct data_object *object, int at,
+                      struct graph_task *task, size_t i)
 {
     bool adder = object->holder == graph->rank;
     uint64_t first = object->leaves++;
-    if (!object->sum && (adder || task) && !(object->sum = data_sum_new(graph->n_ranks))) {
-        base_no_memory("contributions");
-        return graph_break(graph);
+    if (!object->sum && (adder || task)) {
+        object->sum = data_sum_new(graph->n_ranks, object->law, object->type, object->count);
+        if (!object->sum) {
+            base_no_memory("contributions");
+            return graph_break(graph);
+        }
     }
     if (adder && !task)
         data_sum_sender(object->sum, at);
@@ -35,6 +39,16 @@ int graph_contribute(struct graph *graph, struct data_object *object, int at,
     return graph_break(graph);
 }
 
+int graph_contribute(struct graph *graph, void *worker, struct data_object *object,
+                     const duite_law *law, int at, struct graph_task *task, size_t i)
+{
+    int code = DUITE_OK;
+    if (object->leaves && object->law != law)
+        code = graph_close(graph, worker, object);
+    object->law = law;
+    return code ? code : contribute(graph, object, at, task, i);
+}
+
 /* A task that waits for all contributions; pending counts them as one. */
 static struct graph_task *closer(struct graph *graph, struct data_object *object,
                                  enum graph_kind kind, size_t n)
@@ -44,8 +58,6 @@ static struct graph_task *closer(struct graph *graph, struct data_object *object
         return NULL;
     *task->sum = (struct graph_sum){.waiter.task = task,
                                     .sum = object->sum,
-                                    .type = object->type,
-                                    .count = object->count,
                                     .key = graph_key(graph, object),
                                     .to = object->holder};
     atomic_fetch_add_explicit(&task->pending, 1, memory_order_relaxed);
@@ -110,15 +122,14 @@ void graph_run_combine(struct graph *graph, struct graph_task *task)
     struct data_piece **pieces;
     size_t n;
     int code;
-    const struct data_failure *failure =
-        data_sum_reduce(sum->sum, sum->type, sum->count, &pieces, &n, &code);
+    const struct data_failure *failure = data_sum_reduce(sum->sum, &pieces, &n, &code);
     out->packet = in->packet;
     out->failure = data_first(in->failure, failure);
     data_version_free(in);
     if (code)
         out->failure = graph_fail_memory(graph, task);
     if (!out->failure)
-        data_sum_finish(pieces, n, sum->type, sum->count, data_payload(out->packet));
+        data_sum_finish(sum->sum, pieces, n, data_payload(out->packet));
     base_free(pieces);
     data_sum_free(sum->sum);
 }
@@ -126,8 +137,9 @@ void graph_run_combine(struct graph *graph, struct graph_task *task)
 static struct data_packet *pack(const struct graph_sum *sum, struct data_piece *const *pieces,
                                 size_t n)
 {
-    size_t bytes = sum->count * data_type_size(sum->type);
-    struct data_packet *packet = data_packet_new(n * (sizeof(struct piece_place) + bytes), false);
+    size_t bytes = sum->sum->count * data_type_size(sum->sum->type);
+    size_t stride = (bytes + 15) / 16 * 16;
+    struct data_packet *packet = data_packet_new(n * (sizeof(struct piece_place) + stride), false);
     if (!packet)
         return NULL;
     packet->key = sum->key;
@@ -137,7 +149,8 @@ static struct data_packet *pack(const struct graph_sum *sum, struct data_piece *
     char *values = (char *)(places + n);
     for (size_t i = 0; i < n; i++) {
         places[i] = (struct piece_place){pieces[i]->first, pieces[i]->level};
-        memcpy(values + i * bytes, pieces[i]->value, bytes);
+        memcpy(values + i * stride, pieces[i]->value, bytes);
+        memset(values + i * stride + bytes, 0, stride - bytes);
     }
     return packet;
 }
@@ -149,8 +162,7 @@ void graph_run_pieces(struct graph *graph, struct graph_task *task)
     struct data_packet *packet = NULL;
     size_t n;
     int code;
-    const struct data_failure *failure =
-        data_sum_reduce(sum->sum, sum->type, sum->count, &pieces, &n, &code);
+    const struct data_failure *failure = data_sum_reduce(sum->sum, &pieces, &n, &code);
     if (!code && !failure)
         packet = pack(sum, pieces, n);
     if (!packet)
@@ -184,13 +196,13 @@ void graph_pieces_arrived(struct graph *graph, void *worker, struct data_sum *su
     } else {
         struct piece_place *places = data_payload(packet);
         char *values = (char *)(places + packet->pieces);
-        size_t bytes = packet->bytes / packet->pieces - sizeof *places;
+        size_t stride = packet->bytes / packet->pieces - sizeof *places;
         for (uint32_t i = 0; i < packet->pieces; i++)
             add_piece(graph, sum,
                       (struct data_piece){.first = places[i].first,
                                           .level = (uint32_t)places[i].level,
                                           .packet = i ? NULL : packet,
-                                          .value = values + i * bytes});
+                                          .value = values + i * stride});
     }
     graph_wake(graph, worker, data_sum_release(sum));
 }

@@ -52,6 +52,45 @@ static void different_kernels(void)
     tap_case(start_with((const duite_kernel *[]){&ADD, NULL}) == DUITE_OK, "and then the same");
 }
 
+static void keep_left(void *left, const void *right, size_t count, duite_type type)
+{
+    (void)left;
+    (void)right;
+    (void)count;
+    (void)type;
+}
+
+/* The last rank has other laws than the others. */
+static void different_laws(void)
+{
+    const int last = rank == ranks - 1;
+    const duite_law law = {.name = "law", .combine = keep_left};
+    duite_law other = law;
+    duite_kernel kernel = ADD;
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt;
+
+    kernel.law[0] = last ? &duite_min : &duite_max;
+    tap_case(start_with((const duite_kernel *[]){&kernel, NULL}) == DUITE_E_DIFFERENT,
+             "another law of a kernel");
+    kernel.law[0] = last ? NULL : &duite_sum;
+    tap_case(start_with((const duite_kernel *[]){&kernel, NULL}) == DUITE_OK, "no law is a sum");
+    options.laws = (const duite_law *[]){last ? NULL : &law, NULL};
+    tap_case(duite_start(&rt, &options) == DUITE_E_DIFFERENT, "a law less");
+    options.laws = (const duite_law *[]){&other, NULL};
+    other.name = last ? "another" : "law";
+    tap_case(duite_start(&rt, &options) == DUITE_E_DIFFERENT, "another name of a law");
+    other = law;
+    other.type = last ? DUITE_F64 : DUITE_F32;
+    tap_case(duite_start(&rt, &options) == DUITE_E_DIFFERENT, "another type of a law");
+    other = law;
+    other.combine = rank == 0 ? NULL : keep_left;
+    const int code = duite_start(&rt, &options);
+
+    tap_case(code == DUITE_E_LAW || (rank != 0 && code == DUITE_E_DIFFERENT),
+             "a law broken on one rank");
+}
+
 /* A mistake of one rank alone is everybody's error. */
 static void different_options(void)
 {
@@ -140,6 +179,7 @@ int main(void)
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     different_kernels();
+    different_laws();
     different_options();
     for (int what = ONE_MORE; what <= ONE_SET_MORE; what++)
         for (int at_stop = 0; at_stop < 2; at_stop++)

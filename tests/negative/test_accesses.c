@@ -67,16 +67,6 @@ START_TEST(many_objects)
 }
 END_TEST
 
-START_TEST(bytes_do_not_add)
-{
-    duite_object bytes;
-
-    ck_assert_int_eq(duite_new(rt, DUITE_BYTE, 8, &bytes), DUITE_OK);
-    refused(duite_fork(rt, &ADD, NULL, 1, &bytes), DUITE_E_ACCESS);
-    ck_assert_int_eq(duite_free(rt, bytes), DUITE_OK);
-}
-END_TEST
-
 START_TEST(kernel_not_listed)
 {
     const duite_kernel copy_of_add = ADD;
@@ -158,7 +148,6 @@ int main(void)
     tcase_add_test(cases, number_of_objects);
     tcase_add_test(cases, one_object_twice);
     tcase_add_test(cases, many_objects);
-    tcase_add_test(cases, bytes_do_not_add);
     tcase_add_test(cases, kernel_not_listed);
     tcase_add_test(cases, no_such_object);
     tcase_add_test(cases, use_after_free);

@@ -1,14 +1,16 @@
 check_PROGRAMS += tests/runtime/random_programs
 tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/runtime/random_program.h \
-    tests/runtime/random_make.c tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c
+    tests/runtime/random_make.c tests/runtime/random_laws.c tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c
 tests_runtime_random_programs_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_long.sh
 TESTS += tests/runtime/random_programs tests/runtime/test_random.sh
 LONG_TESTS += tests/runtime/test_random_long.sh
 
 if HAVE_CHECK
-check_PROGRAMS += tests/runtime/test_pool
+check_PROGRAMS += tests/runtime/test_pool tests/runtime/test_laws
 tests_runtime_test_pool_SOURCES = tests/runtime/test_pool.c
 tests_runtime_test_pool_LDADD = $(DUITE_TEST_LIBS)
-TESTS += tests/runtime/test_pool
+tests_runtime_test_laws_SOURCES = tests/runtime/test_laws.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_test_laws_LDADD = $(DUITE_TEST_LIBS)
+TESTS += tests/runtime/test_pool tests/runtime/test_laws
 endif

@@ -5,6 +5,7 @@
 #include "tests/runtime/random_program.h"
 
 #include <sched.h>
+#include <stdlib.h>
 #include <string.h>
 
 size_t prog_size(duite_type type)
@@ -58,7 +59,8 @@ static float float_of(uint64_t bits)
     return value;
 }
 
-/* Element i becomes bits (w), is mixed with them (rw), or they are added to it (cw). */
+/* Element i becomes bits (w), is mixed with them (rw), or they are added to it (cw; under min and
+ * max it becomes them). */
 static void put(duite_type type, duite_mode mode, void *data, size_t i, uint64_t bits)
 {
     uint8_t *byte = data;
@@ -101,6 +103,20 @@ static void waste(unsigned pause)
         ;
 }
 
+static int is_neutral(const struct prog_args *args, const duite_param *param, size_t i)
+{
+    const size_t bytes = param->count * prog_size(param->type);
+    void *neutral = malloc(bytes);
+
+    if (!neutral)
+        return 1;
+    prog_neutral((enum prog_law)args->law[i], param->type, param->count, neutral);
+    const int same = !memcmp(param->data, neutral, bytes);
+
+    free(neutral);
+    return same;
+}
+
 /* The line of the first of the call's promises that is broken; 0 if none is. */
 static int broken(const duite_call *call, const struct prog_args *args,
                   const struct prog_context *context)
@@ -121,11 +137,8 @@ static int broken(const duite_call *call, const struct prog_args *args,
                 return __LINE__;
     }
     for (size_t i = 0; i < call->n_params; i++)
-        for (size_t e = 0; args->mode[i] == DUITE_CW && e < call->param[i].count; e++)
-            if (digest(0, duite_in(call, i, char) + e * prog_size(args->type[i]),
-                       prog_size(args->type[i])) !=
-                digest(0, (char[8]){0}, prog_size(args->type[i])))
-                return __LINE__;
+        if (args->mode[i] == DUITE_CW && !is_neutral(args, &call->param[i], i))
+            return __LINE__;
     return 0;
 }
 
@@ -153,12 +166,14 @@ int prog_body(const duite_call *call)
             hash = digest(hash, call->param[i].data, args->count[i] * prog_size(args->type[i]));
     for (size_t i = 0; i < args->n; i++) {
         const size_t stride = args->mode[i] == DUITE_CW && hash % 4 == 0 ? 3 : 1;
+        const int extreme = args->law[i] == PROG_MIN || args->law[i] == PROG_MAX;
+        const duite_mode mode = extreme ? DUITE_W : (duite_mode)args->mode[i];
         uint64_t state = hash + i;
 
         if (args->mode[i] == DUITE_R)
             continue;
         for (size_t e = 0; e < args->count[i]; e += stride)
-            put(args->type[i], args->mode[i], call->param[i].data, e, duite_random(&state));
+            put(args->type[i], mode, call->param[i].data, e, duite_random(&state));
     }
     if (args->fails && call->context)
         return duite_fail(call, args->fails, "fork %u fails", args->number);
@@ -178,5 +193,6 @@ void prog_args_fill(const struct prog *prog, const struct prog_op *op, struct pr
         args->count[i] = (uint32_t)prog->objects[op->objects[i]].count;
         args->type[i] = (uint8_t)prog->objects[op->objects[i]].type;
         args->mode[i] = (uint8_t)prog_mode(&prog->kernel[op->kernel], i);
+        args->law[i] = (uint8_t)prog_law(&prog->kernel[op->kernel], i);
     }
 }

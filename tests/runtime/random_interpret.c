@@ -22,6 +22,7 @@ struct cell {
     unsigned char *value;
     struct failure poison;
     struct failure pending; /* of the contributions */
+    enum prog_law law;      /* of the contributions */
     unsigned n_subtrees, level[MAX_LEVELS];
     unsigned char *subtree[MAX_LEVELS];
 };
@@ -44,26 +45,9 @@ static size_t bytes_of(const struct cell *cell)
     return cell->count * prog_size(cell->type);
 }
 
-/* left[i] = left[i] + right[i] in the object's type; integers modulo a power of two. */
-static void add(const struct cell *cell, const void *left, const void *right, void *sum)
+static void combine(const struct cell *cell, void *left, const void *right)
 {
-    for (size_t i = 0; i < cell->count; i++)
-        switch (cell->type) {
-        case DUITE_BYTE:
-            break;
-        case DUITE_I32:
-            ((uint32_t *)sum)[i] = ((const uint32_t *)left)[i] + ((const uint32_t *)right)[i];
-            break;
-        case DUITE_I64:
-            ((uint64_t *)sum)[i] = ((const uint64_t *)left)[i] + ((const uint64_t *)right)[i];
-            break;
-        case DUITE_F32:
-            ((float *)sum)[i] = ((const float *)left)[i] + ((const float *)right)[i];
-            break;
-        case DUITE_F64:
-            ((double *)sum)[i] = ((const double *)left)[i] + ((const double *)right)[i];
-            break;
-        }
+    prog_combine(cell->law, cell->type, cell->count, left, right);
 }
 
 /* Adds a leaf, which becomes the cell's. */
@@ -74,7 +58,7 @@ static void contribute(struct cell *cell, unsigned char *leaf)
     while (cell->n_subtrees && cell->level[cell->n_subtrees - 1] == level) {
         unsigned char *left = cell->subtree[--cell->n_subtrees];
 
-        add(cell, left, leaf, left);
+        combine(cell, left, leaf);
         free(leaf);
         leaf = left;
         level++;
@@ -83,17 +67,18 @@ static void contribute(struct cell *cell, unsigned char *leaf)
     cell->subtree[cell->n_subtrees++] = leaf;
 }
 
-/* Every access but cw ends a run of contributions. */
+/* Every access but cw, and cw by another law, ends a run of contributions. */
 static struct cell *settle(struct cell *cell)
 {
     if (cell->n_subtrees) {
         unsigned char *tree = cell->subtree[cell->n_subtrees - 1];
 
         for (unsigned i = cell->n_subtrees - 1; i-- > 0;) {
-            add(cell, cell->subtree[i], tree, tree);
-            free(cell->subtree[i]);
+            combine(cell, cell->subtree[i], tree);
+            free(tree);
+            tree = cell->subtree[i];
         }
-        add(cell, cell->value, tree, cell->value);
+        combine(cell, cell->value, tree);
         free(tree);
         cell->n_subtrees = 0;
     }
@@ -151,8 +136,12 @@ static int fork_task(struct machine *m, const struct prog_op *op)
         param[i] = (duite_param){calloc(1, bytes_of(cell)), cell->count, cell->type};
         if (!param[i].data)
             return -1;
-        if (mode == DUITE_CW)
+        if (mode == DUITE_CW) {
+            if (cell->law != prog_law(kernel, i))
+                settle(cell)->law = prog_law(kernel, i);
+            prog_neutral(cell->law, cell->type, cell->count, param[i].data);
             continue;
+        }
         settle(cell);
         if (mode == DUITE_W)
             continue;

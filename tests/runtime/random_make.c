@@ -57,6 +57,14 @@ static duite_mode draw_mode(struct maker *m)
     return MODES[below(m, sizeof MODES / sizeof *MODES)];
 }
 
+/* The law of a parameter with cw; a sum is what no law says. */
+static const duite_law *draw_law(struct maker *m, duite_mode mode)
+{
+    const unsigned law = below(m, PROG_N_LAWS + 4);
+
+    return mode != DUITE_CW || law >= PROG_N_LAWS ? NULL : prog_law_given((enum prog_law)law);
+}
+
 /* The first two kernels accumulate and update one object: what finds most. */
 static void make_kernels(struct maker *m)
 {
@@ -70,10 +78,13 @@ static void make_kernels(struct maker *m)
         snprintf(prog->name[k], sizeof prog->name[k], "kernel %zu", k);
         kernel->name = prog->name[k];
         kernel->body = prog_body;
-        for (unsigned i = 0; i < n; i++)
+        for (unsigned i = 0; i < n; i++) {
             kernel->access[i] = k == 0 ? DUITE_CW : k == 1 ? DUITE_RW : draw_mode(m);
+            kernel->law[i] = draw_law(m, kernel->access[i]);
+        }
         if (k >= 2 && one_in(m, 3))
             kernel->rest = draw_mode(m);
+        kernel->rest_law = draw_law(m, kernel->rest);
         kernel->args_size = sizeof(struct prog_args) - below(m, PROG_ARGS_PADDING);
         prog->list[k] = kernel;
     }
@@ -126,12 +137,12 @@ static unsigned draw_object(struct maker *m)
     return m->live[one_in(m, 2) ? below(m, m->n_live) : below(m, (m->n_live + 3) / 4)];
 }
 
-/* An object that the task does not have yet and that fits the mode; -1 if none was found. */
-static int draw_parameter(struct maker *m, const struct prog_op *op, duite_mode mode)
+/* An object that the operation does not name yet; -1 if none was found. */
+static int draw_other(struct maker *m, const struct prog_op *op, int may_bytes, int may_numbers)
 {
     for (int attempt = 0; attempt < 30; attempt++) {
         const unsigned object = draw_object(m);
-        int taken = mode == DUITE_CW && m->prog->objects[object].type == DUITE_BYTE;
+        int taken = m->prog->objects[object].type == DUITE_BYTE ? !may_bytes : !may_numbers;
 
         for (unsigned i = 0; i < op->n; i++)
             taken |= op->objects[i] == object;
@@ -139,6 +150,16 @@ static int draw_parameter(struct maker *m, const struct prog_op *op, duite_mode 
             return (int)object;
     }
     return -1;
+}
+
+/* An object that fits the next parameter. */
+static int draw_parameter(struct maker *m, const struct prog_op *op)
+{
+    const duite_kernel *kernel = &m->prog->kernel[op->kernel];
+    const int any = prog_mode(kernel, op->n) != DUITE_CW;
+    const int weave = prog_law(kernel, op->n) == PROG_WEAVE;
+
+    return draw_other(m, op, any || weave, any || !weave);
 }
 
 static void push_fork(struct maker *m, const struct prog_op *draft)
@@ -165,7 +186,7 @@ static void make_fork(struct maker *m)
     struct prog_op draft = {.kind = PROG_FORK, .kernel = kernel};
 
     while (draft.n < listed + more) {
-        const int object = draw_parameter(m, &draft, prog_mode(&prog->kernel[kernel], draft.n));
+        const int object = draw_parameter(m, &draft);
 
         if (object < 0)
             break;
@@ -179,7 +200,7 @@ static void make_fork(struct maker *m)
 static void make_burst(struct maker *m)
 {
     struct prog_op draft = {.kind = PROG_FORK, .kernel = 0};
-    const int object = draw_parameter(m, &draft, DUITE_CW);
+    const int object = draw_parameter(m, &draft);
 
     if (object < 0)
         return;
@@ -197,7 +218,7 @@ static void make_hint(struct maker *m)
 
     op->weight = (double)below(m, 5);
     for (unsigned i = 0; i < 3; i++) {
-        const int other = draw_parameter(m, op, DUITE_R);
+        const int other = draw_other(m, op, 1, 1);
 
         if (other >= 0 && (unsigned)other != op->object)
             op->objects[op->n++] = (unsigned)other;
@@ -348,6 +369,7 @@ void prog_print(FILE *file, const struct prog *prog, size_t index)
                                         "get_at", "wait", "hint", "follow", "home", "wrong"};
     static const char *const TYPES[] = {"", "byte", "i32", "i64", "f32", "f64"};
     static const char *const MODES[] = {"", "r", "w", "rw", "cw"};
+    static const char *const LAWS[] = {"", ",min:", ",max:", ",mix:", ",weave:"};
     const struct prog_op *op = &prog->ops[index];
 
     fprintf(file, "#   %3zu %s", index, KINDS[op->kind]);
@@ -358,8 +380,9 @@ void prog_print(FILE *file, const struct prog *prog, size_t index)
     if (op->kind == PROG_NEW)
         fprintf(file, " %s x %zu", TYPES[op->type], op->count);
     for (unsigned i = 0; i < op->n; i++)
-        fprintf(file, " %s%u",
+        fprintf(file, " %s%s%u",
                 op->kind == PROG_FORK ? MODES[prog_mode(&prog->kernel[op->kernel], i)] : "",
+                op->kind == PROG_FORK ? LAWS[prog_law(&prog->kernel[op->kernel], i)] : "",
                 op->objects[i]);
     if (op->kind == PROG_FOLLOW)
         fprintf(file, " leader %u", op->objects[0]);

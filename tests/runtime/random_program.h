@@ -29,6 +29,9 @@ enum prog_kind {
     PROG_WRONG /* a fork that must be refused; the next get or wait returns its error once more */
 };
 
+/* Two of the laws are the program's own: one for numbers, one for bytes. */
+enum prog_law { PROG_SUM, PROG_MIN, PROG_MAX, PROG_MIX, PROG_WEAVE, PROG_N_LAWS };
+
 /* Objects are named by the order in which the program makes them; no number is used twice. */
 struct prog_op {
     enum prog_kind kind;
@@ -52,7 +55,7 @@ struct prog_args {
     int fails, rank;
     unsigned pause, number, n;
     uint32_t count[PROG_MAX_PARAMS];
-    uint8_t type[PROG_MAX_PARAMS], mode[PROG_MAX_PARAMS];
+    uint8_t type[PROG_MAX_PARAMS], mode[PROG_MAX_PARAMS], law[PROG_MAX_PARAMS];
     char padding[PROG_ARGS_PADDING]; /* kernels copy some of it, so that argument sizes vary */
 };
 
@@ -122,6 +125,13 @@ size_t prog_size(duite_type type);
 /* The values of a set. */
 void prog_values(duite_type type, size_t count, uint64_t seed, void *values);
 void prog_args_fill(const struct prog *prog, const struct prog_op *op, struct prog_args *args);
+
+/* Laws: their meaning; what a kernel's parameter i has; what the runtime is told. */
+void prog_combine(enum prog_law law, duite_type type, size_t count, void *left, const void *right);
+void prog_neutral(enum prog_law law, duite_type type, size_t count, void *values);
+enum prog_law prog_law(const duite_kernel *kernel, size_t i);
+const duite_law *prog_law_given(enum prog_law law);
+extern const duite_law *const prog_own_laws[];
 
 /* Interprets a program; NULL without memory. */
 struct prog_answers *prog_interpret(const struct prog *prog);

@@ -245,6 +245,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
 
     options.comm = setup->comm;
     options.kernels = prog->list;
+    options.laws = prog_own_laws;
     options.context = context;
     options.threads = setup->threads;
     options.scheduler = duite_scheduler_find(setup->scheduler);

@@ -1,0 +1,35 @@
+#ifndef DUITE_DATA_LAW_H
+#define DUITE_DATA_LAW_H
+
+#include <duite.h>
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Element types: bytes of an element, 0 for no type; their name in a sentence. */
+size_t data_type_size(duite_type type);
+const char *data_type_name(duite_type type);
+
+/* Laws by which contributions combine. A kernel points at the laws of its cw parameters; all of
+ * them were found in the list given at start, or are built in. */
+
+/* The laws of the list are whole and have different names, none that of a built-in one. `laws` may
+ * be NULL: none. DUITE_E_LAW. */
+int data_laws_check(const duite_law *const *laws);
+
+/* The kernel, whose modes were checked, names laws for cw parameters only, each built in or listed.
+ * DUITE_E_LAW. */
+int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *laws);
+
+/* The law of parameter i, which is cw. Never NULL. */
+const duite_law *data_law_of(const duite_kernel *kernel, size_t i);
+
+/* Whether the law is for objects of this type. */
+bool data_law_fits(const duite_law *law, duite_type type);
+
+/* Of names and types: the laws listed, and those a kernel names. */
+uint64_t data_laws_hash(const duite_law *const *laws, uint64_t hash);
+uint64_t data_law_hash_kernel(const duite_kernel *kernel, uint64_t hash);
+
+#endif

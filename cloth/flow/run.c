@@ -20,11 +20,13 @@ double flow_now(void)
 
 const duite_kernel *const *flow_kernels(void)
 {
-    static const duite_kernel *const all[] = {
-        &flow_initial,    &flow_force,    &flow_explicit, &flow_implicit,  &flow_matrix,
-        &flow_start,      &flow_matvec,   &flow_update,   &flow_direction, &flow_velocity_dv,
-        &flow_velocity_a, &flow_position, &flow_collide,  &flow_status,    &flow_frame,
-        &flow_stretch,    &flow_most,     &flow_seconds,  &flow_tell,      NULL};
+    static const duite_kernel *const all[] = {&flow_ready,     &flow_initial,     &flow_force,
+                                              &flow_explicit,  &flow_implicit,    &flow_matrix,
+                                              &flow_start,     &flow_matvec,      &flow_update,
+                                              &flow_direction, &flow_velocity_dv, &flow_velocity_a,
+                                              &flow_position,  &flow_collide,     &flow_status,
+                                              &flow_frame,     &flow_stretch,     &flow_most,
+                                              &flow_seconds,   &flow_tell,        NULL};
     return all;
 }
 
@@ -151,29 +153,20 @@ const char *flow_warning(const struct flow *flow, size_t i)
 static int run_begin(struct flow_state *state)
 {
     struct flow *flow = state->flow;
-    flow->n_clocks = duite_threads(state->rt);
-    flow->clock = aligned_alloc(sizeof *flow->clock, flow->n_clocks * sizeof *flow->clock);
-    flow->frame_position = malloc(3 * sizeof(double) * flow->n_vertices);
-    if (!flow->clock || !flow->frame_position)
-        return DUITE_E_MEMORY;
-    memset(flow->clock, 0, flow->n_clocks * sizeof *flow->clock);
-    for (size_t v = 0; v < flow->n_vertices; v++)
-        for (size_t c = 0; c < 3; c++)
-            flow->frame_position[3 * v + c] = flow->start[v][c];
+    flow->trouble = (struct cloth_error){0};
     flow->output = state->output;
     flow->frames = 0;
     flow->hash = 0;
     atomic_store(&flow->stop, 0);
-    return flow_objects_make(state);
-}
-
-static void run_end(struct flow *flow)
-{
-    free(flow->clock);
-    free(flow->frame_position);
-    flow->clock = NULL;
-    flow->frame_position = NULL;
-    flow->output = NULL;
+    const int code = flow_memory_take(state);
+    if (code)
+        return code;
+    for (size_t v = 0; flow->room && v < flow->n_vertices; v++)
+        for (size_t c = 0; c < 3; c++)
+            flow->room[3 * v + c] = flow->start[v][c];
+    state->begun = true;
+    flow_objects_make(state);
+    return DUITE_OK;
 }
 
 /* All steps, or until a stop that was asked for has had its frame. */
@@ -204,29 +197,47 @@ static int code_of_cloth(int code)
 {
     if (code == FLOW_NOT_WRITTEN)
         return CLOTH_E_IO;
-    if (code == DUITE_E_MEMORY)
+    if (code == FLOW_NO_MEMORY || code == DUITE_E_MEMORY)
         return CLOTH_E_MEMORY;
     return code > 0 ? CLOTH_E_RUN : CLOTH_E_LIBRARY;
+}
+
+/* The sentence that a body gave its failure, without what the runtime says of the task before it.
+ */
+static const char *own_sentence(const char *message, int code)
+{
+    char before[32];
+    snprintf(before, sizeof before, " with code %d: ", code);
+    const char *found = strstr(message, before);
+    return found ? found + strlen(before) : message;
+}
+
+/* Why the run failed. What rank 0 could not write it knows in full, the others as far as it
+ * travels with a failure. */
+static const char *reason(const struct flow_state *state, int code)
+{
+    if (state->text[0])
+        return state->text;
+    if (code == FLOW_NOT_WRITTEN && state->flow->trouble.code)
+        return state->flow->trouble.text;
+    return code > 0 ? own_sentence(duite_message(), code) : duite_message();
 }
 
 /* Turns a failure into a sentence with the frame that was written last. Waits until nothing runs.
  */
 static int explain(struct flow_state *state, int code)
 {
-    const char *message = duite_message();
-    if (!state->text[0])
-        snprintf(state->text, sizeof state->text, "%s",
-                 message[0] ? message : "out of memory for the run");
+    struct cloth_error why = {0};
+    cloth_fail(&why, code_of_cloth(code), "%s", reason(state, code));
     if (code < 0) /* the runtime itself failed: no more is asked of it */
-        return cloth_fail(state->error, code_of_cloth(code), "%s", state->text);
+        return cloth_fail(state->error, why.code, "%s", why.text);
     duite_wait(state->rt); /* its error is the one in hand */
     if (!state->output)
-        return cloth_fail(state->error, code_of_cloth(code), "%s", state->text);
-    if (flow_last_frame(state) || !state->report->frames)
-        return cloth_fail(state->error, code_of_cloth(code), "%s; no frame was written",
-                          state->text);
-    return cloth_fail(state->error, code_of_cloth(code), "%s; the last frame written is %llu",
-                      state->text, (unsigned long long)state->report->last_frame);
+        return cloth_fail(state->error, why.code, "%s", why.text);
+    if (!state->begun || flow_last_frame(state) || !state->report->frames)
+        return cloth_fail(state->error, why.code, "%.900s; no frame was written", why.text);
+    return cloth_fail(state->error, why.code, "%.900s; the last frame written is %llu", why.text,
+                      (unsigned long long)state->report->last_frame);
 }
 
 static void describe(const struct flow *flow, struct flow_report *report)
@@ -266,6 +277,7 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
     report->simulated_seconds = (double)report->steps * flow->model->h;
     if (flow->model->integrator == MODEL_EXPLICIT_EULER)
         report->momentum_lost = NAN;
-    run_end(flow);
+    flow_memory_free(&state);
+    flow->output = NULL;
     return failed;
 }

@@ -4,6 +4,7 @@
 skip_unless tests/cloth/flow/test_motion
 skip_unless tests/cloth/flow/test_run
 skip_unless tests/cloth/flow/test_failures
+skip_unless tests/cloth/flow/test_memory
 plan_later
 
 export CK_RUN_CASE
@@ -13,3 +14,5 @@ CK_RUN_CASE=run
 ok "frames and stops on 2 ranks" ranks 2 tests/cloth/flow/test_run
 CK_RUN_CASE=failures
 ok "failures on 2 ranks" ranks 2 tests/cloth/flow/test_failures
+CK_RUN_CASE=memory
+ok "out of memory on one of 2 ranks" ranks 2 tests/cloth/flow/test_memory

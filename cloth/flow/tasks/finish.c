@@ -3,7 +3,6 @@
 #include "cloth/flow/tasks/tasks.h"
 
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
 
@@ -58,38 +57,39 @@ static void put(unsigned char *bytes, double value)
         bytes[i] = (unsigned char)(bits >> (8 * i));
 }
 
-/* Gathers a vector of all blocks on rank 0 into bytes, 24 a vertex of the input. rows: room for the
- * largest block. */
-static int gather(struct flow_state *state, size_t offset, double *rows, unsigned char *bytes)
+/* Gathers a vector of all blocks on rank 0 into bytes, 24 a vertex of the input; bytes: NULL on the
+ * other ranks. */
+static int gather(struct flow_state *state, size_t offset, unsigned char *bytes)
 {
     const struct flow *flow = state->flow;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
         const struct flow_table *t = flow->tables.block + b;
         const duite_object *object = (const void *)((const char *)(state->block + b) + offset);
-        const int code = duite_get_at(state->rt, *object, 0, rows);
+        const int code = duite_get_at(state->rt, *object, 0, state->rows);
         if (code)
             return code;
         for (uint32_t i = 0; bytes && i < t->n; i++)
             for (size_t c = 0; c < 3; c++)
                 put(bytes + 24 * (size_t)flow->blocks.vertex[t->first + i] + 8 * c,
-                    rows[4 * (size_t)i + c]);
+                    state->rows[4 * (size_t)i + c]);
     }
     return DUITE_OK;
 }
 
-/* bytes: NULL but on rank 0. Vertices that no face or edge uses are at their start, at rest. */
-static int hash_state(struct flow_state *state, double *rows, unsigned char *bytes)
+/* No frame is written any more. Vertices that no face or edge uses are at their start, at rest. */
+static int hash_state(struct flow_state *state)
 {
     struct flow *flow = state->flow;
+    unsigned char *bytes = duite_rank(state->rt) == 0 ? (unsigned char *)flow->room : NULL;
     const size_t half = 24 * (size_t)flow->n_vertices;
     for (size_t v = 0; bytes && v < flow->n_vertices; v++)
         for (size_t c = 0; c < 3; c++) {
             put(bytes + 24 * v + 8 * c, flow->start[v][c]);
             put(bytes + half + 24 * v + 8 * c, 0);
         }
-    int code = gather(state, offsetof(struct flow_objects, x), rows, bytes);
+    int code = gather(state, offsetof(struct flow_objects, x), bytes);
     if (!code)
-        code = gather(state, offsetof(struct flow_objects, v), rows, bytes ? bytes + half : NULL);
+        code = gather(state, offsetof(struct flow_objects, v), bytes ? bytes + half : NULL);
     if (!code && bytes)
         flow->hash = XXH64(bytes, 2 * half, 0);
     return code;
@@ -106,17 +106,8 @@ static int tell(struct flow_state *state, uint64_t told[FLOW_TELL])
 
 static int hash_all(struct flow_state *state)
 {
-    uint32_t largest = 0;
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
-        largest =
-            state->flow->tables.block[b].n > largest ? state->flow->tables.block[b].n : largest;
-    const bool root = duite_rank(state->rt) == 0;
-    double *rows = malloc(4 * sizeof(double) * ((size_t)largest + 1));
-    unsigned char *bytes = root ? malloc(48 * (size_t)state->flow->n_vertices) : NULL;
-    int code = rows && (bytes || !root) ? hash_state(state, rows, bytes) : DUITE_E_MEMORY;
-    free(rows);
-    free(bytes);
     uint64_t told[FLOW_TELL];
+    int code = hash_state(state);
     if (!code)
         code = tell(state, told);
     if (!code)

@@ -20,14 +20,12 @@ static int frame(const duite_call *call)
         const struct flow_table *t = flow->tables.block + b;
         for (uint32_t i = 0; i < t->n; i++)
             for (int c = 0; c < 3; c++)
-                flow->frame_position[3 * (size_t)flow->blocks.vertex[t->first + i] + (size_t)c] =
-                    x[i][c];
+                flow->room[3 * (size_t)flow->blocks.vertex[t->first + i] + (size_t)c] = x[i][c];
     }
-    struct cloth_error error = {0};
     if (flow->output &&
         flow->output->frame(flow->output->context, args->frame, args->step * flow->model->h,
-                            flow->frame_position, &error))
-        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", error.text);
+                            flow->room, &flow->trouble))
+        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
     flow->frames = args->frame + 1;
     return 0;
 }

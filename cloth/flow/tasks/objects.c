@@ -3,7 +3,6 @@
 #include "cloth/flow/tasks/tasks.h"
 
 #include <stddef.h>
-#include <stdlib.h>
 
 /* Makes an object of some rows (at least one) beside a block's x. A failure is returned once more
  * by the next get. */
@@ -30,9 +29,9 @@ static void make_block(duite *rt, const struct flow_table *t, struct flow_object
     duite_follow(rt, o->stretch, o->x);
 }
 
-/* bytes: room for one number a neighbour. */
-static void hint(struct flow_state *state, uint32_t b, double *bytes)
+static void hint(struct flow_state *state, uint32_t b)
 {
+    double *bytes = state->rows;
     const struct flow_tables *tables = &state->flow->tables;
     const struct flow_table *t = tables->block + b;
     for (uint32_t s = 0; s < t->n_slots; s++) {
@@ -50,41 +49,22 @@ static void make_shared(struct flow_state *state, duite_type type, size_t count,
     duite_follow(state->rt, *object, state->block[0].x);
 }
 
-static int allocate(struct flow_state *state, double **bytes)
+void flow_objects_make(struct flow_state *state)
 {
     const struct flow_tables *tables = &state->flow->tables;
-    size_t slots = 0;
     for (uint32_t b = 0; b < tables->n_blocks; b++)
-        slots = tables->block[b].n_slots > slots ? tables->block[b].n_slots : slots;
-    const size_t refs = tables->n_blocks > 2 * slots ? tables->n_blocks : 2 * slots;
-    state->block = calloc(tables->n_blocks, sizeof *state->block);
-    state->refs = calloc(refs + DUITE_MAX_ACCESS, sizeof *state->refs);
-    *bytes = calloc(slots + 1, sizeof **bytes);
-    return state->block && state->refs && *bytes ? DUITE_OK : DUITE_E_MEMORY;
-}
-
-int flow_objects_make(struct flow_state *state)
-{
-    const struct flow_tables *tables = &state->flow->tables;
-    double *bytes = NULL;
-    const int code = allocate(state, &bytes);
-    if (!code) {
-        for (uint32_t b = 0; b < tables->n_blocks; b++)
-            make_block(state->rt, tables->block + b, state->block + b);
-        for (uint32_t b = 0; b < tables->n_blocks; b++)
-            hint(state, b, bytes);
-        for (int i = 0; i < 2; i++) {
-            make_shared(state, DUITE_F64, 1, state->pq + i);
-            make_shared(state, DUITE_F64, 1, state->rho + i);
-            make_shared(state, DUITE_F64, FLOW_STATUS, state->status + i);
-        }
-        make_shared(state, DUITE_I64, 1, &state->token);
-        make_shared(state, DUITE_F64, 1, &state->most);
-        make_shared(state, DUITE_F64, FLOW_PARTS, &state->seconds);
-        make_shared(state, DUITE_I64, FLOW_TELL, &state->told);
+        make_block(state->rt, tables->block + b, state->block + b);
+    for (uint32_t b = 0; b < tables->n_blocks; b++)
+        hint(state, b);
+    for (int i = 0; i < 2; i++) {
+        make_shared(state, DUITE_F64, 1, state->pq + i);
+        make_shared(state, DUITE_F64, 1, state->rho + i);
+        make_shared(state, DUITE_F64, FLOW_STATUS, state->status + i);
     }
-    free(bytes);
-    return code;
+    make_shared(state, DUITE_I64, 1, &state->token);
+    make_shared(state, DUITE_F64, 1, &state->most);
+    make_shared(state, DUITE_F64, FLOW_PARTS, &state->seconds);
+    make_shared(state, DUITE_I64, FLOW_TELL, &state->told);
 }
 
 /* Frees what was made; the others are the zero object. Returns the first failure. */
@@ -112,10 +92,6 @@ int flow_objects_free(struct flow_state *state)
                                 state->status[0], state->status[1], state->token,  state->most,
                                 state->seconds,   state->told};
     const int failed = release(state->rt, sizeof all / sizeof *all, all);
-    free(state->block);
-    free(state->refs);
-    state->block = NULL;
-    state->refs = NULL;
     return code ? code : failed;
 }
 

@@ -29,7 +29,7 @@ struct flow_clock {
 };
 
 /* Codes of bodies that fail; the last one is the main program's. */
-enum { FLOW_DIVERGED = 1, FLOW_INDEFINITE, FLOW_NOT_WRITTEN, FLOW_NOT_CONVERGED };
+enum { FLOW_DIVERGED = 1, FLOW_INDEFINITE, FLOW_NOT_WRITTEN, FLOW_NO_MEMORY, FLOW_NOT_CONVERGED };
 
 /* A residual with r.r below this ((kg m/s)^2) is zero: p.Ap is about r.r times a mass, and would
  * underflow before r.r does. */
@@ -46,14 +46,16 @@ struct flow {
 
     /* Of the run that is on. */
     unsigned n_clocks;
-    struct flow_clock *clock; /* a worker */
+    struct flow_clock *clock;   /* a worker */
+    struct cloth_error trouble; /* of this rank: why it cannot begin, why a frame was not written;
+                                 * changed by the main thread when no task runs, and by `frame` */
+    atomic_int stop;            /* set by the main thread, read by the task `status` */
     /* On rank 0: written by the tasks `frame`, one at a time, and by the main thread when no task
      * runs. */
     const struct flow_output *output;
-    double *frame_position; /* n_vertices x 3 */
-    uint64_t frames;        /* written */
+    double *room;    /* n_vertices x 6: positions of a frame, at the end the bytes to be hashed */
+    uint64_t frames; /* written */
     uint64_t hash;
-    atomic_int stop; /* set by the main thread, read by the task `status` */
 };
 
 /* Arguments of every kernel; those that a kernel does not name are zero. */
@@ -70,6 +72,7 @@ enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
 
 /* Kernels. Objects in order; "rims" are one of each neighbour, in slot order. Vectors are rows of
  * four doubles. */
+extern const duite_kernel flow_ready;    /* cw ready: fails if this rank cannot begin */
 extern const duite_kernel flow_initial;  /* w x, w v, w rim of x, w rim of v */
 extern const duite_kernel flow_force;    /* r x, r v, w f; rims of x, rims of v */
 extern const duite_kernel flow_explicit; /* rw f: acceleration */
@@ -106,15 +109,22 @@ struct flow_state {
     struct flow_objects *block;
     duite_object pq[2], rho[2], status[2], token, most, seconds, told;
     duite_object *refs; /* room for the objects of any task */
+    double *rows;       /* room for the rows of any block, or a number for each neighbour */
     uint64_t next_frame;
     uint64_t iterations; /* CG's, of the last step whose solve is done */
+    bool begun;          /* all ranks have their memory, objects are made */
     bool stopping;       /* a stop was agreed: ends after the next frame */
     char text[512];      /* why the main program itself gave up; empty: ask duite_message */
 };
 
 /* Functions of the main program. Collective. They return 0 or what duite returned, which flow_run
  * turns into a sentence. */
-int flow_objects_make(struct flow_state *state);
+/* All memory that a run needs besides its objects, and whether all ranks have it: if one has not,
+ * all return FLOW_NO_MEMORY and none has begun. To be freed in either case. */
+int flow_memory_take(struct flow_state *state);
+void flow_memory_free(struct flow_state *state);
+/* A failure is returned by the next get. */
+void flow_objects_make(struct flow_state *state);
 int flow_objects_free(struct flow_state *state);
 
 /* Forks `kernel` on one block: first the objects given, then the neighbours' objects at `offset` in

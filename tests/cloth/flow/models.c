@@ -90,7 +90,7 @@ static int keep_frame(void *context, uint64_t frame, double time, const double *
 {
     struct record *r = context;
     if (frame > 0 && frame == r->break_frame)
-        return cloth_fail(error, CLOTH_E_IO, "the disk is full");
+        return cloth_fail(error, CLOTH_E_IO, "the disk is full: %0300d x, that is where", 0);
     if (frame != r->frames)
         die("frames out of order");
     const size_t size = 3 * r->vertices * sizeof *position;
@@ -169,18 +169,26 @@ static void run_prepared(struct record *r, struct flow *flow)
     if (duite_start(&rt, &options))
         die(duite_message());
     r->vertices = flow_vertices(flow);
+    if (r->begin)
+        r->begin();
     r->code = flow_run(flow, rt, &output, &progress, &r->report, &r->error);
     if (duite_stop(&rt))
         die(duite_message());
     share(r);
 }
 
+void record_mpi(int *rank, int *ranks)
+{
+    begin_mpi();
+    MPI_Comm_rank(MPI_COMM_WORLD, rank);
+    MPI_Comm_size(MPI_COMM_WORLD, ranks);
+}
+
 void record_run(struct record *r, const struct model *model)
 {
     struct flow *flow = NULL;
-    int ranks = 1;
-    begin_mpi();
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    int rank, ranks;
+    record_mpi(&rank, &ranks);
     r->code = flow_prepare(&flow, model, ranks, &r->error);
     if (!r->code)
         run_prepared(r, flow);

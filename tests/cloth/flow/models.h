@@ -44,11 +44,14 @@ struct record {
     uint64_t break_frame;  /* writing this frame fails; 0: none */
     unsigned threads;      /* 0: 1 */
     const char *scheduler; /* NULL: the default */
+    void (*begin)(void);   /* called just before the run; NULL: none */
 };
 
 /* Prepares, runs and frees; every rank has the whole record then. Starts MPI if it is not; it ends
  * with the process. Collective. */
 void record_run(struct record *record, const struct model *model);
+/* Which rank this is, of how many. Starts MPI like record_run. */
+void record_mpi(int *rank, int *ranks);
 /* Component c of a vertex in a frame. */
 double record_at(const struct record *record, size_t frame, size_t vertex, size_t c);
 void record_free(struct record *record);

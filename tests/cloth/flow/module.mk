@@ -3,6 +3,12 @@ FLOW_TEST_MODELS = tests/cloth/flow/models.c tests/cloth/flow/models.h
 check_PROGRAMS += tests/cloth/flow/test_failures tests/cloth/flow/test_motion tests/cloth/flow/test_run
 tests_cloth_flow_test_failures_SOURCES = tests/cloth/flow/test_failures.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_failures_LDADD = $(CLOTH_TEST_LIBS)
+check_PROGRAMS += tests/cloth/flow/test_memory
+tests_cloth_flow_test_memory_SOURCES = tests/cloth/flow/test_memory.c $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_memory_LDADD = $(CLOTH_TEST_LIBS)
+tests_cloth_flow_test_memory_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=malloc -Wl,--wrap=calloc \
+	-Wl,--wrap=realloc -Wl,--wrap=aligned_alloc
+TESTS += tests/cloth/flow/test_memory
 tests_cloth_flow_test_motion_SOURCES = tests/cloth/flow/test_motion.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_motion_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_run_SOURCES = tests/cloth/flow/test_run.c $(FLOW_TEST_MODELS)

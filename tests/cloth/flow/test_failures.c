@@ -15,6 +15,13 @@ static void says(const struct record *record, int code, const char *part)
                   record->error.text);
 }
 
+/* The sentence is the user's: nothing of tasks stands before it. */
+static void begins(const struct record *record, const char *text)
+{
+    ck_assert_msg(strncmp(record->error.text, text, strlen(text)) == 0, "'%s' is not before '%s'",
+                  text, record->error.text);
+}
+
 START_TEST(divergence_names_step_block_and_frame)
 {
     struct setup setup;
@@ -33,7 +40,7 @@ START_TEST(divergence_names_step_block_and_frame)
     char step[64], frame[64];
     snprintf(step, sizeof step, "step %u:", (unsigned)record.report.steps + 1);
     snprintf(frame, sizeof frame, "the last frame written is %u", (unsigned)record.frames - 1);
-    says(&record, CLOTH_E_RUN, step);
+    begins(&record, step);
     says(&record, CLOTH_E_RUN, frame);
     ck_assert_uint_eq(record.report.last_frame, record.frames - 1);
     record_free(&record);
@@ -55,7 +62,7 @@ START_TEST(a_run_that_leaves_the_world)
         setup.model.fps = 1;
         setup.cloth.velocity[2] = 9e5;
         record_run(&record, &setup.model);
-        says(&record, CLOTH_E_RUN, "step 2: the position of vertex");
+        begins(&record, "step 2: the position of vertex");
         says(&record, CLOTH_E_RUN, "the last frame written is 1");
         record_free(&record);
         setup_free(&setup);
@@ -71,7 +78,8 @@ START_TEST(a_load_beyond_all_measure)
     setup_sheet(&setup, 4);
     setup_load(&setup, 3, 1e200, 0, 0);
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_RUN, "step 1: conjugate gradients broke down");
+    says(&record, CLOTH_E_RUN, "matrix is not positive definite");
+    begins(&record, "step 1: conjugate gradients broke down");
     record_free(&record);
     setup_free(&setup);
 }
@@ -97,11 +105,15 @@ END_TEST
 START_TEST(a_frame_that_cannot_be_written)
 {
     struct setup setup;
+    int rank, ranks;
     struct record record = {.break_frame = 4};
     setup_sheet(&setup, 6);
     setup.model.end = 1;
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_IO, "the disk is full");
+    begins(&record, "the disk is full: ");
+    record_mpi(&rank, &ranks);
+    if (rank == 0) /* it knows all of it */
+        says(&record, CLOTH_E_IO, "x, that is where; the last");
     says(&record, CLOTH_E_IO, "the last frame written is 3");
     ck_assert_uint_eq(record.frames, 4);
     ck_assert_uint_lt(record.report.steps, 100);

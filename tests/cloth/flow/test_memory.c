@@ -1,0 +1,119 @@
+/* Every allocation of the flow fails once: while it prepares, locally; while it runs, on one rank
+ * alone, and all ranks must hear of it and end together. The linker puts the functions below in the
+ * place of malloc's family (module.mk). */
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static _Thread_local long left = -1; /* allocations until one fails; negative: none does any more */
+
+static int fails_now(void)
+{
+    return left >= 0 && left-- == 0;
+}
+
+void *__real_malloc(size_t n);
+void *__real_calloc(size_t n, size_t size);
+void *__real_realloc(void *block, size_t n);
+void *__real_aligned_alloc(size_t line, size_t n);
+void *__wrap_malloc(size_t n);
+void *__wrap_calloc(size_t n, size_t size);
+void *__wrap_realloc(void *block, size_t n);
+void *__wrap_aligned_alloc(size_t line, size_t n);
+
+void *__wrap_malloc(size_t n)
+{
+    return fails_now() ? NULL : __real_malloc(n);
+}
+
+void *__wrap_calloc(size_t n, size_t size)
+{
+    return fails_now() ? NULL : __real_calloc(n, size);
+}
+
+void *__wrap_realloc(void *block, size_t n)
+{
+    return fails_now() ? NULL : __real_realloc(block, n);
+}
+
+void *__wrap_aligned_alloc(size_t line, size_t n)
+{
+    return fails_now() ? NULL : __real_aligned_alloc(line, n);
+}
+
+START_TEST(each_fails_once_in_prepare)
+{
+    struct setup setup;
+    setup_sheet(&setup, 3);
+    setup_pin(&setup, 1, (const uint32_t[]){0});
+    long n = 0;
+    for (;; n++) {
+        struct cloth_error error = {0};
+        struct flow *flow = NULL;
+        left = n;
+        const int code = flow_prepare(&flow, &setup.model, 1, &error);
+        const bool through = left >= 0;
+        left = -1;
+        ck_assert_int_eq(code, error.code);
+        ck_assert(!code == (flow != NULL));
+        flow_free(flow);
+        if (through)
+            break;
+        if (code)
+            ck_assert_msg(code == CLOTH_E_MEMORY && strstr(error.text, "out of memory"), "%s",
+                          error.text);
+    }
+    ck_assert_int_gt(n, 40);
+    setup_free(&setup);
+}
+END_TEST
+
+/* Allocations of a run of one thread before its first object; the last is made on rank 0 only. */
+enum { OF_A_RUN = 5 };
+
+static long next_run;
+
+static void arm(void)
+{
+    left = next_run;
+}
+
+START_TEST(each_fails_once_in_a_run)
+{
+    int rank, ranks;
+    struct setup setup;
+    setup_sheet(&setup, 6);
+    record_mpi(&rank, &ranks);
+    for (int i = 0; i < (ranks > 1 ? 2 * OF_A_RUN - 1 : OF_A_RUN); i++) {
+        const int where = i / OF_A_RUN;
+        struct record record = {.begin = arm};
+        next_run = rank == where ? i % OF_A_RUN : -1;
+        record_run(&record, &setup.model);
+        left = -1;
+        char text[64];
+        snprintf(text, sizeof text, "rank %d: out of memory", where);
+        ck_assert_msg(record.code == CLOTH_E_MEMORY && strstr(record.error.text, text) &&
+                          strstr(record.error.text, "; no frame was written"),
+                      "%d: %s", i, record.error.text);
+        record_free(&record);
+    }
+    struct record record = {0};
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("memory");
+    TCase *cases = tcase_create("memory");
+    tcase_add_test(cases, each_fails_once_in_prepare);
+    tcase_add_test(cases, each_fails_once_in_a_run);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

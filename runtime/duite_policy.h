@@ -25,6 +25,11 @@ typedef enum duite_end { DUITE_NEWEST, DUITE_OLDEST } duite_end;
 typedef struct duite_ready {
     const char *kernel; /* its kernel's name */
     uint64_t number;    /* its place in fork order */
+    /* What its data belong to: the block of the first object it writes (w, rw), else of the first
+     * it reads. Objects without leader are numbered on their home in the order they were made, from
+     * 0; those that follow one (duite_follow) are of its block. Of a task that only accumulates:
+     * its place in fork order. */
+    uint32_t block;
 } duite_ready;
 
 typedef struct duite_scheduler {

@@ -19,7 +19,8 @@ int data_table_start(struct data_table *table, int n_ranks)
     uint64_t *copies = base_grow(NULL, &table->copies_capacity, table->words, sizeof *copies);
     table->object = object;
     table->copies = copies;
-    if (!object || !copies)
+    table->blocks = calloc((size_t)n_ranks, sizeof *table->blocks);
+    if (!object || !copies || !table->blocks)
         return base_no_memory("the table of objects");
     memset(&object[0], 0, sizeof object[0]);
     return DUITE_OK;
@@ -34,10 +35,10 @@ static void hint_clear(struct data_hint *hint)
 
 void data_table_stop(struct data_table *table)
 {
-    for (size_t i = 0; i < table->n_unsettled; i++)
-        hint_clear(&table->unsettled[i]);
+    data_hints_forget(table);
     free(table->unsettled);
     free(table->vacant);
+    free(table->blocks);
     free(table->copies);
     free(table->object);
     memset(table, 0, sizeof *table);
@@ -126,31 +127,30 @@ struct data_object *data_object_find(struct data_table *table, duite_object name
     return NULL;
 }
 
-struct data_hint *data_hint_find(struct data_table *table, uint32_t slot)
+struct data_hint *data_hint_find(const struct data_table *table, uint32_t slot)
 {
     const struct data_object *object = &table->object[slot];
-    bool settled = object->generation % 2 == 0 || object->home >= 0;
-    return settled ? NULL : &table->unsettled[object->hint];
+    return object->home < 0 ? &table->unsettled[object->hint] : NULL;
 }
 
-uint32_t data_hint_leader(struct data_table *table, uint32_t slot)
+void data_object_settle(struct data_table *table, uint32_t slot, int home)
 {
-    for (;;) {
-        const struct data_hint *hint = data_hint_find(table, slot);
-        if (!hint || hint->leader == slot)
-            return slot;
-        slot = hint->leader;
-    }
+    struct data_object *object = &table->object[slot];
+    object->home = object->holder = home;
+    object->block = table->blocks[home]++;
 }
 
-void data_hints_settled(struct data_table *table)
+void data_object_join(struct data_table *table, uint32_t slot, uint32_t leader)
 {
-    for (size_t i = 0; i < table->n_unsettled; i++) {
-        struct data_object *object = &table->object[table->unsettled[i].slot];
-        if (object->home < 0)
-            object->home = object->holder;
+    struct data_object *object = &table->object[slot];
+    object->home = object->holder = table->object[leader].home;
+    object->block = table->object[leader].block;
+}
+
+void data_hints_forget(struct data_table *table)
+{
+    for (size_t i = 0; i < table->n_unsettled; i++)
         hint_clear(&table->unsettled[i]);
-    }
     table->n_unsettled = 0;
 }
 

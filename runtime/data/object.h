@@ -10,11 +10,13 @@ struct data_object {
     uint32_t generation; /* even: the slot is free */
     duite_type type;
     size_t count, bytes;
-    int home;                     /* -1: not decided yet */
-    uint32_t hint;                /* while home is -1: its place in `unsettled` */
-    int holder;                   /* the rank that has the current version for certain */
-    uint64_t number;              /* of the current version: writes so far */
-    uint64_t mark;                /* the last fork that named it: one task names an object once */
+    int home;        /* -1: not decided yet */
+    uint32_t block;  /* its place among the leaders with its home, in the order they were made;
+                        followers share their leader's */
+    uint32_t hint;   /* while home is -1: its place in `unsettled` */
+    int holder;      /* the rank that has the current version for certain */
+    uint64_t number; /* of the current version: writes so far */
+    uint64_t mark;   /* the last fork that named it: one task names an object once */
     struct data_version *current; /* this rank's copy of the current version, or NULL */
     uint64_t leaves;              /* contributions forked since the last other access */
     const duite_law *law;         /* of these */
@@ -41,6 +43,7 @@ struct data_table {
     size_t n_vacant, vacant_capacity;
     struct data_hint *unsettled; /* objects without a home, in the order they were made */
     size_t n_unsettled, unsettled_capacity;
+    uint32_t *blocks; /* a rank: leaders that got their home there so far */
     uint64_t settled; /* objects that got a home by the mapping so far */
 };
 
@@ -63,15 +66,16 @@ bool data_object_has_copy(const struct data_table *table, const struct data_obje
 void data_object_add_copy(struct data_table *table, struct data_object *object, int rank);
 void data_object_moved(struct data_object *object, int holder);
 
-/* The hint of the object in a slot, or NULL if its home is settled or the slot is free. */
-struct data_hint *data_hint_find(struct data_table *table, uint32_t slot);
+/* The hint of the object in a slot, or NULL if its home is settled. The slot is not free. */
+struct data_hint *data_hint_find(const struct data_table *table, uint32_t slot);
 
-/* The end of its chain of leaders: a slot without home that follows nobody, or one with a home. */
-uint32_t data_hint_leader(struct data_table *table, uint32_t slot);
+/* An object without home gets one, or that of its leader, which has one. Its hint no longer counts.
+ */
+void data_object_settle(struct data_table *table, uint32_t slot, int home);
+void data_object_join(struct data_table *table, uint32_t slot, uint32_t leader);
 
-/* The holders of all objects without home have been decided: these become their homes, and all
- * hints are forgotten. */
-void data_hints_settled(struct data_table *table);
+/* All objects have homes: forgets their hints. */
+void data_hints_forget(struct data_table *table);
 
 static inline duite_object data_object_name(const struct data_table *table,
                                             const struct data_object *object)

@@ -95,20 +95,20 @@ static void unmark(struct graph *graph, size_t n, const duite_object *objects)
             graph->table.object[objects[i].slot].mark = 0;
 }
 
-/* The owner rule. */
-static int place(struct graph *graph, const duite_kernel *kernel, size_t n,
-                 const duite_object *objects)
+/* The owner rule: the object where a task runs; NULL if it only accumulates. */
+static const struct data_object *owner(const struct graph *graph, const duite_kernel *kernel,
+                                       size_t n, const duite_object *objects)
 {
-    int first_read = -1;
+    const struct data_object *first_read = NULL;
     for (size_t i = 0; i < n; i++) {
         duite_mode mode = mode_of(kernel, i);
-        int home = graph->table.object[objects[i].slot].home;
+        const struct data_object *object = &graph->table.object[objects[i].slot];
         if (mode == DUITE_W || mode == DUITE_RW)
-            return home;
-        if (mode == DUITE_R && first_read < 0)
-            first_read = home;
+            return object;
+        if (mode == DUITE_R && !first_read)
+            first_read = object;
     }
-    return first_read < 0 ? 0 : first_read;
+    return first_read;
 }
 
 /* Access i of a task that runs on rank `at`; `task` is NULL on the other ranks. */
@@ -177,11 +177,14 @@ int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *ke
     }
     graph->forks++;
     graph_mix(graph, (uint64_t)index << 32 | (uint32_t)at);
+    const struct data_object *own = owner(graph, kernel, n, objects);
     if (at == GRAPH_ANYWHERE)
-        at = place(graph, kernel, n, objects);
+        at = own ? own->home : 0;
     struct graph_task *task = NULL;
     if (at == graph->rank && !(task = body_task(graph, index, args, n)))
         return DUITE_E_MEMORY;
+    if (task && own)
+        task->block = own->block;
     for (size_t i = 0; i < n && !code; i++) {
         graph_mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         code = use(graph, worker, at, kernel, i, objects[i], task, &done);
@@ -225,6 +228,7 @@ int graph_copy(struct graph *graph, void *worker, duite_object name, int to,
         return DUITE_E_MEMORY;
     copy->bytes = object->bytes;
     task->copy = copy;
+    task->block = object->block;
     uint32_t done = 0;
     task->access[0].mode = DUITE_R;
     graph_read(task, 0, version, &done);

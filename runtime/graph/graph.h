@@ -38,6 +38,7 @@ struct graph_task {
     enum graph_kind kind;
     uint32_t kernel; /* index in the list given at start */
     uint64_t number; /* in fork order */
+    uint32_t block;  /* for schedulers: of the object that it runs for */
     union {
         void *args;              /* BODY: its copy of the arguments */
         struct graph_sum *sum;   /* COMBINE, PIECES */

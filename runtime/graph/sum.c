@@ -60,6 +60,7 @@ static struct graph_task *closer(struct graph *graph, struct data_object *object
                                     .sum = object->sum,
                                     .key = graph_key(graph, object),
                                     .to = object->holder};
+    task->block = object->block;
     atomic_fetch_add_explicit(&task->pending, 1, memory_order_relaxed);
     object->sum->closer = &task->sum->waiter;
     return task;

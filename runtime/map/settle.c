@@ -1,6 +1,7 @@
 /* From hints to homes: the graph of leaders, in the order they were made, goes to the mapping, and
  * followers go with their leaders. Every rank draws the same conclusion; homes are never asked for.
- */
+ * All objects without a home are alive, since a free settles them first; the work is in proportion
+ * to them and their hints, however many others there are. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
@@ -8,11 +9,11 @@
 
 #include <string.h>
 
-enum { NO_NODE = -1 };
+#define NO_NODE SIZE_MAX
 
 struct nodes {
     duite_object_graph graph; /* points into the rest */
-    int64_t *node;            /* by slot: its leader's node, or NO_NODE */
+    size_t *node; /* by place in `unsettled`: its leader's node; NO_NODE: settled before */
     double *weight, *edge_weight;
     size_t *start, *end; /* by node: its row of edges while it grows */
     uint32_t *neighbour;
@@ -30,46 +31,55 @@ static void nodes_free(struct nodes *nodes)
     base_free(nodes->home);
 }
 
-/* The hint of entry i, or NULL if its object was freed (and its slot perhaps taken again). */
-static const struct data_hint *entry(struct data_table *table, size_t i)
-{
-    const struct data_hint *hint = data_hint_find(table, table->unsettled[i].slot);
-    return hint == &table->unsettled[i] ? hint : NULL;
-}
-
 static int allocate(const struct data_table *table, struct nodes *nodes)
 {
     size_t most = table->n_unsettled;
-    nodes->node = base_alloc(table->n_slots * sizeof *nodes->node);
+    nodes->node = base_alloc(most * sizeof *nodes->node);
     nodes->weight = base_alloc_zero(most * sizeof *nodes->weight);
     nodes->home = base_alloc_zero(most * sizeof *nodes->home);
     nodes->start = base_alloc_zero((most + 1) * sizeof *nodes->start);
     nodes->end = base_alloc_zero((most + 1) * sizeof *nodes->end);
     if (!nodes->node || !nodes->weight || !nodes->home || !nodes->start || !nodes->end)
         return base_no_memory("the mapping");
-    for (uint32_t slot = 0; slot < table->n_slots; slot++)
-        nodes->node[slot] = NO_NODE;
     return DUITE_OK;
 }
 
-/* Numbers the leaders and adds up the weights of those who follow them. */
-static void number(struct data_table *table, struct nodes *nodes)
+/* The node of the object in a slot. */
+static size_t node_of(const struct data_table *table, const struct nodes *nodes, uint32_t slot)
 {
-    size_t n = 0;
+    const struct data_hint *hint = data_hint_find(table, slot);
+    return hint ? nodes->node[hint - table->unsettled] : NO_NODE;
+}
+
+/* Everybody follows the end of the chain of leaders at once: one without home that follows nobody,
+ * or one with a home. Each link is walked a few times only, since all that were walked are cut
+ * short. */
+static void shorten(struct data_table *table)
+{
     for (size_t i = 0; i < table->n_unsettled; i++) {
-        const struct data_hint *hint = entry(table, i);
-        if (hint && data_hint_leader(table, hint->slot) == hint->slot)
-            nodes->node[hint->slot] = (int64_t)n++;
+        uint32_t end = table->unsettled[i].slot;
+        struct data_hint *hint;
+        while ((hint = data_hint_find(table, end)) && hint->leader != end)
+            end = hint->leader;
+        for (uint32_t slot = table->unsettled[i].slot, next; slot != end; slot = next) {
+            hint = data_hint_find(table, slot);
+            next = hint->leader;
+            hint->leader = end;
+        }
     }
+}
+
+/* Numbers the leaders and adds up the weights of those who follow them. */
+static void number(const struct data_table *table, struct nodes *nodes)
+{
+    const struct data_hint *hint = table->unsettled;
+    for (size_t i = 0; i < table->n_unsettled; i++)
+        nodes->node[i] = hint[i].leader == hint[i].slot ? nodes->graph.n++ : NO_NODE;
     for (size_t i = 0; i < table->n_unsettled; i++) {
-        const struct data_hint *hint = entry(table, i);
-        int64_t node = hint ? nodes->node[data_hint_leader(table, hint->slot)] : NO_NODE;
-        if (node == NO_NODE)
-            continue;
-        nodes->node[hint->slot] = node;
-        nodes->weight[node] += hint->weight;
+        nodes->node[i] = node_of(table, nodes, hint[i].leader);
+        if (nodes->node[i] != NO_NODE)
+            nodes->weight[nodes->node[i]] += hint[i].weight;
     }
-    nodes->graph.n = n;
 }
 
 static void count_edge(struct nodes *nodes, size_t a, size_t b, double weight)
@@ -94,17 +104,17 @@ static void add_edge(struct nodes *nodes, size_t a, size_t b, double weight)
 }
 
 /* Calls `visit` for each hinted edge between different nodes, both ways. */
-static void each_edge(struct data_table *table, struct nodes *nodes,
+static void each_edge(const struct data_table *table, struct nodes *nodes,
                       void (*visit)(struct nodes *, size_t, size_t, double))
 {
     for (size_t i = 0; i < table->n_unsettled; i++) {
-        const struct data_hint *hint = entry(table, i);
-        for (size_t j = 0; hint && j < hint->n; j++) {
-            int64_t a = nodes->node[hint->slot], b = nodes->node[hint->neighbour[j]];
+        const struct data_hint *hint = &table->unsettled[i];
+        for (size_t j = 0; j < hint->n; j++) {
+            size_t a = nodes->node[i], b = node_of(table, nodes, hint->neighbour[j]);
             if (a == NO_NODE || b == NO_NODE || a == b)
                 continue;
-            visit(nodes, (size_t)a, (size_t)b, hint->edge_weight[j]);
-            visit(nodes, (size_t)b, (size_t)a, hint->edge_weight[j]);
+            visit(nodes, a, b, hint->edge_weight[j]);
+            visit(nodes, b, a, hint->edge_weight[j]);
         }
     }
 }
@@ -124,7 +134,7 @@ static void compress(struct nodes *nodes)
     nodes->start[n] = to;
 }
 
-static int build_edges(struct data_table *table, struct nodes *nodes)
+static int build_edges(const struct data_table *table, struct nodes *nodes)
 {
     size_t n = nodes->graph.n;
     each_edge(table, nodes, count_edge);
@@ -150,8 +160,6 @@ static int build_edges(struct data_table *table, struct nodes *nodes)
 static int ask(const struct data_table *table, struct nodes *nodes, const duite_mapping *mapping,
                uint64_t seed)
 {
-    if (table->n_ranks == 1)
-        return DUITE_OK;
     int code = mapping->map(&nodes->graph, table->n_ranks, seed, nodes->home);
     if (code)
         return code;
@@ -162,20 +170,17 @@ static int ask(const struct data_table *table, struct nodes *nodes, const duite_
     return DUITE_OK;
 }
 
-/* A follower of an object that was settled before goes to its home. */
+/* Leaders get their homes and are numbered there, followers go to theirs. */
 static void move_in(struct data_table *table, const struct nodes *nodes)
 {
     for (size_t i = 0; i < table->n_unsettled; i++) {
-        const struct data_hint *hint = entry(table, i);
-        if (!hint)
-            continue;
-        int64_t node = nodes->node[hint->slot];
-        const struct data_object *leader = &table->object[data_hint_leader(table, hint->slot)];
-        struct data_object *object = &table->object[hint->slot];
-        int with_leader = leader->home < 0 ? 0 : leader->home; /* -1: freed before it had a home */
-        object->holder = node != NO_NODE ? nodes->home[node] : with_leader;
+        uint32_t slot = table->unsettled[i].slot;
+        if (table->unsettled[i].leader == slot)
+            data_object_settle(table, slot, nodes->home[nodes->node[i]]);
     }
-    data_hints_settled(table);
+    for (size_t i = 0; i < table->n_unsettled; i++)
+        data_object_join(table, table->unsettled[i].slot, table->unsettled[i].leader);
+    data_hints_forget(table);
     table->settled += nodes->graph.n;
 }
 
@@ -186,10 +191,12 @@ int map_settle(struct data_table *table, const duite_mapping *mapping, uint64_t 
     struct nodes nodes = {0};
     int code = allocate(table, &nodes);
     if (!code) {
+        shorten(table);
         number(table, &nodes);
-        code = build_edges(table, &nodes);
     }
-    if (!code)
+    if (!code && table->n_ranks > 1)
+        code = build_edges(table, &nodes);
+    if (!code && table->n_ranks > 1)
         code = ask(table, &nodes, mapping, seed);
     if (!code)
         move_in(table, &nodes);

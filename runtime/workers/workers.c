@@ -81,7 +81,7 @@ static duite_ready describe(const struct graph *graph, const struct graph_task *
         [GRAPH_COMBINE] = "duite_sum", [GRAPH_PIECES] = "duite_sum", [GRAPH_COPY] = "duite_get"};
     const char *name =
         task->kind == GRAPH_BODY ? graph->kernels[task->kernel]->name : own[task->kind];
-    return (duite_ready){.kernel = name, .number = task->number};
+    return (duite_ready){.kernel = name, .number = task->number, .block = task->block};
 }
 
 /* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal

@@ -7,10 +7,15 @@ TESTS += tests/runtime/random_programs tests/runtime/test_random.sh
 LONG_TESTS += tests/runtime/test_random_long.sh
 
 if HAVE_CHECK
-check_PROGRAMS += tests/runtime/test_pool tests/runtime/test_laws
+RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched
+check_PROGRAMS += $(RUNTIME_TESTS)
+TESTS += $(RUNTIME_TESTS)
 tests_runtime_test_pool_SOURCES = tests/runtime/test_pool.c
 tests_runtime_test_pool_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_laws_SOURCES = tests/runtime/test_laws.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_laws_LDADD = $(DUITE_TEST_LIBS)
-TESTS += tests/runtime/test_pool tests/runtime/test_laws
+tests_runtime_test_settle_SOURCES = tests/runtime/test_settle.c
+tests_runtime_test_settle_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_sched_SOURCES = tests/runtime/test_sched.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_test_sched_LDADD = $(DUITE_TEST_LIBS)
 endif

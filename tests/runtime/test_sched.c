@@ -1,0 +1,201 @@
+/* What the schedulers decide, seen where they are asked and where tasks run. */
+#include "tests/negative/misuse.h"
+#include "tests/support/unit.h"
+
+#include <duite_policy.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+enum { TASKS = 30, BLOCKS = 7, STEPS = 40 };
+
+/* Where tasks ran, and in which order. */
+static int order[TASKS * 2], n_ran;
+static unsigned worker_of[BLOCKS][STEPS];
+
+static int note(const duite_call *call)
+{
+    order[n_ran++] = *(const int *)call->args;
+    return 0;
+}
+
+static int step(const duite_call *call)
+{
+    const int *where = call->args;
+
+    for (volatile int i = 0; i < 2000; i++)
+        ;
+    worker_of[where[0]][where[1]] = call->worker;
+    duite_out(call, 0, int32_t)[0] += duite_in(call, 1, int32_t)[0] + 1;
+    return 0;
+}
+
+static const duite_kernel NOTE = {
+    .name = "note", .body = note, .access = {DUITE_W}, .args_size = sizeof(int)};
+static const duite_kernel STEP = {
+    .name = "step", .body = step, .access = {DUITE_RW, DUITE_R}, .args_size = 2 * sizeof(int)};
+
+static duite *start(const char *scheduler, unsigned threads)
+{
+    static const duite_kernel *const KERNELS[] = {&NOTE, &STEP, NULL};
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = NULL;
+
+    misuse_mpi();
+    options.kernels = KERNELS;
+    options.scheduler = duite_scheduler_find(scheduler);
+    options.threads = threads;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+    return rt;
+}
+
+/* Forks TASKS tasks that may run at once before one worker gets to any of them. */
+static void run_ready(const char *scheduler)
+{
+    duite *rt = start(scheduler, 1);
+    duite_object object[TASKS];
+
+    n_ran = 0;
+    for (int i = 0; i < TASKS; i++)
+        object[i] = misuse_new(rt, 1);
+    for (int i = 0; i < TASKS; i++)
+        ck_assert_int_eq(duite_fork(rt, &NOTE, &i, 1, &object[i]), DUITE_OK);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    for (int i = 0; i < TASKS; i++)
+        duite_free(rt, object[i]);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+    ck_assert_int_eq(n_ran, TASKS);
+}
+
+START_TEST(one_worker)
+{
+    static const char *const OLDEST_FIRST[] = {"fifo", "static"},
+                             *NEWEST_FIRST[] = {"lifo", "steal"};
+
+    for (int k = 0; k < 2; k++) {
+        run_ready(OLDEST_FIRST[k]);
+        for (int i = 0; i < TASKS; i++)
+            ck_assert_int_eq(order[i], i);
+        run_ready(NEWEST_FIRST[k]);
+        for (int i = 0; i < TASKS; i++)
+            ck_assert_int_eq(order[i], TASKS - 1 - i);
+    }
+}
+END_TEST
+
+/* Steps of a ring of blocks with two objects each, the second of which follows the first: returns
+ * what is left in block 0, and fills worker_of. */
+static int32_t run_ring(const char *scheduler, unsigned threads, duite_counters *counters)
+{
+    duite *rt = start(scheduler, threads);
+    duite_object a[BLOCKS], b[BLOCKS];
+    int32_t value;
+
+    for (int i = 0; i < BLOCKS; i++) {
+        a[i] = misuse_new(rt, 1);
+        b[i] = misuse_new(rt, 1);
+        duite_follow(rt, b[i], a[i]);
+    }
+    for (int s = 0; s < STEPS; s++)
+        for (int i = 0; i < BLOCKS; i++) {
+            const int where[] = {i, s};
+            const duite_object own = s % 2 ? b[i] : a[i],
+                               other = s % 2 ? a[i] : b[(i + 1) % BLOCKS];
+
+            ck_assert_int_eq(DUITE_FORK(rt, &STEP, where, own, other), DUITE_OK);
+        }
+    ck_assert_int_eq(duite_get(rt, b[0], &value), DUITE_OK);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    ck_assert_int_eq(duite_count_all(rt, counters), DUITE_OK);
+    for (int i = 0; i < BLOCKS; i++) {
+        duite_free(rt, a[i]);
+        duite_free(rt, b[i]);
+    }
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+    return value;
+}
+
+/* The worker of a block is its number modulo the workers, whatever object of it is written. */
+START_TEST(fixed_workers)
+{
+    for (unsigned threads = 1; threads <= 3; threads++) {
+        duite_counters counters;
+
+        run_ring("static", threads, &counters);
+        ck_assert_uint_eq(counters.stolen, 0);
+        for (unsigned i = 0; i < BLOCKS; i++)
+            for (int s = 0; s < STEPS; s++)
+                ck_assert_uint_eq(worker_of[i][s], i % threads);
+    }
+}
+END_TEST
+
+START_TEST(same_results)
+{
+    duite_counters counters;
+    const int32_t first = run_ring("fifo", 1, &counters);
+
+    for (const char *const *name = duite_scheduler_names(); *name; name++)
+        for (unsigned threads = 1; threads <= 4; threads++)
+            ck_assert_int_eq(run_ring(*name, threads, &counters), first);
+}
+END_TEST
+
+/* Asked for one of several workers: one queue or the own one, an end, and whom to steal from. */
+START_TEST(decisions)
+{
+    static const struct {
+        const char *name;
+        unsigned queue, victims;
+        duite_end end;
+        int chains;
+    } CASES[] = {{"fifo", DUITE_SHARED_QUEUE, 0, DUITE_OLDEST, 0},
+                 {"lifo", DUITE_SHARED_QUEUE, 0, DUITE_NEWEST, 0},
+                 {"static", 5 % 4, 0, DUITE_OLDEST, 0},
+                 {"steal", 2, 3, DUITE_NEWEST, 1}};
+    const duite_ready task = {.kernel = "note", .number = 6, .block = 5};
+
+    for (unsigned c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        const struct duite_scheduler *s = duite_scheduler_find(CASES[c].name);
+        void *state = calloc(1, s->state_size + 1);
+        unsigned victims = 0;
+
+        if (s->start)
+            s->start(state, 2, 4, 1);
+        ck_assert_uint_eq(s->place(state, &task), CASES[c].queue);
+        ck_assert_int_eq(s->serve(state), CASES[c].end);
+        ck_assert_int_eq(s->chain(state, &task), CASES[c].chains);
+        while (victims < 10 && s->victim(state, victims) != DUITE_NO_QUEUE)
+            victims++;
+        ck_assert_uint_eq(victims, CASES[c].victims);
+        ck_assert_str_eq(s->name, CASES[c].name);
+        ck_assert_ptr_nonnull(s->summary);
+        free(state);
+    }
+}
+END_TEST
+
+START_TEST(chains_at_home)
+{
+    const struct duite_scheduler *s = duite_scheduler_find("static");
+    void *state = calloc(1, s->state_size);
+
+    s->start(state, 2, 4, 1);
+    ck_assert_int_eq(s->chain(state, &(duite_ready){.kernel = "note", .block = 6}), 1);
+    ck_assert_int_eq(s->chain(state, &(duite_ready){.kernel = "note", .block = 7}), 0);
+    free(state);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("schedulers");
+    TCase *test = tcase_create("schedulers");
+
+    tcase_add_test(test, one_worker);
+    tcase_add_test(test, fixed_workers);
+    tcase_add_test(test, same_results);
+    tcase_add_test(test, decisions);
+    tcase_add_test(test, chains_at_home);
+    suite_add_tcase(suite, test);
+    return unit_run(suite);
+}

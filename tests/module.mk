@@ -3,6 +3,7 @@ TESTS =
 LONG_TESTS =
 check_PROGRAMS =
 check_LTLIBRARIES =
+check_DATA =
 dist_check_SCRIPTS =
 DUITE_TEST_LIBS = tests/support/libunit.la libduite_core.la $(CHECK_LIBS)
 CLOTH_TEST_LIBS = tests/support/libunit.la libduite_cloth.la libduite_core.la $(CHECK_LIBS)
@@ -70,3 +71,4 @@ include tests/whole/module.mk
 include tests/runtime/module.mk
 include tests/negative/module.mk
 include tests/examples/module.mk
+include tests/bench/module.mk

@@ -1,0 +1,33 @@
+#ifndef BENCH_BENCH_H
+#define BENCH_BENCH_H
+
+#include "bench/measure.h"
+#include "bench/serve.h"
+
+/* A bench is a list of cases; duite-bench.c lists the benches. */
+
+struct bench_options {
+    unsigned threads;      /* cores, for us and for every rival */
+    const char *scheduler; /* ours */
+    bool quick;            /* tiny sizes, to see that everything works */
+};
+
+struct bench_case {
+    const char *name;
+    const char *about; /* one line */
+    /* Says what is measured and how it is called; runs nothing. */
+    void (*plan)(struct measure *measure, const struct bench_options *options);
+    const struct serve_run *runs; /* by our own process, and the sequential twin's */
+};
+
+struct bench {
+    const char *name;
+    const char *about;
+    const struct bench_case *const *cases; /* ended by NULL */
+    /* Serves the runs of these cases: called in the processes that duite-bench starts of itself. */
+    int (*serve)(const struct bench *bench);
+};
+
+extern const struct bench bench_tasks;
+
+#endif

@@ -1,0 +1,49 @@
+# duite-bench and its rivals: built by `make bench`, and for its test by `make check`; never installed. The two OpenMP
+# rivals are one source for two compilers, without the flags of the build, which may be another compiler's.
+BENCH_RIVALS =
+BENCH_SHARED = bench/problem.c bench/problem.h bench/serve.c bench/serve.h
+check_PROGRAMS += bench/duite-bench
+bench_duite_bench_SOURCES = bench/duite-bench.c bench/bench.h bench/measure.c bench/measure.h \
+	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
+	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/bytes.c bench/tasks/chain.c \
+	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/stencil.c \
+	bench/tasks/wake.c $(BENCH_SHARED)
+bench_duite_bench_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"'
+bench_duite_bench_LDADD = libduite_core.la -lm
+EXTRA_DIST += bench/rivals/openmp.c
+
+OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
+OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h
+OPENMP_COMPILE = $(MKDIR_P) bench/rivals && { sources=; for source in $(OPENMP_FILES); do \
+	sources="$$sources $(srcdir)/$$source"; done; } && \
+	compile() { compiler=$$1; settings=$$2; shift 2; $$compiler -std=gnu17 -O2 $(WARN_CFLAGS) -D_GNU_SOURCE -I$(srcdir) \
+	-DRIVAL_SETTINGS="\"$$settings\"" "$$@" $$sources; } && compile
+bench/rivals/libgomp$(EXEEXT): $(OPENMP_NEEDS)
+	$(AM_V_CC)$(OPENMP_COMPILE) '$(RIVAL_GCC)' "OpenMP tasks, `$(RIVAL_GCC) --version | head -n 1`" -fopenmp -o $@
+bench/rivals/libomp$(EXEEXT): $(OPENMP_NEEDS)
+	$(AM_V_CC)$(OPENMP_COMPILE) '$(RIVAL_CLANG)' "OpenMP tasks, `$(RIVAL_CLANG) --version | head -n 1`" -fopenmp=libomp -o $@
+CLEANFILES += bench/rivals/libgomp$(EXEEXT) bench/rivals/libomp$(EXEEXT)
+if HAVE_RIVAL_LIBGOMP
+BENCH_RIVALS += bench/rivals/libgomp$(EXEEXT)
+endif
+if HAVE_RIVAL_LIBOMP
+BENCH_RIVALS += bench/rivals/libomp$(EXEEXT)
+endif
+
+if HAVE_RIVAL_STARPU
+check_PROGRAMS += bench/rivals/starpu
+BENCH_RIVALS += bench/rivals/starpu$(EXEEXT)
+bench_rivals_starpu_SOURCES = bench/rivals/starpu.c $(BENCH_SHARED)
+bench_rivals_starpu_CPPFLAGS = $(AM_CPPFLAGS) $(STARPU_CFLAGS)
+bench_rivals_starpu_LDADD = $(STARPU_LIBS)
+endif
+if HAVE_RIVAL_MPI
+check_PROGRAMS += bench/rivals/mpi
+BENCH_RIVALS += bench/rivals/mpi$(EXEEXT)
+bench_rivals_mpi_SOURCES = bench/rivals/mpi.c $(BENCH_SHARED)
+bench_rivals_mpi_LDADD = $(MPI_LIBS)
+endif
+
+bench: bench/duite-bench$(EXEEXT) $(BENCH_RIVALS)
+check_DATA += $(BENCH_RIVALS)
+.PHONY: bench

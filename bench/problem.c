@@ -1,0 +1,132 @@
+/* Nothing here knows who calls it. */
+#include "bench/problem.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+uint64_t problem_start(uint64_t i)
+{
+    return (i + 1) * 0x9e3779b97f4a7c15U;
+}
+
+void problem_combine(const uint64_t *left, const uint64_t *middle, const uint64_t *right,
+                     uint64_t *out)
+{
+    uint64_t x = *middle * 0xbf58476d1ce4e5b9U + 3 * *left + 5 * *right + 1;
+    *out = x ^ (x >> 29);
+}
+
+void problem_nothing(const uint64_t *left, const uint64_t *middle, const uint64_t *right,
+                     uint64_t *out)
+{
+    (void)left;
+    (void)middle;
+    (void)right;
+    (void)out;
+}
+
+void problem_sweep(struct problem_cell *const field[2], size_t points, size_t steps,
+                   problem_point *const volatile *body)
+{
+    for (size_t s = 0; s < steps; s++) {
+        const struct problem_cell *old = field[s % 2];
+        struct problem_cell *new = field[1 - s % 2];
+        for (size_t i = 0; i < points; i++)
+            (*body)(&old[i ? i - 1 : points - 1].value, &old[i].value,
+                    &old[i + 1 < points ? i + 1 : 0].value, &new[i].value);
+    }
+}
+
+int problem_fields(struct problem_cell *field[2], size_t points)
+{
+    field[0] = aligned_alloc(64, 2 * points * sizeof *field[0]);
+    if (!field[0])
+        return 1;
+    memset(field[0], 0, 2 * points * sizeof *field[0]);
+    field[1] = field[0] + points;
+    for (size_t i = 0; i < points; i++)
+        field[0][i].value = problem_start(i);
+    return 0;
+}
+
+int problem_stencil_wrong(const struct problem_cell *got, size_t points, size_t steps)
+{
+    static problem_point *const volatile body = problem_combine;
+    struct problem_cell *field[2];
+    if (problem_fields(field, points))
+        return 1;
+    problem_sweep(field, points, steps, &body);
+    int wrong = 0;
+    for (size_t i = 0; i < points; i++)
+        wrong |= got[i].value != field[steps % 2][i].value;
+    free(field[0]);
+    return wrong;
+}
+
+void problem_next(uint64_t *value, uint64_t i)
+{
+    *value = (*value ^ i) * 0x94d049bb133111ebU + 1;
+}
+
+uint64_t problem_chain(uint64_t n, problem_link *const volatile *body)
+{
+    uint64_t value = 0;
+    for (uint64_t i = 0; i < n; i++)
+        (*body)(&value, i);
+    return value;
+}
+
+void problem_mark(uint64_t *mark, uint64_t i)
+{
+    mark[i] += i + 1;
+}
+
+int problem_marks_wrong(uint64_t *mark, uint64_t n)
+{
+    int wrong = 0;
+    for (uint64_t i = 0; i < n; i++) {
+        wrong |= mark[i] != i + 1;
+        mark[i] = 0;
+    }
+    return wrong;
+}
+
+void problem_work(uint64_t iterations)
+{
+    uint64_t x = iterations;
+    for (uint64_t i = 0; i < iterations; i++) {
+        x = x * 0xbf58476d1ce4e5b9U + 1;
+        __asm__ volatile("" : "+r"(x)); /* so that no compiler makes two steps one */
+    }
+}
+
+int problem_line_point(const struct problem_message *left, const struct problem_message *middle,
+                       const struct problem_message *right, uint64_t step, uint64_t iterations,
+                       struct problem_message *out)
+{
+    const uint64_t edge = 0;
+    if (middle->step != step - 1 || (left && left->step != step - 1) ||
+        (right && right->step != step - 1))
+        return 1;
+    out->step = step;
+    problem_combine(left ? &left->value : &edge, &middle->value, right ? &right->value : &edge,
+                    &out->value);
+    problem_work(iterations);
+    return 0;
+}
+
+int problem_line(struct problem_message *line, size_t points, uint64_t steps, uint64_t iterations)
+{
+    static problem_line_body *const volatile body = problem_line_point;
+    int wrong = 0;
+    for (size_t i = 0; i < points; i++)
+        line[i] = (struct problem_message){0, problem_start(i)};
+    for (uint64_t s = 1; s <= steps; s++) {
+        const struct problem_message *old = line + (s - 1) % 2 * points;
+        struct problem_message *new = line + s % 2 * points;
+        for (size_t i = 0; i < points; i++)
+            wrong |= body(i ? &old[i - 1] : NULL, &old[i], i + 1 < points ? &old[i + 1] : NULL, s,
+                          iterations, &new[i]);
+    }
+    return wrong;
+}

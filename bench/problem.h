@@ -1,0 +1,60 @@
+#ifndef BENCH_PROBLEM_H
+#define BENCH_PROBLEM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* What the tasks compute, in one place for us, the sequential twins and the rivals: unsigned
+ * integers, so that a wrong order shows in the last bit. All bodies are called through pointers. */
+
+struct problem_cell {
+    _Alignas(64) uint64_t value; /* a line of its own */
+};
+
+/* A ring of points: each step makes every point from itself and its two neighbours. */
+typedef void problem_point(const uint64_t *left, const uint64_t *middle, const uint64_t *right,
+                           uint64_t *out);
+problem_point problem_combine, problem_nothing;
+
+/* The value that point i starts with, not 0. */
+uint64_t problem_start(uint64_t i);
+
+/* The ring, step after step: field[s % 2] is read, the other one written. */
+void problem_sweep(struct problem_cell *const field[2], size_t points, size_t steps,
+                   problem_point *const volatile *body);
+
+/* Two fields, the first with its start values; NULL without memory. Freed by free(field[0]). */
+int problem_fields(struct problem_cell *field[2], size_t points);
+
+/* A sum that tells whether the points are those of the sequential ring: 0 if they are. */
+int problem_stencil_wrong(const struct problem_cell *got, size_t points, size_t steps);
+
+/* A chain: one value, changed by n tasks in turn. */
+typedef void problem_link(uint64_t *value, uint64_t i);
+problem_link problem_next;
+uint64_t problem_chain(uint64_t n, problem_link *const volatile *body);
+
+/* Independent tasks: task i leaves its mark. */
+typedef void problem_mark_body(uint64_t *mark, uint64_t i);
+problem_mark_body problem_mark;
+/* Whether a mark is missing or made twice; clears them. */
+int problem_marks_wrong(uint64_t *mark, uint64_t n);
+
+/* A body that takes time: so many steps, each of which waits for the one before. */
+void problem_work(uint64_t iterations);
+
+/* A line of points with bodies of so many iterations: what a point hands on. Its body checks that
+ * each neighbour's is of the step before. */
+struct problem_message {
+    uint64_t step, value;
+};
+/* left or right NULL at the ends. 0; 1 if an input is not of the step before. */
+typedef int problem_line_body(const struct problem_message *left,
+                              const struct problem_message *middle,
+                              const struct problem_message *right, uint64_t step,
+                              uint64_t iterations, struct problem_message *out);
+problem_line_body problem_line_point;
+/* The sequential line; `line` has 2 x points messages, the answer is in the half steps % 2. */
+int problem_line(struct problem_message *line, size_t points, uint64_t steps, uint64_t iterations);
+
+#endif

@@ -1,0 +1,109 @@
+/* The table of programs is constant; configure says what is missing. */
+#include "bench/program.h"
+
+#include "bench/subject.h"
+
+#include <config.h>
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* A core for each thread is what both manuals recommend; whether waiting threads should spin
+ * depends on the case, so both are tried and the faster one counts. */
+#define BOUND "OMP_PROC_BIND=true", "OMP_PLACES=cores", "OMP_DYNAMIC=false"
+#define ACTIVE                                                                                     \
+    .settings = {"OMP_WAIT_POLICY=active", BOUND},                                                 \
+    .crowded = {"OMP_WAIT_POLICY=passive", "OMP_DYNAMIC=false"}
+#define PASSIVE                                                                                    \
+    .settings = {"OMP_WAIT_POLICY=passive", BOUND},                                                \
+    .crowded = {"OMP_WAIT_POLICY=passive", "OMP_DYNAMIC=false"}
+
+static const struct program PROGRAMS[] = {
+    {"duite", NULL, "", NULL, {0}, {0}},
+    {"sequential", NULL, "", NULL, {0}, {0}},
+    {"libgomp", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, "libgomp_passive", ACTIVE},
+    {"libgomp_passive", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, NULL, PASSIVE},
+    {"libomp", "rivals/libomp", RIVAL_LIBOMP_MISSING, "libomp_passive", ACTIVE},
+    {"libomp_passive", "rivals/libomp", RIVAL_LIBOMP_MISSING, NULL, PASSIVE},
+    {"starpu", "rivals/starpu", RIVAL_STARPU_MISSING, NULL, {"STARPU_SILENT=1"}, {0}},
+    {"mpi", "rivals/mpi", RIVAL_MPI_MISSING, NULL, {"OMPI_MCA_mpi_yield_when_idle=0"}, {0}},
+};
+
+const struct program *program_find(const char *kind)
+{
+    for (size_t i = 0; i < sizeof PROGRAMS / sizeof *PROGRAMS; i++)
+        if (!strcmp(PROGRAMS[i].kind, kind))
+            return &PROGRAMS[i];
+    return NULL;
+}
+
+/* The path of duite-bench, or of a file beside it. */
+static const char *path_of(const struct program *program)
+{
+    static char path[PATH_MAX + 64];
+    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX);
+    path[length < 0 ? 0 : length] = '\0';
+    char *slash = strrchr(path, '/');
+    if (program->file && slash)
+        snprintf(slash + 1, sizeof path - (size_t)(slash + 1 - path), "%s", program->file);
+    return path;
+}
+
+const char *program_missing(const struct program *program)
+{
+    static char why[200];
+    if (!program)
+        return "unknown";
+    if (!access(path_of(program), X_OK))
+        return NULL;
+    snprintf(why, sizeof why, "not built: %s%s",
+             *program->missing ? program->missing : "make bench",
+             *program->missing ? " is missing" : " builds it");
+    return why;
+}
+
+static void set(const char *setting)
+{
+    char name[64];
+    size_t length = strcspn(setting, "=");
+    snprintf(name, sizeof name, "%.*s", (int)length, setting);
+    setenv(name, setting + length + 1, 0);
+}
+
+const char *const *program_settings(const struct program *program, unsigned cores)
+{
+    return cores <= subject_cores() ? program->settings : program->crowded;
+}
+
+void program_environment(const struct program *program, unsigned cores)
+{
+    for (const char *const *word = program_settings(program, cores); *word; word++)
+        set(*word);
+    /* hwloc: silent about caches that virtual machines report wrongly; no look for graphics cards,
+     * which can take seconds */
+    set("HWLOC_HIDE_ERRORS=2");
+    set("HWLOC_COMPONENTS=-gl");
+    if (geteuid() == 0) {
+        set("OMPI_ALLOW_RUN_AS_ROOT=1");
+        set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
+    }
+}
+
+void program_command(const struct program *program, const char *ranks, const char **argv)
+{
+    const char *mpirun = getenv("MPIRUN");
+    size_t n = 0;
+    if (ranks) {
+        argv[n++] = mpirun && *mpirun ? mpirun : BENCH_MPIRUN;
+        argv[n++] = "--oversubscribe";
+        argv[n++] = "--bind-to"; /* the programs bind themselves */
+        argv[n++] = "none";
+        argv[n++] = "-n";
+        argv[n++] = ranks;
+    }
+    argv[n++] = path_of(program);
+    argv[n] = NULL;
+}

@@ -1,0 +1,31 @@
+#ifndef BENCH_PROGRAM_H
+#define BENCH_PROGRAM_H
+
+/* What can be measured: which file it is, how it is best set up, and what its absence is due to. */
+struct program {
+    const char *kind;
+    const char *file;    /* beside duite-bench; NULL: duite-bench itself */
+    const char *missing; /* the package that configure did not find, or "" */
+    const char *other;   /* the kind of the same program in another setting, or NULL */
+    /* NAME=VALUE words where each thread has a core, and where not; a user's own setting of a name
+     * goes first */
+    const char *settings[5], *crowded[5];
+};
+
+/* NULL: there is none of this kind. */
+const struct program *program_find(const char *kind);
+
+/* Why it cannot be run, or NULL. */
+const char *program_missing(const struct program *program);
+
+/* What the environment is given for so many cores: NAME=VALUE words, ended by NULL. */
+const char *const *program_settings(const struct program *program, unsigned cores);
+
+/* Sets the environment for a child that wants so many cores. */
+void program_environment(const struct program *program, unsigned cores);
+
+/* The words of the command, ended by NULL; `ranks`: under mpirun, or NULL. `argv` has room for 16.
+ * The strings are kept until the next call. */
+void program_command(const struct program *program, const char *ranks, const char **argv);
+
+#endif

@@ -1,0 +1,136 @@
+/* The cases with OpenMP tasks: built once with gcc for libgomp and once with clang for libomp. One
+ * thread makes all tasks, and takes part when it waits for them. */
+#include "bench/problem.h"
+#include "bench/serve.h"
+
+#include <omp.h>
+#include <stdlib.h>
+
+static problem_point *const volatile COMBINE = problem_combine, *const volatile NOTHING =
+                                                                    problem_nothing;
+static problem_link *const volatile NEXT = problem_next;
+static problem_mark_body *const volatile MARK = problem_mark;
+
+/* ---- Stencil ---- */
+
+static void make_stencil(struct problem_cell *const field[2], size_t points, size_t steps,
+                         problem_point *body)
+{
+    for (size_t s = 0; s < steps; s++) {
+        struct problem_cell *old = field[s % 2], *new = field[1 - s % 2];
+        for (size_t i = 0; i < points; i++) {
+            uint64_t *left = &old[i ? i - 1 : points - 1].value, *middle = &old[i].value;
+            uint64_t *right = &old[i + 1 < points ? i + 1 : 0].value, *out = &new[i].value;
+#pragma omp task depend(in                                                                         \
+                        : *left, *middle, *right) depend(out                                       \
+                                                         : *out)                                   \
+    firstprivate(left, middle, right, out, body)
+            body(left, middle, right, out);
+        }
+    }
+#pragma omp taskwait
+}
+
+static double time_stencil(struct problem_cell *const field[2], size_t points, size_t steps,
+                           int threads, problem_point *body)
+{
+    double seconds = 0;
+#pragma omp parallel num_threads(threads)
+#pragma omp master
+    {
+        double start = serve_seconds();
+        make_stencil(field, points, steps, body);
+        seconds = serve_seconds() - start;
+    }
+    return seconds;
+}
+
+static int stencil(void *context, struct serve_request *request, double *value)
+{
+    size_t points = serve_number(request, "points"), steps = serve_number(request, "steps");
+    int threads = (int)serve_number(request, "threads");
+    struct problem_cell *field[2];
+    (void)context;
+    if (problem_fields(field, points))
+        return serve_no_memory();
+    time_stencil(field, points, steps, threads, COMBINE);
+    int wrong = problem_stencil_wrong(field[steps % 2], points, steps);
+    *value = time_stencil(field, points, steps, threads, NOTHING);
+    free(field[0]);
+    return wrong ? serve_fail("wrong answer") : 0;
+}
+
+/* ---- Chain ---- */
+
+static double time_chain(uint64_t *x, uint64_t n, int threads)
+{
+    problem_link *body = NEXT;
+    double seconds = 0;
+#pragma omp parallel num_threads(threads)
+#pragma omp master
+    {
+        double start = serve_seconds();
+        for (uint64_t i = 0; i < n; i++) {
+#pragma omp task depend(inout : *x) firstprivate(x, i, body)
+            body(x, i);
+        }
+#pragma omp taskwait
+        seconds = serve_seconds() - start;
+    }
+    return seconds;
+}
+
+static int chain(void *context, struct serve_request *request, double *value)
+{
+    uint64_t n = serve_number(request, "tasks"), x = 0;
+    int threads = (int)serve_number(request, "threads");
+    (void)context;
+    time_chain(&x, n, threads);
+    x = 0;
+    *value = time_chain(&x, n, threads);
+    return x == problem_chain(n, &NEXT) ? 0 : serve_fail("wrong answer");
+}
+
+/* ---- Independent tasks ---- */
+
+static double time_independent(uint64_t *mark, uint64_t n, int threads)
+{
+    problem_mark_body *body = MARK;
+    double seconds = 0;
+#pragma omp parallel num_threads(threads)
+#pragma omp master
+    {
+        double start = serve_seconds();
+        for (uint64_t i = 0; i < n; i++) {
+#pragma omp task firstprivate(mark, i, body)
+            body(mark, i);
+        }
+#pragma omp taskwait
+        seconds = serve_seconds() - start;
+    }
+    return seconds;
+}
+
+static int independent(void *context, struct serve_request *request, double *value)
+{
+    uint64_t n = serve_number(request, "tasks");
+    int threads = (int)serve_number(request, "threads");
+    uint64_t *mark = calloc(n, sizeof *mark);
+    (void)context;
+    if (!mark)
+        return serve_no_memory();
+    time_independent(mark, n, threads);
+    int wrong = problem_marks_wrong(mark, n);
+    *value = time_independent(mark, n, threads);
+    wrong |= problem_marks_wrong(mark, n);
+    free(mark);
+    return wrong ? serve_fail("wrong answer") : 0;
+}
+
+int main(void)
+{
+    static const struct serve_run runs[] = {
+        {"stencil", stencil}, {"chain", chain}, {"independent", independent}, {0}};
+    const struct serve_run *const all[] = {runs, NULL};
+    return serve(RIVAL_SETTINGS, all, NULL);
+}

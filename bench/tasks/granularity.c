@@ -1,0 +1,222 @@
+/* How short a body may be: a line of points, bodies of growing length, and the shortest one with
+ * which the machine still does half of the work it can do (Slaughter et al., Task Bench, 2020: half
+ * of their METG at 50 %, which adds the overhead to the body). Against a hand-written program of
+ * as many MPI ranks as we have threads. */
+#include "bench/tasks/tasks.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { RUNGS = 15, SHORTEST = 1, WIDTHS = 2 };
+
+/* Iterations a second of all cores, the most that anybody reached in the round. */
+static double peak(const struct measure_metric *metric, size_t round)
+{
+    const struct measure_series *ladder[2] = {metric->of, metric->against};
+    double most = 0;
+    for (int side = 0; side < 2; side++)
+        for (size_t i = 0; i < metric->n && ladder[side] && ladder[side]->sample; i++)
+            most = fmax(most, ladder[side][i].work / ladder[side][i].sample[round]);
+    return most;
+}
+
+/* Iterations of the shortest body with half of the peak, between two rungs on a line of logarithms;
+ * NAN if no rung reaches it, or all do. */
+static double half(const struct measure_series *ladder, size_t n, double top, size_t round)
+{
+    double below = 0, above = 1;
+    size_t i = n;
+    while (i > 0 && above >= 0.5) {
+        i--;
+        below = above;
+        above = ladder[i].work / ladder[i].sample[round] / top;
+    }
+    if (above >= 0.5 || i + 1 == n)
+        return NAN;
+    double share = (0.5 - above) / (below - above);
+    return SHORTEST * exp2((double)i + share);
+}
+
+static double microseconds(const struct measure_metric *metric, size_t round)
+{
+    double top = peak(metric, round);
+    return metric->scale * 1e6 * half(metric->of, metric->n, top, round) / top;
+}
+
+static double against_mpi(const struct measure_metric *metric, size_t round)
+{
+    double top = peak(metric, round);
+    return half(metric->of, metric->n, top, round) / half(metric->against, metric->n, top, round);
+}
+
+/* The rungs of one subject: bodies of SHORTEST x 2^i iterations. */
+static struct measure_series *plan_ladder(struct measure *measure, struct subject_shape shape,
+                                          const struct bench_options *options, const char *run,
+                                          unsigned points)
+{
+    struct measure_series *first = NULL;
+    unsigned steps = options->quick ? 20 : 16000 / points;
+    for (unsigned i = 0; i < RUNGS; i++) {
+        unsigned iterations = (unsigned)SHORTEST << i;
+        struct measure_series *series = measure_series(
+            measure, shape, "%s points=%u steps=%u iterations=%u threads=%u scheduler=%s", run,
+            points, steps, iterations, shape.threads, options->scheduler);
+        series->work = (double)points * steps * iterations;
+        if (!first)
+            first = series;
+    }
+    return first;
+}
+
+static void plan_width(struct measure *measure, const struct bench_options *options,
+                       unsigned points)
+{
+    const struct subject_shape ranks = {"mpi", options->threads, 1};
+    const struct measure_series *ours =
+        plan_ladder(measure, tasks_ours(options->threads), options, "granularity", points);
+    const struct measure_series *mpi = plan_ladder(measure, ranks, options, "granularity", points);
+    const char *const name[3] = {"", "_vs_mpi", "_mpi"};
+    for (int i = 0; i < 3; i++) {
+        struct measure_metric *metric =
+            i == 1
+                ? measure_metric(measure, "x", against_mpi, "granularity_50_w%u%s", points, name[i])
+                : measure_metric(measure, "us", microseconds, "granularity%s_50_w%u", name[i],
+                                 points);
+        metric->of = i == 2 ? mpi : ours;
+        metric->against = i == 1 ? mpi : NULL;
+        metric->n = RUNGS;
+        metric->scale = options->threads;
+    }
+}
+
+static void plan(struct measure *measure, const struct bench_options *options)
+{
+    static const unsigned points[WIDTHS] = {2, 16};
+    for (int i = 0; i < WIDTHS; i++)
+        plan_width(measure, options, points[i]);
+    unsigned steps = options->quick ? 20 : 1000;
+    const struct measure_series *twin = measure_series(
+        measure, tasks_twin(), "granularity_sequential points=%u steps=%u iterations=%d", points[1],
+        steps, SHORTEST);
+    measure_value(measure, twin, 1e9 / (points[1] * steps), "ns",
+                  "granularity_sequential_ns_per_task");
+}
+
+/* ---- Ours ---- */
+
+struct point_args {
+    uint64_t step, iterations;
+    int left, right; /* whether there are neighbours */
+};
+
+static int point(const duite_call *call)
+{
+    const struct point_args *args = call->args;
+    const struct problem_message *left =
+        args->left ? duite_in(call, 2, struct problem_message) : NULL;
+    const struct problem_message *right =
+        args->right ? duite_in(call, (size_t)(2 + args->left), struct problem_message) : NULL;
+    if (problem_line_point(left, duite_in(call, 1, struct problem_message), right, args->step,
+                           args->iterations, duite_out(call, 0, struct problem_message)))
+        return duite_fail(call, 1, "an input of step %llu is not of the step before",
+                          (unsigned long long)args->step);
+    return 0;
+}
+
+const duite_kernel tasks_granularity_point = {.name = "granularity_point",
+                                              .body = point,
+                                              .access = {DUITE_W, DUITE_R},
+                                              .rest = DUITE_R,
+                                              .args_size = sizeof(struct point_args)};
+
+static void fork_all(duite *rt, const duite_object *object, size_t points, uint64_t steps,
+                     uint64_t iterations)
+{
+    for (uint64_t s = 1; s <= steps; s++) {
+        const duite_object *old = object + (s - 1) % 2 * points, *new = object + s % 2 * points;
+        for (size_t i = 0; i < points; i++) {
+            const struct point_args args = {s, iterations, i > 0, i + 1 < points};
+            duite_object objects[4] = {new[i], old[i]};
+            size_t n = 2;
+            if (args.left)
+                objects[n++] = old[i - 1];
+            if (args.right)
+                objects[n++] = old[i + 1];
+            duite_fork(rt, &tasks_granularity_point, &args, n, objects);
+        }
+    }
+}
+
+static int time_line(duite *rt, const duite_object *object, size_t points, uint64_t steps,
+                     uint64_t iterations, double *value)
+{
+    for (size_t i = 0; i < points; i++)
+        duite_set(rt, object[i], &(struct problem_message){0, problem_start(i)});
+    if (duite_wait(rt))
+        return tasks_code(1);
+    double start = serve_seconds();
+    fork_all(rt, object, points, steps, iterations);
+    int code = duite_wait(rt);
+    *value = serve_seconds() - start;
+    return tasks_code(code);
+}
+
+static int check(duite *rt, const duite_object *object, size_t points, uint64_t steps)
+{
+    struct problem_message *line = calloc(2 * points, sizeof *line), got;
+    if (!line)
+        return serve_no_memory();
+    int code = problem_line(line, points, steps, 0);
+    for (size_t i = 0; i < points && !code; i++) {
+        size_t at = steps % 2 * points + i;
+        code = tasks_code(duite_get(rt, object[at], &got));
+        if (!code && got.value != line[at].value)
+            code = serve_fail("wrong answer");
+    }
+    free(line);
+    return code;
+}
+
+static int granularity(void *context, struct serve_request *request, double *value)
+{
+    struct tasks_session *session = context;
+    size_t points = serve_number(request, "points");
+    uint64_t steps = serve_number(request, "steps");
+    uint64_t iterations = serve_number(request, "iterations");
+    duite_object *object = calloc(2 * points, sizeof *object);
+    int code = object ? tasks_ready(session, request) : serve_no_memory();
+    if (!code)
+        code = tasks_objects(session, DUITE_I64, 2, 2 * points, object);
+    if (!code) {
+        code = time_line(session->rt, object, points, steps / 10, iterations, value);
+        if (!code)
+            code = time_line(session->rt, object, points, steps, iterations, value);
+        if (!code)
+            code = check(session->rt, object, points, steps);
+        tasks_free_objects(session, 2 * points, object);
+    }
+    free(object);
+    return code;
+}
+
+static int sequential(void *context, struct serve_request *request, double *value)
+{
+    size_t points = serve_number(request, "points");
+    uint64_t steps = serve_number(request, "steps");
+    uint64_t iterations = serve_number(request, "iterations");
+    struct problem_message *line = calloc(2 * points, sizeof *line);
+    (void)context;
+    if (!line)
+        return serve_no_memory();
+    double start = serve_seconds();
+    int wrong = problem_line(line, points, steps, iterations);
+    *value = serve_seconds() - start;
+    free(line);
+    return wrong ? serve_fail("wrong answer") : 0;
+}
+
+static const struct serve_run RUNS[] = {
+    {"granularity", granularity}, {"granularity_sequential", sequential}, {0}};
+
+const struct bench_case tasks_granularity = {
+    "granularity", "the shortest body with half of peak speed, on 2 and 16 points", plan, RUNS};

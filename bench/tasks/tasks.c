@@ -1,0 +1,173 @@
+/* One runtime a process, started when a run first wants it and again when a run wants another. */
+#include "bench/tasks/tasks.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct bench_case *const CASES[] = {&tasks_stencil, &tasks_chain, &tasks_independent,
+                                                 &tasks_growth,  &tasks_bytes, &tasks_granularity,
+                                                 &tasks_wake,    NULL};
+enum { N_CASES = sizeof CASES / sizeof *CASES - 1 };
+
+static const duite_kernel *const KERNELS[] = {&tasks_gate,
+                                              &tasks_gate_write,
+                                              &tasks_stencil_combine,
+                                              &tasks_stencil_empty,
+                                              &tasks_stencil_padded,
+                                              &tasks_chain_next,
+                                              &tasks_independent_mark,
+                                              &tasks_granularity_point,
+                                              &tasks_wake_up,
+                                              NULL};
+
+int tasks_code(int code)
+{
+    return code ? serve_fail("%s", duite_message()) : 0;
+}
+
+int tasks_ready(struct tasks_session *session, struct serve_request *request)
+{
+    char scheduler[sizeof session->scheduler];
+    unsigned threads = (unsigned)serve_number(request, "threads");
+    serve_word(request, "scheduler", scheduler, sizeof scheduler);
+    if (session->rt && session->threads == threads && !strcmp(session->scheduler, scheduler))
+        return 0;
+    if (session->rt && duite_stop(&session->rt))
+        return tasks_code(1);
+    session->threads = threads;
+    memcpy(session->scheduler, scheduler, sizeof scheduler);
+    duite_options options = duite_options_default();
+    options.kernels = KERNELS;
+    options.context = session;
+    options.threads = threads;
+    options.scheduler = duite_scheduler_find(scheduler);
+    return tasks_code(duite_start(&session->rt, &options));
+}
+
+int tasks_objects(struct tasks_session *session, duite_type type, size_t count, size_t n,
+                  duite_object *object)
+{
+    for (size_t i = 0; i < n; i++)
+        if (duite_new(session->rt, type, count, &object[i])) {
+            tasks_free_objects(session, i, object);
+            return tasks_code(1);
+        }
+    return 0;
+}
+
+void tasks_free_objects(struct tasks_session *session, size_t n, const duite_object *object)
+{
+    for (size_t i = 0; i < n; i++)
+        duite_free(session->rt, object[i]);
+}
+
+/* ---- Gates ---- */
+
+static int gate(const duite_call *call)
+{
+    struct tasks_session *session = call->context;
+    atomic_fetch_add(&session->waiting, 1);
+    while (!atomic_load_explicit(&session->gate, memory_order_acquire))
+        ;
+    return 0;
+}
+
+const duite_kernel tasks_gate_write = {.name = "gate_write", .body = gate, .access = {DUITE_W}};
+const duite_kernel tasks_gate = {.name = "gate", .body = gate};
+
+/* ---- Plans ---- */
+
+struct subject_shape tasks_ours(unsigned threads)
+{
+    return (struct subject_shape){.kind = "duite", .threads = threads};
+}
+
+struct subject_shape tasks_twin(void)
+{
+    return (struct subject_shape){.kind = "sequential", .threads = 1};
+}
+
+static struct measure_series *add(struct measure *measure, const struct tasks_contest *contest,
+                                  struct subject_shape shape, const char *run, const char *more)
+{
+    struct measure_series *series = measure_series(measure, shape, "%s %s threads=%u%s", run,
+                                                   contest->size, shape.threads, more);
+    series->work = contest->tasks;
+    return series;
+}
+
+/* A rival in each of its settings. */
+static struct measure_series *plan_rival(struct measure *measure,
+                                         const struct bench_options *options,
+                                         const struct tasks_contest *contest, const char *kind)
+{
+    struct measure_series *first = NULL, *last = NULL;
+    for (; kind; kind = subject_other(kind)) {
+        struct subject_shape shape = {kind, 0, options->threads};
+        struct measure_series *series = add(measure, contest, shape, contest->name, "");
+        if (last)
+            last->other = series;
+        else
+            first = series;
+        last = series;
+    }
+    return first;
+}
+
+/* Ours against each rival; `series` of the rivals, `key` of ours: NAME or NAME_VARIANT. */
+static void plan_ours(struct measure *measure, const struct bench_options *options,
+                      const struct tasks_contest *contest, const char *key,
+                      struct measure_series *const *rival)
+{
+    char scheduler[80];
+    snprintf(scheduler, sizeof scheduler, " scheduler=%s", options->scheduler);
+    const struct measure_series *ours =
+        add(measure, contest, tasks_ours(options->threads), key, scheduler);
+    measure_value(measure, ours, 1e9 / contest->tasks, "ns", "%s_ns_per_task", key);
+    for (size_t i = 0; contest->rivals[i]; i++)
+        measure_ratio(measure, ours, rival[i], "%s_ns_per_task_vs_%s", key, contest->rivals[i]);
+}
+
+void tasks_plan_contest(struct measure *measure, const struct bench_options *options,
+                        const struct tasks_contest *contest)
+{
+    enum { MOST = 8 };
+    char key[60];
+    struct measure_series *rival[MOST];
+    for (size_t i = 0; contest->rivals[i] && i < MOST; i++)
+        rival[i] = plan_rival(measure, options, contest, contest->rivals[i]);
+    for (size_t i = 0; contest->variants[i]; i++) {
+        snprintf(key, sizeof key, "%s%s%s", contest->name, *contest->variants[i] ? "_" : "",
+                 contest->variants[i]);
+        plan_ours(measure, options, contest, key, rival);
+    }
+    snprintf(key, sizeof key, "%s_sequential", contest->name);
+    const struct measure_series *twin = add(measure, contest, tasks_twin(), key, "");
+    measure_value(measure, twin, 1e9 / contest->tasks, "ns", "%s_ns_per_task", key);
+    for (size_t i = 0; contest->rivals[i]; i++)
+        measure_value(measure, rival[i], 1e9 / contest->tasks, "ns", "%s_%s_ns_per_task",
+                      contest->name, contest->rivals[i]);
+}
+
+/* ---- Serving ---- */
+
+static int serve_tasks(const struct bench *bench)
+{
+    static struct tasks_session session;
+    const struct serve_run *runs[N_CASES + 1] = {0};
+    char settings[100];
+    for (size_t i = 0; i < N_CASES; i++)
+        runs[i] = bench->cases[i]->runs;
+    snprintf(settings, sizeof settings,
+             "this program; ours: duite_options_default() but for threads and scheduler");
+    int status = serve(settings, runs, &session);
+    if (session.rt && duite_stop(&session.rt)) {
+        fprintf(stderr, "duite-bench: %s\n", duite_message());
+        status = 1;
+    }
+    return status;
+}
+
+const struct bench bench_tasks = {"tasks", "what a task costs: stencil, chain, independent, ...",
+                                  CASES, serve_tasks};

@@ -1,0 +1,65 @@
+#ifndef BENCH_TASKS_TASKS_H
+#define BENCH_TASKS_TASKS_H
+
+#include "bench/bench.h"
+#include "bench/problem.h"
+
+#include <duite.h>
+#include <stdatomic.h>
+
+/* Shared by the cases of the bench "tasks". Each case is a file: its plan, its kernels, our runs
+ * and the sequential twin's. */
+
+/* Our process keeps one runtime from run to run; bodies find this as their context. */
+struct tasks_session {
+    duite *rt; /* NULL: not started */
+    unsigned threads;
+    char scheduler[40];
+    uint64_t *mark;      /* of the independent tasks */
+    atomic_int gate;     /* tasks_gate runs until it is not 0 */
+    atomic_uint waiting; /* gates that run */
+    _Atomic uint64_t woken;
+    double began; /* when a task began, once woken says so */
+};
+
+/* Starts the runtime as the request wants it (threads=, scheduler=), with the kernels of all cases.
+ */
+int tasks_ready(struct tasks_session *session, struct serve_request *request);
+
+/* What a failed call of duite, or one that went well, comes to as the result of a run. */
+int tasks_code(int code);
+
+/* n objects, or none at all; and their end. */
+int tasks_objects(struct tasks_session *session, duite_type type, size_t count, size_t n,
+                  duite_object *object);
+void tasks_free_objects(struct tasks_session *session, size_t n, const duite_object *object);
+
+/* A task that blocks its worker until the gate opens: with an object to write, or without any. */
+extern const duite_kernel tasks_gate_write, tasks_gate;
+
+/* ---- Plans ---- */
+
+/* One problem solved in several ways: metrics NAME_VARIANT_ns_per_task for ours, the twin's
+ * NAME_sequential_ns_per_task, the rivals' NAME_RIVAL_ns_per_task, and the ratios of each of ours
+ * to each rival. */
+struct tasks_contest {
+    const char *name;
+    const char *size;                            /* "points=64 steps=200" */
+    double tasks;                                /* in a run */
+    const char *const *variants, *const *rivals; /* ended by NULL; a variant "" has no name */
+};
+void tasks_plan_contest(struct measure *measure, const struct bench_options *options,
+                        const struct tasks_contest *contest);
+
+/* Our process, with this many threads; the twin's. */
+struct subject_shape tasks_ours(unsigned threads);
+struct subject_shape tasks_twin(void);
+
+/* ---- Cases ---- */
+
+extern const struct bench_case tasks_stencil, tasks_chain, tasks_independent, tasks_growth,
+    tasks_bytes, tasks_granularity, tasks_wake;
+extern const duite_kernel tasks_stencil_combine, tasks_stencil_empty, tasks_stencil_padded,
+    tasks_chain_next, tasks_independent_mark, tasks_granularity_point, tasks_wake_up;
+
+#endif

@@ -1,0 +1,39 @@
+dnl What duite-bench measures duite against; all optional. RIVAL_NAME_MISSING is the package that is missing, or "".
+dnl Two OpenMP runtimes: each rival is compiled by the compiler whose own it is, whatever CC is.
+AC_DEFUN([DUITE_RIVAL], [
+    AM_CONDITIONAL([HAVE_RIVAL_$1], [test "x$2" = xyes])
+    AS_IF([test "x$2" = xyes], [duite_rival_missing=], [
+        duite_rival_missing="$3"
+        duite_rivals_missing="$duite_rivals_missing${duite_rivals_missing:+; }$3: no figures against $4"])
+    AC_DEFINE_UNQUOTED([RIVAL_$1_MISSING], ["$duite_rival_missing"], [the package that this rival lacks])])
+
+dnl DUITE_TRY_OPENMP(COMPILER, FLAG): sets duite_found to yes if it makes programs with OpenMP tasks.
+AC_DEFUN([DUITE_TRY_OPENMP], [
+    AC_MSG_CHECKING([whether ${$1:-no compiler} $2 makes programs])
+    duite_found=no
+    AC_LANG_CONFTEST([AC_LANG_PROGRAM([#include <omp.h>], [[
+        int x = 0;
+        #pragma omp task depend(inout: x)
+        x = omp_get_max_threads() < 1;
+        return x;]])])
+    AS_IF([test -n "$$1" && $$1 $2 -o conftest$EXEEXT conftest.c >&AS_MESSAGE_LOG_FD 2>&1], [duite_found=yes])
+    rm -f conftest.c conftest$EXEEXT
+    AC_MSG_RESULT([$duite_found])])
+
+AC_DEFUN([DUITE_RIVALS], [
+    duite_rivals_missing=
+    AC_ARG_VAR([RIVAL_GCC], [the compiler of the rival libgomp])
+    AC_ARG_VAR([RIVAL_CLANG], [the compiler of the rival libomp])
+    AC_PATH_PROG([RIVAL_GCC], [gcc])
+    AC_PATH_PROG([RIVAL_CLANG], [clang])
+    DUITE_TRY_OPENMP([RIVAL_GCC], [-fopenmp])
+    DUITE_RIVAL([LIBGOMP], [$duite_found], [gcc], [libgomp])
+    DUITE_TRY_OPENMP([RIVAL_CLANG], [-fopenmp=libomp])
+    DUITE_RIVAL([LIBOMP], [$duite_found], [clang with libomp-dev], [libomp])
+    PKG_CHECK_MODULES([STARPU], [starpu-1.3], [duite_found=yes], [duite_found=no])
+    STARPU_CFLAGS=`AS_ECHO(["$STARPU_CFLAGS"]) | $SED 's/-I/-isystem /g'` # its macros are not pedantic
+    DUITE_RIVAL([STARPU], [$duite_found], [libstarpu-dev], [StarPU])
+    AS_IF([test -n "$MPIRUN"], [duite_found=yes], [duite_found=no])
+    DUITE_RIVAL([MPI], [$duite_found], [mpirun (openmpi-bin)], [MPI])
+    AS_IF([test -z "$duite_rivals_missing"], [duite_rivals_say=yes],
+        [duite_rivals_say="not all ($duite_rivals_missing)"])])

@@ -1,0 +1,30 @@
+/* Stands in for a rival in the test of duite-bench. What it does is in its environment, LIAR:
+ * "count" answers 1, 2, 3, ... milliseconds, "wrong" fails its check, "die" ends in the middle,
+ * anything else before it says hello. */
+#include "bench/serve.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int answer(void *context, struct serve_request *request, double *value)
+{
+    static int times;
+    const char *role = context;
+    if (!strcmp(role, "wrong"))
+        return serve_fail("wrong answer");
+    if (!strcmp(role, "die"))
+        exit(0);
+    *value = 1e-3 * ++times;
+    return serve_number(request, "threads") == 0;
+}
+
+int main(void)
+{
+    static const struct serve_run runs[] = {
+        {"stencil", answer}, {"chain", answer}, {"independent", answer}, {0}};
+    const struct serve_run *const all[] = {runs, NULL};
+    char *role = getenv("LIAR");
+    if (!role || (strcmp(role, "count") && strcmp(role, "wrong") && strcmp(role, "die")))
+        return 3;
+    return serve("a liar, \"quoted\"", all, role);
+}

@@ -1,0 +1,10 @@
+check_PROGRAMS += tests/bench/liar
+tests_bench_liar_SOURCES = tests/bench/liar.c bench/serve.c bench/serve.h
+if HAVE_CHECK
+check_PROGRAMS += tests/bench/test_problem
+tests_bench_test_problem_SOURCES = tests/bench/test_problem.c bench/problem.c bench/problem.h
+tests_bench_test_problem_LDADD = tests/support/libunit.la $(CHECK_LIBS)
+TESTS += tests/bench/test_problem
+endif
+dist_check_SCRIPTS += tests/bench/test_bench.sh
+TESTS += tests/bench/test_bench.sh

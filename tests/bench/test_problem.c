@@ -1,0 +1,96 @@
+/* The answers of the bench's problems: a wrong one is seen, whatever is wrong with it. */
+#include "bench/problem.h"
+
+#include "tests/support/unit.h"
+
+#include <stdlib.h>
+
+enum { POINTS = 6, STEPS = 4 };
+
+static void swept(struct problem_cell *field[2], problem_point *body)
+{
+    problem_point *const volatile pointer = body;
+    ck_assert_int_eq(problem_fields(field, POINTS), 0);
+    problem_sweep(field, POINTS, STEPS, &pointer);
+}
+
+START_TEST(test_stencil)
+{
+    struct problem_cell *field[2];
+    swept(field, problem_combine);
+    ck_assert_int_eq(problem_stencil_wrong(field[STEPS % 2], POINTS, STEPS), 0);
+    ck_assert_int_ne(problem_stencil_wrong(field[STEPS % 2], POINTS, STEPS + 2), 0);
+    for (size_t i = 0; i < POINTS; i++) {
+        field[STEPS % 2][i].value ^= 1;
+        ck_assert_int_ne(problem_stencil_wrong(field[STEPS % 2], POINTS, STEPS), 0);
+        field[STEPS % 2][i].value ^= 1;
+    }
+    free(field[0]);
+}
+END_TEST
+
+static void mirrored(const uint64_t *left, const uint64_t *middle, const uint64_t *right,
+                     uint64_t *out)
+{
+    problem_combine(right, middle, left, out);
+}
+
+START_TEST(test_stencil_sides)
+{
+    struct problem_cell *field[2];
+    swept(field, mirrored);
+    ck_assert_int_ne(problem_stencil_wrong(field[STEPS % 2], POINTS, STEPS), 0);
+    free(field[0]);
+}
+END_TEST
+
+static void backwards(uint64_t *value, uint64_t i)
+{
+    problem_next(value, 9 - i);
+}
+
+START_TEST(test_chain)
+{
+    problem_link *const volatile right = problem_next, *const volatile wrong = backwards;
+    ck_assert(problem_chain(10, &right) != problem_chain(10, &wrong));
+    ck_assert(problem_chain(10, &right) != problem_chain(11, &right));
+}
+END_TEST
+
+START_TEST(test_marks)
+{
+    uint64_t mark[5] = {0};
+    for (uint64_t i = 0; i < 5; i++)
+        problem_mark(mark, i);
+    ck_assert_int_eq(problem_marks_wrong(mark, 5), 0);
+    ck_assert_int_ne(problem_marks_wrong(mark, 5), 0); /* cleared: none is made now */
+    for (uint64_t i = 0; i < 5; i++)
+        problem_mark(mark, i);
+    problem_mark(mark, 3);
+    ck_assert_int_ne(problem_marks_wrong(mark, 5), 0);
+}
+END_TEST
+
+START_TEST(test_line)
+{
+    struct problem_message now = {3, 1}, before = {2, 1}, out = {0};
+    ck_assert_int_eq(problem_line_point(&now, &now, NULL, 4, 1, &out), 0);
+    ck_assert_uint_eq(out.step, 4);
+    ck_assert_int_ne(problem_line_point(&before, &now, NULL, 4, 1, &out), 0);
+    ck_assert_int_ne(problem_line_point(NULL, &before, &now, 4, 1, &out), 0);
+    ck_assert_int_ne(problem_line_point(NULL, &now, &before, 4, 1, &out), 0);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bench/problem");
+    TCase *one = tcase_create("answers");
+    tcase_add_test(one, test_stencil);
+    tcase_add_test(one, test_stencil_sides);
+    tcase_add_test(one, test_chain);
+    tcase_add_test(one, test_marks);
+    tcase_add_test(one, test_line);
+    suite_add_tcase(suite, one);
+    return unit_run(suite);
+}

@@ -168,14 +168,23 @@ static error_t parse_number(struct command *command, struct argp_state *state, i
     return 0;
 }
 
+static error_t parse_name(struct argp_state *state, const char *option, const char *value,
+                          const char **name)
+{
+    *name = value;
+    if (*value)
+        return 0;
+    argp_failure(state, 0, 0, "%s: an empty name", option);
+    return EINVAL;
+}
+
 static error_t parse_scene(struct command *command, struct argp_state *state, const char *path)
 {
     if (command->run.scene) {
         argp_failure(state, 0, 0, "%s: a second scene file; one is expected", path);
         return EINVAL;
     }
-    command->run.scene = path;
-    return 0;
+    return parse_name(state, "scene file", path, &command->run.scene);
 }
 
 static error_t parse(int key, char *value, struct argp_state *state)
@@ -183,11 +192,9 @@ static error_t parse(int key, char *value, struct argp_state *state)
     struct command *command = state->input;
     switch (key) {
     case OUTPUT:
-        command->run.output = value;
-        return 0;
+        return parse_name(state, "--output", value, &command->run.output);
     case REPORT:
-        command->run.report = value;
-        return 0;
+        return parse_name(state, "--report", value, &command->run.report);
     case QUIET:
         command->run.quiet = true;
         return 0;
@@ -223,9 +230,9 @@ static const struct argp ARGP = {
     .doc = "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "
            "result is the same, to the "
            "last bit.\v"
-           "Exit codes: 0 done (or stopped by SIGUSR1 after a whole frame), 1 the run failed, 2 "
-           "the input or the command "
-           "line is wrong. Scene files are described in docs/scene.md and by --keys."};
+           "Exit codes: 0 done (or stopped by SIGUSR1 after a whole frame), 1 the run failed or "
+           "its files could not be written, 2 the input or the command line is wrong. Scene files "
+           "are described in docs/scene.md and by --keys."};
 
 /* Returns an exit code. */
 static int command_line(struct command *command, int argc, char **argv)
@@ -252,6 +259,22 @@ static void free_command(struct command *command)
     free(command->run.sets);
 }
 
+/* What standard output could not take is a failure like any other. */
+static int finish_output(int code)
+{
+    if (!fflush(stdout) && !ferror(stdout))
+        return code;
+    fprintf(stderr, "duite-cloth: cannot write to standard output: %s\n", strerror(errno));
+    return code ? code : SIMULATE_FAILED;
+}
+
+/* The largest exit code of all ranks, on all ranks. */
+static int agree(int code)
+{
+    MPI_Allreduce(MPI_IN_PLACE, &code, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    return code;
+}
+
 int main(int argc, char **argv)
 {
     int provided, rank;
@@ -265,9 +288,10 @@ int main(int argc, char **argv)
                                       .mapping_name = "metis",
                                       .seed = 1},
                               .talks = rank == 0};
-    int code = command_line(&command, argc, argv);
+    int code = agree(command_line(&command, argc, argv));
     if (code == SIMULATE_OK && !command.done)
         code = simulate(&command.run);
+    code = agree(finish_output(code));
     free_command(&command);
     MPI_Finalize();
     return code;

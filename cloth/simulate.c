@@ -4,15 +4,12 @@
 #include "cloth/output/output.h"
 #include "cloth/summary.h"
 
-#include <errno.h>
 #include <mpi.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 struct run {
     const struct simulate_options *options;
@@ -38,6 +35,8 @@ void simulate_catch_signals(void)
     struct sigaction action = {.sa_handler = request_stop, .sa_flags = SA_RESTART};
     sigemptyset(&action.sa_mask);
     sigaction(SIGUSR1, &action, NULL);
+    action.sa_handler = SIG_IGN; /* the write fails with EFBIG, and that is said */
+    sigaction(SIGXFSZ, &action, NULL);
 }
 
 /* The code of the lowest rank that failed, on all ranks; that rank prints its sentence. Collective.
@@ -59,20 +58,11 @@ static int agree(const struct run *run, const struct cloth_error *error)
 }
 
 /* Found before the run, so that its figures are not lost after it. */
-static int check_report(const char *path, struct cloth_error *error)
+static int check_report(const struct simulate_options *options, struct cloth_error *error)
 {
-    struct stat status;
-    const char *slash = strrchr(path, '/');
-    int length = slash ? (int)(slash - path) + 1 : 2;
-    char folder[4096];
-    snprintf(folder, sizeof folder, "%.*s", length, slash ? path : "./");
-    if (!*path || (!stat(path, &status) && S_ISDIR(status.st_mode)))
-        return cloth_fail(error, CLOTH_E_INPUT,
-                          "--report %s: this is a folder; the name of a file is expected", path);
-    if (access(folder, W_OK | X_OK))
-        return cloth_fail(error, CLOTH_E_INPUT, "--report %s: cannot write in its folder: %s", path,
-                          strerror(errno));
-    return CLOTH_OK;
+    struct cloth_error inner = {0};
+    const int code = output_report_check(options->report, options->output, &inner);
+    return code ? cloth_fail(error, code, "--report %s: %s", options->report, inner.text) : code;
 }
 
 static int open_output(struct run *run, struct cloth_error *error)
@@ -117,7 +107,7 @@ static int prepare(struct run *run)
     if (!code)
         code = flow_prepare(&run->flow, &run->model, run->ranks, &error);
     if (!code && run->rank == 0 && options->report)
-        code = check_report(options->report, &error);
+        code = check_report(options, &error);
     code = agree(run, &error);
     if (code)
         return code;
@@ -205,10 +195,10 @@ static int conclude(const struct run *run)
                                         .memory_bytes = sums[1]};
         if (run->report.stopped)
             say_stopped(run);
-        if (!run->options->quiet)
-            summary_print(stdout, &summary);
         if (run->options->report)
             summary_write(&summary, run->options->report, &error);
+        if (!run->options->quiet)
+            summary_print(stdout, &summary);
     }
     return agree(run, &error);
 }

@@ -24,8 +24,8 @@ struct simulate_options {
 /* Exit codes of the program. */
 enum { SIMULATE_OK = 0, SIMULATE_FAILED = 1, SIMULATE_BAD_INPUT = 2 };
 
-/* From now on SIGUSR1 asks a run to finish its frame and stop, instead of ending the process.
- * Local. */
+/* From now on SIGUSR1 asks a run to finish its frame and stop, and SIGXFSZ is an error of the
+ * write, instead of ending the process. Local. */
 void simulate_catch_signals(void);
 
 /* Reads, runs, reports. Every input error is found before anything is written, and printed by one

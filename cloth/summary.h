@@ -20,7 +20,7 @@ struct summary {
 /* A table for people. */
 void summary_print(FILE *file, const struct summary *summary);
 
-/* The flat JSON that the man page describes. Errors: CLOTH_E_IO, CLOTH_E_MEMORY. */
+/* The flat JSON that the man page describes. Errors as of output_report_write. */
 int summary_write(const struct summary *summary, const char *path, struct cloth_error *error);
 
 /* The progress line on standard error: on a terminal rewritten ten times a second, else a line

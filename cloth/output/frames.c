@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum part { PART_OBJ, PART_SCENE, PART_INDEX, PART_CACHE, N_PARTS };
@@ -74,11 +75,11 @@ static int replace_parts(const struct output_frames *frames, char *const fresh[N
                          struct cloth_error *error)
 {
     if (unlink(frames->path[PART_CACHE]) != 0 && errno != ENOENT)
-        return output_fail(error, "replace", frames->path[PART_CACHE]);
+        return output_refuse(error, "replace", frames->path[PART_CACHE]);
     output_sync_folder(frames->folder);
     for (int i = 0; i < N_PARTS; i++)
         if (rename(fresh[i], frames->path[i]) != 0)
-            return output_fail(error, "replace", frames->path[i]);
+            return output_refuse(error, "replace", frames->path[i]);
     output_sync_folder(frames->folder);
     return 0;
 }
@@ -178,6 +179,18 @@ static int encode(struct output_frames *frames, uint64_t frame, const double *po
     return 0;
 }
 
+/* Nobody reads what is written to a file that another run, or the user, took away. */
+static int check_part(const struct output_frames *frames, enum part part, int file,
+                      struct cloth_error *error)
+{
+    struct stat here, there;
+    if (fstat(file, &here) == 0 && stat(frames->path[part], &there) == 0 &&
+        here.st_dev == there.st_dev && here.st_ino == there.st_ino)
+        return 0;
+    return cloth_fail(error, CLOTH_E_IO, "%s was removed or replaced while the run wrote to it",
+                      frames->path[part]);
+}
+
 /* The order is what keeps the folder whole: floats, index, both on the disk, then the count. */
 static int write_frame(struct output_frames *frames, const char *line, size_t n,
                        struct cloth_error *error)
@@ -188,13 +201,13 @@ static int write_frame(struct output_frames *frames, const char *line, size_t n,
     const char *cache = frames->path[PART_CACHE], *index = frames->path[PART_INDEX];
     if (output_write_at(frames->cache, frames->bytes, size,
                         OUTPUT_PC2_HEADER + (uint64_t)size * frames->n_frames) != 0 ||
-        fdatasync(frames->cache) != 0)
+        output_sync(frames->cache) != 0)
         return output_fail(error, "write a frame to", cache);
     if (output_write_at(frames->index, line, n, frames->index_size) != 0 ||
-        fdatasync(frames->index) != 0)
+        output_sync(frames->index) != 0)
         return output_fail(error, "write a frame to", index);
     if (output_write_at(frames->cache, count, sizeof count, OUTPUT_PC2_COUNT) != 0 ||
-        fdatasync(frames->cache) != 0)
+        output_sync(frames->cache) != 0)
         return output_fail(error, "count a frame in", cache);
     return 0;
 }
@@ -220,6 +233,8 @@ int output_frame(void *context, uint64_t frame, double time, const double *posit
         return cloth_fail(error, CLOTH_E_RUN, "%s: frame %ju came where frame %u was due",
                           frames->path[PART_CACHE], (uintmax_t)frame, frames->n_frames);
     int code = encode(frames, frame, position, error);
+    code = code ? code : check_part(frames, PART_INDEX, frames->index, error);
+    code = code ? code : check_part(frames, PART_CACHE, frames->cache, error);
     if (code)
         return code;
     char line[64];

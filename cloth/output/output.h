@@ -28,12 +28,13 @@ struct output_setup {
     const double (*planes)[6]; /* n_planes x (point, normal) */
 };
 
-/* Opens a folder for frames; files of an earlier run in it are replaced. */
+/* Opens a folder for frames; files of an earlier run in it are replaced. Errors: CLOTH_E_INPUT
+ * where the folder is one that cannot be written to, CLOTH_E_IO, CLOTH_E_MEMORY. */
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error);
 
 /* Appends a frame: position is (all vertices) x 3, metres. Has the form of flow_output.frame,
- * context = frames. */
+ * context = frames. A frame that fails leaves the ones before it whole. */
 int output_frame(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
 
@@ -59,11 +60,15 @@ void output_cache_close(struct output_cache *cache);
 /* A flat JSON object, written whole or not at all (a temporary name, then renamed). Keys in the
  * order they are added; NaN and infinities become null. */
 struct output_report;
+/* Whether a report could be written to the path, as far as can be told without writing; made: a
+ * folder that will be there by then, or NULL. CLOTH_E_INPUT with what is wrong, not the path. */
+int output_report_check(const char *path, const char *made, struct cloth_error *error);
 int output_report_new(struct output_report **report, struct cloth_error *error);
 void output_report_text(struct output_report *report, const char *key, const char *value);
 void output_report_number(struct output_report *report, const char *key, double value);
 void output_report_integer(struct output_report *report, const char *key, uint64_t value);
 void output_report_null(struct output_report *report, const char *key);
+/* To the file that the path names, or leads to through links. Errors as of output_open. */
 int output_report_write(struct output_report *report, const char *path, struct cloth_error *error);
 void output_report_free(struct output_report *report);
 

@@ -4,6 +4,7 @@
 #include "cloth/output/files/json.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -79,18 +80,100 @@ static int write_renamed(const struct output_report *report, const char *path,
     return code;
 }
 
+/* ---- Where it goes ---- */
+
+enum { MOST_LINKS = 40 }; /* as the kernel follows */
+
+/* The path with its last part replaced by what a link there holds. */
+static char *beside(const char *path, const char *link)
+{
+    char *joined = NULL;
+    const char *slash = strrchr(path, '/');
+    const int folder = slash && *link != '/' ? (int)(slash - path) + 1 : 0;
+    return asprintf(&joined, "%.*s%s", folder, path, link) < 0 ? NULL : joined;
+}
+
+/* Where links lead, also to what is not there yet. The caller frees it. NULL: errno says why. */
+static char *follow(const char *path)
+{
+    char *now = strdup(path), link[PATH_MAX];
+    for (int links = 0; now; links++) {
+        const ssize_t n = readlink(now, link, sizeof link - 1);
+        if (n < 0)
+            return now;
+        link[n] = '\0';
+        char *next = links < MOST_LINKS ? beside(now, link) : NULL;
+        free(now);
+        now = next;
+        if (links == MOST_LINKS)
+            errno = ELOOP;
+    }
+    return NULL;
+}
+
+/* Renaming onto a pipe or a terminal would replace it: it has to be written as it is. */
+static bool written_in_place(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+/* Whether a folder (ended by '/') is `made` or one of its parents. */
+static bool within(const char *folder, const char *made)
+{
+    size_t n = strlen(folder);
+    while (n > 1 && folder[n - 1] == '/')
+        n--;
+    return made && strncmp(folder, made, n) == 0 && (made[n] == '/' || !made[n]);
+}
+
+static int check_folder(const char *file, const char *path, const char *made,
+                        struct cloth_error *error)
+{
+    const char *slash = strrchr(file, '/');
+    char *folder = slash ? strndup(file, (size_t)(slash - file) + 1) : strdup("./");
+    if (!folder)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for paths");
+    int code = 0;
+    if (access(folder, W_OK | X_OK) != 0 && !(errno == ENOENT && within(folder, made))) {
+        const char *reason = strerror(errno);
+        if (strcmp(file, path) == 0)
+            code = cloth_fail(error, CLOTH_E_INPUT, "cannot write in its folder: %s", reason);
+        else
+            code = cloth_fail(error, CLOTH_E_INPUT,
+                              "it is a link to %s; cannot write in the folder of that: %s", file,
+                              reason);
+    }
+    free(folder);
+    return code;
+}
+
+int output_report_check(const char *path, const char *made, struct cloth_error *error)
+{
+    struct stat status;
+    if (stat(path, &status) == 0 && S_ISDIR(status.st_mode))
+        return cloth_fail(error, CLOTH_E_INPUT, "this is a folder; the name of a file is expected");
+    if (written_in_place(path))
+        return access(path, W_OK) == 0
+                   ? 0
+                   : cloth_fail(error, CLOTH_E_INPUT, "cannot be written: %s", strerror(errno));
+    char *file = follow(path);
+    if (!file)
+        return cloth_fail(error, CLOTH_E_INPUT, "cannot follow this link: %s", strerror(errno));
+    const int code = check_folder(file, path, made, error);
+    free(file);
+    return code;
+}
+
 int output_report_write(struct output_report *report, const char *path, struct cloth_error *error)
 {
     if (fflush(report->stream) != 0 || ferror(report->stream))
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the report %s", path);
-    struct stat status;
-    bool exists = stat(path, &status) == 0;
-    /* A pipe or a terminal has to be written as it is: renaming would replace it. */
-    if (exists && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode))
+    if (written_in_place(path))
         return output_write_file(path, fill_report, report, error);
-    char *target = exists ? realpath(path, NULL) : NULL; /* keeps a link a link */
-    int code = write_renamed(report, target ? target : path, error);
-    free(target);
+    char *file = follow(path);
+    const int code = file ? write_renamed(report, file, error) : output_fail(error, "write", path);
+    free(file);
     return code;
 }
 

@@ -63,6 +63,8 @@ ok "no scene" wrong "duite-cloth: a scene file is expected; see duite-cloth --he
 ok "two scenes" wrong "duite-cloth: other.yaml: a second scene file; one is expected" scene.yaml other.yaml
 ok "an unknown option" wrong "unrecognized option '--frames'" scene.yaml --frames 3
 ok "an option without its value" wrong "option '--end' requires an argument" scene.yaml --end
+ok "a report of no name" wrong "duite-cloth: --report: an empty name" scene.yaml --report ''
+ok "a folder of no name" wrong "duite-cloth: --output: an empty name" scene.yaml --output ''
 ok "no threads" wrong "duite-cloth: --threads 0: a whole number from 1 to 1024 is expected" scene.yaml --threads 0
 ok "half a number" wrong "duite-cloth: --threads 2x: a whole number from 1 to 1024 is expected" scene.yaml --threads 2x
 ok "a negative seed" wrong "duite-cloth: --seed -1: a whole number from 0 to 18446744073709551615 is expected" scene.yaml \
@@ -138,6 +140,30 @@ fails() { # a step that is much too long for an explicit run
         grep -q '^duite-cloth: step [0-9]*: .* block [0-9]* .*; the last frame written is [0-9]*$' complained
 }
 ok "a run that diverges names step, block and last frame" fails
+
+too_large() { # each file may have 10 MB: the frames before are whole, and the message says which file and why
+    status=0
+    prints sh -c 'ulimit -f 20480 && exec "$@"' sh "$DUITE_CLOTH" scene.yaml --set 'cloths[0].mesh.grid={width: 1,
+        height: 1, nx: 100, ny: 100}' --set integrator=explicit_euler --set time.h=1e-5 --end 0.001 --set time.fps=100000 \
+        --output large --report large.json || status=$?
+    echo "exit status $status"
+    cat complained
+    frame=$(sed -n 's|^duite-cloth: cannot write a frame to large/cloth.pc2: File too large; the last frame written is ||p' \
+        complained)
+    test $status = 1 && test "$(wc -l < complained)" = 1 && test "$(wc -c < large/cloth.pc2)" -eq $((32 + 120000 * (frame + 1))) &&
+        test "$(tail -n 1 large/frames.csv | cut -d , -f 1)" = "$frame" && test ! -e large.json && ! ls large/*.part
+}
+ok "a file that cannot grow" too_large
+ok "a report in the folder of frames" eval 'run scene.yaml --end 0.002 --output both/frames --report both/x.json &&
+    test -s both/x.json'
+full() { # ARGUMENT...: standard output takes nothing
+    status=0
+    "$DUITE_CLOTH" "$@" > /dev/full 2> complained || status=$?
+    cat complained
+    test $status = 1 && grep -qx 'duite-cloth: cannot write to standard output: No space left on device' complained
+}
+ok "a summary that cannot be printed" full scene.yaml --end 0.002
+ok "keys that cannot be printed" full --keys
 
 unused() {
     printf 'v 0 0 0\nv 1 0 0\nv 0 0 1\nv 5 5 5\nf 1 2 3\n' > one.obj

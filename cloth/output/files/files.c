@@ -21,6 +21,15 @@ int output_fail(struct cloth_error *error, const char *what, const char *path)
     return cloth_fail(error, CLOTH_E_IO, "cannot %s %s: %s", what, path, reason);
 }
 
+int output_refuse(struct cloth_error *error, const char *what, const char *path)
+{
+    const int reason = errno;
+    const bool disk = reason == ENOSPC || reason == EDQUOT || reason == EIO || reason == EMFILE ||
+                      reason == ENFILE || reason == ENOMEM;
+    return cloth_fail(error, disk ? CLOTH_E_IO : CLOTH_E_INPUT, "cannot %s %s: %s", what, path,
+                      strerror(reason));
+}
+
 static int make_one(const char *path)
 {
     struct stat status;
@@ -54,8 +63,8 @@ int output_make_folder(const char *folder, struct cloth_error *error)
     free(path);
     if (!bad)
         return 0;
-    int code = reason == ENOSPC || reason == EIO || reason == EDQUOT ? CLOTH_E_IO : CLOTH_E_INPUT;
-    return cloth_fail(error, code, "cannot make the folder %s: %s", folder, strerror(reason));
+    errno = reason;
+    return output_refuse(error, "make the folder", folder);
 }
 
 int output_write_at(int file, const void *bytes, size_t n, uint64_t offset)
@@ -76,15 +85,22 @@ int output_write_at(int file, const void *bytes, size_t n, uint64_t offset)
     return 0;
 }
 
+int output_sync(int file)
+{
+    if (fdatasync(file) == 0 || errno == EINVAL || errno == EROFS || errno == ENOSYS ||
+        errno == ENOTSUP)
+        return 0;
+    return -1;
+}
+
 int output_write_file(const char *path, int (*fill)(FILE *file, const void *what), const void *what,
                       struct cloth_error *error)
 {
     FILE *file = fopen(path, "we");
     if (!file)
-        return output_fail(error, "write", path);
+        return output_refuse(error, "write", path);
     int bad = fill(file, what) != 0 || fflush(file) != 0 || ferror(file);
-    /* Pipes and terminals cannot be synced, and need not be. */
-    bad = bad || (fsync(fileno(file)) != 0 && errno != EINVAL && errno != EROFS);
+    bad = bad || output_sync(fileno(file)) != 0;
     int reason = errno;
     if (fclose(file) != 0 && !bad) {
         bad = 1;

@@ -14,15 +14,23 @@ char *output_path(const char *folder, const char *name, const char *suffix);
 /* "cannot WHAT PATH: reason of errno", as CLOTH_E_IO. */
 int output_fail(struct cloth_error *error, const char *what, const char *path);
 
-/* Makes the folder and its parents. CLOTH_E_INPUT where something else is in the way or it is not
- * allowed. */
+/* The same before anything is written: CLOTH_E_INPUT unless the disk itself fails, since then the
+ * path is one that cannot be used: not there, not allowed, something else in the way. */
+int output_refuse(struct cloth_error *error, const char *what, const char *path);
+
+/* Makes the folder and its parents. Errors: output_refuse. */
 int output_make_folder(const char *folder, struct cloth_error *error);
 
 /* Writes all bytes at an offset, or fails with errno set (a short write counts as a full disk). */
 int output_write_at(int file, const void *bytes, size_t n, uint64_t offset);
 
+/* Brings what was written to a file to the disk. 0, or -1 with errno set. Pipes and some file
+ * systems cannot be asked, and need not be. */
+int output_sync(int file);
+
 /* Creates or empties a file, has `fill` write it, and brings it to the disk. A file that could not
- * be written whole is removed. `fill` returns 0, or nonzero with errno set. */
+ * be written whole is removed. `fill` returns 0, or nonzero with errno set. Errors: output_refuse
+ * where it cannot be opened, else output_fail. */
 int output_write_file(const char *path, int (*fill)(FILE *file, const void *what), const void *what,
                       struct cloth_error *error);
 

@@ -14,6 +14,7 @@
 
 enum mode { OFF, DIE, FULL };
 static enum mode mode = OFF;
+static int reason = ENOSPC; /* why calls fail */
 static long calls_left;
 
 /* Whether this call is the one that fails; a dying process does not come back. */
@@ -23,7 +24,7 @@ static int strikes(void)
         return 0;
     if (mode == DIE)
         _exit(42);
-    errno = ENOSPC;
+    errno = reason;
     return 1;
 }
 
@@ -143,6 +144,30 @@ START_TEST(fails_to_open_whole)
 }
 END_TEST
 
+/* A disk that fails is no mistake of the user; a folder that may not be written to is. */
+START_TEST(tells_whose_fault)
+{
+    static const struct {
+        int reason, code;
+    } all[] = {
+        {EPERM, CLOTH_E_INPUT}, {EACCES, CLOTH_E_INPUT}, {EIO, CLOTH_E_IO}, {EDQUOT, CLOTH_E_IO}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        struct cloth_error error = {0};
+        struct output_frames *frames = NULL;
+        sample_run(&sample, 1, 1);
+        reason = all[i].reason;
+        mode = FULL;
+        calls_left = 4; /* after four files: the old cache is not to be removed */
+        int code = output_open(&frames, &sample.setup, &error);
+        mode = OFF;
+        ck_assert_int_eq(code, all[i].code);
+        ck_assert_msg(strstr(error.text, "cloth.pc2: ") && strstr(error.text, strerror(reason)),
+                      "%s", error.text);
+    }
+    reason = ENOSPC;
+}
+END_TEST
+
 /* A frame that fails takes its own bytes away, and the next try succeeds. */
 START_TEST(full_disk_keeps_whole_frames)
 {
@@ -212,6 +237,7 @@ int main(void)
     tcase_add_checked_fixture(c, start, end);
     tcase_add_test(c, dies_anywhere);
     tcase_add_test(c, fails_to_open_whole);
+    tcase_add_test(c, tells_whose_fault);
     tcase_add_test(c, full_disk_keeps_whole_frames);
     tcase_add_test(c, report_is_whole_or_not_at_all);
     Suite *s = suite_create("output_crash");

@@ -157,6 +157,49 @@ START_TEST(folder_in_the_way)
 }
 END_TEST
 
+/* Something else stands where a file of the folder goes. */
+START_TEST(file_in_the_way)
+{
+    static const char *const name[] = {"cloth.obj", "cloth.pc2", "frames.csv.part"};
+    for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
+        struct cloth_error error = {0};
+        struct output_frames *frames = NULL;
+        sample_run(&sample, 1, 1);
+        unlink(sample_path(&sample, name[i]));
+        ck_assert_int_eq(mkdir(sample_path(&sample, name[i]), 0777), 0);
+        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
+        ck_assert_msg(strstr(error.text, sample_path(&sample, name[i])) != NULL, "%s", error.text);
+        ck_assert_ptr_null(frames);
+        ck_assert_int_eq(rmdir(sample_path(&sample, name[i])), 0);
+    }
+}
+END_TEST
+
+START_TEST(taken_away_while_it_runs)
+{
+    static const char *const name[] = {"cloth.pc2", "frames.csv"};
+    for (int i = 0; i < 3; i++) {
+        struct cloth_error error = {0};
+        struct output_frames *frames = NULL, *other = NULL;
+        double position[3 * SAMPLE_POINTS];
+        sample_positions(1, 0, position);
+        ck_assert_int_eq(output_open(&frames, &sample.setup, &error), 0);
+        ck_assert_int_eq(output_frame(frames, 0, 0, position, &error), 0);
+        if (i < 2)
+            ck_assert_int_eq(unlink(sample_path(&sample, name[i])), 0);
+        else /* another run */
+            ck_assert_int_eq(output_open(&other, &sample.setup, &error), 0);
+        ck_assert_int_eq(output_frame(frames, 1, 0.04, position, &error), CLOTH_E_IO);
+        ck_assert_msg(i == 2 || strstr(error.text, sample_path(&sample, name[i])), "%s",
+                      error.text);
+        ck_assert_ptr_nonnull(strstr(error.text, "was removed or replaced"));
+        error.code = 0;
+        ck_assert_int_eq(output_close(&frames, &error), 0);
+        ck_assert_int_eq(output_close(&other, &error), 0);
+    }
+}
+END_TEST
+
 START_TEST(makes_parents)
 {
     char deep[128];
@@ -227,6 +270,8 @@ int main(void)
     tcase_add_test(c, interrupted_frame_is_ignored);
     tcase_add_test(c, refuses_bad_frames);
     tcase_add_test(c, folder_in_the_way);
+    tcase_add_test(c, file_in_the_way);
+    tcase_add_test(c, taken_away_while_it_runs);
     tcase_add_test(c, makes_parents);
     tcase_add_loop_test(c, refuses_damage, 0, sizeof DAMAGES / sizeof *DAMAGES);
     tcase_add_test(c, refuses_no_folder);

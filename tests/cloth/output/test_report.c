@@ -115,8 +115,63 @@ START_TEST(says_what_is_in_the_way)
     sample_write(path, "old", 3);
     char below[112];
     snprintf(below, sizeof below, "%s/x.json", path);
-    ck_assert_int_eq(output_report_write(report, below, &error), CLOTH_E_IO);
+    ck_assert_int_eq(output_report_write(report, below, &error), CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "Not a directory"));
+}
+END_TEST
+
+/* A link to another, in a folder, to a file that is not there yet. */
+START_TEST(follows_links_to_nothing)
+{
+    char link[112], below[112], target[112];
+    struct stat status;
+    snprintf(link, sizeof link, "%s/first.json", sample.folder);
+    snprintf(below, sizeof below, "%s/sub/second.json", sample.folder);
+    snprintf(target, sizeof target, "%s/sub", sample.folder);
+    ck_assert_int_eq(symlink("sub/second.json", link), 0);
+    ck_assert_int_eq(output_report_check(link, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_msg(strstr(error.text, "it is a link to ") && strstr(error.text, "/sub/second.json"),
+                  "%s", error.text);
+    error.code = 0;
+    ck_assert_int_eq(mkdir(target, 0777), 0);
+    ck_assert_int_eq(symlink("third.json", below), 0);
+    ck_assert_int_eq(output_report_check(link, NULL, &error), 0);
+    ck_assert_int_eq(output_report_write(report, link, &error), 0);
+    ck_assert(lstat(link, &status) == 0 && S_ISLNK(status.st_mode));
+    ck_assert(lstat(below, &status) == 0 && S_ISLNK(status.st_mode));
+    snprintf(target, sizeof target, "%s/sub/third.json", sample.folder);
+    sample_read(target, text, sizeof text);
+    ck_assert_str_eq(text, "{}\n");
+}
+END_TEST
+
+START_TEST(links_in_a_ring)
+{
+    char link[112];
+    snprintf(link, sizeof link, "%s/ring.json", sample.folder);
+    ck_assert_int_eq(symlink("ring.json", link), 0);
+    ck_assert_int_eq(output_report_check(link, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "Too many levels of symbolic links"));
+    error.code = 0;
+    ck_assert_int_eq(output_report_write(report, link, &error), CLOTH_E_IO);
+}
+END_TEST
+
+START_TEST(checks_before)
+{
+    char file[128], made[128];
+    ck_assert_int_eq(output_report_check("/dev/null", NULL, &error), 0);
+    ck_assert_int_eq(output_report_check(path, NULL, &error), 0);
+    ck_assert_int_eq(output_report_check(sample.folder, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_str_eq(error.text, "this is a folder; the name of a file is expected");
+    error.code = 0;
+    snprintf(file, sizeof file, "%s/new/report.json", sample.folder);
+    for (int i = 0; i < 3; i++) { /* another folder is made, a folder in its folder, itself */
+        static const char *const name[] = {"newer", "new/frames", "new/"};
+        snprintf(made, sizeof made, "%s/%s", sample.folder, name[i]);
+        ck_assert_int_eq(output_report_check(file, made, &error), i ? 0 : CLOTH_E_INPUT);
+        error.code = 0;
+    }
 }
 END_TEST
 
@@ -131,6 +186,9 @@ int main(void)
     tcase_add_test(c, keeps_a_link);
     tcase_add_test(c, does_not_replace_a_device);
     tcase_add_test(c, says_what_is_in_the_way);
+    tcase_add_test(c, follows_links_to_nothing);
+    tcase_add_test(c, links_in_a_ring);
+    tcase_add_test(c, checks_before);
     Suite *s = suite_create("report");
     suite_add_tcase(s, c);
     return unit_run(s);

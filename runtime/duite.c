@@ -103,9 +103,8 @@ static uint64_t hash_kernels(const struct graph *graph)
     return hash;
 }
 
-/* What must be the same on all ranks, and whether it went well there. */
+/* What must be the same on all ranks. */
 struct started {
-    int64_t code;
     uint64_t kernels, laws, seed, scheduler, mapping;
 };
 
@@ -122,39 +121,50 @@ static const char *difference(const struct started *a, const struct started *b)
     return a->mapping != b->mapping ? "mappings" : NULL;
 }
 
-static int compare(const struct started *all, int n, int rank, int code)
+static int compare(const struct started *all, int n, int rank)
 {
-    for (int i = 0; i < n && !code; i++)
-        if (all[i].code)
-            return base_error(DUITE_E_DIFFERENT, "duite_start failed on rank %d: %s", i,
-                              duite_code_text((int)all[i].code));
-    for (int i = 1; i < n && !code; i++)
+    for (int i = 1; i < n; i++)
         if (difference(&all[0], &all[i]))
             return base_error(DUITE_E_DIFFERENT,
                               "ranks 0 and %d start with different %s (seen on rank %d)", i,
                               difference(&all[0], &all[i]), rank);
-    return code;
+    return DUITE_OK;
+}
+
+/* Did all ranks come so far? */
+static int agree_on_code(MPI_Comm mpi, int code)
+{
+    struct {
+        int code, rank;
+    } own = {.code = code > 0 ? 0 : code}, worst = {0};
+    MPI_Comm_rank(mpi, &own.rank);
+    if (MPI_Allreduce(&own, &worst, 1, MPI_2INT, MPI_MINLOC, mpi))
+        return base_error(DUITE_E_MPI, "MPI_Allreduce failed");
+    if (code || !worst.code)
+        return code;
+    return base_error(DUITE_E_DIFFERENT, "duite_start failed on rank %d: %s", worst.rank,
+                      duite_code_text(worst.code));
 }
 
 /* All ranks succeed or all fail. */
 static int agree(duite *rt, const duite_options *options, int code)
 {
-    int n = rt->graph.n_ranks;
-    if (n == 1)
-        return code;
-    struct started own = {.code = code, .seed = options->seed};
+    size_t n = (size_t)rt->graph.n_ranks;
+    struct started *all = code ? NULL : base_alloc(n * sizeof *all);
+    if (!code && !all)
+        code = base_no_memory("the ranks");
+    code = agree_on_code(rt->mpi, code);
     if (!code) {
-        own.kernels = hash_kernels(&rt->graph);
-        own.laws = data_laws_hash(options->laws, 0);
-        own.scheduler = XXH64(options->scheduler->name, strlen(options->scheduler->name), 0);
-        own.mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0);
+        struct started own = {
+            .seed = options->seed,
+            .kernels = hash_kernels(&rt->graph),
+            .laws = data_laws_hash(options->laws, 0),
+            .scheduler = XXH64(options->scheduler->name, strlen(options->scheduler->name), 0),
+            .mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0)};
+        code = MPI_Allgather(&own, sizeof own, MPI_BYTE, all, sizeof own, MPI_BYTE, rt->mpi)
+                   ? base_error(DUITE_E_MPI, "MPI_Allgather failed")
+                   : compare(all, (int)n, rt->graph.rank);
     }
-    struct started *all = base_alloc((size_t)n * sizeof *all);
-    if (!all)
-        return base_no_memory("the ranks");
-    int mpi = MPI_Allgather(&own, sizeof own, MPI_BYTE, all, sizeof own, MPI_BYTE, rt->mpi);
-    code = mpi ? base_error(DUITE_E_MPI, "MPI_Allgather failed")
-               : compare(all, n, rt->graph.rank, code);
     base_free(all);
     return code;
 }
@@ -162,20 +172,16 @@ static int agree(duite *rt, const duite_options *options, int code)
 static int start_graph(duite *rt, const duite_options *options)
 {
     int rank, n;
-    MPI_Comm_set_errhandler(rt->mpi, MPI_ERRORS_RETURN);
     if (MPI_Comm_rank(rt->mpi, &rank) || MPI_Comm_size(rt->mpi, &n))
         return base_error(DUITE_E_MPI, "MPI_Comm_rank failed");
     rt->mapping = options->mapping;
     rt->seed = options->seed;
-    rt->words = base_alloc((size_t)n * sizeof *rt->words);
     static const duite_kernel *const none[] = {NULL};
     int code = check_rest(options);
     int started = graph_start(&rt->graph, rank, n, code ? none : options->kernels,
                               code ? NULL : options->laws);
     if (!code)
         code = started;
-    if (!code && !rt->words)
-        code = base_no_memory("the ranks");
     if (!code && n > 1)
         code = comm_start(&rt->comm, rt->mpi, &rt->graph);
     return code;
@@ -210,19 +216,48 @@ static int start_workers(duite *rt, const duite_options *options, int code)
     return code;
 }
 
+/* ---- The end ---- */
+
+bool instance_is_broken(const duite *rt)
+{
+    return rt->graph.broken || (rt->comm && comm_broken(rt->comm));
+}
+
+static bool nothing_left(void *context)
+{
+    duite *rt = context;
+    uint64_t left = atomic_load_explicit(&rt->graph.unfinished, memory_order_acquire);
+    return !left || (rt->comm && left == comm_stuck(rt->comm));
+}
+
+void instance_give_up(duite *rt)
+{
+    if (atomic_exchange(&rt->graph.given_up, 1))
+        return;
+    if (rt->comm && rt->graph.broken)
+        comm_broke(rt->comm, rt->graph.broken, duite_message());
+    if (rt->comm)
+        comm_give_up(rt->comm, work_main(rt->pool));
+    work_drain(rt->pool, nothing_left, rt);
+}
+
 static void end(duite *rt)
 {
-    /* Messages may be on their way after a break: then MPI must not reuse the communicator, and it
-     * is never freed. */
-    bool quiet = !rt->graph.broken && !(rt->comm && comm_broken(rt->comm));
+    if (instance_is_broken(rt))
+        instance_give_up(rt);
     work_stop(rt->pool);
-    comm_stop(rt->comm);
-    graph_stop(&rt->graph);
-    if (quiet)
+    if (comm_stop(rt->comm))
         MPI_Comm_free(&rt->mpi);
-    base_free(rt->words);
+    graph_stop(&rt->graph);
     base_free(rt);
     base_pool_leave();
+}
+
+static int start_parts(duite *rt, MPI_Comm mpi, const duite_options *options)
+{
+    rt->mpi = mpi;
+    base_pool_enter();
+    return start_workers(rt, options, start_graph(rt, options));
 }
 
 int duite_start(duite **out, const duite_options *options)
@@ -233,17 +268,21 @@ int duite_start(duite **out, const duite_options *options)
     int code = check_options(options);
     if (!code)
         code = start_mpi();
-    duite *rt = code ? NULL : base_alloc_zero(sizeof *rt);
-    if (!rt)
-        return code ? code : base_no_memory("the runtime");
-    if (MPI_Comm_dup(options->comm, &rt->mpi)) {
-        base_free(rt);
+    if (code)
+        return code;
+    MPI_Comm mpi;
+    if (MPI_Comm_dup(options->comm, &mpi))
         return base_error(DUITE_E_MPI, "MPI_Comm_dup failed");
+    MPI_Comm_set_errhandler(mpi, MPI_ERRORS_RETURN);
+    duite *rt = base_alloc_zero(sizeof *rt);
+    code = agree_on_code(mpi, rt ? DUITE_OK : base_no_memory("the runtime"));
+    if (code) {
+        MPI_Comm_free(&mpi);
+        base_free(rt);
+        return code;
     }
-    base_pool_enter();
-    code = start_graph(rt, options);
-    code = start_workers(rt, options, code);
-    code = agree(rt, options, code);
+    /* From here on every rank comes to agree(), whatever fails. */
+    code = agree(rt, options, start_parts(rt, mpi, options));
     if (code) {
         end(rt);
     } else {

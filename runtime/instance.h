@@ -16,9 +16,15 @@ struct duite {
     uint64_t seed;
     unsigned threads;
     int oversubscribed;
-    struct comm_word *words; /* one a rank */
     int remembered;          /* code of a failed fork, new, ... */
     char sentence[1024];     /* of `remembered` */
 };
+
+/* True once nothing but stop is left: memory ran out in a fork, the ranks differ, a message was lost. */
+bool instance_is_broken(const duite *rt);
+
+/* It is broken: tells the other ranks, awaits nothing any more, and returns when no task is left. Does
+ * nothing the second time. */
+void instance_give_up(duite *rt);
 
 #endif

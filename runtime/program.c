@@ -26,6 +26,8 @@ static int enter(duite *rt, const char *call)
 
 static int remember(duite *rt, int code)
 {
+    if (rt->graph.broken)
+        instance_give_up(rt);
     if (!code || rt->remembered)
         return code;
     rt->remembered = code;
@@ -162,10 +164,14 @@ static int get(duite *rt, duite_object object, int rank, void *values, const cha
     if (!code)
         code = graph_copy(&rt->graph, work_main(rt->pool), object, rank, &copy);
     work_tick(rt->pool);
+    if (rt->graph.broken)
+        instance_give_up(rt);
     if (code || !here)
         return code;
     work_until(rt->pool, copy_done, &copy);
     if (!copy_done(&copy))
+        instance_give_up(rt); /* the task that would have copied is over, then */
+    if (rt->comm && comm_broken(rt->comm))
         return comm_broken(rt->comm);
     if (!values) /* found out only now: the other ranks count on this one */
         return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the values", call);
@@ -222,9 +228,9 @@ static struct comm_word own_word(const struct graph *graph)
 static int compare(duite *rt)
 {
     struct graph *graph = &rt->graph;
-    const struct comm_word own = {.forks = graph->forks, .fingerprint = graph->fingerprint},
-                           *words = rt->words;
-    int code = comm_agree(rt->comm, &own, rt->words, between, rt->pool);
+    const struct comm_word own = {.forks = graph->forks, .fingerprint = graph->fingerprint};
+    struct comm_word *words;
+    int code = comm_agree(rt->comm, &own, &words, between, rt->pool);
     work_idle_ends(rt->pool);
     for (int i = 1; i < graph->n_ranks && !code; i++)
         if (words[i].fingerprint != words[0].fingerprint)
@@ -235,16 +241,18 @@ static int compare(duite *rt)
                                               i, (unsigned long long)words[0].forks,
                                               (unsigned long long)words[i].forks);
     graph->fingerprint = 0;
+    if (code)
+        instance_give_up(rt);
     return code;
 }
 
-/* The failure that is first in fork order on any rank, or NULL. */
-static const struct data_failure *first_failure(const duite *rt)
+/* The failure that is first in fork order among those of n ranks, or NULL. */
+static const struct data_failure *first_failure(const struct comm_word *words, int n)
 {
     const struct comm_word *first = NULL;
-    for (int i = 0; i < rt->graph.n_ranks; i++)
-        if (rt->words[i].failed && (!first || rt->words[i].failed < first->failed))
-            first = &rt->words[i];
+    for (int i = 0; i < n; i++)
+        if (words[i].failed && (!first || words[i].failed < first->failed))
+            first = &words[i];
     return first ? &first->failure : NULL;
 }
 
@@ -258,15 +266,16 @@ int duite_wait(duite *rt)
     if (rt->comm && (code = compare(rt)))
         return code;
     work_until(rt->pool, drained, graph);
-    const struct comm_word own = rt->words[0] = own_word(graph);
+    struct comm_word own = own_word(graph), *words = &own;
     if (rt->comm)
-        code = comm_broken(rt->comm);
-    if (rt->comm && !code)
-        code = comm_agree(rt->comm, &own, rt->words, between, rt->pool);
+        code = comm_agree(rt->comm, &own, &words, between, rt->pool);
     work_idle_ends(rt->pool);
-    if (!code)
-        code = recall(rt);
-    const struct data_failure *failure = first_failure(rt);
+    if (code) {
+        instance_give_up(rt);
+        return code;
+    }
+    code = recall(rt);
+    const struct data_failure *failure = first_failure(words, graph->n_ranks);
     if (code || !failure)
         return code;
     graph->first_failure = NULL;
@@ -291,6 +300,8 @@ int duite_count_all(duite *rt, duite_counters *counters)
     if (rt->comm)
         code = comm_sum(rt->comm, sums, sizeof sums / sizeof sums[0], between, rt->pool);
     work_idle_ends(rt->pool);
+    if (code)
+        instance_give_up(rt);
     *counters = (duite_counters){.tasks = (uint64_t)sums[0],
                                  .placed = (uint64_t)sums[1],
                                  .stolen = (uint64_t)sums[2],

@@ -22,6 +22,7 @@ struct comm_arrival {
 void comm_arrivals_start(struct comm_arrivals *arrivals)
 {
     pthread_mutex_init(&arrivals->lock, NULL);
+    arrivals->closed = false;
     arrivals->table = NULL;
 }
 
@@ -98,23 +99,48 @@ bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
     return kept;
 }
 
-bool comm_arrivals_take(struct comm_arrivals *arrivals, struct data_packet *packet,
-                        struct comm_target *target, bool *lost)
+enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_packet *packet,
+                                  struct comm_target *target)
 {
+    enum comm_take take = COMM_LOST;
     pthread_mutex_lock(&arrivals->lock);
     struct comm_arrival *arrival = find(arrivals, packet->key);
-    if (!arrival)
+    if (!arrival && !arrivals->closed)
         arrival = add(arrivals, packet->key);
-    *lost = !arrival;
-    bool wanted = arrival && arrival->wanted;
-    if (wanted) {
+    if (arrival && arrival->wanted) {
+        take = COMM_WANTED;
         *target = arrival->target;
         if (--arrival->wanted == 0)
             drop(arrivals, arrival);
     } else if (arrival) {
+        take = COMM_KEPT;
         packet->next = arrival->packets;
         arrival->packets = packet;
     }
     pthread_mutex_unlock(&arrivals->lock);
-    return wanted;
+    return take;
+}
+
+bool comm_arrivals_close(struct comm_arrivals *arrivals, struct comm_target *target)
+{
+    struct comm_arrival *arrival, *next;
+    bool found = false;
+    pthread_mutex_lock(&arrivals->lock);
+    arrivals->closed = true;
+    HASH_ITER(hh, arrivals->table, arrival, next)
+    {
+        found = arrival->wanted > 0;
+        if (found) {
+            *target = arrival->target;
+            arrival->wanted--;
+        }
+        if (!arrival->wanted) {
+            free_packets(arrival->packets);
+            drop(arrivals, arrival);
+        }
+        if (found)
+            break;
+    }
+    pthread_mutex_unlock(&arrivals->lock);
+    return found;
 }

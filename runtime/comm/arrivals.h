@@ -9,6 +9,7 @@
  * thread. */
 struct comm_arrivals {
     pthread_mutex_t lock;
+    bool closed;
     struct comm_arrival
         *table; /* uthash by key: expected and not all there, or there and not expected yet */
 };
@@ -27,9 +28,18 @@ void comm_arrivals_stop(struct comm_arrivals *arrivals); /* frees packets that n
 bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
                           struct comm_target target, uint32_t packets, struct data_packet **early);
 
-/* A packet came. True: *target is set, deliver it; false: kept until it is expected. *lost without
- * memory. */
-bool comm_arrivals_take(struct comm_arrivals *arrivals, struct data_packet *packet,
-                        struct comm_target *target, bool *lost);
+enum comm_take {
+    COMM_WANTED, /* *target is set: deliver it */
+    COMM_KEPT,   /* until it is expected */
+    COMM_LOST    /* nobody will ever want it, or there is no memory: the caller frees it */
+};
+
+/* A packet came. */
+enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_packet *packet,
+                                  struct comm_target *target);
+
+/* From the first call on nothing is expected any more, and what comes is lost. Returns one by one
+ * the targets that wait, each once for every packet that it wants; false: there are no more. */
+bool comm_arrivals_close(struct comm_arrivals *arrivals, struct comm_target *target);
 
 #endif

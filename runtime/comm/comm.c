@@ -1,88 +1,35 @@
-/* Posts wait in a lock-free stack until somebody polls; requests live in two arrays that only the
- * holder of `lock` touches. */
+/* What is to be sent waits in a lock-free stack, linked by the tasks themselves, until somebody
+ * polls. Once communication is broken nothing is sent any more: what was posted ends as if it had
+ * been. */
 #include "runtime/comm/comm.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/base/pool.h"
-#include "runtime/comm/arrivals.h"
+#include "runtime/comm/internal.h"
 
-#include <stdio.h>
+#include <sched.h>
 #include <stdlib.h>
-#include <string.h>
-
-/* Something to send, or being sent. */
-struct post {
-    struct post *next;
-    struct graph_task *task; /* SEND: finished once the bytes are gone */
-    struct data_packet
-        *packet; /* freed once they are gone; NULL: the task's version is sent as it lies */
-    int to;
-};
-
-/* Requests under way, and what each is about: a post or a packet. */
-struct requests {
-    MPI_Request *request;
-    void **what;
-    int *index; /* scratch for MPI_Testsome */
-    int n;
-    size_t capacity[3];
-};
-
-struct comm {
-    MPI_Comm mpi;
-    MPI_Datatype line; /* 64 bytes: see data_packet_lines */
-    struct graph *graph;
-    atomic_flag lock;
-    _Atomic(struct post *) posts;
-    struct requests sends, receives;
-    struct comm_arrivals arrivals;
-    _Atomic int broken;
-    char sentence[MPI_MAX_ERROR_STRING + 64]; /* of `broken`, written once before it is set */
-    _Atomic uint64_t messages, bytes;
-};
 
 /* What one poll found, delivered after the lock is let go. */
 struct found {
     struct data_packet *packets;
-    struct post *sent;
+    struct graph_task *sent;
     bool any;
 };
 
-static void broke(struct comm *comm, int code, const char *what, int mpi)
-{
-    if (atomic_load(&comm->broken))
-        return;
-    char reason[MPI_MAX_ERROR_STRING] = "";
-    int length = 0;
-    if (code == DUITE_E_MPI)
-        MPI_Error_string(mpi, reason, &length);
-    snprintf(comm->sentence, sizeof comm->sentence, "%s: %s", what,
-             code == DUITE_E_MPI ? reason : "out of memory");
-    atomic_store(&comm->broken, code);
-}
+/* ---- Start and stop ---- */
 
-static bool mpi_ok(struct comm *comm, int mpi, const char *what)
+static int prepare(struct comm *comm)
 {
-    if (mpi != MPI_SUCCESS)
-        broke(comm, DUITE_E_MPI, what, mpi);
-    return mpi == MPI_SUCCESS;
-}
-
-int comm_broken(struct comm *comm)
-{
-    int code = atomic_load(&comm->broken);
-    return code ? base_error(code, "%s", comm->sentence) : DUITE_OK;
-}
-
-static bool try_lock(struct comm *comm)
-{
-    return !atomic_flag_test_and_set_explicit(&comm->lock, memory_order_acquire);
-}
-
-static void unlock(struct comm *comm)
-{
-    atomic_flag_clear_explicit(&comm->lock, memory_order_release);
+    if (MPI_Comm_rank(comm->mpi, &comm->rank) || MPI_Comm_size(comm->mpi, &comm->n_ranks))
+        return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
+    comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
+    if (!comm_farewells_start(&comm->farewells, comm->n_ranks) || !comm->words)
+        return base_no_memory("communication");
+    if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
+        MPI_Type_commit(&comm->line))
+        return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
+    return DUITE_OK;
 }
 
 int comm_start(struct comm **out, MPI_Comm mpi, struct graph *graph)
@@ -92,123 +39,58 @@ int comm_start(struct comm **out, MPI_Comm mpi, struct graph *graph)
         return base_no_memory("communication");
     comm->graph = graph;
     comm->mpi = mpi;
+    comm->line = MPI_DATATYPE_NULL;
+    comm->request = MPI_REQUEST_NULL;
     atomic_flag_test_and_set(&comm->lock); /* until comm_open */
     atomic_init(&comm->posts, NULL);
     comm_arrivals_start(&comm->arrivals);
-    if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
-        MPI_Type_commit(&comm->line)) {
-        comm_arrivals_stop(&comm->arrivals);
-        base_free(comm);
-        *out = NULL;
-        return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
-    }
-    return DUITE_OK;
+    return prepare(comm);
 }
 
 void comm_open(struct comm *comm)
 {
-    if (comm)
-        unlock(comm);
-}
-
-static void requests_free(struct requests *requests)
-{
-    free(requests->request);
-    free(requests->what);
-    free(requests->index);
-}
-
-void comm_stop(struct comm *comm)
-{
     if (!comm)
         return;
-    MPI_Type_free(&comm->line);
-    requests_free(&comm->sends);
-    requests_free(&comm->receives);
-    comm_arrivals_stop(&comm->arrivals);
-    base_free(comm);
+    comm_unlock(comm);
 }
 
-/* ---- Requests: only under the lock ---- */
-
-/* A place for one more request, counted by whoever starts it; NULL without memory. */
-static MPI_Request *requests_place(struct comm *comm, struct requests *requests)
+bool comm_stop(struct comm *comm)
 {
-    size_t needed = (size_t)requests->n + 1;
-    void *moved[3] = {
-        base_grow(requests->request, &requests->capacity[0], needed, sizeof(MPI_Request)),
-        base_grow(requests->what, &requests->capacity[1], needed, sizeof(void *)),
-        base_grow(requests->index, &requests->capacity[2], needed, sizeof(int))};
-    if (moved[0])
-        requests->request = moved[0];
-    if (moved[1])
-        requests->what = moved[1];
-    if (moved[2])
-        requests->index = moved[2];
-    if (moved[0] && moved[1] && moved[2])
-        return &requests->request[requests->n];
-    broke(comm, DUITE_E_MEMORY, "messages", 0);
-    return NULL;
-}
-
-/* Tests all; moves what is done to the end of the arrays and returns how many that are: what[n .. n
- * + done). */
-static int requests_test(struct comm *comm, struct requests *requests)
-{
-    int done = 0;
-    if (!requests->n)
-        return 0;
-    int mpi =
-        MPI_Testsome(requests->n, requests->request, &done, requests->index, MPI_STATUSES_IGNORE);
-    if (!mpi_ok(comm, mpi, "MPI_Testsome") || done == MPI_UNDEFINED)
-        return 0;
-    void *finished;
-    int last = requests->n;
-    for (int i = last - 1; i >= 0 && done; i--) {
-        if (requests->request[i] != MPI_REQUEST_NULL)
-            continue;
-        finished = requests->what[i];
-        requests->n--;
-        requests->request[i] = requests->request[requests->n];
-        requests->what[i] = requests->what[requests->n];
-        requests->what[requests->n] = finished;
+    if (!comm)
+        return true;
+    bool lost = comm_is_lost(comm);
+    while (comm_is_broken(comm) && !lost && !comm_is_quiet(comm)) {
+        comm_poll(comm, NULL);
+        sched_yield();
     }
-    return last - requests->n;
+    /* A collective call that was left can end if all ranks came to it. */
+    if (!lost && comm->entered <= comm->farewells.entered)
+        MPI_Wait(&comm->request, MPI_STATUS_IGNORE);
+    /* MPI may still read and write here: then all of it stays. */
+    if (lost || comm->request != MPI_REQUEST_NULL)
+        return false;
+    if (comm->line != MPI_DATATYPE_NULL)
+        MPI_Type_free(&comm->line);
+    comm_requests_free(&comm->sends);
+    comm_requests_free(&comm->receives);
+    comm_farewells_stop(&comm->farewells);
+    comm_arrivals_stop(&comm->arrivals);
+    base_free(comm->words);
+    base_free(comm);
+    return true;
 }
 
 /* ---- Sending ---- */
 
-static void push(struct comm *comm, struct post *post)
-{
-    struct post *first = atomic_load_explicit(&comm->posts, memory_order_relaxed);
-    do
-        post->next = first;
-    while (!atomic_compare_exchange_weak_explicit(&comm->posts, &first, post, memory_order_release,
-                                                  memory_order_relaxed));
-}
-
-static void send_post(struct comm *comm, struct graph_task *task, struct data_packet *packet,
-                      int to)
-{
-    struct post *post = base_pool_take(sizeof *post);
-    if (!post || (!task && !packet)) {
-        broke(comm, DUITE_E_MEMORY, "a message", 0);
-        base_pool_give(post, sizeof *post);
-        data_packet_free(packet);
-        return;
-    }
-    *post = (struct post){.task = task, .packet = packet, .to = to};
-    push(comm, post);
-}
-
 void comm_send(struct comm *comm, struct graph_task *task)
 {
-    send_post(comm, task, NULL, task->send->to);
-}
-
-void comm_send_packet(struct comm *comm, struct data_packet *packet, int to)
-{
-    send_post(comm, NULL, packet, to);
+    struct graph_task *first = atomic_load_explicit(&comm->posts, memory_order_relaxed);
+    do
+        task->next = first;
+    while (!atomic_compare_exchange_weak_explicit(&comm->posts, &first, task, memory_order_release,
+                                                  memory_order_relaxed));
+    /* Against comm_poll: either the next try for the lock succeeds or its holder sees this. */
+    atomic_thread_fence(memory_order_seq_cst);
 }
 
 bool comm_posted(struct comm *comm)
@@ -216,53 +98,64 @@ bool comm_posted(struct comm *comm)
     return atomic_load_explicit(&comm->posts, memory_order_relaxed) != NULL;
 }
 
-static void start_send(struct comm *comm, struct post *post)
+/* False: it was not sent, and never will be. */
+static bool start_send(struct comm *comm, struct graph_task *task)
 {
-    bool own = false;
-    struct data_packet *packet = post->packet;
-    if (!packet)
-        packet = graph_send_packet(post->task, &own);
-    if (own)
-        post->packet = packet;
-    MPI_Request *request = packet ? requests_place(comm, &comm->sends) : NULL;
+    if (comm_is_broken(comm))
+        return false;
+    struct data_packet *packet = graph_send_packet(task);
+    MPI_Request *request = packet ? comm_requests_place(&comm->sends) : NULL;
     if (!request) {
-        broke(comm, DUITE_E_MEMORY, "a message", 0);
-        return;
+        comm_broke_memory(comm, "a message");
+        return false;
     }
     size_t lines = data_packet_lines(packet->bytes);
-    int mpi = MPI_Isend(packet, (int)lines, comm->line, post->to, 0, comm->mpi, request);
-    if (!mpi_ok(comm, mpi, "MPI_Isend"))
-        return;
-    comm->sends.what[comm->sends.n++] = post;
+    int mpi = MPI_Isend(packet, (int)lines, comm->line, task->send->to, 0, comm->mpi, request);
+    if (!comm_mpi_ok(comm, mpi, "MPI_Isend"))
+        return false;
+    comm_requests_started(&comm->sends, task);
     atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
     atomic_fetch_add_explicit(&comm->bytes, lines * sizeof *packet, memory_order_relaxed);
+    return true;
+}
+
+static void push_sent(struct found *found, struct graph_task *task)
+{
+    task->next = found->sent;
+    found->sent = task;
 }
 
 static void start_sends(struct comm *comm, struct found *found)
 {
-    struct post *posts = atomic_exchange_explicit(&comm->posts, NULL, memory_order_acquire);
-    struct post *in_order = NULL;
+    struct graph_task *posts = atomic_exchange_explicit(&comm->posts, NULL, memory_order_acquire);
+    struct graph_task *in_order = NULL;
     while (posts) {
-        struct post *next = posts->next;
+        struct graph_task *next = posts->next;
         posts->next = in_order;
         in_order = posts;
         posts = next;
     }
     while (in_order) {
-        struct post *post = in_order;
-        in_order = post->next;
-        start_send(comm, post);
+        struct graph_task *task = in_order;
+        in_order = task->next;
         found->any = true;
+        if (!start_send(comm, task))
+            push_sent(found, task);
     }
-    int done = requests_test(comm, &comm->sends);
-    for (int i = 0; i < done; i++) {
-        struct post *post = comm->sends.what[comm->sends.n + i];
-        post->next = found->sent;
-        found->sent = post;
-    }
+    int done;
+    comm_mpi_ok(comm, comm_requests_test(&comm->sends, &done), "MPI_Testsome");
+    for (int i = 0; i < done; i++)
+        push_sent(found, comm->sends.what[comm->sends.n + i]);
 }
 
 /* ---- Receiving ---- */
+
+/* A message that there is no room for: MPI may forget it, and its sender goes on. */
+static void refuse(struct comm *comm, MPI_Message *message)
+{
+    comm_broke_memory(comm, "a message");
+    MPI_Mrecv(NULL, 0, comm->line, message, MPI_STATUS_IGNORE); /* truncated, as it is meant */
+}
 
 static bool start_receive(struct comm *comm)
 {
@@ -270,37 +163,43 @@ static bool start_receive(struct comm *comm)
     MPI_Message message;
     MPI_Status status;
     int mpi = MPI_Improbe(MPI_ANY_SOURCE, 0, comm->mpi, &there, &message, &status);
-    if (!mpi_ok(comm, mpi, "MPI_Improbe") || !there)
+    if (!comm_mpi_ok(comm, mpi, "MPI_Improbe") || !there)
         return false;
     mpi = MPI_Get_count(&status, comm->line, &lines);
-    if (!mpi_ok(comm, mpi, "MPI_Get_count") || lines < 1)
+    if (!comm_mpi_ok(comm, mpi, "MPI_Get_count") || lines < 1)
         return false;
     size_t bytes = ((size_t)lines - 1) * sizeof(struct data_packet);
     struct data_packet *packet = data_packet_new(bytes, false);
-    MPI_Request *request = packet ? requests_place(comm, &comm->receives) : NULL;
+    MPI_Request *request = packet ? comm_requests_place(&comm->receives) : NULL;
     if (!request) {
-        broke(comm, DUITE_E_MEMORY, "a message", 0);
         data_packet_free(packet);
-        return false;
+        refuse(comm, &message);
+        return true;
     }
     mpi = MPI_Imrecv(packet, lines, comm->line, &message, request);
-    if (!mpi_ok(comm, mpi, "MPI_Imrecv")) {
+    if (!comm_mpi_ok(comm, mpi, "MPI_Imrecv")) {
         data_packet_free(packet);
         return false;
     }
-    comm->receives.what[comm->receives.n++] = packet;
+    comm_requests_started(&comm->receives, packet);
     return true;
 }
 
 static void receive(struct comm *comm, struct found *found)
 {
+    int done;
     while (start_receive(comm))
         found->any = true;
-    int done = requests_test(comm, &comm->receives);
+    comm_mpi_ok(comm, comm_requests_test(&comm->receives, &done), "MPI_Testsome");
     for (int i = 0; i < done; i++) {
         struct data_packet *packet = comm->receives.what[comm->receives.n + i];
-        packet->next = found->packets;
-        found->packets = packet;
+        if (packet->kind == DATA_FAREWELL) {
+            comm_farewell_hear(comm, packet);
+            data_packet_free(packet);
+        } else {
+            packet->next = found->packets;
+            found->packets = packet;
+        }
     }
 }
 
@@ -318,20 +217,23 @@ static void deliver(struct comm *comm, void *worker, struct found *found)
     while (found->packets) {
         struct data_packet *packet = found->packets;
         struct comm_target target = {0};
-        bool lost = false;
         found->packets = packet->next;
-        if (comm_arrivals_take(&comm->arrivals, packet, &target, &lost))
+        switch (comm_arrivals_take(&comm->arrivals, packet, &target)) {
+        case COMM_WANTED:
             deliver_to(comm, worker, target, packet);
-        if (lost)
-            broke(comm, DUITE_E_MEMORY, "a message that came early", 0);
+            break;
+        case COMM_KEPT:
+            break;
+        case COMM_LOST:
+            data_packet_free(packet);
+            comm_broke_memory(comm, "a message that came early");
+        }
     }
     while (found->sent) {
-        struct post *post = found->sent;
-        found->sent = post->next;
-        if (post->task)
-            graph_finish(comm->graph, worker, post->task);
-        data_packet_free(post->packet);
-        base_pool_give(post, sizeof *post);
+        struct graph_task *task = found->sent;
+        found->sent = task->next;
+        data_packet_free(task->send->packet);
+        graph_finish(comm->graph, worker, task);
     }
 }
 
@@ -350,6 +252,27 @@ int comm_expect(struct comm *comm, void *worker, struct data_key key, struct dat
     return DUITE_OK;
 }
 
+void comm_give_up(struct comm *comm, void *worker)
+{
+    struct comm_target target;
+    while (comm_arrivals_close(&comm->arrivals, &target)) {
+        if (target.version)
+            graph_lost(comm->graph, worker, target.version);
+        else
+            graph_pieces_lost(comm->graph, worker, target.sum);
+    }
+}
+
+uint64_t comm_stuck(struct comm *comm)
+{
+    uint64_t stuck = 0;
+    if (comm_is_lost(comm) && comm_try_lock(comm)) {
+        stuck = (uint64_t)comm->sends.n;
+        comm_unlock(comm);
+    }
+    return stuck;
+}
+
 /* ---- Progress ---- */
 
 bool comm_poll(struct comm *comm, void *worker)
@@ -357,59 +280,18 @@ bool comm_poll(struct comm *comm, void *worker)
     bool any = false;
     do {
         struct found found = {0};
-        if (!try_lock(comm))
+        if (!comm_try_lock(comm))
             return any;
         start_sends(comm, &found);
         receive(comm, &found);
-        unlock(comm);
+        comm_farewell_say(comm);
+        comm_unlock(comm);
         any = any || found.any || found.packets || found.sent;
         deliver(comm, worker, &found);
-        /* What was pushed while the lock was held here must not wait for the next poll. */
-    } while (comm_posted(comm) && !atomic_load(&comm->broken));
+        /* What was posted while the lock was held here must not wait for the next poll. */
+        atomic_thread_fence(memory_order_seq_cst);
+    } while (comm_posted(comm));
     return any;
-}
-
-/* Runs `between` until the request is done. */
-static int finish(struct comm *comm, int mpi, MPI_Request *request, void (*between)(void *),
-                  void *context)
-{
-    int done = 0;
-    bool fine = mpi_ok(comm, mpi, "a collective call");
-    unlock(comm);
-    while (fine && !done) {
-        if (try_lock(comm)) {
-            fine = mpi_ok(comm, MPI_Test(request, &done, MPI_STATUS_IGNORE), "MPI_Test");
-            unlock(comm);
-        }
-        if (!done)
-            between(context);
-    }
-    return comm_broken(comm);
-}
-
-static void lock(struct comm *comm, void (*between)(void *), void *context)
-{
-    while (!try_lock(comm))
-        between(context);
-}
-
-int comm_agree(struct comm *comm, const struct comm_word *own, struct comm_word *all,
-               void (*between)(void *context), void *context)
-{
-    MPI_Request request = MPI_REQUEST_NULL;
-    lock(comm, between, context);
-    int mpi =
-        MPI_Iallgather(own, sizeof *own, MPI_BYTE, all, sizeof *all, MPI_BYTE, comm->mpi, &request);
-    return finish(comm, mpi, &request, between, context);
-}
-
-int comm_sum(struct comm *comm, double *values, int n, void (*between)(void *context),
-             void *context)
-{
-    MPI_Request request = MPI_REQUEST_NULL;
-    lock(comm, between, context);
-    int mpi = MPI_Iallreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, comm->mpi, &request);
-    return finish(comm, mpi, &request, between, context);
 }
 
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)

@@ -13,20 +13,22 @@
  * is let go. */
 struct comm;
 
-/* On a duplicate of mpi. Collective. Errors: DUITE_E_MPI, memory. */
+/* On mpi, which stays the caller's and is for these messages only. Local. Errors: DUITE_E_MPI,
+ * memory; comm_stop is due all the same. */
 int comm_start(struct comm **comm, MPI_Comm mpi, struct graph *graph);
 
 /* From now on messages are sent and received. Before, the lock keeps workers out of MPI, so that
  * the main thread may call it while it starts. NULL is fine. */
 void comm_open(struct comm *comm);
 
-/* Frees everything; all ranks have agreed (comm_agree) that nothing is on its way. Collective. */
-void comm_stop(struct comm *comm);
+/* Frees everything; no other thread is left, no task either. All ranks have agreed (comm_agree)
+ * that nothing is on its way; or communication is broken, and it waits until that is so:
+ * collective. False if MPI may still use its communicator, which then must not be freed. */
+bool comm_stop(struct comm *comm);
 
-/* Posts the version of a ready SEND, which is finished once it is sent, or a packet, which is freed
- * then. The next poll sends them; comm_posted: there is something to send. Any thread. */
+/* Posts a ready SEND, which is finished once it is sent. The next poll sends it; comm_posted: there
+ * is something to send. Any thread. */
 void comm_send(struct comm *comm, struct graph_task *task);
-void comm_send_packet(struct comm *comm, struct data_packet *packet, int to);
 bool comm_posted(struct comm *comm);
 
 /* The packets of that key belong to a version, or to a sum; those that came already are delivered.
@@ -45,17 +47,32 @@ struct comm_word {
     struct data_failure failure;
 };
 
-/* Exchanges words. Calls between(context) while it waits, so that others get on. Collective, main
- * thread. */
-int comm_agree(struct comm *comm, const struct comm_word *own, struct comm_word *all,
+/* Exchanges words; *all, one a rank, is the comm's and good until the next call. Calls
+ * between(context) while it waits, so that others get on. Collective, main thread. */
+int comm_agree(struct comm *comm, const struct comm_word *own, struct comm_word **all,
                void (*between)(void *context), void *context);
 
-/* Sums n doubles over all ranks, in place. As comm_agree. */
+/* Sums n <= 16 doubles over all ranks, in place. As comm_agree. */
 int comm_sum(struct comm *comm, double *values, int n, void (*between)(void *context),
              void *context);
 
-/* DUITE_E_MPI or DUITE_E_MEMORY with the sentence set once a message was lost, else 0. */
+/* ---- When it breaks ----
+ *
+ * A rank on which a message was lost, or that cannot go on for another reason, breaks: it sends
+ * nothing but a farewell with the reason to all others, which break in turn. Blocking calls return
+ * the code; the main thread gives up what is still expected; stop is all that is left. */
+
+/* Breaks; the first reason counts. Any thread. */
+void comm_broke(struct comm *comm, int code, const char *sentence);
+
+/* The code with the sentence set once communication is broken, else 0. */
 int comm_broken(struct comm *comm);
+
+/* It is broken: whatever is expected is taken for lost. Main thread. */
+void comm_give_up(struct comm *comm, void *worker);
+
+/* SENDs that MPI itself will not finish any more, since it failed. */
+uint64_t comm_stuck(struct comm *comm);
 
 /* Messages and bytes sent by this rank so far. */
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes);

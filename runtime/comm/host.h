@@ -12,7 +12,7 @@ struct comm_host {
 };
 
 /* hash: of the cores this rank may use; n_cores: how many; threads: workers this rank wants, or 0
- * for its share, which is written back. Collective over mpi. Errors: DUITE_E_MPI, memory. */
+ * for its share, which is written back. Collective over mpi. Errors: DUITE_E_MPI. */
 int comm_host_find(struct comm_host *host, MPI_Comm mpi, uint64_t hash, unsigned n_cores,
                    unsigned *threads);
 

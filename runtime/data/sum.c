@@ -21,6 +21,7 @@ struct data_sum *data_sum_new(int n_ranks, const duite_law *law, duite_type type
     sum->count = count;
     atomic_init(&sum->pending, 1);
     atomic_init(&sum->arrived, NULL);
+    atomic_init(&sum->lost, NULL);
     return sum;
 }
 
@@ -149,7 +150,7 @@ const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_pie
     *code = all ? DUITE_OK : DUITE_E_MEMORY;
     if (!all)
         return NULL;
-    const struct data_failure *failure = NULL;
+    const struct data_failure *failure = atomic_load_explicit(&sum->lost, memory_order_relaxed);
     for (size_t i = 0; i < total; i++)
         failure = data_first(failure, all[i]->failure);
     if (failure)

@@ -23,8 +23,9 @@ struct data_sum {
     const duite_law *law; /* of all contributions */
     duite_type type;      /* of the object */
     size_t count;
-    struct data_piece *pieces;            /* of this rank; complete once pending is 0 */
-    _Atomic(struct data_piece *) arrived; /* pieces from other ranks */
+    struct data_piece *pieces;                 /* of this rank; complete once pending is 0 */
+    _Atomic(struct data_piece *) arrived;      /* pieces from other ranks */
+    _Atomic(const struct data_failure *) lost; /* why some will never arrive; poisons the whole */
     _Atomic uint32_t pending; /* leaves not run, messages not arrived, and 1 while it is open */
     uint32_t senders;         /* other ranks with leaves, counted where the object's value is */
     struct data_waiter

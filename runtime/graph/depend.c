@@ -96,14 +96,14 @@ int graph_overwrite(struct graph *graph, struct graph_task *task, size_t i,
     return DUITE_OK;
 }
 
-struct data_version *graph_local(struct graph *graph, struct data_object *object, bool bytes)
+struct data_version *graph_local(struct graph *graph, struct data_object *object)
 {
     if (object->current)
         return object->current;
     struct data_version *version = data_version_new();
-    if (version && bytes)
+    if (version)
         version->packet = data_packet_new(object->bytes, true);
-    if (!version || (bytes && !version->packet)) {
+    if (!version || !version->packet) {
         if (version)
             data_version_free(version);
         base_no_memory("an object");
@@ -117,7 +117,7 @@ struct data_version *graph_local(struct graph *graph, struct data_object *object
 
 static int send_copy(struct graph *graph, void *worker, struct data_object *object, int to)
 {
-    struct data_version *version = graph_local(graph, object, true);
+    struct data_version *version = graph_local(graph, object);
     struct graph_task *task =
         version ? graph_task_new(graph, GRAPH_SEND, 1, sizeof *task->send) : NULL;
     if (!task)
@@ -138,9 +138,12 @@ static int await_copy(struct graph *graph, void *worker, struct data_object *obj
         return graph_break(graph);
     }
     object->current = version;
-    int code = graph->hooks.expect(graph->hooks.context, worker, graph_key(graph, object), version,
-                                   NULL, 1);
-    return code ? graph_break(graph) : DUITE_OK;
+    if (!graph->hooks.expect(graph->hooks.context, worker, graph_key(graph, object), version, NULL,
+                             1))
+        return DUITE_OK;
+    object->current = NULL;
+    data_version_free(version);
+    return graph_break(graph);
 }
 
 int graph_fetch(struct graph *graph, void *worker, struct data_object *object, int to)
@@ -163,16 +166,18 @@ void graph_forget(struct graph *graph, void *worker, struct data_object *object)
     object->current = NULL;
 }
 
-struct data_packet *graph_send_packet(struct graph_task *send, bool *own)
+struct data_packet *graph_send_packet(struct graph_task *task)
 {
-    const struct data_version *version = send->access[0].in;
-    *own = version->failure != NULL;
-    if (*own)
-        return graph_poison_packet(send->send->key, version->failure);
+    struct graph_send *send = task->send;
+    if (send->packet || !task->n)
+        return send->packet;
+    const struct data_version *version = task->access[0].in;
+    if (version->failure)
+        return send->packet = graph_poison_packet(send->key, version->failure);
     /* The same bytes may be on their way to another rank already: then the header says just this.
      */
     struct data_packet *packet = version->packet;
-    struct data_key key = send->send->key;
+    struct data_key key = send->key;
     if (packet->kind != DATA_VALUE || packet->key.slot != key.slot ||
         packet->key.generation != key.generation || packet->key.number != key.number) {
         packet->kind = DATA_VALUE;

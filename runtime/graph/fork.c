@@ -124,8 +124,9 @@ static int use(struct graph *graph, void *worker, int at, const duite_kernel *ke
         task->param[i] = (duite_param){.count = object->count, .type = object->type};
     }
     if (mode == DUITE_CW) {
-        *done += 1;
-        return graph_contribute(graph, worker, object, data_law_of(kernel, i), at, task, i);
+        code = graph_contribute(graph, worker, object, data_law_of(kernel, i), at, task, i);
+        *done += !code;
+        return code;
     }
     if (object->leaves)
         code = graph_close(graph, worker, object);
@@ -134,7 +135,7 @@ static int use(struct graph *graph, void *worker, int at, const duite_kernel *ke
     if (code)
         return code;
     struct data_version *version = object->current;
-    if (task && mode != DUITE_W && !(version = graph_local(graph, object, true)))
+    if (task && mode != DUITE_W && !(version = graph_local(graph, object)))
         return DUITE_E_MEMORY;
     if (mode == DUITE_R) {
         if (task)
@@ -161,6 +162,17 @@ static struct graph_task *body_task(struct graph *graph, uint32_t index, const v
     return task;
 }
 
+/* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
+ */
+static void fork_void(struct graph *graph, void *worker, struct graph_task *task, size_t made,
+                      uint32_t done)
+{
+    uint32_t missing = task->n - (uint32_t)made;
+    task->kind = GRAPH_VOID;
+    task->n = (uint32_t)made;
+    graph_settled(graph, worker, task, done + missing);
+}
+
 int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *kernel,
                const void *args, size_t n, const duite_object *objects)
 {
@@ -185,13 +197,17 @@ int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *ke
         return DUITE_E_MEMORY;
     if (task && own)
         task->block = own->block;
-    for (size_t i = 0; i < n && !code; i++) {
+    for (size_t i = 0; i < n; i++) {
         graph_mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         code = use(graph, worker, at, kernel, i, objects[i], task, &done);
+        if (code && task)
+            fork_void(graph, worker, task, i, done);
+        if (code)
+            return code;
     }
-    if (task && !code)
+    if (task)
         graph_settled(graph, worker, task, done);
-    return code;
+    return DUITE_OK;
 }
 
 int graph_free(struct graph *graph, void *worker, duite_object name)
@@ -222,7 +238,7 @@ int graph_copy(struct graph *graph, void *worker, duite_object name, int to,
             code = graph_fetch(graph, worker, object, rank);
     if (code || (to != GRAPH_ANYWHERE && to != graph->rank))
         return code;
-    struct data_version *version = graph_local(graph, object, true);
+    struct data_version *version = graph_local(graph, object);
     struct graph_task *task = version ? graph_task_new(graph, GRAPH_COPY, 1, 0) : NULL;
     if (!task)
         return DUITE_E_MEMORY;

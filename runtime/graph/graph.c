@@ -51,14 +51,13 @@ static int take_kernels(struct graph *graph, const duite_kernel *const *kernels,
     size_t n = 0;
     while (kernels[n])
         n++;
-    graph->kernels = base_alloc((n + 1) * sizeof graph->kernels[0]);
-    graph->n_fixed = base_alloc((n + 1) * sizeof *graph->n_fixed);
+    graph->kernels = base_alloc(n * sizeof graph->kernels[0]);
+    graph->n_fixed = base_alloc(n * sizeof *graph->n_fixed);
     if (!graph->kernels || !graph->n_fixed)
         return base_no_memory("the list of kernels");
     memcpy(graph->kernels, kernels, n * sizeof graph->kernels[0]);
-    graph->kernels[n] = &graph_set_kernel;
-    graph->n_kernels = (uint32_t)n + 1;
-    for (uint32_t i = 0; i <= n; i++) {
+    graph->n_kernels = (uint32_t)n;
+    for (uint32_t i = 0; i < n; i++) {
         int code = check_kernel(graph->kernels[i], i, &graph->n_fixed[i]);
         if (!code)
             code = check_unique(graph->kernels, i);
@@ -77,6 +76,7 @@ int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *
     graph->rank = rank;
     graph->n_ranks = n_ranks;
     atomic_init(&graph->unfinished, 0);
+    atomic_init(&graph->given_up, 0);
     pthread_mutex_init(&graph->lock, NULL); /* cannot fail with default attributes */
     int code = data_table_start(&graph->table, n_ranks);
     if (!code)

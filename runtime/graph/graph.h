@@ -15,9 +15,10 @@
 enum graph_kind {
     GRAPH_BODY,    /* a task of the program */
     GRAPH_COMBINE, /* combines the contributions with an object */
-    GRAPH_PIECES,  /* sends this rank's contributions to where they are added */
-    GRAPH_SEND,    /* sends a version to another rank */
-    GRAPH_COPY     /* duite_get: copies a version to the main program */
+    GRAPH_PIECES,  /* combines this rank's contributions, and turns into the SEND of them */
+    GRAPH_SEND,    /* sends a version or pieces to another rank */
+    GRAPH_COPY,    /* duite_get: copies a version to the main program */
+    GRAPH_VOID /* memory ran out while it was forked: does not run, and poisons what it writes */
 };
 
 /* One parameter of a task. */
@@ -50,18 +51,18 @@ struct graph_task {
     struct graph_access access[];
 };
 
-/* COMBINE and PIECES: the contributions to close. */
-struct graph_sum {
-    struct data_waiter waiter; /* waits for them all */
-    struct data_sum *sum;
-    struct data_key key; /* the version they make */
-    int to;              /* PIECES: the rank that adds */
-};
-
 /* SEND: a version and where it goes. */
 struct graph_send {
     struct data_key key;
     int to;
+    struct data_packet *packet; /* NULL: the version that the task reads, as it lies */
+};
+
+/* COMBINE and PIECES: the contributions to close. */
+struct graph_sum {
+    struct data_waiter waiter; /* waits for them all */
+    struct data_sum *sum;
+    struct graph_send send; /* the version they make; PIECES: to the rank that adds */
 };
 
 /* COPY: where a value goes. `done` is set last. */
@@ -79,8 +80,6 @@ struct graph_hooks {
     void (*ready)(void *context, void *worker, struct graph_task *task);
     /* Something the main program may be waiting for happened. */
     void (*notify)(void *context);
-    /* Sends a packet of this rank's own (pieces, poison) and frees it. */
-    void (*send_packet)(void *context, struct data_packet *packet, int to);
     /* The version or the pieces of that key come from elsewhere: call graph_arrived or
      * graph_pieces_arrived with each packet. 0, or DUITE_E_MEMORY. */
     int (*expect)(void *context, void *worker, struct data_key key, struct data_version *version,
@@ -97,6 +96,7 @@ struct graph {
     uint64_t forks;       /* so far, on all ranks the same */
     uint64_t fingerprint; /* of the forks since the last wait */
     int broken;           /* memory ran out in the middle of a fork: the code of every later call */
+    _Atomic int given_up; /* bodies do not run any more */
     _Atomic uint64_t unfinished; /* tasks of this rank */
     pthread_mutex_t lock;        /* failures */
     struct graph_failure *failures;
@@ -121,7 +121,8 @@ enum { GRAPH_ANYWHERE = -1 };
 
 int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *kernel,
                const void *args, size_t n, const duite_object *objects);
-/* Overwrites with a copy of values, or with zeros if they are NULL. */
+/* Overwrites with a copy of values, or with zeros if they are NULL, without waiting for anything.
+ */
 int graph_set(struct graph *graph, void *worker, duite_object object, const void *values);
 int graph_free(struct graph *graph, void *worker, duite_object object);
 
@@ -141,6 +142,12 @@ struct duite_call_private {
  * and own set. Returns whether a body ran. */
 bool graph_run(struct graph *graph, struct graph_task *task, duite_call *call);
 
+/* What became a SEND when it ran is to be sent now. */
+static inline bool graph_to_send(const struct graph_task *task)
+{
+    return task->kind == GRAPH_SEND;
+}
+
 /* The task is over: publishes what it wrote, makes its successors ready, frees it. */
 void graph_finish(struct graph *graph, void *worker, struct graph_task *task);
 
@@ -150,10 +157,13 @@ void graph_arrived(struct graph *graph, void *worker, struct data_version *versi
 void graph_pieces_arrived(struct graph *graph, void *worker, struct data_sum *sum,
                           struct data_packet *packet);
 
-/* The bytes of a ready SEND, under its key: the version itself, or a poison packet that the caller
- * frees once sent
- * (*own = true). NULL without memory. */
-struct data_packet *graph_send_packet(struct graph_task *send, bool *own);
+/* What was expected will not come: poison in its place. */
+void graph_lost(struct graph *graph, void *worker, struct data_version *version);
+void graph_pieces_lost(struct graph *graph, void *worker, struct data_sum *sum);
+
+/* The bytes of a ready SEND, under its key: the version itself, or send->packet, which the caller
+ * frees once it is sent. NULL without memory. */
+struct data_packet *graph_send_packet(struct graph_task *send);
 
 /* Sets the sentence of a failure; returns its code. */
 int graph_failure_error(const struct graph *graph, const struct data_failure *failure);

@@ -28,9 +28,9 @@ void graph_read(struct graph_task *task, size_t i, struct data_version *version,
 int graph_overwrite(struct graph *graph, struct graph_task *task, size_t i,
                     struct data_object *object, struct data_version *version, uint32_t *done);
 
-/* This rank's copy of the current version, which is to be here or on its way (graph_fetch).
- * `bytes`: a version that was never written must have its zeros. NULL: out of memory, broken. */
-struct data_version *graph_local(struct graph *graph, struct data_object *object, bool bytes);
+/* This rank's copy of the current version, which is to be here or on its way (graph_fetch); zeros
+ * if it was never written. NULL: out of memory, broken. */
+struct data_version *graph_local(struct graph *graph, struct data_object *object);
 
 /* Sees to it that rank `to` gets the current version: sends, awaits, or notes that others do. */
 int graph_fetch(struct graph *graph, void *worker, struct data_object *object, int to);
@@ -52,8 +52,6 @@ const struct data_failure *graph_fail(struct graph *graph, const struct data_fai
 /* The failure of a task for want of memory. */
 const struct data_failure *graph_fail_memory(struct graph *graph, const struct graph_task *task);
 struct data_packet *graph_poison_packet(struct data_key key, const struct data_failure *failure);
-
-extern const duite_kernel graph_set_kernel;
 
 static inline struct data_key graph_key(const struct graph *graph, const struct data_object *object)
 {

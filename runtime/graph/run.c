@@ -84,6 +84,16 @@ static const struct data_failure *call_body(struct graph *graph, struct graph_ta
     return graph_fail(graph, &failure, true);
 }
 
+static const struct data_failure no_memory = {
+    .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "there was no memory to fork it"};
+static const struct data_failure lost = {
+    .code = DUITE_E_MPI, .kernel = UINT32_MAX, .text = "communication between the ranks broke"};
+
+static const struct data_failure *given_up(struct graph *graph)
+{
+    return atomic_load_explicit(&graph->given_up, memory_order_relaxed) ? &lost : NULL;
+}
+
 static void run_copy(struct graph *graph, struct graph_task *task)
 {
     struct graph_copy *copy = task->copy;
@@ -102,11 +112,17 @@ bool graph_run(struct graph *graph, struct graph_task *task, duite_call *call)
     switch (task->kind) {
     case GRAPH_BODY:
         failure = prepare(graph, task);
+        if (!failure)
+            failure = given_up(graph);
         ran = !failure;
         if (!failure)
             failure = call_body(graph, task, call);
         if (failure)
             poison(task, failure);
+        break;
+    case GRAPH_VOID:
+        prepare(graph, task);
+        poison(task, &no_memory);
         break;
     case GRAPH_COMBINE:
         graph_run_combine(graph, task);
@@ -137,6 +153,18 @@ void graph_finish(struct graph *graph, void *worker, struct graph_task *task)
     base_pool_give(task, task->size);
     if (atomic_fetch_sub_explicit(&graph->unfinished, 1, memory_order_acq_rel) == 1)
         graph->hooks.notify(graph->hooks.context);
+}
+
+void graph_lost(struct graph *graph, void *worker, struct data_version *version)
+{
+    version->failure = &lost;
+    graph_publish(graph, worker, version);
+}
+
+void graph_pieces_lost(struct graph *graph, void *worker, struct data_sum *sum)
+{
+    atomic_store_explicit(&sum->lost, &lost, memory_order_relaxed);
+    graph_wake(graph, worker, data_sum_release(sum));
 }
 
 void graph_arrived(struct graph *graph, void *worker, struct data_version *version,

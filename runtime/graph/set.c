@@ -1,45 +1,46 @@
-/* duite_set as a task: a w whose body copies bytes that the home kept since the call. */
+/* duite_set: a version that nobody has to wait for, so no task is needed and the old one is left to
+ * its readers. */
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
-#include "runtime/base/memory.h"
 
 #include <string.h>
 
-struct set_args {
-    void *values; /* owned by the task; NULL: zeros */
-};
+enum { OVERWRITTEN = 0x736574 }; /* tells a set from a free in the fingerprint */
 
-static int set_body(const duite_call *call)
+static struct data_version *version_of(const struct data_object *object, const void *values)
 {
-    const struct set_args *args = call->args;
-    size_t bytes = call->param[0].count * data_type_size(call->param[0].type);
-    if (args->values)
-        memcpy(call->param[0].data, args->values, bytes);
-    else
-        memset(call->param[0].data, 0, bytes);
-    base_free(args->values);
-    return DUITE_OK;
+    struct data_version *version = data_version_new();
+    struct data_packet *packet = version ? data_packet_new(object->bytes, !values) : NULL;
+    if (!packet) {
+        if (version)
+            data_version_free(version);
+        return NULL;
+    }
+    if (values)
+        memcpy(data_payload(packet), values, object->bytes);
+    version->packet = packet;
+    data_version_produced(version);
+    data_version_release(version); /* the object alone holds it */
+    return version;
 }
-
-const duite_kernel graph_set_kernel = {.name = "duite_set",
-                                       .body = set_body,
-                                       .access = {DUITE_W},
-                                       .args_size = sizeof(struct set_args)};
 
 int graph_set(struct graph *graph, void *worker, duite_object name, const void *values)
 {
     struct data_object *object = data_object_find(&graph->table, name);
     if (!object)
         return DUITE_E_OBJECT;
-    struct set_args args = {NULL};
-    if (values && object->home == graph->rank) {
-        args.values = base_alloc(object->bytes);
-        if (!args.values) {
-            base_no_memory("the values of duite_set");
-            return graph_break(graph);
-        }
-        memcpy(args.values, values, object->bytes);
+    graph_mix(graph, (uint64_t)name.slot << 32 | name.generation);
+    graph_mix(graph, OVERWRITTEN);
+    struct data_version *version = NULL;
+    if (object->home == graph->rank && !(version = version_of(object, values))) {
+        base_no_memory("the values of duite_set");
+        return graph_break(graph);
     }
-    return graph_fork(graph, worker, GRAPH_ANYWHERE, &graph_set_kernel, &args, 1, &name);
+    int code = object->leaves ? graph_close(graph, worker, object) : DUITE_OK;
+    object->number++;
+    data_object_moved(object, object->home);
+    graph_forget(graph, worker, object);
+    object->current = version;
+    return code;
 }

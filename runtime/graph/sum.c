@@ -49,7 +49,8 @@ int graph_contribute(struct graph *graph, void *worker, struct data_object *obje
     return code ? code : contribute(graph, object, at, task, i);
 }
 
-/* A task that waits for all contributions; pending counts them as one. */
+/* A task that waits for all contributions, which leave the object; pending counts them as one.
+ * Without memory they stay there until stop. */
 static struct graph_task *closer(struct graph *graph, struct data_object *object,
                                  enum graph_kind kind, size_t n)
 {
@@ -58,34 +59,48 @@ static struct graph_task *closer(struct graph *graph, struct data_object *object
         return NULL;
     *task->sum = (struct graph_sum){.waiter.task = task,
                                     .sum = object->sum,
-                                    .key = graph_key(graph, object),
-                                    .to = object->holder};
+                                    .send = {graph_key(graph, object), object->holder, NULL}};
     task->block = object->block;
     atomic_fetch_add_explicit(&task->pending, 1, memory_order_relaxed);
     object->sum->closer = &task->sum->waiter;
+    object->sum = NULL;
     return task;
+}
+
+static const struct data_failure no_memory = {
+    .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "there was no memory for contributions"};
+
+static int expect_pieces(struct graph *graph, void *worker, struct graph_sum *closing)
+{
+    struct data_sum *sum = closing->sum;
+    atomic_fetch_add_explicit(&sum->pending, sum->senders, memory_order_relaxed);
+    if (!graph->hooks.expect(graph->hooks.context, worker, closing->send.key, NULL, sum,
+                             sum->senders))
+        return DUITE_OK;
+    atomic_store_explicit(&sum->lost, &no_memory, memory_order_relaxed);
+    atomic_fetch_sub_explicit(&sum->pending, sum->senders, memory_order_relaxed);
+    return graph_break(graph);
 }
 
 static int combine_here(struct graph *graph, void *worker, struct data_object *object)
 {
     struct data_sum *sum = object->sum;
-    struct data_version *version = graph_local(graph, object, true);
+    struct data_version *version = graph_local(graph, object);
     struct graph_task *task = version ? closer(graph, object, GRAPH_COMBINE, 1) : NULL;
     if (!task)
         return DUITE_E_MEMORY;
     uint32_t done = 0;
     task->access[0].mode = DUITE_RW;
     int code = graph_overwrite(graph, task, 0, object, version, &done);
-    if (!code && sum->senders) {
-        atomic_fetch_add_explicit(&sum->pending, sum->senders, memory_order_relaxed);
-        code = graph->hooks.expect(graph->hooks.context, worker, task->sum->key, NULL, sum,
-                                   sum->senders);
+    if (code) { /* the contributions are dropped once they are all there */
+        task->n = 0;
+        done = 1;
+    } else if (sum->senders) {
+        code = expect_pieces(graph, worker, task->sum);
     }
-    if (code)
-        return graph_break(graph);
     graph_wake(graph, worker, data_sum_release(sum));
     graph_settled(graph, worker, task, done);
-    return DUITE_OK;
+    return code;
 }
 
 static int send_pieces(struct graph *graph, void *worker, struct data_object *object)
@@ -111,7 +126,6 @@ int graph_close(struct graph *graph, void *worker, struct data_object *object)
         graph_forget(graph, worker, object);
     }
     object->leaves = 0;
-    object->sum = NULL;
     data_object_moved(object, object->holder);
     return code;
 }
@@ -119,6 +133,10 @@ int graph_close(struct graph *graph, void *worker, struct data_object *object)
 void graph_run_combine(struct graph *graph, struct graph_task *task)
 {
     struct graph_sum *sum = task->sum;
+    if (!task->n) {
+        data_sum_free(sum->sum);
+        return;
+    }
     struct data_version *in = task->access[0].in, *out = task->access[0].out;
     struct data_piece **pieces;
     size_t n;
@@ -143,7 +161,7 @@ static struct data_packet *pack(const struct graph_sum *sum, struct data_piece *
     struct data_packet *packet = data_packet_new(n * (sizeof(struct piece_place) + stride), false);
     if (!packet)
         return NULL;
-    packet->key = sum->key;
+    packet->key = sum->send.key;
     packet->kind = DATA_PIECES;
     packet->pieces = (uint32_t)n;
     struct piece_place *places = data_payload(packet);
@@ -167,20 +185,22 @@ void graph_run_pieces(struct graph *graph, struct graph_task *task)
     if (!code && !failure)
         packet = pack(sum, pieces, n);
     if (!packet)
-        packet = graph_poison_packet(sum->key, failure ? failure : graph_fail_memory(graph, task));
+        packet =
+            graph_poison_packet(sum->send.key, failure ? failure : graph_fail_memory(graph, task));
     base_free(pieces);
     data_sum_free(sum->sum);
-    graph->hooks.send_packet(graph->hooks.context, packet, sum->to);
+    sum->send.packet = packet; /* NULL is noticed by whoever sends */
+    task->kind = GRAPH_SEND;
+    task->send = &sum->send;
 }
 
 static void add_piece(struct graph *graph, struct data_sum *sum, struct data_piece piece)
 {
     struct data_piece *node = data_piece_new();
-    if (!node) { /* the sum must not be taken for complete: poison what is there */
-        struct data_failure failure = {
-            .code = DUITE_E_MEMORY, .rank = graph->rank, .kernel = UINT32_MAX};
-        if (sum->pieces)
-            sum->pieces->failure = graph_fail(graph, &failure, true);
+    if (!node) { /* the sum must not be taken for complete */
+        const struct data_failure *failure = graph_fail(graph, &no_memory, true);
+        atomic_store_explicit(&sum->lost, failure, memory_order_relaxed);
+        data_packet_free(piece.packet);
         return;
     }
     *node = piece;

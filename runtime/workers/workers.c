@@ -77,8 +77,10 @@ static void pause_core(void)
 
 static duite_ready describe(const struct graph *graph, const struct graph_task *task)
 {
-    static const char *const own[] = {
-        [GRAPH_COMBINE] = "duite_sum", [GRAPH_PIECES] = "duite_sum", [GRAPH_COPY] = "duite_get"};
+    static const char *const own[] = {[GRAPH_COMBINE] = "duite_sum",
+                                      [GRAPH_PIECES] = "duite_sum",
+                                      [GRAPH_COPY] = "duite_get",
+                                      [GRAPH_VOID] = "duite_fork"};
     const char *name =
         task->kind == GRAPH_BODY ? graph->kernels[task->kernel]->name : own[task->kind];
     return (duite_ready){.kernel = name, .number = task->number, .block = task->block};
@@ -133,12 +135,6 @@ static void on_notify(void *context)
     work_park_wake(&pool->worker[0].park);
 }
 
-static void on_send_packet(void *context, struct data_packet *packet, int to)
-{
-    struct work_pool *pool = context;
-    comm_send_packet(pool->setup.comm, packet, to);
-}
-
 static int on_expect(void *context, void *who, struct data_key key, struct data_version *version,
                      struct data_sum *sum, uint32_t packets)
 {
@@ -190,7 +186,10 @@ static void run(struct work_worker *worker, struct graph_task *task)
         bump(&worker->counts.tasks, body);
         bump(&worker->counts.busy, body ? (uint64_t)(1e9 * (end - start)) : 0);
         worker->finishing = length < LONGEST_CHAIN;
-        graph_finish(graph, worker, task);
+        if (graph_to_send(task))
+            comm_send(comm, task);
+        else
+            graph_finish(graph, worker, task);
         worker->finishing = false;
         if (comm && (comm_posted(comm) || end - worker->polled > POLL_SECONDS)) {
             worker->polled = end;
@@ -290,16 +289,32 @@ static void look(struct work_worker *worker, const struct wish *wish)
     }
 }
 
+void work_drain(struct work_pool *pool, bool (*done)(void *), void *context)
+{
+    const struct wish wish = {.done = done, .context = context};
+    while (!done(context))
+        look(&pool->worker[0], &wish);
+    busy_again(&pool->worker[0]);
+}
+
+struct until {
+    bool (*done)(void *context);
+    void *context;
+    struct comm *comm;
+};
+
+static bool done_or_broken(void *context)
+{
+    const struct until *until = context;
+    return until->done(until->context) || (until->comm && comm_broken(until->comm));
+}
+
 void work_until(struct work_pool *pool, bool (*done)(void *), void *context)
 {
-    struct work_worker *worker = &pool->worker[0];
-    struct comm *comm = pool->setup.comm;
-    const struct wish wish = {.done = done, .context = context};
-    if (comm && comm_posted(comm))
-        poll(worker);
-    while (!done(context) && !(comm && comm_broken(comm)))
-        look(worker, &wish);
-    busy_again(worker);
+    struct until until = {done, context, pool->setup.comm};
+    if (until.comm && comm_posted(until.comm))
+        poll(&pool->worker[0]);
+    work_drain(pool, done_or_broken, &until);
 }
 
 void work_once(struct work_pool *pool)
@@ -387,11 +402,8 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     bool fine = pool->worker && pool->states && work_queue_start(&pool->shared);
     for (unsigned i = 0; i < n && fine; i++)
         fine = prepare(pool, i, setup->cores ? setup->cores[i] : -1);
-    setup->graph->hooks = (struct graph_hooks){.context = pool,
-                                               .ready = on_ready,
-                                               .notify = on_notify,
-                                               .send_packet = on_send_packet,
-                                               .expect = on_expect};
+    setup->graph->hooks = (struct graph_hooks){
+        .context = pool, .ready = on_ready, .notify = on_notify, .expect = on_expect};
     return fine ? start_threads(pool) : base_no_memory("the workers");
 }
 

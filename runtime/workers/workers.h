@@ -36,6 +36,9 @@ struct work_worker *work_main(struct work_pool *pool);
 /* Works until done(context) or communication broke. Main thread. */
 void work_until(struct work_pool *pool, bool (*done)(void *context), void *context);
 
+/* The same, whether communication broke or not. */
+void work_drain(struct work_pool *pool, bool (*done)(void *context), void *context);
+
 /* One look around by the main thread: a task or a poll; idles a moment if there is nothing. */
 void work_once(struct work_pool *pool);
 

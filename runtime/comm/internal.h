@@ -1,0 +1,60 @@
+#ifndef DUITE_COMM_INTERNAL_H
+#define DUITE_COMM_INTERNAL_H
+
+#include "runtime/comm/arrivals.h"
+#include "runtime/comm/comm.h"
+#include "runtime/comm/farewell.h"
+#include "runtime/comm/requests.h"
+
+/* Shared by the files of this folder only. */
+
+enum { COMM_MOST_SUMS = 16 };
+
+struct comm {
+    MPI_Comm mpi;
+    MPI_Datatype line; /* 64 bytes: see data_packet_lines */
+    struct graph *graph;
+    int rank, n_ranks;
+    atomic_flag lock;
+    _Atomic(struct graph_task *) posts;
+    struct comm_requests sends, receives; /* touched by the holder of `lock` only */
+    struct comm_arrivals arrivals;
+    _Atomic int broken;
+    atomic_flag breaking;        /* taken by the one who breaks */
+    struct comm_farewell reason; /* of `broken`, written before it is set */
+    struct comm_farewells farewells;
+    uint64_t entered;        /* collective calls */
+    MPI_Request request;     /* of the last one; MPI_REQUEST_NULL once it is over */
+    struct comm_word *words; /* one a rank, and this rank's own */
+    double sums[COMM_MOST_SUMS];
+    _Atomic uint64_t messages, bytes;
+};
+
+/* comm_broke for want of memory. */
+void comm_broke_memory(struct comm *comm, const char *what);
+
+/* True for MPI_SUCCESS; else communication is broken. */
+bool comm_mpi_ok(struct comm *comm, int mpi, const char *what);
+
+static inline bool comm_is_broken(struct comm *comm)
+{
+    return atomic_load_explicit(&comm->broken, memory_order_acquire) != 0;
+}
+
+/* MPI itself failed, here or on another rank. */
+static inline bool comm_is_lost(struct comm *comm)
+{
+    return atomic_load_explicit(&comm->broken, memory_order_acquire) == DUITE_E_MPI;
+}
+
+static inline bool comm_try_lock(struct comm *comm)
+{
+    return !atomic_flag_test_and_set_explicit(&comm->lock, memory_order_acquire);
+}
+
+static inline void comm_unlock(struct comm *comm)
+{
+    atomic_flag_clear_explicit(&comm->lock, memory_order_release);
+}
+
+#endif

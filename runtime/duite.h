@@ -18,7 +18,9 @@
  * Every call returns DUITE_OK or a code; duite_message() then has the sentence. A failed fork, new,
  * set, hint, follow or free does nothing, and the first such error is returned once more, with its
  * sentence, by the next get, wait or stop, which otherwise does its work: a program may check only
- * these. (Calls from a body or another thread, DUITE_E_STATE, are not remembered.) The library
+ * these. (Calls from a body or another thread, DUITE_E_STATE, are not remembered.) On several ranks
+ * a call that runs out of memory on one of them, or a failure of MPI, ends the work of all: every
+ * rank's next or present blocking call returns the code, and only duite_stop is left. The library
  * never exits or aborts. */
 
 #include <mpi.h>

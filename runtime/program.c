@@ -26,6 +26,8 @@ static int enter(duite *rt, const char *call)
 
 static int remember(duite *rt, int code)
 {
+    if (code == DUITE_E_MEMORY && rt->comm)
+        rt->graph.broken = code; /* the other ranks did what this one could not */
     if (rt->graph.broken)
         instance_give_up(rt);
     if (!code || rt->remembered)
@@ -69,14 +71,32 @@ static void mix_name(duite *rt, duite_object object)
     graph_mix(&rt->graph, (uint64_t)object.slot << 32 | object.generation);
 }
 
+static void mix_double(duite *rt, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    graph_mix(&rt->graph, bits);
+}
+
+static void mix_hint(duite *rt, duite_object object, double weight, size_t n,
+                     const duite_object *neighbours, const double *edge_weights)
+{
+    mix_name(rt, object);
+    mix_double(rt, weight);
+    graph_mix(&rt->graph, n);
+    for (size_t i = 0; i < n && neighbours; i++)
+        mix_name(rt, neighbours[i]);
+    for (size_t i = 0; i < n && edge_weights; i++)
+        mix_double(rt, edge_weights[i]);
+}
+
 int duite_hint(duite *rt, duite_object object, double weight, size_t n,
                const duite_object *neighbours, const double *edge_weights)
 {
     int code = enter(rt, "duite_hint");
     if (code)
         return code;
-    mix_name(rt, object);
-    graph_mix(&rt->graph, n);
+    mix_hint(rt, object, weight, n, neighbours, edge_weights);
     return remember(rt, map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights));
 }
 
@@ -164,8 +184,8 @@ static int get(duite *rt, duite_object object, int rank, void *values, const cha
     if (!code)
         code = graph_copy(&rt->graph, work_main(rt->pool), object, rank, &copy);
     work_tick(rt->pool);
-    if (rt->graph.broken)
-        instance_give_up(rt);
+    if (code == DUITE_E_MEMORY)
+        return remember(rt, code);
     if (code || !here)
         return code;
     work_until(rt->pool, copy_done, &copy);

@@ -36,16 +36,12 @@ check-TESTS: $(check_PROGRAMS)
 check-long:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)' TEST_SUITE_LOG=test-suite-long.log
 
-# For AddressSanitizer: all test programs, without the scripts: on several ranks the runtime still leaks (docs/design.md).
-check-units:
-	$(MAKE) $(AM_MAKEFLAGS) check TESTS="`for test in $(TESTS); do case $$test in *.sh) ;; *) echo $$test;; esac; done | tr '\n' ' '`"
-
 # For ThreadSanitizer: the test programs of what has threads, without the scripts that start ranks.
 check-threads:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS="`for test in $(TESTS); do case $$test in *.sh) ;; \
 	  tests/runtime/* | tests/negative/* | tests/cloth/flow/* | tests/support/*) echo $$test;; esac; done | tr '\n' ' '`"
 check-programs: $(check_PROGRAMS)
-.PHONY: check-long check-threads check-units check-programs
+.PHONY: check-long check-threads check-programs
 
 EXTRA_DIST += tests/arrows.txt tests/support/tap.sh tests/support/run.sh tests/support/count.sh tests/support/lsan.supp tests/support/tsan.supp
 dist_check_SCRIPTS += tests/support/test_tap.sh tests/arrows.sh tests/install.sh tests/readme.sh

@@ -63,12 +63,9 @@ bool comm_stop(struct comm *comm)
         comm_poll(comm, NULL);
         sched_yield();
     }
-    /* A collective call that was left can end if all ranks came to it. */
-    if (!lost && comm->entered <= comm->farewells.entered)
-        MPI_Wait(&comm->request, MPI_STATUS_IGNORE);
-    /* MPI may still read and write here: then all of it stays. */
-    if (lost || comm->request != MPI_REQUEST_NULL)
+    if (lost) /* MPI may still read and write here: all of it stays */
         return false;
+    comm_catch_up(comm);
     if (comm->line != MPI_DATATYPE_NULL)
         MPI_Type_free(&comm->line);
     comm_requests_free(&comm->sends);

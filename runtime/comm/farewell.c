@@ -45,7 +45,6 @@ int comm_broken(struct comm *comm)
 
 bool comm_farewells_start(struct comm_farewells *farewells, int n_ranks)
 {
-    farewells->entered = UINT64_MAX;
     farewells->packet = data_packet_new(sizeof(struct comm_farewell), true);
     farewells->request = base_alloc((size_t)n_ranks * sizeof(MPI_Request));
     for (int i = 0; i < n_ranks && farewells->request; i++)
@@ -83,7 +82,7 @@ void comm_farewell_hear(struct comm *comm, struct data_packet *packet)
     farewell->sentence[sizeof farewell->sentence - 1] = '\0';
     snprintf(sentence, sizeof sentence, "rank %u: %s", packet->key.slot, farewell->sentence);
     comm->farewells.heard++;
-    if (farewell->entered < comm->farewells.entered)
+    if (farewell->entered > comm->farewells.entered)
         comm->farewells.entered = farewell->entered;
     comm_broke(comm, farewell->code, sentence);
 }

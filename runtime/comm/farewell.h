@@ -19,7 +19,7 @@ struct comm_farewells {
     MPI_Request *request;       /* n_ranks of them */
     bool said;
     int heard;        /* ranks */
-    uint64_t entered; /* the fewest that was heard of */
+    uint64_t entered; /* the most that was heard of */
 };
 
 struct comm;

@@ -9,6 +9,7 @@
 /* Shared by the files of this folder only. */
 
 enum { COMM_MOST_SUMS = 16 };
+_Static_assert(COMM_MOST_SUMS * sizeof(double) <= sizeof(struct comm_word), "sums travel as words");
 
 struct comm {
     MPI_Comm mpi;
@@ -26,12 +27,15 @@ struct comm {
     uint64_t entered;        /* collective calls */
     MPI_Request request;     /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words; /* one a rank, and this rank's own */
-    double sums[COMM_MOST_SUMS];
     _Atomic uint64_t messages, bytes;
 };
 
 /* comm_broke for want of memory. */
 void comm_broke_memory(struct comm *comm, const char *what);
+
+/* Joins the collective calls that other ranks entered before communication broke. All ranks are at
+ * their end. */
+void comm_catch_up(struct comm *comm);
 
 /* True for MPI_SUCCESS; else communication is broken. */
 bool comm_mpi_ok(struct comm *comm, int mpi, const char *what);

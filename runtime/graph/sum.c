@@ -194,17 +194,36 @@ void graph_run_pieces(struct graph *graph, struct graph_task *task)
     task->send = &sum->send;
 }
 
-static void add_piece(struct graph *graph, struct data_sum *sum, struct data_piece piece)
+/* Takes over the piece and its packet. Without memory for it the sum must not be taken for
+ * complete. */
+static bool add_piece(struct graph *graph, struct data_sum *sum, struct data_piece piece)
 {
     struct data_piece *node = data_piece_new();
-    if (!node) { /* the sum must not be taken for complete */
+    if (!node) {
         const struct data_failure *failure = graph_fail(graph, &no_memory, true);
         atomic_store_explicit(&sum->lost, failure, memory_order_relaxed);
         data_packet_free(piece.packet);
-        return;
+        return false;
     }
     *node = piece;
     data_sum_arrive(sum, node);
+    return true;
+}
+
+/* The first piece owns the packet, whose bytes all of them share. */
+static void add_pieces(struct graph *graph, struct data_sum *sum, struct data_packet *packet)
+{
+    uint32_t n = packet->pieces;
+    struct piece_place *places = data_payload(packet);
+    char *values = (char *)(places + n);
+    size_t stride = packet->bytes / n - sizeof *places;
+    for (uint32_t i = 0; i < n; i++)
+        if (!add_piece(graph, sum,
+                       (struct data_piece){.first = places[i].first,
+                                           .level = (uint32_t)places[i].level,
+                                           .packet = i ? NULL : packet,
+                                           .value = values + i * stride}))
+            return;
 }
 
 void graph_pieces_arrived(struct graph *graph, void *worker, struct data_sum *sum,
@@ -215,15 +234,7 @@ void graph_pieces_arrived(struct graph *graph, void *worker, struct data_sum *su
         add_piece(graph, sum, (struct data_piece){.failure = failure});
         data_packet_free(packet);
     } else {
-        struct piece_place *places = data_payload(packet);
-        char *values = (char *)(places + packet->pieces);
-        size_t stride = packet->bytes / packet->pieces - sizeof *places;
-        for (uint32_t i = 0; i < packet->pieces; i++)
-            add_piece(graph, sum,
-                      (struct data_piece){.first = places[i].first,
-                                          .level = (uint32_t)places[i].level,
-                                          .packet = i ? NULL : packet,
-                                          .value = values + i * stride});
+        add_pieces(graph, sum, packet);
     }
     graph_wake(graph, worker, data_sum_release(sum));
 }

@@ -1,11 +1,15 @@
 MISUSE = tests/negative/misuse.c tests/negative/misuse.h
-check_PROGRAMS += tests/negative/ranks_failures tests/negative/ranks_different tests/negative/ranks_groups
+check_PROGRAMS += tests/negative/ranks_failures tests/negative/ranks_different tests/negative/ranks_groups \
+                  tests/negative/ranks_memory
 tests_negative_ranks_failures_SOURCES = tests/negative/ranks_failures.c $(MISUSE)
 tests_negative_ranks_failures_LDADD = libduite_core.la
 tests_negative_ranks_different_SOURCES = tests/negative/ranks_different.c $(MISUSE)
 tests_negative_ranks_different_LDADD = libduite_core.la
 tests_negative_ranks_groups_SOURCES = tests/negative/ranks_groups.c $(MISUSE)
 tests_negative_ranks_groups_LDADD = libduite_core.la
+tests_negative_ranks_memory_SOURCES = tests/negative/ranks_memory.c $(MISUSE)
+tests_negative_ranks_memory_LDADD = libduite_core.la
+tests_negative_ranks_memory_LDFLAGS = -Wl,--wrap=malloc,--wrap=realloc,--wrap=aligned_alloc
 dist_check_SCRIPTS += tests/negative/test_ranks.sh
 TESTS += tests/negative/test_ranks.sh
 

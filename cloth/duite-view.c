@@ -6,6 +6,7 @@
 
 #include <argp.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -63,6 +64,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     struct options *options = state->input;
     switch (key) {
     case 'o':
+        if (!*arg)
+            argp_error(state, "--png takes the name of a file");
         options->png = arg;
         return 0;
     case 'f':
@@ -96,30 +99,56 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
+/* A folder that is shown. */
+struct show {
+    struct output_cache *cache;
+    const struct options *options;
+    unsigned char *used; /* a vertex: whether a face or an edge uses it */
+    double *position;    /* of the frame read last */
+};
+
+/* Vertices that nothing uses are not to be seen, and neither camera nor light is to look for them:
+ * they go where the first used one is. */
+static int read_frame(struct show *show, uint64_t frame, struct cloth_error *error)
+{
+    const size_t n = show->cache->mesh.n_vertices;
+    size_t first = 0;
+    int code = output_cache_frame(show->cache, frame, show->position, error);
+    while (first < n && !show->used[first])
+        first++;
+    for (size_t v = 0; !code && first < n && v < n; v++)
+        if (!show->used[v])
+            memcpy(show->position + 3 * v, show->position + 3 * first, 3 * sizeof(double));
+    return code;
+}
+
 /* All frames share one camera: it is fitted to them all, or to a hundred spread evenly over a long
  * run. */
-static int fit_camera(struct output_cache *cache, const struct options *options, double *position,
-                      struct view_camera *camera, struct cloth_error *error)
+static int fit_camera(struct show *show, struct view_camera *camera, struct cloth_error *error)
 {
+    const struct options *options = show->options;
+    const struct output_cache *cache = show->cache;
     struct view_fit fit;
     view_fit_start(&fit, options->azimuth, options->elevation,
                    (double)options->width / options->height, options->zoom);
     uint64_t n = cache->n_frames < FITTED_FRAMES ? cache->n_frames : FITTED_FRAMES;
     for (uint64_t i = 0; i < n; i++) {
         uint64_t frame = n > 1 ? i * (cache->n_frames - 1) / (n - 1) : 0;
-        int code = output_cache_frame(cache, frame, position, error);
+        int code = read_frame(show, frame, error);
         if (code)
             return code;
-        view_fit_add(&fit, cache->mesh.n_vertices, position);
+        view_fit_add(&fit, cache->mesh.n_vertices, show->position);
     }
     view_fit_planes(&fit, cache->n_planes, (const double(*)[6])cache->planes);
     view_fit_camera(&fit, camera);
     return 0;
 }
 
-static int draw(const struct output_cache *cache, const struct options *options,
-                const double *position, const struct view_camera *camera, struct cloth_error *error)
+static int draw(const struct show *show, const struct view_camera *camera,
+                struct cloth_error *error)
 {
+    const struct options *options = show->options;
+    const struct output_cache *cache = show->cache;
     struct view_shape shape = {.n_vertices = cache->mesh.n_vertices,
                                .n_triangles = cache->mesh.n_triangles,
                                .n_lines = cache->mesh.n_lone_edges,
@@ -132,7 +161,7 @@ static int draw(const struct output_cache *cache, const struct options *options,
     struct view_scene *scene = NULL;
     int code = view_context_open(&context, error);
     code = code ? code : view_scene_new(&scene, &shape, error);
-    code = code ? code : view_scene_move(scene, position, error);
+    code = code ? code : view_scene_move(scene, show->position, error);
     code = code ? code : view_picture_draw(&picture, scene, camera, error);
     code = code ? code : view_picture_write(&picture, options->png, error);
     view_picture_free(&picture);
@@ -153,22 +182,28 @@ static int check_frame(const struct output_cache *cache, const struct options *o
     return 0;
 }
 
-static int show(struct output_cache *cache, const struct options *options,
-                struct cloth_error *error)
+static int show_frame(struct output_cache *cache, const struct options *options,
+                      struct cloth_error *error)
 {
     int code = check_frame(cache, options, error);
     if (code)
         return code;
-    double *position = malloc((size_t)3 * cache->mesh.n_vertices * sizeof *position);
-    if (!position)
-        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for %u vertices",
-                          cache->mesh.n_vertices);
-    uint64_t frame = options->frame == LAST_FRAME ? cache->n_frames - 1 : (uint64_t)options->frame;
-    struct view_camera camera;
-    code = fit_camera(cache, options, position, &camera, error);
-    code = code ? code : output_cache_frame(cache, frame, position, error);
-    code = code ? code : draw(cache, options, position, &camera, error);
-    free(position);
+    const size_t n = cache->mesh.n_vertices;
+    struct show show = {cache, options, malloc(n), malloc(3 * n * sizeof(double))};
+    if (show.used && show.position) {
+        const bool last = options->frame == LAST_FRAME;
+        struct view_camera camera;
+        mesh_used(&cache->mesh, show.used);
+        code = fit_camera(&show, &camera, error);
+        code =
+            code ? code
+                 : read_frame(&show, last ? cache->n_frames - 1 : (uint64_t)options->frame, error);
+        code = code ? code : draw(&show, &camera, error);
+    } else {
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for %zu vertices", n);
+    }
+    free(show.used);
+    free(show.position);
     return code;
 }
 
@@ -193,7 +228,7 @@ int main(int argc, char **argv)
     struct cloth_error error = {0};
     struct output_cache cache;
     int code = output_cache_open(&cache, options.folder, &error);
-    code = code ? code : show(&cache, &options, &error);
+    code = code ? code : show_frame(&cache, &options, &error);
     output_cache_close(&cache);
     if (code)
         fprintf(stderr, "duite-view: %s\n", error.text);

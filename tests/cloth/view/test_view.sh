@@ -39,7 +39,7 @@ says "names the folder" "$scratch/none: No such file"
 exits 2 "a frame that is not there" picture --png "$scratch/x.png" --frame 2
 says "says how many there are" '2 frames, 0 to 1'
 for bad in --frame=-1 --frame=1x --frame= --size=0x10 --size=10 --size=10x10x --camera=1 --camera=0,90 --camera=0,0,0 \
-    --camera=0,0x --camera=nan,0; do
+    --camera=0,0x --camera=nan,0 --png=; do
     exits 2 "refuses $bad" picture --png "$scratch/x.png" "$bad"
 done
 exits 1 "without a driver" env __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null "$DUITE_VIEW" "$dir" --png "$scratch/x.png"
@@ -67,5 +67,17 @@ ok "the last frame is frame 1" cmp "$scratch/last.png" "$scratch/1.png"
 not_ok_expected "frames differ" cmp "$scratch/0.png" "$scratch/1.png"
 ok "another camera" picture --png "$scratch/c.png" --frame 1 --camera=-40,10,1.5
 not_ok_expected "cameras differ" cmp "$scratch/c.png" "$scratch/1.png"
+# The same triangle, and a vertex that nothing uses far away: neither camera nor light looks for it.
+mkdir "$scratch/far"
+cp "$dir/frames.csv" "$dir/scene.json" "$scratch/far"
+sed '/^f/i v 1 1 1' "$dir/cloth.obj" > "$scratch/far/cloth.obj"
+far='\0\0\240\101' # 20
+{
+    printf 'POINTCACHE2\0\1\0\0\0\4\0\0\0\0\0\0\0\0\0\200\77\2\0\0\0'
+    printf "$nil$nil$nil$one$nil$nil$nil$one$nil$far$far$far"
+    printf "$nil$one$nil$one$one$nil$nil$one$one$far$far$far"
+} > "$scratch/far/cloth.pc2"
+ok "a picture with an unused vertex" view "$scratch/far" --size 64x48 --frame 1 --png "$scratch/far.png"
+ok "it is the same picture" cmp "$scratch/far.png" "$scratch/1.png"
 exits 1 "a folder that is not there for the picture" picture --png "$scratch/none/x.png"
 says "names it" "$scratch/none/x.png"

@@ -141,8 +141,7 @@ static int ask(struct measure_series *series, struct subject *subject, const cha
     if (code && subject)
         fprintf(stderr, "duite-bench: %s, %s (%s): %s\n", name, series->shape.kind, series->command,
                 why);
-    subject_stop(fresh);
-    return code;
+    return subject_stop(fresh) || code;
 }
 
 /* One run of every series in a random order; `round` is negative if the samples are left out. */
@@ -231,7 +230,7 @@ int measure_run(struct measure *measure, const char *name, size_t rounds, uint64
     for (long round = -1; round < (long)rounds && !code; round++)
         code = run_round(measure, name, &team, round, seed);
     for (size_t i = 0; i < measure->n_series; i++)
-        subject_stop(team.subject[i]);
+        code |= subject_stop(team.subject[i]);
     for (size_t i = 0; i < measure->n_metrics && !code; i++)
         conclude(&measure->metric[i], rounds, value);
     free(value);

@@ -1,5 +1,6 @@
 # duite-bench and its rivals: built by `make bench`, and for its test by `make check`; never installed. The two OpenMP
-# rivals are one source for two compilers, without the flags of the build, which may be another compiler's.
+# rivals are one source for two compilers, without the flags of the build, which may be another compiler's; no rival is
+# built with sanitizers.
 BENCH_RIVALS =
 BENCH_SHARED = bench/problem.c bench/problem.h bench/serve.c bench/serve.h
 check_PROGRAMS += bench/duite-bench
@@ -30,17 +31,22 @@ if HAVE_RIVAL_LIBOMP
 BENCH_RIVALS += bench/rivals/libomp$(EXEEXT)
 endif
 
+RIVAL_CFLAGS = -std=gnu17 $(WARN_CFLAGS)
 if HAVE_RIVAL_STARPU
 check_PROGRAMS += bench/rivals/starpu
 BENCH_RIVALS += bench/rivals/starpu$(EXEEXT)
 bench_rivals_starpu_SOURCES = bench/rivals/starpu.c $(BENCH_SHARED)
 bench_rivals_starpu_CPPFLAGS = $(AM_CPPFLAGS) $(STARPU_CFLAGS)
+bench_rivals_starpu_CFLAGS = $(RIVAL_CFLAGS)
+bench_rivals_starpu_LDFLAGS =
 bench_rivals_starpu_LDADD = $(STARPU_LIBS)
 endif
 if HAVE_RIVAL_MPI
 check_PROGRAMS += bench/rivals/mpi
 BENCH_RIVALS += bench/rivals/mpi$(EXEEXT)
 bench_rivals_mpi_SOURCES = bench/rivals/mpi.c $(BENCH_SHARED)
+bench_rivals_mpi_CFLAGS = $(RIVAL_CFLAGS)
+bench_rivals_mpi_LDFLAGS =
 bench_rivals_mpi_LDADD = $(MPI_LIBS)
 endif
 

@@ -258,11 +258,11 @@ int subject_ask(struct subject *subject, const char *command, double *value, cha
 
 /* ---- End ---- */
 
-/* Whether the child ended within so many seconds. */
-static bool ended(struct subject *subject, int seconds)
+/* Whether the child ended within so many seconds; *status is not 0 if it did not end well. */
+static bool ended(struct subject *subject, int seconds, int *status)
 {
     for (int i = 0; i < 100 * seconds && subject->child > 0; i++) {
-        if (waitpid(subject->child, NULL, WNOHANG) == subject->child)
+        if (waitpid(subject->child, status, WNOHANG) == subject->child)
             subject->child = 0;
         else
             usleep(10000);
@@ -270,20 +270,26 @@ static bool ended(struct subject *subject, int seconds)
     return subject->child <= 0;
 }
 
-void subject_stop(struct subject *subject)
+int subject_stop(struct subject *subject)
 {
+    int status = 0;
     if (!subject)
-        return;
+        return 0;
     signal_all(subject, SIGCONT);
     for (unsigned i = 0; i < subject->n; i++)
         fclose(subject->rank[i].answers);
-    if (!ended(subject, END_SECONDS)) {
+    if (!ended(subject, END_SECONDS, &status)) {
         kill(subject->child, SIGTERM);
-        if (!ended(subject, END_SECONDS)) {
+        if (!ended(subject, END_SECONDS, &status)) {
             signal_all(subject, SIGKILL);
             kill(subject->child, SIGKILL);
-            ended(subject, END_SECONDS);
+            ended(subject, END_SECONDS, &status);
         }
     }
+    if (status)
+        complain(subject->program->kind, "did not end well (%s %d)",
+                 WIFSIGNALED(status) ? "signal" : "status",
+                 WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status));
     free(subject);
+    return status != 0;
 }

@@ -34,7 +34,7 @@ const char *subject_settings(const struct subject *subject);
  * 1 and a sentence. */
 int subject_ask(struct subject *subject, const char *command, double *value, char *why,
                 size_t size);
-/* Ends it. NULL is fine. */
-void subject_stop(struct subject *subject);
+/* Ends it. NULL is fine. 1, said on stderr, if it did not end well. */
+int subject_stop(struct subject *subject);
 
 #endif

@@ -24,7 +24,8 @@ int main(void)
         {"stencil", answer}, {"chain", answer}, {"independent", answer}, {0}};
     const struct serve_run *const all[] = {runs, NULL};
     char *role = getenv("LIAR");
-    if (!role || (strcmp(role, "count") && strcmp(role, "wrong") && strcmp(role, "die")))
+    if (!role || !*role)
         return 3;
-    return serve("a liar, \"quoted\"", all, role);
+    int status = serve("a liar, \"quoted\"", all, role);
+    return strcmp(role, "end") ? status : 5;
 }

@@ -95,5 +95,6 @@ if liars_bench > "$scratch/output" 2>&1; then
     exits 1 "a wrong answer is an error" says "stencil, starpu" lied_to wrong
     ok "and leaves no file" nothing_written
     exits 1 "a rival that dies" says "no answer" lied_to die
-    exits 1 "a rival that does not start" says "ended before it was asked" lied_to nothing
+    exits 1 "a rival that does not start" says "ended before it was asked" lied_to ""
+    exits 1 "a rival that ends badly" says "did not end well (status 5)" lied_to end
 fi

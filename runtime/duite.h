@@ -46,7 +46,8 @@ enum {
         -8, /* a call that is not allowed here: from a task's body, or from another thread */
     DUITE_E_NOT_FREED = -9, /* stop found objects that were not freed */
     DUITE_E_SYSTEM = -10,   /* threads, topology: the operating system refused */
-    DUITE_E_LAW = -12       /* a law that is malformed, not listed, or for another element type */
+    DUITE_E_LAW = -12,      /* a law that is malformed, not listed, or for another element type */
+    DUITE_E_SIZE = -14 /* an object grows beyond its maximum, or changes a size that is fixed */
 };
 
 /* The sentence of the last call of this thread that failed; never NULL. Valid until the next
@@ -113,6 +114,7 @@ typedef struct duite_param {
     void *data;      /* 64-byte aligned; const under DUITE_R; dies with the body */
     size_t count;    /* elements */
     duite_type type; /* of the elements */
+    size_t most;     /* elements there is room for under w and rw: see duite_resize */
 } duite_param;
 
 /* What a body is given. */
@@ -144,6 +146,12 @@ typedef int duite_body(const duite_call *call);
  */
 int duite_fail(const duite_call *call, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* Gives parameter i, w or rw of an object made by duite_new_sized, so many elements; those added
+ * are zero. It begins with the size it was left with (rw), or with its maximum (w); what the body
+ * leaves is what readers find. More than the maximum, and another parameter, is DUITE_E_SIZE: then
+ * the task fails with that even if its body returns 0. */
+int duite_resize(const duite_call *call, size_t i, size_t count);
 
 enum { DUITE_MAX_ACCESS = 16 };
 
@@ -212,12 +220,26 @@ int duite_oversubscribed(const duite *rt);
 /* Makes an object of count elements, all zero. Collective; no communication. */
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
 
+/* Makes an object whose size changes: 0 to `most` elements, count zeros to begin with. Bodies under
+ * w and rw find room for `most` and say how many there are (duite_resize); readers, messages and
+ * gets have as many as there are. It cannot be accumulated into (cw: DUITE_E_ACCESS). Collective;
+ * no communication. */
+int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite_object *object);
+
 /* Frees an object after the last earlier access; `object` names nothing afterwards. Collective. */
 int duite_free(duite *rt, duite_object object);
 
 /* Overwrites the object, in fork order, with a copy of `values` (count elements, the same on every
  * rank), or with zeros if `values` is NULL. Collective; returns at once. */
 int duite_set(duite *rt, duite_object object, const void *values);
+
+/* The same with so many values: as many as the object has, or at most its maximum if its size
+ * changes (duite_set gives it its maximum); else DUITE_E_SIZE. Collective; returns at once. */
+int duite_set_sized(duite *rt, duite_object object, const void *values, size_t count);
+
+/* How many elements the object has, as the tasks forked so far leave it. Waits, and tells errors,
+ * like duite_get, which then is at hand. Collective. */
+int duite_get_count(duite *rt, duite_object object, size_t *count);
 
 /* Copies the object, as the tasks forked so far leave it, into `values` (count elements) on every
  * rank. Returns when the bytes are there; other tasks go on. Of a poisoned object: the code of the

@@ -66,6 +66,22 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
     return remember(rt, data_object_new(&rt->graph.table, type, count, object));
 }
 
+int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite_object *object)
+{
+    if (object)
+        *object = DUITE_NO_OBJECT;
+    int code = enter(rt, "duite_new_sized");
+    if (code)
+        return code;
+    if (!object)
+        return remember(rt,
+                        base_error(DUITE_E_ARGUMENT, "duite_new_sized: nowhere to put the object"));
+    graph_mix(&rt->graph, count);
+    graph_mix(&rt->graph, most);
+    graph_mix(&rt->graph, (uint64_t)type);
+    return remember(rt, data_object_new_sized(&rt->graph.table, type, count, most, object));
+}
+
 static void mix_name(duite *rt, duite_object object)
 {
     graph_mix(&rt->graph, (uint64_t)object.slot << 32 | object.generation);
@@ -159,14 +175,25 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
     return fork_task(rt, rank, kernel, args, n, objects);
 }
 
-int duite_set(duite *rt, duite_object object, const void *values)
+static int set(duite *rt, duite_object object, const void *values, const size_t *count,
+               const char *call)
 {
-    int code = enter(rt, "duite_set");
+    int code = enter(rt, call);
     if (!code)
         code = remember(rt, settle(rt));
     if (!code)
-        code = remember(rt, graph_set(&rt->graph, work_main(rt->pool), object, values));
+        code = remember(rt, graph_set(&rt->graph, work_main(rt->pool), object, values, count));
     return code;
+}
+
+int duite_set(duite *rt, duite_object object, const void *values)
+{
+    return set(rt, object, values, NULL, "duite_set");
+}
+
+int duite_set_sized(duite *rt, duite_object object, const void *values, size_t count)
+{
+    return set(rt, object, values, &count, "duite_set_sized");
 }
 
 /* ---- Waiting ---- */
@@ -176,7 +203,9 @@ static bool copy_done(void *context)
     return atomic_load_explicit(&((struct graph_copy *)context)->done, memory_order_acquire);
 }
 
-static int get(duite *rt, duite_object object, int rank, void *values, const char *call)
+/* Copies to the values, or tells the count, whichever is wanted here. */
+static int get(duite *rt, duite_object object, int rank, void *values, size_t *count,
+               const char *call)
 {
     bool here = rank == GRAPH_ANYWHERE || rank == rt->graph.rank;
     struct graph_copy copy = {.values = values};
@@ -193,32 +222,42 @@ static int get(duite *rt, duite_object object, int rank, void *values, const cha
         instance_give_up(rt); /* the task that would have copied is over, then */
     if (rt->comm && comm_broken(rt->comm))
         return comm_broken(rt->comm);
-    if (!values) /* found out only now: the other ranks count on this one */
-        return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the values", call);
-    return copy.failure ? graph_failure_error(&rt->graph, copy.failure) : DUITE_OK;
+    if (!values && !count) /* found out only now: the other ranks count on this one */
+        return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
+    if (copy.failure)
+        return graph_failure_error(&rt->graph, copy.failure);
+    if (count)
+        *count = copy.bytes / data_type_size(data_object_find(&rt->graph.table, object)->type);
+    return DUITE_OK;
 }
 
 /* The get does its work, whatever was remembered. */
-static int get_and_recall(duite *rt, duite_object object, int rank, void *values, const char *call)
+static int get_and_recall(duite *rt, duite_object object, int rank, void *values, size_t *count,
+                          const char *call)
 {
     int code = enter(rt, call);
     if (code)
         return code;
-    code = get(rt, object, rank, values, call);
+    code = get(rt, object, rank, values, count, call);
     int before = recall(rt);
     return before ? before : code;
 }
 
 int duite_get(duite *rt, duite_object object, void *values)
 {
-    return get_and_recall(rt, object, GRAPH_ANYWHERE, values, "duite_get");
+    return get_and_recall(rt, object, GRAPH_ANYWHERE, values, NULL, "duite_get");
+}
+
+int duite_get_count(duite *rt, duite_object object, size_t *count)
+{
+    return get_and_recall(rt, object, GRAPH_ANYWHERE, NULL, count, "duite_get_count");
 }
 
 int duite_get_at(duite *rt, duite_object object, int rank, void *values)
 {
     if (rank < 0)
         return base_error(DUITE_E_ARGUMENT, "duite_get_at: there is no rank %d", rank);
-    return get_and_recall(rt, object, rank, values, "duite_get_at");
+    return get_and_recall(rt, object, rank, values, NULL, "duite_get_at");
 }
 
 static bool drained(void *context)

@@ -55,6 +55,8 @@ const char *duite_code_text(int code)
         return "the operating system refused";
     case DUITE_E_LAW:
         return "law does not fit";
+    case DUITE_E_SIZE:
+        return "size out of bounds";
     default:
         return "unknown code";
     }

@@ -190,6 +190,7 @@ static void receive(struct comm *comm, struct found *found)
     comm_mpi_ok(comm, comm_requests_test(&comm->receives, &done), "MPI_Testsome");
     for (int i = 0; i < done; i++) {
         struct data_packet *packet = comm->receives.what[comm->receives.n + i];
+        data_packet_came(packet);
         if (packet->kind == DATA_FAREWELL) {
             comm_farewell_hear(comm, packet);
             data_packet_free(packet);

@@ -103,6 +103,8 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, dui
                                    .type = type,
                                    .count = count,
                                    .bytes = count * data_type_size(type),
+                                   .most = count,
+                                   .room = count * data_type_size(type),
                                    .home = -1,
                                    .hint = (uint32_t)table->n_unsettled,
                                    .holder = -1};
@@ -110,6 +112,23 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, dui
         (struct data_hint){.slot = slot, .leader = slot, .weight = 1};
     table->n_alive++;
     *name = (duite_object){slot, generation};
+    return DUITE_OK;
+}
+
+int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t most,
+                          duite_object *name)
+{
+    *name = (duite_object){0, 0};
+    if (count > most)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_new_sized: %zu elements are more than %zu at most", count, most);
+    int code = data_object_new(table, type, most, name);
+    if (code)
+        return code;
+    struct data_object *object = &table->object[name->slot];
+    object->sized = true;
+    object->count = count;
+    object->bytes = count * data_type_size(type);
     return DUITE_OK;
 }
 

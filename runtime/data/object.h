@@ -9,14 +9,16 @@
 struct data_object {
     uint32_t generation; /* even: the slot is free */
     duite_type type;
-    size_t count, bytes;
-    int home;        /* -1: not decided yet */
-    uint32_t block;  /* its place among the leaders with its home, in the order they were made;
-                        followers share their leader's */
-    uint32_t hint;   /* while home is -1: its place in `unsettled` */
-    int holder;      /* the rank that has the current version for certain */
-    uint64_t number; /* of the current version: writes so far */
-    uint64_t mark;   /* the last fork that named it: one task names an object once */
+    bool sized;          /* its versions differ in size */
+    size_t count, bytes; /* of the zeros that it begins with */
+    size_t most, room;   /* elements and bytes of the largest version */
+    int home;            /* -1: not decided yet */
+    uint32_t block;      /* its place among the leaders with its home, in the order they were made;
+                            followers share their leader's */
+    uint32_t hint;       /* while home is -1: its place in `unsettled` */
+    int holder;          /* the rank that has the current version for certain */
+    uint64_t number;     /* of the current version: writes so far */
+    uint64_t mark;       /* the last fork that named it: one task names an object once */
     struct data_version *current; /* this rank's copy of the current version, or NULL */
     uint64_t leaves;              /* contributions forked since the last other access */
     const duite_law *law;         /* of these */
@@ -52,6 +54,10 @@ void data_table_stop(struct data_table *table);
 
 /* Makes an object without home. Errors: type, count, memory. */
 int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name);
+
+/* The same with versions of 0 to `most` elements, count of them to begin with. */
+int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t most,
+                          duite_object *name);
 
 /* The object of that name, or NULL with the error's sentence set. */
 struct data_object *data_object_find(struct data_table *table, duite_object name);

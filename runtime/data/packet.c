@@ -15,6 +15,7 @@ struct data_packet *data_packet_new(size_t bytes, bool zero)
         return NULL;
     memset(packet, 0, sizeof *packet);
     packet->bytes = bytes;
+    packet->lines = lines;
     if (zero)
         memset(packet + 1, 0, (lines - 1) * sizeof *packet);
     else if (lines > 1) /* the last line is sent whole */
@@ -25,5 +26,26 @@ struct data_packet *data_packet_new(size_t bytes, bool zero)
 void data_packet_free(struct data_packet *packet)
 {
     if (packet)
-        base_pool_give(packet, data_packet_lines(packet->bytes) * sizeof *packet);
+        base_pool_give(packet, packet->lines * sizeof *packet);
+}
+
+struct data_packet *data_packet_room(struct data_packet *packet, size_t bytes, bool keep)
+{
+    if (packet->lines >= data_packet_lines(bytes))
+        return packet;
+    struct data_packet *larger = data_packet_new(bytes, false);
+    if (larger && keep) {
+        memcpy(data_payload(larger), data_payload(packet), packet->bytes);
+        larger->bytes = packet->bytes;
+    }
+    data_packet_free(packet);
+    return larger;
+}
+
+void data_packet_resize(struct data_packet *packet, size_t bytes)
+{
+    size_t whole = (data_packet_lines(bytes) - 1) * sizeof *packet;
+    packet->bytes = bytes;
+    memset((char *)data_payload(packet) + bytes, 0,
+           whole - bytes); /* the last line is sent whole */
 }

@@ -17,11 +17,12 @@ struct data_key {
 
 struct data_packet {
     struct data_key key;
-    uint64_t bytes; /* of what follows */
+    uint64_t bytes; /* of what follows, and is sent */
     uint32_t kind;
     uint32_t pieces;          /* DATA_PIECES: how many */
     struct data_packet *next; /* for whoever holds it; means nothing to the receiver */
-    uint64_t unused[3];
+    uint64_t lines;           /* of memory, this one among them; means nothing to the receiver */
+    uint64_t unused[2];
 };
 _Static_assert(sizeof(struct data_packet) == 64, "a header takes one cache line");
 
@@ -36,6 +37,20 @@ static inline size_t data_packet_lines(size_t bytes)
 /* A packet for so many bytes, payload zeroed or not; NULL without memory. */
 struct data_packet *data_packet_new(size_t bytes, bool zero);
 void data_packet_free(struct data_packet *packet); /* NULL is fine */
+
+/* A packet came from elsewhere into memory for as many bytes as it has: the header is the sender's.
+ */
+static inline void data_packet_came(struct data_packet *packet)
+{
+    packet->lines = data_packet_lines(packet->bytes);
+}
+
+/* The packet, or one that takes its place, with memory for so many bytes; `keep`: and with its
+ * payload. NULL without memory: then it was freed. */
+struct data_packet *data_packet_room(struct data_packet *packet, size_t bytes, bool keep);
+
+/* From now on it has so many bytes, for which there is room. */
+void data_packet_resize(struct data_packet *packet, size_t bytes);
 
 static inline void *data_payload(struct data_packet *packet)
 {

@@ -55,6 +55,11 @@ static int check_law(const duite_kernel *kernel, size_t i, const struct data_obj
                      duite_object name)
 {
     const duite_law *law = data_law_of(kernel, i);
+    if (object->sized)
+        return base_error(DUITE_E_ACCESS,
+                          "kernel %s, parameter %zu: object %u.%u changes its size and cannot be "
+                          "accumulated into",
+                          kernel->name, i, name.slot, name.generation);
     if (data_law_fits(law, object->type))
         return DUITE_OK;
     return base_error(DUITE_E_LAW,
@@ -120,8 +125,10 @@ static int use(struct graph *graph, void *worker, int at, const duite_kernel *ke
     int code = DUITE_OK;
     if (task) {
         task->access[i].mode = mode;
-        task->access[i].bytes = object->bytes;
-        task->param[i] = (duite_param){.count = object->count, .type = object->type};
+        task->access[i].bytes = object->room;
+        task->access[i].sized = object->sized;
+        task->param[i] =
+            (duite_param){.count = object->most, .type = object->type, .most = object->most};
     }
     if (mode == DUITE_CW) {
         code = graph_contribute(graph, worker, object, data_law_of(kernel, i), at, task, i);
@@ -242,7 +249,6 @@ int graph_copy(struct graph *graph, void *worker, duite_object name, int to,
     struct graph_task *task = version ? graph_task_new(graph, GRAPH_COPY, 1, 0) : NULL;
     if (!task)
         return DUITE_E_MEMORY;
-    copy->bytes = object->bytes;
     task->copy = copy;
     task->block = object->block;
     uint32_t done = 0;

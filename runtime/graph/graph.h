@@ -25,11 +25,12 @@ enum graph_kind {
 struct graph_access {
     struct data_waiter waiter; /* waits for `in`, as a reader or as its heir */
     duite_mode mode;
+    bool sized;               /* the object's size changes */
     struct data_version *in;  /* what is read or overwritten; NULL: a w without bytes to reuse */
     struct data_version *out; /* what is written */
     struct data_sum *sum;     /* cw: what is contributed to */
     struct data_piece *leaf;  /* cw: this task's part of it */
-    size_t bytes;
+    size_t bytes;             /* of the object, at most */
 };
 
 struct graph_task {
@@ -68,7 +69,7 @@ struct graph_sum {
 /* COPY: where a value goes. `done` is set last. */
 struct graph_copy {
     void *values; /* NULL: nowhere */
-    size_t bytes;
+    size_t bytes; /* how many there were */
     const struct data_failure *failure;
     _Atomic int done;
 };
@@ -121,9 +122,11 @@ enum { GRAPH_ANYWHERE = -1 };
 
 int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *kernel,
                const void *args, size_t n, const duite_object *objects);
-/* Overwrites with a copy of values, or with zeros if they are NULL, without waiting for anything.
+/* Overwrites with a copy of *count values, or with zeros if they are NULL, without waiting for
+ * anything. count NULL: as many as the object has at most. Errors: objects, DUITE_E_SIZE, memory.
  */
-int graph_set(struct graph *graph, void *worker, duite_object object, const void *values);
+int graph_set(struct graph *graph, void *worker, duite_object object, const void *values,
+              const size_t *count);
 int graph_free(struct graph *graph, void *worker, duite_object object);
 
 /* Starts copying an object to `copy` on rank `to`, or on all ranks with GRAPH_ANYWHERE. The caller
@@ -133,8 +136,10 @@ int graph_copy(struct graph *graph, void *worker, duite_object object, int to,
 
 /* ---- Any worker ---- */
 
-/* What the running body may say of its failure. */
+/* What the running body may say of its failure, and what it was refused. */
 struct duite_call_private {
+    struct graph_task *task;
+    int refused; /* code of a call that failed, or 0: the task fails with it at least */
     char text[sizeof((struct data_failure *)0)->text];
 };
 

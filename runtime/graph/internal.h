@@ -46,6 +46,11 @@ int graph_close(struct graph *graph, void *worker, struct data_object *object);
 void graph_run_combine(struct graph *graph, struct graph_task *task);
 void graph_run_pieces(struct graph *graph, struct graph_task *task);
 
+/* Access i of an object whose size changes has this packet: tells the body its size; the body is
+ * over: what it wrote has the sizes it said. */
+void graph_size_open(struct graph_task *task, size_t i, struct data_packet *packet);
+void graph_size_close(struct graph_task *task);
+
 /* Keeps a failure until stop; `report`: the next wait tells it. Never NULL. */
 const struct data_failure *graph_fail(struct graph *graph, const struct data_failure *failure,
                                       bool report);

@@ -28,6 +28,9 @@ static const struct data_failure *inherit(struct graph *graph, struct graph_task
         data_version_free(access->in);
         access->in = NULL;
     }
+    if (access->sized && access->out->packet)
+        access->out->packet =
+            data_packet_room(access->out->packet, access->bytes, access->mode == DUITE_RW);
     if (!access->out->packet && !failure &&
         !(access->out->packet = data_packet_new(access->bytes, false)))
         failure = graph_fail_memory(graph, task);
@@ -53,6 +56,8 @@ static const struct data_failure *prepare(struct graph *graph, struct graph_task
             packet = access->out->packet;
         }
         task->param[i].data = packet ? data_payload(packet) : NULL;
+        if (access->sized)
+            graph_size_open(task, i, packet);
     }
     return failure;
 }
@@ -74,10 +79,14 @@ static const struct data_failure *call_body(struct graph *graph, struct graph_ta
     call->args = task->args;
     call->param = task->param;
     call->n_params = task->n;
-    call->own->text[0] = '\0';
+    *call->own = (struct duite_call_private){.task = task};
     int code = graph->kernels[task->kernel]->body(call);
     if (!code)
+        code = call->own->refused;
+    if (!code) {
+        graph_size_close(task);
         return NULL;
+    }
     struct data_failure failure = {
         .code = code, .rank = graph->rank, .number = task->number, .kernel = task->kernel};
     memcpy(failure.text, call->own->text, sizeof failure.text);
@@ -99,6 +108,8 @@ static void run_copy(struct graph *graph, struct graph_task *task)
     struct graph_copy *copy = task->copy;
     const struct data_version *version = task->access[0].in;
     copy->failure = version->failure;
+    if (!version->failure)
+        copy->bytes = version->packet->bytes;
     if (!version->failure && copy->values)
         memcpy(copy->values, data_payload(version->packet), copy->bytes);
     atomic_store_explicit(&copy->done, 1, memory_order_release);

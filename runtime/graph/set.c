@@ -8,36 +8,52 @@
 
 enum { OVERWRITTEN = 0x736574 }; /* tells a set from a free in the fingerprint */
 
-static struct data_version *version_of(const struct data_object *object, const void *values)
+static struct data_version *version_of(const void *values, size_t bytes)
 {
     struct data_version *version = data_version_new();
-    struct data_packet *packet = version ? data_packet_new(object->bytes, !values) : NULL;
+    struct data_packet *packet = version ? data_packet_new(bytes, !values) : NULL;
     if (!packet) {
         if (version)
             data_version_free(version);
         return NULL;
     }
     if (values)
-        memcpy(data_payload(packet), values, object->bytes);
+        memcpy(data_payload(packet), values, bytes);
     version->packet = packet;
     data_version_produced(version);
     data_version_release(version); /* the object alone holds it */
     return version;
 }
 
-int graph_set(struct graph *graph, void *worker, duite_object name, const void *values)
+static int check_count(const struct data_object *object, duite_object name, size_t count)
+{
+    if (count == object->most || (object->sized && count < object->most))
+        return DUITE_OK;
+    return base_error(DUITE_E_SIZE, "duite_set_sized: %zu elements, and object %u.%u has %s%zu",
+                      count, name.slot, name.generation, object->sized ? "at most " : "",
+                      object->most);
+}
+
+int graph_set(struct graph *graph, void *worker, duite_object name, const void *values,
+              const size_t *wanted)
 {
     struct data_object *object = data_object_find(&graph->table, name);
     if (!object)
         return DUITE_E_OBJECT;
+    size_t count = wanted ? *wanted : object->most;
+    int code = check_count(object, name, count);
+    if (code)
+        return code;
     graph_mix(graph, (uint64_t)name.slot << 32 | name.generation);
     graph_mix(graph, OVERWRITTEN);
+    graph_mix(graph, count);
     struct data_version *version = NULL;
-    if (object->home == graph->rank && !(version = version_of(object, values))) {
+    if (object->home == graph->rank &&
+        !(version = version_of(values, count * data_type_size(object->type)))) {
         base_no_memory("the values of duite_set");
         return graph_break(graph);
     }
-    int code = object->leaves ? graph_close(graph, worker, object) : DUITE_OK;
+    code = object->leaves ? graph_close(graph, worker, object) : DUITE_OK;
     object->number++;
     data_object_moved(object, object->home);
     graph_forget(graph, worker, object);

@@ -121,6 +121,8 @@ enum difference {
     ANOTHER_RANK,
     ONE_OBJECT_MORE,
     ANOTHER_SIZE,
+    ANOTHER_MAXIMUM,
+    ANOTHER_COUNT,
     ONE_SET_MORE
 };
 
@@ -141,6 +143,10 @@ static void differ(duite *rt, enum difference what, duite_object a, duite_object
         duite_new(rt, DUITE_I32, 1, &made);
     if (what == ANOTHER_SIZE)
         duite_new(rt, DUITE_I32, odd ? 5 : 6, &made);
+    if (what == ANOTHER_MAXIMUM)
+        duite_new_sized(rt, DUITE_I32, 2, odd ? 5 : 6, &made);
+    if (what == ANOTHER_COUNT && !duite_new_sized(rt, DUITE_I32, 2, 6, &made))
+        duite_set_sized(rt, made, NULL, odd ? 3 : 4);
     if (what == ONE_SET_MORE && odd)
         duite_set(rt, a, NULL);
 }
@@ -171,9 +177,10 @@ static void different_forks(enum difference what, const char *name, int at_stop)
 
 int main(void)
 {
-    static const char *const NAMES[] = {"a fork more",  "another kernel", "another object",
-                                        "another rank", "an object more", "another size",
-                                        "a set more"};
+    static const char *const NAMES[] = {
+        "a fork more",     "another kernel",          "another object",
+        "another rank",    "an object more",          "another size",
+        "another maximum", "another count of values", "a set more"};
 
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -80,6 +80,19 @@ static int right(duite *rt, const duite_object *a)
     return 1;
 }
 
+/* An object grows where it was small. */
+static void grow(duite *rt)
+{
+    const int32_t value = 8, values[3] = {1, 2, 3};
+    duite_object list;
+    if (duite_new_sized(rt, DUITE_I32, 1, COUNT, &list))
+        return;
+    duite_set_sized(rt, list, values, 3);
+    duite_fork(rt, &SET, &value, 1, &list);
+    duite_fork_at(rt, ranks - 1, &SET, &value, 1, &list);
+    duite_free(rt, list);
+}
+
 /* One run; returns whether it ended as it may. */
 static int run(void)
 {
@@ -94,6 +107,7 @@ static int run(void)
     duite_hint(rt, a[1], 2, 1, &a[0], NULL);
     duite_follow(rt, a[2], a[1]);
     work(rt, a);
+    grow(rt);
     fine = right(rt, a);
     code = duite_wait(rt);
     for (int i = 1; i < OBJECTS; i++)

@@ -2,8 +2,11 @@ check_PROGRAMS += tests/runtime/random_programs
 tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/runtime/random_program.h \
     tests/runtime/random_make.c tests/runtime/random_laws.c tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c
 tests_runtime_random_programs_LDADD = libduite_core.la
-dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_long.sh
-TESTS += tests/runtime/random_programs tests/runtime/test_random.sh
+check_PROGRAMS += tests/runtime/ranks_sizes
+tests_runtime_ranks_sizes_SOURCES = tests/runtime/ranks_sizes.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_ranks_sizes_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_long.sh tests/runtime/test_sizes.sh
+TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtime/test_sizes.sh
 LONG_TESTS += tests/runtime/test_random_long.sh
 
 if HAVE_CHECK

@@ -117,6 +117,16 @@ static int is_neutral(const struct prog_args *args, const duite_param *param, si
     return same;
 }
 
+/* Whether a parameter has the size it should have: its own; if it changes, its maximum under w. */
+static int has_size(const struct prog_args *args, const duite_param *param, size_t i)
+{
+    const size_t most = args->most[i] ? args->most[i] : args->count[i];
+
+    if (param->most != most || param->count > most)
+        return 0;
+    return args->most[i] ? args->mode[i] != DUITE_W || param->count == most : param->count == most;
+}
+
 /* The line of the first of the call's promises that is broken; 0 if none is. */
 static int broken(const duite_call *call, const struct prog_args *args,
                   const struct prog_context *context)
@@ -130,7 +140,7 @@ static int broken(const duite_call *call, const struct prog_args *args,
     for (size_t i = 0; i < call->n_params; i++) {
         if ((uintptr_t)call->param[i].data % 64 != 0 || !call->param[i].data)
             return __LINE__;
-        if (call->param[i].count != args->count[i] || call->param[i].type != args->type[i])
+        if (!has_size(args, &call->param[i], i) || call->param[i].type != args->type[i])
             return __LINE__;
         for (size_t j = 0; j < i; j++)
             if (call->param[i].data == call->param[j].data)
@@ -154,6 +164,55 @@ static void watch(const duite_call *call, const struct prog_args *args,
     waste(args->pause);
 }
 
+/* The parameter gets another size; in the interpreter, which leaves room, by hand. */
+static void resize(const duite_call *call, size_t i, size_t count)
+{
+    const size_t size = prog_size(call->param[i].type);
+    duite_param *param = (duite_param *)&call->param[i];
+    struct prog_context *context = call->context;
+    int none = 0;
+
+    if (context) {
+        if (duite_resize(call, i, count) || duite_count(call, i) != count)
+            atomic_compare_exchange_strong(&context->wrong, &none, __LINE__);
+        return;
+    }
+    if (count > param->count)
+        memset((char *)param->data + param->count * size, 0, (count - param->count) * size);
+    param->count = count;
+}
+
+/* A size that follows from the hash, by way of another one at times; returns how many elements the
+ * body writes: the others are zero. */
+static size_t change_size(const duite_call *call, size_t i, size_t most, uint64_t hash)
+{
+    const size_t count = hash / 7 % (most + 1);
+
+    if (hash % 7 < 2)
+        return duite_count(call, i);
+    if (hash % 7 == 3) {
+        resize(call, i, count / 2);
+        resize(call, i, count);
+        return count / 2;
+    }
+    resize(call, i, count);
+    return count;
+}
+
+/* Asks for what it may not have; at times it says so itself. */
+static int exceed(const duite_call *call, const struct prog_args *args)
+{
+    const size_t i = args->exceeds - 1;
+    struct prog_context *context = call->context;
+    int none = 0;
+
+    if (!context)
+        return DUITE_E_SIZE;
+    if (duite_resize(call, i, call->param[i].most + 1) != DUITE_E_SIZE)
+        atomic_compare_exchange_strong(&context->wrong, &none, __LINE__);
+    return args->seed % 2 ? DUITE_E_SIZE : DUITE_OK;
+}
+
 int prog_body(const duite_call *call)
 {
     const struct prog_args *args = call->args;
@@ -163,7 +222,8 @@ int prog_body(const duite_call *call)
         watch(call, args, call->context);
     for (size_t i = 0; i < args->n; i++)
         if (args->mode[i] == DUITE_R || args->mode[i] == DUITE_RW)
-            hash = digest(hash, call->param[i].data, args->count[i] * prog_size(args->type[i]));
+            hash =
+                digest(hash, call->param[i].data, duite_count(call, i) * prog_size(args->type[i]));
     for (size_t i = 0; i < args->n; i++) {
         const size_t stride = args->mode[i] == DUITE_CW && hash % 4 == 0 ? 3 : 1;
         const int extreme = args->law[i] == PROG_MIN || args->law[i] == PROG_MAX;
@@ -172,9 +232,14 @@ int prog_body(const duite_call *call)
 
         if (args->mode[i] == DUITE_R)
             continue;
-        for (size_t e = 0; e < args->count[i]; e += stride)
+        const size_t count =
+            args->most[i] ? change_size(call, i, args->most[i], state / 3) : duite_count(call, i);
+
+        for (size_t e = 0; e < count; e += stride)
             put(args->type[i], mode, call->param[i].data, e, duite_random(&state));
     }
+    if (args->exceeds)
+        return exceed(call, args);
     if (args->fails && call->context)
         return duite_fail(call, args->fails, "fork %u fails", args->number);
     return args->fails;
@@ -185,12 +250,14 @@ void prog_args_fill(const struct prog *prog, const struct prog_op *op, struct pr
     memset(args, 0, sizeof *args);
     args->seed = op->seed;
     args->fails = op->fails;
+    args->exceeds = op->exceeds;
     args->rank = op->rank;
     args->pause = op->pause;
     args->number = op->number;
     args->n = op->n;
     for (unsigned i = 0; i < op->n; i++) {
         args->count[i] = (uint32_t)prog->objects[op->objects[i]].count;
+        args->most[i] = (uint32_t)prog->objects[op->objects[i]].most;
         args->type[i] = (uint8_t)prog->objects[op->objects[i]].type;
         args->mode[i] = (uint8_t)prog_mode(&prog->kernel[op->kernel], i);
         args->law[i] = (uint8_t)prog_law(&prog->kernel[op->kernel], i);

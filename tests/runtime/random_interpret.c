@@ -18,7 +18,7 @@ enum { MAX_LEVELS = 32 };
 
 struct cell {
     duite_type type;
-    size_t count;
+    size_t count, most; /* elements; of the largest value */
     unsigned char *value;
     struct failure poison;
     struct failure pending; /* of the contributions */
@@ -88,8 +88,10 @@ static struct cell *settle(struct cell *cell)
 }
 
 /* Ends a task: its outputs are what the body left, or poisoned. */
-static void deliver(struct cell *cell, duite_mode mode, unsigned char *data, struct failure failure)
+static void deliver(struct cell *cell, duite_mode mode, const duite_param *param,
+                    struct failure failure)
 {
+    unsigned char *data = param->data;
     const int failed = failure.number != NONE.number;
 
     if (mode == DUITE_CW) {
@@ -103,6 +105,7 @@ static void deliver(struct cell *cell, duite_mode mode, unsigned char *data, str
     }
     if (mode != DUITE_R) {
         cell->poison = failure;
+        cell->count = param->count;
         memcpy(cell->value, data, bytes_of(cell));
     }
     free(data);
@@ -117,8 +120,10 @@ static void run_body(struct machine *m, const struct prog_op *op, duite_param *p
     prog_args_fill(m->prog, op, &args);
     m->answers->runs[op->number] = 1;
     m->answers->n_runs++;
-    if (prog_body(&call)) {
-        *failure = (struct failure){op->number, op->fails};
+    const int code = prog_body(&call);
+
+    if (code) {
+        *failure = (struct failure){op->number, code};
         m->failed = first_of(m->failed, *failure);
     }
 }
@@ -133,7 +138,9 @@ static int fork_task(struct machine *m, const struct prog_op *op)
         const duite_mode mode = prog_mode(kernel, i);
         struct cell *cell = &m->cells[op->objects[i]];
 
-        param[i] = (duite_param){calloc(1, bytes_of(cell)), cell->count, cell->type};
+        param[i] = (duite_param){.data = calloc(cell->most, prog_size(cell->type)),
+                                 .count = mode == DUITE_W ? cell->most : cell->count,
+                                 .type = cell->type};
         if (!param[i].data)
             return -1;
         if (mode == DUITE_CW) {
@@ -151,7 +158,7 @@ static int fork_task(struct machine *m, const struct prog_op *op)
     if (failure.number == NONE.number)
         run_body(m, op, param, &failure);
     for (unsigned i = 0; i < op->n; i++)
-        deliver(&m->cells[op->objects[i]], prog_mode(kernel, i), param[i].data, failure);
+        deliver(&m->cells[op->objects[i]], prog_mode(kernel, i), &param[i], failure);
     return 0;
 }
 
@@ -159,8 +166,9 @@ static int get(struct machine *m, struct cell *cell, struct prog_expect *expect)
 {
     settle(cell);
     expect->code = m->refused ? m->refused : cell->poison.code;
+    expect->count = cell->count;
     if (cell->poison.number == NONE.number) {
-        expect->bytes = malloc(bytes_of(cell));
+        expect->bytes = malloc(bytes_of(cell) + 1);
         if (!expect->bytes)
             return -1;
         memcpy(expect->bytes, cell->value, bytes_of(cell));
@@ -189,8 +197,9 @@ static int operation(struct machine *m, const struct prog_op *op, struct prog_ex
     case PROG_NEW:
         cell->type = op->type;
         cell->count = op->count;
+        cell->most = op->most ? op->most : op->count;
         cell->poison = cell->pending = NONE;
-        cell->value = calloc(1, bytes_of(cell));
+        cell->value = calloc(cell->most, prog_size(cell->type));
         return cell->value ? 0 : -1;
     case PROG_FREE:
         free(settle(cell)->value);
@@ -198,6 +207,7 @@ static int operation(struct machine *m, const struct prog_op *op, struct prog_ex
         return 0;
     case PROG_SET:
         settle(cell)->poison = NONE;
+        cell->count = op->count;
         memset(cell->value, 0, bytes_of(cell));
         if (op->seed)
             prog_values(cell->type, cell->count, op->seed, cell->value);
@@ -206,6 +216,7 @@ static int operation(struct machine *m, const struct prog_op *op, struct prog_ex
         return fork_task(m, op);
     case PROG_GET:
     case PROG_GET_AT:
+    case PROG_COUNT:
         return get(m, cell, expect);
     case PROG_WAIT:
         expect->code = wait_all(m);

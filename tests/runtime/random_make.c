@@ -122,7 +122,11 @@ static void make_new(struct maker *m)
 
     op->type = TYPES[below(m, sizeof TYPES / sizeof *TYPES)];
     op->count = draw_count(m);
-    prog->objects[prog->n_objects] = (struct prog_object){op->type, op->count, -1};
+    if (one_in(m, 4)) {
+        op->most = op->count;
+        op->count = below(m, (unsigned)op->most + 1);
+    }
+    prog->objects[prog->n_objects] = (struct prog_object){op->type, op->count, op->most, -1};
     m->live[m->n_live++] = (unsigned)prog->n_objects++;
 }
 
@@ -143,6 +147,8 @@ static int draw_other(struct maker *m, const struct prog_op *op, int may_bytes, 
     for (int attempt = 0; attempt < 30; attempt++) {
         const unsigned object = draw_object(m);
         int taken = m->prog->objects[object].type == DUITE_BYTE ? !may_bytes : !may_numbers;
+
+        taken |= m->prog->objects[object].most && !(may_bytes && may_numbers);
 
         for (unsigned i = 0; i < op->n; i++)
             taken |= op->objects[i] == object;
@@ -173,6 +179,7 @@ static void push_fork(struct maker *m, const struct prog_op *draft)
     op->number = (unsigned)prog->n_forks++;
     op->rank = one_in(m, 8) ? (int)below(m, (unsigned)prog->n_ranks) : -1;
     op->fails = one_in(m, m->failing) ? 1 + (int)below(m, 1000) : 0;
+    op->exceeds = op->n && one_in(m, 6 * m->failing) ? 1 + below(m, op->n) : 0;
     op->pause = one_in(m, m->pausing) ? 1 + below(m, one_in(m, 4) ? 20000 : 500) : 0;
     m->unsettled = (unsigned)prog->n_objects;
 }
@@ -251,6 +258,22 @@ static void make_get_at(struct maker *m)
         push(m, PROG_GET_AT, draw_object(m))->rank = (int)below(m, (unsigned)m->prog->n_ranks);
 }
 
+static void make_count(struct maker *m)
+{
+    push(m, PROG_COUNT, draw_object(m));
+    m->refused = 0;
+}
+
+static void make_set(struct maker *m, int zeros)
+{
+    struct prog_op *op = push(m, PROG_SET, draw_object(m));
+    const struct prog_object *object = &m->prog->objects[op->object];
+
+    op->count = object->most ? below(m, (unsigned)object->most + 1) : object->count;
+    if (zeros)
+        op->seed = 0;
+}
+
 static void make_wait(struct maker *m)
 {
     push(m, PROG_WAIT, 0);
@@ -268,10 +291,10 @@ static void make_other(struct maker *m)
 {
     const unsigned choice = below(m, 16);
 
-    if (choice < 1)
-        push(m, PROG_SET, draw_object(m))->seed = 0;
-    else if (choice < 3)
-        push(m, PROG_SET, draw_object(m));
+    if (choice < 3)
+        make_set(m, choice < 1);
+    else if (choice < 4)
+        make_count(m);
     else if (choice < 6)
         make_get(m);
     else if (choice < 8)
@@ -365,8 +388,8 @@ void prog_free(struct prog *prog)
 
 void prog_print(FILE *file, const struct prog *prog, size_t index)
 {
-    static const char *const KINDS[] = {"skip",   "new",  "free", "set",    "fork", "get",
-                                        "get_at", "wait", "hint", "follow", "home", "wrong"};
+    static const char *const KINDS[] = {"skip",  "new",  "free", "set",    "fork", "get",  "get_at",
+                                        "count", "wait", "hint", "follow", "home", "wrong"};
     static const char *const TYPES[] = {"", "byte", "i32", "i64", "f32", "f64"};
     static const char *const MODES[] = {"", "r", "w", "rw", "cw"};
     static const char *const LAWS[] = {"", ",min:", ",max:", ",mix:", ",weave:"};
@@ -379,6 +402,10 @@ void prog_print(FILE *file, const struct prog *prog, size_t index)
         fprintf(file, " object %u", op->object);
     if (op->kind == PROG_NEW)
         fprintf(file, " %s x %zu", TYPES[op->type], op->count);
+    if (op->most)
+        fprintf(file, " of %zu", op->most);
+    if (op->kind == PROG_SET)
+        fprintf(file, " x %zu", op->count);
     for (unsigned i = 0; i < op->n; i++)
         fprintf(file, " %s%s%u",
                 op->kind == PROG_FORK ? MODES[prog_mode(&prog->kernel[op->kernel], i)] : "",
@@ -390,5 +417,7 @@ void prog_print(FILE *file, const struct prog *prog, size_t index)
         fprintf(file, " at rank %d", op->rank);
     if (op->fails)
         fprintf(file, " fails with %d", op->fails);
+    if (op->exceeds)
+        fprintf(file, " gives parameter %u too much", op->exceeds - 1);
     fputc('\n', file);
 }

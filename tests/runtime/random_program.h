@@ -22,6 +22,7 @@ enum prog_kind {
     PROG_FORK, /* at a rank if rank >= 0 */
     PROG_GET,
     PROG_GET_AT,
+    PROG_COUNT, /* get_count */
     PROG_WAIT,
     PROG_HINT,
     PROG_FOLLOW,
@@ -42,27 +43,30 @@ struct prog_op {
     unsigned number; /* forks: place in fork order */
     int rank;        /* fork, get_at; -1: none named */
     duite_type type; /* new */
-    size_t count;    /* new: elements */
+    size_t count;    /* new: elements; set: of an object whose size changes */
+    size_t most;     /* new: elements at most, 0: the size is fixed */
     uint64_t seed;   /* set: of the values, 0: zeros; fork: of the body */
     unsigned pause;  /* fork: how the body wastes time */
     int fails;       /* fork: the code the body returns */
-    double weight;   /* hint */
+    unsigned
+        exceeds;   /* fork: parameter + 1 that the body gives more elements than it may; 0: none */
+    double weight; /* hint */
 };
 
 /* What a body is told: it cannot ask the program, which it must not see. */
 struct prog_args {
     uint64_t seed;
     int fails, rank;
-    unsigned pause, number, n;
-    uint32_t count[PROG_MAX_PARAMS];
+    unsigned pause, number, n, exceeds;
+    uint32_t count[PROG_MAX_PARAMS], most[PROG_MAX_PARAMS]; /* most 0: the size is fixed */
     uint8_t type[PROG_MAX_PARAMS], mode[PROG_MAX_PARAMS], law[PROG_MAX_PARAMS];
     char padding[PROG_ARGS_PADDING]; /* kernels copy some of it, so that argument sizes vary */
 };
 
 struct prog_object {
     duite_type type;
-    size_t count;
-    int leader; /* follows this object for certain; -1: none */
+    size_t count, most; /* most 0: the size is fixed */
+    int leader;         /* follows this object for certain; -1: none */
 };
 
 struct prog {
@@ -80,6 +84,7 @@ struct prog {
 struct prog_expect {
     int code;
     unsigned char *bytes; /* get, get_at: the object; NULL if it is poisoned */
+    size_t count;         /* get, get_at, get_count: its elements */
 };
 
 struct prog_answers {

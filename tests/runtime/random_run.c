@@ -63,22 +63,26 @@ static void print_element(duite_type type, const void *data, size_t i, char *tex
     }
 }
 
-static void compare(struct run *run, unsigned number, const unsigned char *expected)
+static void compare(struct run *run, unsigned number, const struct prog_expect *answer)
 {
     const struct prog_object *object = &run->prog->objects[number];
     const size_t size = prog_size(object->type);
     char is[80] = "", should[80] = "";
     size_t i = 0, different = 0, first = 0;
 
-    for (; i < object->count; i++)
-        if (memcmp(run->bytes + i * size, expected + i * size, size) != 0 && different++ == 0)
+    for (; i < answer->count; i++)
+        if (memcmp(run->bytes + i * size, answer->bytes + i * size, size) != 0 && different++ == 0)
             first = i;
+    for (i *= size; i < run->largest; i++)
+        if (run->bytes[i] != UNTOUCHED)
+            found(run, "object %u: byte %zu behind its %zu elements was written", number, i,
+                  answer->count);
     if (!different)
         return;
     print_element(object->type, run->bytes, first, is, sizeof is);
-    print_element(object->type, expected, first, should, sizeof should);
+    print_element(object->type, answer->bytes, first, should, sizeof should);
     found(run, "object %u: %zu of %zu elements differ, first [%zu]: %s, expected %s", number,
-          different, object->count, first, is, should);
+          different, answer->count, first, is, should);
 }
 
 static void get(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
@@ -92,7 +96,18 @@ static void get(struct run *run, const struct prog_op *op, const struct prog_exp
 
     expect(run, op->kind == PROG_GET ? "get" : "get_at", code, here ? answer->code : DUITE_OK);
     if (here && answer->bytes && code == answer->code)
-        compare(run, op->object, answer->bytes);
+        compare(run, op->object, answer);
+}
+
+static void get_count(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
+{
+    const size_t none = (size_t)-3, expected = answer->bytes ? answer->count : none;
+    size_t count = none;
+
+    expect(run, "get_count", duite_get_count(run->rt, run->object[op->object], &count),
+           answer->code);
+    if (count != expected)
+        found(run, "object %u has %zu elements, expected %zu", op->object, count, expected);
 }
 
 static void fork_task(struct run *run, const struct prog_op *op)
@@ -152,11 +167,27 @@ static void ask_home(struct run *run, unsigned number)
 static void set(struct run *run, const struct prog_op *op)
 {
     const struct prog_object *object = &run->prog->objects[op->object];
+    const void *values = op->seed ? run->bytes : NULL;
+    const int whole = op->count == (object->most ? object->most : object->count);
 
-    prog_values(object->type, object->count, op->seed, run->bytes);
-    expect(run, "set", duite_set(run->rt, run->object[op->object], op->seed ? run->bytes : NULL),
-           DUITE_OK);
-    memset(run->bytes, 0xee, object->count * prog_size(object->type));
+    prog_values(object->type, op->count, op->seed, run->bytes);
+    if (whole && op->count % 2)
+        expect(run, "set", duite_set(run->rt, run->object[op->object], values), DUITE_OK);
+    else
+        expect(run, "set_sized",
+               duite_set_sized(run->rt, run->object[op->object], values, op->count), DUITE_OK);
+    memset(run->bytes, 0xee, run->largest);
+}
+
+static void make(struct run *run, const struct prog_op *op)
+{
+    duite_object *object = &run->object[op->object];
+
+    if (op->most)
+        expect(run, "new_sized", duite_new_sized(run->rt, op->type, op->count, op->most, object),
+               DUITE_OK);
+    else
+        expect(run, "new", duite_new(run->rt, op->type, op->count, object), DUITE_OK);
 }
 
 static void operation(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
@@ -165,7 +196,7 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
 
     switch (op->kind) {
     case PROG_NEW:
-        expect(run, "new", duite_new(run->rt, op->type, op->count, object), DUITE_OK);
+        make(run, op);
         break;
     case PROG_FREE:
         ask_home(run, op->object);
@@ -180,6 +211,9 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
     case PROG_GET:
     case PROG_GET_AT:
         get(run, op, answer);
+        break;
+    case PROG_COUNT:
+        get_count(run, op, answer);
         break;
     case PROG_WAIT:
         expect(run, "wait", duite_wait(run->rt), answer->code);
@@ -282,9 +316,13 @@ void prog_run(const struct prog *prog, const struct prog_answers *answers,
     *report = (struct prog_report){0};
     MPI_Comm_rank(setup->comm, &run.rank);
     context.rank = run.rank;
-    for (size_t i = 0; i < prog->n_objects; i++)
-        if (prog->objects[i].count * prog_size(prog->objects[i].type) > run.largest)
-            run.largest = prog->objects[i].count * prog_size(prog->objects[i].type);
+    for (size_t i = 0; i < prog->n_objects; i++) {
+        const struct prog_object *object = &prog->objects[i];
+        const size_t most = object->most ? object->most : object->count;
+
+        if (most * prog_size(object->type) > run.largest)
+            run.largest = most * prog_size(object->type);
+    }
     run.object = calloc(prog->n_objects + 1, sizeof *run.object);
     run.home = malloc((prog->n_objects + 1) * sizeof *run.home);
     run.bytes = malloc(run.largest);

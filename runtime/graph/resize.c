@@ -1,0 +1,51 @@
+/* Objects whose size changes: the body works in room for the maximum and says how many elements
+ * there are; the packet it leaves has just these, and so have its readers and messages. */
+#include "runtime/graph/internal.h"
+
+#include "runtime/base/error.h"
+
+#include <string.h>
+
+void graph_size_open(struct graph_task *task, size_t i, struct data_packet *packet)
+{
+    duite_param *param = &task->param[i];
+    if (packet && task->access[i].mode != DUITE_W)
+        param->count = packet->bytes / data_type_size(param->type);
+}
+
+void graph_size_close(struct graph_task *task)
+{
+    for (uint32_t i = 0; i < task->n; i++)
+        if (task->access[i].sized && task->access[i].out)
+            data_packet_resize(task->access[i].out->packet,
+                               task->param[i].count * data_type_size(task->param[i].type));
+}
+
+static int refuse(const duite_call *call, size_t i, size_t count)
+{
+    const struct graph_task *task = call->own->task;
+    if (i >= task->n)
+        duite_fail(call, 0, "duite_resize: there is no parameter %zu, only %u", i, task->n);
+    else if (!task->access[i].sized)
+        duite_fail(call, 0, "duite_resize: the object of parameter %zu has a fixed size", i);
+    else if (!task->access[i].out)
+        duite_fail(call, 0, "duite_resize: parameter %zu is only read", i);
+    else
+        duite_fail(call, 0, "duite_resize: parameter %zu: %zu elements are more than %zu at most",
+                   i, count, task->param[i].most);
+    call->own->refused = DUITE_E_SIZE;
+    return base_error(DUITE_E_SIZE, "%s", call->own->text);
+}
+
+int duite_resize(const duite_call *call, size_t i, size_t count)
+{
+    struct graph_task *task = call->own->task;
+    duite_param *param = i < task->n ? &task->param[i] : NULL;
+    if (!param || !task->access[i].sized || !task->access[i].out || count > param->most)
+        return refuse(call, i, count);
+    size_t size = data_type_size(param->type);
+    if (count > param->count)
+        memset((char *)param->data + param->count * size, 0, (count - param->count) * size);
+    param->count = count;
+    return DUITE_OK;
+}

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 struct run {
     const struct simulate_options *options;
@@ -61,6 +62,12 @@ static int agree(const struct run *run, const struct cloth_error *error)
 static int check_report(const struct simulate_options *options, struct cloth_error *error)
 {
     struct cloth_error inner = {0};
+    struct stat report, scene;
+    if (stat(options->report, &report) == 0 && stat(options->scene, &scene) == 0 &&
+        report.st_dev == scene.st_dev && report.st_ino == scene.st_ino)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--report %s: this is the scene itself, which would be lost",
+                          options->report);
     const int code = output_report_check(options->report, options->output, &inner);
     return code ? cloth_fail(error, code, "--report %s: %s", options->report, inner.text) : code;
 }

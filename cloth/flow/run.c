@@ -76,9 +76,8 @@ static int build(struct flow *flow, const struct flow_particles *particles,
     int code = cut(flow, particles, springs, error);
     if (!code && (uint32_t)ranks > flow->blocks.n_blocks)
         code = cloth_fail(error, CLOTH_E_INPUT,
-                          "%d ranks are more than the %u blocks that %u vertices make at a grain "
-                          "of %u; start fewer "
-                          "ranks or give a smaller grain",
+                          "%d ranks are more than there are blocks (%u): %u vertices at a grain of "
+                          "%u; start fewer ranks or give a smaller grain",
                           ranks, flow->blocks.n_blocks, flow->blocks.n_places, flow->model->grain);
     if (!code)
         code = flow_tables_make(&flow->tables, particles, springs, &flow->blocks, flow->model->h,

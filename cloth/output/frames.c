@@ -2,7 +2,7 @@
  * after the floats and the line of the index that it counts are on the disk. Bytes beyond the
  * counted frames mean nothing; a frame that fails takes its own away again. When a folder is
  * opened, the cache of an earlier run goes first and the new one comes last, so that cache and mesh
- * always belong together. */
+ * always belong together. scene.json comes first: where it is not, a cloth.obj is not ours. */
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/json.h"
 
@@ -15,8 +15,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum part { PART_OBJ, PART_SCENE, PART_INDEX, PART_CACHE, N_PARTS };
-static const char *const PART_NAME[N_PARTS] = {"cloth.obj", "scene.json", "frames.csv",
+enum part { PART_SCENE, PART_OBJ, PART_INDEX, PART_CACHE, N_PARTS };
+static const char *const PART_NAME[N_PARTS] = {"scene.json", "cloth.obj", "frames.csv",
                                                "cloth.pc2"};
 
 struct output_frames {
@@ -65,7 +65,7 @@ static int fill_cache(FILE *file, const void *what)
 static int write_part(const struct output_frames *frames, enum part part, const char *path,
                       const struct output_setup *setup, struct cloth_error *error)
 {
-    static int (*const fill[N_PARTS])(FILE *, const void *) = {output_fill_obj, fill_scene,
+    static int (*const fill[N_PARTS])(FILE *, const void *) = {fill_scene, output_fill_obj,
                                                                fill_index, fill_cache};
     const void *what = part == PART_CACHE ? (const void *)frames : setup;
     return output_write_file(path, fill[part], what, error);
@@ -101,6 +101,18 @@ static int start_files(const struct output_frames *frames, const struct output_s
         free(fresh[i]);
     }
     return code;
+}
+
+/* A mesh of the user's must not be taken for one of an earlier run. */
+static int check_ours(const struct output_frames *frames, struct cloth_error *error)
+{
+    struct stat status;
+    if (stat(frames->path[PART_SCENE], &status) == 0 || lstat(frames->path[PART_OBJ], &status) != 0)
+        return 0;
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "%s would be replaced, but is not of an earlier run: there is no scene.json "
+                      "beside it; give another folder, or move the file away",
+                      frames->path[PART_OBJ]);
 }
 
 static int open_part(const struct output_frames *frames, enum part part, int *file,
@@ -154,6 +166,7 @@ int output_open(struct output_frames **frames, const struct output_setup *setup,
     int code = count_points(setup, &made->n_points, error);
     code = code ? code : allocate(made, setup->folder, error);
     code = code ? code : output_make_folder(setup->folder, error);
+    code = code ? code : check_ours(made, error);
     code = code ? code : start_files(made, setup, error);
     code = code ? code : open_part(made, PART_INDEX, &made->index, error);
     code = code ? code : open_part(made, PART_CACHE, &made->cache, error);

@@ -28,7 +28,8 @@ struct output_setup {
     const double (*planes)[6]; /* n_planes x (point, normal) */
 };
 
-/* Opens a folder for frames; files of an earlier run in it are replaced. Errors: CLOTH_E_INPUT
+/* Opens a folder for frames; files of an earlier run in it are replaced, a cloth.obj of anyone else
+ * is not. Errors: CLOTH_E_INPUT
  * where the folder is one that cannot be written to, CLOTH_E_IO, CLOTH_E_MEMORY. */
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error);

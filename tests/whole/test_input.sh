@@ -111,12 +111,20 @@ ok "a bad mesh is told with both places" sh -c '
     cat said.err
     test $status = 2 && grep -q "^duite-cloth: mesh.yaml:3:18: mesh: mesh.obj:4: " said.err' "$DUITE_CLOTH"
 ok "more ranks than blocks, 2 ranks" says 2 \
-    "2 ranks are more than the 1 blocks that 64 vertices make at a grain of 1000; start fewer ranks or give a smaller grain" \
+    "2 ranks are more than there are blocks (1): 64 vertices at a grain of 1000; start fewer ranks or give a smaller grain" \
     scene.yaml
 refused "a folder of frames that is a file" "cannot make the folder scene.yaml: Not a directory" scene.yaml --grain 20 \
     --output scene.yaml
 refused "a report without a folder" "--report none/x.json: cannot write in its folder: No such file or directory" scene.yaml \
     --grain 20 --report none/x.json
+cp scene.yaml kept.yaml
+ok "a report that is the scene" sh -c '
+    "$0" kept.yaml --report ./kept.yaml 2> said.err
+    status=$?
+    cat said.err
+    test $status = 2 && cmp scene.yaml kept.yaml &&
+        grep -qx "duite-cloth: --report ./kept.yaml: this is the scene itself, which would be lost" said.err' "$DUITE_CLOTH"
+ok "a scene without end" says 1 "/dev/zero: larger than 256 MiB; a large mesh belongs into a file of its own" /dev/zero
 
 ok "every change was one" test ! -e unchanged
 ok "the scene itself is right" limited "$DUITE_CLOTH" scene.yaml --quiet

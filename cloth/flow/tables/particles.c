@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* kg of a vertex: squares of momenta beyond these would be nothing, or infinite. */
+static const double LEAST_MASS = 1e-30, MOST_MASS = 1e30;
+
 static int outside(const struct model_cloth *cloth, const char *what, uint32_t vertex,
                    const char *place, struct cloth_error *error)
 {
@@ -139,6 +142,11 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
         const uint32_t v = first + i;
         if (cloth->mass_per_vertex > 0)
             p->mass[v] = cloth->mass_per_vertex;
+        if (p->used[v] && p->mass[v] > 0 && !(p->mass[v] >= LEAST_MASS && p->mass[v] <= MOST_MASS))
+            return model_fail(
+                cloth->place, error,
+                "vertex %u of cloth '%.60s' has a mass of %g kg; %g to %g is expected", i,
+                cloth->name, p->mass[v], LEAST_MASS, MOST_MASS);
         if (p->used[v] && !(p->mass[v] > 0))
             return model_fail(cloth->place, error,
                               "vertex %u of cloth '%.60s' has no mass: its triangles have no area, "

@@ -175,7 +175,7 @@ static int collide(const duite_call *call)
         phys_plane(t->n, model->planes[i].point, model->planes[i].normal, t->free, x, v);
     flow_write_rim(t, x, duite_out(call, 2, phys_vec));
     flow_write_rim(t, v, duite_out(call, 3, phys_vec));
-    return 0;
+    return check(call, x, "position");
 }
 FLOW_TIMED(collide, FLOW_COLLIDE)
 const duite_kernel flow_collide = {.name = "collide",

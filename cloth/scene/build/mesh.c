@@ -7,6 +7,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+/* What a vertex of a grid takes on every rank, whatever else the scene says: mesh, places, two
+ * springs. The system gives away more memory than it has, so asking for it is no test. */
+static const double LEAST_BYTES = 350;
+
+/* Of this machine; infinite where it does not say. */
+static double memory_bytes(void)
+{
+    const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
+    return pages > 0 && size > 0 ? (double)pages * (double)size : INFINITY;
+}
 
 static int build_grid(struct mesh *mesh, const struct scene_tree *tree, int node,
                       struct cloth_error *error, struct cloth_error *inner)
@@ -16,6 +28,13 @@ static int build_grid(struct mesh *mesh, const struct scene_tree *tree, int node
         return scene_tree_fail(tree, scene_tree_get(tree, node, "nx"), error,
                                "nx times ny is %llu; at most 2^31 vertices are possible",
                                (unsigned long long)nx * ny);
+    const double need = LEAST_BYTES * nx * ny, memory = memory_bytes();
+    if (need > memory)
+        return scene_tree_fail(
+            tree, scene_tree_get(tree, node, "nx"), error,
+            "nx times ny is %llu vertices, which take %.0f GB of memory or more; "
+            "this machine has %.0f GB",
+            (unsigned long long)nx * ny, need / 1e9, memory / 1e9);
     return mesh_grid(mesh, scene_tree_number(tree, node, "width"),
                      scene_tree_number(tree, node, "height"), nx, ny, inner);
 }

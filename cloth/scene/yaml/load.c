@@ -7,10 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* No scene is larger; a device that never ends stops here. */
+static const size_t MOST_BYTES = (size_t)256 << 20;
+
 static int read_all(FILE *file, char **bytes, size_t *size)
 {
     size_t room = 0, n = 0;
     for (size_t got = 1; got; n += got) {
+        if (n > MOST_BYTES)
+            return CLOTH_E_INPUT;
         if (n == room) {
             room = room ? 2 * room : 65536;
             char *more = realloc(*bytes, room);
@@ -34,6 +39,9 @@ static int read_file(const char *path, char **bytes, size_t *size, struct cloth_
     int code = read_all(file, bytes, size);
     if (code == CLOTH_E_MEMORY)
         cloth_fail(error, code, "%s: out of memory", path);
+    else if (code == CLOTH_E_INPUT)
+        cloth_fail(error, code,
+                   "%s: larger than 256 MiB; a large mesh belongs into a file of its own", path);
     else if (code)
         code = cloth_fail(error, CLOTH_E_INPUT, "%s: cannot read the scene file: %s", path,
                           strerror(errno));

@@ -182,6 +182,39 @@ START_TEST(no_mass)
 }
 END_TEST
 
+START_TEST(masses_beyond_measure)
+{
+    static const double masses[] = {1e-31, 1e31, INFINITY};
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 3);
+    setup.cloth.place = (char[]){"a.yaml:3:5"};
+    for (size_t i = 0; i < sizeof masses / sizeof *masses; i++) {
+        setup.cloth.mass_per_vertex = masses[i];
+        record_run(&record, &setup.model);
+        says(&record, CLOTH_E_INPUT, "a.yaml:3:5: vertex 0 of cloth 'test' has a mass of ");
+        says(&record, CLOTH_E_INPUT, "1e-30 to 1e+30");
+        record_free(&record);
+    }
+    setup_free(&setup);
+}
+END_TEST
+
+/* It lifts the cloth there in one step. */
+START_TEST(a_plane_beyond_the_world)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 3);
+    setup.plane = (struct model_plane){.point = {0, 1e200, 0}, .normal = {0, 1, 0}};
+    setup.model.n_planes = 1;
+    record_run(&record, &setup.model);
+    begins(&record, "step 1: the position of vertex");
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
 START_TEST(springs_of_no_length)
 {
     struct setup setup;
@@ -296,7 +329,7 @@ START_TEST(more_ranks_than_blocks)
     flow_free(flow);
     ck_assert_int_eq(flow_prepare(&flow, &setup.model, 4, &error), CLOTH_E_INPUT);
     ck_assert_ptr_null(flow);
-    ck_assert_msg(strstr(error.text, "4 ranks") && strstr(error.text, "3 blocks"), "%s",
+    ck_assert_msg(strstr(error.text, "4 ranks") && strstr(error.text, "blocks (3)"), "%s",
                   error.text);
     setup_free(&setup);
 }
@@ -314,6 +347,8 @@ int main(void)
     tcase_add_test(cases, pins_and_loads_outside);
     tcase_add_test(cases, pins_by_place);
     tcase_add_test(cases, no_mass);
+    tcase_add_test(cases, masses_beyond_measure);
+    tcase_add_test(cases, a_plane_beyond_the_world);
     tcase_add_test(cases, springs_of_no_length);
     tcase_add_test(cases, starts_out_of_bounds);
     tcase_add_test(cases, vertices_without_faces);

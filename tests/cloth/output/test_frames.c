@@ -175,6 +175,23 @@ START_TEST(file_in_the_way)
 }
 END_TEST
 
+/* A mesh that the user keeps in the folder stays; what an earlier run left goes. */
+START_TEST(mesh_of_the_user)
+{
+    struct cloth_error error = {0};
+    struct output_frames *frames = NULL;
+    char text[8];
+    ck_assert_int_eq(mkdir(sample.frames, 0777), 0);
+    sample_write(sample_path(&sample, "cloth.obj"), "mine", 4);
+    ck_assert_int_eq(output_open(&frames, &sample.setup, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_null(frames);
+    ck_assert_msg(strstr(error.text, sample_path(&sample, "cloth.obj")) != NULL, "%s", error.text);
+    sample_read(sample_path(&sample, "cloth.obj"), text, sizeof text);
+    ck_assert_str_eq(text, "mine");
+    ck_assert_int_ne(access(sample_path(&sample, "cloth.obj.part"), F_OK), 0);
+}
+END_TEST
+
 START_TEST(taken_away_while_it_runs)
 {
     static const char *const name[] = {"cloth.pc2", "frames.csv"};
@@ -271,6 +288,7 @@ int main(void)
     tcase_add_test(c, refuses_bad_frames);
     tcase_add_test(c, folder_in_the_way);
     tcase_add_test(c, file_in_the_way);
+    tcase_add_test(c, mesh_of_the_user);
     tcase_add_test(c, taken_away_while_it_runs);
     tcase_add_test(c, makes_parents);
     tcase_add_loop_test(c, refuses_damage, 0, sizeof DAMAGES / sizeof *DAMAGES);

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct wrong {
     const char *from, *to; /* the change of the file; NULL: none */
@@ -93,6 +94,21 @@ START_TEST(values_out_of_range)
          .error = ":7:31: cloths[0].transform.scale[2] is -1; a finite number > 0 is expected"},
         {"material: cotton", "material: cotton\n    mass_per_vertex: 0",
          .error = ":7:22: cloths[0].mass_per_vertex is 0; a finite number > 0 (kg) is expected"});
+}
+END_TEST
+
+/* 113 GB at least. */
+START_TEST(grids_larger_than_the_machine)
+{
+    const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    if (memory > 1e11)
+        return;
+    char error[200];
+    snprintf(error, sizeof error,
+             ":5:44: nx times ny is 324000000 vertices, which take 113 GB of memory or more; this "
+             "machine has %.0f GB",
+             memory / 1e9);
+    expect(&(struct wrong){"nx: 4, ny: 3", "nx: 18000, ny: 18000", NULL, error}, 1);
 }
 END_TEST
 
@@ -358,6 +374,7 @@ int main(void)
     TCase *cases = tcase_create("errors");
     tcase_add_test(cases, times_out_of_range);
     tcase_add_test(cases, values_out_of_range);
+    tcase_add_test(cases, grids_larger_than_the_machine);
     tcase_add_test(cases, what_is_no_number);
     tcase_add_test(cases, wrong_kinds);
     tcase_add_test(cases, unknown_and_missing_keys);

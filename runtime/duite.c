@@ -17,7 +17,11 @@
 
 duite_options duite_options_default(void)
 {
+    const char *check = getenv("DUITE_CHECK");
     return (duite_options){.comm = MPI_COMM_WORLD,
+                           .check = !check                       ? 0
+                                    : !strcmp(check, "accesses") ? 1
+                                                                 : -1,
                            .scheduler = &sched_steal,
                            .mapping = &map_metis,
                            .seed = 1,
@@ -83,6 +87,9 @@ static int check_rest(const duite_options *options)
     if (options->threads > 4096)
         return base_error(DUITE_E_ARGUMENT, "duite_start: %u threads are more than 4096",
                           options->threads);
+    if (options->check < 0)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: DUITE_CHECK has no such mode; there is \"accesses\"");
     if (!(options->spin_seconds >= 0))
         return base_error(DUITE_E_ARGUMENT, "duite_start: spin_seconds is not >= 0");
     return DUITE_OK;
@@ -182,6 +189,8 @@ static int start_graph(duite *rt, const duite_options *options)
                               code ? NULL : options->laws);
     if (!code)
         code = started;
+    if (!code && options->check)
+        code = check_start(&rt->check);
     if (!code && n > 1)
         code = comm_start(&rt->comm, rt->mpi, &rt->graph);
     return code;
@@ -206,6 +215,7 @@ static int start_workers(duite *rt, const duite_options *options, int code)
             &rt->pool,
             &(struct work_setup){.graph = &rt->graph,
                                  .comm = rt->comm,
+                                 .check = rt->check,
                                  .scheduler = options->scheduler,
                                  .context = options->context,
                                  .threads = threads,
@@ -249,6 +259,7 @@ static void end(duite *rt)
     if (comm_stop(rt->comm))
         MPI_Comm_free(&rt->mpi);
     graph_stop(&rt->graph);
+    check_stop(rt->check);
     base_free(rt);
     base_pool_leave();
 }

@@ -47,7 +47,8 @@ enum {
     DUITE_E_NOT_FREED = -9, /* stop found objects that were not freed */
     DUITE_E_SYSTEM = -10,   /* threads, topology: the operating system refused */
     DUITE_E_LAW = -12,      /* a law that is malformed, not listed, or for another element type */
-    DUITE_E_SIZE = -14 /* an object grows beyond its maximum, or changes a size that is fixed */
+    DUITE_E_SIZE = -14, /* an object grows beyond its maximum, or changes a size that is fixed */
+    DUITE_E_CHECK = -15 /* checking mode: a body does not keep to what its kernel declares */
 };
 
 /* The sentence of the last call of this thread that failed; never NULL. Valid until the next
@@ -163,6 +164,8 @@ typedef struct duite_kernel {
     duite_mode access[DUITE_MAX_ACCESS]; /* modes of the first parameters, ended by DUITE_NONE */
     duite_mode rest;  /* mode of any number of further ones; DUITE_NONE: none allowed */
     size_t args_size; /* bytes of arguments, copied at the fork; no pointers inside */
+    int side_effects; /* 1: does more than write its parameters (files): checking mode runs it once
+                       */
     const duite_law *law[DUITE_MAX_ACCESS]; /* of the parameters with DUITE_CW; NULL: duite_sum */
     const duite_law *rest_law;              /* if rest is DUITE_CW; NULL: duite_sum */
 } duite_kernel;
@@ -184,6 +187,8 @@ typedef struct duite_options {
     uint64_t seed;                           /* of everything random in policies. Default 1 */
     double spin_seconds; /* how long an idle worker spins before it sleeps. Default 100e-6 */
     int bind;            /* bind workers to cores where the rank owns enough. Default 1 */
+    int check; /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
+                  environment */
 } duite_options;
 
 duite_options duite_options_default(void);
@@ -194,6 +199,16 @@ const struct duite_scheduler *duite_scheduler_find(const char *name);
 const struct duite_mapping *duite_mapping_find(const char *name);
 const char *const *duite_scheduler_names(void);
 const char *const *duite_mapping_names(void);
+
+/* Checking mode: each body works on private copies of its parameters, between guard pages that are
+ * taken away afterwards, and runs twice if it has no side effects. The task fails with
+ * DUITE_E_CHECK if it writes to an r parameter or to its arguments, goes beyond the ends of a
+ * parameter, uses memory that an earlier task was given, leaves bytes of a w parameter unwritten,
+ * or writes other bytes the second time; the sentence names the task, the parameter and the byte.
+ * Results of correct programs are the same, at many times the cost. Other memory (globals, heap) is
+ * not watched, and a body that faults is left by a jump: what it held stays held. The signals
+ * SIGSEGV and SIGBUS are the runtime's meanwhile; faults that are none of these go on to the
+ * handler there was. */
 
 /* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. On several
  * ranks its workers call MPI at any time until duite_stop: a program that calls MPI meanwhile needs

@@ -16,4 +16,5 @@ include runtime/graph/module.mk
 include runtime/sched/module.mk
 include runtime/map/module.mk
 include runtime/comm/module.mk
+include runtime/check/module.mk
 include runtime/workers/module.mk

@@ -51,6 +51,8 @@ const char *duite_code_text(int code)
         return "call not allowed here";
     case DUITE_E_NOT_FREED:
         return "objects were not freed";
+    case DUITE_E_CHECK:
+        return "a body does not keep to what its kernel declares";
     case DUITE_E_SYSTEM:
         return "the operating system refused";
     case DUITE_E_LAW:

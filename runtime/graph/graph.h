@@ -79,6 +79,8 @@ struct graph_hooks {
     void *context;
     /* A task may run; a SEND may be posted, and ends with graph_finish when its bytes are gone. */
     void (*ready)(void *context, void *worker, struct graph_task *task);
+    /* Calls the body of the task with that number, and returns its code. NULL: called directly. */
+    int (*body)(void *context, const duite_kernel *kernel, uint64_t number, duite_call *call);
     /* Something the main program may be waiting for happened. */
     void (*notify)(void *context);
     /* The version or the pieces of that key come from elsewhere: call graph_arrived or

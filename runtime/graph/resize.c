@@ -40,7 +40,7 @@ static int refuse(const duite_call *call, size_t i, size_t count)
 int duite_resize(const duite_call *call, size_t i, size_t count)
 {
     struct graph_task *task = call->own->task;
-    duite_param *param = i < task->n ? &task->param[i] : NULL;
+    duite_param *param = i < task->n ? (duite_param *)&call->param[i] : NULL; /* ours to write */
     if (!param || !task->access[i].sized || !task->access[i].out || count > param->most)
         return refuse(call, i, count);
     size_t size = data_type_size(param->type);

@@ -80,7 +80,10 @@ static const struct data_failure *call_body(struct graph *graph, struct graph_ta
     call->param = task->param;
     call->n_params = task->n;
     *call->own = (struct duite_call_private){.task = task};
-    int code = graph->kernels[task->kernel]->body(call);
+    const duite_kernel *kernel = graph->kernels[task->kernel];
+    int code = graph->hooks.body
+                   ? graph->hooks.body(graph->hooks.context, kernel, task->number, call)
+                   : kernel->body(call);
     if (!code)
         code = call->own->refused;
     if (!code) {

@@ -128,6 +128,12 @@ static void on_ready(void *context, void *who, struct graph_task *task)
         place(worker, task, &ready);
 }
 
+static int on_body(void *context, const duite_kernel *kernel, uint64_t number, duite_call *call)
+{
+    struct work_pool *pool = context;
+    return check_call(pool->setup.check, &(struct check_task){kernel, number}, call);
+}
+
 static void on_notify(void *context)
 {
     struct work_pool *pool = context;
@@ -402,8 +408,11 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     bool fine = pool->worker && pool->states && work_queue_start(&pool->shared);
     for (unsigned i = 0; i < n && fine; i++)
         fine = prepare(pool, i, setup->cores ? setup->cores[i] : -1);
-    setup->graph->hooks = (struct graph_hooks){
-        .context = pool, .ready = on_ready, .notify = on_notify, .expect = on_expect};
+    setup->graph->hooks = (struct graph_hooks){.context = pool,
+                                               .ready = on_ready,
+                                               .notify = on_notify,
+                                               .body = setup->check ? on_body : NULL,
+                                               .expect = on_expect};
     return fine ? start_threads(pool) : base_no_memory("the workers");
 }
 

@@ -1,6 +1,7 @@
 #ifndef DUITE_WORKERS_WORKERS_H
 #define DUITE_WORKERS_WORKERS_H
 
+#include "runtime/check/check.h"
 #include "runtime/comm/comm.h"
 #include "runtime/graph/graph.h"
 
@@ -16,6 +17,7 @@ struct work_worker;
 struct work_setup {
     struct graph *graph; /* its hooks are set by work_start */
     struct comm *comm;   /* NULL: one rank */
+    struct check *check; /* NULL: bodies are called directly */
     const duite_scheduler *scheduler;
     void *context; /* for bodies */
     unsigned threads;

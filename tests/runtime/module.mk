@@ -10,9 +10,11 @@ TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtim
 LONG_TESTS += tests/runtime/test_random_long.sh
 
 if HAVE_CHECK
-RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched
+RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched tests/runtime/test_check
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
+tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
+tests_runtime_test_check_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_pool_SOURCES = tests/runtime/test_pool.c
 tests_runtime_test_pool_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_laws_SOURCES = tests/runtime/test_laws.c tests/negative/misuse.c tests/negative/misuse.h

@@ -107,6 +107,8 @@ again() { # ARGUMENT...: the same state whatever the machine does
 ok "the same on 2 ranks" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 1
 ok "the same on 2 ranks with 2 threads, cyclic, shuffled" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 2 \
     --mapping cyclic --scheduler shuffle --seed 7
+checked() { DUITE_CHECK=accesses again "$@"; }
+ok "the same in checking mode" checked run scene.yaml --end 0.004
 ok "the report names them" eval 'is ranks 2 && is threads 2 && is scheduler shuffle && is mapping cyclic'
 
 quietly() { prints run scene.yaml --end 0.002 --quiet && test ! -s printed && test ! -s complained; }

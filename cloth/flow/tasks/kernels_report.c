@@ -34,7 +34,8 @@ const duite_kernel flow_frame = {.name = "frame",
                                  .body = frame_timed,
                                  .access = {DUITE_RW},
                                  .rest = DUITE_R,
-                                 .args_size = sizeof(struct flow_args)};
+                                 .args_size = sizeof(struct flow_args),
+                                 .side_effects = 1};
 
 static int stretch(const duite_call *call)
 {

@@ -1,0 +1,313 @@
+/* A frame is one call of a body on one thread: its regions, and where to jump when it faults.
+ * Frames of a thread nest. Regions of finished calls go through a ring that the handler searches,
+ * too. */
+#include "runtime/check/check.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/check/region.h"
+#include "runtime/data/mode.h"
+#include "runtime/data/sum.h"
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <string.h>
+
+enum { RETIRED = 4096 }; /* regions whose address space stays taken */
+static const unsigned char FILL[2] = {0xa5, 0x5a};
+
+struct check {
+    pthread_mutex_t lock; /* the ring */
+    struct check_region retired[RETIRED];
+    unsigned next;
+    struct sigaction segv, bus; /* before */
+};
+
+struct frame {
+    struct frame *outer;
+    const struct check_task *task;
+    const duite_call *call;      /* with the originals */
+    struct check_region *region; /* n_params, and the arguments */
+    duite_param *param;          /* n_params, of the copies */
+    sigjmp_buf jump;
+    struct check_region hit; /* what the fault was about */
+    const char *at;          /* where it was */
+};
+
+static _Atomic(struct check *) installed;
+static _Thread_local struct frame *volatile current;
+
+static size_t bytes_of(const duite_param *param)
+{
+    return param->count * data_type_size(param->type);
+}
+
+/* What the body may touch: under w and rw an object that changes size may grow. */
+static size_t room_of(const duite_param *param, duite_mode mode)
+{
+    size_t n = mode == DUITE_R || param->most < param->count ? param->count : param->most;
+    return n * data_type_size(param->type);
+}
+
+static bool writes(duite_mode mode)
+{
+    return mode == DUITE_W || mode == DUITE_RW || mode == DUITE_CW;
+}
+
+/* ---- Faults ---- */
+
+/* The region an address belongs to: of this call, or of an earlier one. Called by the handler: the
+ * ring is read without its lock, which at worst misses a region that another thread retires right
+ * now. */
+static const struct check_region *region_at(const struct check *check, const struct frame *frame,
+                                            const void *address)
+{
+    for (size_t i = 0; i <= frame->call->n_params; i++)
+        if (check_region_has(&frame->region[i], address))
+            return &frame->region[i];
+    for (unsigned i = 0; i < RETIRED; i++)
+        if (check_region_has(&check->retired[i], address))
+            return &check->retired[i];
+    return NULL;
+}
+
+static void on_fault(int signal, siginfo_t *info, void *context)
+{
+    struct check *check = atomic_load(&installed);
+    struct frame *frame = current;
+    const struct check_region *region =
+        check && frame ? region_at(check, frame, info->si_addr) : NULL;
+    if (region) {
+        frame->hit = *region;
+        frame->at = info->si_addr;
+        siglongjmp(frame->jump, 1);
+    }
+    const struct sigaction *before = check && signal == SIGBUS ? &check->bus : &check->segv;
+    if (check && before->sa_flags & SA_SIGINFO && before->sa_sigaction)
+        before->sa_sigaction(signal, info, context);
+    else /* it faults again, and ends as it would have without us */
+        sigaction(signal, check ? before : &(struct sigaction){.sa_handler = SIG_DFL}, NULL);
+}
+
+int check_start(struct check **out)
+{
+    struct check *none = NULL, *check = *out = base_alloc_zero(sizeof *check);
+    if (!check)
+        return base_no_memory("checking mode");
+    pthread_mutex_init(&check->lock, NULL);
+    if (!atomic_compare_exchange_strong(&installed, &none, check)) {
+        base_free(check);
+        *out = NULL;
+        return base_error(DUITE_E_STATE, "two runtimes at a time in checking mode");
+    }
+    struct sigaction action = {.sa_sigaction = on_fault, .sa_flags = SA_SIGINFO | SA_NODEFER};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGSEGV, &action, &check->segv);
+    sigaction(SIGBUS, &action, &check->bus);
+    return DUITE_OK;
+}
+
+void check_stop(struct check *check)
+{
+    if (!check)
+        return;
+    sigaction(SIGSEGV, &check->segv, NULL);
+    sigaction(SIGBUS, &check->bus, NULL);
+    atomic_store(&installed, NULL);
+    for (unsigned i = 0; i < RETIRED; i++)
+        check_region_unmap(&check->retired[i]);
+    pthread_mutex_destroy(&check->lock);
+    base_free(check);
+}
+
+static int say_fault(const struct frame *frame)
+{
+    const struct check_region *hit = &frame->hit;
+    const duite_call *call = frame->call;
+    bool own = false;
+    for (size_t i = 0; i <= call->n_params; i++)
+        own = own || check_region_has(&frame->region[i], frame->at);
+    if (!own)
+        return duite_fail(call, DUITE_E_CHECK,
+                          "uses what was parameter %zu of task %llu (kernel %s), which is over",
+                          hit->param, (unsigned long long)hit->number, hit->kernel);
+    long long offset = (long long)(frame->at - hit->data);
+    if (hit->param == CHECK_ARGS)
+        return duite_fail(call, DUITE_E_CHECK,
+                          "writes to its arguments or beyond (byte %lld of %zu)", offset,
+                          hit->bytes);
+    if (offset < 0 || offset >= (long long)hit->bytes)
+        return duite_fail(call, DUITE_E_CHECK, "goes beyond parameter %zu: to byte %lld of %zu",
+                          hit->param, offset, hit->bytes);
+    return duite_fail(call, DUITE_E_CHECK,
+                      "writes to parameter %zu, which it only reads: byte %lld", hit->param,
+                      offset);
+}
+
+/* ---- Copies ---- */
+
+static bool map_param(struct frame *frame, size_t i, unsigned char fill)
+{
+    const duite_param *param = &frame->call->param[i];
+    struct check_region *region = &frame->region[i];
+    duite_mode mode = data_mode_of(frame->task->kernel, i);
+    region->number = frame->task->number;
+    region->kernel = frame->task->kernel->name;
+    region->param = i;
+    if (!param->data)
+        return true;
+    if (!check_region_map(region, room_of(param, mode), fill))
+        return false;
+    if (mode != DUITE_W)
+        memcpy(region->data, param->data, bytes_of(param));
+    return mode != DUITE_R || check_region_protect(region);
+}
+
+static bool map_args(struct frame *frame, unsigned char fill)
+{
+    const duite_kernel *kernel = frame->task->kernel;
+    struct check_region *region = &frame->region[frame->call->n_params];
+    region->number = frame->task->number;
+    region->kernel = kernel->name;
+    region->param = CHECK_ARGS;
+    if (!kernel->args_size)
+        return true;
+    if (!check_region_map(region, kernel->args_size, fill))
+        return false;
+    memcpy(region->data, frame->call->args, region->bytes);
+    return check_region_protect(region);
+}
+
+static void retire(struct check *check, struct check_region *region)
+{
+    if (!region->base)
+        return;
+    check_region_retire(region);
+    pthread_mutex_lock(&check->lock);
+    struct check_region *oldest = &check->retired[check->next++ % RETIRED];
+    struct check_region gone = *oldest;
+    *oldest = *region;
+    pthread_mutex_unlock(&check->lock);
+    check_region_unmap(&gone);
+    region->base = NULL;
+}
+
+/* ---- One run ---- */
+
+/* Runs the body on copies; frame->param gets what it leaves. Its code, or the fault's. */
+static int run(struct frame *frame, unsigned char fill)
+{
+    const duite_call *original = frame->call;
+    duite_param *param = frame->param;
+    size_t n = original->n_params;
+    for (size_t i = 0; i < n; i++)
+        if (!map_param(frame, i, fill))
+            return duite_fail(original, DUITE_E_MEMORY, "no memory to check parameter %zu", i);
+    if (!map_args(frame, fill))
+        return duite_fail(original, DUITE_E_MEMORY, "no memory to check the arguments");
+    duite_call call = *original;
+    for (size_t i = 0; i < n; i++) {
+        param[i] = original->param[i];
+        param[i].data = frame->region[i].base ? frame->region[i].data : NULL;
+    }
+    call.param = param;
+    call.args = frame->region[n].base ? frame->region[n].data : NULL;
+    volatile int code;
+    if (sigsetjmp(frame->jump, 1)) {
+        code = say_fault(frame);
+    } else {
+        current = frame;
+        code = frame->task->kernel->body(&call);
+    }
+    current = frame->outer;
+    for (size_t i = 0; i < n && !code; i++)
+        if (frame->region[i].base && !check_region_whole(&frame->region[i], fill))
+            code = duite_fail(original, DUITE_E_CHECK,
+                              "writes beyond an end of parameter %zu (%zu bytes)", i,
+                              frame->region[i].bytes);
+    return code;
+}
+
+/* ---- Two runs ---- */
+
+static bool repeatable(const duite_kernel *kernel, size_t n)
+{
+    bool plain = !kernel->side_effects;
+    for (size_t i = 0; i < n && plain; i++)
+        plain = data_mode_of(kernel, i) <= DUITE_CW;
+    return plain;
+}
+
+/* What two runs wrote, byte by byte. */
+static int compare(const struct frame *first, const struct frame *second)
+{
+    const duite_call *call = first->call;
+    const duite_kernel *kernel = first->task->kernel;
+    for (size_t i = 0; i < call->n_params; i++) {
+        duite_mode mode = data_mode_of(kernel, i);
+        if (!writes(mode))
+            continue;
+        if (first->param[i].count != second->param[i].count)
+            return duite_fail(call, DUITE_E_CHECK,
+                              "is not deterministic: two runs differ in the size of parameter %zu",
+                              i);
+        const unsigned char *a = first->param[i].data, *b = second->param[i].data;
+        for (size_t k = 0; k < bytes_of(&first->param[i]); k++) {
+            if (a[k] == b[k])
+                continue;
+            if (mode == DUITE_W && a[k] == FILL[0] && b[k] == FILL[1])
+                return duite_fail(
+                    call, DUITE_E_CHECK,
+                    "leaves parameter %zu, which it overwrites, unwritten at byte %zu", i, k);
+            return duite_fail(call, DUITE_E_CHECK,
+                              "is not deterministic: two runs differ in parameter %zu at byte %zu",
+                              i, k);
+        }
+    }
+    return DUITE_OK;
+}
+
+static void copy_back(const struct frame *frame)
+{
+    duite_param *param = (duite_param *)frame->call->param; /* the runtime's own */
+    for (size_t i = 0; i < frame->call->n_params; i++) {
+        if (!writes(data_mode_of(frame->task->kernel, i)))
+            continue;
+        param[i].count = frame->param[i].count;
+        memcpy(param[i].data, frame->param[i].data, bytes_of(&param[i]));
+    }
+}
+
+int check_call(struct check *check, const struct check_task *task, duite_call *call)
+{
+    size_t n = call->n_params;
+    struct check_region *region = base_alloc_zero(2 * (n + 1) * sizeof *region);
+    duite_param *param = base_alloc(2 * (n + 1) * sizeof *param);
+    if (!region || !param) {
+        base_free(region);
+        base_free(param);
+        return duite_fail(call, DUITE_E_MEMORY, "no memory to check it");
+    }
+    struct frame first = {
+        .outer = current, .task = task, .call = call, .region = region, .param = param};
+    int code = run(&first, FILL[0]);
+    if (!code && repeatable(task->kernel, n)) {
+        struct frame second = first;
+        second.region = region + n + 1;
+        second.param = param + n + 1;
+        int again = run(&second, FILL[1]);
+        code = again > 0 ? duite_fail(call, DUITE_E_CHECK,
+                                      "is not deterministic: it returns 0 and then %d", again)
+                         : again;
+        if (!code)
+            code = compare(&first, &second);
+    }
+    if (!code)
+        copy_back(&first);
+    for (size_t i = 0; i < 2 * (n + 1); i++)
+        retire(check, &region[i]);
+    base_free(param);
+    base_free(region);
+    return code;
+}

@@ -1,0 +1,40 @@
+#ifndef DUITE_CHECK_REGION_H
+#define DUITE_CHECK_REGION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Bytes on pages of their own, with a guard on either side. The bytes end as near to the
+ * second guard as their alignment (64) allows; what is left of the pages is filled, and looked at
+ * later. */
+struct check_region {
+    char *base; /* of the mapping: guard, pages, guard; NULL: none */
+    size_t mapped;
+    char *data;
+    size_t bytes;
+    /* Whose: the task, its kernel, which parameter (CHECK_ARGS: its arguments). */
+    uint64_t number;
+    const char *kernel;
+    size_t param;
+};
+
+#define CHECK_ARGS SIZE_MAX
+
+/* Maps it, all of it filled with `fill`, readable and writable. False without memory. */
+bool check_region_map(struct check_region *region, size_t bytes, unsigned char fill);
+/* From now on reads only; no access at all. */
+bool check_region_protect(const struct check_region *region);
+void check_region_retire(const struct check_region *region);
+void check_region_unmap(struct check_region *region);
+
+/* Is every byte around the data still what it was filled with? */
+bool check_region_whole(const struct check_region *region, unsigned char fill);
+
+static inline bool check_region_has(const struct check_region *region, const void *address)
+{
+    const char *at = address;
+    return region->base && at >= region->base && at < region->base + region->mapped;
+}
+
+#endif

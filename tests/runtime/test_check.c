@@ -1,0 +1,279 @@
+/* Checking mode finds what a body does beyond its declaration, and leaves honest programs as they
+ * are. */
+
+#include "tests/support/unit.h"
+
+#include <duite.h>
+
+#include <setjmp.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { COUNT = 10 };
+
+enum deed {
+    HONEST,
+    WRITE_READ,
+    WRITE_ARGS,
+    BEYOND_END,
+    BEFORE_START,
+    FAR_BEYOND,
+    UNWRITTEN,
+    UNSTEADY,
+    UNSTEADY_CODE,
+    KEEP,
+    USE_KEPT,
+    WRITE_KEPT,
+    FAIL
+};
+
+struct args {
+    int32_t deed, where;
+};
+
+static int32_t *kept;
+static _Atomic int calls;
+
+/* Parameters: r, w, rw, cw. */
+static int body(const duite_call *call)
+{
+    const struct args *args = call->args;
+    const int32_t *r = duite_in(call, 0, int32_t);
+    int32_t *w = duite_out(call, 1, int32_t), *rw = duite_out(call, 2, int32_t),
+            *cw = duite_out(call, 3, int32_t);
+    const int n = atomic_fetch_add(&calls, 1);
+
+    for (int i = 0; i < COUNT; i++)
+        w[i] = args->deed == UNWRITTEN && i == args->where ? w[i] : r[i] + 1;
+    rw[0] += 2;
+    cw[args->where] += 3;
+    switch ((enum deed)args->deed) {
+    case WRITE_READ:
+        ((int32_t *)call->param[0].data)[args->where] = 5;
+        break;
+    case WRITE_ARGS:
+        ((struct args *)(uintptr_t)args)->where = 1;
+        break;
+    case BEYOND_END:
+        w[COUNT + args->where] = 1;
+        break;
+    case BEFORE_START:
+        rw[-1] = 1;
+        break;
+    case FAR_BEYOND:
+        w[0] = r[COUNT + 2000];
+        break;
+    case UNSTEADY:
+        cw[args->where] += n;
+        break;
+    case UNSTEADY_CODE:
+        return n ? duite_fail(call, 9, "now and then") : 0;
+    case KEEP:
+        kept = rw;
+        break;
+    case USE_KEPT:
+        w[0] = kept[0];
+        break;
+    case WRITE_KEPT:
+        kept[0] = 1;
+        break;
+    case FAIL:
+        return duite_fail(call, 7, "on purpose");
+    default:
+        break;
+    }
+    return 0;
+}
+
+static const duite_kernel BODY = {.name = "body",
+                                  .body = body,
+                                  .access = {DUITE_R, DUITE_W, DUITE_RW, DUITE_CW},
+                                  .args_size = sizeof(struct args)},
+                          ONCE = {.name = "once",
+                                  .body = body,
+                                  .access = {DUITE_R, DUITE_W, DUITE_RW, DUITE_CW},
+                                  .args_size = sizeof(struct args),
+                                  .side_effects = 1};
+
+static duite *rt;
+static duite_object object[4];
+
+static void start(int check)
+{
+    const duite_kernel *kernels[] = {&BODY, &ONCE, NULL};
+    duite_options options = duite_options_default();
+
+    options.kernels = kernels;
+    options.threads = 2;
+    options.bind = 0;
+    options.check = check;
+    ck_assert_msg(duite_start(&rt, &options) == DUITE_OK, "%s", duite_message());
+    for (int i = 0; i < 4; i++)
+        ck_assert_int_eq(duite_new(rt, DUITE_I32, COUNT, &object[i]), DUITE_OK);
+    atomic_store(&calls, 0);
+}
+
+static void stop(void)
+{
+    for (int i = 0; i < 4; i++)
+        duite_free(rt, object[i]);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}
+
+static int run(const duite_kernel *kernel, enum deed deed, int where)
+{
+    duite_fork(rt, kernel, &(struct args){deed, where}, 4, object);
+    return duite_wait(rt);
+}
+
+static void found(enum deed deed, int where, const char *sentence)
+{
+    start(1);
+    ck_assert_msg(run(&BODY, deed, where) == DUITE_E_CHECK, "%d: %s", deed, duite_message());
+    ck_assert_msg(strstr(duite_message(), sentence) && strstr(duite_message(), "kernel body"), "%s",
+                  duite_message());
+    duite_set(rt, object[1], NULL);
+    duite_set(rt, object[2], NULL);
+    duite_set(rt, object[3], NULL);
+    ck_assert_msg(run(&BODY, HONEST, 0) == DUITE_OK, "and goes on: %s", duite_message());
+    stop();
+}
+
+START_TEST(a_write_under_r)
+{
+    found(WRITE_READ, 3, "writes to parameter 0, which it only reads: byte 12");
+}
+END_TEST
+
+START_TEST(a_write_to_the_arguments)
+{
+    found(WRITE_ARGS, 0, "writes to its arguments or beyond (byte 4 of 8)");
+}
+END_TEST
+
+START_TEST(beyond_the_ends)
+{
+    found(BEYOND_END, 0, "writes beyond an end of parameter 1 (40 bytes)");
+    found(BEYOND_END, 6, "goes beyond parameter 1: to byte 64 of 40");
+    found(BEFORE_START, 0, "writes beyond an end of parameter 2");
+    found(FAR_BEYOND, 0, "goes beyond parameter 0: to byte 8040 of 40");
+}
+END_TEST
+
+START_TEST(bytes_that_w_left_unwritten)
+{
+    found(UNWRITTEN, 0, "leaves parameter 1, which it overwrites, unwritten at byte 0");
+    found(UNWRITTEN, COUNT - 1, "unwritten at byte 36");
+}
+END_TEST
+
+START_TEST(kernels_that_are_not_deterministic)
+{
+    found(UNSTEADY, 4, "is not deterministic: two runs differ in parameter 3 at byte 16");
+    found(UNSTEADY_CODE, 0, "is not deterministic: it returns 0 and then 9");
+}
+END_TEST
+
+START_TEST(stale_pointers)
+{
+    const enum deed uses[] = {USE_KEPT, WRITE_KEPT};
+    for (int i = 0; i < 2; i++) {
+        start(1);
+        ck_assert_int_eq(run(&BODY, KEEP, 0), DUITE_OK);
+        ck_assert_int_eq(run(&BODY, uses[i], 0), DUITE_E_CHECK);
+        ck_assert_msg(strstr(duite_message(),
+                             "uses what was parameter 2 of task 1 (kernel body), which is over"),
+                      "%s", duite_message());
+        stop();
+    }
+}
+END_TEST
+
+static void values(int32_t (*value)[COUNT])
+{
+    for (int i = 0; i < 4; i++)
+        ck_assert_int_eq(duite_get(rt, object[i], value[i]), DUITE_OK);
+}
+
+START_TEST(honest_programs_are_as_without)
+{
+    int32_t value[2][4][COUNT];
+    for (int check = 0; check < 2; check++) {
+        start(check);
+        for (int i = 0; i < 20; i++)
+            ck_assert_int_eq(run(i % 2 ? &BODY : &ONCE, HONEST, i % COUNT), DUITE_OK);
+        ck_assert_int_eq(atomic_load(&calls), check ? 30 : 20); /* ONCE runs once */
+        values(value[check]);
+        stop();
+    }
+    ck_assert_mem_eq(value[0], value[1], sizeof value[0]);
+    ck_assert_int_eq(value[0][2][0], 40);
+}
+END_TEST
+
+START_TEST(a_failing_body_keeps_its_code)
+{
+    start(1);
+    ck_assert_int_eq(run(&BODY, FAIL, 0), 7);
+    ck_assert(strstr(duite_message(), "on purpose") != NULL);
+    ck_assert_int_eq(atomic_load(&calls), 1);
+    stop();
+}
+END_TEST
+
+static sigjmp_buf out;
+
+static void on_segv(int signal)
+{
+    siglongjmp(out, signal);
+}
+
+START_TEST(other_faults_go_to_the_handler_there_was)
+{
+    volatile int *volatile nowhere = (int *)8;
+    signal(SIGSEGV, on_segv);
+    start(1);
+    if (!sigsetjmp(out, 1)) {
+        *nowhere = 1;
+        ck_abort_msg("nothing happened");
+    }
+    stop();
+    if (!sigsetjmp(out, 1)) {
+        *nowhere = 1;
+        ck_abort_msg("nothing happened after stop");
+    }
+}
+END_TEST
+
+START_TEST(by_the_environment)
+{
+    setenv("DUITE_CHECK", "accesses", 1);
+    ck_assert_int_eq(duite_options_default().check, 1);
+    setenv("DUITE_CHECK", "everything", 1);
+    duite_options options = duite_options_default();
+    options.kernels = (const duite_kernel *[]){&BODY, NULL};
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
+    ck_assert(strstr(duite_message(), "DUITE_CHECK") != NULL);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("check");
+    TCase *cases = tcase_create("checking mode");
+    tcase_add_test(cases, a_write_under_r);
+    tcase_add_test(cases, a_write_to_the_arguments);
+    tcase_add_test(cases, beyond_the_ends);
+    tcase_add_test(cases, bytes_that_w_left_unwritten);
+    tcase_add_test(cases, kernels_that_are_not_deterministic);
+    tcase_add_test(cases, stale_pointers);
+    tcase_add_test(cases, honest_programs_are_as_without);
+    tcase_add_test(cases, a_failing_body_keeps_its_code);
+    tcase_add_test(cases, other_faults_go_to_the_handler_there_was);
+    tcase_add_test(cases, by_the_environment);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -214,6 +214,45 @@ START_TEST(honest_programs_are_as_without)
 }
 END_TEST
 
+/* Makes its object as long as its argument says, one element after the other. */
+static int grow(const duite_call *call)
+{
+    const int32_t n = *(const int32_t *)call->args;
+    int code = duite_resize(call, 0, (size_t)n);
+    for (int32_t i = 0; i < n && !code; i++)
+        duite_out(call, 0, int32_t)[i] += i;
+    return code;
+}
+static const duite_kernel GROW = {
+    .name = "grow", .body = grow, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
+
+START_TEST(objects_that_change_size)
+{
+    const int32_t sizes[] = {3, 20, 7, 12};
+    const duite_kernel *kernels[] = {&GROW, NULL};
+    duite_options options = duite_options_default();
+    duite_object sized;
+    int32_t value[20];
+    size_t count = 0;
+
+    options.kernels = kernels;
+    options.check = 1;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+    ck_assert_int_eq(duite_new_sized(rt, DUITE_I32, 1, 20, &sized), DUITE_OK);
+    for (int i = 0; i < 4; i++)
+        duite_fork(rt, &GROW, &sizes[i], 1, &sized);
+    ck_assert_int_eq(duite_get_count(rt, sized, &count), DUITE_OK);
+    ck_assert_uint_eq(count, 12);
+    ck_assert_int_eq(duite_get(rt, sized, value), DUITE_OK);
+    for (int32_t i = 0; i < 12; i++)
+        ck_assert_int_eq(value[i], i < 3 ? 4 * i : i < 7 ? 3 * i : i);
+    duite_fork(rt, &GROW, &(int32_t){21}, 1, &sized);
+    ck_assert_int_eq(duite_wait(rt), DUITE_E_SIZE);
+    duite_free(rt, sized);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}
+END_TEST
+
 START_TEST(a_failing_body_keeps_its_code)
 {
     start(1);
@@ -271,6 +310,7 @@ int main(void)
     tcase_add_test(cases, kernels_that_are_not_deterministic);
     tcase_add_test(cases, stale_pointers);
     tcase_add_test(cases, honest_programs_are_as_without);
+    tcase_add_test(cases, objects_that_change_size);
     tcase_add_test(cases, a_failing_body_keeps_its_code);
     tcase_add_test(cases, other_faults_go_to_the_handler_there_was);
     tcase_add_test(cases, by_the_environment);

@@ -20,11 +20,14 @@ static inline const struct flow_table *flow_table_of(const duite_call *call)
     return flow_of(call)->tables.block + flow_args_of(call)->block;
 }
 
-/* Copies the rows that neighbours need. rim: n_rim rows. */
+/* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are
+ * none. */
 static inline void flow_write_rim(const struct flow_table *table, const phys_vec *y, phys_vec *rim)
 {
     for (uint32_t i = 0; i < table->n_rim; i++)
         rim[i] = y[table->rim[i]];
+    if (!table->n_rim)
+        rim[0] = (phys_vec){0};
 }
 
 /* Runs a body and adds its seconds to a part of the step, on this worker's line. */

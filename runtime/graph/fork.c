@@ -4,6 +4,7 @@
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
+#include "runtime/data/mode.h"
 
 #include <duite_policy.h>
 #include <string.h>
@@ -23,12 +24,6 @@ static int find_kernel(const struct graph *graph, const duite_kernel *kernel, ui
             return DUITE_OK;
     return base_error(DUITE_E_KERNEL, "kernel %s was not listed at start",
                       kernel->name ? kernel->name : "without a name");
-}
-
-static duite_mode mode_of(const duite_kernel *kernel, size_t i)
-{
-    duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : DUITE_NONE;
-    return mode != DUITE_NONE ? mode : kernel->rest;
 }
 
 /* Kernel, arguments and number of objects fit. */
@@ -83,7 +78,7 @@ static int check_objects(struct graph *graph, const duite_kernel *kernel, size_t
             return base_error(DUITE_E_ACCESS,
                               "kernel %s, parameter %zu: the task names object %u.%u twice",
                               kernel->name, i, objects[i].slot, objects[i].generation);
-        if (mode_of(kernel, i) == DUITE_CW) {
+        if (data_mode_of(kernel, i) == DUITE_CW) {
             int code = check_law(kernel, i, object, objects[i]);
             if (code)
                 return code;
@@ -106,7 +101,7 @@ static const struct data_object *owner(const struct graph *graph, const duite_ke
 {
     const struct data_object *first_read = NULL;
     for (size_t i = 0; i < n; i++) {
-        duite_mode mode = mode_of(kernel, i);
+        duite_mode mode = data_mode_of(kernel, i);
         const struct data_object *object = &graph->table.object[objects[i].slot];
         if (mode == DUITE_W || mode == DUITE_RW)
             return object;
@@ -120,7 +115,7 @@ static const struct data_object *owner(const struct graph *graph, const duite_ke
 static int use(struct graph *graph, void *worker, int at, const duite_kernel *kernel, size_t i,
                duite_object name, struct graph_task *task, uint32_t *done)
 {
-    duite_mode mode = mode_of(kernel, i);
+    duite_mode mode = data_mode_of(kernel, i);
     struct data_object *object = &graph->table.object[name.slot];
     int code = DUITE_OK;
     if (task) {

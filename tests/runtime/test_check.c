@@ -125,7 +125,7 @@ static void stop(void)
 
 static int run(const duite_kernel *kernel, enum deed deed, int where)
 {
-    duite_fork(rt, kernel, &(struct args){deed, where}, 4, object);
+    duite_fork(rt, kernel, &(struct args){(int32_t)deed, where}, 4, object);
     return duite_wait(rt);
 }
 

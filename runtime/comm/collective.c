@@ -28,7 +28,7 @@ static int gather(struct comm *comm, void (*between)(void *), void *context)
                 comm_mpi_ok(comm, MPI_Test(&comm->request, &done, MPI_STATUS_IGNORE), "MPI_Test");
             comm_unlock(comm);
         }
-        if (!done)
+        if (!done || comm_left_to_us(comm))
             between(context);
     }
     return comm_broken(comm);

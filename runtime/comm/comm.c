@@ -86,7 +86,7 @@ void comm_send(struct comm *comm, struct graph_task *task)
         task->next = first;
     while (!atomic_compare_exchange_weak_explicit(&comm->posts, &first, task, memory_order_release,
                                                   memory_order_relaxed));
-    /* Against comm_poll: either the next try for the lock succeeds or its holder sees this. */
+    /* Against comm_left_to_us: the next try for the lock succeeds, or its holder sees this. */
     atomic_thread_fence(memory_order_seq_cst);
 }
 
@@ -286,9 +286,7 @@ bool comm_poll(struct comm *comm, void *worker)
         comm_unlock(comm);
         any = any || found.any || found.packets || found.sent;
         deliver(comm, worker, &found);
-        /* What was posted while the lock was held here must not wait for the next poll. */
-        atomic_thread_fence(memory_order_seq_cst);
-    } while (comm_posted(comm));
+    } while (comm_left_to_us(comm));
     return any;
 }
 

@@ -61,4 +61,13 @@ static inline void comm_unlock(struct comm *comm)
     atomic_flag_clear_explicit(&comm->lock, memory_order_release);
 }
 
+/* To be asked after comm_unlock: what was posted meanwhile by those who did not get the lock must
+ * not wait for the next poll. Against comm_send: it tries the lock after this look, or its post is
+ * seen here. */
+static inline bool comm_left_to_us(struct comm *comm)
+{
+    atomic_thread_fence(memory_order_seq_cst);
+    return comm_posted(comm);
+}
+
 #endif

@@ -7,8 +7,7 @@
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
 #include "runtime/workers/cores.h"
-#include "runtime/workers/park.h"
-#include "runtime/workers/queue.h"
+#include "runtime/workers/internal.h"
 
 #include <sched.h>
 #include <string.h>
@@ -18,60 +17,7 @@ enum { LONGEST_CHAIN = 64 }; /* tasks run one after another without a look at th
 /* Seconds between polls while there is work, and while there is none: the pause doubles up to the
  * longest. */
 #define POLL_SECONDS          5e-6
-#define FIRST_PAUSE_SECONDS   2e-5
 #define LONGEST_PAUSE_SECONDS 1e-3
-/* A poller without a core of its own gives way for so long before it pauses. */
-#define YIELD_SECONDS 1e-4
-
-struct counts {
-    _Atomic uint64_t tasks, placed, stolen, chained, busy, idle; /* the last two in ns */
-};
-
-struct work_worker {
-    struct work_queue queue;
-    struct work_park park;
-    struct work_pool *pool;
-    void *state; /* of the scheduler */
-    unsigned index;
-    bool finishing;          /* a task of this worker makes others ready right now */
-    bool in_body;            /* the main thread must not fork */
-    struct graph_task *next; /* chained: to run directly after this one */
-    double polled;           /* when */
-    double idle_since, pause;
-    duite_call call;
-    struct duite_call_private own;
-    struct counts counts;
-    pthread_t thread;
-    int unit;          /* to be bound to, or -1 */
-    cpu_set_t binding; /* of worker 0 before start */
-};
-
-struct work_pool {
-    struct work_setup setup;
-    struct work_worker *worker; /* setup.threads of them */
-    unsigned char *states;
-    unsigned started; /* threads, worker 0 among them */
-    pthread_t main;
-    struct work_queue shared;
-    _Alignas(64) _Atomic int stop;
-    _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
-    _Alignas(64) atomic_flag poller; /* held by the idle worker that polls */
-};
-
-static void bump(_Atomic uint64_t *count, uint64_t by)
-{
-    uint64_t now = atomic_load_explicit(count, memory_order_relaxed);
-    atomic_store_explicit(count, now + by, memory_order_relaxed);
-}
-
-static void pause_core(void)
-{
-#if defined(__x86_64__) || defined(__i386__)
-    __builtin_ia32_pause();
-#elif defined(__aarch64__)
-    __asm__ volatile("yield");
-#endif
-}
 
 /* ---- Ready tasks ---- */
 
@@ -103,7 +49,7 @@ static void place(struct work_worker *worker, struct graph_task *task, const dui
 {
     struct work_pool *pool = worker->pool;
     unsigned queue = pool->setup.scheduler->place(worker->state, ready);
-    bump(&worker->counts.placed, 1);
+    work_bump(&worker->counts.placed, 1);
     if (queue == worker->index)
         work_queue_push(&worker->queue, task);
     else if (queue < pool->setup.threads)
@@ -166,7 +112,7 @@ static struct graph_task *find(struct work_worker *worker)
             continue;
         task = work_queue_steal(&pool->worker[victim].queue, &worker->queue);
         if (task)
-            bump(&worker->counts.stolen, 1);
+            work_bump(&worker->counts.stolen, 1);
     }
     return task;
 }
@@ -189,8 +135,8 @@ static void run(struct work_worker *worker, struct graph_task *task)
         bool body = graph_run(graph, task, &worker->call);
         worker->in_body = false;
         double end = base_seconds();
-        bump(&worker->counts.tasks, body);
-        bump(&worker->counts.busy, body ? (uint64_t)(1e9 * (end - start)) : 0);
+        work_bump(&worker->counts.tasks, body);
+        work_bump(&worker->counts.busy, body ? (uint64_t)(1e9 * (end - start)) : 0);
         worker->finishing = length < LONGEST_CHAIN;
         if (graph_to_send(task))
             comm_send(comm, task);
@@ -203,32 +149,55 @@ static void run(struct work_worker *worker, struct graph_task *task)
         }
         task = worker->next;
         worker->next = NULL;
-        bump(&worker->counts.chained, task != NULL);
+        work_bump(&worker->counts.chained, task != NULL);
     }
 }
 
 /* ---- Idling ---- */
 
-static void busy_again(struct work_worker *worker)
+/* Among idle workers one keeps polling: it holds the seat until it gets busy. Returns whether that
+ * is this one. */
+static bool take_seat(struct work_worker *worker)
+{
+    struct work_pool *pool = worker->pool;
+    if (pool->setup.comm && !worker->polls &&
+        !atomic_load_explicit(&pool->seat, memory_order_relaxed))
+        worker->polls = !atomic_exchange_explicit(&pool->seat, 1, memory_order_relaxed);
+    return worker->polls;
+}
+
+/* Something happened: idling begins anew. */
+static void stir(struct work_worker *worker)
 {
     if (worker->idle_since > 0)
-        bump(&worker->counts.idle, (uint64_t)(1e9 * (base_seconds() - worker->idle_since)));
+        work_bump(&worker->counts.idle, (uint64_t)(1e9 * (base_seconds() - worker->idle_since)));
     worker->idle_since = 0;
-    worker->pause = FIRST_PAUSE_SECONDS;
+    worker->pause = WORK_FIRST_PAUSE_SECONDS;
+}
+
+/* Whoever gets busy leaves the seat to one that sleeps. */
+static void busy_again(struct work_worker *worker)
+{
+    stir(worker);
+    if (!worker->polls)
+        return;
+    worker->polls = false;
+    atomic_store_explicit(&worker->pool->seat, 0, memory_order_relaxed);
+    wake_one(worker->pool, DUITE_NO_QUEUE);
 }
 
 /* Spins, or gives way, for the first moments; false once it is time to sleep. */
-static bool spin(struct work_worker *worker, bool polls)
+static bool spin(struct work_worker *worker)
 {
     double now = base_seconds(), most = worker->pool->setup.spin_seconds;
     if (worker->idle_since <= 0)
         worker->idle_since = now;
     double since = now - worker->idle_since;
     if (since < most) {
-        pause_core();
+        work_pause_core();
         return true;
     }
-    if (polls && most <= 0 && since < YIELD_SECONDS) {
+    if (worker->polls && most <= 0 && since < WORK_YIELD_SECONDS) {
         sched_yield();
         return true;
     }
@@ -243,14 +212,16 @@ struct wish {
 };
 
 /* Sleeps until woken, or for so many seconds if they are > 0. Returns a task if there was one at
- * the last look. */
+ * the last look; does not sleep if nobody polls. */
 static struct graph_task *doze(struct work_worker *worker, double seconds, const struct wish *wish)
 {
     struct work_pool *pool = worker->pool;
+    bool polled = worker->polls;
     atomic_fetch_add(&pool->parked, 1);
     work_park_announce(&worker->park);
     struct graph_task *task = find(worker);
-    if (task || atomic_load(&pool->stop) || (wish->done && wish->done(wish->context)))
+    if (task || atomic_load(&pool->stop) || (wish->done && wish->done(wish->context)) ||
+        (!polled && take_seat(worker)))
         work_park_cancel(&worker->park);
     else
         work_park_sleep(&worker->park, seconds);
@@ -258,26 +229,18 @@ static struct graph_task *doze(struct work_worker *worker, double seconds, const
     return task;
 }
 
-/* Nothing to do: one moment of idling. Among idle workers one keeps polling; should it get work,
- * the next takes over. */
+/* Nothing to do: one moment of idling. */
 static void idle(struct work_worker *worker, const struct wish *wish)
 {
-    struct work_pool *pool = worker->pool;
-    struct graph_task *task = NULL;
-    bool polls =
-        pool->setup.comm && !atomic_flag_test_and_set_explicit(&pool->poller, memory_order_acquire);
-    if (!spin(worker, polls)) {
-        task = doze(worker, polls || wish->unheard ? worker->pause : 0, wish);
-        if (worker->pause < LONGEST_PAUSE_SECONDS)
-            worker->pause *= 2;
-    }
-    if (polls)
-        atomic_flag_clear_explicit(&pool->poller, memory_order_release);
+    bool polls = take_seat(worker);
+    if (spin(worker))
+        return;
+    struct graph_task *task = doze(worker, polls || wish->unheard ? worker->pause : 0, wish);
+    if (worker->pause < LONGEST_PAUSE_SECONDS)
+        worker->pause *= 2;
     if (!task)
         return;
     busy_again(worker);
-    if (polls)
-        wake_one(pool, DUITE_NO_QUEUE);
     run(worker, task);
 }
 
@@ -289,7 +252,7 @@ static void look(struct work_worker *worker, const struct wish *wish)
         busy_again(worker);
         run(worker, task);
     } else if (poll(worker)) {
-        busy_again(worker);
+        stir(worker);
     } else {
         idle(worker, wish);
     }
@@ -368,7 +331,7 @@ static bool prepare(struct work_pool *pool, unsigned index, int unit)
     worker->index = index;
     worker->unit = unit;
     worker->state = pool->states + index * lines * BASE_LINE;
-    worker->pause = FIRST_PAUSE_SECONDS;
+    worker->pause = WORK_FIRST_PAUSE_SECONDS;
     worker->call = (duite_call){.context = setup->context,
                                 .rank = setup->graph->rank,
                                 .worker = index,
@@ -402,7 +365,6 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     pool->setup = *setup;
     pool->setup.cores = NULL; /* the caller's: copied to the workers */
     pool->main = pthread_self();
-    atomic_flag_clear(&pool->poller);
     pool->worker = base_alloc_zero(n * sizeof pool->worker[0]);
     pool->states = base_alloc_zero(n * lines * BASE_LINE);
     bool fine = pool->worker && pool->states && work_queue_start(&pool->shared);

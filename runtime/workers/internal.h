@@ -1,0 +1,67 @@
+#ifndef DUITE_WORKERS_INTERNAL_H
+#define DUITE_WORKERS_INTERNAL_H
+
+#include "runtime/workers/park.h"
+#include "runtime/workers/queue.h"
+#include "runtime/workers/workers.h"
+
+#include <sched.h>
+
+/* Shared by the files of this folder only. */
+
+/* A poller without a core of its own gives way for so long before it pauses. */
+#define WORK_YIELD_SECONDS       1e-4
+#define WORK_FIRST_PAUSE_SECONDS 2e-5
+
+struct counts {
+    _Atomic uint64_t tasks, placed, stolen, chained, busy, idle; /* the last two in ns */
+};
+
+struct work_worker {
+    struct work_queue queue;
+    struct work_park park;
+    struct work_pool *pool;
+    void *state; /* of the scheduler */
+    unsigned index;
+    bool finishing;          /* a task of this worker makes others ready right now */
+    bool in_body;            /* the main thread must not fork */
+    bool polls;              /* holds the seat */
+    struct graph_task *next; /* chained: to run directly after this one */
+    double polled;           /* when */
+    double idle_since, pause;
+    duite_call call;
+    struct duite_call_private own;
+    struct counts counts;
+    pthread_t thread;
+    int unit;          /* to be bound to, or -1 */
+    cpu_set_t binding; /* of worker 0 before start */
+};
+
+struct work_pool {
+    struct work_setup setup;
+    struct work_worker *worker; /* setup.threads of them */
+    unsigned char *states;
+    unsigned started; /* threads, worker 0 among them */
+    pthread_t main;
+    struct work_queue shared;
+    _Alignas(64) _Atomic int stop;
+    _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
+    _Alignas(64) _Atomic int seat;   /* taken by the idle worker that polls */
+};
+
+static inline void work_bump(_Atomic uint64_t *count, uint64_t by)
+{
+    uint64_t now = atomic_load_explicit(count, memory_order_relaxed);
+    atomic_store_explicit(count, now + by, memory_order_relaxed);
+}
+
+static inline void work_pause_core(void)
+{
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
+#endif
+}
+
+#endif

@@ -11,6 +11,7 @@
 #include "runtime/workers/cores.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
@@ -31,12 +32,15 @@ duite_options duite_options_default(void)
 
 /* ---- MPI ---- */
 
+static _Atomic int alive; /* runtimes that are not stopped */
+
 /* MPI cannot be initialised twice: what start initialised stays until the process ends, so that
- * start and stop may repeat. */
+ * start and stop may repeat. A process that ends without a stop leaves MPI as it is: workers still
+ * call it, and other ranks wait for what does not come any more. */
 static void finalise_at_exit(void)
 {
     int over = 1;
-    if (!MPI_Finalized(&over) && !over)
+    if (!atomic_load(&alive) && !MPI_Finalized(&over) && !over)
         MPI_Finalize();
 }
 
@@ -262,6 +266,7 @@ static void end(duite *rt)
     check_stop(rt->check);
     base_free(rt);
     base_pool_leave();
+    atomic_fetch_sub(&alive, 1);
 }
 
 static int start_parts(duite *rt, MPI_Comm mpi, const duite_options *options)
@@ -292,6 +297,7 @@ int duite_start(duite **out, const duite_options *options)
         base_free(rt);
         return code;
     }
+    atomic_fetch_add(&alive, 1);
     /* From here on every rank comes to agree(), whatever fails. */
     code = agree(rt, options, start_parts(rt, mpi, options));
     if (code) {

@@ -217,7 +217,8 @@ const char *const *duite_mapping_names(void);
 int duite_start(duite **rt, const duite_options *options);
 
 /* Waits for all tasks, ends the workers and frees everything; start and stop may repeat (MPI, if
- * start initialised it, is finalised when the process ends). *rt becomes NULL whatever is returned.
+ * start initialised it, is finalised when the process ends; a process that ends without a stop leaves
+ * it unfinalised, and mpirun ends the job). *rt becomes NULL whatever is returned.
  * Returns the error that a wait would, else DUITE_E_NOT_FREED if objects are left. Collective. */
 int duite_stop(duite **rt);
 

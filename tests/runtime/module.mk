@@ -8,6 +8,11 @@ tests_runtime_ranks_sizes_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_long.sh tests/runtime/test_sizes.sh
 TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtime/test_sizes.sh
 LONG_TESTS += tests/runtime/test_random_long.sh
+check_PROGRAMS += tests/runtime/ranks_exit
+tests_runtime_ranks_exit_SOURCES = tests/runtime/ranks_exit.c
+tests_runtime_ranks_exit_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/runtime/test_exit.sh
+TESTS += tests/runtime/test_exit.sh
 
 if HAVE_CHECK
 RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched tests/runtime/test_check

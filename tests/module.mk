@@ -66,5 +66,6 @@ include tests/cloth/view/module.mk
 include tests/whole/module.mk
 include tests/runtime/module.mk
 include tests/negative/module.mk
+include tests/model/module.mk
 include tests/examples/module.mk
 include tests/bench/module.mk

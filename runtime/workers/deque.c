@@ -4,8 +4,6 @@
 
 #include "runtime/base/memory.h"
 
-enum { FIRST_SLOTS = 256 };
-
 static struct work_ring *ring_new(uint64_t slots, struct work_ring *older)
 {
     struct work_ring *ring = base_alloc(sizeof *ring + slots * sizeof ring->slot[0]);
@@ -18,9 +16,9 @@ static struct work_ring *ring_new(uint64_t slots, struct work_ring *older)
     return ring;
 }
 
-bool work_deque_start(struct work_deque *deque)
+bool work_deque_start(struct work_deque *deque, uint64_t slots)
 {
-    struct work_ring *ring = ring_new(FIRST_SLOTS, NULL);
+    struct work_ring *ring = ring_new(slots, NULL);
     atomic_init(&deque->oldest, 0);
     atomic_init(&deque->newest, 0);
     atomic_init(&deque->ring, ring);

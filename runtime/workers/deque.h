@@ -22,7 +22,8 @@ struct work_deque {
     _Atomic(struct work_ring *) ring;
 };
 
-bool work_deque_start(struct work_deque *deque); /* false without memory */
+/* slots: of the first ring, a power of 2. False without memory. */
+bool work_deque_start(struct work_deque *deque, uint64_t slots);
 void work_deque_stop(struct work_deque *deque);
 
 /* Owner only. False without memory: nothing was pushed. */

@@ -2,11 +2,13 @@
  * inbox to deque. */
 #include "runtime/workers/queue.h"
 
+enum { FIRST_SLOTS = 256 };
+
 bool work_queue_start(struct work_queue *queue)
 {
     atomic_init(&queue->inbox, NULL);
     atomic_flag_clear(&queue->token);
-    return work_deque_start(&queue->deque);
+    return work_deque_start(&queue->deque, FIRST_SLOTS);
 }
 
 void work_queue_stop(struct work_queue *queue)

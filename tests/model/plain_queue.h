@@ -1,0 +1,81 @@
+#ifndef TESTS_MODEL_PLAIN_QUEUE_H
+#define TESTS_MODEL_PLAIN_QUEUE_H
+
+/* In place of queue.c, where sleep and waking are explored: queues that have what matters for them,
+ * in a few steps. A task is a bit, by its number. What the owner pushes may be seen late, what is
+ * put is seen at once; a task is there until its bit is in `taken`. */
+#include "runtime/workers/queue.h"
+
+#include "tests/model/atomics.h"
+
+struct plain {
+    _Atomic uint64_t pushed, put, taken;
+};
+
+static struct graph_task *plain_task(uint64_t bit);
+
+static struct plain *plain(struct work_queue *queue)
+{
+    return (struct plain *)(void *)queue->deque.ring;
+}
+
+bool work_queue_start(struct work_queue *queue)
+{
+    queue->deque.ring = explore_alloc(sizeof(struct plain));
+    return true;
+}
+
+void work_queue_stop(struct work_queue *queue)
+{
+    (void)queue;
+}
+
+void work_queue_put(struct work_queue *queue, struct graph_task *task)
+{
+    struct plain *all = plain(queue);
+    atomic_fetch_add(&all->put, (uint64_t)1 << task->number);
+}
+
+void work_queue_push(struct work_queue *queue, struct graph_task *task)
+{
+    struct plain *all = plain(queue);
+    uint64_t before = atomic_load_explicit(&all->pushed, memory_order_relaxed);
+    atomic_store_explicit(&all->pushed, before | (uint64_t)1 << task->number, memory_order_release);
+}
+
+static struct graph_task *plain_take(struct work_queue *queue)
+{
+    struct plain *all = plain(queue);
+    for (;;) {
+        uint64_t taken = atomic_load_explicit(&all->taken, memory_order_acquire);
+        uint64_t there = (atomic_load_explicit(&all->put, memory_order_acquire) |
+                          atomic_load_explicit(&all->pushed, memory_order_acquire)) &
+                         ~taken;
+        uint64_t first = there & -there;
+        if (!there)
+            return NULL;
+        if (atomic_compare_exchange_strong_explicit(&all->taken, &taken, taken | first,
+                                                    memory_order_seq_cst, memory_order_relaxed))
+            return plain_task(first);
+    }
+}
+
+struct graph_task *work_queue_take(struct work_queue *queue, duite_end end)
+{
+    (void)end;
+    return plain_take(queue);
+}
+
+struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end end)
+{
+    (void)end;
+    return plain_take(queue);
+}
+
+struct graph_task *work_queue_steal(struct work_queue *victim, struct work_queue *own)
+{
+    (void)own;
+    return plain_take(victim);
+}
+
+#endif

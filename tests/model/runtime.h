@@ -1,0 +1,60 @@
+#ifndef TESTS_MODEL_RUNTIME_H
+#define TESTS_MODEL_RUNTIME_H
+
+/* Included before all headers and source files of the runtime that a test explores: their atomic
+ * operations, and what may block, go to the explorer. The runtime's memory is the explorer's too,
+ * which forgets it with each execution. */
+#include <mpi.h>
+#include <sched.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/types.h>
+
+#include "tests/model/atomics.h"
+
+#include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
+
+void *base_alloc(size_t size)
+{
+    return explore_alloc(size);
+}
+
+void *base_alloc_zero(size_t size)
+{
+    return explore_alloc(size);
+}
+
+void base_free(void *memory)
+{
+    (void)memory;
+}
+
+void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
+{
+    if (needed <= *capacity)
+        return array;
+    void *larger = explore_alloc(2 * needed * element);
+    if (array)
+        memcpy(larger, array, *capacity * element);
+    *capacity = 2 * needed;
+    return larger;
+}
+
+void *base_pool_take(size_t size)
+{
+    return explore_alloc(size);
+}
+
+void base_pool_give(void *memory, size_t size)
+{
+    (void)memory;
+    (void)size;
+}
+
+void base_pool_thread_end(void)
+{
+}
+
+#endif

@@ -1,0 +1,149 @@
+/* The queue of ready tasks (runtime/workers/queue.c, over the real deque): whatever its owner,
+ * those who put tasks into its inbox and thieves do at the same time, each task is taken exactly
+ * once; of the shared queue likewise, whoever holds its token. */
+#include "tests/model/runtime.h"
+
+static unsigned allocations; /* that still succeed */
+
+#define base_alloc(size) (allocations-- ? explore_alloc(size) : NULL)
+
+#include "runtime/workers/deque.c"
+#include "runtime/workers/queue.c"
+
+enum { THREADS = 3, EACH = 3, TASKS = THREADS * EACH }; /* EACH: tasks that a thread makes */
+
+/* What each thread does, one letter each. The first owns the queue: P push, T take the newest, O
+ * the oldest. Others: p put, S steal. Of a shared queue anybody: p put, t take the newest, o the
+ * oldest. */
+struct play {
+    const char *name;
+    const char *script[THREADS + 1];
+    bool no_memory; /* the ring has one slot and stays so */
+};
+
+static const struct play *play;
+static struct {
+    struct work_queue queue, own[THREADS]; /* own: the thieves' */
+    struct graph_task *task[TASKS];
+    int taken[TASKS], made[THREADS];
+} its;
+
+static struct graph_task *make(unsigned self)
+{
+    return its.task[self * EACH + (unsigned)its.made[self]++];
+}
+
+static bool got(const struct graph_task *task)
+{
+    for (int i = 0; i < TASKS && task; i++)
+        if (its.task[i] == task)
+            explore_check(++its.taken[i] == 1);
+    return task;
+}
+
+static void act(char letter, unsigned self)
+{
+    struct work_queue *queue = &its.queue;
+    if (letter == 'P')
+        work_queue_push(queue, make(self));
+    else if (letter == 'p')
+        work_queue_put(queue, make(self));
+    else if (letter == 'T' || letter == 'O')
+        got(work_queue_take(queue, letter == 'T' ? DUITE_NEWEST : DUITE_OLDEST));
+    else if (letter == 't' || letter == 'o')
+        got(work_queue_take_shared(queue, letter == 't' ? DUITE_NEWEST : DUITE_OLDEST));
+    else
+        got(work_queue_steal(queue, &its.own[self]));
+}
+
+static void run(void)
+{
+    unsigned self = (unsigned)explore_self();
+    for (const char *letter = play->script[self]; *letter; letter++)
+        act(*letter, self);
+}
+
+static void start_queue(struct work_queue *queue)
+{
+    work_queue_start(queue);
+    if (play->no_memory)
+        work_deque_start(&queue->deque, 1);
+}
+
+static void start(void)
+{
+    memset(&its, 0, sizeof its);
+    allocations = 2 * (THREADS + 1);
+    start_queue(&its.queue);
+    for (int i = 0; i < THREADS; i++)
+        start_queue(&its.own[i]);
+    for (int i = 0; i < TASKS; i++)
+        its.task[i] = explore_alloc(sizeof *its.task[i]);
+    allocations = play->no_memory ? 0 : 9;
+}
+
+/* What nobody took is still there, and nothing else. */
+static void end(void)
+{
+    while (got(work_queue_take(&its.queue, DUITE_NEWEST)))
+        continue;
+    for (int i = 0; i < THREADS; i++)
+        while (got(work_queue_take(&its.own[i], DUITE_OLDEST)))
+            continue;
+    for (int i = 0; i < TASKS; i++)
+        explore_check(its.taken[i] == (i % EACH < its.made[i / EACH]));
+}
+
+static struct explore_case small(const struct play *of)
+{
+    struct explore_case new = {.name = of->name, .start = start, .end = end};
+    for (int i = 0; of->script[i]; i++)
+        new.thread[i] = run;
+    play = of;
+    return new;
+}
+
+static const struct play plays[] = {
+    {"two put, the owner takes", {"TT", "p", "p"}, false},
+    {"one puts two, the owner takes", {"TOT", "pp"}, false},
+    {"the inbox is stolen", {"T", "pp", "S"}, false},
+    {"a busy owner", {"PPT", "p", "S"}, false},
+    {"two thieves", {"P", "pS", "S"}, false},
+    {"a full ring", {"PPTT", "p"}, true},
+    {"a full ring and a thief", {"PPT", "S"}, true},
+    {"shared, newest first", {"t", "pp", "t"}, false},
+    {"shared, oldest first", {"po", "o", "p"}, false},
+};
+
+static const struct play deep[] = {
+    {"a busy owner, more put", {"PTT", "pp", "S"}, false},
+    {"a full ring, put and stolen", {"PPT", "p", "S"}, true},
+    {"shared by three", {"pt", "pt", "pt"}, false},
+};
+
+static const struct {
+    struct explore_plant plant;
+    struct play play;
+} plants[] = {
+    {{"work_queue_put", "&queue->inbox", EXPLORE_RELAX},
+     {"those who put do not look at one another", {"", "p", "p"}, false}},
+    {{"empty_inbox", "&queue->inbox", EXPLORE_DROP},
+     {"the inbox is not looked at", {"T", "pp"}, false}},
+    {{"work_queue_take_shared", "&queue->token", EXPLORE_DROP},
+     {"all hold the token", {"pt", "", "pt"}, false}},
+    {{"work_queue_take_shared", "&queue->token", EXPLORE_RELAX},
+     {"the token is taken late", {"pt", "", "pt"}, false}},
+};
+
+int main(int argc, char **argv)
+{
+    struct explore_case now;
+    explore_begin(argc, argv);
+    for (size_t i = 0; i < sizeof plays / sizeof plays[0]; i++)
+        explore_passes((now = small(&plays[i]), &now));
+    for (size_t i = 0; i < sizeof deep / sizeof deep[0] && explore_deep(); i++)
+        explore_passes((now = small(&deep[i]), &now));
+    for (size_t i = 0; i < sizeof plants / sizeof plants[0]; i++)
+        explore_finds((now = small(&plants[i].play), &now), plants[i].plant);
+    return explore_end();
+}

@@ -1,0 +1,387 @@
+/* Sleeping and waking (runtime/workers/park.c and workers.c): no task waits while all who could run
+ * it sleep for ever, no message while nobody polls, each task runs once, and a stop ends. The
+ * workers are the real ones: thread 0 is the main thread, the others are those that work_start
+ * makes. Queues are plain_queue.h's, or with REAL_QUEUES the real ones. */
+#include "tests/model/runtime.h"
+
+#include "runtime/workers/workers.h"
+
+#include "runtime/base/clock.h"
+#include "runtime/sched/sched.h"
+#include "runtime/workers/cores.h"
+
+enum { TASKS = 4 };
+
+static struct {
+    struct graph graph;
+    struct work_pool *pool;
+    struct graph_task *task[TASKS];
+    int ran[TASKS];
+    double seconds[EXPLORE_THREADS];
+    _Atomic int unfinished, done; /* tasks; 1 when none is left */
+    _Atomic int over[TASKS];      /* 1 when that task is */
+    _Atomic int sent, received;   /* messages; each makes the task of its number ready */
+    bool copies; /* bodies do as duite_get's copy does: they set copied and notify */
+    _Atomic int copied;
+    bool long_body; /* task 0 sees message 1 sent, and lasts until task 1 is over */
+} its;
+
+/* ---- What the workers call ---- */
+
+/* Each thread's own: every look at the clock finds that long has passed. */
+static double stepping(void)
+{
+    return its.seconds[explore_self()] += 1;
+}
+
+static int nothing(void)
+{
+    return 0;
+}
+
+/* The task among a function's arguments. */
+static struct graph_task *task_in(int n, const void *const *argument)
+{
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < TASKS; j++)
+            if (argument[i] == its.task[j])
+                return its.task[j];
+    explore_check_that(false, "there is a task among the arguments");
+    return NULL;
+}
+
+static void receive(int message)
+{
+    atomic_fetch_add(&its.sent, 1);
+    explore_check(message == its.sent - 1);
+}
+
+static bool run_task(const struct graph_task *task)
+{
+    its.ran[task->number]++;
+    if (its.copies) {
+        atomic_store_explicit(&its.copied, 1, memory_order_release);
+        its.graph.hooks.notify(its.graph.hooks.context);
+    }
+    if (its.long_body && task->number == 0) {
+        receive(1);
+        explore_await(&its.over[1]);
+    }
+    return true;
+}
+
+static void finish_task(const struct graph_task *task)
+{
+    atomic_store(&its.over[task->number], 1);
+    if (atomic_fetch_sub_explicit(&its.unfinished, 1, memory_order_acq_rel) == 1) {
+        atomic_store(&its.done, 1);
+        its.graph.hooks.notify(its.graph.hooks.context);
+    }
+}
+
+#define TASK_IN(...)                                                                               \
+    task_in(sizeof(const void *[]){__VA_ARGS__} / sizeof(void *), (const void *[]){__VA_ARGS__})
+#define graph_run(...)    run_task(TASK_IN(__VA_ARGS__))
+#define graph_finish(...) finish_task(TASK_IN(__VA_ARGS__))
+
+bool comm_posted(struct comm *comm)
+{
+    (void)comm;
+    return false;
+}
+
+int comm_broken(struct comm *comm)
+{
+    (void)comm;
+    return 0;
+}
+
+bool comm_poll(struct comm *comm, void *worker)
+{
+    (void)comm;
+    int next = atomic_load_explicit(&its.received, memory_order_acquire);
+    if (next >= atomic_load_explicit(&its.sent, memory_order_acquire) ||
+        !atomic_compare_exchange_strong_explicit(&its.received, &next, next + 1,
+                                                 memory_order_acq_rel, memory_order_relaxed))
+        return false;
+    its.graph.hooks.ready(its.graph.hooks.context, worker, its.task[next]);
+    return true;
+}
+
+void comm_send(struct comm *comm, struct graph_task *task)
+{
+    (void)comm;
+    (void)task;
+}
+
+void comm_send_packet(struct comm *comm, struct data_packet *packet, int to)
+{
+    (void)comm;
+    (void)packet;
+    (void)to;
+}
+
+int comm_expect(struct comm *comm, void *worker, struct data_key key, struct data_version *version,
+                struct data_sum *sum, uint32_t packets)
+{
+    (void)comm;
+    (void)worker;
+    (void)key;
+    (void)version;
+    (void)sum;
+    (void)packets;
+    return 0;
+}
+
+#define base_seconds()                        stepping()
+#define sched_yield()                         nothing()
+#define sched_getaffinity(process, size, set) nothing()
+#define sched_setaffinity(process, size, set) nothing()
+#define work_cores_bind(unit)                 nothing()
+
+#ifdef REAL_QUEUES
+#include "runtime/workers/deque.c"
+#include "runtime/workers/queue.c"
+#else
+#include "tests/model/plain_queue.h"
+#endif
+#include "runtime/workers/park.c"
+
+/* A plant that is no operation of its own: the announcement comes after the last look. */
+static void announce(struct work_park *park)
+{
+    if (!explore_planted("doze", "the announcement"))
+        work_park_announce(park);
+}
+
+static void fall_asleep(struct work_park *park, double seconds)
+{
+    if (explore_planted("doze", "the announcement"))
+        work_park_announce(park);
+    work_park_sleep(park, seconds);
+}
+
+#define work_park_announce announce
+#define work_park_sleep    fall_asleep
+#include "runtime/workers/workers.c"
+
+#ifndef REAL_QUEUES
+static struct graph_task *plain_task(uint64_t bit)
+{
+    return its.task[__builtin_ctzll(bit)];
+}
+#endif
+
+static bool drained(void *context)
+{
+    (void)context;
+    return atomic_load_explicit(&its.unfinished, memory_order_acquire) == 0;
+}
+
+static void begin(void)
+{
+    memset(&its, 0, sizeof its);
+    for (int i = 0; i < TASKS; i++) {
+        its.task[i] = explore_alloc(sizeof *its.task[i]);
+        its.task[i]->kind = GRAPH_COPY;
+        its.task[i]->number = (uint64_t)i;
+    }
+}
+
+/* ---- Main programs ---- */
+
+static void start_workers(unsigned threads, const duite_scheduler *scheduler, bool comm)
+{
+    static char network;
+    int code = work_start(&its.pool, &(struct work_setup){.graph = &its.graph,
+                                                          .comm = comm ? (void *)&network : NULL,
+                                                          .scheduler = scheduler,
+                                                          .threads = threads,
+                                                          .seed = 1});
+    explore_check(!code);
+}
+
+static void ready(int task)
+{
+    its.graph.hooks.ready(its.graph.hooks.context, work_main(its.pool), its.task[task]);
+}
+
+static void stop(int tasks)
+{
+    work_stop(its.pool);
+    for (int i = 0; i < TASKS; i++)
+        explore_check(its.ran[i] == (i < tasks));
+}
+
+/* Makes tasks ready and does something else: the other threads must see to them. */
+static void leave(unsigned threads, const duite_scheduler *scheduler, int tasks)
+{
+    start_workers(threads, scheduler, false);
+    atomic_store(&its.unfinished, tasks);
+    for (int i = 0; i < tasks; i++)
+        ready(i);
+    explore_await(&its.done);
+}
+
+/* Makes tasks ready and waits. */
+static void wait(unsigned threads, const duite_scheduler *scheduler, int tasks)
+{
+    start_workers(threads, scheduler, false);
+    atomic_store(&its.unfinished, tasks);
+    for (int i = 0; i < tasks; i++)
+        ready(i);
+    work_until(its.pool, drained, NULL);
+}
+
+static void start_stop(void)
+{
+    start_workers(2, &sched_steal, false);
+    stop(0);
+}
+
+static void leave_one_stop(void)
+{
+    leave(2, &sched_steal, 1);
+    stop(1);
+}
+
+static void leave_one(void)
+{
+    leave(2, &sched_steal, 1);
+}
+
+static void leave_two(void)
+{
+    leave(2, &sched_fifo, 2);
+}
+
+static void leave_one_to_two(void)
+{
+    leave(3, &sched_fifo, 1);
+}
+
+static void wait_one(void)
+{
+    wait(2, &sched_steal, 1);
+}
+
+static bool copied(void *context)
+{
+    (void)context;
+    return atomic_load_explicit(&its.copied, memory_order_acquire);
+}
+
+static void wait_copy(void)
+{
+    its.copies = true;
+    start_workers(2, &sched_steal, false);
+    atomic_store(&its.unfinished, 2);
+    ready(0);
+    work_until(its.pool, copied, NULL);
+}
+
+static void wait_one_stop(void)
+{
+    wait(2, &sched_steal, 1);
+    stop(1);
+}
+
+static void wait_two(void)
+{
+    wait(2, &sched_fifo, 2);
+}
+
+/* ---- With messages: nobody is woken by them ---- */
+
+/* Idles twice, as in a collective call, and may take the seat; then does something else: the other
+ * thread must receive. */
+static void idle_then_leave(void)
+{
+    start_workers(2, &sched_steal, true);
+    atomic_store(&its.unfinished, 1);
+    work_once(its.pool);
+    work_once(its.pool);
+    work_idle_ends(its.pool);
+    receive(0);
+    explore_await(&its.over[0]);
+}
+
+/* Waits for both; whoever runs task 0 is busy meanwhile: the other one must receive. */
+static void wait_beside(void)
+{
+    its.long_body = true;
+    start_workers(2, &sched_steal, true);
+    atomic_store(&its.unfinished, 2);
+    receive(0);
+    work_until(its.pool, drained, NULL);
+}
+
+#ifdef REAL_QUEUES
+enum { MOST = 20000, MOST_DEEP = 1000000 }; /* executions; 0: all */
+#else
+enum { MOST = 0, MOST_DEEP = 0 };
+#endif
+
+#define CASE(title, main)                                                                          \
+    {                                                                                              \
+        .name = title, .start = begin, .thread = {main}, .most = MOST, .most_deep = MOST_DEEP      \
+    }
+/* Without a stop at the end, the other threads may sleep for ever then. */
+#define SERVED(title, main)                                                                        \
+    {                                                                                              \
+        .name = title, .start = begin, .thread = {main}, .served = true, .timeouts = 1,            \
+        .most = MOST, .most_deep = MOST_DEEP                                                       \
+    }
+#define LARGE(title, main)                                                                         \
+    {                                                                                              \
+        .name = title, .start = begin, .thread = {main}, .served = true, .most = 10000,            \
+        .most_deep = 1000000                                                                       \
+    }
+
+static const struct explore_case cases[] = {
+    CASE("start, stop", start_stop),
+    CASE("one task for another, stop", leave_one_stop),
+    SERVED("one task for another", leave_one),
+    SERVED("one task waited for", wait_one),
+    SERVED("a copy waited for", wait_copy),
+    SERVED("main polled, and leaves", idle_then_leave),
+    LARGE("the poller gets busy", wait_beside),
+};
+
+static const struct explore_case deep[] = {
+    CASE("one task waited for, stop", wait_one_stop),
+    SERVED("two tasks for another", leave_two),
+    SERVED("one task for two others", leave_one_to_two),
+    LARGE("two tasks waited for", wait_two),
+};
+
+static const struct {
+    const struct explore_case small;
+    struct explore_plant plant;
+} plants[] = {
+    {SERVED("one task for another", leave_one), {"doze", "the announcement", EXPLORE_DROP}},
+    {SERVED("one task for another", leave_one), {"wake_one", "fence", EXPLORE_DROP}},
+    {SERVED("one task for another", leave_one), {"work_park_wake", "lock", EXPLORE_DROP}},
+    {SERVED("one task for another", leave_one), {"work_park_wake", "condition", EXPLORE_DROP}},
+    {SERVED("a copy waited for", wait_copy), {"on_notify", "fence", EXPLORE_DROP}},
+    {CASE("start, stop", start_stop), {"doze", "&pool->stop", EXPLORE_DROP}},
+#ifndef REAL_QUEUES /* there it takes too long */
+    {SERVED("main polled, and leaves", idle_then_leave), {"wake_one", "fence", EXPLORE_DROP}},
+    {SERVED("main polled, and leaves", idle_then_leave),
+     {"busy_again", "&worker->pool->seat", EXPLORE_DROP}},
+    {LARGE("the poller gets busy", wait_beside),
+     {"busy_again", "&worker->pool->seat", EXPLORE_DROP}},
+#endif
+};
+
+int main(int argc, char **argv)
+{
+    explore_begin(argc, argv);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        explore_passes(&cases[i]);
+    for (size_t i = 0; i < sizeof deep / sizeof deep[0] && explore_deep(); i++)
+        explore_passes(&deep[i]);
+    for (size_t i = 0; i < sizeof plants / sizeof plants[0]; i++)
+        explore_finds(&plants[i].small, plants[i].plant);
+    return explore_end();
+}

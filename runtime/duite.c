@@ -262,6 +262,7 @@ static void end(duite *rt)
     work_stop(rt->pool);
     if (comm_stop(rt->comm))
         MPI_Comm_free(&rt->mpi);
+    recorded_stop(rt);
     graph_stop(&rt->graph);
     check_stop(rt->check);
     base_free(rt);
@@ -319,7 +320,7 @@ static int not_freed(const duite *rt)
             return base_error(
                 DUITE_E_NOT_FREED, "%u objects were not freed; the first is %u.%u, %zu bytes",
                 table->n_alive, slot, table->object[slot].generation, table->object[slot].bytes);
-    return DUITE_OK;
+    return recorded_left(rt);
 }
 
 int duite_stop(duite **out)
@@ -329,6 +330,8 @@ int duite_stop(duite **out)
     duite *rt = *out;
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "duite_stop is for the main thread, outside of bodies");
+    if (rt->building)
+        return program_enter(rt, "duite_stop");
     int code = duite_wait(rt);
     if (!code)
         code = not_freed(rt);

@@ -16,12 +16,12 @@
  * rank only. Forking and everything that changes objects is done by the main thread.
  *
  * Every call returns DUITE_OK or a code; duite_message() then has the sentence. A failed fork, new,
- * set, hint, follow or free does nothing, and the first such error is returned once more, with its
- * sentence, by the next get, wait or stop, which otherwise does its work: a program may check only
- * these. (Calls from a body or another thread, DUITE_E_STATE, are not remembered.) On several ranks
- * a call that runs out of memory on one of them, or a failure of MPI, ends the work of all: every
- * rank's next or present blocking call returns the code, and only duite_stop is left. The library
- * never exits or aborts. */
+ * set, hint, follow, free or call on a recorded graph does nothing, and the first such error is
+ * returned once more, with its sentence, by the next get, wait or stop, which otherwise does its
+ * work: a program may check only these. (Calls from a body or another thread, DUITE_E_STATE, are
+ * not remembered.) On several ranks a call that runs out of memory on one of them, or a failure of
+ * MPI, ends the work of all: every rank's next or present blocking call returns the code, and only
+ * duite_stop is left. The library never exits or aborts. */
 
 #include <mpi.h>
 #include <stddef.h>
@@ -43,10 +43,11 @@ enum {
     DUITE_E_MPI = -6, /* an MPI call failed, or MPI gives less thread support than SERIALIZED */
     DUITE_E_DIFFERENT = -7, /* the ranks run different programs: other kernels, forks or options */
     DUITE_E_STATE =
-        -8, /* a call that is not allowed here: from a task's body, or from another thread */
-    DUITE_E_NOT_FREED = -9, /* stop found objects that were not freed */
+        -8, /* a call that is not allowed here: from a task's body, another thread or a build */
+    DUITE_E_NOT_FREED = -9, /* stop found objects or graphs that were not freed */
     DUITE_E_SYSTEM = -10,   /* threads, topology: the operating system refused */
     DUITE_E_LAW = -12,      /* a law that is malformed, not listed, or for another element type */
+    DUITE_E_BINDING = -13,  /* what is bound to an object of a recorded graph does not fit it */
     DUITE_E_SIZE = -14, /* an object grows beyond its maximum, or changes a size that is fixed */
     DUITE_E_CHECK = -15 /* checking mode: a body does not keep to what its kernel declares */
 };
@@ -217,9 +218,9 @@ const char *const *duite_mapping_names(void);
 int duite_start(duite **rt, const duite_options *options);
 
 /* Waits for all tasks, ends the workers and frees everything; start and stop may repeat (MPI, if
- * start initialised it, is finalised when the process ends; a process that ends without a stop leaves
- * it unfinalised, and mpirun ends the job). *rt becomes NULL whatever is returned.
- * Returns the error that a wait would, else DUITE_E_NOT_FREED if objects are left. Collective. */
+ * start initialised it, is finalised when the process ends; a process that ends without a stop
+ * leaves it unfinalised, and mpirun ends the job). *rt becomes NULL whatever is returned. Returns
+ * the error that a wait would, else DUITE_E_NOT_FREED if objects or graphs are left. Collective. */
 int duite_stop(duite **rt);
 
 /* This rank, the number of ranks, the workers of this rank. Local. */
@@ -313,6 +314,60 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
  * next.) Collective. */
 int duite_wait(duite *rt);
 
+/* ---- Recorded graphs ---- */
+
+/* Names a recorded graph: a value, freely copied. */
+typedef struct duite_graph {
+    uint32_t slot, generation;
+} duite_graph;
+
+#define DUITE_NO_GRAPH ((duite_graph){0, 0})
+
+/* Forks the tasks of one round. Called by duite_graph_new, and again when the graph is recorded
+ * anew; then it must find in its context what the graph is to use from now on. Returns 0, or a code
+ * that duite_graph_new or the replay returns. */
+typedef int duite_build(duite *rt, void *context);
+
+/* Records what build(rt, context) forks; nothing runs. Inside, duite_fork, duite_fork_at and
+ * duite_set are kept, duite_home and the local calls answer; everything else is DUITE_E_STATE.
+ * Makes nothing, and *graph is DUITE_NO_GRAPH, if build or a call inside fails: returns the first
+ * error. A graph may be replayed any number of times; it is freed by duite_graph_free. Collective;
+ * no communication. */
+int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *graph);
+
+/* Forks the graph's tasks `rounds` times, one round after the other: the results, the failures and
+ * the numbers of tasks are those of forking them by hand. On one rank the rounds run from a
+ * compiled form, in which a task costs no allocation, lock or search, and a round begins where
+ * dependences allow before the last one is over; the tasks forked before and after it that use the
+ * same objects wait for the replay as a whole. (Forked are all rounds if the size of an
+ * object changes or if contributions of one round and the next are one sum; the first or the last
+ * one if its contributions are one sum with those forked before or after the replay.) If an object
+ * that the graph uses was freed, build is called again first, and bindings and arguments are those
+ * it makes. Errors of that, and DUITE_E_BINDING. rounds times tasks is at most 2^48. Collective;
+ * returns at once. */
+int duite_replay(duite *rt, duite_graph graph, uint64_t rounds);
+
+/* Replays while the first element of `flag`, an object that the graph uses or any other, is not
+ * zero after a round: at least one round, at most `most`. A flag that is poisoned ends it. Tasks
+ * forked later are numbered as if there had been `most` rounds. Collective; returns at once on one
+ * rank, on several when the last round is forked. */
+int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t most);
+
+/* Waits for the last replay of the graph and writes how many rounds it had; 0 before the first.
+ * Collective. */
+int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds);
+
+/* From the next replay on: the arguments of the k-th fork of build (from 0; sets do not count) are
+ * a copy of the args_size bytes at args; `object` is used wherever build named `recorded`, until
+ * another one is bound to it. The object has the same type and count, else DUITE_E_BINDING; two
+ * recorded objects bound to one are an error (DUITE_E_BINDING) of the replay, so that they may be
+ * exchanged. Collective. */
+int duite_graph_args(duite *rt, duite_graph graph, size_t k, const void *args);
+int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_object object);
+
+/* Frees a graph; replays that are on their way come to their end. Collective. */
+int duite_graph_free(duite *rt, duite_graph graph);
+
 /* ---- Counters ---- */
 
 typedef struct duite_counters {
@@ -324,6 +379,7 @@ typedef struct duite_counters {
     uint64_t bytes;    /* sent between ranks, headers included */
     double busy;       /* seconds in bodies, over all workers */
     double idle;       /* seconds without a task, over all workers, up to each one's last task */
+    uint64_t graphs_recorded; /* calls of build functions; the same on every rank, counted once */
 } duite_counters;
 
 /* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.

@@ -3,6 +3,7 @@
 
 #include "runtime/comm/comm.h"
 #include "runtime/graph/graph.h"
+#include "runtime/graph/record.h"
 #include "runtime/workers/workers.h"
 
 /* A running runtime: the parts, and the errors that the next get, wait or stop still has to tell.
@@ -17,8 +18,12 @@ struct duite {
     uint64_t seed;
     unsigned threads;
     int oversubscribed;
-    int remembered;      /* code of a failed fork, new, ... */
-    char sentence[1024]; /* of `remembered` */
+    int remembered;                  /* code of a failed fork, new, ... */
+    char sentence[1024];             /* of `remembered` */
+    struct recorded_graph *recorded; /* by slot, from 1 on */
+    size_t n_recorded, recorded_capacity;
+    struct graph_record *building; /* the one that build forks into, or NULL */
+    uint64_t graphs_recorded;
 };
 
 /* True once nothing but stop is left: memory ran out in a fork, the ranks differ, a message was
@@ -28,5 +33,25 @@ bool instance_is_broken(const duite *rt);
 /* It is broken: tells the other ranks, awaits nothing any more, and returns when no task is left.
  * Does nothing the second time. */
 void instance_give_up(duite *rt);
+
+/* ---- Shared by program.c and recorded.c ---- */
+
+/* May this call be made now? */
+int program_enter(duite *rt, const char *call);
+/* Keeps an error for the next get, wait or stop, or, inside build, for who called it. Returns code.
+ */
+int program_remember(duite *rt, int code);
+/* Settles the homes of all objects. */
+int program_settle(duite *rt);
+/* Copies to the values, or tells the count, whichever is wanted here. */
+int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
+                const char *call);
+
+/* Keeps the first error of a call inside build. Returns code. */
+int recorded_failed(duite *rt, int code);
+/* DUITE_E_NOT_FREED if graphs are left. */
+int recorded_left(const duite *rt);
+/* Frees all graphs; no task is left. */
+void recorded_stop(duite *rt);
 
 #endif

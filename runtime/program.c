@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* May this call be made now? */
-static int enter(duite *rt, const char *call)
+/* May this call be made now, even while a graph is recorded? */
+static int enter_any(duite *rt, const char *call)
 {
     if (!rt)
         return base_error(DUITE_E_ARGUMENT, "%s: no runtime", call);
@@ -24,8 +24,19 @@ static int enter(duite *rt, const char *call)
     return rt->comm ? comm_broken(rt->comm) : DUITE_OK;
 }
 
-static int remember(duite *rt, int code)
+int program_enter(duite *rt, const char *call)
 {
+    int code = enter_any(rt, call);
+    if (code || !rt->building)
+        return code;
+    return program_remember(rt,
+                            base_error(DUITE_E_STATE, "%s: not while a graph is recorded", call));
+}
+
+int program_remember(duite *rt, int code)
+{
+    if (code && rt->building)
+        return recorded_failed(rt, code);
     if (code == DUITE_E_MEMORY && rt->comm)
         rt->graph.broken = code; /* the other ranks did what this one could not */
     if (rt->graph.broken)
@@ -45,7 +56,7 @@ static int recall(duite *rt)
     return code ? base_error(code, "%s", rt->sentence) : DUITE_OK;
 }
 
-static int settle(duite *rt)
+int program_settle(duite *rt)
 {
     return map_settle(&rt->graph.table, rt->mapping, rt->seed);
 }
@@ -56,30 +67,31 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
 {
     if (object)
         *object = DUITE_NO_OBJECT;
-    int code = enter(rt, "duite_new");
+    int code = program_enter(rt, "duite_new");
     if (code)
         return code;
     if (!object)
-        return remember(rt, base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
+        return program_remember(
+            rt, base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
     graph_mix(&rt->graph, count);
     graph_mix(&rt->graph, (uint64_t)type);
-    return remember(rt, data_object_new(&rt->graph.table, type, count, object));
+    return program_remember(rt, data_object_new(&rt->graph.table, type, count, object));
 }
 
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite_object *object)
 {
     if (object)
         *object = DUITE_NO_OBJECT;
-    int code = enter(rt, "duite_new_sized");
+    int code = program_enter(rt, "duite_new_sized");
     if (code)
         return code;
     if (!object)
-        return remember(rt,
-                        base_error(DUITE_E_ARGUMENT, "duite_new_sized: nowhere to put the object"));
+        return program_remember(
+            rt, base_error(DUITE_E_ARGUMENT, "duite_new_sized: nowhere to put the object"));
     graph_mix(&rt->graph, count);
     graph_mix(&rt->graph, most);
     graph_mix(&rt->graph, (uint64_t)type);
-    return remember(rt, data_object_new_sized(&rt->graph.table, type, count, most, object));
+    return program_remember(rt, data_object_new_sized(&rt->graph.table, type, count, most, object));
 }
 
 static void mix_name(duite *rt, duite_object object)
@@ -109,26 +121,27 @@ static void mix_hint(duite *rt, duite_object object, double weight, size_t n,
 int duite_hint(duite *rt, duite_object object, double weight, size_t n,
                const duite_object *neighbours, const double *edge_weights)
 {
-    int code = enter(rt, "duite_hint");
+    int code = program_enter(rt, "duite_hint");
     if (code)
         return code;
     mix_hint(rt, object, weight, n, neighbours, edge_weights);
-    return remember(rt, map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights));
+    return program_remember(
+        rt, map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights));
 }
 
 int duite_follow(duite *rt, duite_object object, duite_object leader)
 {
-    int code = enter(rt, "duite_follow");
+    int code = program_enter(rt, "duite_follow");
     if (code)
         return code;
     mix_name(rt, object);
     mix_name(rt, leader);
-    return remember(rt, map_follow(&rt->graph.table, object, leader));
+    return program_remember(rt, map_follow(&rt->graph.table, object, leader));
 }
 
 int duite_home(duite *rt, duite_object object)
 {
-    if (enter(rt, "duite_home") || settle(rt))
+    if (enter_any(rt, "duite_home") || program_settle(rt))
         return -1;
     const struct data_object *found = data_object_find(&rt->graph.table, object);
     return found ? found->home : -1;
@@ -136,11 +149,11 @@ int duite_home(duite *rt, duite_object object)
 
 int duite_free(duite *rt, duite_object object)
 {
-    int code = enter(rt, "duite_free");
+    int code = program_enter(rt, "duite_free");
     if (!code)
-        code = remember(rt, settle(rt));
+        code = program_remember(rt, program_settle(rt));
     if (!code)
-        code = remember(rt, graph_free(&rt->graph, work_main(rt->pool), object));
+        code = program_remember(rt, graph_free(&rt->graph, work_main(rt->pool), object));
     return code;
 }
 
@@ -149,40 +162,45 @@ int duite_free(duite *rt, duite_object object)
 static int fork_task(duite *rt, int at, const duite_kernel *kernel, const void *args, size_t n,
                      const duite_object *objects)
 {
-    int code = settle(rt);
+    if (rt->building)
+        return program_remember(rt, graph_record_fork(rt->building, at, kernel, args, n, objects));
+    int code = program_settle(rt);
     if (!code)
         code = graph_fork(&rt->graph, work_main(rt->pool), at, kernel, args, n, objects);
     work_tick(rt->pool);
-    return remember(rt, code);
+    return program_remember(rt, code);
 }
 
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects)
 {
-    int code = enter(rt, "duite_fork");
+    int code = enter_any(rt, "duite_fork");
     return code ? code : fork_task(rt, GRAPH_ANYWHERE, kernel, args, n, objects);
 }
 
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
                   const duite_object *objects)
 {
-    int code = enter(rt, "duite_fork_at");
+    int code = enter_any(rt, "duite_fork_at");
     if (code)
         return code;
     if (rank < 0)
-        return remember(rt,
-                        base_error(DUITE_E_ARGUMENT, "duite_fork_at: there is no rank %d", rank));
+        return program_remember(
+            rt, base_error(DUITE_E_ARGUMENT, "duite_fork_at: there is no rank %d", rank));
     return fork_task(rt, rank, kernel, args, n, objects);
 }
 
 static int set(duite *rt, duite_object object, const void *values, const size_t *count,
                const char *call)
 {
-    int code = enter(rt, call);
+    int code = enter_any(rt, call);
+    if (!code && rt->building)
+        return program_remember(rt, graph_record_set(rt->building, object, values, count));
     if (!code)
-        code = remember(rt, settle(rt));
+        code = program_remember(rt, program_settle(rt));
     if (!code)
-        code = remember(rt, graph_set(&rt->graph, work_main(rt->pool), object, values, count));
+        code =
+            program_remember(rt, graph_set(&rt->graph, work_main(rt->pool), object, values, count));
     return code;
 }
 
@@ -204,17 +222,17 @@ static bool copy_done(void *context)
 }
 
 /* Copies to the values, or tells the count, whichever is wanted here. */
-static int get(duite *rt, duite_object object, int rank, void *values, size_t *count,
-               const char *call)
+int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
+                const char *call)
 {
     bool here = rank == GRAPH_ANYWHERE || rank == rt->graph.rank;
     struct graph_copy copy = {.values = values};
-    int code = settle(rt);
+    int code = program_settle(rt);
     if (!code)
         code = graph_copy(&rt->graph, work_main(rt->pool), object, rank, &copy);
     work_tick(rt->pool);
     if (code == DUITE_E_MEMORY)
-        return remember(rt, code);
+        return program_remember(rt, code);
     if (code || !here)
         return code;
     work_until(rt->pool, copy_done, &copy);
@@ -235,10 +253,10 @@ static int get(duite *rt, duite_object object, int rank, void *values, size_t *c
 static int get_and_recall(duite *rt, duite_object object, int rank, void *values, size_t *count,
                           const char *call)
 {
-    int code = enter(rt, call);
+    int code = program_enter(rt, call);
     if (code)
         return code;
-    code = get(rt, object, rank, values, count, call);
+    code = program_get(rt, object, rank, values, count, call);
     int before = recall(rt);
     return before ? before : code;
 }
@@ -317,7 +335,7 @@ static const struct data_failure *first_failure(const struct comm_word *words, i
 
 int duite_wait(duite *rt)
 {
-    int code = enter(rt, "duite_wait");
+    int code = program_enter(rt, "duite_wait");
     if (code)
         return code;
     struct graph *graph = &rt->graph;
@@ -345,7 +363,7 @@ int duite_wait(duite *rt)
 
 int duite_count_all(duite *rt, duite_counters *counters)
 {
-    int code = enter(rt, "duite_count_all");
+    int code = program_enter(rt, "duite_count_all");
     if (code || !counters)
         return code ? code
                     : base_error(DUITE_E_ARGUMENT, "duite_count_all: nowhere to put the counters");
@@ -368,6 +386,7 @@ int duite_count_all(duite *rt, duite_counters *counters)
                                  .messages = (uint64_t)sums[4],
                                  .bytes = (uint64_t)sums[5],
                                  .busy = sums[6],
-                                 .idle = sums[7]};
+                                 .idle = sums[7],
+                                 .graphs_recorded = rt->graphs_recorded};
     return code;
 }

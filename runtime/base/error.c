@@ -50,7 +50,7 @@ const char *duite_code_text(int code)
     case DUITE_E_STATE:
         return "call not allowed here";
     case DUITE_E_NOT_FREED:
-        return "objects were not freed";
+        return "objects or graphs were not freed";
     case DUITE_E_CHECK:
         return "a body does not keep to what its kernel declares";
     case DUITE_E_SYSTEM:
@@ -59,6 +59,8 @@ const char *duite_code_text(int code)
         return "law does not fit";
     case DUITE_E_SIZE:
         return "size out of bounds";
+    case DUITE_E_BINDING:
+        return "an object does not fit the one it is bound to";
     default:
         return "unknown code";
     }

@@ -88,7 +88,7 @@ static int check_objects(struct graph *graph, const duite_kernel *kernel, size_t
     return DUITE_OK;
 }
 
-static void unmark(struct graph *graph, size_t n, const duite_object *objects)
+void graph_unmark(struct graph *graph, size_t n, const duite_object *objects)
 {
     for (size_t i = 0; i < n; i++)
         if (objects[i].slot < graph->table.n_slots)
@@ -166,8 +166,8 @@ static struct graph_task *body_task(struct graph *graph, uint32_t index, const v
 
 /* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
  */
-static void fork_void(struct graph *graph, void *worker, struct graph_task *task, size_t made,
-                      uint32_t done)
+void graph_void(struct graph *graph, void *worker, struct graph_task *task, size_t made,
+                uint32_t done)
 {
     uint32_t missing = task->n - (uint32_t)made;
     task->kind = GRAPH_VOID;
@@ -175,20 +175,27 @@ static void fork_void(struct graph *graph, void *worker, struct graph_task *task
     graph_settled(graph, worker, task, done + missing);
 }
 
+int graph_check(struct graph *graph, int at, const duite_kernel *kernel, const void *args, size_t n,
+                const duite_object *objects, uint32_t *index)
+{
+    int code = find_kernel(graph, kernel, index);
+    if (!code)
+        code = check_call(graph, at, *index, args, n, objects);
+    if (code)
+        return code;
+    code = check_objects(graph, kernel, n, objects);
+    if (code)
+        graph_unmark(graph, n, objects);
+    return code;
+}
+
 int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *kernel,
                const void *args, size_t n, const duite_object *objects)
 {
     uint32_t index = 0, done = 0;
-    int code = find_kernel(graph, kernel, &index);
-    if (!code)
-        code = check_call(graph, at, index, args, n, objects);
+    int code = graph_check(graph, at, kernel, args, n, objects, &index);
     if (code)
         return code;
-    code = check_objects(graph, kernel, n, objects);
-    if (code) {
-        unmark(graph, n, objects);
-        return code;
-    }
     graph->forks++;
     graph_mix(graph, (uint64_t)index << 32 | (uint32_t)at);
     const struct data_object *own = owner(graph, kernel, n, objects);
@@ -203,7 +210,7 @@ int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *ke
         graph_mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         code = use(graph, worker, at, kernel, i, objects[i], task, &done);
         if (code && task)
-            fork_void(graph, worker, task, i, done);
+            graph_void(graph, worker, task, i, done);
         if (code)
             return code;
     }

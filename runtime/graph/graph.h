@@ -18,7 +18,13 @@ enum graph_kind {
     GRAPH_PIECES,  /* combines this rank's contributions, and turns into the SEND of them */
     GRAPH_SEND,    /* sends a version or pieces to another rank */
     GRAPH_COPY,    /* duite_get: copies a version to the main program */
-    GRAPH_VOID /* memory ran out while it was forked: does not run, and poisons what it writes */
+    GRAPH_VOID,   /* memory ran out while it was forked: does not run, and poisons what it writes */
+    GRAPH_REPLAY, /* replays of a recorded graph: begins them; over when the last round is */
+    /* Nodes of a replay: */
+    GRAPH_NODE,     /* a task of the program */
+    GRAPH_NODE_SET, /* duite_set */
+    GRAPH_NODE_SUM, /* combines contributions with an object */
+    GRAPH_NODE_FLAG /* decides whether there is another round */
 };
 
 /* One parameter of a task. */
@@ -42,10 +48,12 @@ struct graph_task {
     uint64_t number; /* in fork order */
     uint32_t block;  /* for schedulers: of the object that it runs for */
     union {
-        void *args;              /* BODY: its copy of the arguments */
-        struct graph_sum *sum;   /* COMBINE, PIECES */
-        struct graph_send *send; /* SEND */
-        struct graph_copy *copy; /* COPY */
+        void *args;                  /* BODY: its copy of the arguments */
+        struct graph_sum *sum;       /* COMBINE, PIECES */
+        struct graph_send *send;     /* SEND */
+        struct graph_copy *copy;     /* COPY */
+        struct graph_replay *replay; /* REPLAY */
+        struct graph_node *node;     /* NODE... */
     };
     size_t size;        /* of all of it, in bytes */
     duite_param *param; /* n */
@@ -140,8 +148,8 @@ int graph_copy(struct graph *graph, void *worker, duite_object object, int to,
 
 /* What the running body may say of its failure, and what it was refused. */
 struct duite_call_private {
-    struct graph_task *task;
-    int refused; /* code of a call that failed, or 0: the task fails with it at least */
+    struct graph_task *task; /* NULL in replays */
+    int refused;             /* code of a call that failed, or 0: the task fails with it at least */
     char text[sizeof((struct data_failure *)0)->text];
 };
 

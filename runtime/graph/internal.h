@@ -58,6 +58,33 @@ const struct data_failure *graph_fail(struct graph *graph, const struct data_fai
 const struct data_failure *graph_fail_memory(struct graph *graph, const struct graph_task *task);
 struct data_packet *graph_poison_packet(struct data_key key, const struct data_failure *failure);
 
+/* Fits a fork kernel, arguments and objects? Then *index is the kernel's. The objects are marked as
+ * named by the next fork; graph_unmark takes this back. */
+int graph_check(struct graph *graph, int at, const duite_kernel *kernel, const void *args, size_t n,
+                const duite_object *objects, uint32_t *index);
+void graph_unmark(struct graph *graph, size_t n, const duite_object *objects);
+
+/* May the object be set to so many elements? */
+int graph_set_check(const struct data_object *object, duite_object name, size_t count);
+
+/* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
+ */
+void graph_void(struct graph *graph, void *worker, struct graph_task *task, size_t made,
+                uint32_t done);
+
+/* Why nothing runs any more, or NULL. */
+const struct data_failure *graph_given_up(struct graph *graph);
+
+/* A replay: binds the objects; starts the first round. */
+void graph_replay_run(struct graph *graph, struct graph_task *task);
+void graph_replay_start(struct graph *graph, void *worker, struct graph_task *task);
+/* A node of a replay: runs it, returns whether a body ran; tells its successors. */
+bool graph_node_run(struct graph *graph, struct graph_task *task, duite_call *call);
+void graph_node_finish(struct graph *graph, void *worker, struct graph_task *task);
+
+/* Publishes what a task wrote, releases what it read, frees it. */
+void graph_over(struct graph *graph, void *worker, struct graph_task *task);
+
 static inline struct data_key graph_key(const struct graph *graph, const struct data_object *object)
 {
     duite_object name = data_object_name(&graph->table, object);

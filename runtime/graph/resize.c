@@ -21,18 +21,17 @@ void graph_size_close(struct graph_task *task)
                                task->param[i].count * data_type_size(task->param[i].type));
 }
 
-static int refuse(const duite_call *call, size_t i, size_t count)
+static int refuse(const duite_call *call, size_t i, bool sized, size_t count)
 {
-    const struct graph_task *task = call->own->task;
-    if (i >= task->n)
-        duite_fail(call, 0, "duite_resize: there is no parameter %zu, only %u", i, task->n);
-    else if (!task->access[i].sized)
+    if (i >= call->n_params)
+        duite_fail(call, 0, "duite_resize: there is no parameter %zu, only %zu", i, call->n_params);
+    else if (!sized)
         duite_fail(call, 0, "duite_resize: the object of parameter %zu has a fixed size", i);
-    else if (!task->access[i].out)
+    else if (!call->own->task->access[i].out)
         duite_fail(call, 0, "duite_resize: parameter %zu is only read", i);
     else
         duite_fail(call, 0, "duite_resize: parameter %zu: %zu elements are more than %zu at most",
-                   i, count, task->param[i].most);
+                   i, count, call->param[i].most);
     call->own->refused = DUITE_E_SIZE;
     return base_error(DUITE_E_SIZE, "%s", call->own->text);
 }
@@ -40,9 +39,10 @@ static int refuse(const duite_call *call, size_t i, size_t count)
 int duite_resize(const duite_call *call, size_t i, size_t count)
 {
     struct graph_task *task = call->own->task;
-    duite_param *param = i < task->n ? (duite_param *)&call->param[i] : NULL; /* ours to write */
-    if (!param || !task->access[i].sized || !task->access[i].out || count > param->most)
-        return refuse(call, i, count);
+    bool sized = task && i < call->n_params && task->access[i].sized;
+    if (!sized || !task->access[i].out || count > call->param[i].most)
+        return refuse(call, i, sized, count);
+    duite_param *param = (duite_param *)&call->param[i]; /* ours to write */
     size_t size = data_type_size(param->type);
     if (count > param->count)
         memset((char *)param->data + param->count * size, 0, (count - param->count) * size);

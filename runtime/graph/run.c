@@ -101,7 +101,7 @@ static const struct data_failure no_memory = {
 static const struct data_failure lost = {
     .code = DUITE_E_MPI, .kernel = UINT32_MAX, .text = "communication between the ranks broke"};
 
-static const struct data_failure *given_up(struct graph *graph)
+const struct data_failure *graph_given_up(struct graph *graph)
 {
     return atomic_load_explicit(&graph->given_up, memory_order_relaxed) ? &lost : NULL;
 }
@@ -127,7 +127,7 @@ bool graph_run(struct graph *graph, struct graph_task *task, duite_call *call)
     case GRAPH_BODY:
         failure = prepare(graph, task);
         if (!failure)
-            failure = given_up(graph);
+            failure = graph_given_up(graph);
         ran = !failure;
         if (!failure)
             failure = call_body(graph, task, call);
@@ -147,6 +147,14 @@ bool graph_run(struct graph *graph, struct graph_task *task, duite_call *call)
     case GRAPH_COPY:
         run_copy(graph, task);
         break;
+    case GRAPH_REPLAY:
+        graph_replay_run(graph, task);
+        break;
+    case GRAPH_NODE:
+    case GRAPH_NODE_SET:
+    case GRAPH_NODE_SUM:
+    case GRAPH_NODE_FLAG:
+        return graph_node_run(graph, task, call);
     case GRAPH_SEND:
         break;
     }
@@ -154,6 +162,16 @@ bool graph_run(struct graph *graph, struct graph_task *task, duite_call *call)
 }
 
 void graph_finish(struct graph *graph, void *worker, struct graph_task *task)
+{
+    if (task->kind > GRAPH_REPLAY)
+        graph_node_finish(graph, worker, task);
+    else if (task->kind == GRAPH_REPLAY)
+        graph_replay_start(graph, worker, task);
+    else
+        graph_over(graph, worker, task);
+}
+
+void graph_over(struct graph *graph, void *worker, struct graph_task *task)
 {
     for (uint32_t i = 0; i < task->n; i++) {
         struct graph_access *access = &task->access[i];

@@ -25,7 +25,7 @@ static struct data_version *version_of(const void *values, size_t bytes)
     return version;
 }
 
-static int check_count(const struct data_object *object, duite_object name, size_t count)
+int graph_set_check(const struct data_object *object, duite_object name, size_t count)
 {
     if (count == object->most || (object->sized && count < object->most))
         return DUITE_OK;
@@ -41,7 +41,7 @@ int graph_set(struct graph *graph, void *worker, duite_object name, const void *
     if (!object)
         return DUITE_E_OBJECT;
     size_t count = wanted ? *wanted : object->most;
-    int code = check_count(object, name, count);
+    int code = graph_set_check(object, name, count);
     if (code)
         return code;
     graph_mix(graph, (uint64_t)name.slot << 32 | name.generation);

@@ -23,12 +23,13 @@ enum { LONGEST_CHAIN = 64 }; /* tasks run one after another without a look at th
 
 static duite_ready describe(const struct graph *graph, const struct graph_task *task)
 {
-    static const char *const own[] = {[GRAPH_COMBINE] = "duite_sum",
-                                      [GRAPH_PIECES] = "duite_sum",
-                                      [GRAPH_COPY] = "duite_get",
-                                      [GRAPH_VOID] = "duite_fork"};
-    const char *name =
-        task->kind == GRAPH_BODY ? graph->kernels[task->kernel]->name : own[task->kind];
+    static const char *const own[] = {
+        [GRAPH_COMBINE] = "duite_sum",   [GRAPH_PIECES] = "duite_sum",
+        [GRAPH_COPY] = "duite_get",      [GRAPH_VOID] = "duite_fork",
+        [GRAPH_REPLAY] = "duite_replay", [GRAPH_NODE_SET] = "duite_set",
+        [GRAPH_NODE_SUM] = "duite_sum",  [GRAPH_NODE_FLAG] = "duite_replay_while"};
+    bool program = task->kind == GRAPH_BODY || task->kind == GRAPH_NODE;
+    const char *name = program ? graph->kernels[task->kernel]->name : own[task->kind];
     return (duite_ready){.kernel = name, .number = task->number, .block = task->block};
 }
 

@@ -1,6 +1,7 @@
 check_PROGRAMS += tests/runtime/random_programs
 tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/runtime/random_program.h \
-    tests/runtime/random_make.c tests/runtime/random_laws.c tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c
+    tests/runtime/random_make.c tests/runtime/random_make.h tests/runtime/random_graphs.c \
+    tests/runtime/random_cells.c tests/runtime/random_cells.h tests/runtime/random_print.c tests/runtime/random_laws.c tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c
 tests_runtime_random_programs_LDADD = libduite_core.la
 check_PROGRAMS += tests/runtime/ranks_sizes
 tests_runtime_ranks_sizes_SOURCES = tests/runtime/ranks_sizes.c tests/negative/misuse.c tests/negative/misuse.h
@@ -15,7 +16,8 @@ dist_check_SCRIPTS += tests/runtime/test_exit.sh
 TESTS += tests/runtime/test_exit.sh
 
 if HAVE_CHECK
-RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched tests/runtime/test_check
+RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched tests/runtime/test_check \
+    tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
 tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
@@ -28,4 +30,12 @@ tests_runtime_test_settle_SOURCES = tests/runtime/test_settle.c
 tests_runtime_test_settle_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_sched_SOURCES = tests/runtime/test_sched.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_sched_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_graphs_SOURCES = tests/runtime/test_graphs.c
+tests_runtime_test_graphs_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_graphs_change_SOURCES = tests/runtime/test_graphs_change.c \
+    tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
+tests_runtime_test_graphs_refused_SOURCES = tests/runtime/test_graphs_refused.c \
+    tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
+tests_runtime_test_graphs_refused_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_graphs_change_LDADD = $(DUITE_TEST_LIBS)
 endif

@@ -237,9 +237,13 @@ int prog_body(const duite_call *call)
 
         for (size_t e = 0; e < count; e += stride)
             put(args->type[i], mode, call->param[i].data, e, duite_random(&state));
+        if (args->ends && args->mode[i] != DUITE_CW && hash % 3 == 0)
+            memset(call->param[i].data, 0, prog_size(args->type[i]));
     }
     if (args->exceeds)
         return exceed(call, args);
+    if (args->sometimes && hash % 4 != 1)
+        return 0;
     if (args->fails && call->context)
         return duite_fail(call, args->fails, "fork %u fails", args->number);
     return args->fails;
@@ -251,6 +255,8 @@ void prog_args_fill(const struct prog *prog, const struct prog_op *op, struct pr
     args->seed = op->seed;
     args->fails = op->fails;
     args->exceeds = op->exceeds;
+    args->sometimes = op->sometimes != 0;
+    args->ends = op->ends != 0;
     args->rank = op->rank;
     args->pause = op->pause;
     args->number = op->number;

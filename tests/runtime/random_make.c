@@ -2,34 +2,19 @@
  * program never uses an object that is not alive, names none twice in a task, and frees what it
  * made, with rare exceptions. */
 
-#include "tests/runtime/random_program.h"
+#include "tests/runtime/random_make.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_LIVE = 20, MAX_MADE = 48, MAX_OPS = 420, MOST_BURST = 24 };
-
-struct maker {
-    struct prog *prog;
-    uint64_t random;
-    unsigned live[MAX_LIVE]; /* objects alive, oldest first */
-    unsigned n_live, most_live;
-    unsigned unsettled; /* objects from this number on may still follow another for certain */
-    unsigned large;     /* one object in so many is large; 0: none */
-    unsigned failing;   /* one body in so many fails; 0: none */
-    unsigned pausing;   /* one body in so many wastes time; 0: none */
-    int wrong;          /* refused forks as well */
-    int refused;        /* one waits to be told; get_at tells it on one rank only */
-};
-
-static unsigned below(struct maker *m, unsigned n)
+unsigned make_below(struct maker *m, unsigned n)
 {
     return (unsigned)((duite_random(&m->random) >> 33) % n);
 }
 
-static int one_in(struct maker *m, unsigned n)
+int make_one_in(struct maker *m, unsigned n)
 {
-    return n && below(m, n) == 0;
+    return n && make_below(m, n) == 0;
 }
 
 duite_mode prog_mode(const duite_kernel *kernel, size_t i)
@@ -54,13 +39,13 @@ static duite_mode draw_mode(struct maker *m)
     static const duite_mode MODES[] = {DUITE_R,  DUITE_R,  DUITE_R, DUITE_W,
                                        DUITE_RW, DUITE_CW, DUITE_CW};
 
-    return MODES[below(m, sizeof MODES / sizeof *MODES)];
+    return MODES[make_below(m, sizeof MODES / sizeof *MODES)];
 }
 
 /* The law of a parameter with cw; a sum is what no law says. */
 static const duite_law *draw_law(struct maker *m, duite_mode mode)
 {
-    const unsigned law = below(m, PROG_N_LAWS + 4);
+    const unsigned law = make_below(m, PROG_N_LAWS + 4);
 
     return mode != DUITE_CW || law >= PROG_N_LAWS ? NULL : prog_law_given((enum prog_law)law);
 }
@@ -70,10 +55,10 @@ static void make_kernels(struct maker *m)
 {
     struct prog *prog = m->prog;
 
-    prog->n_kernels = 2 + below(m, PROG_MAX_KERNELS - 1);
+    prog->n_kernels = 2 + make_below(m, PROG_MAX_KERNELS - 1);
     for (size_t k = 0; k < prog->n_kernels; k++) {
         duite_kernel *kernel = &prog->kernel[k];
-        const unsigned n = k < 2 ? 1 : below(m, 7);
+        const unsigned n = k < 2 ? 1 : make_below(m, 7);
 
         snprintf(prog->name[k], sizeof prog->name[k], "kernel %zu", k);
         kernel->name = prog->name[k];
@@ -82,15 +67,15 @@ static void make_kernels(struct maker *m)
             kernel->access[i] = k == 0 ? DUITE_CW : k == 1 ? DUITE_RW : draw_mode(m);
             kernel->law[i] = draw_law(m, kernel->access[i]);
         }
-        if (k >= 2 && one_in(m, 3))
+        if (k >= 2 && make_one_in(m, 3))
             kernel->rest = draw_mode(m);
         kernel->rest_law = draw_law(m, kernel->rest);
-        kernel->args_size = sizeof(struct prog_args) - below(m, PROG_ARGS_PADDING);
+        kernel->args_size = sizeof(struct prog_args) - make_below(m, PROG_ARGS_PADDING);
         prog->list[k] = kernel;
     }
 }
 
-static struct prog_op *push(struct maker *m, enum prog_kind kind, unsigned object)
+struct prog_op *make_push(struct maker *m, enum prog_kind kind, unsigned object)
 {
     struct prog_op *op = &m->prog->ops[m->prog->n_ops++];
 
@@ -103,11 +88,11 @@ static struct prog_op *push(struct maker *m, enum prog_kind kind, unsigned objec
 
 static size_t draw_count(struct maker *m)
 {
-    if (one_in(m, m->large))
-        return 4000 + below(m, 40000);
-    if (one_in(m, 12))
-        return 1 + below(m, 5000);
-    return one_in(m, 4) ? 1 : 1 + below(m, 60);
+    if (make_one_in(m, m->large))
+        return 4000 + make_below(m, 40000);
+    if (make_one_in(m, 12))
+        return 1 + make_below(m, 5000);
+    return make_one_in(m, 4) ? 1 : 1 + make_below(m, 60);
 }
 
 static void make_new(struct maker *m)
@@ -118,13 +103,20 @@ static void make_new(struct maker *m)
 
     if (m->n_live == MAX_LIVE || prog->n_objects == MAX_MADE)
         return;
-    struct prog_op *op = push(m, PROG_NEW, (unsigned)prog->n_objects);
+    struct prog_op *op = make_push(m, PROG_NEW, (unsigned)prog->n_objects);
 
-    op->type = TYPES[below(m, sizeof TYPES / sizeof *TYPES)];
+    op->type = TYPES[make_below(m, sizeof TYPES / sizeof *TYPES)];
     op->count = draw_count(m);
-    if (one_in(m, 4)) {
+    if (make_one_in(m, m->sized)) {
         op->most = op->count;
-        op->count = below(m, (unsigned)op->most + 1);
+        op->count = make_below(m, (unsigned)op->most + 1);
+    }
+    if (m->n_live && make_one_in(m, 3)) { /* one that may be bound in place of another */
+        const struct prog_object *like = &prog->objects[make_draw_object(m)];
+
+        op->type = like->type;
+        op->count = like->count;
+        op->most = like->most;
     }
     prog->objects[prog->n_objects] = (struct prog_object){op->type, op->count, op->most, -1};
     m->live[m->n_live++] = (unsigned)prog->n_objects++;
@@ -132,20 +124,21 @@ static void make_new(struct maker *m)
 
 static void free_place(struct maker *m, unsigned place)
 {
-    push(m, PROG_FREE, m->live[place]);
+    make_push(m, PROG_FREE, m->live[place]);
     memmove(&m->live[place], &m->live[place + 1], (--m->n_live - place) * sizeof *m->live);
 }
 
-static unsigned draw_object(struct maker *m)
+unsigned make_draw_object(struct maker *m)
 {
-    return m->live[one_in(m, 2) ? below(m, m->n_live) : below(m, (m->n_live + 3) / 4)];
+    return m
+        ->live[make_one_in(m, 2) ? make_below(m, m->n_live) : make_below(m, (m->n_live + 3) / 4)];
 }
 
 /* An object that the operation does not name yet; -1 if none was found. */
 static int draw_other(struct maker *m, const struct prog_op *op, int may_bytes, int may_numbers)
 {
     for (int attempt = 0; attempt < 30; attempt++) {
-        const unsigned object = draw_object(m);
+        const unsigned object = make_draw_object(m);
         int taken = m->prog->objects[object].type == DUITE_BYTE ? !may_bytes : !may_numbers;
 
         taken |= m->prog->objects[object].most && !(may_bytes && may_numbers);
@@ -168,39 +161,47 @@ static int draw_parameter(struct maker *m, const struct prog_op *op)
     return draw_other(m, op, any || weave, any || !weave);
 }
 
-static void push_fork(struct maker *m, const struct prog_op *draft)
+struct prog_op *make_push_fork(struct maker *m, const struct prog_op *draft)
 {
     struct prog *prog = m->prog;
-    struct prog_op *op = push(m, PROG_FORK, 0);
+    struct prog_op *op = make_push(m, draft->kind, 0);
 
     op->kernel = draft->kernel;
     op->n = draft->n;
     memcpy(op->objects, draft->objects, sizeof op->objects);
     op->number = (unsigned)prog->n_forks++;
-    op->rank = one_in(m, 8) ? (int)below(m, (unsigned)prog->n_ranks) : -1;
-    op->fails = one_in(m, m->failing) ? 1 + (int)below(m, 1000) : 0;
-    op->exceeds = op->n && one_in(m, 6 * m->failing) ? 1 + below(m, op->n) : 0;
-    op->pause = one_in(m, m->pausing) ? 1 + below(m, one_in(m, 4) ? 20000 : 500) : 0;
+    op->rank = make_one_in(m, 8) ? (int)make_below(m, (unsigned)prog->n_ranks) : -1;
+    op->fails = make_one_in(m, m->failing) ? 1 + (int)make_below(m, 1000) : 0;
+    op->exceeds = op->n && make_one_in(m, 6 * m->failing) ? 1 + make_below(m, op->n) : 0;
+    op->pause = make_one_in(m, m->pausing) ? 1 + make_below(m, make_one_in(m, 4) ? 20000 : 500) : 0;
     m->unsettled = (unsigned)prog->n_objects;
+    return op;
+}
+
+int make_draft(struct maker *m, struct prog_op *draft)
+{
+    const struct prog *prog = m->prog;
+    const unsigned kernel = make_below(m, make_one_in(m, 3) ? 2 : (unsigned)prog->n_kernels);
+    const unsigned listed = n_listed(&prog->kernel[kernel]);
+    const unsigned more = prog->kernel[kernel].rest ? make_below(m, make_one_in(m, 4) ? 16 : 4) : 0;
+
+    draft->kernel = kernel;
+    while (draft->n < listed + more) {
+        const int object = draw_parameter(m, draft);
+
+        if (object < 0)
+            break;
+        draft->objects[draft->n++] = (unsigned)object;
+    }
+    return draft->n >= listed;
 }
 
 static void make_fork(struct maker *m)
 {
-    const struct prog *prog = m->prog;
-    const unsigned kernel = below(m, one_in(m, 3) ? 2 : (unsigned)prog->n_kernels);
-    const unsigned listed = n_listed(&prog->kernel[kernel]);
-    const unsigned more = prog->kernel[kernel].rest ? below(m, one_in(m, 4) ? 16 : 4) : 0;
-    struct prog_op draft = {.kind = PROG_FORK, .kernel = kernel};
+    struct prog_op draft = {.kind = PROG_FORK};
 
-    while (draft.n < listed + more) {
-        const int object = draw_parameter(m, &draft);
-
-        if (object < 0)
-            break;
-        draft.objects[draft.n++] = (unsigned)object;
-    }
-    if (draft.n >= listed)
-        push_fork(m, &draft);
+    if (make_draft(m, &draft))
+        make_push_fork(m, &draft);
 }
 
 /* Many contributions to one object, so that trees grow. */
@@ -212,18 +213,18 @@ static void make_burst(struct maker *m)
     if (object < 0)
         return;
     draft.objects[draft.n++] = (unsigned)object;
-    for (unsigned i = below(m, MOST_BURST); i > 0; i--) {
-        push_fork(m, &draft);
-        if (one_in(m, 4))
+    for (unsigned i = make_below(m, MOST_BURST); i > 0; i--) {
+        make_push_fork(m, &draft);
+        if (make_one_in(m, 4))
             make_fork(m);
     }
 }
 
 static void make_hint(struct maker *m)
 {
-    struct prog_op *op = push(m, PROG_HINT, draw_object(m));
+    struct prog_op *op = make_push(m, PROG_HINT, make_draw_object(m));
 
-    op->weight = (double)below(m, 5);
+    op->weight = (double)make_below(m, 5);
     for (unsigned i = 0; i < 3; i++) {
         const int other = draw_other(m, op, 1, 1);
 
@@ -235,19 +236,19 @@ static void make_hint(struct maker *m)
 /* The leader is older, so that nobody follows itself. */
 static void make_follow(struct maker *m)
 {
-    const unsigned place = 1 + below(m, m->n_live - 1);
+    const unsigned place = 1 + make_below(m, m->n_live - 1);
     struct prog_object *object = &m->prog->objects[m->live[place]];
-    const unsigned leader = m->live[below(m, place)];
+    const unsigned leader = m->live[make_below(m, place)];
 
     if (object->leader >= 0 || m->live[place] < m->unsettled)
         return;
     object->leader = (int)leader;
-    push(m, PROG_FOLLOW, m->live[place])->objects[0] = leader;
+    make_push(m, PROG_FOLLOW, m->live[place])->objects[0] = leader;
 }
 
 static void make_get(struct maker *m)
 {
-    push(m, PROG_GET, draw_object(m));
+    make_push(m, PROG_GET, make_draw_object(m));
     m->refused = 0;
     m->unsettled = (unsigned)m->prog->n_objects;
 }
@@ -255,44 +256,45 @@ static void make_get(struct maker *m)
 static void make_get_at(struct maker *m)
 {
     if (!m->refused)
-        push(m, PROG_GET_AT, draw_object(m))->rank = (int)below(m, (unsigned)m->prog->n_ranks);
+        make_push(m, PROG_GET_AT, make_draw_object(m))->rank =
+            (int)make_below(m, (unsigned)m->prog->n_ranks);
 }
 
 static void make_count(struct maker *m)
 {
-    push(m, PROG_COUNT, draw_object(m));
+    make_push(m, PROG_COUNT, make_draw_object(m));
     m->refused = 0;
 }
 
-static void make_set(struct maker *m, int zeros)
+void make_set(struct maker *m, enum prog_kind kind, int zeros)
 {
-    struct prog_op *op = push(m, PROG_SET, draw_object(m));
+    struct prog_op *op = make_push(m, kind, make_draw_object(m));
     const struct prog_object *object = &m->prog->objects[op->object];
 
-    op->count = object->most ? below(m, (unsigned)object->most + 1) : object->count;
+    op->count = object->most ? make_below(m, (unsigned)object->most + 1) : object->count;
     if (zeros)
         op->seed = 0;
 }
 
 static void make_wait(struct maker *m)
 {
-    push(m, PROG_WAIT, 0);
+    make_push(m, PROG_WAIT, 0);
     m->refused = 0;
 }
 
 static void make_wrong(struct maker *m)
 {
     if (m->wrong)
-        push(m, PROG_WRONG, draw_object(m));
+        make_push(m, PROG_WRONG, make_draw_object(m));
     m->refused |= m->wrong;
 }
 
 static void make_other(struct maker *m)
 {
-    const unsigned choice = below(m, 16);
+    const unsigned choice = make_below(m, 16);
 
     if (choice < 3)
-        make_set(m, choice < 1);
+        make_set(m, PROG_SET, choice < 1);
     else if (choice < 4)
         make_count(m);
     else if (choice < 6)
@@ -304,9 +306,9 @@ static void make_other(struct maker *m)
     else if (choice < 10)
         make_hint(m);
     else if (choice < 11)
-        push(m, PROG_HOME, draw_object(m));
+        make_push(m, PROG_HOME, make_draw_object(m));
     else if (choice < 12 && m->n_live > 2)
-        free_place(m, below(m, m->n_live));
+        free_place(m, make_below(m, m->n_live));
     else if (choice < 13)
         make_wrong(m);
     m->unsettled = (unsigned)m->prog->n_objects;
@@ -317,7 +319,7 @@ static void make_operations(struct maker *m, size_t n)
     struct prog *prog = m->prog;
 
     while (prog->n_ops < n) {
-        const unsigned choice = below(m, 100);
+        const unsigned choice = make_below(m, 100);
 
         if (m->n_live < 2 || (choice < 8 && m->n_live < m->most_live))
             make_new(m);
@@ -325,6 +327,8 @@ static void make_operations(struct maker *m, size_t n)
             make_follow(m);
         else if (choice < 14)
             make_burst(m);
+        else if (choice < 34 && m->graphs)
+            make_graph_operation(m);
         else if (choice < 78)
             make_fork(m);
         else
@@ -336,11 +340,13 @@ static void make_operations(struct maker *m, size_t n)
 
 static void draw_character(struct maker *m)
 {
-    m->most_live = 2 + below(m, MAX_LIVE - 1);
-    m->large = one_in(m, 40) ? 10 : 0;
-    m->failing = one_in(m, 4) ? 4 + below(m, 30) : 0;
-    m->pausing = one_in(m, 2) ? 1 + below(m, 10) : 0;
-    m->wrong = one_in(m, 8);
+    m->most_live = 2 + make_below(m, MAX_LIVE - 1);
+    m->large = make_one_in(m, 40) ? 10 : 0;
+    m->failing = make_one_in(m, 4) ? 4 + make_below(m, 30) : 0;
+    m->pausing = make_one_in(m, 2) ? 1 + make_below(m, 10) : 0;
+    m->wrong = make_one_in(m, 8);
+    m->graphs = make_one_in(m, 2);
+    m->sized = m->graphs && !make_one_in(m, 4) ? 0 : 4; /* such graphs have no plan */
 }
 
 struct prog *prog_make(uint64_t seed, int n_ranks)
@@ -352,7 +358,7 @@ struct prog *prog_make(uint64_t seed, int n_ranks)
         return NULL;
     prog->seed = seed;
     prog->n_ranks = n_ranks;
-    prog->ops = calloc(MAX_OPS + MAX_MADE + 2 * MOST_BURST, sizeof *prog->ops);
+    prog->ops = calloc(MAX_OPS + MAX_MADE + 2 * MOST_BURST + MOST_RECORDED, sizeof *prog->ops);
     prog->objects = calloc(MAX_MADE, sizeof *prog->objects);
     if (!prog->ops || !prog->objects) {
         prog_free(prog);
@@ -362,16 +368,17 @@ struct prog *prog_make(uint64_t seed, int n_ranks)
     make_kernels(&m);
     for (unsigned i = 0; i < m.most_live / 2; i++)
         make_new(&m);
-    for (unsigned i = below(&m, 8); m.n_live > 1 && i > 0; i--)
+    for (unsigned i = make_below(&m, 8); m.n_live > 1 && i > 0; i--)
         make_follow(&m);
-    for (unsigned i = below(&m, 8); m.n_live > 1 && i > 0; i--)
+    for (unsigned i = make_below(&m, 8); m.n_live > 1 && i > 0; i--)
         make_hint(&m);
-    make_operations(&m, one_in(&m, 20) ? MAX_OPS - MAX_LIVE : 10 + below(&m, 90));
-    if (!one_in(&m, 4))
+    make_operations(&m, make_one_in(&m, 20) ? MAX_OPS - MAX_LIVE : 10 + make_below(&m, 90));
+    if (!make_one_in(&m, 4))
         for (unsigned i = 0; i < m.n_live; i++) /* what the program leaves */
-            push(&m, PROG_GET, m.live[i]);
-    const unsigned left = one_in(&m, 20) ? 1 : 0;
+            make_push(&m, PROG_GET, m.live[i]);
+    const unsigned left = make_one_in(&m, 20) ? 1 : 0;
 
+    make_graphs_free(&m);
     while (m.n_live > left)
         free_place(&m, m.n_live - 1);
     return prog;
@@ -384,40 +391,4 @@ void prog_free(struct prog *prog)
     free(prog->ops);
     free(prog->objects);
     free(prog);
-}
-
-void prog_print(FILE *file, const struct prog *prog, size_t index)
-{
-    static const char *const KINDS[] = {"skip",  "new",  "free", "set",    "fork", "get",  "get_at",
-                                        "count", "wait", "hint", "follow", "home", "wrong"};
-    static const char *const TYPES[] = {"", "byte", "i32", "i64", "f32", "f64"};
-    static const char *const MODES[] = {"", "r", "w", "rw", "cw"};
-    static const char *const LAWS[] = {"", ",min:", ",max:", ",mix:", ",weave:"};
-    const struct prog_op *op = &prog->ops[index];
-
-    fprintf(file, "#   %3zu %s", index, KINDS[op->kind]);
-    if (op->kind == PROG_FORK)
-        fprintf(file, " task %u %s", op->number, prog->name[op->kernel]);
-    else if (op->kind != PROG_WAIT)
-        fprintf(file, " object %u", op->object);
-    if (op->kind == PROG_NEW)
-        fprintf(file, " %s x %zu", TYPES[op->type], op->count);
-    if (op->most)
-        fprintf(file, " of %zu", op->most);
-    if (op->kind == PROG_SET)
-        fprintf(file, " x %zu", op->count);
-    for (unsigned i = 0; i < op->n; i++)
-        fprintf(file, " %s%s%u",
-                op->kind == PROG_FORK ? MODES[prog_mode(&prog->kernel[op->kernel], i)] : "",
-                op->kind == PROG_FORK ? LAWS[prog_law(&prog->kernel[op->kernel], i)] : "",
-                op->objects[i]);
-    if (op->kind == PROG_FOLLOW)
-        fprintf(file, " leader %u", op->objects[0]);
-    if (op->rank >= 0)
-        fprintf(file, " at rank %d", op->rank);
-    if (op->fails)
-        fprintf(file, " fails with %d", op->fails);
-    if (op->exceeds)
-        fprintf(file, " gives parameter %u too much", op->exceeds - 1);
-    fputc('\n', file);
 }

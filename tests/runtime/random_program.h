@@ -27,7 +27,17 @@ enum prog_kind {
     PROG_HINT,
     PROG_FOLLOW,
     PROG_HOME,
-    PROG_WRONG /* a fork that must be refused; the next get or wait returns its error once more */
+    PROG_WRONG, /* a fork that must be refused; the next get or wait returns its error once more */
+    PROG_GRAPH, /* records what follows it: `n` operations of the next two kinds */
+    PROG_GRAPH_FORK,
+    PROG_GRAPH_SET,
+    PROG_GRAPH_AGAIN,  /* what follows it is recorded, should the graph have to be recorded anew */
+    PROG_REPLAY,       /* `count` rounds */
+    PROG_REPLAY_WHILE, /* while `object` holds, at most `count` rounds */
+    PROG_ROUNDS,
+    PROG_GRAPH_ARGS, /* gives the fork that is operation `count` another seed and failure */
+    PROG_GRAPH_BIND, /* objects[0] in place of `object` */
+    PROG_GRAPH_FREE
 };
 
 /* Two of the laws are the program's own: one for numbers, one for bytes. */
@@ -43,20 +53,24 @@ struct prog_op {
     unsigned number; /* forks: place in fork order */
     int rank;        /* fork, get_at; -1: none named */
     duite_type type; /* new */
-    size_t count;    /* new: elements; set: of an object whose size changes */
+    size_t count;    /* new: elements; set: of an object whose size changes; graphs: see there */
     size_t most;     /* new: elements at most, 0: the size is fixed */
     uint64_t seed;   /* set: of the values, 0: zeros; fork: of the body */
     unsigned pause;  /* fork: how the body wastes time */
     int fails;       /* fork: the code the body returns */
     unsigned
-        exceeds;   /* fork: parameter + 1 that the body gives more elements than it may; 0: none */
-    double weight; /* hint */
+        exceeds;    /* fork: parameter + 1 that the body gives more elements than it may; 0: none */
+    int sometimes;  /* fork: it fails, or ends flags, depending on what it reads */
+    int ends;       /* fork: now and then zeros the first element of what it writes */
+    unsigned graph; /* graphs: by the order in which they are made */
+    double weight;  /* hint */
 };
 
 /* What a body is told: it cannot ask the program, which it must not see. */
 struct prog_args {
     uint64_t seed;
     int fails, rank;
+    uint8_t sometimes, ends;
     unsigned pause, number, n, exceeds;
     uint32_t count[PROG_MAX_PARAMS], most[PROG_MAX_PARAMS]; /* most 0: the size is fixed */
     uint8_t type[PROG_MAX_PARAMS], mode[PROG_MAX_PARAMS], law[PROG_MAX_PARAMS];
@@ -72,7 +86,7 @@ struct prog_object {
 struct prog {
     uint64_t seed;
     int n_ranks;
-    size_t n_kernels, n_ops, n_objects, n_forks;
+    size_t n_kernels, n_ops, n_objects, n_forks, n_graphs;
     char name[PROG_MAX_KERNELS][16];
     duite_kernel kernel[PROG_MAX_KERNELS];
     const duite_kernel *list[PROG_MAX_KERNELS + 1];
@@ -85,12 +99,13 @@ struct prog_expect {
     int code;
     unsigned char *bytes; /* get, get_at: the object; NULL if it is poisoned */
     size_t count;         /* get, get_at, get_count: its elements */
+    uint64_t rounds;      /* rounds: how many */
 };
 
 struct prog_answers {
     struct prog_expect *op; /* n_ops */
-    unsigned char *runs;    /* n_forks: whether the body runs */
-    uint64_t n_runs;
+    unsigned char *runs;    /* n_forks: how often the body runs, modulo 256 */
+    uint64_t n_runs, n_recorded;
     int stop;
 };
 
@@ -121,6 +136,7 @@ struct prog_report {
 struct prog *prog_make(uint64_t seed, int n_ranks);
 void prog_free(struct prog *prog);
 void prog_print(FILE *file, const struct prog *prog, size_t op);
+void prog_print_element(duite_type type, const void *data, size_t i, char *text, size_t size);
 /* The mode of parameter i of a kernel. */
 duite_mode prog_mode(const duite_kernel *kernel, size_t i);
 
@@ -137,6 +153,11 @@ void prog_neutral(enum prog_law law, duite_type type, size_t count, void *values
 enum prog_law prog_law(const duite_kernel *kernel, size_t i);
 const duite_law *prog_law_given(enum prog_law law);
 extern const duite_law *const prog_own_laws[];
+
+/* The recorded operation `index` of a graph is there and may be replayed. */
+int prog_is_recorded(const struct prog *prog, size_t index);
+/* Does a recorded operation name the object? `first` is its graph's operation. */
+int prog_records(const struct prog *prog, size_t first, unsigned object);
 
 /* Interprets a program; NULL without memory. */
 struct prog_answers *prog_interpret(const struct prog *prog);

@@ -9,6 +9,13 @@
 
 enum { UNTOUCHED = 0xa5 };
 
+struct run_graph {
+    struct run *run;
+    duite_graph name;
+    int alive, rebound;
+    size_t first, again; /* as in random_interpret.c */
+};
+
 struct run {
     const struct prog *prog;
     const struct prog_answers *answers;
@@ -16,9 +23,10 @@ struct run {
     duite *rt;
     int rank;
     size_t at;
-    duite_object *object; /* n_objects */
-    int *home;            /* n_objects: when last asked; -1 before */
-    unsigned char *bytes; /* for the largest object */
+    duite_object *object;    /* n_objects */
+    int *home;               /* n_objects: when last asked; -1 before */
+    struct run_graph *graph; /* n_graphs */
+    unsigned char *bytes;    /* for the largest object */
     size_t largest;
 };
 
@@ -41,28 +49,6 @@ static void expect(struct run *run, const char *call, int code, int expected)
               expected);
 }
 
-static void print_element(duite_type type, const void *data, size_t i, char *text, size_t size)
-{
-    switch (type) {
-    case DUITE_BYTE:
-        snprintf(text, size, "%u", ((const uint8_t *)data)[i]);
-        break;
-    case DUITE_I32:
-        snprintf(text, size, "%d", ((const int32_t *)data)[i]);
-        break;
-    case DUITE_I64:
-        snprintf(text, size, "%lld", (long long)((const int64_t *)data)[i]);
-        break;
-    case DUITE_F32:
-        snprintf(text, size, "%.9g (%a)", (double)((const float *)data)[i],
-                 (double)((const float *)data)[i]);
-        break;
-    case DUITE_F64:
-        snprintf(text, size, "%.17g (%a)", ((const double *)data)[i], ((const double *)data)[i]);
-        break;
-    }
-}
-
 static void compare(struct run *run, unsigned number, const struct prog_expect *answer)
 {
     const struct prog_object *object = &run->prog->objects[number];
@@ -79,8 +65,8 @@ static void compare(struct run *run, unsigned number, const struct prog_expect *
                   answer->count);
     if (!different)
         return;
-    print_element(object->type, run->bytes, first, is, sizeof is);
-    print_element(object->type, answer->bytes, first, should, sizeof should);
+    prog_print_element(object->type, run->bytes, first, is, sizeof is);
+    prog_print_element(object->type, answer->bytes, first, should, sizeof should);
     found(run, "object %u: %zu of %zu elements differ, first [%zu]: %s, expected %s", number,
           different, answer->count, first, is, should);
 }
@@ -164,19 +150,19 @@ static void ask_home(struct run *run, unsigned number)
     run->home[number] = home;
 }
 
-static void set(struct run *run, const struct prog_op *op)
+static int set(struct run *run, const struct prog_op *op)
 {
     const struct prog_object *object = &run->prog->objects[op->object];
     const void *values = op->seed ? run->bytes : NULL;
     const int whole = op->count == (object->most ? object->most : object->count);
 
     prog_values(object->type, op->count, op->seed, run->bytes);
-    if (whole && op->count % 2)
-        expect(run, "set", duite_set(run->rt, run->object[op->object], values), DUITE_OK);
-    else
-        expect(run, "set_sized",
-               duite_set_sized(run->rt, run->object[op->object], values, op->count), DUITE_OK);
-    memset(run->bytes, 0xee, run->largest);
+    const int code = whole && op->count % 2
+                         ? duite_set(run->rt, run->object[op->object], values)
+                         : duite_set_sized(run->rt, run->object[op->object], values, op->count);
+
+    memset(run->bytes, 0xee, run->largest); /* the runtime has its copy */
+    return code;
 }
 
 static void make(struct run *run, const struct prog_op *op)
@@ -188,6 +174,95 @@ static void make(struct run *run, const struct prog_op *op)
                DUITE_OK);
     else
         expect(run, "new", duite_new(run->rt, op->type, op->count, object), DUITE_OK);
+}
+
+/* ---- Graphs ---- */
+
+static int build(duite *rt, void *context)
+{
+    struct run_graph *graph = context;
+    struct run *run = graph->run;
+    const struct prog_op *from = &run->prog->ops[graph->again];
+
+    graph->first = graph->again;
+    for (size_t i = 1; i <= from->n; i++) {
+        const struct prog_op *op = &from[i];
+        duite_object objects[PROG_MAX_PARAMS];
+        struct prog_args args;
+
+        if (op->kind == PROG_GRAPH_SET) {
+            set(run, op);
+        } else if (op->kind == PROG_GRAPH_FORK) {
+            prog_args_fill(run->prog, op, &args);
+            for (unsigned k = 0; k < op->n; k++)
+                objects[k] = run->object[op->objects[k]];
+            if (op->rank < 0)
+                duite_fork(rt, &run->prog->kernel[op->kernel], &args, op->n, objects);
+            else
+                duite_fork_at(rt, op->rank, &run->prog->kernel[op->kernel], &args, op->n, objects);
+        }
+    }
+    return 0;
+}
+
+static int change_args(struct run *run, struct run_graph *graph, const struct prog_op *op)
+{
+    struct prog_op target = run->prog->ops[op->count];
+    struct prog_args args;
+    size_t k = 0;
+
+    if (target.kind != PROG_GRAPH_FORK || op->count <= graph->first ||
+        op->count > graph->first + run->prog->ops[graph->first].n)
+        return DUITE_OK;
+    for (size_t i = graph->first + 1; i < op->count; i++)
+        k += run->prog->ops[i].kind == PROG_GRAPH_FORK;
+    target.seed = op->seed;
+    target.fails = op->fails;
+    prog_args_fill(run->prog, &target, &args);
+    return duite_graph_args(run->rt, graph->name, k, &args);
+}
+
+static void rounds(struct run *run, const struct run_graph *graph, uint64_t expected)
+{
+    uint64_t n = 0;
+
+    expect(run, "rounds", duite_graph_rounds(run->rt, graph->name, &n), DUITE_OK);
+    if (n != expected)
+        found(run, "%llu rounds, expected %llu", (unsigned long long)n,
+              (unsigned long long)expected);
+}
+
+static void graph_operation(struct run *run, const struct prog_op *op,
+                            const struct prog_expect *answer)
+{
+    struct run_graph *graph = &run->graph[op->graph];
+    const duite_object object = run->object[op->object];
+    int code = DUITE_OK;
+
+    if (op->kind == PROG_GRAPH) {
+        *graph = (struct run_graph){.run = run, .alive = 1, .again = (size_t)(op - run->prog->ops)};
+        code = duite_graph_new(run->rt, build, graph, &graph->name);
+    }
+    if (!graph->alive)
+        return;
+    if (op->kind == PROG_GRAPH_AGAIN) {
+        graph->again = (size_t)(op - run->prog->ops);
+    } else if (op->kind == PROG_REPLAY) {
+        code = duite_replay(run->rt, graph->name, op->count);
+    } else if (op->kind == PROG_REPLAY_WHILE) {
+        code = duite_replay_while(run->rt, graph->name, object, op->count);
+    } else if (op->kind == PROG_ROUNDS) {
+        rounds(run, graph, answer->rounds);
+    } else if (op->kind == PROG_GRAPH_ARGS) {
+        code = change_args(run, graph, op);
+    } else if (op->kind == PROG_GRAPH_BIND) {
+        graph->rebound = 1;
+        code = duite_graph_bind(run->rt, graph->name, object, run->object[op->objects[0]]);
+    } else if (op->kind == PROG_GRAPH_FREE) {
+        graph->alive = 0;
+        code = duite_graph_free(run->rt, graph->name);
+    }
+    expect(run, "a call on a graph", code, answer->code);
 }
 
 static void operation(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
@@ -203,7 +278,7 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
         expect(run, "free", duite_free(run->rt, *object), DUITE_OK);
         break;
     case PROG_SET:
-        set(run, op);
+        expect(run, "set", set(run, op), DUITE_OK);
         break;
     case PROG_FORK:
         fork_task(run, op);
@@ -232,7 +307,11 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
         wrong_fork(run, op);
         break;
     case PROG_SKIP:
+    case PROG_GRAPH_FORK:
+    case PROG_GRAPH_SET:
         break;
+    default:
+        graph_operation(run, op, answer);
     }
 }
 
@@ -255,16 +334,22 @@ static int owner(const struct run *run, const struct prog_op *op)
 /* Every task ran once, where it should; followers live with their leaders. */
 static void check_places(struct run *run, const struct prog_context *context)
 {
+    int rebound = 0; /* then its tasks may run on several ranks */
+
+    for (size_t i = 0; i < run->prog->n_graphs; i++)
+        rebound |= run->graph[i].rebound;
     for (size_t i = 0; i < run->prog->n_ops; i++) {
         const struct prog_op *op = &run->prog->ops[i];
 
         run->at = i;
         if (op->kind == PROG_FOLLOW && run->home[op->object] != run->home[op->objects[0]])
             found(run, "object %u does not live with %u", op->object, op->objects[0]);
-        if (op->kind != PROG_FORK)
+        if (op->kind != PROG_FORK && op->kind != PROG_GRAPH_FORK)
+            continue;
+        if (op->kind == PROG_GRAPH_FORK && run->prog->n_ranks > 1 && rebound)
             continue;
         const int ran = atomic_load(&context->ran[op->number]);
-        const int should = run->answers->runs[op->number] && owner(run, op) == run->rank;
+        const int should = owner(run, op) == run->rank ? run->answers->runs[op->number] : 0;
 
         if (ran != should)
             found(run, "task %u ran %d times here, expected %d", op->number, ran, should);
@@ -301,6 +386,13 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     for (unsigned i = 0; i < prog->n_objects; i++)
         if (run->home[i] < 0)
             ask_home(run, i);
+    duite_counters counters = {0};
+
+    expect(run, "count_all", duite_count_all(run->rt, &counters), DUITE_OK);
+    if (counters.graphs_recorded != run->answers->n_recorded)
+        found(run, "%llu graphs recorded, expected %llu",
+              (unsigned long long)counters.graphs_recorded,
+              (unsigned long long)run->answers->n_recorded);
     expect(run, "stop", duite_stop(&run->rt), run->answers->stop);
     if (run->rt)
         found(run, "stop left *rt");
@@ -326,8 +418,9 @@ void prog_run(const struct prog *prog, const struct prog_answers *answers,
     run.object = calloc(prog->n_objects + 1, sizeof *run.object);
     run.home = malloc((prog->n_objects + 1) * sizeof *run.home);
     run.bytes = malloc(run.largest);
+    run.graph = calloc(prog->n_graphs + 1, sizeof *run.graph);
     context.ran = calloc(prog->n_forks + 1, sizeof *context.ran);
-    if (run.object && run.home && run.bytes && context.ran) {
+    if (run.object && run.home && run.bytes && run.graph && context.ran) {
         memset(run.home, 0xff, (prog->n_objects + 1) * sizeof *run.home);
         run_operations(&run, setup, &context, where);
         if (context.wrong)
@@ -336,5 +429,6 @@ void prog_run(const struct prog *prog, const struct prog_answers *answers,
     free(run.object);
     free(run.home);
     free(run.bytes);
+    free(run.graph);
     free(context.ran);
 }

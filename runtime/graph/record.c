@@ -1,0 +1,284 @@
+/* A record is whole or not begun: a call of build that fails leaves nothing behind. What build
+ * named stays as it was (`recorded`); replays use what is bound to it. Arguments lie in one block,
+ * which plans copy; what changes later is told to a plan as a list of changes. */
+#include "runtime/graph/internal.h"
+#include "runtime/graph/replay.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/data/mode.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct graph_record *graph_record_new(struct graph *graph)
+{
+    struct graph_record *record = base_alloc_zero(sizeof *record);
+    if (record)
+        record->graph = graph;
+    return record;
+}
+
+void graph_record_forget_changes(struct graph_record *record)
+{
+    while (record->changes) {
+        struct graph_change *next = record->changes->next;
+        base_free(record->changes);
+        record->changes = next;
+    }
+}
+
+void graph_record_clear(struct graph_record *record, void *worker)
+{
+    struct graph *graph = record->graph;
+    graph_plan_drop(record->plan, worker);
+    graph_record_forget_changes(record);
+    free(record->fork);
+    free(record->use);
+    free(record->args);
+    free(record->call);
+    free(record->object);
+    free(record->names);
+    base_free(record->index);
+    *record = (struct graph_record){.graph = graph};
+}
+
+void graph_record_free(struct graph_record *record, void *worker)
+{
+    graph_record_clear(record, worker);
+    base_free(record);
+}
+
+/* ---- What build calls ---- */
+
+/* Room for one more fork with n objects and so many bytes of arguments, and for the index. */
+static bool reserve(struct graph_record *record, size_t n, size_t bytes)
+{
+    const struct data_table *table = &record->graph->table;
+    if (!record->index) {
+        record->n_slots = table->n_slots;
+        record->index = base_alloc_zero(record->n_slots * sizeof *record->index);
+    }
+#define ROOM(array, capacity, more)                                                                \
+    ((moved = base_grow(record->array, &record->capacity, more, sizeof *record->array)) &&         \
+     ((record->array = moved), true))
+    void *moved;
+    return record->index && ROOM(fork, forks_capacity, record->n_forks + 1) &&
+           ROOM(call, calls_capacity, record->n_calls + 1) &&
+           ROOM(use, uses_capacity, record->n_uses + n + 1) && ROOM(names, names_capacity, n + 1) &&
+           ROOM(object, objects_capacity, record->n_objects + n + 1) &&
+           ROOM(args, args_capacity, record->args_bytes + bytes + 1);
+#undef ROOM
+}
+
+static struct graph_recorded_object *find(const struct graph_record *record, duite_object name)
+{
+    uint32_t index = name.slot < record->n_slots ? record->index[name.slot] : 0;
+    struct graph_recorded_object *object = index ? &record->object[index - 1] : NULL;
+    return object && object->recorded.generation == name.generation ? object : NULL;
+}
+
+static uint32_t index_of(struct graph_record *record, duite_object name)
+{
+    const struct data_object *object = &record->graph->table.object[name.slot];
+    uint32_t *index = &record->index[name.slot];
+    if (!*index) {
+        record->object[record->n_objects] = (struct graph_recorded_object){.recorded = name,
+                                                                           .bound = name,
+                                                                           .type = object->type,
+                                                                           .count = object->most,
+                                                                           .sized = object->sized};
+        *index = (uint32_t)++record->n_objects;
+    }
+    return *index - 1;
+}
+
+static void use(struct graph_record *record, duite_object name, duite_mode mode)
+{
+    uint32_t index = index_of(record, name);
+    struct graph_recorded_object *object = &record->object[index];
+    record->use[record->n_uses++] = index;
+    if (mode == DUITE_CW) {
+        object->leads |= !object->read && !object->written;
+        object->reads_old |= !object->read && !object->written;
+        object->sums = object->trails = true;
+        return;
+    }
+    object->reads_old |= mode != DUITE_W && !object->written;
+    object->read |= mode == DUITE_R;
+    object->written |= mode != DUITE_R;
+    object->trails = false;
+}
+
+duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_recorded_fork *fork,
+                               uint32_t k)
+{
+    return fork->kernel == GRAPH_SETS ? DUITE_W : data_mode_of(graph->kernels[fork->kernel], k);
+}
+
+/* The bytes of the arguments are still to be written. */
+static struct graph_recorded_fork *append(struct graph_record *record, uint32_t kernel, int at,
+                                          size_t n, const duite_object *objects, size_t bytes)
+{
+    size_t whole = (bytes + 15) / 16 * 16;
+    if (record->n_forks >= UINT32_MAX / 8 || record->n_uses + n >= UINT32_MAX / 8 ||
+        !reserve(record, n, whole)) {
+        base_no_memory("a recorded graph");
+        return NULL;
+    }
+    struct graph_recorded_fork *fork = &record->fork[record->n_forks++];
+    *fork = (struct graph_recorded_fork){.kernel = kernel,
+                                         .at = at,
+                                         .n = (uint32_t)n,
+                                         .call = (uint32_t)record->n_calls,
+                                         .first = record->n_uses,
+                                         .args = record->args_bytes};
+    record->args_bytes += whole;
+    graph_mix(record->graph, (uint64_t)kernel << 32 | (uint32_t)at);
+    for (size_t i = 0; i < n; i++) {
+        graph_mix(record->graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
+        use(record, objects[i], graph_recorded_mode(record->graph, fork, (uint32_t)i));
+    }
+    return fork;
+}
+
+int graph_record_fork(struct graph_record *record, int at, const duite_kernel *kernel,
+                      const void *args, size_t n, const duite_object *objects)
+{
+    uint32_t index;
+    int code = graph_check(record->graph, at, kernel, args, n, objects, &index);
+    if (code)
+        return code;
+    graph_unmark(record->graph, n, objects);
+    struct graph_recorded_fork *fork = append(record, index, at, n, objects, kernel->args_size);
+    if (!fork)
+        return DUITE_E_MEMORY;
+    if (kernel->args_size)
+        memcpy(record->args + fork->args, args, kernel->args_size);
+    record->call[record->n_calls++] = record->n_forks - 1;
+    return DUITE_OK;
+}
+
+int graph_record_set(struct graph_record *record, duite_object name, const void *values,
+                     const size_t *wanted)
+{
+    const struct data_object *object = data_object_find(&record->graph->table, name);
+    if (!object)
+        return DUITE_E_OBJECT;
+    size_t count = wanted ? *wanted : object->most;
+    size_t bytes = values ? count * data_type_size(object->type) : 0;
+    int code = graph_set_check(object, name, count);
+    if (code)
+        return code;
+    struct graph_recorded_fork *fork = append(record, GRAPH_SETS, GRAPH_ANYWHERE, 1, &name, bytes);
+    if (!fork)
+        return DUITE_E_MEMORY;
+    graph_mix(record->graph, count);
+    fork->zeros = !values;
+    fork->count = count;
+    if (bytes)
+        memcpy(record->args + fork->args, values, bytes);
+    return DUITE_OK;
+}
+
+void graph_record_end(struct graph_record *record)
+{
+    record->whole = true;
+    for (size_t i = 0; i < record->n_objects; i++) {
+        const struct graph_recorded_object *object = &record->object[i];
+        record->forked |= object->sized || (object->leads && object->trails);
+        record->trails |= object->trails;
+    }
+}
+
+/* ---- Between replays ---- */
+
+int graph_record_args(struct graph_record *record, size_t k, const void *args)
+{
+    if (k >= record->n_calls)
+        return base_error(DUITE_E_ARGUMENT, "duite_graph_args: there is no fork %zu, only %zu", k,
+                          record->n_calls);
+    const struct graph_recorded_fork *fork = &record->fork[record->call[k]];
+    size_t bytes = record->graph->kernels[fork->kernel]->args_size;
+    if (bytes && !args)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_graph_args: fork %zu (kernel %s) needs %zu bytes", k,
+                          record->graph->kernels[fork->kernel]->name, bytes);
+    if (!bytes)
+        return DUITE_OK;
+    if (record->plan) {
+        struct graph_change *change = base_alloc(sizeof *change + bytes);
+        if (!change)
+            return base_no_memory("arguments of a recorded graph");
+        *change = (struct graph_change){record->changes, fork->args, bytes};
+        memcpy(change->args, args, bytes);
+        record->changes = change;
+    }
+    memcpy(record->args + fork->args, args, bytes);
+    return DUITE_OK;
+}
+
+int graph_record_bind(struct graph_record *record, duite_object recorded, duite_object name)
+{
+    struct graph_recorded_object *object = find(record, recorded);
+    const struct data_object *other = data_object_find(&record->graph->table, name);
+    if (!other)
+        return DUITE_E_OBJECT;
+    if (!object)
+        return base_error(DUITE_E_BINDING,
+                          "duite_graph_bind: object %u.%u, to become %u.%u, is not one that the "
+                          "graph was recorded with",
+                          recorded.slot, recorded.generation, name.slot, name.generation);
+    if (other->type != object->type || other->most != object->count ||
+        other->sized != object->sized)
+        return base_error(
+            DUITE_E_BINDING,
+            "duite_graph_bind: object %u.%u has %s%zu elements (%s), and object %u.%u, "
+            "bound to it, has %s%zu (%s)",
+            recorded.slot, recorded.generation, object->sized ? "at most " : "", object->count,
+            data_type_name(object->type), name.slot, name.generation,
+            other->sized ? "at most " : "", other->most, data_type_name(other->type));
+    graph_mix(record->graph, (uint64_t)recorded.slot << 32 | recorded.generation);
+    graph_mix(record->graph, (uint64_t)name.slot << 32 | name.generation);
+    object->bound = name;
+    record->rebound = true;
+    return DUITE_OK;
+}
+
+bool graph_record_fits(const struct graph_record *record)
+{
+    const struct data_table *table = &record->graph->table;
+    for (size_t i = 0; i < record->n_objects; i++) {
+        duite_object bound = record->object[i].bound;
+        if (table->object[bound.slot].generation != bound.generation)
+            return false;
+    }
+    return record->whole;
+}
+
+/* Marks each bound object with the place it is bound to, plus one. */
+int graph_record_distinct(struct graph_record *record)
+{
+    struct data_table *table = &record->graph->table;
+    int code = DUITE_OK;
+    if (!record->rebound)
+        return code;
+    for (size_t i = 0; i < record->n_objects; i++)
+        table->object[record->object[i].bound.slot].mark = 0;
+    for (size_t i = 0; i < record->n_objects && !code; i++) {
+        const struct graph_recorded_object *object = &record->object[i];
+        uint64_t *mark = &table->object[object->bound.slot].mark;
+        if (*mark)
+            code = base_error(DUITE_E_BINDING,
+                              "objects %u.%u and %u.%u of a recorded graph are both bound to %u.%u",
+                              record->object[*mark - 1].recorded.slot,
+                              record->object[*mark - 1].recorded.generation, object->recorded.slot,
+                              object->recorded.generation, object->bound.slot,
+                              object->bound.generation);
+        *mark = i + 1;
+    }
+    for (size_t i = 0; i < record->n_objects; i++)
+        table->object[record->object[i].bound.slot].mark = 0;
+    record->rebound = code != DUITE_OK;
+    return code;
+}

@@ -1,0 +1,130 @@
+#ifndef DUITE_GRAPH_RECORD_H
+#define DUITE_GRAPH_RECORD_H
+
+#include "runtime/graph/graph.h"
+
+/* Recorded graphs: what a build function forked, kept to be replayed.
+ *
+ * The record is the program's view: forks in order, with the objects and arguments that the next
+ * replay uses. From it comes a plan (replay.h), which one rank replays by itself; any number of
+ * ranks can fork the record round by round instead, with the same results. Main thread only. */
+
+enum { GRAPH_SETS = UINT32_MAX }; /* in place of a kernel: a duite_set */
+
+struct graph_recorded_fork {
+    uint32_t kernel; /* index in the list given at start */
+    int at;          /* a rank, or GRAPH_ANYWHERE */
+    uint32_t n;
+    uint32_t call; /* forks before it, sets left out */
+    size_t first;  /* of its n objects in `use` */
+    size_t args;   /* where its arguments, or the values it sets, lie in `args` */
+    bool zeros;    /* it sets zeros */
+    size_t count;  /* elements it sets */
+};
+
+struct graph_recorded_object {
+    duite_object recorded, bound; /* as named by build, and what the next replay takes instead */
+    duite_type type;
+    size_t count;       /* at most */
+    bool sized;         /* its size changes */
+    bool read, written; /* by something else than a contribution */
+    bool sums;          /* contributed to */
+    bool reads_old;     /* the first access is not a w */
+    bool leads, trails; /* contributions before any other access in a round, and after all others */
+};
+
+struct graph_plan;
+
+/* The mode in which a fork uses its k-th object. */
+duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_recorded_fork *fork,
+                               uint32_t k);
+
+/* Arguments that changed since the last replay; one block of memory. */
+struct graph_change {
+    struct graph_change *next;
+    size_t at, bytes; /* in the plan's copy of the arguments */
+    unsigned char args[];
+};
+
+struct graph_record {
+    struct graph *graph;
+    struct graph_recorded_fork *fork;
+    size_t n_forks, forks_capacity;
+    uint32_t *use; /* objects of all forks, as indices in `object` */
+    size_t n_uses, uses_capacity;
+    unsigned char *args;
+    size_t args_bytes, args_capacity;
+    size_t *call; /* the forks that are not sets: these have numbers */
+    size_t n_calls, calls_capacity;
+    struct graph_recorded_object *object;
+    size_t n_objects, objects_capacity;
+    uint32_t *index; /* by slot: place in `object`, plus 1 */
+    size_t n_slots;
+    duite_object *names; /* for the objects of one fork */
+    size_t names_capacity;
+    bool whole;   /* build came to its end */
+    bool rebound; /* since the bindings were last found to be different objects */
+    bool forked;  /* has no plan: contributions of one round and of the next make one sum, or the
+                     size of an object changes */
+    bool trails;  /* some object's contributions end the round: they stay open after the last */
+    int failed;   /* code of the first call of build that failed */
+    char sentence[512]; /* of it */
+    struct graph_plan *plan;
+    struct graph_change *changes; /* since the last replay of the plan */
+    uint64_t rounds;              /* of the last replay, but for those of the plan */
+    bool by_plan;                 /* there were some of the plan */
+};
+
+enum { GRAPH_MOST_TASKS_BITS = 48 }; /* rounds times forks of one replay are below 2^48 */
+
+/* An empty record; NULL without memory. */
+struct graph_record *graph_record_new(struct graph *graph);
+/* Replays of it may be on their way. */
+void graph_record_free(struct graph_record *record, void *worker);
+/* Forgets everything recorded, bindings among it: build is called again. */
+void graph_record_clear(struct graph_record *record, void *worker);
+
+/* The next plan is made from the arguments as they are. */
+void graph_record_forget_changes(struct graph_record *record);
+
+/* What build calls. Errors as of graph_fork and graph_set, nothing is recorded then. */
+int graph_record_fork(struct graph_record *record, int at, const duite_kernel *kernel,
+                      const void *args, size_t n, const duite_object *objects);
+int graph_record_set(struct graph_record *record, duite_object object, const void *values,
+                     const size_t *count);
+/* Build is over. */
+void graph_record_end(struct graph_record *record);
+
+/* New arguments of the k-th fork of build. Errors: DUITE_E_ARGUMENT, memory. */
+int graph_record_args(struct graph_record *record, size_t k, const void *args);
+/* Errors: DUITE_E_OBJECT, DUITE_E_BINDING. */
+int graph_record_bind(struct graph_record *record, duite_object recorded, duite_object object);
+
+/* Was it recorded, and do all bound objects exist? */
+bool graph_record_fits(const struct graph_record *record);
+/* DUITE_E_BINDING if two recorded objects are bound to one. */
+int graph_record_distinct(struct graph_record *record);
+
+/* ---- Replays: every rank, fork order ---- */
+
+/* How many of the rounds must be forked, before and after those of the plan, since contributions
+ * cross the edges between them; all of them come before, if nothing is left for the plan. */
+void graph_replay_split(const struct graph_record *record, const duite_object *flag,
+                        uint64_t rounds, uint64_t *before, uint64_t *after);
+
+/* Forks all tasks once. */
+int graph_replay_fork(struct graph_record *record, void *worker);
+
+/* Replays the plan: so many rounds, or while the first element of the flag is not zero, at most so
+ * many. One rank. */
+int graph_replay_plan(struct graph_record *record, void *worker, const duite_object *flag,
+                      uint64_t rounds);
+
+/* Are all replays of the plan over? Then the rounds of the last one. */
+bool graph_replay_over(const struct graph_record *record);
+uint64_t graph_replay_rounds(const struct graph_record *record);
+
+/* Is the first element something else than zero? */
+bool graph_flag_holds(duite_type type, const void *values);
+
+#endif

@@ -1,0 +1,318 @@
+/* Running a plan. A node belongs to nobody but the worker that runs it, from the moment its counter
+ * came to nothing until it told its last successor; by then it counts for its next round already.
+ * The counter goes back to `steady` before that: none of those that count for the next round has
+ * run (see replay_draft.c). A replay is over when all sinks of its last round are: each other node
+ * of any round comes before one of these, and a node that still has successors to tell keeps one of
+ * them waiting. So what tells last, and what counts the sinks, touches nothing of the plan
+ * afterwards.
+ *
+ * Poison is kept by place, under the same dependences as the bytes. It is looked at only once
+ * something failed: what sees the effects of a failure sees `tainted`. */
+#include "runtime/graph/replay.h"
+#include "runtime/graph/internal.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <string.h>
+
+/* With a flag the number of rounds is not known beforehand: each sink of each round takes one, and
+ * the node that decides to stop takes the rest. */
+static const int64_t UNKNOWN = INT64_C(1) << 62;
+
+/* ---- Beginning and end ---- */
+
+static void move_place(struct graph_plan *plan, struct graph_place *place, void *data)
+{
+    if (place->data == data)
+        return;
+    place->data = data;
+    for (size_t i = 0; i < place->n_params; i++)
+        plan->param[plan->param_of[place->first_param + i]].data = data;
+}
+
+/* The bytes that an object's version has now, and its poison; rounds work on them in place. False
+ * without memory. */
+static bool bind(struct graph_plan *plan, struct graph_access *access, struct graph_place *place)
+{
+    struct data_version *in = access->in;
+    struct data_packet *packet = in ? in->packet : NULL;
+    place->failure = in && place->mode != DUITE_W ? in->failure : NULL;
+    if (place->failure)
+        atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+    if (place->mode != DUITE_R) {
+        if (in)
+            data_version_free(in);
+        access->in = NULL;
+        if (!packet)
+            packet = data_packet_new(place->bytes, false);
+        access->out->packet = packet;
+        if (!packet)
+            return false;
+    }
+    move_place(plan, place, packet ? data_payload(packet) : NULL);
+    return true;
+}
+
+static void change_args(struct graph_plan *plan, struct graph_change *change)
+{
+    if (!change)
+        return;
+    struct graph_change *oldest = NULL;
+    while (change) {
+        struct graph_change *next = change->next;
+        change->next = oldest;
+        oldest = change;
+        change = next;
+    }
+    while (oldest) {
+        struct graph_change *next = oldest->next;
+        memcpy(plan->args + oldest->at, oldest->args, oldest->bytes);
+        base_free(oldest);
+        oldest = next;
+    }
+}
+
+static void reset_nodes(struct graph_plan *plan, const struct graph_replay *replay)
+{
+    for (size_t i = 0; i < plan->n_nodes; i++) {
+        struct graph_task *task = graph_plan_task(plan, i);
+        uint32_t owner = plan->owner[i];
+        atomic_store_explicit(&task->pending, plan->first[i], memory_order_relaxed);
+        task->number = replay->number + plan->call[i];
+        task->block = owner == GRAPH_NO_PLACE ? (uint32_t)task->number : replay->block[owner];
+        task->node->round = 0;
+    }
+}
+
+void graph_replay_run(struct graph *graph, struct graph_task *task)
+{
+    struct graph_replay *replay = task->replay;
+    struct graph_plan *plan = replay->plan;
+    bool fine = true;
+    plan->replay = task;
+    plan->last = replay->rounds - 1;
+    plan->stop = false;
+    atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
+    atomic_store_explicit(&plan->left, plan->decides ? UNKNOWN : (int64_t)plan->n_sinks,
+                          memory_order_relaxed);
+    change_args(plan, replay->changes);
+    for (size_t i = 0; i < plan->n_objects; i++)
+        fine &= bind(plan, &task->access[i], &plan->place[i]);
+    if (task->access[plan->n_objects].in) /* the turn */
+        data_version_free(task->access[plan->n_objects].in);
+    task->access[plan->n_objects].in = NULL;
+    reset_nodes(plan, replay);
+    if (fine)
+        return;
+    const struct data_failure *failure = graph_fail_memory(graph, task);
+    for (size_t i = 0; i < plan->n_objects; i++)
+        plan->place[i].failure = failure;
+    replay->rounds = 0;
+}
+
+static void end(struct graph *graph, void *worker, struct graph_plan *plan, uint64_t rounds)
+{
+    struct graph_task *task = plan->replay;
+    for (size_t i = 0; i < plan->n_objects; i++)
+        if (task->access[i].out)
+            task->access[i].out->failure = plan->place[i].failure;
+    atomic_store_explicit(&plan->rounds, rounds, memory_order_relaxed);
+    atomic_fetch_add_explicit(&plan->over, 1, memory_order_release);
+    graph->hooks.notify(graph->hooks.context);
+    graph_over(graph, worker, task); /* the next replay may begin */
+    graph_plan_release(plan);
+}
+
+void graph_replay_start(struct graph *graph, void *worker, struct graph_task *task)
+{
+    struct graph_plan *plan = task->replay->plan;
+    size_t n = task->replay->rounds ? plan->n_roots : 0;
+    if (!n)
+        end(graph, worker, plan, task->replay->rounds);
+    for (size_t i = 0; i < n; i++)
+        graph->hooks.ready(graph->hooks.context, worker, plan->root[i]);
+}
+
+/* ---- Nodes ---- */
+
+static const struct data_failure *find_poison(const struct graph_plan *plan,
+                                              const struct graph_task *task)
+{
+    const struct graph_node_use *use = plan->use + task->node->first_use;
+    const struct data_failure *failure = NULL;
+    for (uint32_t i = 0; i < task->n; i++)
+        if (use[i].reads)
+            failure = data_first(failure, plan->place[use[i].place].failure);
+    return failure;
+}
+
+/* Poisons, or heals, what the node writes. */
+static void set_poison(struct graph_plan *plan, const struct graph_task *task,
+                       const struct data_failure *failure)
+{
+    const struct graph_node_use *use = plan->use + task->node->first_use;
+    for (uint32_t i = 0; i < task->n; i++)
+        if (use[i].writes)
+            plan->place[use[i].place].failure = failure;
+}
+
+/* What bodies find under cw. */
+static void clear_leaves(const struct graph_plan *plan, const struct graph_task *task)
+{
+    const struct graph_node_use *use = plan->use + task->node->first_use;
+    for (uint32_t i = 0; i < task->n; i++) {
+        const struct graph_place *place = &plan->place[use[i].place];
+        if (use[i].place < plan->n_objects)
+            continue;
+        if (place->law->neutral)
+            place->law->neutral(place->data, place->count, place->type);
+        else
+            memset(place->data, 0, place->bytes);
+    }
+}
+
+static const struct data_failure *failed(struct graph *graph, const struct graph_task *task,
+                                         int code, const duite_call *call)
+{
+    struct data_failure failure = {
+        .code = code, .rank = graph->rank, .number = task->number, .kernel = task->kernel};
+    memcpy(failure.text, call->own->text, sizeof failure.text);
+    return graph_fail(graph, &failure, true);
+}
+
+static bool run_body(struct graph *graph, struct graph_task *task, duite_call *call)
+{
+    const struct graph_node *node = task->node;
+    struct graph_plan *plan = node->plan;
+    bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
+    const struct data_failure *failure = tainted ? find_poison(plan, task) : NULL;
+    if (!failure)
+        failure = graph_given_up(graph);
+    bool runs = !failure;
+    if (runs) {
+        if (node->n_leaves)
+            clear_leaves(plan, task);
+        call->args = node->args;
+        call->param = task->param;
+        call->n_params = task->n;
+        call->own->task = NULL; /* its objects have fixed sizes */
+        call->own->refused = DUITE_OK;
+        call->own->text[0] = '\0';
+        int code = graph->hooks.body
+                       ? graph->hooks.body(graph->hooks.context, graph->kernels[task->kernel],
+                                           task->number, call)
+                       : node->body(call);
+        if (!code)
+            code = call->own->refused;
+        if (code)
+            failure = failed(graph, task, code, call);
+    }
+    if (failure)
+        atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+    if (tainted || failure)
+        set_poison(plan, task, failure);
+    return runs;
+}
+
+static void run_set(struct graph_task *task)
+{
+    struct graph_plan *plan = task->node->plan;
+    struct graph_place *place = &plan->place[plan->use[task->node->first_use].place];
+    if (task->node->args)
+        memcpy(place->data, task->node->args, place->bytes);
+    else
+        memset(place->data, 0, place->bytes);
+    if (atomic_load_explicit(&plan->tainted, memory_order_relaxed))
+        place->failure = NULL;
+}
+
+/* The first parameter is the object, the others are the leaves; as data_sum_reduce and
+ * data_sum_finish do. */
+static void combine(const duite_law *law, const duite_param *param, uint32_t n)
+{
+    size_t count = param->count;
+    duite_type type = param->type;
+    void *stack[64];
+    uint32_t top = 0;
+    for (uint32_t i = 1; i < n; i++) {
+        stack[top++] = param[i].data;
+        for (uint32_t leaves = i; leaves % 2 == 0; leaves /= 2, top--)
+            law->combine(stack[top - 2], stack[top - 1], count, type);
+    }
+    for (; top > 1; top--)
+        law->combine(stack[top - 2], stack[top - 1], count, type);
+    law->combine(param[0].data, stack[0], count, type);
+}
+
+static void run_sum(struct graph_task *task)
+{
+    struct graph_plan *plan = task->node->plan;
+    bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
+    const struct data_failure *failure = tainted ? find_poison(plan, task) : NULL;
+    if (failure)
+        set_poison(plan, task, failure);
+    else
+        combine(plan->place[plan->use[task->node->first_use + 1].place].law, task->param, task->n);
+}
+
+bool graph_flag_holds(duite_type type, const void *values)
+{
+    static const char zero[8];
+    switch (type) {
+    case DUITE_F32:
+        return *(const float *)values != 0;
+    case DUITE_F64:
+        return *(const double *)values != 0;
+    default:
+        return memcmp(values, zero, data_type_size(type)) != 0;
+    }
+}
+
+static void run_flag(struct graph *graph, struct graph_task *task)
+{
+    struct graph_plan *plan = task->node->plan;
+    bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
+    plan->stop = task->node->round == plan->last || graph_given_up(graph) ||
+                 (tainted && find_poison(plan, task)) ||
+                 !graph_flag_holds(task->param->type, task->param->data);
+    if (plan->stop)
+        plan->last = task->node->round;
+}
+
+bool graph_node_run(struct graph *graph, struct graph_task *task, duite_call *call)
+{
+    atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
+    if (task->kind == GRAPH_NODE)
+        return run_body(graph, task, call);
+    if (task->kind == GRAPH_NODE_SET)
+        run_set(task);
+    else if (task->kind == GRAPH_NODE_SUM)
+        run_sum(task);
+    else
+        run_flag(graph, task);
+    return false;
+}
+
+void graph_node_finish(struct graph *graph, void *worker, struct graph_task *task)
+{
+    struct graph_node *node = task->node;
+    struct graph_plan *plan = node->plan;
+    struct graph_task **next = node->next, **stop = next + node->n_next;
+    uint64_t round = node->round++;
+    bool decides = task->kind == GRAPH_NODE_FLAG;
+    bool last = plan->decides ? decides && plan->stop : round == plan->last;
+    int64_t counts = node->sink && (plan->decides || last);
+    if (decides && last) /* the other sinks take one a round, and so did this one until now */
+        counts = UNKNOWN - (int64_t)((round + 1) * plan->n_sinks - 1);
+    task->number += plan->n_calls;
+    for (next += last ? node->n_cyclic : 0; next < stop; next++) {
+        _Atomic uint32_t *pending = &(*next)->pending;
+        /* The last one needs no atomic subtraction: nobody else has the counter then. */
+        if (atomic_load_explicit(pending, memory_order_acquire) == 1 ||
+            atomic_fetch_sub_explicit(pending, 1, memory_order_acq_rel) == 1)
+            graph->hooks.ready(graph->hooks.context, worker, *next);
+    }
+    if (counts && atomic_fetch_sub_explicit(&plan->left, counts, memory_order_acq_rel) == counts)
+        end(graph, worker, plan, plan->last + 1);
+}

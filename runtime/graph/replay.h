@@ -1,0 +1,100 @@
+#ifndef DUITE_GRAPH_REPLAY_H
+#define DUITE_GRAPH_REPLAY_H
+
+#include "runtime/graph/record.h"
+
+/* A plan: a record compiled to flat arrays for one rank. Used by this folder only. */
+
+/* What a node does to a place. */
+struct graph_node_use {
+    uint32_t place;
+    bool reads, writes;
+};
+
+/* The part of a node that is not a task's; it lies in the cache line behind the task. */
+struct graph_node {
+    struct graph_plan *plan;
+    duite_body *body;
+    void *args;               /* or what a set writes; NULL: zeros */
+    struct graph_task **next; /* n_next tasks that wait for it, those of the next round first */
+    uint32_t n_next, n_cyclic;
+    uint32_t steady;    /* predecessors in this round and the last one */
+    uint32_t first_use; /* its uses, one a parameter: task->n */
+    uint32_t n_leaves;  /* parameters to be cleared: contributions */
+    bool sink;          /* nothing of its round waits for it */
+    uint64_t round;     /* the one it runs next */
+};
+
+/* Bytes that nodes use: first the objects of the record and the flag, if it is none of them, then
+ * the buffers of contributions. */
+struct graph_place {
+    void *data;
+    const struct data_failure *failure; /* poison; kept only once the plan is tainted */
+    duite_type type;
+    duite_mode mode; /* of the whole replay: r, w or rw; none for buffers */
+    size_t count, bytes;
+    const duite_law *law;         /* buffers: of the contribution */
+    size_t first_param, n_params; /* in param_of: those that point here */
+};
+
+struct graph_plan {
+    _Atomic uint32_t refs; /* the record, and each replay on its way */
+    struct graph *graph;
+    size_t n_nodes, n_calls, n_uses, n_roots, n_sinks, n_places;
+    size_t n_objects;         /* places that are objects */
+    unsigned char *nodes;     /* the tasks: GRAPH_NODE_BYTES each */
+    struct graph_task **root; /* those without predecessors in their own round */
+    struct graph_task **next;
+    uint32_t *first; /* by node: predecessors in the first round */
+    uint32_t *call;  /* by node: tasks forked before it, which gives its number */
+    uint32_t *owner; /* by node: the place it runs for, or GRAPH_NO_PLACE */
+    struct graph_node_use *use;
+    duite_param *param; /* one a use */
+    uint32_t *param_of;
+    struct graph_place *place;
+    unsigned char *args, *buffers;
+    bool decides; /* the last node reads a flag and decides whether there is another round */
+    size_t flag_place;
+    /* Main thread only. */
+    struct data_object turn; /* written by each replay: one waits for the other */
+    uint64_t started;        /* replays */
+    /* Of the replay that runs. */
+    struct graph_task *replay;
+    uint64_t last;                 /* the last round, or the last that the flag can ask for */
+    bool stop;                     /* said by the deciding node */
+    _Atomic uint64_t over, rounds; /* replays that are over; rounds of the last of them */
+    _Alignas(64) _Atomic uint32_t tainted; /* something is poisoned */
+    _Alignas(64) _Atomic int64_t left;     /* sinks to come, see graph_node_finish */
+};
+
+/* A replay on its way: what its task carries. */
+struct graph_replay {
+    struct graph_plan *plan;
+    uint64_t rounds;              /* or the most of them */
+    uint64_t number;              /* of the first task */
+    struct graph_change *changes; /* oldest last; owned */
+    uint32_t block[];             /* by place */
+};
+
+enum { GRAPH_NO_PLACE = UINT32_MAX };
+
+#define GRAPH_NODE_AT    ((sizeof(struct graph_task) + 63) / 64 * 64)
+#define GRAPH_NODE_BYTES (GRAPH_NODE_AT + (sizeof(struct graph_node) + 63) / 64 * 64)
+
+static inline struct graph_task *graph_plan_task(const struct graph_plan *plan, size_t i)
+{
+    return (struct graph_task *)(void *)(plan->nodes + i * GRAPH_NODE_BYTES);
+}
+
+/* Compiles a record for a fixed number of rounds, or with a flag: an object of the record that is
+ * bound to it, or one more if there is none. Time and memory are linear in the record. NULL without
+ * memory. */
+struct graph_plan *graph_plan_new(const struct graph_record *record, const duite_object *flag);
+/* Could graph_plan_new have made this plan? */
+bool graph_plan_fits(const struct graph_plan *plan, const struct graph_record *record,
+                     const duite_object *flag);
+/* The record lets go of its plan; a replay is over. NULL is fine. */
+void graph_plan_drop(struct graph_plan *plan, void *worker);
+void graph_plan_release(struct graph_plan *plan);
+
+#endif

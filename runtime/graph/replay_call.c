@@ -1,0 +1,143 @@
+/* Replays as the main program asks for them. To the rest of the graph a replay of a plan is one
+ * task that reads or writes each of its objects; forked rounds are tasks like any other. Both leave
+ * the same bytes, the same poison and the same numbers of tasks. */
+#include "runtime/graph/internal.h"
+#include "runtime/graph/replay.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+/* Do open contributions go on in the first round? */
+static bool goes_on(const struct graph_record *record)
+{
+    for (size_t i = 0; i < record->n_objects; i++)
+        if (record->object[i].leads &&
+            record->graph->table.object[record->object[i].bound.slot].leaves)
+            return true;
+    return false;
+}
+
+void graph_replay_split(const struct graph_record *record, const duite_object *flag,
+                        uint64_t rounds, uint64_t *before, uint64_t *after)
+{
+    bool begins = rounds && goes_on(record);
+    bool forked = record->graph->n_ranks > 1 || record->forked ||
+                  (flag && record->graph->table.object[flag->slot].sized);
+    /* A flag's own contributions end with the round, since it is read. */
+    for (size_t i = 0; flag && i < record->n_objects; i++)
+        forked |=
+            record->object[i].trails && (record->object[i].bound.slot != flag->slot ||
+                                         record->object[i].bound.generation != flag->generation);
+    forked |= flag && begins;
+    *before = forked ? rounds : begins;
+    *after = !flag && !forked && record->trails && rounds > *before;
+}
+
+int graph_replay_fork(struct graph_record *record, void *worker)
+{
+    struct graph *graph = record->graph;
+    int code = DUITE_OK;
+    for (size_t i = 0; i < record->n_forks && !code; i++) {
+        const struct graph_recorded_fork *fork = &record->fork[i];
+        unsigned char *args = record->args + fork->args;
+        duite_object *objects = record->names;
+        for (uint32_t k = 0; k < fork->n; k++)
+            objects[k] = record->object[record->use[fork->first + k]].bound;
+        if (fork->kernel == GRAPH_SETS)
+            code = graph_set(graph, worker, objects[0], fork->zeros ? NULL : args, &fork->count);
+        else
+            code = graph_fork(graph, worker, fork->at, graph->kernels[fork->kernel], args, fork->n,
+                              objects);
+    }
+    return code;
+}
+
+/* The record's plan, made anew if it does not fit. */
+static struct graph_plan *plan_for(struct graph_record *record, void *worker,
+                                   const duite_object *flag)
+{
+    if (record->plan && graph_plan_fits(record->plan, record, flag))
+        return record->plan;
+    graph_plan_drop(record->plan, worker);
+    graph_record_forget_changes(record);
+    return record->plan = graph_plan_new(record, flag);
+}
+
+/* One access of the replay's task: as that of any task on one rank. */
+static int use(struct graph *graph, void *worker, struct graph_task *task, size_t i,
+               duite_mode mode, struct data_object *object, uint32_t *done)
+{
+    int code = object->leaves ? graph_close(graph, worker, object) : DUITE_OK;
+    struct data_version *version = object->current;
+    task->access[i].mode = mode;
+    task->access[i].bytes = object->room;
+    if (!code && mode != DUITE_W && !(version = graph_local(graph, object)))
+        code = DUITE_E_MEMORY;
+    if (code)
+        return code;
+    if (mode == DUITE_R) {
+        graph_read(task, i, version, done);
+        return DUITE_OK;
+    }
+    object->number++;
+    data_object_moved(object, graph->rank);
+    return graph_overwrite(graph, task, i, object, version, done);
+}
+
+static int use_all(struct graph_record *record, void *worker, struct graph_task *task,
+                   const duite_object *flag)
+{
+    struct graph *graph = record->graph;
+    struct graph_plan *plan = record->plan;
+    uint32_t done = 0;
+    for (size_t i = 0; i <= plan->n_objects; i++) {
+        duite_mode mode = i < plan->n_objects ? plan->place[i].mode : DUITE_W;
+        struct data_object *object = &plan->turn;
+        if (i < plan->n_objects) {
+            duite_object name = i < record->n_objects ? record->object[i].bound : *flag;
+            object = &graph->table.object[name.slot];
+            task->replay->block[i] = object->block;
+        }
+        int code = use(graph, worker, task, i, mode, object, &done);
+        if (code) {
+            graph_void(graph, worker, task, i, done);
+            return code;
+        }
+    }
+    plan->started++;
+    atomic_fetch_add_explicit(&plan->refs, 1, memory_order_relaxed);
+    record->changes = NULL;
+    graph_settled(graph, worker, task, done);
+    return DUITE_OK;
+}
+
+int graph_replay_plan(struct graph_record *record, void *worker, const duite_object *flag,
+                      uint64_t rounds)
+{
+    struct graph *graph = record->graph;
+    struct graph_plan *plan = plan_for(record, worker, flag);
+    if (!plan)
+        return base_no_memory("a recorded graph");
+    struct graph_task *task =
+        graph_task_new(graph, GRAPH_REPLAY, plan->n_objects + 1,
+                       sizeof *task->replay + plan->n_objects * sizeof task->replay->block[0]);
+    if (!task)
+        return DUITE_E_MEMORY;
+    *task->replay = (struct graph_replay){plan, rounds, graph->forks + 1, record->changes};
+    graph->forks += rounds * record->n_calls;
+    return use_all(record, worker, task, flag);
+}
+
+bool graph_replay_over(const struct graph_record *record)
+{
+    const struct graph_plan *plan = record->plan;
+    return !record->by_plan ||
+           atomic_load_explicit(&plan->over, memory_order_acquire) == plan->started;
+}
+
+uint64_t graph_replay_rounds(const struct graph_record *record)
+{
+    return record->rounds + (record->by_plan
+                                 ? atomic_load_explicit(&record->plan->rounds, memory_order_relaxed)
+                                 : 0);
+}

@@ -1,0 +1,245 @@
+/* A plan is written once, from a draft; afterwards only bindings, arguments and what runs change
+ * it. It lives as long as its record or a replay of it. */
+#include "runtime/graph/internal.h"
+#include "runtime/graph/replay_draft.h"
+
+#include "runtime/base/memory.h"
+
+#include <string.h>
+
+static void fill_places(struct graph_plan *plan, const struct graph_draft *draft,
+                        const duite_object *flag)
+{
+    const struct graph_record *record = draft->record;
+    for (size_t i = 0; i < record->n_objects; i++) {
+        const struct graph_recorded_object *object = &record->object[i];
+        bool written = object->written || object->sums;
+        plan->place[i] = (struct graph_place){.type = object->type,
+                                              .mode = !written            ? DUITE_R
+                                                      : object->reads_old ? DUITE_RW
+                                                                          : DUITE_W,
+                                              .count = object->count};
+    }
+    if (plan->n_objects > record->n_objects) {
+        const struct data_object *object = &record->graph->table.object[flag->slot];
+        plan->place[record->n_objects] =
+            (struct graph_place){.type = object->type, .mode = DUITE_R, .count = object->count};
+    }
+    for (size_t i = plan->n_objects; i < plan->n_places; i++) {
+        const struct graph_place *whole = &plan->place[draft->place[i].object];
+        plan->place[i] = (struct graph_place){
+            .type = whole->type, .count = whole->count, .law = draft->place[i].law};
+    }
+    for (size_t i = 0; i < plan->n_places; i++)
+        plan->place[i].bytes = plan->place[i].count * data_type_size(plan->place[i].type);
+}
+
+static bool alloc_buffers(struct graph_plan *plan)
+{
+    size_t bytes = 0;
+    for (int fill = 0; fill < 2; fill++) {
+        bytes = 0;
+        for (size_t i = plan->n_objects; i < plan->n_places; i++) {
+            if (fill)
+                plan->place[i].data = plan->buffers + bytes;
+            bytes += (plan->place[i].bytes + 63) / 64 * 64;
+        }
+        if (!fill && !(plan->buffers = base_alloc(bytes + 1)))
+            return false;
+    }
+    return true;
+}
+
+static void fill_params(struct graph_plan *plan)
+{
+    for (size_t i = 0; i < plan->n_uses; i++) {
+        struct graph_place *place = &plan->place[plan->use[i].place];
+        plan->param[i] = (duite_param){place->data, place->count, place->type, place->count};
+        place->n_params++;
+    }
+    size_t at = 0;
+    for (size_t i = 0; i < plan->n_places; i++) {
+        plan->place[i].first_param = at;
+        at += plan->place[i].n_params;
+        plan->place[i].n_params = 0;
+    }
+    for (size_t i = 0; i < plan->n_uses; i++) {
+        struct graph_place *place = &plan->place[plan->use[i].place];
+        plan->param_of[place->first_param + place->n_params++] = (uint32_t)i;
+    }
+}
+
+/* The owner rule. */
+static uint32_t owner(const struct graph_plan *plan, const struct graph_draft_node *node)
+{
+    uint32_t first_read = GRAPH_NO_PLACE;
+    for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
+        const struct graph_node_use *use = &plan->use[i];
+        if (use->place < plan->n_objects && use->writes)
+            return use->place;
+        if (use->place < plan->n_objects && first_read == GRAPH_NO_PLACE)
+            first_read = use->place;
+    }
+    return first_read;
+}
+
+static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, size_t i)
+{
+    const struct graph_record *record = draft->record;
+    const struct graph_draft_node *from = &draft->node[i];
+    struct graph_task *task = graph_plan_task(plan, i);
+    struct graph_node *node = (void *)(plan->nodes + i * GRAPH_NODE_BYTES + GRAPH_NODE_AT);
+    *task = (struct graph_task){.n = (uint32_t)from->n_uses,
+                                .kind = from->kind,
+                                .kernel = UINT32_MAX,
+                                .node = node,
+                                .param = plan->param + from->first_use};
+    *node = (struct graph_node){.plan = plan,
+                                .n_next = from->n_next,
+                                .n_cyclic = from->n_next_cyclic,
+                                .steady = from->within + from->cyclic,
+                                .first_use = (uint32_t)from->first_use,
+                                .sink = from->n_next == from->n_next_cyclic};
+    plan->first[i] = from->within;
+    plan->call[i] = record->n_forks ? record->fork[from->fork].call : 0;
+    plan->owner[i] = owner(plan, from);
+    if (!from->within)
+        plan->root[plan->n_roots++] = task;
+    plan->n_sinks += node->sink;
+    if (from->kind != GRAPH_NODE && from->kind != GRAPH_NODE_SET)
+        return;
+    const struct graph_recorded_fork *fork = &record->fork[from->fork];
+    node->args = fork->zeros ? NULL : plan->args + fork->args;
+    if (from->kind == GRAPH_NODE_SET)
+        return;
+    const duite_kernel *kernel = record->graph->kernels[fork->kernel];
+    task->kernel = fork->kernel;
+    node->body = kernel->body;
+    node->args = kernel->args_size ? plan->args + fork->args : NULL;
+    for (uint32_t k = 0; k < fork->n; k++)
+        node->n_leaves += plan->use[node->first_use + k].place >= plan->n_objects;
+}
+
+/* Successors in one row, those of the next round before those of the same. */
+static void fill_next(struct graph_plan *plan, const struct graph_draft *draft)
+{
+    struct graph_task **at = plan->next;
+    for (size_t i = 0; i < plan->n_nodes; i++) {
+        struct graph_node *node = graph_plan_task(plan, i)->node;
+        node->next = at;
+        at += node->n_next;
+        node->n_next = 0;
+    }
+    for (int within = 0; within < 2; within++)
+        for (size_t i = 0; i < draft->n_edges; i++) {
+            const struct graph_draft_edge *edge = &draft->edge[i];
+            struct graph_node *node = graph_plan_task(plan, edge->from)->node;
+            if (edge->cyclic != within)
+                node->next[node->n_next++] = graph_plan_task(plan, edge->to);
+        }
+}
+
+static bool fill(struct graph_plan *plan, const struct graph_draft *draft, const duite_object *flag)
+{
+    plan->n_nodes = draft->n_nodes;
+    plan->n_uses = draft->n_uses;
+    plan->n_places = draft->n_places;
+    plan->n_calls = draft->record->n_calls;
+    plan->nodes = base_alloc(plan->n_nodes * GRAPH_NODE_BYTES + 1);
+    plan->root = base_alloc((plan->n_nodes + 1) * sizeof(struct graph_task *));
+    plan->next = base_alloc((draft->n_edges + 1) * sizeof(struct graph_task *));
+    plan->first = base_alloc((plan->n_nodes + 1) * sizeof *plan->first);
+    plan->call = base_alloc((plan->n_nodes + 1) * sizeof *plan->call);
+    plan->owner = base_alloc((plan->n_nodes + 1) * sizeof *plan->owner);
+    plan->use = base_alloc((plan->n_uses + 1) * sizeof *plan->use);
+    plan->param = base_alloc((plan->n_uses + 1) * sizeof *plan->param);
+    plan->param_of = base_alloc((plan->n_uses + 1) * sizeof *plan->param_of);
+    plan->place = base_alloc((plan->n_places + 1) * sizeof *plan->place);
+    plan->args = base_alloc(draft->record->args_bytes + 1);
+    if (!plan->nodes || !plan->root || !plan->next || !plan->first || !plan->call || !plan->owner ||
+        !plan->use || !plan->param || !plan->param_of || !plan->place || !plan->args)
+        return false;
+    memcpy(plan->use, draft->use, plan->n_uses * sizeof *plan->use);
+    fill_places(plan, draft, flag);
+    if (!alloc_buffers(plan))
+        return false;
+    fill_params(plan);
+    if (draft->record->args_bytes)
+        memcpy(plan->args, draft->record->args, draft->record->args_bytes);
+    for (size_t i = 0; i < plan->n_nodes; i++)
+        fill_node(plan, draft, i);
+    fill_next(plan, draft);
+    return true;
+}
+
+/* The place of the flag among the objects; behind them if it is none of them. */
+static size_t find_flag(const struct graph_record *record, duite_object flag)
+{
+    size_t place = 0;
+    while (place < record->n_objects && (record->object[place].bound.slot != flag.slot ||
+                                         record->object[place].bound.generation != flag.generation))
+        place++;
+    return place;
+}
+
+bool graph_plan_fits(const struct graph_plan *plan, const struct graph_record *record,
+                     const duite_object *flag)
+{
+    if (plan->decides != (flag != NULL))
+        return false;
+    if (!flag)
+        return true;
+    const struct graph_place *place = &plan->place[plan->flag_place];
+    const struct data_object *object = &record->graph->table.object[flag->slot];
+    return plan->flag_place == find_flag(record, *flag) && place->type == object->type &&
+           place->count == object->count;
+}
+
+struct graph_plan *graph_plan_new(const struct graph_record *record, const duite_object *flag)
+{
+    struct graph_plan *plan = base_alloc_zero(sizeof *plan);
+    struct graph_draft draft = {.record = record, .decides = flag != NULL};
+    if (!plan)
+        return NULL;
+    atomic_init(&plan->refs, 1);
+    plan->graph = record->graph;
+    plan->decides = flag != NULL;
+    plan->flag_place = flag ? find_flag(record, *flag) : 0;
+    plan->n_objects = record->n_objects + (flag && plan->flag_place == record->n_objects);
+    bool fine =
+        graph_draft_make(&draft, plan->n_objects, plan->flag_place) && fill(plan, &draft, flag);
+    graph_draft_free(&draft);
+    if (fine)
+        return plan;
+    graph_plan_release(plan);
+    return NULL;
+}
+
+void graph_plan_release(struct graph_plan *plan)
+{
+    if (atomic_fetch_sub_explicit(&plan->refs, 1, memory_order_acq_rel) != 1)
+        return;
+    base_free(plan->nodes);
+    base_free(plan->root);
+    base_free(plan->next);
+    base_free(plan->first);
+    base_free(plan->call);
+    base_free(plan->owner);
+    base_free(plan->use);
+    base_free(plan->param);
+    base_free(plan->param_of);
+    base_free(plan->place);
+    base_free(plan->args);
+    base_free(plan->buffers);
+    base_free(plan);
+}
+
+void graph_plan_drop(struct graph_plan *plan, void *worker)
+{
+    if (!plan)
+        return;
+    if (plan->turn.current)
+        graph_release(plan->graph, worker, plan->turn.current);
+    plan->turn.current = NULL;
+    graph_plan_release(plan);
+}

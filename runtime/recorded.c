@@ -1,0 +1,289 @@
+/* Recorded graphs as the main program knows them: a slot's generation is odd while a graph lives in
+ * it. Before a replay the graph is recorded anew if it names objects that are gone; then its rounds
+ * go where they can run: to the plan, or through the forks of the dynamic path. */
+#include "runtime/instance.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+struct recorded_graph {
+    duite_build *build;
+    void *context;
+    struct graph_record *record; /* NULL: the slot is free */
+    uint32_t generation;
+};
+
+int recorded_failed(duite *rt, int code)
+{
+    struct graph_record *record = rt->building;
+    if (record->failed)
+        return code;
+    record->failed = code;
+    snprintf(record->sentence, sizeof record->sentence, "%s", duite_message());
+    return code;
+}
+
+int recorded_left(const duite *rt)
+{
+    for (size_t i = 0; i < rt->n_recorded; i++)
+        if (rt->recorded[i].record)
+            return base_error(DUITE_E_NOT_FREED, "recorded graph %zu was not freed", i + 1);
+    return DUITE_OK;
+}
+
+void recorded_stop(duite *rt)
+{
+    for (size_t i = 0; i < rt->n_recorded; i++)
+        if (rt->recorded[i].record)
+            graph_record_free(rt->recorded[i].record, NULL);
+    free(rt->recorded);
+}
+
+static struct recorded_graph *find(duite *rt, duite_graph name)
+{
+    struct recorded_graph *found =
+        name.slot && name.slot <= rt->n_recorded ? &rt->recorded[name.slot - 1] : NULL;
+    if (found && found->generation == name.generation && name.generation % 2)
+        return found;
+    base_error(DUITE_E_OBJECT, "recorded graph %u.%u %s", name.slot, name.generation,
+               found && name.generation < found->generation ? "was freed" : "was never made");
+    return NULL;
+}
+
+/* A slot with an empty record; 0 without memory. */
+static uint32_t take_slot(duite *rt)
+{
+    size_t slot = 0;
+    while (slot < rt->n_recorded && rt->recorded[slot].record)
+        slot++;
+    void *moved = base_grow(rt->recorded, &rt->recorded_capacity, slot + 1, sizeof *rt->recorded);
+    struct graph_record *record = moved ? graph_record_new(&rt->graph) : NULL;
+    if (moved)
+        rt->recorded = moved;
+    if (!record)
+        return 0;
+    if (slot == rt->n_recorded)
+        rt->recorded[rt->n_recorded++].generation = 0;
+    rt->recorded[slot].record = record;
+    rt->recorded[slot].generation++;
+    return (uint32_t)slot + 1;
+}
+
+static void free_slot(duite *rt, struct recorded_graph *slot)
+{
+    graph_record_free(slot->record, work_main(rt->pool));
+    slot->record = NULL;
+    slot->generation++;
+}
+
+/* Calls build. */
+static int record(duite *rt, struct recorded_graph *slot)
+{
+    struct graph_record *record = slot->record;
+    graph_record_clear(record, work_main(rt->pool));
+    rt->building = record;
+    rt->graphs_recorded++;
+    int code = slot->build(rt, slot->context);
+    rt->building = NULL;
+    if (record->failed)
+        code = base_error(record->failed, "%s", record->sentence);
+    else if (code)
+        base_error(code, "the build function of a graph returned %d", code);
+    if (code)
+        graph_record_clear(record, work_main(rt->pool));
+    else
+        graph_record_end(record);
+    return code;
+}
+
+int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *graph)
+{
+    if (graph)
+        *graph = DUITE_NO_GRAPH;
+    int code = program_enter(rt, "duite_graph_new");
+    if (code)
+        return code;
+    if (!build || !graph)
+        return program_remember(rt, base_error(DUITE_E_ARGUMENT, "duite_graph_new: no %s",
+                                               build ? "place for the graph" : "build function"));
+    code = program_settle(rt);
+    uint32_t slot = code ? 0 : take_slot(rt);
+    if (!slot)
+        return program_remember(rt, code ? code : base_no_memory("a recorded graph"));
+    struct recorded_graph *made = &rt->recorded[slot - 1];
+    made->build = build;
+    made->context = context;
+    code = record(rt, made);
+    if (code)
+        free_slot(rt, made);
+    else
+        *graph = (duite_graph){slot, made->generation};
+    return program_remember(rt, code);
+}
+
+int duite_graph_free(duite *rt, duite_graph graph)
+{
+    int code = program_enter(rt, "duite_graph_free");
+    if (code)
+        return code;
+    struct recorded_graph *found = find(rt, graph);
+    if (!found)
+        return program_remember(rt, DUITE_E_OBJECT);
+    graph_mix(&rt->graph, graph.slot);
+    free_slot(rt, found);
+    return DUITE_OK;
+}
+
+int duite_graph_args(duite *rt, duite_graph graph, size_t k, const void *args)
+{
+    int code = program_enter(rt, "duite_graph_args");
+    if (code)
+        return code;
+    const struct recorded_graph *found = find(rt, graph);
+    return program_remember(rt, found ? graph_record_args(found->record, k, args) : DUITE_E_OBJECT);
+}
+
+int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_object object)
+{
+    int code = program_enter(rt, "duite_graph_bind");
+    if (code)
+        return code;
+    const struct recorded_graph *found = find(rt, graph);
+    return program_remember(rt, found ? graph_record_bind(found->record, recorded, object)
+                                      : DUITE_E_OBJECT);
+}
+
+/* ---- Replays ---- */
+
+static int check_rounds(const struct graph_record *record, uint64_t rounds)
+{
+    uint64_t most = UINT64_C(1) << GRAPH_MOST_TASKS_BITS;
+    if (rounds <= most / (record->n_forks + 1))
+        return DUITE_OK;
+    return base_error(DUITE_E_ARGUMENT, "%llu rounds of %zu tasks are more than 2^%d",
+                      (unsigned long long)rounds, record->n_forks, GRAPH_MOST_TASKS_BITS);
+}
+
+/* The graph fits what it is bound to. */
+static int prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds)
+{
+    int code = program_settle(rt);
+    if (!code && !graph_record_fits(slot->record))
+        code = record(rt, slot);
+    if (!code)
+        code = graph_record_distinct(slot->record);
+    return code ? code : check_rounds(slot->record, rounds);
+}
+
+static int fork_rounds(duite *rt, struct graph_record *record, uint64_t rounds)
+{
+    int code = DUITE_OK;
+    for (uint64_t i = 0; i < rounds && !code; i++) {
+        code = graph_replay_fork(record, work_main(rt->pool));
+        record->rounds += !code;
+        work_tick(rt->pool);
+    }
+    return code;
+}
+
+static int replay(duite *rt, struct graph_record *record, uint64_t rounds)
+{
+    uint64_t before, after;
+    graph_replay_split(record, NULL, rounds, &before, &after);
+    record->rounds = 0;
+    record->by_plan = rounds > before + after;
+    int code = fork_rounds(rt, record, before);
+    if (!code && record->by_plan)
+        code = graph_replay_plan(record, work_main(rt->pool), NULL, rounds - before - after);
+    return code ? code : fork_rounds(rt, record, after);
+}
+
+int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
+{
+    int code = program_enter(rt, "duite_replay");
+    if (code)
+        return code;
+    struct recorded_graph *found = find(rt, graph);
+    if (!found)
+        return program_remember(rt, DUITE_E_OBJECT);
+    graph_mix(&rt->graph, graph.slot);
+    graph_mix(&rt->graph, rounds);
+    code = prepare(rt, found, rounds);
+    return program_remember(rt, code ? code : replay(rt, found->record, rounds));
+}
+
+/* Rounds of the dynamic path, the flag read after each. */
+static int fork_while(duite *rt, struct graph_record *record, duite_object flag, uint64_t most)
+{
+    const struct data_object *object = data_object_find(&rt->graph.table, flag);
+    uint64_t forks = rt->graph.forks;
+    duite_type type = object->type;
+    void *values = base_alloc(object->room);
+    bool holds = true;
+    size_t count;
+    int code = values ? DUITE_OK : base_no_memory("a flag");
+    while (!code && holds && record->rounds < most) {
+        code = fork_rounds(rt, record, 1);
+        if (!code) /* a failure is told by the next wait */
+            holds = !program_get(rt, flag, GRAPH_ANYWHERE, values, &count, "duite_replay_while") &&
+                    count && graph_flag_holds(type, values);
+        if (!code && instance_is_broken(rt))
+            code = rt->comm ? comm_broken(rt->comm) : rt->graph.broken;
+    }
+    rt->graph.forks = forks + most * record->n_calls;
+    base_free(values);
+    return code;
+}
+
+static int replay_while(duite *rt, struct graph_record *record, duite_object flag, uint64_t most)
+{
+    uint64_t before, after;
+    if (!data_object_find(&rt->graph.table, flag))
+        return DUITE_E_OBJECT;
+    graph_replay_split(record, &flag, most, &before, &after);
+    record->rounds = 0;
+    record->by_plan = most > before;
+    if (!record->by_plan)
+        return fork_while(rt, record, flag, most);
+    return graph_replay_plan(record, work_main(rt->pool), &flag, most);
+}
+
+int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t most)
+{
+    int code = program_enter(rt, "duite_replay_while");
+    if (code)
+        return code;
+    struct recorded_graph *found = find(rt, graph);
+    if (!found)
+        return program_remember(rt, DUITE_E_OBJECT);
+    graph_mix(&rt->graph, graph.slot);
+    graph_mix(&rt->graph, most);
+    graph_mix(&rt->graph, (uint64_t)flag.slot << 32 | flag.generation);
+    code = prepare(rt, found, most);
+    if (!code && !most)
+        code = base_error(DUITE_E_ARGUMENT, "duite_replay_while: at most 0 rounds");
+    return program_remember(rt, code ? code : replay_while(rt, found->record, flag, most));
+}
+
+static bool is_over(void *context)
+{
+    return graph_replay_over(context);
+}
+
+int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
+{
+    int code = program_enter(rt, "duite_graph_rounds");
+    if (code)
+        return code;
+    const struct recorded_graph *found = find(rt, graph);
+    if (!found)
+        return DUITE_E_OBJECT;
+    if (!rounds)
+        return base_error(DUITE_E_ARGUMENT, "duite_graph_rounds: nowhere to put the number");
+    work_until(rt->pool, is_over, found->record);
+    *rounds = graph_replay_rounds(found->record);
+    return DUITE_OK;
+}

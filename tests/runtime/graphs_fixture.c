@@ -1,0 +1,86 @@
+/* What the tests of graphs that change, fail or are refused share. */
+#include "tests/runtime/graphs_fixture.h"
+
+static int digit(const duite_call *call)
+{
+    int64_t *x = duite_out(call, 0, int64_t);
+
+    x[0] = 10 * x[0] + *(const int32_t *)call->args;
+    return 0;
+}
+
+/* Fails, with its argument, when the number it reads has come to 100 or more. */
+static int limit(const duite_call *call)
+{
+    const int64_t x = duite_in(call, 0, int64_t)[0];
+
+    duite_out(call, 1, int64_t)[0] = x;
+    return x < 100 ? 0 : duite_fail(call, *(const int32_t *)call->args, "x is %d", (int)x);
+}
+
+static int copy(const duite_call *call)
+{
+    duite_out(call, 1, int64_t)[0] = duite_in(call, 0, int64_t)[0];
+    return 0;
+}
+
+const duite_kernel DIGIT = {
+    .name = "digit", .body = digit, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
+const duite_kernel LIMIT = {
+    .name = "limit", .body = limit, .access = {DUITE_R, DUITE_W}, .args_size = sizeof(int32_t)};
+const duite_kernel COPY = {.name = "copy", .body = copy, .access = {DUITE_R, DUITE_W}};
+
+int graphs_build(duite *rt, void *context)
+{
+    struct graphs_fixture *f = context;
+
+    f->built++;
+    DUITE_FORK(rt, &DIGIT, &(int32_t){1}, f->a);
+    DUITE_FORK(rt, &DIGIT, &(int32_t){2}, f->b);
+    DUITE_FORK(rt, &DIGIT, &(int32_t){3}, f->a);
+    return 0;
+}
+
+duite_object graphs_number(duite *rt, int64_t value)
+{
+    duite_object object;
+
+    ck_assert_int_eq(duite_new(rt, DUITE_I64, 1, &object), 0);
+    ck_assert_int_eq(duite_set(rt, object, &value), 0);
+    return object;
+}
+
+int64_t graphs_value_of(duite *rt, duite_object object)
+{
+    int64_t value = -1;
+
+    ck_assert_msg(!duite_get(rt, object, &value), "%s", duite_message());
+    return value;
+}
+
+struct graphs_fixture graphs_begin(duite_build *builds)
+{
+    static const duite_kernel *const KERNELS[] = {&DIGIT, &LIMIT, &COPY, NULL};
+    duite_options options = duite_options_default();
+    static struct graphs_fixture f; /* build sees the fields of its time */
+
+    f = (struct graphs_fixture){0};
+    options.kernels = KERNELS;
+    options.threads = 2;
+    options.bind = 0;
+    ck_assert_msg(!duite_start(&f.rt, &options), "%s", duite_message());
+    f.a = graphs_number(f.rt, 0);
+    f.b = graphs_number(f.rt, 0);
+    f.c = graphs_number(f.rt, 0);
+    ck_assert_msg(!duite_graph_new(f.rt, builds, &f, &f.graph), "%s", duite_message());
+    return f;
+}
+
+void graphs_end(struct graphs_fixture *f, int code)
+{
+    ck_assert_int_eq(duite_graph_free(f->rt, f->graph), 0);
+    ck_assert_int_eq(duite_free(f->rt, f->a), 0);
+    ck_assert_int_eq(duite_free(f->rt, f->b), 0);
+    ck_assert_int_eq(duite_free(f->rt, f->c), 0);
+    ck_assert_int_eq(duite_stop(&f->rt), code);
+}

@@ -271,8 +271,8 @@ int duite_get_at(duite *rt, duite_object object, int rank, void *values);
 /* Tells mappings about the object: its share of work, and the bytes it exchanges with n neighbours,
  * which exist already (edge_weights NULL: 1 each). An edge may be told from either end; told twice
  * it adds up. A second hint replaces the weight and adds edges. Hints count until
- * the next fork, set, get, free or duite_home after the object was made settles its home, and
- * change nothing later. Collective. */
+ * the next fork, set, get, free, duite_home, duite_graph_new or replay (of an empty graph too)
+ * after the object was made settles its home, and change nothing later. Collective. */
 int duite_hint(duite *rt, duite_object object, double weight, size_t n,
                const duite_object *neighbours, const double *edge_weights);
 
@@ -280,7 +280,7 @@ int duite_hint(duite *rt, duite_object object, double weight, size_t n,
  * like a hint. Following in a ring is DUITE_E_ARGUMENT. Collective. */
 int duite_follow(duite *rt, duite_object object, duite_object leader);
 
-/* Settles the homes of all objects made so far, as the first fork does, and returns the rank that
+/* Settles the homes of all objects made so far, as a fork does, and returns the rank that
  * keeps this one; -1 for no such object. Collective. */
 int duite_home(duite *rt, duite_object object);
 

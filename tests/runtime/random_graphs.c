@@ -88,6 +88,7 @@ static void replay(struct maker *m, unsigned graph)
     op->graph = graph;
     op->count = (counted ? 0 : 1) + make_below(m, make_one_in(m, 6) ? 40 : 6);
     m->refused = 1; /* it may be */
+    m->unsettled = (unsigned)m->prog->n_objects;
     if (make_one_in(m, 3))
         make_push(m, PROG_ROUNDS, 0)->graph = graph;
 }

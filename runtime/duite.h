@@ -26,6 +26,7 @@
 #include <mpi.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -364,6 +365,16 @@ int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds);
  * exchanged. Collective. */
 int duite_graph_args(duite *rt, duite_graph graph, size_t k, const void *args);
 int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_object object);
+
+/* Writes one round of the graph to `file` (open for writing, and left open) in the language of
+ * Graphviz' dot: a box for each fork with the kernel's name, the rank if one was named, and a line
+ * for each parameter: its mode and the slot and generation of the object that the next replay
+ * takes, for cw the law; an ellipse for each set and wherever contributions are added to their
+ * object (those still open at the end of the round are drawn as added there). Edges are the
+ * dependences of a replay: solid within a round, dashed from one round to the next. Errors:
+ * DUITE_E_OBJECT, DUITE_E_ARGUMENT, DUITE_E_MEMORY, and DUITE_E_SYSTEM if writing fails; none of
+ * them is remembered. Local; the same text on every rank. */
+int duite_graph_print(duite *rt, duite_graph graph, FILE *file);
 
 /* Frees a graph; replays that are on their way come to their end. Collective. */
 int duite_graph_free(duite *rt, duite_graph graph);

@@ -156,6 +156,19 @@ int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_
                                       : DUITE_E_OBJECT);
 }
 
+int duite_graph_print(duite *rt, duite_graph graph, FILE *file)
+{
+    int code = program_enter(rt, "duite_graph_print");
+    if (code)
+        return code;
+    const struct recorded_graph *found = find(rt, graph);
+    if (!found)
+        return DUITE_E_OBJECT;
+    if (!file)
+        return base_error(DUITE_E_ARGUMENT, "duite_graph_print: no file");
+    return graph_record_print(found->record, file);
+}
+
 /* ---- Replays ---- */
 
 static int check_rounds(const struct graph_record *record, uint64_t rounds)

@@ -3,13 +3,15 @@
 
 #include "runtime/graph/graph.h"
 
+#include <stdio.h>
+
 /* Recorded graphs: what a build function forked, kept to be replayed.
  *
  * The record is the program's view: forks in order, with the objects and arguments that the next
  * replay uses. From it comes a plan (replay.h), which one rank replays by itself; any number of
  * ranks can fork the record round by round instead, with the same results. Main thread only. */
 
-enum { GRAPH_SETS = UINT32_MAX }; /* in place of a kernel: a duite_set */
+#define GRAPH_SETS UINT32_MAX /* in place of a kernel: a duite_set */
 
 struct graph_recorded_fork {
     uint32_t kernel; /* index in the list given at start */
@@ -99,6 +101,9 @@ void graph_record_end(struct graph_record *record);
 int graph_record_args(struct graph_record *record, size_t k, const void *args);
 /* Errors: DUITE_E_OBJECT, DUITE_E_BINDING. */
 int graph_record_bind(struct graph_record *record, duite_object recorded, duite_object object);
+
+/* Writes the record as dot, with the objects of the next replay. Errors: memory, DUITE_E_SYSTEM. */
+int graph_record_print(const struct graph_record *record, FILE *file);
 
 /* Was it recorded, and do all bound objects exist? */
 bool graph_record_fits(const struct graph_record *record);

@@ -76,7 +76,7 @@ struct graph_replay {
     uint32_t block[];             /* by place */
 };
 
-enum { GRAPH_NO_PLACE = UINT32_MAX };
+#define GRAPH_NO_PLACE UINT32_MAX
 
 #define GRAPH_NODE_AT    ((sizeof(struct graph_task) + 63) / 64 * 64)
 #define GRAPH_NODE_BYTES (GRAPH_NODE_AT + (sizeof(struct graph_node) + 63) / 64 * 64)

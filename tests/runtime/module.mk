@@ -20,7 +20,7 @@ TESTS += tests/runtime/test_exit.sh
 
 if HAVE_CHECK
 RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched tests/runtime/test_check \
-    tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused
+    tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
 tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
@@ -40,5 +40,7 @@ tests_runtime_test_graphs_change_SOURCES = tests/runtime/test_graphs_change.c \
 tests_runtime_test_graphs_refused_SOURCES = tests/runtime/test_graphs_refused.c \
     tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
 tests_runtime_test_graphs_refused_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_graph_print_SOURCES = tests/runtime/test_graph_print.c
+tests_runtime_test_graph_print_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_change_LDADD = $(DUITE_TEST_LIBS)
 endif

@@ -1,0 +1,78 @@
+/* A recorded graph as dot: the nodes and edges of a draft, the same on any number of ranks, whether
+ * a plan would be made of it or not. */
+#include "runtime/graph/replay_draft.h"
+
+#include "runtime/base/error.h"
+#include "runtime/data/law.h"
+
+static void print_name(FILE *file, const char *name)
+{
+    for (; *name; name++) {
+        if (*name == '"' || *name == '\\')
+            fputc('\\', file);
+        fputc(*name, file);
+    }
+}
+
+static void print_use(const struct graph_record *record, size_t object, duite_mode mode, FILE *file)
+{
+    static const char *const modes[] = {
+        [DUITE_R] = "r", [DUITE_W] = "w", [DUITE_RW] = "rw", [DUITE_CW] = "cw"};
+    duite_object name = record->object[object].bound;
+    fprintf(file, "\\n%s %u.%u", modes[mode], name.slot, name.generation);
+}
+
+static void print_fork(const struct graph_record *record, const struct graph_recorded_fork *fork,
+                       FILE *file)
+{
+    bool sets = fork->kernel == GRAPH_SETS;
+    const duite_kernel *kernel = sets ? NULL : record->graph->kernels[fork->kernel];
+    print_name(file, sets ? "duite_set" : kernel->name);
+    if (fork->at >= 0)
+        fprintf(file, "\\nat rank %d", fork->at);
+    for (uint32_t k = 0; k < fork->n; k++) {
+        duite_mode mode = graph_recorded_mode(record->graph, fork, k);
+        print_use(record, record->use[fork->first + k], mode, file);
+        if (mode == DUITE_CW) {
+            fputs(" ", file);
+            print_name(file, data_law_of(kernel, k)->name);
+        }
+    }
+}
+
+static void print_draft(const struct graph_draft *draft, FILE *file)
+{
+    const struct graph_record *record = draft->record;
+    fputs("digraph duite {\n    node [shape=box];\n", file);
+    for (size_t i = 0; i < draft->n_nodes; i++) {
+        const struct graph_draft_node *node = &draft->node[i];
+        fprintf(file, "    n%zu [label=\"", i);
+        if (node->kind == GRAPH_NODE_SUM) {
+            fputs("duite_sum", file);
+            print_use(record, draft->use[node->first_use].place, DUITE_RW, file);
+        } else {
+            print_fork(record, &record->fork[node->fork], file);
+        }
+        fputs(node->kind == GRAPH_NODE ? "\"];\n" : "\", shape=ellipse];\n", file);
+    }
+    for (size_t i = 0; i < draft->n_edges; i++) {
+        const struct graph_draft_edge *edge = &draft->edge[i];
+        fprintf(file, "    n%u -> n%u%s;\n", edge->from, edge->to,
+                edge->cyclic ? " [style=dashed, constraint=false]" : "");
+    }
+    fputs("}\n", file);
+}
+
+int graph_record_print(const struct graph_record *record, FILE *file)
+{
+    struct graph_draft draft = {.record = record};
+    int code = DUITE_OK;
+    if (!graph_draft_make(&draft, record->n_objects, 0))
+        code = base_no_memory("a recorded graph");
+    else
+        print_draft(&draft, file);
+    graph_draft_free(&draft);
+    if (!code && (fflush(file) || ferror(file)))
+        code = base_error(DUITE_E_SYSTEM, "duite_graph_print: the file cannot be written");
+    return code;
+}

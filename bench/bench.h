@@ -24,6 +24,8 @@ struct bench {
     const char *name;
     const char *about;
     const struct bench_case *const *cases; /* ended by NULL */
+    const struct measure_target *targets;  /* in full size, with so many threads */
+    unsigned target_threads;
     /* Serves the runs of these cases: called in the processes that duite-bench starts of itself. */
     int (*serve)(const struct bench *bench);
 };

@@ -33,7 +33,7 @@ static const struct argp_option OPTIONS[] = {
     {"list", LIST, NULL, 0, "print cases and their metrics, and run nothing", 1},
     {"only", ONLY, "CASE", 0, "run this case alone; may be given several times", 2},
     {"quick", QUICK, NULL, 0, "tiny sizes, to see that everything works; figures mean nothing", 2},
-    {"repeats", REPEATS, "N", 0, "rounds that count (default: 15; quick: 2)", 3},
+    {"repeats", REPEATS, "N", 0, "rounds that count (default: 16; quick: 2)", 3},
     {"seed", SEED, "N", 0, "of the order of the runs (default: 1)", 3},
     {"threads", THREADS, "N", 0, "cores for each subject (default: 2)", 3},
     {"scheduler", SCHEDULER, "NAME", 0, "ours (default: steal)", 3},
@@ -151,15 +151,31 @@ static bool chosen(const struct command *command, const struct bench_case *one)
     return !command->n_only;
 }
 
+static void plan(const struct command *command, const struct bench_case *one,
+                 struct measure *measure)
+{
+    one->plan(measure, &command->options);
+    if (!command->options.quick && command->options.threads == command->bench->target_threads)
+        measure_targets(measure, command->bench->targets);
+}
+
+static void list_metric(const struct measure_metric *metric)
+{
+    printf("    %s (%s)", metric->name, metric->unit);
+    if (metric->target)
+        printf(", target %s %g", metric->target->least ? ">=" : "<=", metric->target->bound);
+    putchar('\n');
+}
+
 static void list(const struct command *command, struct measure *measure)
 {
     for (const struct bench_case *const *one = command->bench->cases; *one; one++) {
         if (!chosen(command, *one))
             continue;
         printf("%s: %s\n", (*one)->name, (*one)->about);
-        (*one)->plan(measure, &command->options);
+        plan(command, *one, measure);
         for (size_t i = 0; i < measure->n_metrics; i++)
-            printf("    %s (%s)\n", measure->metric[i].name, measure->metric[i].unit);
+            list_metric(&measure->metric[i]);
         measure_free(measure);
     }
 }
@@ -184,26 +200,48 @@ static void describe(const struct command *command)
     report_text(&report, "bench", command->bench->name);
     report_number(&report, "quick", command->options.quick);
     report_number(&report, "threads", command->options.threads);
+    report_text(&report, "scheduler", command->options.scheduler);
     report_number(&report, "repeats", (double)command->repeats);
     report_number(&report, "seed", (double)command->seed);
     report_host(&report);
+}
+
+static void report_all(const struct measure *measure, unsigned verdicts[MEASURE_VERDICTS])
+{
+    for (size_t i = 0; i < measure->n_metrics; i++) {
+        report_metric(&report, &measure->metric[i]);
+        if (measure->metric[i].target)
+            verdicts[measure_verdict(&measure->metric[i])]++;
+    }
+}
+
+static void conclude(const unsigned verdicts[MEASURE_VERDICTS])
+{
+    if (!verdicts[MEASURE_PASS] && !verdicts[MEASURE_MISS] && !verdicts[MEASURE_UNKNOWN])
+        return;
+    report_number(&report, "targets_passed", verdicts[MEASURE_PASS]);
+    report_number(&report, "targets_missed", verdicts[MEASURE_MISS]);
+    report_number(&report, "targets_not_measured", verdicts[MEASURE_UNKNOWN]);
 }
 
 static int run(const struct command *command, struct measure *measure)
 {
     int failed = report_start(&report, command->json != NULL);
     uint64_t seed = command->seed;
+    unsigned verdicts[MEASURE_VERDICTS] = {0};
     if (!failed)
         describe(command);
     for (const struct bench_case *const *one = command->bench->cases; *one && !failed; one++) {
         if (!chosen(command, *one))
             continue;
-        (*one)->plan(measure, &command->options);
+        plan(command, *one, measure);
         failed = measure_run(measure, (*one)->name, command->repeats, &seed, settings);
-        for (size_t i = 0; i < measure->n_metrics && !failed; i++)
-            report_metric(&report, &measure->metric[i]);
+        if (!failed)
+            report_all(measure, verdicts);
         measure_free(measure);
     }
+    if (!failed)
+        conclude(verdicts);
     return report_finish(&report, failed ? NULL : command->json) || failed;
 }
 
@@ -226,8 +264,10 @@ static char *names(int key, const char *text, void *input)
         return (char *)(uintptr_t)text;
     for (int i = 0; i < N_BENCHES; i++)
         fprintf(file, "  %-10s %s\n", BENCHES[i]->name, BENCHES[i]->about);
-    fputs("\nOurs and the rivals take turns at random; a line is the median of all rounds, in "
-          "brackets the first and third quartile. A wrong answer ends the run with status 1.",
+    fputs("\nOurs and the rivals take turns, A B B A; a line is the median of all rounds, in "
+          "brackets the first and third quartile, then its target if it has one. A wrong answer "
+          "ends the run with status 1; a missed target does not. What is measured and how: "
+          "docs/measuring.md.",
           file);
     fclose(file);
     return help;
@@ -248,7 +288,7 @@ int main(int argc, char **argv)
     if (argp_parse(&argp, argc, argv, 0, NULL, &command))
         return 2;
     if (!command.repeats)
-        command.repeats = command.options.quick ? 2 : 15;
+        command.repeats = command.options.quick ? 2 : 16;
     setenv("DUITE_BENCH_NAME", command.bench->name, 1);
     if (command.list)
         return list(&command, &measure), 0;

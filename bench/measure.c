@@ -93,6 +93,24 @@ void measure_ratio(struct measure *measure, const struct measure_series *of,
     metric->against = against;
 }
 
+void measure_targets(struct measure *measure, const struct measure_target *targets)
+{
+    for (size_t i = 0; i < measure->n_metrics; i++)
+        for (const struct measure_target *target = targets; target->metric; target++)
+            if (!strcmp(target->metric, measure->metric[i].name))
+                measure->metric[i].target = target;
+}
+
+enum measure_verdict measure_verdict(const struct measure_metric *metric)
+{
+    const struct measure_target *target = metric->target;
+    if (!isfinite(metric->median))
+        return MEASURE_UNKNOWN;
+    return (target->least ? metric->median >= target->bound : metric->median <= target->bound)
+               ? MEASURE_PASS
+               : MEASURE_MISS;
+}
+
 /* Steele, Lea & Flood, Fast splittable pseudorandom number generators (2014). */
 uint64_t measure_random(uint64_t *seed, uint64_t n)
 {
@@ -107,7 +125,24 @@ uint64_t measure_random(uint64_t *seed, uint64_t n)
 struct team {
     struct subject *subject[MEASURE_SERIES]; /* of series i, the one that started it; or NULL */
     size_t owner[MEASURE_SERIES];            /* which series started the subject of series i */
+    size_t order[MEASURE_SERIES];            /* in which the series run */
 };
+
+/* The order of a round: a new one, or the last one from its end. */
+static void set_order(struct team *team, size_t n, bool reverse, uint64_t *seed)
+{
+    size_t *order = team->order;
+    for (size_t i = 0; i < n && !reverse; i++) {
+        size_t j = measure_random(seed, i + 1);
+        order[i] = order[j];
+        order[j] = i;
+    }
+    for (size_t i = 0; i < n / 2 && reverse; i++) {
+        size_t other = order[n - 1 - i];
+        order[n - 1 - i] = order[i];
+        order[i] = other;
+    }
+}
 
 static int start_all(struct measure *measure, struct team *team,
                      void (*settings)(const char *kind, const char *text))
@@ -144,23 +179,16 @@ static int ask(struct measure_series *series, struct subject *subject, const cha
     return subject_stop(fresh) || code;
 }
 
-/* One run of every series in a random order; `round` is negative if the samples are left out. */
-static int run_round(struct measure *measure, const char *name, struct team *team, long round,
-                     uint64_t *seed)
+/* One run of every series; `round` is negative if the samples are left out. */
+static int run_round(struct measure *measure, const char *name, const struct team *team, long round)
 {
-    size_t order[MEASURE_SERIES], n = measure->n_series;
-    for (size_t i = 0; i < n; i++) {
-        size_t j = measure_random(seed, i + 1);
-        order[i] = order[j];
-        order[j] = i;
-    }
     int code = 0;
-    for (size_t i = 0; i < n && !code; i++) {
-        struct measure_series *series = &measure->series[order[i]];
+    for (size_t i = 0; i < measure->n_series && !code; i++) {
+        struct measure_series *series = &measure->series[team->order[i]];
         double value = 0;
         if (!series->sample || (series->fresh && round < 0))
             continue;
-        code = ask(series, team->subject[team->owner[order[i]]], name, &value);
+        code = ask(series, team->subject[team->owner[team->order[i]]], name, &value);
         if (round >= 0)
             series->sample[round] = value;
     }
@@ -227,8 +255,10 @@ int measure_run(struct measure *measure, const char *name, size_t rounds, uint64
                 measure->full ? "more is planned than there is room for" : "out of memory");
     if (!code)
         code = start_all(measure, &team, settings);
-    for (long round = -1; round < (long)rounds && !code; round++)
-        code = run_round(measure, name, &team, round, seed);
+    for (long round = -1; round < (long)rounds && !code; round++) {
+        set_order(&team, measure->n_series, round > 0 && round % 2, seed);
+        code = run_round(measure, name, &team, round);
+    }
     for (size_t i = 0; i < measure->n_series; i++)
         code |= subject_stop(team.subject[i]);
     for (size_t i = 0; i < measure->n_metrics && !code; i++)

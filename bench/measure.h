@@ -8,11 +8,11 @@
 #include <stdint.h>
 
 /* What one case measures: series, each a command to a subject, run once a round; and metrics, each
- * computed from the samples of a round. In each round the series come in an order of their own,
- * drawn at random, so that whatever the machine does meanwhile hits all alike, and a ratio of two
- * is taken within the round. */
+ * computed from the samples of a round. Rounds come in pairs: the first in an order drawn at
+ * random, the second in the reverse order (A B B A), so that whatever the machine does meanwhile
+ * hits all alike, and a ratio of two is taken within the round. */
 
-enum { MEASURE_NAME = 80, MEASURE_COMMAND = 200, MEASURE_SERIES = 80, MEASURE_METRICS = 80 };
+enum { MEASURE_NAME = 80, MEASURE_COMMAND = 200, MEASURE_SERIES = 128, MEASURE_METRICS = 80 };
 
 struct measure_series {
     struct subject_shape shape;
@@ -23,6 +23,15 @@ struct measure_series {
     double *sample;                     /* one a round; NULL if the subject is missing */
 };
 
+/* What the median of a metric should come to. */
+struct measure_target {
+    const char *metric; /* NULL ends a list */
+    double bound;
+    bool least; /* at least the bound; else at most */
+};
+
+enum measure_verdict { MEASURE_PASS, MEASURE_MISS, MEASURE_UNKNOWN, MEASURE_VERDICTS };
+
 struct measure_metric {
     char name[MEASURE_NAME];
     const char *unit;
@@ -31,8 +40,9 @@ struct measure_metric {
     const struct measure_series *of, *against; /* against: NULL if it is no ratio */
     size_t n;                                  /* series in a row from `of`, and from `against` */
     double scale;
-    const char *missing;      /* why it was not measured, or NULL */
-    double median, low, high; /* NAN if not reached */
+    const char *missing;                 /* why it was not measured, or NULL */
+    double median, low, high;            /* NAN if not reached or not measured */
+    const struct measure_target *target; /* NULL: it is only reported */
 };
 
 struct measure {
@@ -58,6 +68,12 @@ void measure_value(struct measure *measure, const struct measure_series *of, dou
 void measure_ratio(struct measure *measure, const struct measure_series *of,
                    const struct measure_series *against, const char *name, ...)
     __attribute__((format(printf, 4, 5)));
+
+/* Gives the metrics planned so far their targets, by name. */
+void measure_targets(struct measure *measure, const struct measure_target *targets);
+
+/* Whether a metric with a target, once measured, keeps to it. */
+enum measure_verdict measure_verdict(const struct measure_metric *metric);
 
 /* A random number below n. */
 uint64_t measure_random(uint64_t *seed, uint64_t n);

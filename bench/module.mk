@@ -20,9 +20,9 @@ OPENMP_COMPILE = $(MKDIR_P) bench/rivals && { sources=; for source in $(OPENMP_F
 	compile() { compiler=$$1; settings=$$2; shift 2; $$compiler -std=gnu17 -O2 $(WARN_CFLAGS) -D_GNU_SOURCE -I$(srcdir) \
 	-DRIVAL_SETTINGS="\"$$settings\"" "$$@" $$sources; } && compile
 bench/rivals/libgomp$(EXEEXT): $(OPENMP_NEEDS)
-	$(AM_V_CC)$(OPENMP_COMPILE) '$(RIVAL_GCC)' "OpenMP tasks, `$(RIVAL_GCC) --version | head -n 1`" -fopenmp -o $@
+	$(AM_V_CC)$(OPENMP_COMPILE) '$(RIVAL_GCC)' "OpenMP tasks, -O2, `$(RIVAL_GCC) --version | head -n 1`" -fopenmp -o $@
 bench/rivals/libomp$(EXEEXT): $(OPENMP_NEEDS)
-	$(AM_V_CC)$(OPENMP_COMPILE) '$(RIVAL_CLANG)' "OpenMP tasks, `$(RIVAL_CLANG) --version | head -n 1`" -fopenmp=libomp -o $@
+	$(AM_V_CC)$(OPENMP_COMPILE) '$(RIVAL_CLANG)' "OpenMP tasks, -O2, `$(RIVAL_CLANG) --version | head -n 1`" -fopenmp=libomp -o $@
 CLEANFILES += bench/rivals/libgomp$(EXEEXT) bench/rivals/libomp$(EXEEXT)
 if HAVE_RIVAL_LIBGOMP
 BENCH_RIVALS += bench/rivals/libgomp$(EXEEXT)

@@ -65,7 +65,7 @@ int problem_stencil_wrong(const struct problem_cell *got, size_t points, size_t 
 
 void problem_next(uint64_t *value, uint64_t i)
 {
-    *value = (*value ^ i) * 0x94d049bb133111ebU + 1;
+    *value = (*value ^ i % PROBLEM_PERIOD) * 0x94d049bb133111ebU + 1;
 }
 
 uint64_t problem_chain(uint64_t n, problem_link *const volatile *body)
@@ -101,14 +101,13 @@ void problem_work(uint64_t iterations)
 }
 
 int problem_line_point(const struct problem_message *left, const struct problem_message *middle,
-                       const struct problem_message *right, uint64_t step, uint64_t iterations,
+                       const struct problem_message *right, uint64_t iterations,
                        struct problem_message *out)
 {
     const uint64_t edge = 0;
-    if (middle->step != step - 1 || (left && left->step != step - 1) ||
-        (right && right->step != step - 1))
+    if ((left && left->step != middle->step) || (right && right->step != middle->step))
         return 1;
-    out->step = step;
+    out->step = middle->step + 1;
     problem_combine(left ? &left->value : &edge, &middle->value, right ? &right->value : &edge,
                     &out->value);
     problem_work(iterations);
@@ -121,11 +120,11 @@ int problem_line(struct problem_message *line, size_t points, uint64_t steps, ui
     int wrong = 0;
     for (size_t i = 0; i < points; i++)
         line[i] = (struct problem_message){0, problem_start(i)};
-    for (uint64_t s = 1; s <= steps; s++) {
-        const struct problem_message *old = line + (s - 1) % 2 * points;
-        struct problem_message *new = line + s % 2 * points;
+    for (uint64_t s = 0; s < steps; s++) {
+        const struct problem_message *old = line + s % 2 * points;
+        struct problem_message *new = line + (1 - s % 2) * points;
         for (size_t i = 0; i < points; i++)
-            wrong |= body(i ? &old[i - 1] : NULL, &old[i], i + 1 < points ? &old[i + 1] : NULL, s,
+            wrong |= body(i ? &old[i - 1] : NULL, &old[i], i + 1 < points ? &old[i + 1] : NULL,
                           iterations, &new[i]);
     }
     return wrong;

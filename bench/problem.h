@@ -29,7 +29,8 @@ int problem_fields(struct problem_cell *field[2], size_t points);
 /* A sum that tells whether the points are those of the sequential ring: 0 if they are. */
 int problem_stencil_wrong(const struct problem_cell *got, size_t points, size_t steps);
 
-/* A chain: one value, changed by n tasks in turn. */
+/* A chain: one value, changed by n tasks in turn; what the i-th does repeats with a period. */
+enum { PROBLEM_PERIOD = 64 };
 typedef void problem_link(uint64_t *value, uint64_t i);
 problem_link problem_next;
 uint64_t problem_chain(uint64_t n, problem_link *const volatile *body);
@@ -44,15 +45,15 @@ int problem_marks_wrong(uint64_t *mark, uint64_t n);
 void problem_work(uint64_t iterations);
 
 /* A line of points with bodies of so many iterations: what a point hands on. Its body checks that
- * each neighbour's is of the step before. */
+ * its inputs are of the same step. */
 struct problem_message {
     uint64_t step, value;
 };
-/* left or right NULL at the ends. 0; 1 if an input is not of the step before. */
+/* left or right NULL at the ends. 0; 1 if the inputs are of different steps. */
 typedef int problem_line_body(const struct problem_message *left,
                               const struct problem_message *middle,
-                              const struct problem_message *right, uint64_t step,
-                              uint64_t iterations, struct problem_message *out);
+                              const struct problem_message *right, uint64_t iterations,
+                              struct problem_message *out);
 problem_line_body problem_line_point;
 /* The sequential line; `line` has 2 x points messages, the answer is in the half steps % 2. */
 int problem_line(struct problem_message *line, size_t points, uint64_t steps, uint64_t iterations);

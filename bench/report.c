@@ -76,21 +76,32 @@ static const char *digits(double value, char *text, size_t size)
     return text;
 }
 
+static void report_target(struct report *report, const struct measure_metric *metric)
+{
+    static const char *const verdicts[] = {"pass", "miss", "not measured"};
+    if (!metric->target)
+        return;
+    printf(", target %s %g: %s", metric->target->least ? ">=" : "<=", metric->target->bound,
+           verdicts[measure_verdict(metric)]);
+    write_number(report->json, metric->name, "_target", metric->target->bound);
+}
+
 void report_metric(struct report *report, const struct measure_metric *metric)
 {
     char median[32], low[32], high[32];
-    bool known = !metric->missing && isfinite(metric->median);
-    if (known)
-        printf("%s: %s %s [%s .. %s]\n", metric->name,
-               digits(metric->median, median, sizeof median), metric->unit,
-               digits(metric->low, low, sizeof low), digits(metric->high, high, sizeof high));
+    if (isfinite(metric->median))
+        printf("%s: %s %s [%s .. %s]", metric->name, digits(metric->median, median, sizeof median),
+               metric->unit, digits(metric->low, low, sizeof low),
+               digits(metric->high, high, sizeof high));
     else
-        printf("%s: %s\n", metric->name,
+        printf("%s: %s", metric->name,
                metric->missing ? metric->missing : "not found within the sizes tried");
+    write_number(report->json, metric->name, "", metric->median);
+    write_number(report->json, metric->name, "_low", metric->low);
+    write_number(report->json, metric->name, "_high", metric->high);
+    report_target(report, metric);
+    putchar('\n');
     fflush(stdout);
-    write_number(report->json, metric->name, "", known ? metric->median : NAN);
-    write_number(report->json, metric->name, "_low", known ? metric->low : NAN);
-    write_number(report->json, metric->name, "_high", known ? metric->high : NAN);
 }
 
 /* ---- The host ---- */

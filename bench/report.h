@@ -20,8 +20,9 @@ int report_start(struct report *report, bool json);
 void report_text(struct report *report, const char *key, const char *value);
 void report_number(struct report *report, const char *key, double value);
 
-/* `name: median unit [low .. high]`, the quartiles in brackets; or why there is none. In the file
- * name, name_low and name_high, or null. */
+/* `name: median unit [low .. high]`, the quartiles in brackets; or why there is none. After it, if
+ * there is a target, `, target <= bound: pass`, `miss` or `not measured`. In the file name,
+ * name_low and name_high, or null, and name_target. */
 void report_metric(struct report *report, const struct measure_metric *metric);
 
 /* The machine, the compiler, the load. */

@@ -96,6 +96,12 @@ int serve_wanted(void)
     return getenv("DUITE_BENCH_SOCKET") != NULL;
 }
 
+const char *serve_kind(void)
+{
+    const char *kind = getenv("DUITE_BENCH_KIND");
+    return kind ? kind : "";
+}
+
 int serve(const char *settings, const struct serve_run *const *runs, void *context)
 {
     const char *rank = getenv("OMPI_COMM_WORLD_RANK");

@@ -34,6 +34,8 @@ double serve_seconds(void);
 
 /* Whether the bench started this process. */
 int serve_wanted(void);
+/* As what: the kind of subject, "" if there is no bench. */
+const char *serve_kind(void);
 
 /* Serves until the bench has no more commands. `settings`: what the program is and how it is set
  * up, one line. `runs`: lists, ended by NULL. Returns the exit status. */

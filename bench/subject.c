@@ -86,6 +86,7 @@ static void become(const struct subject *subject, struct subject_shape shape, co
     const char *argv[16];
     program_environment(subject->program, subject->cores);
     setenv("DUITE_BENCH_SOCKET", socket, 1);
+    setenv("DUITE_BENCH_KIND", shape.kind, 1);
     signal(SIGPIPE, SIG_DFL);
     prctl(PR_SET_PDEATHSIG, shape.ranks ? SIGTERM : SIGKILL);
     snprintf(number, sizeof number, "%u", shape.ranks);

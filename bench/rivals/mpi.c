@@ -30,8 +30,8 @@ static const struct problem_message *neighbour(const struct line *line, size_t i
 static int point(const struct line *line, size_t i, uint64_t step)
 {
     const struct problem_message *old = line->cell[(step - 1) % 2];
-    return POINT(neighbour(line, i, -1, old), &old[i], neighbour(line, i, 1, old), step,
-                 line->iterations, &line->cell[step % 2][i]);
+    return POINT(neighbour(line, i, -1, old), &old[i], neighbour(line, i, 1, old), line->iterations,
+                 &line->cell[step % 2][i]);
 }
 
 enum { BYTES = sizeof(struct problem_message), LEFT = 1, RIGHT = 2 };

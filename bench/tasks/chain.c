@@ -7,9 +7,9 @@ static problem_link *const volatile NEXT = problem_next;
 
 static void plan(struct measure *measure, const struct bench_options *options)
 {
-    static const char *const variants[] = {"dynamic", NULL};
+    static const char *const variants[] = {"replay", "dynamic", NULL};
     static const char *const rivals[] = {"libomp", "libgomp", "starpu", NULL};
-    unsigned tasks = options->quick ? 200 : 20000;
+    unsigned tasks = PROBLEM_PERIOD * (options->quick ? 4 : 320);
     char size[40];
     snprintf(size, sizeof size, "tasks=%u", tasks);
     tasks_plan_contest(
@@ -27,25 +27,32 @@ static int next(const duite_call *call)
 const duite_kernel tasks_chain_next = {
     .name = "chain_next", .body = next, .access = {DUITE_RW}, .args_size = sizeof(uint64_t)};
 
-static int time_chain(duite *rt, duite_object object, uint64_t n, double *value)
+static int fork_round(duite *rt, void *context)
 {
-    uint64_t got = 0;
-    duite_set(rt, object, NULL);
-    if (duite_wait(rt))
-        return tasks_code(1);
-    double start = serve_seconds();
-    for (uint64_t i = 0; i < n; i++)
-        duite_fork(rt, &tasks_chain_next, &i, 1, &object);
-    int code = duite_wait(rt);
-    *value = serve_seconds() - start;
-    if (code || duite_get(rt, object, &got))
-        return tasks_code(1);
-    return got == problem_chain(n, &NEXT) ? 0 : serve_fail("wrong answer");
+    const duite_object *object = context;
+    int code = 0;
+    for (uint64_t i = 0; i < PROBLEM_PERIOD; i++)
+        code |= duite_fork(rt, &tasks_chain_next, &i, 1, object);
+    return code;
 }
 
-static int dynamic(void *context, struct serve_request *request, double *value)
+static int time_chain(struct tasks_rounds *rounds, double *value)
 {
-    struct tasks_session *session = context;
+    const duite_object *object = rounds->context;
+    uint64_t got = 0;
+    duite_set(rounds->rt, *object, NULL);
+    if (tasks_run(rounds, value))
+        return 1;
+    if (duite_get(rounds->rt, *object, &got))
+        return tasks_code(1);
+    return got == problem_chain(rounds->rounds * PROBLEM_PERIOD, &NEXT)
+               ? 0
+               : serve_fail("wrong answer");
+}
+
+static int run(struct tasks_session *session, struct serve_request *request, bool replayed,
+               double *value)
+{
     uint64_t n = serve_number(request, "tasks");
     duite_object object;
     int code = tasks_ready(session, request);
@@ -53,11 +60,29 @@ static int dynamic(void *context, struct serve_request *request, double *value)
         code = tasks_objects(session, DUITE_I64, 1, 1, &object);
     if (code)
         return code;
-    code = time_chain(session->rt, object, n, value);
+    struct tasks_rounds rounds = {.rt = session->rt,
+                                  .fork = fork_round,
+                                  .context = &object,
+                                  .rounds = n / PROBLEM_PERIOD,
+                                  .replayed = replayed};
+    code = tasks_record(&rounds);
     if (!code)
-        code = time_chain(session->rt, object, n, value);
+        code = time_chain(&rounds, value);
+    if (!code)
+        code = time_chain(&rounds, value);
+    tasks_forget(&rounds);
     tasks_free_objects(session, 1, &object);
     return code;
+}
+
+static int dynamic(void *context, struct serve_request *request, double *value)
+{
+    return run(context, request, false, value);
+}
+
+static int replay(void *context, struct serve_request *request, double *value)
+{
+    return run(context, request, true, value);
 }
 
 static int sequential(void *context, struct serve_request *request, double *value)
@@ -71,7 +96,7 @@ static int sequential(void *context, struct serve_request *request, double *valu
 }
 
 static const struct serve_run RUNS[] = {
-    {"chain_dynamic", dynamic}, {"chain_sequential", sequential}, {0}};
+    {"chain_dynamic", dynamic}, {"chain_replay", replay}, {"chain_sequential", sequential}, {0}};
 
 const struct bench_case tasks_chain = {"chain", "tasks that all change one object (rw)", plan,
                                        RUNS};

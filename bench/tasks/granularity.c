@@ -68,25 +68,35 @@ static struct measure_series *plan_ladder(struct measure *measure, struct subjec
     return first;
 }
 
+/* One metric of a ladder, or of two. */
+static void add(struct measure *measure, const struct bench_options *options, const char *name,
+                unsigned points, const struct measure_series *of,
+                const struct measure_series *against)
+{
+    struct measure_metric *metric =
+        against ? measure_metric(measure, "x", against_mpi, "%s_50_w%u_vs_mpi", name, points)
+                : measure_metric(measure, "us", microseconds, "%s_50_w%u", name, points);
+    metric->of = of;
+    metric->against = against;
+    metric->n = RUNGS;
+    metric->scale = options->threads;
+}
+
 static void plan_width(struct measure *measure, const struct bench_options *options,
                        unsigned points)
 {
+    const struct subject_shape ours = tasks_ours(options->threads);
     const struct subject_shape ranks = {"mpi", options->threads, 1};
-    const struct measure_series *ours =
-        plan_ladder(measure, tasks_ours(options->threads), options, "granularity", points);
+    const struct measure_series *replayed =
+        plan_ladder(measure, ours, options, "granularity_replay", points);
+    const struct measure_series *forked =
+        plan_ladder(measure, ours, options, "granularity_dynamic", points);
     const struct measure_series *mpi = plan_ladder(measure, ranks, options, "granularity", points);
-    const char *const name[3] = {"", "_vs_mpi", "_mpi"};
-    for (int i = 0; i < 3; i++) {
-        struct measure_metric *metric =
-            i == 1
-                ? measure_metric(measure, "x", against_mpi, "granularity_50_w%u%s", points, name[i])
-                : measure_metric(measure, "us", microseconds, "granularity%s_50_w%u", name[i],
-                                 points);
-        metric->of = i == 2 ? mpi : ours;
-        metric->against = i == 1 ? mpi : NULL;
-        metric->n = RUNGS;
-        metric->scale = options->threads;
-    }
+    add(measure, options, "granularity", points, replayed, NULL);
+    add(measure, options, "granularity", points, replayed, mpi);
+    add(measure, options, "granularity_dynamic", points, forked, NULL);
+    add(measure, options, "granularity_dynamic", points, forked, mpi);
+    add(measure, options, "granularity_mpi", points, mpi, NULL);
 }
 
 static void plan(struct measure *measure, const struct bench_options *options)
@@ -105,21 +115,22 @@ static void plan(struct measure *measure, const struct bench_options *options)
 /* ---- Ours ---- */
 
 struct point_args {
-    uint64_t step, iterations;
+    uint64_t iterations;
     int left, right; /* whether there are neighbours */
 };
 
 static int point(const duite_call *call)
 {
     const struct point_args *args = call->args;
+    const struct problem_message *middle = duite_in(call, 1, struct problem_message);
     const struct problem_message *left =
         args->left ? duite_in(call, 2, struct problem_message) : NULL;
     const struct problem_message *right =
         args->right ? duite_in(call, (size_t)(2 + args->left), struct problem_message) : NULL;
-    if (problem_line_point(left, duite_in(call, 1, struct problem_message), right, args->step,
-                           args->iterations, duite_out(call, 0, struct problem_message)))
-        return duite_fail(call, 1, "an input of step %llu is not of the step before",
-                          (unsigned long long)args->step);
+    if (problem_line_point(left, middle, right, args->iterations,
+                           duite_out(call, 0, struct problem_message)))
+        return duite_fail(call, 1, "the neighbours are not of step %llu",
+                          (unsigned long long)middle->step);
     return 0;
 }
 
@@ -129,74 +140,91 @@ const duite_kernel tasks_granularity_point = {.name = "granularity_point",
                                               .rest = DUITE_R,
                                               .args_size = sizeof(struct point_args)};
 
-static void fork_all(duite *rt, const duite_object *object, size_t points, uint64_t steps,
-                     uint64_t iterations)
+struct line {
+    duite_object *object; /* first the points of one field, then those of the other */
+    size_t points;
+    uint64_t iterations;
+};
+
+/* Two steps: there and back. */
+static int fork_round(duite *rt, void *context)
 {
-    for (uint64_t s = 1; s <= steps; s++) {
-        const duite_object *old = object + (s - 1) % 2 * points, *new = object + s % 2 * points;
+    const struct line *line = context;
+    size_t points = line->points;
+    int code = 0;
+    for (size_t s = 0; s < 2; s++) {
+        const duite_object *old = line->object + s * points, *new = line->object + (1 - s) * points;
         for (size_t i = 0; i < points; i++) {
-            const struct point_args args = {s, iterations, i > 0, i + 1 < points};
+            const struct point_args args = {line->iterations, i > 0, i + 1 < points};
             duite_object objects[4] = {new[i], old[i]};
             size_t n = 2;
             if (args.left)
                 objects[n++] = old[i - 1];
             if (args.right)
                 objects[n++] = old[i + 1];
-            duite_fork(rt, &tasks_granularity_point, &args, n, objects);
+            code |= duite_fork(rt, &tasks_granularity_point, &args, n, objects);
         }
     }
+    return code;
 }
 
-static int time_line(duite *rt, const duite_object *object, size_t points, uint64_t steps,
-                     uint64_t iterations, double *value)
+/* Runs from the start values, and compares. */
+static int time_line(struct tasks_rounds *rounds, double *value)
 {
-    for (size_t i = 0; i < points; i++)
-        duite_set(rt, object[i], &(struct problem_message){0, problem_start(i)});
-    if (duite_wait(rt))
-        return tasks_code(1);
-    double start = serve_seconds();
-    fork_all(rt, object, points, steps, iterations);
-    int code = duite_wait(rt);
-    *value = serve_seconds() - start;
-    return tasks_code(code);
-}
-
-static int check(duite *rt, const duite_object *object, size_t points, uint64_t steps)
-{
-    struct problem_message *line = calloc(2 * points, sizeof *line), got;
-    if (!line)
+    const struct line *line = rounds->context;
+    struct problem_message *right = calloc(2 * line->points, sizeof *right), got;
+    if (!right)
         return serve_no_memory();
-    int code = problem_line(line, points, steps, 0);
-    for (size_t i = 0; i < points && !code; i++) {
-        size_t at = steps % 2 * points + i;
-        code = tasks_code(duite_get(rt, object[at], &got));
-        if (!code && got.value != line[at].value)
+    problem_line(right, line->points, 2 * rounds->rounds, 0);
+    for (size_t i = 0; i < line->points; i++)
+        duite_set(rounds->rt, line->object[i], &(struct problem_message){0, problem_start(i)});
+    int code = tasks_run(rounds, value);
+    for (size_t i = 0; i < line->points && !code; i++) {
+        code = tasks_code(duite_get(rounds->rt, line->object[i], &got));
+        if (!code && (got.value != right[i].value || got.step != right[i].step))
             code = serve_fail("wrong answer");
     }
-    free(line);
+    free(right);
     return code;
 }
 
-static int granularity(void *context, struct serve_request *request, double *value)
+static int run(struct tasks_session *session, struct serve_request *request, bool replayed,
+               double *value)
 {
-    struct tasks_session *session = context;
-    size_t points = serve_number(request, "points");
+    struct line line = {.points = serve_number(request, "points"),
+                        .iterations = serve_number(request, "iterations")};
     uint64_t steps = serve_number(request, "steps");
-    uint64_t iterations = serve_number(request, "iterations");
-    duite_object *object = calloc(2 * points, sizeof *object);
-    int code = object ? tasks_ready(session, request) : serve_no_memory();
+    line.object = calloc(2 * line.points, sizeof *line.object);
+    int code = line.object ? tasks_ready(session, request) : serve_no_memory();
     if (!code)
-        code = tasks_objects(session, DUITE_I64, 2, 2 * points, object);
+        code = tasks_objects(session, DUITE_I64, 2, 2 * line.points, line.object);
     if (!code) {
-        code = time_line(session->rt, object, points, steps / 10, iterations, value);
+        struct tasks_rounds rounds = {.rt = session->rt,
+                                      .fork = fork_round,
+                                      .context = &line,
+                                      .rounds = steps / 20,
+                                      .replayed = replayed};
+        code = tasks_record(&rounds);
         if (!code)
-            code = time_line(session->rt, object, points, steps, iterations, value);
+            code = time_line(&rounds, value); /* a tenth, to get warm */
+        rounds.rounds = steps / 2;
         if (!code)
-            code = check(session->rt, object, points, steps);
-        tasks_free_objects(session, 2 * points, object);
+            code = time_line(&rounds, value);
+        tasks_forget(&rounds);
+        tasks_free_objects(session, 2 * line.points, line.object);
     }
-    free(object);
+    free(line.object);
     return code;
+}
+
+static int dynamic(void *context, struct serve_request *request, double *value)
+{
+    return run(context, request, false, value);
+}
+
+static int replay(void *context, struct serve_request *request, double *value)
+{
+    return run(context, request, true, value);
 }
 
 static int sequential(void *context, struct serve_request *request, double *value)
@@ -215,8 +243,10 @@ static int sequential(void *context, struct serve_request *request, double *valu
     return wrong ? serve_fail("wrong answer") : 0;
 }
 
-static const struct serve_run RUNS[] = {
-    {"granularity", granularity}, {"granularity_sequential", sequential}, {0}};
+static const struct serve_run RUNS[] = {{"granularity_replay", replay},
+                                        {"granularity_dynamic", dynamic},
+                                        {"granularity_sequential", sequential},
+                                        {0}};
 
 const struct bench_case tasks_granularity = {
     "granularity", "the shortest body with half of peak speed, on 2 and 16 points", plan, RUNS};

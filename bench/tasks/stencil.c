@@ -8,9 +8,9 @@
 
 static void plan(struct measure *measure, const struct bench_options *options)
 {
-    static const char *const variants[] = {"dynamic", NULL};
+    static const char *const variants[] = {"replay", "dynamic", NULL};
     static const char *const rivals[] = {"libomp", "libgomp", "starpu", NULL};
-    unsigned points = options->quick ? 8 : 64, steps = options->quick ? 5 : 200;
+    unsigned points = options->quick ? 8 : 64, steps = options->quick ? 6 : 200;
     char size[60];
     snprintf(size, sizeof size, "points=%u steps=%u", points, steps);
     tasks_plan_contest(measure, options,
@@ -43,71 +43,108 @@ const duite_kernel tasks_stencil_combine = {
 const duite_kernel tasks_stencil_empty = {
     .name = "stencil_empty", .body = nothing, .access = STENCIL_ACCESS};
 
-/* object: first the points of one field, then those of the other */
-static void fork_all(duite *rt, const duite_kernel *kernel, const duite_object *object,
-                     size_t points, size_t steps)
+struct ring {
+    const duite_kernel *kernel;
+    duite_object *object; /* first the points of one field, then those of the other */
+    size_t points, steps;
+};
+
+/* Two steps: there and back. */
+static int fork_round(duite *rt, void *context)
 {
-    for (size_t s = 0; s < steps; s++) {
-        const duite_object *old = object + s % 2 * points, *new = object + (1 - s % 2) * points;
+    const struct ring *ring = context;
+    size_t points = ring->points;
+    int code = 0;
+    for (size_t s = 0; s < 2; s++) {
+        const duite_object *old = ring->object + s * points, *new = ring->object + (1 - s) * points;
         for (size_t i = 0; i < points; i++)
-            DUITE_FORK(rt, kernel, NULL, old[i ? i - 1 : points - 1], old[i],
-                       old[i + 1 < points ? i + 1 : 0], new[i]);
+            code |= DUITE_FORK(rt, ring->kernel, NULL, old[i ? i - 1 : points - 1], old[i],
+                               old[i + 1 < points ? i + 1 : 0], new[i]);
     }
+    return code;
+}
+
+static struct tasks_rounds rounds(duite *rt, struct ring *ring, const duite_kernel *kernel,
+                                  bool replayed)
+{
+    ring->kernel = kernel;
+    return (struct tasks_rounds){.rt = rt,
+                                 .fork = fork_round,
+                                 .context = ring,
+                                 .rounds = ring->steps / 2,
+                                 .replayed = replayed};
 }
 
 /* Sets the start values, runs, and compares. */
-static int check(duite *rt, const duite_object *object, size_t points, size_t steps)
+static int check(duite *rt, struct ring *ring, bool replayed)
 {
+    struct tasks_rounds combined = rounds(rt, ring, &tasks_stencil_combine, replayed);
     struct problem_cell *got[2];
-    if (problem_fields(got, points))
+    double ignored;
+    if (problem_fields(got, ring->points))
         return serve_no_memory();
-    for (size_t i = 0; i < points; i++)
-        duite_set(rt, object[i], &got[0][i].value);
-    fork_all(rt, &tasks_stencil_combine, object, points, steps);
-    int code = 0;
-    for (size_t i = 0; i < points && !code; i++)
-        code = tasks_code(duite_get(rt, object[steps % 2 * points + i], &got[0][i].value));
-    if (!code && problem_stencil_wrong(got[0], points, steps))
+    int code = tasks_record(&combined);
+    for (size_t i = 0; i < ring->points; i++)
+        duite_set(rt, ring->object[i], &got[0][i].value);
+    if (!code)
+        code = tasks_run(&combined, &ignored);
+    for (size_t i = 0; i < ring->points && !code; i++)
+        code = tasks_code(duite_get(rt, ring->object[i], &got[0][i].value));
+    if (!code && problem_stencil_wrong(got[0], ring->points, ring->steps))
         code = serve_fail("wrong answer");
+    tasks_forget(&combined);
     free(got[0]);
     return code;
 }
 
 /* Every body has run, once. */
-static int time_empty(duite *rt, const duite_object *object, size_t points, size_t steps,
-                      double *value)
+static int time_empty(duite *rt, struct ring *ring, bool replayed, double *value)
 {
-    duite_counters before, after;
-    if (duite_wait(rt) || duite_count_all(rt, &before))
-        return tasks_code(1);
-    double start = serve_seconds();
-    fork_all(rt, &tasks_stencil_empty, object, points, steps);
-    int code = duite_wait(rt);
-    *value = serve_seconds() - start;
-    if (code || duite_count_all(rt, &after))
-        return tasks_code(1);
+    struct tasks_rounds empty = rounds(rt, ring, &tasks_stencil_empty, replayed);
+    duite_counters before = {0}, after = {0};
+    int code = tasks_record(&empty);
+    if (!code)
+        code = tasks_code(duite_count_all(rt, &before));
+    if (!code)
+        code = tasks_run(&empty, value);
+    if (!code)
+        code = tasks_code(duite_count_all(rt, &after));
+    tasks_forget(&empty);
     uint64_t ran = after.tasks - before.tasks;
-    return ran == points * steps ? 0 : serve_fail("%zu bodies ran", (size_t)ran);
+    if (!code && ran != ring->points * ring->steps)
+        code = serve_fail("%zu bodies ran", (size_t)ran);
+    return code;
+}
+
+static int run(struct tasks_session *session, struct serve_request *request, bool replayed,
+               double *value)
+{
+    size_t points = serve_number(request, "points"), steps = serve_number(request, "steps");
+    int code = tasks_ready(session, request);
+    struct ring ring = {.points = points, .steps = steps};
+    ring.object = calloc(2 * points, sizeof *ring.object);
+    if (!code && !ring.object)
+        code = serve_no_memory();
+    if (!code)
+        code = tasks_objects(session, DUITE_I64, 1, 2 * points, ring.object);
+    if (!code) {
+        code = check(session->rt, &ring, replayed);
+        if (!code)
+            code = time_empty(session->rt, &ring, replayed, value);
+        tasks_free_objects(session, 2 * points, ring.object);
+    }
+    free(ring.object);
+    return code;
 }
 
 static int dynamic(void *context, struct serve_request *request, double *value)
 {
-    struct tasks_session *session = context;
-    size_t points = serve_number(request, "points"), steps = serve_number(request, "steps");
-    int code = tasks_ready(session, request);
-    duite_object *object = calloc(2 * points, sizeof *object);
-    if (!code && !object)
-        code = serve_no_memory();
-    if (!code)
-        code = tasks_objects(session, DUITE_I64, 1, 2 * points, object);
-    if (!code) {
-        code = check(session->rt, object, points, steps);
-        if (!code)
-            code = time_empty(session->rt, object, points, steps, value);
-        tasks_free_objects(session, 2 * points, object);
-    }
-    free(object);
-    return code;
+    return run(context, request, false, value);
+}
+
+static int replay(void *context, struct serve_request *request, double *value)
+{
+    return run(context, request, true, value);
 }
 
 static int sequential(void *context, struct serve_request *request, double *value)
@@ -127,8 +164,10 @@ static int sequential(void *context, struct serve_request *request, double *valu
     return 0;
 }
 
-static const struct serve_run RUNS[] = {
-    {"stencil_dynamic", dynamic}, {"stencil_sequential", sequential}, {0}};
+static const struct serve_run RUNS[] = {{"stencil_dynamic", dynamic},
+                                        {"stencil_replay", replay},
+                                        {"stencil_sequential", sequential},
+                                        {0}};
 
 const struct bench_case tasks_stencil = {
     "stencil", "a ring of points: 3 reads and 1 write a task, empty bodies", plan, RUNS};

@@ -10,6 +10,21 @@ static const struct bench_case *const CASES[] = {&tasks_stencil, &tasks_chain, &
                                                  &tasks_wake,    NULL};
 enum { N_CASES = sizeof CASES / sizeof *CASES - 1 };
 
+/* For two cores and the full sizes. */
+static const struct measure_target TARGETS[] = {
+    {"stencil_replay_ns_per_task_vs_libomp", 0.05, false},
+    {"stencil_dynamic_ns_per_task_vs_libomp", 0.15, false},
+    {"stencil_dynamic_ns_per_task_vs_starpu", 0.04, false},
+    {"chain_replay_ns_per_task_vs_libomp", 0.03, false},
+    {"chain_dynamic_ns_per_task_vs_libomp", 0.08, false},
+    {"independent_dynamic_ns_per_task_vs_libomp", 0.7, false},
+    {"independent_growth", 1.5, false},
+    {"bytes_per_pending_task", 256, false},
+    {"granularity_50_w2_vs_mpi", 1.2, false},
+    {"granularity_50_w16_vs_mpi", 2, false},
+    {0}};
+enum { TARGET_THREADS = 2 };
+
 static const duite_kernel *const KERNELS[] = {&tasks_gate,
                                               &tasks_gate_write,
                                               &tasks_stencil_combine,
@@ -60,6 +75,41 @@ void tasks_free_objects(struct tasks_session *session, size_t n, const duite_obj
 {
     for (size_t i = 0; i < n; i++)
         duite_free(session->rt, object[i]);
+}
+
+/* ---- Rounds ---- */
+
+int tasks_record(struct tasks_rounds *rounds)
+{
+    rounds->graph = DUITE_NO_GRAPH;
+    if (!rounds->replayed)
+        return 0;
+    int code = duite_graph_new(rounds->rt, rounds->fork, rounds->context, &rounds->graph);
+    if (!code)
+        code = duite_replay(rounds->rt, rounds->graph, 1);
+    if (!code)
+        code = duite_wait(rounds->rt);
+    return tasks_code(code);
+}
+
+int tasks_run(struct tasks_rounds *rounds, double *seconds)
+{
+    int code = duite_wait(rounds->rt);
+    double start = serve_seconds();
+    if (!code && rounds->replayed)
+        code = duite_replay(rounds->rt, rounds->graph, rounds->rounds);
+    for (uint64_t i = 0; i < rounds->rounds && !code && !rounds->replayed; i++)
+        code = rounds->fork(rounds->rt, rounds->context);
+    if (!code)
+        code = duite_wait(rounds->rt);
+    *seconds = serve_seconds() - start;
+    return tasks_code(code);
+}
+
+void tasks_forget(struct tasks_rounds *rounds)
+{
+    if (rounds->replayed)
+        duite_graph_free(rounds->rt, rounds->graph);
 }
 
 /* ---- Gates ---- */
@@ -156,11 +206,12 @@ static int serve_tasks(const struct bench *bench)
 {
     static struct tasks_session session;
     const struct serve_run *runs[N_CASES + 1] = {0};
-    char settings[100];
+    const char *settings = strcmp(serve_kind(), "duite")
+                               ? "one thread, loops that call the same bodies through pointers"
+                               : "duite_options_default() but for threads and scheduler, which "
+                                 "binds a worker to each core";
     for (size_t i = 0; i < N_CASES; i++)
         runs[i] = bench->cases[i]->runs;
-    snprintf(settings, sizeof settings,
-             "this program; ours: duite_options_default() but for threads and scheduler");
     int status = serve(settings, runs, &session);
     if (session.rt && duite_stop(&session.rt)) {
         fprintf(stderr, "duite-bench: %s\n", duite_message());
@@ -169,5 +220,7 @@ static int serve_tasks(const struct bench *bench)
     return status;
 }
 
-const struct bench bench_tasks = {"tasks", "what a task costs: stencil, chain, independent, ...",
-                                  CASES, serve_tasks};
+const struct bench bench_tasks = {
+    "tasks",        "what a task costs: stencil, chain, independent, ...",
+    CASES,          TARGETS,
+    TARGET_THREADS, serve_tasks};

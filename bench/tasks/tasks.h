@@ -34,6 +34,21 @@ int tasks_objects(struct tasks_session *session, duite_type type, size_t count, 
                   duite_object *object);
 void tasks_free_objects(struct tasks_session *session, size_t n, const duite_object *object);
 
+/* Rounds of the same tasks: forked one after the other, or recorded once and replayed. */
+struct tasks_rounds {
+    duite *rt;
+    duite_build *fork; /* forks the tasks of a round */
+    void *context;     /* of fork */
+    uint64_t rounds;
+    bool replayed;
+    duite_graph graph;
+};
+/* Records, and replays once, if they are to be replayed; not timed. */
+int tasks_record(struct tasks_rounds *rounds);
+/* Runs all rounds; the seconds it took, from the first fork to the end of the last body. */
+int tasks_run(struct tasks_rounds *rounds, double *seconds);
+void tasks_forget(struct tasks_rounds *rounds);
+
 /* A task that blocks its worker until the gate opens: with an object to write, or without any. */
 extern const duite_kernel tasks_gate_write, tasks_gate;
 

@@ -1,10 +1,23 @@
 /* Stands in for a rival in the test of duite-bench. What it does is in its environment, LIAR:
- * "count" answers 1, 2, 3, ... milliseconds, "wrong" fails its check, "die" ends in the middle,
- * anything else before it says hello. */
+ * "count" answers 1, 2, 3, ... milliseconds, "slow" 1000 seconds, "log" appends its name to the
+ * file LIAR_LOG, "wrong" fails its check, "die" ends in the middle, anything else before it says
+ * hello. */
 #include "bench/serve.h"
 
+#include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+static int write_log(void)
+{
+    const char *path = getenv("LIAR_LOG");
+    FILE *file = path ? fopen(path, "a") : NULL;
+    if (!file)
+        return serve_fail("no log");
+    fprintf(file, "%s\n", program_invocation_short_name);
+    return fclose(file) ? serve_fail("no log") : 0;
+}
 
 static int answer(void *context, struct serve_request *request, double *value)
 {
@@ -14,7 +27,9 @@ static int answer(void *context, struct serve_request *request, double *value)
         return serve_fail("wrong answer");
     if (!strcmp(role, "die"))
         exit(0);
-    *value = 1e-3 * ++times;
+    if (!strcmp(role, "log") && write_log())
+        return 1;
+    *value = strcmp(role, "slow") ? 1e-3 * ++times : 1000;
     return serve_number(request, "threads") == 0;
 }
 

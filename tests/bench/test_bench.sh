@@ -51,25 +51,66 @@ all_listed() {
     done
 }
 
-issue_names() {
-    for name in stencil_dynamic_ns_per_task_vs_libomp stencil_dynamic_ns_per_task_vs_starpu chain_dynamic_ns_per_task_vs_libomp \
-        independent_dynamic_ns_per_task_vs_libomp independent_growth bytes_per_pending_task granularity_50_w2_vs_mpi \
-        granularity_50_w16_vs_mpi wake_us idle_cpu_fraction; do
-        tasks --list | grep -q "^    $name " || { echo "no metric $name" && return 1; }
-    done
+# What is promised, and nothing else has a target.
+targets_listed() {
+    "$bench" tasks --list > "$scratch/list" || return 1
+    sed -n 's/^    \([a-z0-9_]*\) ([a-z_]*), target /\1 /p' "$scratch/list" > "$scratch/targets"
+    diff - "$scratch/targets" << 'END' && grep -q '^    wake_us (us)$' "$scratch/list" &&
+stencil_replay_ns_per_task_vs_libomp <= 0.05
+stencil_dynamic_ns_per_task_vs_libomp <= 0.15
+stencil_dynamic_ns_per_task_vs_starpu <= 0.04
+chain_replay_ns_per_task_vs_libomp <= 0.03
+chain_dynamic_ns_per_task_vs_libomp <= 0.08
+independent_dynamic_ns_per_task_vs_libomp <= 0.7
+independent_growth <= 1.5
+bytes_per_pending_task <= 256
+granularity_50_w2_vs_mpi <= 1.2
+granularity_50_w16_vs_mpi <= 2
+END
+        grep -q '^    idle_cpu_fraction (of_a_core)$' "$scratch/list"
+}
+no_targets() { # OPTION...: other sizes or threads have none
+    "$bench" tasks --list "$@" > "$scratch/list" && ! grep target "$scratch/list"
 }
 
-# A bench of its own whose only rival is the liar, as StarPU.
-liars_bench() {
-    mkdir -p "$scratch/bench/rivals" && cp "$bench" "$scratch/bench" && cp tests/bench/liar "$scratch/bench/rivals/starpu"
+# A bench of its own whose rivals are the liar: StarPU alone, or all of a stencil's.
+liars_bench() { # FOLDER RIVAL...
+    folder=$scratch/$1
+    shift
+    mkdir -p "$folder/rivals" && cp "$bench" "$folder" || return 1
+    for rival; do
+        cp tests/bench/liar "$folder/rivals/$rival" || return 1
+    done
 }
-lied_to() { # ROLE OPTION...
+lied_to_in_full() { # ROLE OPTION...
     role=$1
     shift
-    LIAR=$role DUITE_TIMEOUT=120 limited "$scratch/bench/duite-bench" tasks --quick --only stencil "$@"
+    LIAR=$role DUITE_TIMEOUT=120 limited "$scratch/bench/duite-bench" tasks --only stencil "$@"
 }
-# 40 tasks; the first round, which is left out, and four that count take 1, 2, 3, 4, 5 ms.
-counted() { says "stencil_starpu_ns_per_task: 87500 ns [68750 .. 106250]" lied_to count --repeats 4 --json "$scratch/lied"; }
+lied_to() { lied_to_in_full "$@" --quick; }
+
+# Four rounds after the first: two pairs, each there and back; of five orders not all are the same.
+there_and_back() {
+    LIAR=log LIAR_LOG=$scratch/log DUITE_TIMEOUT=120 \
+        limited "$scratch/turns/duite-bench" tasks --quick --only stencil --repeats 4 || return 1
+    awk 'NR % 5 == 1 { round++ }
+         { there[round] = there[round] " " $1; back[round] = " " $1 back[round] }
+         END { for (i = 1; i <= round; i++) { print there[i]; if (there[i] != there[1]) differ++ }
+               exit !(round == 5 && differ && there[2] == back[3] && there[4] == back[5]) }' "$scratch/log"
+}
+
+# The targets of a stencil against a StarPU that is very slow, or as fast as it says, and no other rival.
+judged() { # ROLE VERDICT PASSED MISSED
+    lied_to_in_full "$1" --repeats 2 --json "$scratch/judged" > "$scratch/lines" || return 1
+    cat "$scratch/lines"
+    grep -q "^stencil_dynamic_ns_per_task_vs_starpu: [-0-9.e]* x .*\], target <= 0.04: $2\$" "$scratch/lines" &&
+        grep -q '^stencil_replay_ns_per_task_vs_libomp: not built: .*, target <= 0.05: not measured$' "$scratch/lines" &&
+        grep -q "^# targets_passed: $3\$" "$scratch/lines" && grep -q "^# targets_missed: $4\$" "$scratch/lines" &&
+        grep -q '^# targets_not_measured: 2$' "$scratch/lines" && well_formed "$scratch/judged" &&
+        grep -q '"stencil_dynamic_ns_per_task_vs_starpu_target": 0.04,' "$scratch/judged"
+}
+# 48 tasks; the first round, which is left out, and four that count take 1, 2, 3, 4, 5 ms.
+counted() { says "stencil_starpu_ns_per_task: 72917 ns [57292 .. 88542]" lied_to count --repeats 4 --json "$scratch/lied"; }
 nothing_written() { ! lied_to wrong --json "$scratch/wrong" && test ! -e "$scratch/wrong"; }
 
 ok "runs every case and checks the answers" tasks --json "$scratch/json"
@@ -77,7 +118,9 @@ cp "$scratch/output" "$scratch/lines"
 ok "its JSON is well-formed" well_formed "$scratch/json"
 ok "its JSON has the figures of its lines" same_figures "$scratch/lines" "$scratch/json"
 ok "every metric listed has its line" all_listed "$scratch/lines"
-ok "the metrics have their names" issue_names
+ok "the metrics that have a target, and which" targets_listed
+ok "no targets with --quick" no_targets --quick
+ok "no targets with other threads" no_targets --threads 3
 ok "runs one case, three threads, another scheduler and seed" tasks --only stencil --threads 3 --scheduler fifo --seed 7
 exits 2 "an unknown bench" says "there is no bench tusks; known are" "$bench" tusks
 exits 2 "an unknown case" says "--only stensil" tasks --only stensil
@@ -88,7 +131,13 @@ exits 2 "no bench" says "which bench" "$bench"
 ok "help" says "first and third quartile" "$bench" --help
 exits 1 "a file that cannot be written" says "cannot be written" tasks --only wake --json "$scratch/none/json"
 
-if liars_bench > "$scratch/output" 2>&1; then
+if liars_bench bench starpu > "$scratch/output" 2>&1 &&
+    liars_bench turns starpu libomp libgomp > "$scratch/output" 2>&1; then
+    ok "rounds go there and back" there_and_back
+    if ! "$bench" tasks --only wake --repeats 1 2>&1 | grep -q "only --quick"; then
+        ok "a target that is kept" judged slow pass 1 0
+        ok "a target that is missed" judged count miss 0 1
+    fi
     ok "medians and quartiles, without the first round" counted
     ok "a rival that is not there is said" says "stencil_libomp_ns_per_task: not built: " lied_to count
     ok "JSON has null for it, and quotes what needs it" well_formed "$scratch/lied"

@@ -74,11 +74,11 @@ END_TEST
 START_TEST(test_line)
 {
     struct problem_message now = {3, 1}, before = {2, 1}, out = {0};
-    ck_assert_int_eq(problem_line_point(&now, &now, NULL, 4, 1, &out), 0);
+    ck_assert_int_eq(problem_line_point(&now, &now, NULL, 1, &out), 0);
     ck_assert_uint_eq(out.step, 4);
-    ck_assert_int_ne(problem_line_point(&before, &now, NULL, 4, 1, &out), 0);
-    ck_assert_int_ne(problem_line_point(NULL, &before, &now, 4, 1, &out), 0);
-    ck_assert_int_ne(problem_line_point(NULL, &now, &before, 4, 1, &out), 0);
+    ck_assert_int_ne(problem_line_point(&before, &now, NULL, 1, &out), 0);
+    ck_assert_int_ne(problem_line_point(NULL, &before, &now, 1, &out), 0);
+    ck_assert_int_ne(problem_line_point(NULL, &now, &before, 1, &out), 0);
 }
 END_TEST
 

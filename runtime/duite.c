@@ -187,12 +187,14 @@ static int start_graph(duite *rt, const duite_options *options)
         return base_error(DUITE_E_MPI, "MPI_Comm_rank failed");
     rt->mapping = options->mapping;
     rt->seed = options->seed;
+    rt->window = options->window;
     static const duite_kernel *const none[] = {NULL};
     int code = check_rest(options);
     int started = graph_start(&rt->graph, rank, n, code ? none : options->kernels,
                               code ? NULL : options->laws);
     if (!code)
         code = started;
+    rt->graph.resume = options->window - options->window / 4;
     if (!code && options->check)
         code = check_start(&rt->check);
     if (!code && n > 1)

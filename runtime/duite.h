@@ -189,6 +189,8 @@ typedef struct duite_options {
     uint64_t seed;                           /* of everything random in policies. Default 1 */
     double spin_seconds; /* how long an idle worker spins before it sleeps. Default 100e-6 */
     int bind;            /* bind workers to cores where the rank owns enough. Default 1 */
+    size_t window;       /* most tasks of this rank that are unfinished when a fork returns: see
+                            duite_fork.       Default 0: any number */
     int check; /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
                   environment */
 } duite_options;
@@ -293,7 +295,12 @@ int duite_home(duite *rt, duite_object object);
  * accesses of an object (by tasks, set, get or free; waits do not count) combine in fork order by
  * a fixed tree: complete subtrees as in a binary counter, the rest folded from the right; then the
  * result is combined with the object: under a sum old + (A + (B + C)). Contributions of another law
- * are another access. Collective; returns at once. */
+ * are another access. Collective; returns at once, or, if options.window is set and more tasks of
+ * this rank than that are unfinished (what the runtime adds to combine, send and copy counts; a
+ * replay is one task, but the tasks of a round that is forked count each), when they are at most so
+ * many: meanwhile the main thread works. Bounds the memory of a program that forks far ahead, and
+ * changes no result. Such a fork may wait for other ranks, as a get does: they must not wait for
+ * this one outside of duite. */
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects);
 

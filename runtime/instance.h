@@ -16,6 +16,7 @@ struct duite {
     struct work_pool *pool;
     const duite_mapping *mapping;
     uint64_t seed;
+    size_t window;
     unsigned threads;
     int oversubscribed;
     int remembered;                  /* code of a failed fork, new, ... */
@@ -43,6 +44,8 @@ int program_enter(duite *rt, const char *call);
 int program_remember(duite *rt, int code);
 /* Settles the homes of all objects. */
 int program_settle(duite *rt);
+/* Works while more tasks than the window allows are unfinished. Called after forks. */
+void program_throttle(duite *rt);
 /* Copies to the values, or tells the count, whichever is wanted here. */
 int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
                 const char *call);

@@ -159,6 +159,24 @@ int duite_free(duite *rt, duite_object object)
 
 /* ---- Tasks ---- */
 
+static bool is_below(void *context)
+{
+    const struct graph *graph = context;
+    return atomic_load_explicit(&graph->unfinished, memory_order_acquire) <= graph->resume;
+}
+
+/* This ends: of all unfinished tasks of all ranks, take the first in fork order. What it waits for
+ * was forked before it, runs, and is over. A rank that has not come to its fork yet, and so does
+ * not send what it needs, is not throttled: all tasks it has are even earlier, so they are over.
+ * Contributions do not wait for the access that combines them, and what combines waits for
+ * earlier tasks only. Messages go on, since a throttled rank sends and receives as it works. */
+void program_throttle(duite *rt)
+{
+    if (rt->window &&
+        atomic_load_explicit(&rt->graph.unfinished, memory_order_relaxed) > rt->window)
+        work_until(rt->pool, is_below, &rt->graph);
+}
+
 static int fork_task(duite *rt, int at, const duite_kernel *kernel, const void *args, size_t n,
                      const duite_object *objects)
 {
@@ -168,6 +186,8 @@ static int fork_task(duite *rt, int at, const duite_kernel *kernel, const void *
     if (!code)
         code = graph_fork(&rt->graph, work_main(rt->pool), at, kernel, args, n, objects);
     work_tick(rt->pool);
+    if (!code)
+        program_throttle(rt);
     return program_remember(rt, code);
 }
 

@@ -198,7 +198,18 @@ static int fork_rounds(duite *rt, struct graph_record *record, uint64_t rounds)
         code = graph_replay_fork(record, work_main(rt->pool));
         record->rounds += !code;
         work_tick(rt->pool);
+        if (!code)
+            program_throttle(rt);
     }
+    return code;
+}
+
+static int replay_plan(duite *rt, struct graph_record *record, const duite_object *flag,
+                       uint64_t rounds)
+{
+    int code = graph_replay_plan(record, work_main(rt->pool), flag, rounds);
+    if (!code)
+        program_throttle(rt);
     return code;
 }
 
@@ -210,7 +221,7 @@ static int replay(duite *rt, struct graph_record *record, uint64_t rounds)
     record->by_plan = rounds > before + after;
     int code = fork_rounds(rt, record, before);
     if (!code && record->by_plan)
-        code = graph_replay_plan(record, work_main(rt->pool), NULL, rounds - before - after);
+        code = replay_plan(rt, record, NULL, rounds - before - after);
     return code ? code : fork_rounds(rt, record, after);
 }
 
@@ -261,7 +272,7 @@ static int replay_while(duite *rt, struct graph_record *record, duite_object fla
     record->by_plan = most > before;
     if (!record->by_plan)
         return fork_while(rt, record, flag, most);
-    return graph_replay_plan(record, work_main(rt->pool), &flag, most);
+    return replay_plan(rt, record, &flag, most);
 }
 
 int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t most)

@@ -109,6 +109,7 @@ struct graph {
     int broken;           /* memory ran out in the middle of a fork: the code of every later call */
     _Atomic int given_up; /* bodies do not run any more */
     _Atomic uint64_t unfinished; /* tasks of this rank */
+    uint64_t resume;             /* and as few of them let a throttled main program go on */
     pthread_mutex_t lock;        /* failures */
     struct graph_failure *failures;
     const struct data_failure *first_failure; /* in fork order, since the last wait */

@@ -183,7 +183,8 @@ void graph_over(struct graph *graph, void *worker, struct graph_task *task)
             graph_release(graph, worker, access->in);
     }
     base_pool_give(task, task->size);
-    if (atomic_fetch_sub_explicit(&graph->unfinished, 1, memory_order_acq_rel) == 1)
+    uint64_t left = atomic_fetch_sub_explicit(&graph->unfinished, 1, memory_order_acq_rel) - 1;
+    if (left == 0 || left == graph->resume)
         graph->hooks.notify(graph->hooks.context);
 }
 

@@ -123,6 +123,7 @@ struct prog_setup {
     const char *scheduler, *mapping;
     uint64_t seed;
     double spin;
+    size_t window;
     int verbose;
 };
 

@@ -12,7 +12,7 @@
 
 struct settings {
     uint64_t seed; /* of one program, or the first of many */
-    int one, ranks, threads, verbose;
+    int one, ranks, threads, window, verbose;
     unsigned long programs, repeat;
     const char *scheduler, *mapping;
 };
@@ -49,6 +49,7 @@ static size_t count_names(const char *const *names)
 static struct prog_setup draw_setup(const struct settings *settings, uint64_t seed, MPI_Comm comm)
 {
     static const double SPINS[] = {0, 1e-6, 100e-6};
+    static const size_t WINDOWS[] = {0, 0, 1, 1, 2, 7, 30};
     const char *const *schedulers = duite_scheduler_names(), *const *mappings =
                                                                  duite_mapping_names();
     struct prog_setup setup = {.comm = comm, .verbose = settings->verbose};
@@ -57,8 +58,11 @@ static struct prog_setup draw_setup(const struct settings *settings, uint64_t se
     setup.seed = duite_random(&random);
     setup.threads = 1 + (unsigned)(duite_random(&random) % 4);
     setup.spin = SPINS[duite_random(&random) % 3];
+    setup.window = WINDOWS[duite_random(&random) % (sizeof WINDOWS / sizeof *WINDOWS)];
     setup.scheduler = schedulers[duite_random(&random) % count_names(schedulers)];
     setup.mapping = mappings[duite_random(&random) % count_names(mappings)];
+    if (settings->window >= 0)
+        setup.window = (size_t)settings->window;
     if (settings->threads > 0)
         setup.threads = (unsigned)settings->threads;
     if (settings->scheduler)
@@ -164,8 +168,9 @@ static int run_seed(const struct settings *settings, uint64_t seed, MPI_Comm com
 
     MPI_Comm_size(comm, &ranks);
     snprintf(running, sizeof running,
-             "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s",
-             (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping);
+             "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s --window %zu",
+             (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
+             setup.window);
     alarm(settings->one ? 600 : 120);
     prog = prog_make(seed, ranks);
     if (!prog)
@@ -227,11 +232,11 @@ static void run_many(const struct settings *settings, int rank, int size, unsign
 
 static int read_options(int argc, char **argv, struct settings *settings)
 {
-    static const struct option OPTIONS[] = {{"seed", 1, NULL, 's'},      {"base", 1, NULL, 'b'},
-                                            {"ranks", 1, NULL, 'r'},     {"threads", 1, NULL, 't'},
-                                            {"repeat", 1, NULL, 'n'},    {"programs", 1, NULL, 'p'},
-                                            {"mapping", 1, NULL, 'm'},   {"verbose", 0, NULL, 'v'},
-                                            {"scheduler", 1, NULL, 'q'}, {NULL, 0, NULL, 0}};
+    static const struct option OPTIONS[] = {
+        {"seed", 1, NULL, 's'},    {"base", 1, NULL, 'b'},    {"ranks", 1, NULL, 'r'},
+        {"threads", 1, NULL, 't'}, {"repeat", 1, NULL, 'n'},  {"programs", 1, NULL, 'p'},
+        {"mapping", 1, NULL, 'm'}, {"verbose", 0, NULL, 'v'}, {"scheduler", 1, NULL, 'q'},
+        {"window", 1, NULL, 'w'},  {NULL, 0, NULL, 0}};
 
     for (int c; (c = getopt_long(argc, argv, "", OPTIONS, NULL)) != -1;) {
         settings->one |= c == 's';
@@ -241,6 +246,8 @@ static int read_options(int argc, char **argv, struct settings *settings)
             settings->ranks = atoi(optarg);
         else if (c == 't')
             settings->threads = atoi(optarg);
+        else if (c == 'w')
+            settings->window = atoi(optarg);
         else if (c == 'n')
             settings->repeat = strtoul(optarg, NULL, 10);
         else if (c == 'p')
@@ -273,7 +280,7 @@ static int run_one(const struct settings *settings, int rank)
 
 int main(int argc, char **argv)
 {
-    struct settings settings = {.seed = 1, .ranks = 1, .programs = 500, .repeat = 1};
+    struct settings settings = {.seed = 1, .ranks = 1, .window = -1, .programs = 500, .repeat = 1};
     unsigned long mine[2] = {0, 0}, sum[2];
     int rank, size, given;
 
@@ -286,7 +293,8 @@ int main(int argc, char **argv)
         fprintf(
             stderr,
             "%s: --base SEED --programs N, on 1 to 4 ranks; or --seed SEED --ranks R [--threads T] "
-            "[--scheduler S] [--mapping M] [--repeat N] [--verbose], on R ranks or more\n",
+            "[--scheduler S] [--mapping M] [--window W] [--repeat N] [--verbose], on R ranks or "
+            "more\n",
             argv[0]);
         MPI_Abort(MPI_COMM_WORLD, 2);
     }

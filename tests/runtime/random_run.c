@@ -372,6 +372,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     options.seed = setup->seed;
     options.spin_seconds = setup->spin;
     options.bind = 0;
+    options.window = setup->window;
     const int code = duite_start(&run->rt, &options);
 
     expect(run, "start", code, DUITE_OK);

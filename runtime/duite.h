@@ -308,6 +308,21 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
                   const duite_object *objects);
 
+/* How a task is run; what is left out is 0. */
+typedef struct duite_how {
+    const int *at;    /* the rank that runs it, as of duite_fork_at; NULL: as duite_fork chooses */
+    int32_t priority; /* of ready tasks the scheduler `priority` takes the one with the largest */
+    double cost;      /* seconds that the body is thought to take; what is not > 0 says nothing */
+} duite_how;
+
+/* duite_fork, with what the program knows of the task (how NULL: nothing): duite_fork_with(rt,
+ * &(duite_how){.priority = 3, .cost = 2e-5}, ...). Priority and cost are handed to schedulers
+ * (duite_ready) and never change results; replays of a recorded fork have them, too. They may
+ * differ between ranks, as measured costs do: those of the rank that runs the task count. Errors as
+ * of duite_fork_at. Collective; returns at once. */
+int duite_fork_with(duite *rt, const duite_how *how, const duite_kernel *kernel, const void *args,
+                    size_t n, const duite_object *objects);
+
 /* duite_fork with the objects, and a structure of arguments, written out:
  * DUITE_FORK(rt, &AXPY, DUITE_ARGS(struct axpy, .alpha = 2, .first = 7), x, y). */
 #define DUITE_ARGS(type, ...) (&(const type){__VA_ARGS__})
@@ -336,11 +351,11 @@ typedef struct duite_graph {
  * that duite_graph_new or the replay returns. */
 typedef int duite_build(duite *rt, void *context);
 
-/* Records what build(rt, context) forks; nothing runs. Inside, duite_fork, duite_fork_at and
- * duite_set are kept, duite_home and the local calls answer; everything else is DUITE_E_STATE.
- * Makes nothing, and *graph is DUITE_NO_GRAPH, if build or a call inside fails: returns the first
- * error. A graph may be replayed any number of times; it is freed by duite_graph_free. Collective;
- * no communication. */
+/* Records what build(rt, context) forks; nothing runs. Inside, duite_fork, duite_fork_at,
+ * duite_fork_with and duite_set are kept, duite_home and the local calls answer; everything else is
+ * DUITE_E_STATE. Makes nothing, and *graph is DUITE_NO_GRAPH, if build or a call inside fails:
+ * returns the first error. A graph may be replayed any number of times; it is freed by
+ * duite_graph_free. Collective; no communication. */
 int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *graph);
 
 /* Forks the graph's tasks `rounds` times, one round after the other: the results, the failures and

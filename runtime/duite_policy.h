@@ -19,7 +19,12 @@ extern "C" {
 #define DUITE_SHARED_QUEUE 0xfffffffeu
 #define DUITE_NO_QUEUE     0xffffffffu
 
-typedef enum duite_end { DUITE_NEWEST, DUITE_OLDEST } duite_end;
+/* Which task of a queue is taken next. */
+typedef enum duite_end {
+    DUITE_NEWEST,
+    DUITE_OLDEST,
+    DUITE_HIGHEST /* the one with the largest priority; of equals the oldest */
+} duite_end;
 
 /* A task that became ready. */
 typedef struct duite_ready {
@@ -30,6 +35,10 @@ typedef struct duite_ready {
      * 0; those that follow one (duite_follow) are of its block. Of a task that only accumulates:
      * its place in fork order. */
     uint32_t block;
+    /* As given at the fork (duite_how), else 0. Tasks of the runtime itself (sums, copies for
+     * duite_get), which are short and waited for, have the priority INT32_MAX. */
+    int32_t priority;
+    double cost; /* seconds; 0: not said */
 } duite_ready;
 
 typedef struct duite_scheduler {
@@ -42,12 +51,12 @@ typedef struct duite_scheduler {
     void (*start)(void *state, unsigned worker, unsigned n_workers, uint64_t seed);
     /* The queue a task goes to that became ready on this worker. */
     unsigned (*place)(void *state, const duite_ready *task);
-    /* From which end a worker serves its own queue and the shared one. */
+    /* In which order a worker serves its own queue and the shared one; it may change its mind. */
     duite_end (*serve)(void *state);
-    /* The worker's queue that an idle worker steals the oldest task from at its attempt-th try in a
-     * row (0, 1, ...); DUITE_NO_QUEUE ends the round, and the worker idles for a moment. Its own
-     * queue and the shared one were found empty before attempt 0; they are always served, so that a
-     * policy cannot lose a task. */
+    /* The worker's queue that an idle worker steals the oldest task from (the highest, if that one
+     * serves its queue by priority) at its attempt-th try in a row (0, 1, ...); DUITE_NO_QUEUE ends
+     * the round, and the worker idles for a moment. Its own queue and the shared one were found
+     * empty before attempt 0; they are always served, so that a policy cannot lose a task. */
     unsigned (*victim)(void *state, unsigned attempt);
     /* Whether a task that just became ready may run directly after the one that made it so. */
     int (*chain)(void *state, const duite_ready *task);

@@ -177,14 +177,14 @@ void program_throttle(duite *rt)
         work_until(rt->pool, is_below, &rt->graph);
 }
 
-static int fork_task(duite *rt, int at, const duite_kernel *kernel, const void *args, size_t n,
-                     const duite_object *objects)
+static int fork_task(duite *rt, const struct graph_how *how, const duite_kernel *kernel,
+                     const void *args, size_t n, const duite_object *objects)
 {
     if (rt->building)
-        return program_remember(rt, graph_record_fork(rt->building, at, kernel, args, n, objects));
+        return program_remember(rt, graph_record_fork(rt->building, how, kernel, args, n, objects));
     int code = program_settle(rt);
     if (!code)
-        code = graph_fork(&rt->graph, work_main(rt->pool), at, kernel, args, n, objects);
+        code = graph_fork(&rt->graph, work_main(rt->pool), how, kernel, args, n, objects);
     work_tick(rt->pool);
     if (!code)
         program_throttle(rt);
@@ -195,7 +195,9 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
                const duite_object *objects)
 {
     int code = enter_any(rt, "duite_fork");
-    return code ? code : fork_task(rt, GRAPH_ANYWHERE, kernel, args, n, objects);
+    return code
+               ? code
+               : fork_task(rt, &(struct graph_how){.at = GRAPH_ANYWHERE}, kernel, args, n, objects);
 }
 
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
@@ -207,7 +209,24 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
     if (rank < 0)
         return program_remember(
             rt, base_error(DUITE_E_ARGUMENT, "duite_fork_at: there is no rank %d", rank));
-    return fork_task(rt, rank, kernel, args, n, objects);
+    return fork_task(rt, &(struct graph_how){.at = rank}, kernel, args, n, objects);
+}
+
+int duite_fork_with(duite *rt, const duite_how *how, const duite_kernel *kernel, const void *args,
+                    size_t n, const duite_object *objects)
+{
+    int code = enter_any(rt, "duite_fork_with");
+    if (code)
+        return code;
+    struct graph_how own = {.at = GRAPH_ANYWHERE};
+    if (how)
+        own = (struct graph_how){.at = how->at ? *how->at : GRAPH_ANYWHERE,
+                                 .priority = how->priority,
+                                 .cost = how->cost > 0 ? how->cost : 0};
+    if (how && how->at && own.at < 0)
+        return program_remember(
+            rt, base_error(DUITE_E_ARGUMENT, "duite_fork_with: there is no rank %d", own.at));
+    return fork_task(rt, &own, kernel, args, n, objects);
 }
 
 static int set(duite *rt, duite_object object, const void *values, const size_t *count,

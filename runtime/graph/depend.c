@@ -30,6 +30,8 @@ struct graph_task *graph_task_new(struct graph *graph, enum graph_kind kind, siz
     task->kernel = UINT32_MAX;
     task->number = graph->forks;
     task->block = (uint32_t)graph->forks; /* until it is known to run for an object */
+    task->priority = INT32_MAX;           /* unless the program forks it */
+    task->cost = 0;
     task->param = (void *)((char *)task + access);
     task->args = extra ? (char *)task + access + param : NULL;
     for (size_t i = 0; i < n; i++)

@@ -152,13 +152,16 @@ static int use(struct graph *graph, void *worker, int at, const duite_kernel *ke
     return DUITE_OK;
 }
 
-static struct graph_task *body_task(struct graph *graph, uint32_t index, const void *args, size_t n)
+static struct graph_task *body_task(struct graph *graph, const struct graph_how *how,
+                                    uint32_t index, const void *args, size_t n)
 {
     const duite_kernel *kernel = graph->kernels[index];
     struct graph_task *task = graph_task_new(graph, GRAPH_BODY, n, kernel->args_size);
     if (!task)
         return NULL;
     task->kernel = index;
+    task->priority = how->priority;
+    task->cost = how->cost;
     if (kernel->args_size)
         memcpy(task->args, args, kernel->args_size);
     return task;
@@ -189,10 +192,11 @@ int graph_check(struct graph *graph, int at, const duite_kernel *kernel, const v
     return code;
 }
 
-int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *kernel,
-               const void *args, size_t n, const duite_object *objects)
+int graph_fork(struct graph *graph, void *worker, const struct graph_how *how,
+               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
 {
     uint32_t index = 0, done = 0;
+    int at = how->at;
     int code = graph_check(graph, at, kernel, args, n, objects, &index);
     if (code)
         return code;
@@ -202,7 +206,7 @@ int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *ke
     if (at == GRAPH_ANYWHERE)
         at = own ? own->home : 0;
     struct graph_task *task = NULL;
-    if (at == graph->rank && !(task = body_task(graph, index, args, n)))
+    if (at == graph->rank && !(task = body_task(graph, how, index, args, n)))
         return DUITE_E_MEMORY;
     if (task && own)
         task->block = own->block;

@@ -47,6 +47,8 @@ struct graph_task {
     uint32_t kernel; /* index in the list given at start */
     uint64_t number; /* in fork order */
     uint32_t block;  /* for schedulers: of the object that it runs for */
+    int32_t priority;
+    double cost; /* seconds; 0: not said */
     union {
         void *args;                  /* BODY: its copy of the arguments */
         struct graph_sum *sum;       /* COMBINE, PIECES */
@@ -131,8 +133,16 @@ void graph_mix(struct graph *graph, uint64_t value);
 
 enum { GRAPH_ANYWHERE = -1 };
 
-int graph_fork(struct graph *graph, void *worker, int at, const duite_kernel *kernel,
-               const void *args, size_t n, const duite_object *objects);
+/* What a fork says of how its task runs. Priority and cost are the running rank's; they do not
+ * belong to the fingerprint. */
+struct graph_how {
+    int at; /* a rank, or GRAPH_ANYWHERE */
+    int32_t priority;
+    double cost; /* seconds; 0: not said */
+};
+
+int graph_fork(struct graph *graph, void *worker, const struct graph_how *how,
+               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects);
 /* Overwrites with a copy of *count values, or with zeros if they are NULL, without waiting for
  * anything. count NULL: as many as the object has at most. Errors: objects, DUITE_E_SIZE, memory.
  */

@@ -28,8 +28,8 @@ static void print_fork(const struct graph_record *record, const struct graph_rec
     bool sets = fork->kernel == GRAPH_SETS;
     const duite_kernel *kernel = sets ? NULL : record->graph->kernels[fork->kernel];
     print_name(file, sets ? "duite_set" : kernel->name);
-    if (fork->at >= 0)
-        fprintf(file, "\\nat rank %d", fork->at);
+    if (fork->how.at >= 0)
+        fprintf(file, "\\nat rank %d", fork->how.at);
     for (uint32_t k = 0; k < fork->n; k++) {
         duite_mode mode = graph_recorded_mode(record->graph, fork, k);
         print_use(record, record->use[fork->first + k], mode, file);

@@ -117,8 +117,9 @@ duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_rec
 }
 
 /* The bytes of the arguments are still to be written. */
-static struct graph_recorded_fork *append(struct graph_record *record, uint32_t kernel, int at,
-                                          size_t n, const duite_object *objects, size_t bytes)
+static struct graph_recorded_fork *append(struct graph_record *record, uint32_t kernel,
+                                          const struct graph_how *how, size_t n,
+                                          const duite_object *objects, size_t bytes)
 {
     size_t whole = (bytes + 15) / 16 * 16;
     if (record->n_forks >= UINT32_MAX / 8 || record->n_uses + n >= UINT32_MAX / 8 ||
@@ -128,13 +129,13 @@ static struct graph_recorded_fork *append(struct graph_record *record, uint32_t 
     }
     struct graph_recorded_fork *fork = &record->fork[record->n_forks++];
     *fork = (struct graph_recorded_fork){.kernel = kernel,
-                                         .at = at,
+                                         .how = *how,
                                          .n = (uint32_t)n,
                                          .call = (uint32_t)record->n_calls,
                                          .first = record->n_uses,
                                          .args = record->args_bytes};
     record->args_bytes += whole;
-    graph_mix(record->graph, (uint64_t)kernel << 32 | (uint32_t)at);
+    graph_mix(record->graph, (uint64_t)kernel << 32 | (uint32_t)how->at);
     for (size_t i = 0; i < n; i++) {
         graph_mix(record->graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         use(record, objects[i], graph_recorded_mode(record->graph, fork, (uint32_t)i));
@@ -142,15 +143,16 @@ static struct graph_recorded_fork *append(struct graph_record *record, uint32_t 
     return fork;
 }
 
-int graph_record_fork(struct graph_record *record, int at, const duite_kernel *kernel,
-                      const void *args, size_t n, const duite_object *objects)
+int graph_record_fork(struct graph_record *record, const struct graph_how *how,
+                      const duite_kernel *kernel, const void *args, size_t n,
+                      const duite_object *objects)
 {
     uint32_t index;
-    int code = graph_check(record->graph, at, kernel, args, n, objects, &index);
+    int code = graph_check(record->graph, how->at, kernel, args, n, objects, &index);
     if (code)
         return code;
     graph_unmark(record->graph, n, objects);
-    struct graph_recorded_fork *fork = append(record, index, at, n, objects, kernel->args_size);
+    struct graph_recorded_fork *fork = append(record, index, how, n, objects, kernel->args_size);
     if (!fork)
         return DUITE_E_MEMORY;
     if (kernel->args_size)
@@ -170,7 +172,8 @@ int graph_record_set(struct graph_record *record, duite_object name, const void 
     int code = graph_set_check(object, name, count);
     if (code)
         return code;
-    struct graph_recorded_fork *fork = append(record, GRAPH_SETS, GRAPH_ANYWHERE, 1, &name, bytes);
+    struct graph_recorded_fork *fork =
+        append(record, GRAPH_SETS, &(struct graph_how){.at = GRAPH_ANYWHERE}, 1, &name, bytes);
     if (!fork)
         return DUITE_E_MEMORY;
     graph_mix(record->graph, count);

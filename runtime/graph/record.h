@@ -15,8 +15,8 @@
 
 struct graph_recorded_fork {
     uint32_t kernel; /* index in the list given at start */
-    int at;          /* a rank, or GRAPH_ANYWHERE */
     uint32_t n;
+    struct graph_how how;
     uint32_t call; /* forks before it, sets left out */
     size_t first;  /* of its n objects in `use` */
     size_t args;   /* where its arguments, or the values it sets, lie in `args` */
@@ -90,8 +90,9 @@ void graph_record_clear(struct graph_record *record, void *worker);
 void graph_record_forget_changes(struct graph_record *record);
 
 /* What build calls. Errors as of graph_fork and graph_set, nothing is recorded then. */
-int graph_record_fork(struct graph_record *record, int at, const duite_kernel *kernel,
-                      const void *args, size_t n, const duite_object *objects);
+int graph_record_fork(struct graph_record *record, const struct graph_how *how,
+                      const duite_kernel *kernel, const void *args, size_t n,
+                      const duite_object *objects);
 int graph_record_set(struct graph_record *record, duite_object object, const void *values,
                      const size_t *count);
 /* Build is over. */

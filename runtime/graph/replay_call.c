@@ -46,8 +46,8 @@ int graph_replay_fork(struct graph_record *record, void *worker)
         if (fork->kernel == GRAPH_SETS)
             code = graph_set(graph, worker, objects[0], fork->zeros ? NULL : args, &fork->count);
         else
-            code = graph_fork(graph, worker, fork->at, graph->kernels[fork->kernel], args, fork->n,
-                              objects);
+            code = graph_fork(graph, worker, &fork->how, graph->kernels[fork->kernel], args,
+                              fork->n, objects);
     }
     return code;
 }

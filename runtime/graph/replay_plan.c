@@ -92,6 +92,7 @@ static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, 
     *task = (struct graph_task){.n = (uint32_t)from->n_uses,
                                 .kind = from->kind,
                                 .kernel = UINT32_MAX,
+                                .priority = INT32_MAX,
                                 .node = node,
                                 .param = plan->param + from->first_use};
     *node = (struct graph_node){.plan = plan,
@@ -114,6 +115,8 @@ static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, 
         return;
     const duite_kernel *kernel = record->graph->kernels[fork->kernel];
     task->kernel = fork->kernel;
+    task->priority = fork->how.priority;
+    task->cost = fork->how.cost;
     node->body = kernel->body;
     node->args = kernel->args_size ? plan->args + fork->args : NULL;
     for (uint32_t k = 0; k < fork->n; k++)

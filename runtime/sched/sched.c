@@ -4,8 +4,8 @@
 #include <duite.h>
 #include <string.h>
 
-static const duite_scheduler *const schedulers[] = {&sched_steal, &sched_fifo, &sched_lifo,
-                                                    &sched_static, &sched_shuffle};
+static const duite_scheduler *const schedulers[] = {&sched_steal,    &sched_fifo,   &sched_lifo,
+                                                    &sched_priority, &sched_static, &sched_shuffle};
 enum { N_SCHEDULERS = sizeof schedulers / sizeof schedulers[0] };
 
 const duite_scheduler *duite_scheduler_find(const char *name)
@@ -18,7 +18,7 @@ const duite_scheduler *duite_scheduler_find(const char *name)
 
 const char *const *duite_scheduler_names(void)
 {
-    static const char *const names[N_SCHEDULERS + 1] = {"steal", "fifo", "lifo", "static",
-                                                        "shuffle"};
+    static const char *const names[N_SCHEDULERS + 1] = {"steal",    "fifo",   "lifo",
+                                                        "priority", "static", "shuffle"};
     return names;
 }

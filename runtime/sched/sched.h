@@ -4,6 +4,7 @@
 #include <duite_policy.h>
 
 /* The built-in schedulers. */
-extern const duite_scheduler sched_steal, sched_fifo, sched_lifo, sched_static, sched_shuffle;
+extern const duite_scheduler sched_steal, sched_fifo, sched_lifo, sched_priority, sched_static,
+    sched_shuffle;
 
 #endif

@@ -1,5 +1,6 @@
-/* shuffle: an adversary for tests. Every decision is a coin toss from the seed: any queue, either
- * end, any victim or none, so that tasks run in orders that no sensible scheduler would choose. */
+/* shuffle: an adversary for tests. Every decision is a coin toss from the seed: any queue, any
+ * order, any victim or none, so that tasks run in orders that no sensible scheduler would choose.
+ */
 #include "runtime/sched/sched.h"
 
 struct state {
@@ -28,7 +29,7 @@ static unsigned place(void *state, const duite_ready *task)
 
 static duite_end serve(void *state)
 {
-    return draw(state, 2) ? DUITE_NEWEST : DUITE_OLDEST;
+    return (duite_end)draw(state, DUITE_HIGHEST + 1);
 }
 
 static unsigned victim(void *state, unsigned attempt)

@@ -26,6 +26,7 @@ struct work_worker {
     bool finishing;          /* a task of this worker makes others ready right now */
     bool in_body;            /* the main thread must not fork */
     bool polls;              /* holds the seat */
+    bool left_some;          /* tasks in the heap from which it took one: another is to be woken */
     struct graph_task *next; /* chained: to run directly after this one */
     double polled;           /* when */
     double idle_since, pause;

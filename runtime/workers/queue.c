@@ -1,5 +1,5 @@
-/* A task is in one place: the inbox or the deque of one queue. Only the owner moves tasks from
- * inbox to deque. */
+/* A task is in one place: the inbox, the deque or the heap of one queue. Only the owner moves tasks
+ * from inbox to deque to heap. */
 #include "runtime/workers/queue.h"
 
 enum { FIRST_SLOTS = 256 };
@@ -8,12 +8,14 @@ bool work_queue_start(struct work_queue *queue)
 {
     atomic_init(&queue->inbox, NULL);
     atomic_flag_clear(&queue->token);
+    work_heap_start(&queue->heap);
     return work_deque_start(&queue->deque, FIRST_SLOTS);
 }
 
 void work_queue_stop(struct work_queue *queue)
 {
     work_deque_stop(&queue->deque);
+    work_heap_stop(&queue->heap);
 }
 
 void work_queue_put(struct work_queue *queue, struct graph_task *task)
@@ -65,10 +67,42 @@ static struct graph_task *take_oldest(struct work_deque *deque)
     return task;
 }
 
+/* NULL: the heap is empty, or another one is at it. */
+static struct graph_task *take_ranked(struct work_heap *heap)
+{
+    if (!atomic_load_explicit(&heap->n, memory_order_relaxed) || !work_heap_enter(heap))
+        return NULL;
+    struct graph_task *task = work_heap_pop(heap);
+    work_heap_leave(heap);
+    return task;
+}
+
+static struct graph_task *take_highest(struct work_queue *queue)
+{
+    struct graph_task *task = take_oldest(&queue->deque);
+    if (!work_heap_enter(&queue->heap))
+        return task;
+    while (task && work_heap_push(&queue->heap, task))
+        task = take_oldest(&queue->deque);
+    if (!task) /* else there was no memory: it runs at once */
+        task = work_heap_pop(&queue->heap);
+    work_heap_leave(&queue->heap);
+    return task;
+}
+
+/* A scheduler may serve by priority now and otherwise later: what lies in the heap is found by all
+ * ways, and who goes round the queue from its old end to the new one comes by all of it. */
 static struct graph_task *take(struct work_queue *queue, duite_end end)
 {
     push_all(queue, empty_inbox(queue));
-    return end == DUITE_NEWEST ? work_deque_take_newest(&queue->deque) : take_oldest(&queue->deque);
+    if (end == DUITE_HIGHEST)
+        return take_highest(queue);
+    if (end == DUITE_NEWEST) {
+        struct graph_task *task = work_deque_take_newest(&queue->deque);
+        return task ? task : take_ranked(&queue->heap);
+    }
+    struct graph_task *task = take_ranked(&queue->heap);
+    return task ? task : take_oldest(&queue->deque);
 }
 
 struct graph_task *work_queue_take(struct work_queue *queue, duite_end end)
@@ -91,7 +125,9 @@ struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end en
 
 struct graph_task *work_queue_steal(struct work_queue *victim, struct work_queue *own)
 {
-    struct graph_task *task = take_oldest(&victim->deque);
+    struct graph_task *task = take_ranked(&victim->heap);
+    if (!task)
+        task = take_oldest(&victim->deque);
     if (task || !(task = empty_inbox(victim)))
         return task;
     push_all(own, task->next);

@@ -3,13 +3,16 @@
 
 #include "runtime/graph/graph.h"
 #include "runtime/workers/deque.h"
+#include "runtime/workers/heap.h"
 
 #include <duite_policy.h>
 
 /* A queue of ready tasks: a deque for its owner and thieves, and an inbox into which anybody puts.
- * The shared queue has no owner: whoever gets `token` is it for a moment. */
+ * The shared queue has no owner: whoever gets `token` is it for a moment. When it is served by
+ * priority, inbox and deque are emptied into the heap first. */
 struct work_queue {
     struct work_deque deque;
+    struct work_heap heap;
     _Alignas(64) _Atomic(struct graph_task *) inbox; /* linked by next, newest first */
     atomic_flag token;
 };
@@ -28,5 +31,12 @@ struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end en
 /* A thief, who may take the whole inbox of a busy owner: all but the first go to the thief's own
  * queue. */
 struct graph_task *work_queue_steal(struct work_queue *victim, struct work_queue *own);
+
+/* Are there tasks in the heap? Who finds another one at it goes away empty-handed, and may sleep:
+ * whoever took a task and leaves some there wakes another. */
+static inline bool work_queue_ranks(struct work_queue *queue)
+{
+    return atomic_load_explicit(&queue->heap.n, memory_order_relaxed) != 0;
+}
 
 #endif

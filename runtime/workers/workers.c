@@ -30,7 +30,11 @@ static duite_ready describe(const struct graph *graph, const struct graph_task *
         [GRAPH_NODE_SUM] = "duite_sum",  [GRAPH_NODE_FLAG] = "duite_replay_while"};
     bool program = task->kind == GRAPH_BODY || task->kind == GRAPH_NODE;
     const char *name = program ? graph->kernels[task->kernel]->name : own[task->kind];
-    return (duite_ready){.kernel = name, .number = task->number, .block = task->block};
+    return (duite_ready){.kernel = name,
+                         .number = task->number,
+                         .block = task->block,
+                         .priority = task->priority,
+                         .cost = task->cost};
 }
 
 /* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal
@@ -102,19 +106,21 @@ static struct graph_task *find(struct work_worker *worker)
     struct work_pool *pool = worker->pool;
     const duite_scheduler *scheduler = pool->setup.scheduler;
     duite_end end = scheduler->serve(worker->state);
-    struct graph_task *task = work_queue_take(&worker->queue, end);
+    struct work_queue *queue = &worker->queue;
+    struct graph_task *task = work_queue_take(queue, end);
     if (!task)
-        task = work_queue_take_shared(&pool->shared, end);
+        task = work_queue_take_shared(queue = &pool->shared, end);
     for (unsigned attempt = 0; !task; attempt++) {
         unsigned victim = scheduler->victim(worker->state, attempt);
         if (victim >= pool->setup.threads)
             break;
         if (victim == worker->index)
             continue;
-        task = work_queue_steal(&pool->worker[victim].queue, &worker->queue);
+        task = work_queue_steal(queue = &pool->worker[victim].queue, &worker->queue);
         if (task)
             work_bump(&worker->counts.stolen, 1);
     }
+    worker->left_some = task && work_queue_ranks(queue);
     return task;
 }
 
@@ -130,6 +136,9 @@ static void run(struct work_worker *worker, struct graph_task *task)
     struct work_pool *pool = worker->pool;
     struct graph *graph = pool->setup.graph;
     struct comm *comm = pool->setup.comm;
+    if (worker->left_some)
+        wake_one(pool, DUITE_NO_QUEUE);
+    worker->left_some = false;
     for (unsigned length = 1; task; length++) {
         double start = base_seconds();
         worker->in_body = true;

@@ -3,18 +3,21 @@
  * once; of the shared queue likewise, whoever holds its token. */
 #include "tests/model/runtime.h"
 
+#include <ctype.h>
+
 static unsigned allocations; /* that still succeed */
 
 #define base_alloc(size) (allocations-- ? explore_alloc(size) : NULL)
 
 #include "runtime/workers/deque.c"
+#include "runtime/workers/heap.c"
 #include "runtime/workers/queue.c"
 
 enum { THREADS = 3, EACH = 3, TASKS = THREADS * EACH }; /* EACH: tasks that a thread makes */
 
 /* What each thread does, one letter each. The first owns the queue: P push, T take the newest, O
- * the oldest. Others: p put, S steal. Of a shared queue anybody: p put, t take the newest, o the
- * oldest. */
+ * the oldest, H the highest. Others: p put, S steal. Of a shared queue anybody: p put, t take the
+ * newest, o the oldest, h the highest. */
 struct play {
     const char *name;
     const char *script[THREADS + 1];
@@ -44,14 +47,17 @@ static bool got(const struct graph_task *task)
 static void act(char letter, unsigned self)
 {
     struct work_queue *queue = &its.queue;
+    static const char ends[] = {[DUITE_NEWEST] = 't', [DUITE_OLDEST] = 'o', [DUITE_HIGHEST] = 'h'};
+    const char *taking = memchr(ends, tolower(letter), sizeof ends);
+    duite_end end = taking ? (duite_end)(taking - ends) : DUITE_NEWEST;
     if (letter == 'P')
         work_queue_push(queue, make(self));
     else if (letter == 'p')
         work_queue_put(queue, make(self));
-    else if (letter == 'T' || letter == 'O')
-        got(work_queue_take(queue, letter == 'T' ? DUITE_NEWEST : DUITE_OLDEST));
-    else if (letter == 't' || letter == 'o')
-        got(work_queue_take_shared(queue, letter == 't' ? DUITE_NEWEST : DUITE_OLDEST));
+    else if (taking && isupper(letter))
+        got(work_queue_take(queue, end));
+    else if (taking)
+        got(work_queue_take_shared(queue, end));
     else
         got(work_queue_steal(queue, &its.own[self]));
 }
@@ -113,6 +119,11 @@ static const struct play plays[] = {
     {"a full ring and a thief", {"PPT", "S"}, true},
     {"shared, newest first", {"t", "pp", "t"}, false},
     {"shared, oldest first", {"po", "o", "p"}, false},
+    {"by priority", {"PHH", "p"}, false},
+    {"by priority and otherwise", {"PPHT", "S"}, false},
+    {"by priority, with a thief", {"PPH", "SS"}, false},
+    {"shared, by priority", {"ph", "ph"}, false},
+    {"shared, by priority and otherwise", {"ph", "po"}, false},
 };
 
 static const struct play deep[] = {
@@ -133,6 +144,10 @@ static const struct {
      {"all hold the token", {"pt", "", "pt"}, false}},
     {{"work_queue_take_shared", "&queue->token", EXPLORE_RELAX},
      {"the token is taken late", {"pt", "", "pt"}, false}},
+    {{"work_heap_enter", "&heap->busy", EXPLORE_DROP},
+     {"all enter the heap", {"PPHH", "S"}, false}},
+    {{"work_heap_leave", "&heap->busy", EXPLORE_RELAX},
+     {"the heap is left early", {"PPHH", "S"}, false}},
 };
 
 int main(int argc, char **argv)

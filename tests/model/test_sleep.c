@@ -141,6 +141,7 @@ int comm_expect(struct comm *comm, void *worker, struct data_key key, struct dat
 
 #ifdef REAL_QUEUES
 #include "runtime/workers/deque.c"
+#include "runtime/workers/heap.c"
 #include "runtime/workers/queue.c"
 #else
 #include "tests/model/plain_queue.h"

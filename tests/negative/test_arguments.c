@@ -61,6 +61,7 @@ START_TEST(no_runtime)
     ck_assert_int_eq(duite_home(NULL, a), -1);
     ck_assert_int_eq(duite_fork(NULL, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_fork_at(NULL, 0, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_fork_with(NULL, NULL, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_wait(NULL), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_count_all(NULL, &counters), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
@@ -102,6 +103,10 @@ START_TEST(ranks_outside)
 {
     int32_t value[4];
 
+    refused(duite_fork_with(rt, &(duite_how){.at = &(int){1}}, &ADD, NULL, 1, &a),
+            DUITE_E_ARGUMENT);
+    refused(duite_fork_with(rt, &(duite_how){.at = &(int){-1}}, &ADD, NULL, 1, &a),
+            DUITE_E_ARGUMENT);
     refused(duite_fork_at(rt, 1, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
     refused(duite_fork_at(rt, -1, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_get_at(rt, a, 1, value), DUITE_E_ARGUMENT);

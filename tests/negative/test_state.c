@@ -7,7 +7,7 @@
 #include <pthread.h>
 #include <stdint.h>
 
-enum { CALLS = 11 };
+enum { CALLS = 12 };
 
 struct attempt {
     duite *rt;
@@ -28,6 +28,7 @@ static void try_all(struct attempt *attempt)
 
     *code++ = duite_fork(rt, attempt->kernel, NULL, 1, &object);
     *code++ = duite_fork_at(rt, 0, attempt->kernel, NULL, 1, &object);
+    *code++ = duite_fork_with(rt, NULL, attempt->kernel, NULL, 1, &object);
     *code++ = duite_new(rt, DUITE_I32, 1, &made);
     *code++ = duite_free(rt, object);
     *code++ = duite_set(rt, object, &value);

@@ -174,6 +174,8 @@ struct prog_op *make_push_fork(struct maker *m, const struct prog_op *draft)
     op->fails = make_one_in(m, m->failing) ? 1 + (int)make_below(m, 1000) : 0;
     op->exceeds = op->n && make_one_in(m, 6 * m->failing) ? 1 + make_below(m, op->n) : 0;
     op->pause = make_one_in(m, m->pausing) ? 1 + make_below(m, make_one_in(m, 4) ? 20000 : 500) : 0;
+    op->priority = make_one_in(m, 20) ? INT32_MIN : (int32_t)make_below(m, 7) - 3;
+    op->cost = make_below(m, 3) - 1.0;
     m->unsettled = (unsigned)prog->n_objects;
     return op;
 }

@@ -69,6 +69,8 @@ void prog_print(FILE *file, const struct prog *prog, size_t index)
         fprintf(file, " leader %u", op->objects[0]);
     if (op->rank >= 0)
         fprintf(file, " at rank %d", op->rank);
+    if (forks && op->cost >= 0)
+        fprintf(file, " priority %d cost %g", (int)op->priority, op->cost);
     if (op->fails)
         fprintf(file, " fails with %d%s", op->fails, op->sometimes ? " sometimes" : "");
     if (op->exceeds)

@@ -59,11 +59,13 @@ struct prog_op {
     unsigned pause;  /* fork: how the body wastes time */
     int fails;       /* fork: the code the body returns */
     unsigned
-        exceeds;    /* fork: parameter + 1 that the body gives more elements than it may; 0: none */
-    int sometimes;  /* fork: it fails, or ends flags, depending on what it reads */
-    int ends;       /* fork: now and then zeros the first element of what it writes */
-    unsigned graph; /* graphs: by the order in which they are made */
-    double weight;  /* hint */
+        exceeds;   /* fork: parameter + 1 that the body gives more elements than it may; 0: none */
+    int sometimes; /* fork: it fails, or ends flags, depending on what it reads */
+    int ends;      /* fork: now and then zeros the first element of what it writes */
+    int32_t priority; /* fork */
+    double cost;      /* fork; < 0: neither is said */
+    unsigned graph;   /* graphs: by the order in which they are made */
+    double weight;    /* hint */
 };
 
 /* What a body is told: it cannot ask the program, which it must not see. */

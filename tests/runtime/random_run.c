@@ -96,23 +96,31 @@ static void get_count(struct run *run, const struct prog_op *op, const struct pr
         found(run, "object %u has %zu elements, expected %zu", op->object, count, expected);
 }
 
-static void fork_task(struct run *run, const struct prog_op *op)
+/* Priorities differ between ranks, which is nobody's business. */
+static int fork_task(struct run *run, const struct prog_op *op)
 {
     const duite_kernel *kernel = &run->prog->kernel[op->kernel];
+    duite_how how = {.priority = op->priority + run->rank, .cost = op->cost};
     duite_object objects[PROG_MAX_PARAMS];
     struct prog_args args;
-    int code;
+    int rank = op->rank, code;
 
     prog_args_fill(run->prog, op, &args);
     for (unsigned i = 0; i < op->n; i++)
         objects[i] = run->object[op->objects[i]];
-    if (op->rank < 0)
+    if (rank >= 0)
+        how.at = &rank;
+    if (op->cost >= 0)
+        code = duite_fork_with(run->rt, &how, kernel, &args, op->n, objects);
+    else if (rank < 0)
         code = duite_fork(run->rt, kernel, &args, op->n, objects);
     else
-        code = duite_fork_at(run->rt, op->rank, kernel, &args, op->n, objects);
+        code = duite_fork_at(run->rt, rank, kernel, &args, op->n, objects);
     memset(&args, 0xee, sizeof args); /* the runtime has its copy */
     memset(objects, 0xee, sizeof objects);
-    expect(run, "fork", code, DUITE_OK);
+    memset(&how, 0xee, sizeof how);
+    rank = -1;
+    return code;
 }
 
 /* A kernel of one parameter that is given one object twice. */
@@ -184,23 +192,15 @@ static int build(duite *rt, void *context)
     struct run *run = graph->run;
     const struct prog_op *from = &run->prog->ops[graph->again];
 
+    (void)rt; /* it is the run's */
     graph->first = graph->again;
     for (size_t i = 1; i <= from->n; i++) {
         const struct prog_op *op = &from[i];
-        duite_object objects[PROG_MAX_PARAMS];
-        struct prog_args args;
 
-        if (op->kind == PROG_GRAPH_SET) {
+        if (op->kind == PROG_GRAPH_SET)
             set(run, op);
-        } else if (op->kind == PROG_GRAPH_FORK) {
-            prog_args_fill(run->prog, op, &args);
-            for (unsigned k = 0; k < op->n; k++)
-                objects[k] = run->object[op->objects[k]];
-            if (op->rank < 0)
-                duite_fork(rt, &run->prog->kernel[op->kernel], &args, op->n, objects);
-            else
-                duite_fork_at(rt, op->rank, &run->prog->kernel[op->kernel], &args, op->n, objects);
-        }
+        else if (op->kind == PROG_GRAPH_FORK)
+            fork_task(run, op);
     }
     return 0;
 }
@@ -281,7 +281,7 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
         expect(run, "set", set(run, op), DUITE_OK);
         break;
     case PROG_FORK:
-        fork_task(run, op);
+        expect(run, "fork", fork_task(run, op), DUITE_OK);
         break;
     case PROG_GET:
     case PROG_GET_AT:

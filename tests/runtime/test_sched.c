@@ -12,6 +12,8 @@ enum { TASKS = 30, BLOCKS = 7, STEPS = 40 };
 static int order[TASKS * 2], n_ran;
 static unsigned worker_of[BLOCKS][STEPS];
 
+#define URGENCY(i) ((i)*7 % 5 - 2) /* of a task, by its number */
+
 static int note(const duite_call *call)
 {
     order[n_ran++] = *(const int *)call->args;
@@ -79,6 +81,52 @@ START_TEST(one_worker)
         for (int i = 0; i < TASKS; i++)
             ck_assert_int_eq(order[i], TASKS - 1 - i);
     }
+}
+END_TEST
+
+/* By priority, and in fork order among equals. */
+static void check_order(const int *seen)
+{
+    for (int i = 1; i < TASKS; i++) {
+        const int now = URGENCY(seen[i]), before = URGENCY(seen[i - 1]);
+
+        ck_assert_int_le(now, before);
+        if (now == before)
+            ck_assert_int_lt(seen[i - 1], seen[i]);
+    }
+}
+
+static int build_urgent(duite *rt, void *context)
+{
+    const duite_object *object = context;
+
+    for (int i = 0; i < TASKS; i++)
+        duite_fork_with(rt, &(duite_how){.priority = URGENCY(i)}, &NOTE, &i, 1, &object[i]);
+    return 0;
+}
+
+/* Forked and replayed, one worker runs them in their order. */
+START_TEST(by_priority)
+{
+    duite *rt = start("priority", 1);
+    duite_object object[TASKS];
+    duite_graph graph;
+
+    n_ran = 0;
+    for (int i = 0; i < TASKS; i++)
+        object[i] = misuse_new(rt, 1);
+    ck_assert_int_eq(build_urgent(rt, object), 0);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    ck_assert_int_eq(duite_graph_new(rt, build_urgent, object, &graph), DUITE_OK);
+    ck_assert_int_eq(duite_replay(rt, graph, 1), DUITE_OK);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    ck_assert_int_eq(n_ran, 2 * TASKS);
+    check_order(order);
+    check_order(order + TASKS);
+    for (int i = 0; i < TASKS; i++)
+        duite_free(rt, object[i]);
+    duite_graph_free(rt, graph);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
 }
 END_TEST
 
@@ -150,6 +198,7 @@ START_TEST(decisions)
         int chains;
     } CASES[] = {{"fifo", DUITE_SHARED_QUEUE, 0, DUITE_OLDEST, 0},
                  {"lifo", DUITE_SHARED_QUEUE, 0, DUITE_NEWEST, 0},
+                 {"priority", DUITE_SHARED_QUEUE, 0, DUITE_HIGHEST, 0},
                  {"static", 5 % 4, 0, DUITE_OLDEST, 0},
                  {"steal", 2, 3, DUITE_NEWEST, 1}};
     const duite_ready task = {.kernel = "note", .number = 6, .block = 5};
@@ -174,6 +223,102 @@ START_TEST(decisions)
 }
 END_TEST
 
+/* A scheduler that keeps what it is told. */
+static duite_ready told[8];
+static unsigned n_told;
+
+static unsigned listen(void *state, const duite_ready *task)
+{
+    (void)state;
+    told[n_told++ % 8] = *task;
+    return 0;
+}
+
+static duite_end in_turn(void *state)
+{
+    (void)state;
+    return DUITE_OLDEST;
+}
+
+static unsigned nobody(void *state, unsigned attempt)
+{
+    (void)state;
+    (void)attempt;
+    return DUITE_NO_QUEUE;
+}
+
+static int never(void *state, const duite_ready *task)
+{
+    (void)state;
+    (void)task;
+    return 0;
+}
+
+/* Four forks that say more and more of themselves. */
+static int build_told(duite *rt, void *context)
+{
+    const duite_object *a = context;
+    const int here = 0;
+
+    duite_fork(rt, &NOTE, &here, 1, a);
+    duite_fork_with(rt, NULL, &NOTE, &here, 1, a);
+    duite_fork_with(rt, &(duite_how){.priority = -7, .cost = -1}, &NOTE, &here, 1, a);
+    duite_fork_with(rt, &(duite_how){.at = &here, .priority = INT32_MAX, .cost = 2.5}, &NOTE, &here,
+                    1, a);
+    return 0;
+}
+
+static void check_told(const duite_ready *ready)
+{
+    static const int32_t PRIORITY[] = {0, 0, -7, INT32_MAX};
+    static const double COST[] = {0, 0, 0, 2.5};
+
+    for (int i = 0; i < 4; i++) {
+        ck_assert_str_eq(ready[i].kernel, "note");
+        ck_assert_int_eq(ready[i].priority, PRIORITY[i]);
+        ck_assert_double_eq(ready[i].cost, COST[i]);
+    }
+}
+
+START_TEST(what_is_said)
+{
+    static const duite_scheduler LISTENING = {"listening", "for tests", 0,      NULL,
+                                              listen,      in_turn,     nobody, never};
+    static const duite_kernel *const KERNELS[] = {&NOTE, NULL};
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = NULL;
+    int32_t value;
+
+    misuse_mpi();
+    options.kernels = KERNELS;
+    options.scheduler = &LISTENING;
+    options.threads = 1;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+    duite_object a = misuse_new(rt, 1);
+    duite_graph graph;
+
+    n_ran = 0;
+    n_told = 0;
+    ck_assert_int_eq(build_told(rt, &a), 0);
+    ck_assert_int_eq(duite_get(rt, a, &value), DUITE_OK);
+    ck_assert_uint_eq(n_told, 5);
+    check_told(told);
+    ck_assert_str_eq(told[4].kernel, "duite_get");
+    ck_assert_int_eq(told[4].priority, INT32_MAX);
+    ck_assert_double_eq(told[4].cost, 0);
+    n_told = 0;
+    ck_assert_int_eq(duite_graph_new(rt, build_told, &a, &graph), DUITE_OK);
+    ck_assert_int_eq(duite_replay(rt, graph, 1), DUITE_OK);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    ck_assert_uint_eq(n_told, 5);
+    ck_assert_str_eq(told[0].kernel, "duite_replay");
+    check_told(told + 1);
+    duite_free(rt, a);
+    duite_graph_free(rt, graph);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}
+END_TEST
+
 START_TEST(chains_at_home)
 {
     const struct duite_scheduler *s = duite_scheduler_find("static");
@@ -195,6 +340,8 @@ int main(void)
     tcase_add_test(test, fixed_workers);
     tcase_add_test(test, same_results);
     tcase_add_test(test, decisions);
+    tcase_add_test(test, by_priority);
+    tcase_add_test(test, what_is_said);
     tcase_add_test(test, chains_at_home);
     suite_add_tcase(suite, test);
     return unit_run(suite);

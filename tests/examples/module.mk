@@ -1,8 +1,11 @@
-check_PROGRAMS += tests/examples/dot tests/examples/stencil tests/examples/cg
+# The programs that docs/runtime.md explains, each built and run as a user would.
+check_PROGRAMS += tests/examples/dot tests/examples/stencil tests/examples/cholesky tests/examples/cg
 tests_examples_dot_SOURCES = tests/examples/dot.c
 tests_examples_dot_LDADD = libduite.la
 tests_examples_stencil_SOURCES = tests/examples/stencil.c
 tests_examples_stencil_LDADD = libduite.la
+tests_examples_cholesky_SOURCES = tests/examples/cholesky.c
+tests_examples_cholesky_LDADD = libduite.la -lm
 tests_examples_cg_SOURCES = tests/examples/cg.c
 tests_examples_cg_LDADD = libduite.la -lm
 dist_check_SCRIPTS += tests/examples/test_examples.sh

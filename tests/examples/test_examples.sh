@@ -1,9 +1,22 @@
 #!/bin/sh
-# Programs as a user writes them: alone, and on 3 ranks. Each checks its own answer.
+# Programs as a user writes them, which check their own answers: alone under every scheduler, on 2 and 3 ranks, and in
+# checking mode.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-for example in dot stencil cg; do
-    ok "$example alone" limited tests/examples/$example
-    ok "$example on 3 ranks" ranks 3 tests/examples/$example
+checking() { (DUITE_CHECK=accesses; export DUITE_CHECK; "$@"); }
+
+for example in dot stencil cholesky cg; do
+    program=tests/examples/$example
+    for scheduler in steal fifo lifo static shuffle; do
+        ok "$example under $scheduler" limited $program $scheduler
+    done
+    ok "$example on 2 ranks" ranks 2 $program
+    ok "$example on 3 ranks, shuffled" ranks 3 $program shuffle
+    ok "$example in checking mode" checking limited $program
+    ok "$example in checking mode on 2 ranks" checking ranks 2 $program
 done
+ok "a stencil with other neighbours" limited tests/examples/stencil steal -4 0 2 3
+ok "on 3 ranks, too" ranks 3 tests/examples/stencil steal -4 0 2 3
+exits 1 "a stencil that names a neighbour twice fails" limited tests/examples/stencil steal 1 1
+exits 1 "an example fails under a scheduler that does not exist" limited tests/examples/dot none

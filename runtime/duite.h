@@ -195,6 +195,7 @@ typedef struct duite_options {
                   environment */
 } duite_options;
 
+/* The defaults, as the fields say; reads the environment. Local. */
 duite_options duite_options_default(void);
 
 /* The built-in policies by name; NULL if there is none of that name. Names: ended by NULL. Local.

@@ -3,6 +3,7 @@ lib_LTLIBRARIES += libduite.la
 noinst_LTLIBRARIES += libduite_core.la
 include_HEADERS = runtime/duite.h runtime/duite_policy.h
 pkgconfig_DATA = runtime/duite.pc
+dist_man_MANS += runtime/duite.3
 libduite_la_SOURCES = $(include_HEADERS)
 libduite_la_LIBADD = $(METIS_LIBS) $(HWLOC_LIBS) $(XXHASH_LIBS) $(MPI_LIBS) -lm
 libduite_la_LDFLAGS = $(AM_LDFLAGS) -version-info 0:0:0 -export-symbols-regex '^duite_'

@@ -24,14 +24,19 @@ EOF
     ${CC:-cc} ${CFLAGS:-} -o "$scratch/three" "$scratch/three.c" $(pc --cflags --libs)
 }
 
+compile_example() {
+    # shellcheck disable=SC2046,SC2086
+    ${CC:-cc} ${CFLAGS:-} -o "$scratch/dot" "$srcdir/tests/examples/dot.c" $(pc --cflags --libs)
+}
+
 exports_ours_only() {
     nm -D --defined-only "$prefix/lib/libduite.so" | awk '{ print $3 }' > "$scratch/symbols"
     grep -q '^duite_fork$' "$scratch/symbols" && ! grep -v '^duite_' "$scratch/symbols"
 }
 
 complete() { # everything that duite.h and duite_policy.h declare is there
-    sed -n '/^static/d; s/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p' "$prefix/include/duite.h" "$prefix/include/duite_policy.h" |
-        grep -v -e '_body$' | sort -u > "$scratch/declared"
+    sed -n '/^static/d; /^typedef/d; s/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p' "$prefix/include/duite.h" "$prefix/include/duite_policy.h" |
+        sort -u > "$scratch/declared"
     sort -u "$scratch/symbols" | comm -23 "$scratch/declared" - > "$scratch/absent"
     cat "$scratch/absent"
     test -s "$scratch/declared" && test ! -s "$scratch/absent"
@@ -48,6 +53,9 @@ ok "make install" install_duite "$prefix"
 ok "pkg-config knows duite and where mpi.h is" pc --exists
 ok "a program compiles with pkg-config's flags" compile
 ok "and runs" limited "$scratch/three"
+ok "an example compiles with them" compile_example
+ok "and runs on 2 ranks" ranks 2 "$scratch/dot"
+ok "the man page is there" test -s "$prefix/share/man/man3/duite.3"
 ok "libduite.so exports duite_* only" exports_ours_only
 ok "libduite.so has everything that its headers declare" complete
 ok "make install DESTDIR" install_staged

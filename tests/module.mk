@@ -44,8 +44,8 @@ check-programs: $(check_PROGRAMS)
 .PHONY: check-long check-threads check-programs
 
 EXTRA_DIST += tests/arrows.txt tests/support/tap.sh tests/support/run.sh tests/support/count.sh tests/support/lsan.supp tests/support/tsan.supp
-dist_check_SCRIPTS += tests/support/test_tap.sh tests/arrows.sh tests/install.sh tests/readme.sh
-TESTS += tests/support/test_tap.sh tests/arrows.sh tests/install.sh tests/readme.sh
+dist_check_SCRIPTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh
+TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh
 
 if HAVE_CHECK
 check_LTLIBRARIES += tests/support/libunit.la

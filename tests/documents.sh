@@ -1,0 +1,128 @@
+#!/bin/sh
+# docs/runtime.md and the library's man page tell the truth: what the one quotes is in the programs that make check runs, the
+# other names everything that the headers declare, and every public function has a comment before it.
+. "${srcdir:-.}/tests/support/tap.sh"
+
+document=$srcdir/docs/runtime.md
+page=$srcdir/runtime/duite.3
+headers="$srcdir/runtime/duite.h $srcdir/runtime/duite_policy.h"
+
+# Each block of C after a line <!-- FILE --> is a run of whole lines of this file; there is no other C.
+quotes() {
+    awk -v home="$srcdir/" '
+        function read(file,    line, n) {
+            if (file in lines) return lines[file]
+            while ((getline line < (home file)) > 0) text[file, ++n] = line
+            return lines[file] = n + 0
+        }
+        function found(    n, i, k) {
+            n = read(file)
+            for (i = 0; i + size <= n; i++) {
+                for (k = 1; k <= size && text[file, i + k] == quoted[k]; k++) continue
+                if (k > size) return 1
+            }
+            return 0
+        }
+        !inside && /^<!-- .* -->$/ { file = $2; next }
+        !inside && /^```c$/ { inside = 1; size = 0; begin = NR; next }
+        inside && /^```$/ {
+            inside = 0
+            blocks++
+            if (file == "" || !size || !found()) { print "line " begin ": not in " (file == "" ? "any file" : file); bad = 1 }
+            file = ""
+            next
+        }
+        inside { quoted[++size] = $0 }
+        !inside && !/^$/ { file = "" }
+        END { exit bad || inside || !blocks }' "$1"
+}
+
+# That quotes() sees one line too many, one changed, and one left out.
+sees() {
+    sed "$1" "$document" > "$scratch/changed.md" && ! cmp -s "$document" "$scratch/changed.md" && ! quotes "$scratch/changed.md"
+}
+
+examples() { # every program of tests/examples is quoted, and runs in make check
+    for source in "$srcdir"/tests/examples/*.c; do
+        name=$(basename "$source" .c)
+        grep -qx "<!-- tests/examples/$name.c -->" "$document" || { echo "$name.c is not quoted" && return 1; }
+        grep -q "^for example in .*\<$name\>" "$srcdir/tests/examples/test_examples.sh" || { echo "$name does not run" && return 1; }
+    done
+}
+
+short() { # a reader sees it on two screens
+    for source in "$srcdir"/tests/examples/*.c; do
+        test "$(wc -l < "$source")" -le 150 || { echo "$source is too long" && return 1; }
+    done
+}
+
+# The functions that the headers declare, and what programs write besides: macros, codes, modes, types.
+functions() {
+    # shellcheck disable=SC2086 # a list of files
+    sed -n '/^typedef/d; s/^[a-z].*[ *]\(duite_[a-z_0-9]*\)(.*/\1/p' $headers | sort -u
+}
+names() {
+    # shellcheck disable=SC2086
+    { functions
+      sed -n 's/^#define \([A-Za-z_]*\)(.*/\1/p; s/^#define \(DUITE_NO_[A-Z]*\) .*/\1/p' $headers
+      grep -o '\<DUITE_[A-Z0-9_]*\>' "$srcdir/runtime/duite.h"
+    } | grep -v -x DUITE_H | sort -u
+}
+
+mentions() { # FILE: every line of stdin occurs in it as a word
+    tr -c 'A-Za-z0-9_' '\n' < "$1" | sort -u > "$scratch/words"
+    sort -u > "$scratch/wanted"
+    test -s "$scratch/wanted" && comm -23 "$scratch/wanted" "$scratch/words" > "$scratch/absent"
+    cat "$scratch/absent"
+    test ! -s "$scratch/absent"
+}
+
+page_is_whole() { names | mentions "$page"; }
+
+page_invents_nothing() { # what it calls duite_... or DUITE_... is in the headers
+    # shellcheck disable=SC2086
+    cat $headers "$srcdir/runtime/duite.c" | tr -c 'A-Za-z0-9_' '\n' | sort -u > "$scratch/known"
+    grep -o '\<\(duite\|DUITE\)_[A-Za-z0-9_]*\>' "$page" "$document" | sed 's/.*://' | sort -u > "$scratch/said"
+    test -s "$scratch/said" && comm -23 "$scratch/said" "$scratch/known" > "$scratch/invented"
+    cat "$scratch/invented"
+    test ! -s "$scratch/invented"
+}
+
+# Every function stands in a paragraph (lines without a blank one between) that begins with a comment.
+commented() {
+    for header in $headers; do
+        awk '
+            /^$/ { comment = 0; fresh = 1; next }
+            fresh && /^\/\*/ { comment = 1 }
+            { fresh = 0 }
+            /^(static inline )?[a-z].*[ *]duite_[a-z_0-9]*\(/ && !/^typedef/ && !comment { print FILENAME ":" FNR ": " $0; bad = 1 }
+            END { exit bad }' "$header" || return 1
+    done
+}
+
+listed() { # the fields of options and counters, the modes, schedulers and mappings are in the document
+    {
+        sed -n '/^typedef struct duite_options/,/^}/p; /^typedef struct duite_counters/,/^}/p' "$srcdir/runtime/duite.h" |
+            tr '\n' ' ' | sed 's|/\*|\n&|g; s|\*/|&\n|g' | grep -v '^/\*' | tr ';' '\n' | sed -n 's/.*[ *]\([a-z_]*\) *$/\1/p' | grep -v '^duite_'
+        grep -oh '\.name = "[a-z]*"' "$srcdir"/runtime/sched/*.c "$srcdir"/runtime/map/*.c | cut -d'"' -f2
+        grep -o '^ *DUITE_[RWC]*W*P*\>' "$srcdir/runtime/duite.h" | tr -d ' ' | grep -v '_$'
+    } | mentions "$document"
+}
+
+formats() { # without a word from the formatter
+    command -v groff > /dev/null || return 0
+    groff -man -Tutf8 -ww -z "$page" 2> "$scratch/warnings" && cat "$scratch/warnings" && test ! -s "$scratch/warnings"
+}
+
+plan_later
+ok "docs/runtime.md quotes the examples as they are" quotes "$document"
+ok "a quotation that differs is seen" sees 's/ += x\[i\] \* y\[i\];/ += x[i] - y[i];/'
+ok "a line left out is seen" sees '/DUITE_FORK(rt, &FACTOR, NULL/d'
+ok "C that nobody compiles is seen" sees '0,/^<!-- .* -->$/d'
+ok "docs/runtime.md quotes every example, and each runs" examples
+ok "examples are short" short
+ok "docs/runtime.md lists options, counters, modes and policies" listed
+ok "duite.3 names every function, macro, code and mode" page_is_whole
+ok "no document names what is not there" page_invents_nothing
+ok "duite.3 formats without warnings" formats
+ok "every public function has a comment before it" commented

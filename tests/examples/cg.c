@@ -111,10 +111,11 @@ static int run(duite *rt)
     duite_graph_new(rt, iteration, &system, &graph);
     duite_replay_while(rt, graph, system.s[MORE], LIMIT);
     duite_graph_rounds(rt, graph, &rounds);
+    if (duite_wait(rt)) /* tells what is wrong so far */
+        fprintf(stderr, "cg: %s\n", duite_message());
     duite_graph_free(rt, graph);
     for (int b = 0; b < BLOCKS; b++) {
-        if (duite_get(rt, system.v[X][b], x[b]))
-            fprintf(stderr, "cg: %s\n", duite_message());
+        duite_get(rt, system.v[X][b], x[b]);
         for (int k = 0; k < VECTORS; k++)
             duite_free(rt, system.v[k][b]);
     }

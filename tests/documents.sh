@@ -65,8 +65,8 @@ names() {
     # shellcheck disable=SC2086
     { functions
       sed -n 's/^#define \([A-Za-z_]*\)(.*/\1/p; s/^#define \(DUITE_NO_[A-Z]*\) .*/\1/p' $headers
-      grep -o '\<DUITE_[A-Z0-9_]*\>' "$srcdir/runtime/duite.h"
-    } | grep -v -x DUITE_H | sort -u
+      grep -oh '\<DUITE_[A-Z0-9_]*\>' $headers
+    } | grep -v -x -e DUITE_H -e DUITE_POLICY_H | sort -u
 }
 
 mentions() { # FILE: every line of stdin occurs in it as a word

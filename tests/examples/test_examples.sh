@@ -8,7 +8,7 @@ checking() { (DUITE_CHECK=accesses; export DUITE_CHECK; "$@"); }
 
 for example in dot stencil cholesky cg; do
     program=tests/examples/$example
-    for scheduler in steal fifo lifo static shuffle; do
+    for scheduler in steal fifo lifo priority static shuffle; do
         ok "$example under $scheduler" limited $program $scheduler
     done
     ok "$example on 2 ranks" ranks 2 $program

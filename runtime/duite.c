@@ -195,6 +195,7 @@ static int start_graph(duite *rt, const duite_options *options)
     if (!code)
         code = started;
     rt->graph.resume = options->window - options->window / 4;
+    rt->graph.rename_most = options->rename_bytes;
     if (!code && options->check)
         code = check_start(&rt->check);
     if (!code && n > 1)

@@ -191,6 +191,7 @@ typedef struct duite_options {
     int bind;            /* bind workers to cores where the rank owns enough. Default 1 */
     size_t window;       /* most tasks of this rank that are unfinished when a fork returns: see
                             duite_fork.       Default 0: any number */
+    size_t rename_bytes; /* how many bytes of this rank renaming may take, see below. Default 0 */
     int check; /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
                   environment */
 } duite_options;
@@ -204,6 +205,15 @@ const struct duite_scheduler *duite_scheduler_find(const char *name);
 const struct duite_mapping *duite_mapping_find(const char *name);
 const char *const *duite_scheduler_names(void);
 const char *const *duite_mapping_names(void);
+
+/* Renaming: a task that overwrites an object (w) which earlier tasks still read, write or send is
+ * given fresh memory and does not wait for them, as long as all such memory of a rank, headers
+ * included, stays within options.rename_bytes; at the limit a w waits. It counts from the fork
+ * until the last of those tasks is over. Results are the same. This pays where a program overwrites
+ * one object again and again for tasks that have nothing else in common (a temporary, a rim that is
+ * being sent). It frees nothing where the writer needs the results of the readers anyway, as in
+ * stencils over two buffers and most iterations, and there costs a task some allocations and leaves
+ * the caches: so a program has to ask for it. */
 
 /* Checking mode: each body works on private copies of its parameters, between guard pages that are
  * taken away afterwards, and runs twice if it has no side effects. The task fails with
@@ -413,6 +423,7 @@ typedef struct duite_counters {
     uint64_t bytes;    /* sent between ranks, headers included */
     double busy;       /* seconds in bodies, over all workers */
     double idle;       /* seconds without a task, over all workers, up to each one's last task */
+    uint64_t renamed;  /* tasks' parameters (w) that got fresh memory instead of waiting */
     uint64_t graphs_recorded; /* calls of build functions; the same on every rank, counted once */
 } duite_counters;
 

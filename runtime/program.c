@@ -410,9 +410,15 @@ int duite_count_all(duite *rt, duite_counters *counters)
     work_count(rt->pool, &own);
     if (rt->comm)
         comm_count(rt->comm, &own.messages, &own.bytes);
-    double sums[] = {
-        (double)own.tasks,    (double)own.placed, (double)own.stolen, (double)own.chained,
-        (double)own.messages, (double)own.bytes,  own.busy,           own.idle};
+    double sums[] = {(double)own.tasks,
+                     (double)own.placed,
+                     (double)own.stolen,
+                     (double)own.chained,
+                     (double)own.messages,
+                     (double)own.bytes,
+                     own.busy,
+                     own.idle,
+                     (double)atomic_load_explicit(&rt->graph.renamed, memory_order_relaxed)};
     if (rt->comm)
         code = comm_sum(rt->comm, sums, sizeof sums / sizeof sums[0], between, rt->pool);
     work_idle_ends(rt->pool);
@@ -426,6 +432,7 @@ int duite_count_all(duite *rt, duite_counters *counters)
                                  .bytes = (uint64_t)sums[5],
                                  .busy = sums[6],
                                  .idle = sums[7],
+                                 .renamed = (uint64_t)sums[8],
                                  .graphs_recorded = rt->graphs_recorded};
     return code;
 }

@@ -17,6 +17,7 @@ struct data_version *data_version_new(void)
     version->heir = NULL;
     version->packet = NULL;
     version->failure = NULL;
+    version->renamed = 0;
     return version;
 }
 
@@ -43,6 +44,10 @@ struct data_waiter *data_version_release(struct data_version *version)
         return NULL;
     if (version->heir)
         return version->heir;
+    if (version->renamed)
+        atomic_fetch_sub_explicit(version->rename_bytes,
+                                  version->renamed * sizeof(struct data_packet),
+                                  memory_order_relaxed);
     data_packet_free(version->packet);
     data_version_free(version);
     return NULL;

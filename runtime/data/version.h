@@ -30,6 +30,8 @@ struct data_version {
     struct data_packet
         *packet; /* NULL: no bytes yet; they are undefined, or the version is poisoned */
     const struct data_failure *failure; /* poison, or NULL; set before it is produced */
+    size_t renamed; /* cache lines of the packet that took its place, or 0: counted until it dies */
+    _Atomic uint64_t *rename_bytes; /* there, in bytes; set like the heir */
 };
 
 /* A version held by its producer and by its object. NULL without memory. */
@@ -46,6 +48,12 @@ struct data_waiter *data_version_produced(struct data_version *version);
 static inline void data_version_hold(struct data_version *version)
 {
     atomic_fetch_add_explicit(&version->holds, 1, memory_order_relaxed);
+}
+
+/* Whether nobody but the object that has it holds the version: it stays so. */
+static inline bool data_version_is_alone(const struct data_version *version)
+{
+    return atomic_load_explicit(&version->holds, memory_order_relaxed) == 1;
 }
 
 /* Releases a hold. Returns the heir if this was the last one, and NULL otherwise; frees a version

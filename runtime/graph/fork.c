@@ -146,6 +146,8 @@ static int use(struct graph *graph, void *worker, int at, const duite_kernel *ke
     }
     object->number++;
     data_object_moved(object, at);
+    if (mode == DUITE_W && task)
+        version = graph_rename(graph, worker, object);
     if (task)
         return graph_overwrite(graph, task, i, object, version, done);
     graph_forget(graph, worker, object);

@@ -77,6 +77,8 @@ int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *
     graph->n_ranks = n_ranks;
     atomic_init(&graph->unfinished, 0);
     atomic_init(&graph->given_up, 0);
+    atomic_init(&graph->rename_bytes, 0);
+    atomic_init(&graph->renamed, 0);
     pthread_mutex_init(&graph->lock, NULL); /* cannot fail with default attributes */
     int code = data_table_start(&graph->table, n_ranks);
     if (!code)

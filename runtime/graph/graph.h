@@ -110,9 +110,12 @@ struct graph {
     uint64_t fingerprint; /* of the forks since the last wait */
     int broken;           /* memory ran out in the middle of a fork: the code of every later call */
     _Atomic int given_up; /* bodies do not run any more */
-    _Atomic uint64_t unfinished; /* tasks of this rank */
-    uint64_t resume;             /* and as few of them let a throttled main program go on */
-    pthread_mutex_t lock;        /* failures */
+    _Atomic uint64_t unfinished;   /* tasks of this rank */
+    uint64_t resume;               /* and as few of them let a throttled main program go on */
+    uint64_t rename_most;          /* limit of `rename_bytes` */
+    _Atomic uint64_t rename_bytes; /* of packets that exist since a w did not wait */
+    _Atomic uint64_t renamed;      /* such w */
+    pthread_mutex_t lock;          /* failures */
     struct graph_failure *failures;
     const struct data_failure *first_failure; /* in fork order, since the last wait */
 };

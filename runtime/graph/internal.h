@@ -28,6 +28,10 @@ void graph_read(struct graph_task *task, size_t i, struct data_version *version,
 int graph_overwrite(struct graph *graph, struct graph_task *task, size_t i,
                     struct data_object *object, struct data_version *version, uint32_t *done);
 
+/* A w is about to overwrite the current version on this rank: returns the version to be
+ * overwritten, or NULL if there are to be fresh bytes. */
+struct data_version *graph_rename(struct graph *graph, void *worker, struct data_object *object);
+
 /* This rank's copy of the current version, which is to be here or on its way (graph_fetch); zeros
  * if it was never written. NULL: out of memory, broken. */
 struct data_version *graph_local(struct graph *graph, struct data_object *object);

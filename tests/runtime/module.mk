@@ -19,9 +19,11 @@ dist_check_SCRIPTS += tests/runtime/test_exit.sh
 TESTS += tests/runtime/test_exit.sh
 
 if HAVE_CHECK
-AHEAD_TESTS = tests/runtime/test_window
+AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_rename
 check_PROGRAMS += $(AHEAD_TESTS)
 TESTS += $(AHEAD_TESTS)
+tests_runtime_test_rename_SOURCES = tests/runtime/test_rename.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_test_rename_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
 RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched tests/runtime/test_check \

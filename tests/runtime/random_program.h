@@ -125,7 +125,7 @@ struct prog_setup {
     const char *scheduler, *mapping;
     uint64_t seed;
     double spin;
-    size_t window;
+    size_t window, rename;
     int verbose;
 };
 

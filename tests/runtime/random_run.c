@@ -373,6 +373,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     options.spin_seconds = setup->spin;
     options.bind = 0;
     options.window = setup->window;
+    options.rename_bytes = setup->rename;
     const int code = duite_start(&run->rt, &options);
 
     expect(run, "start", code, DUITE_OK);

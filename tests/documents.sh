@@ -100,13 +100,13 @@ commented() {
     done
 }
 
-listed() { # the fields of options and counters, the modes, schedulers and mappings are in the document
+listed() { # FILE: the fields of options and counters, the modes, schedulers and mappings are in it
     {
         sed -n '/^typedef struct duite_options/,/^}/p; /^typedef struct duite_counters/,/^}/p' "$srcdir/runtime/duite.h" |
             tr '\n' ' ' | sed 's|/\*|\n&|g; s|\*/|&\n|g' | grep -v '^/\*' | tr ';' '\n' | sed -n 's/.*[ *]\([a-z_]*\) *$/\1/p' | grep -v '^duite_'
         grep -oh '\.name = "[a-z]*"' "$srcdir"/runtime/sched/*.c "$srcdir"/runtime/map/*.c | cut -d'"' -f2
         grep -o '^ *DUITE_[RWC]*W*P*\>' "$srcdir/runtime/duite.h" | tr -d ' ' | grep -v '_$'
-    } | mentions "$document"
+    } | mentions "$1"
 }
 
 formats() { # without a word from the formatter
@@ -121,7 +121,8 @@ ok "a line left out is seen" sees '/DUITE_FORK(rt, &FACTOR, NULL/d'
 ok "C that nobody compiles is seen" sees '0,/^<!-- .* -->$/d'
 ok "docs/runtime.md quotes every example, and each runs" examples
 ok "examples are short" short
-ok "docs/runtime.md lists options, counters, modes and policies" listed
+ok "docs/runtime.md lists options, counters, modes and policies" listed "$document"
+ok "duite.3 lists them, too" listed "$page"
 ok "duite.3 names every function, macro, code and mode" page_is_whole
 ok "no document names what is not there" page_invents_nothing
 ok "duite.3 formats without warnings" formats

@@ -123,8 +123,41 @@ enum difference {
     ANOTHER_SIZE,
     ANOTHER_MAXIMUM,
     ANOTHER_COUNT,
-    ONE_SET_MORE
+    ONE_SET_MORE,
+    ONE_FREE_MORE,
+    ANOTHER_HINT,
+    ANOTHER_LEADER,
+    ANOTHER_BUILD,
+    ANOTHER_BINDING,
+    ONE_REPLAY_MORE,
+    ANOTHER_ROUND,
+    ANOTHER_FLAG,
+    ONE_GRAPH_LESS,
+    N_DIFFERENCES
 };
+
+static int build(duite *rt, void *context)
+{
+    return duite_fork(rt, &ADD, NULL, 1, context);
+}
+
+static void differ_by_graphs(duite *rt, enum difference what, duite_object a, duite_object b)
+{
+    const int odd = rank == ranks - 1;
+    duite_graph graph;
+
+    duite_graph_new(rt, build, what == ANOTHER_BUILD && odd ? &b : &a, &graph);
+    if (what == ANOTHER_BINDING)
+        duite_graph_bind(rt, graph, a, odd ? b : a);
+    if (what == ONE_REPLAY_MORE && odd)
+        duite_replay(rt, graph, 0);
+    if (what == ANOTHER_ROUND)
+        duite_replay(rt, graph, odd ? 2 : 1);
+    if (what == ANOTHER_FLAG)
+        duite_replay_while(rt, graph, odd ? a : b, 1);
+    if (what == ONE_GRAPH_LESS && odd)
+        duite_graph_free(rt, graph);
+}
 
 static void differ(duite *rt, enum difference what, duite_object a, duite_object b)
 {
@@ -149,6 +182,14 @@ static void differ(duite *rt, enum difference what, duite_object a, duite_object
         duite_set_sized(rt, made, NULL, odd ? 3 : 4);
     if (what == ONE_SET_MORE && odd)
         duite_set(rt, a, NULL);
+    if (what == ONE_FREE_MORE && odd)
+        duite_free(rt, a);
+    if (what == ANOTHER_HINT && !duite_new(rt, DUITE_I32, 1, &made))
+        duite_hint(rt, made, odd ? 1 : 2, 0, NULL, NULL);
+    if (what == ANOTHER_LEADER && !duite_new(rt, DUITE_I32, 1, &made))
+        duite_follow(rt, made, odd ? a : b);
+    if (what >= ANOTHER_BUILD)
+        differ_by_graphs(rt, what, a, b);
 }
 
 /* Some tasks that agree, one thing that does not: the wait says so everywhere, and the runtime can
@@ -178,9 +219,11 @@ static void different_forks(enum difference what, const char *name, int at_stop)
 int main(void)
 {
     static const char *const NAMES[] = {
-        "a fork more",     "another kernel",          "another object",
-        "another rank",    "an object more",          "another size",
-        "another maximum", "another count of values", "a set more"};
+        "a fork more",    "another kernel",  "another object",  "another rank",
+        "an object more", "another size",    "another maximum", "another count of values",
+        "a set more",     "a free more",     "another hint",    "another leader",
+        "another build",  "another binding", "a replay more",   "another round",
+        "another flag",   "a graph less"};
 
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -188,7 +231,7 @@ int main(void)
     different_kernels();
     different_laws();
     different_options();
-    for (int what = ONE_MORE; what <= ONE_SET_MORE; what++)
+    for (int what = ONE_MORE; what < N_DIFFERENCES; what++)
         for (int at_stop = 0; at_stop < 2; at_stop++)
             different_forks((enum difference)what, NAMES[what], at_stop);
     return tap_done();

@@ -41,17 +41,44 @@ static void refused(int code, int expected)
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
 }
 
+static int build_nothing(duite *runtime, void *context)
+{
+    (void)runtime;
+    (void)context;
+    return 0;
+}
+
+static void graphs_without_runtime(void)
+{
+    const duite_graph graph = DUITE_NO_GRAPH;
+    duite_graph made;
+    uint64_t rounds;
+
+    ck_assert_int_eq(duite_graph_new(NULL, build_nothing, NULL, &made), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_replay(NULL, graph, 1), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_replay_while(NULL, graph, a, 1), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_graph_rounds(NULL, graph, &rounds), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_graph_args(NULL, graph, 0, NULL), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_graph_bind(NULL, graph, a, b), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_graph_free(NULL, graph), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_graph_print(NULL, graph, stdout), DUITE_E_ARGUMENT);
+}
+
 START_TEST(no_runtime)
 {
     duite *none = NULL;
     duite_object object;
     duite_counters counters;
+    size_t count;
     int32_t value = 0;
 
     ck_assert_int_eq(duite_start(NULL, &(duite_options){0}), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_stop(NULL), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_stop(&none), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_new(NULL, DUITE_I32, 1, &object), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_new_sized(NULL, DUITE_I32, 1, 2, &object), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_set_sized(NULL, a, &value, 1), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_get_count(NULL, a, &count), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_free(NULL, a), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_set(NULL, a, &value), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_get(NULL, a, &value), DUITE_E_ARGUMENT);
@@ -64,7 +91,25 @@ START_TEST(no_runtime)
     ck_assert_int_eq(duite_fork_with(NULL, NULL, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_wait(NULL), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_count_all(NULL, &counters), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_rank(NULL), -1);
+    ck_assert_int_eq(duite_ranks(NULL), -1);
+    ck_assert_uint_eq(duite_threads(NULL), 0);
+    graphs_without_runtime();
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+}
+END_TEST
+
+/* What stop leaves behind is no runtime. */
+START_TEST(after_stop)
+{
+    duite_free(rt, a);
+    duite_free(rt, b);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+    ck_assert_int_eq(duite_fork(rt, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
+    ck_assert_ptr_nonnull(strstr(duite_message(), "no runtime"));
+    ck_assert_int_eq(duite_get(rt, a, &(int32_t){0}), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_E_ARGUMENT);
+    begin();
 }
 END_TEST
 
@@ -157,10 +202,18 @@ END_TEST
 
 START_TEST(words)
 {
+    static const int CODES[] = {
+        DUITE_OK,        DUITE_E_ARGUMENT, DUITE_E_MEMORY,    DUITE_E_OBJECT,
+        DUITE_E_KERNEL,  DUITE_E_ACCESS,   DUITE_E_MPI,       DUITE_E_DIFFERENT,
+        DUITE_E_STATE,   DUITE_E_SYSTEM,   DUITE_E_NOT_FREED, DUITE_E_LAW,
+        DUITE_E_BINDING, DUITE_E_SIZE,     DUITE_E_CHECK,     1};
+
     ck_assert_ptr_nonnull(duite_message());
-    for (int code = DUITE_E_SYSTEM; code <= 0; code++)
-        for (int other = DUITE_E_SYSTEM; other < code; other++)
-            ck_assert_str_ne(duite_code_text(code), duite_code_text(other));
+    for (size_t i = 0; i < sizeof CODES / sizeof *CODES; i++) {
+        ck_assert_str_ne(duite_code_text(CODES[i]), duite_code_text(-1000));
+        for (size_t k = 0; k < i; k++)
+            ck_assert_str_ne(duite_code_text(CODES[i]), duite_code_text(CODES[k]));
+    }
     ck_assert_str_eq(duite_code_text(12), "error of the program");
     ck_assert_ptr_nonnull(duite_code_text(-1000));
     ck_assert_ptr_null(duite_scheduler_find("no such"));
@@ -177,6 +230,7 @@ int main(void)
 
     tcase_add_checked_fixture(cases, begin, end);
     tcase_add_test(cases, no_runtime);
+    tcase_add_test(cases, after_stop);
     tcase_add_test(cases, null_pointers);
     tcase_add_test(cases, types_and_sizes);
     tcase_add_test(cases, ranks_outside);

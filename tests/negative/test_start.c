@@ -4,6 +4,8 @@
 #include "tests/negative/misuse.h"
 #include "tests/support/unit.h"
 
+#include <duite_policy.h>
+
 #include <stdint.h>
 #include <string.h>
 
@@ -78,6 +80,40 @@ START_TEST(malformed_options)
     options.threads = 1000000;
     ck_assert_int_ne(duite_start(&rt, &options), DUITE_OK);
     ck_assert_ptr_null(rt);
+}
+END_TEST
+
+static void refuses_options(const duite_options *options, const char *sentence)
+{
+    duite *rt = (duite *)&rt;
+
+    ck_assert_int_eq(duite_start(&rt, options), DUITE_E_ARGUMENT);
+    ck_assert_ptr_null(rt);
+    ck_assert_msg(strstr(duite_message(), sentence) != NULL, "'%s' does not say '%s'",
+                  duite_message(), sentence);
+}
+
+START_TEST(malformed_policies)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite_scheduler scheduler = *options.scheduler;
+    duite_mapping mapping = *options.mapping;
+
+    misuse_mpi();
+    options.scheduler = NULL;
+    refuses_options(&options, "scheduler");
+    options.scheduler = &scheduler;
+    scheduler.victim = NULL;
+    refuses_options(&options, "scheduler");
+    scheduler = *duite_scheduler_find("fifo");
+    scheduler.name = NULL;
+    refuses_options(&options, "scheduler");
+    options = misuse_options(MPI_COMM_WORLD);
+    options.mapping = NULL;
+    refuses_options(&options, "mapping");
+    options.mapping = &mapping;
+    mapping.map = NULL;
+    refuses_options(&options, "mapping");
 }
 END_TEST
 
@@ -172,6 +208,23 @@ START_TEST(mpi_is_over)
 }
 END_TEST
 
+/* Workers call MPI, whichever thread they are. */
+START_TEST(mpi_for_one_thread)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = (duite *)&options;
+    int level;
+
+    MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &level);
+    if (level < MPI_THREAD_SERIALIZED) {
+        ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_MPI);
+        ck_assert_ptr_null(rt);
+        ck_assert_ptr_nonnull(strstr(duite_message(), "MPI_Init_thread"));
+    }
+    MPI_Finalize();
+}
+END_TEST
+
 START_TEST(not_freed)
 {
     duite *rt = misuse_start(MPI_COMM_WORLD, 2);
@@ -195,11 +248,13 @@ int main(void)
     tcase_add_test(cases, malformed_kernels);
     tcase_add_test(cases, kernel_twice);
     tcase_add_test(cases, malformed_options);
+    tcase_add_test(cases, malformed_policies);
     tcase_add_test(cases, fifty_lives);
     tcase_add_test(cases, threads_by_default);
     tcase_add_test(cases, every_policy);
     tcase_add_test(cases, mpi_of_our_own);
     tcase_add_test(cases, mpi_is_over);
+    tcase_add_test(cases, mpi_for_one_thread);
     tcase_add_test(cases, not_freed);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -1,6 +1,7 @@
 /* What is refused of recorded graphs, each with its error; nothing has run then. */
 #include "tests/runtime/graphs_fixture.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -172,6 +173,8 @@ START_TEST(no_such_graph)
     ck_assert_int_eq(duite_graph_rounds(f.rt, old, &rounds), DUITE_E_OBJECT);
     ck_assert_int_eq(duite_graph_free(f.rt, old), DUITE_E_OBJECT);
     ck_assert_int_eq(duite_replay(f.rt, DUITE_NO_GRAPH, 1), DUITE_E_OBJECT);
+    ck_assert_ptr_nonnull(strstr(duite_message(), "never made"));
+    ck_assert_int_eq(duite_replay(f.rt, (duite_graph){77, 1}, 1), DUITE_E_OBJECT);
     ck_assert_int_eq(duite_wait(f.rt), DUITE_E_OBJECT);
     ck_assert_int_eq(duite_replay(f.rt, f.graph, UINT64_C(1) << 47), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_replay_while(f.rt, f.graph, f.a, 0), DUITE_E_ARGUMENT);
@@ -181,6 +184,53 @@ START_TEST(no_such_graph)
     ck_assert_int_eq(duite_graph_rounds(f.rt, f.graph, NULL), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_wait(f.rt), DUITE_E_ARGUMENT);
     ck_assert_int_eq(graphs_value_of(f.rt, f.a), 0);
+    graphs_end(&f, 0);
+}
+END_TEST
+
+/* Every call on a graph, as a thread makes it that is not the main one. */
+static void *try_all(void *context)
+{
+    struct graphs_fixture *f = context;
+    duite_graph graph;
+    uint64_t rounds;
+
+    f->wrong = 0;
+    f->wrong += duite_graph_new(f->rt, graphs_build, f, &graph) == DUITE_E_STATE;
+    f->wrong += duite_replay(f->rt, f->graph, 1) == DUITE_E_STATE;
+    f->wrong += duite_replay_while(f->rt, f->graph, f->a, 1) == DUITE_E_STATE;
+    f->wrong += duite_graph_rounds(f->rt, f->graph, &rounds) == DUITE_E_STATE;
+    f->wrong += duite_graph_args(f->rt, f->graph, 0, &(int32_t){1}) == DUITE_E_STATE;
+    f->wrong += duite_graph_bind(f->rt, f->graph, f->a, f->c) == DUITE_E_STATE;
+    f->wrong += duite_graph_free(f->rt, f->graph) == DUITE_E_STATE;
+    return NULL;
+}
+
+START_TEST(not_from_another_thread)
+{
+    struct graphs_fixture f = graphs_begin(graphs_build);
+    pthread_t thread;
+
+    ck_assert_int_eq(pthread_create(&thread, NULL, try_all, &f), 0);
+    ck_assert_int_eq(pthread_join(thread, NULL), 0);
+    ck_assert_int_eq(f.wrong, 7);
+    ck_assert_int_eq(duite_replay(f.rt, f.graph, 1), 0);
+    ck_assert_int_eq(graphs_value_of(f.rt, f.a), 13);
+    graphs_end(&f, 0);
+}
+END_TEST
+
+/* An object that the graph's forks cannot take in the place of theirs. */
+START_TEST(wrong_bindings_of_size)
+{
+    struct graphs_fixture f = graphs_begin(graphs_build);
+    duite_object list;
+
+    ck_assert_int_eq(duite_new_sized(f.rt, DUITE_I64, 1, 1, &list), 0);
+    ck_assert_int_eq(duite_graph_bind(f.rt, f.graph, f.a, list), DUITE_E_BINDING);
+    ck_assert_ptr_nonnull(strstr(duite_message(), "at most 1"));
+    ck_assert_int_eq(duite_wait(f.rt), DUITE_E_BINDING);
+    ck_assert_int_eq(duite_free(f.rt, list), 0);
     graphs_end(&f, 0);
 }
 END_TEST
@@ -195,6 +245,8 @@ int main(void)
     tcase_add_test(refused, not_while_recording);
     tcase_add_test(refused, build_fails);
     tcase_add_test(refused, no_such_graph);
+    tcase_add_test(refused, not_from_another_thread);
+    tcase_add_test(refused, wrong_bindings_of_size);
     suite_add_tcase(suite, refused);
     return unit_run(suite);
 }

@@ -1,46 +1,14 @@
 /* Out of memory at every allocation in turn, on one rank: nothing hangs, nothing crashes, what is
- * returned as good is right, and the next start finds a clean process. The linker puts the
- * functions below in place of those of the C library (module.mk). */
+ * returned as good is right, and the next start finds a clean process. */
 
 #include "tests/negative/misuse.h"
+#include "tests/negative/starve.h"
 
-#include <limits.h>
-#include <stdatomic.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 
-enum { OBJECTS = 6, COUNT = 40, MOST = 100000 };
+enum { OBJECTS = 6, COUNT = 40 };
 
-static _Atomic long left = LONG_MAX; /* allocations until one fails */
-static int rank, ranks;
-
-static int fails(void)
-{
-    return atomic_fetch_sub(&left, 1) == 1;
-}
-
-void *__real_malloc(size_t size);
-void *__real_realloc(void *memory, size_t size);
-void *__real_aligned_alloc(size_t alignment, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-void *__wrap_aligned_alloc(size_t alignment, size_t size);
-
-void *__wrap_malloc(size_t size)
-{
-    return fails() ? NULL : __real_malloc(size);
-}
-
-void *__wrap_realloc(void *memory, size_t size)
-{
-    return fails() ? NULL : __real_realloc(memory, size);
-}
-
-void *__wrap_aligned_alloc(size_t alignment, size_t size)
-{
-    return fails() ? NULL : __real_aligned_alloc(alignment, size);
-}
+static int ranks;
 
 static int expected(int object)
 {
@@ -116,43 +84,10 @@ static int run(void)
     return fine && rt == NULL && (!code || stopped || code == DUITE_E_MEMORY);
 }
 
-static int any(int here)
-{
-    int all;
-    MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-    return all;
-}
-
-/* Every allocation of one rank fails once. */
-static void each_on(int victim)
-{
-    int wrong = 0, reached = 1;
-    long k = 0;
-    while (reached && k < MOST) {
-        k++;
-        atomic_store(&left, rank == victim ? k : LONG_MAX);
-        const int ended = run();
-        if (!ended)
-            fprintf(stderr, "# rank %d: wrong when allocation %ld of rank %d fails: %s\n", rank, k,
-                    victim, duite_message());
-        wrong += !ended;
-        reached = any(rank == victim && atomic_load(&left) < 1);
-        atomic_store(&left, LONG_MAX);
-    }
-    char name[100];
-    snprintf(name, sizeof name, "each of some allocations fails on rank %d of %d", victim, ranks);
-    if (rank == victim)
-        fprintf(stderr, "# %ld allocations\n", k - 1);
-    tap_case(!wrong && !reached && k > 20, name);
-    tap_case(run() && !any(0), "and the next run is as if nothing had been");
-}
-
 int main(void)
 {
     misuse_mpi();
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-    for (int victim = 0; victim < ranks; victim++)
-        each_on(victim);
+    starve("tasks", run);
     return tap_done();
 }

@@ -1,0 +1,93 @@
+/* What the system and a program's policies refuse: threads that cannot be started on one rank, and
+ * mappings that fail or name a rank there is not. The linker puts the function below in place of
+ * that of the C library (module.mk). */
+
+#include "tests/negative/misuse.h"
+
+#include <duite_policy.h>
+#include <errno.h>
+#include <pthread.h>
+#include <stdint.h>
+#include <string.h>
+
+static int rank, ranks;
+static int threads_left; /* until one is refused */
+
+int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
+                          void *(*body)(void *), void *context);
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
+                          void *(*body)(void *), void *context);
+
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
+                          void *(*body)(void *), void *context)
+{
+    return threads_left-- > 0 ? __real_pthread_create(thread, attributes, body, context) : EAGAIN;
+}
+
+static void threads_refused(void)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt;
+
+    options.threads = 4;
+    for (int granted = 0; granted < 3; granted++) {
+        threads_left = rank == ranks - 1 ? granted : 1000;
+        const int code = duite_start(&rt, &options);
+        const int expected = rank == ranks - 1 ? DUITE_E_SYSTEM : DUITE_E_DIFFERENT;
+
+        tap_case(code == expected && !rt, "a thread is refused on the last rank");
+        tap_case(strstr(duite_message(),
+                        rank == ranks - 1 ? "worker thread" : duite_code_text(DUITE_E_SYSTEM)) !=
+                     NULL,
+                 "with a sentence on every rank");
+    }
+    threads_left = 1000;
+    tap_case(duite_start(&rt, &options) == DUITE_OK && duite_threads(rt) == 4, "then all start");
+    tap_case(duite_stop(&rt) == DUITE_OK, "and stop");
+}
+
+static int answer;
+
+/* Home number `answer` if it is >= 0, or the code -answer. */
+static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+{
+    (void)n_ranks;
+    (void)seed;
+    for (size_t i = 0; i < graph->n; i++)
+        home[i] = answer;
+    return answer < 0 ? -answer : 0;
+}
+
+/* Nothing is forked while objects have no home; a mapping that comes to its senses is asked again.
+ */
+static void wrong_mapping(int wrong, int code, const char *name)
+{
+    const duite_mapping mapping = {.name = "wrong", .map = map};
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    int32_t value = -1;
+    duite *rt;
+
+    options.mapping = &mapping;
+    tap_case(duite_start(&rt, &options) == DUITE_OK, name);
+    const duite_object object = misuse_new(rt, 1);
+
+    answer = wrong;
+    tap_case(duite_fork(rt, &ADD, NULL, 1, &object) == code, "a fork returns its code");
+    tap_case(duite_set(rt, object, &value) == code && duite_home(rt, object) == -1, "others too");
+    answer = 0;
+    tap_case(duite_get(rt, object, &value) == code && value == 0, "and the next get, once more");
+    tap_case(duite_free(rt, object) == DUITE_OK && duite_stop(&rt) == DUITE_OK, "stops");
+}
+
+int main(void)
+{
+    misuse_mpi();
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    threads_refused();
+    if (ranks > 1) { /* one rank needs no mapping */
+        wrong_mapping(ranks, DUITE_E_ARGUMENT, "a mapping to a rank there is not");
+        wrong_mapping(-7, 7, "a mapping that fails");
+    }
+    return tap_done();
+}

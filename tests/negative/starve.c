@@ -1,0 +1,90 @@
+/* The linker puts the functions below in place of those of the C library, and of the pool of small
+ * blocks, which rarely asks it (module.mk). */
+
+#include "tests/negative/starve.h"
+
+#include "tests/negative/misuse.h"
+
+#include <limits.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MOST = 100000 };
+
+static _Atomic long left = LONG_MAX; /* allocations until one fails */
+
+static int fails(void)
+{
+    return atomic_fetch_sub(&left, 1) == 1;
+}
+
+void *__real_base_pool_take(size_t size);
+void *__real_malloc(size_t size);
+void *__real_realloc(void *memory, size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
+void *__wrap_base_pool_take(size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_realloc(void *memory, size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
+
+void *__wrap_base_pool_take(size_t size)
+{
+    return fails() ? NULL : __real_base_pool_take(size);
+}
+
+void *__wrap_malloc(size_t size)
+{
+    return fails() ? NULL : __real_malloc(size);
+}
+
+void *__wrap_realloc(void *memory, size_t size)
+{
+    return fails() ? NULL : __real_realloc(memory, size);
+}
+
+void *__wrap_aligned_alloc(size_t alignment, size_t size)
+{
+    return fails() ? NULL : __real_aligned_alloc(alignment, size);
+}
+
+static int any(int here)
+{
+    int all;
+    MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    return all;
+}
+
+/* Every allocation of one rank fails once. */
+static void each_on(int victim, int ranks, int rank, const char *what, int (*run)(void))
+{
+    int wrong = 0, reached = 1;
+    long k = 0;
+    while (reached && k < MOST) {
+        k++;
+        atomic_store(&left, rank == victim ? k : LONG_MAX);
+        const int ended = run();
+        if (!ended)
+            fprintf(stderr, "# rank %d: wrong when allocation %ld of rank %d fails: %s\n", rank, k,
+                    victim, duite_message());
+        wrong += !ended;
+        reached = any(rank == victim && atomic_load(&left) < 1);
+        atomic_store(&left, LONG_MAX);
+    }
+    char name[120];
+    snprintf(name, sizeof name, "%s: each of some allocations fails on rank %d of %d", what, victim,
+             ranks);
+    if (rank == victim)
+        fprintf(stderr, "# %ld allocations\n", k - 1);
+    tap_case(!wrong && !reached && k > 20, name);
+    tap_case(run() && !any(0), "and the next run is as if nothing had been");
+}
+
+void starve(const char *what, int (*run)(void))
+{
+    int rank, ranks;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    for (int victim = 0; victim < ranks; victim++)
+        each_on(victim, ranks, rank, what, run);
+}

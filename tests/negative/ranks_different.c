@@ -131,7 +131,6 @@ enum difference {
     ANOTHER_BINDING,
     ONE_REPLAY_MORE,
     ANOTHER_ROUND,
-    ANOTHER_FLAG,
     ONE_GRAPH_LESS,
     N_DIFFERENCES
 };
@@ -153,8 +152,6 @@ static void differ_by_graphs(duite *rt, enum difference what, duite_object a, du
         duite_replay(rt, graph, 0);
     if (what == ANOTHER_ROUND)
         duite_replay(rt, graph, odd ? 2 : 1);
-    if (what == ANOTHER_FLAG)
-        duite_replay_while(rt, graph, odd ? a : b, 1);
     if (what == ONE_GRAPH_LESS && odd)
         duite_graph_free(rt, graph);
 }
@@ -223,7 +220,7 @@ int main(void)
         "an object more", "another size",    "another maximum", "another count of values",
         "a set more",     "a free more",     "another hint",    "another leader",
         "another build",  "another binding", "a replay more",   "another round",
-        "another flag",   "a graph less"};
+        "a graph less"};
 
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

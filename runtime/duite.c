@@ -225,6 +225,7 @@ static int start_workers(duite *rt, const duite_options *options, int code)
                                  .check = rt->check,
                                  .scheduler = options->scheduler,
                                  .context = options->context,
+                                 .rt = rt,
                                  .threads = threads,
                                  .seed = options->seed,
                                  .spin_seconds = rt->oversubscribed ? 0 : options->spin_seconds,
@@ -243,7 +244,7 @@ bool instance_is_broken(const duite *rt)
 static bool nothing_left(void *context)
 {
     duite *rt = context;
-    uint64_t left = atomic_load_explicit(&rt->graph.unfinished, memory_order_acquire);
+    uint64_t left = atomic_load_explicit(&rt->graph.root.unfinished, memory_order_acquire);
     return !left || (rt->comm && left == comm_stuck(rt->comm));
 }
 

@@ -47,6 +47,7 @@ enum {
         -8, /* a call that is not allowed here: from a task's body, another thread or a build */
     DUITE_E_NOT_FREED = -9, /* stop found objects or graphs that were not freed */
     DUITE_E_SYSTEM = -10,   /* threads, topology: the operating system refused */
+    DUITE_E_RIGHT = -11,    /* a task gives a child more than it holds itself (see duite_mode) */
     DUITE_E_LAW = -12,      /* a law that is malformed, not listed, or for another element type */
     DUITE_E_BINDING = -13,  /* what is bound to an object of a recorded graph does not fit it */
     DUITE_E_SIZE = -14, /* an object grows beyond its maximum, or changes a size that is fixed */
@@ -79,14 +80,30 @@ typedef enum duite_type {
     DUITE_F64
 } duite_type;
 
-/* How a task uses a parameter. */
+/* How a task uses a parameter. The body uses it itself (the first four), or it only forks tasks
+ * that do (the postponed modes): then the task starts without waiting for the object, finds no
+ * data, and what it may hand on is its right:
+ *
+ *     holding     it may fork children with
+ *     r rp        r rp
+ *     w rw cw     none
+ *     wp          w wp
+ *     rwp         any
+ *     cwp         cw cwp of the same law
+ *
+ * The main program, and a task on objects that it made itself, holds rwp. */
 typedef enum duite_mode {
     DUITE_NONE = 0, /* ends a list of modes */
     DUITE_R,        /* reads */
     DUITE_W,        /* overwrites the whole object; finds unspecified bytes */
     DUITE_RW,       /* reads and writes */
-    DUITE_CW /* accumulates: finds the law's neutral element (of sums: zeros), and what it leaves
-                is combined with the object (see duite_fork) */
+    DUITE_CW,  /* accumulates: finds the law's neutral element (of sums: zeros), and what it leaves
+                  is combined with the object (see duite_fork) */
+    DUITE_RP,  /* postponed: children read */
+    DUITE_WP,  /* children overwrite; if none does, zeros are left */
+    DUITE_RWP, /* children read and write */
+    DUITE_CWP  /* children accumulate: one contribution, the tree of theirs; none if they make none
+                */
 } duite_mode;
 
 /* ---- Laws ---- */
@@ -114,16 +131,18 @@ extern const duite_law duite_sum, duite_min, duite_max;
 /* ---- Kernels ---- */
 
 typedef struct duite_param {
-    void *data;      /* 64-byte aligned; const under DUITE_R; dies with the body */
-    size_t count;    /* elements */
-    duite_type type; /* of the elements */
-    size_t most;     /* elements there is room for under w and rw: see duite_resize */
+    void *data;   /* 64-byte aligned; const under DUITE_R; dies with the body; NULL if postponed */
+    size_t count; /* elements; of an object that changes its size, if postponed, its maximum */
+    duite_type type;     /* of the elements */
+    size_t most;         /* elements there is room for under w and rw: see duite_resize */
+    duite_object object; /* its name in this body, for its calls; no other task knows it */
 } duite_param;
 
 /* What a body is given. */
 typedef struct duite_call {
     const void *args; /* the copy of the arguments made at the fork; NULL if the kernel has none */
     void *context;    /* as given at start */
+    duite *rt;        /* for the calls a body may make: see "Tasks that fork" */
     const duite_param *param; /* n_params of them, in the order of the fork */
     size_t n_params;
     int rank;        /* where the task runs */
@@ -141,8 +160,8 @@ typedef struct duite_call {
  * task writes is poisoned; tasks that read it do not run and poison what they write in turn, until
  * a w, which does not read, overwrites it. The next duite_wait, and every duite_get of something
  * poisoned, returns the code on all ranks. A contribution that failed poisons the object;
- * contributing to a poisoned object is possible and does not heal it. Bodies may call no duite_
- * function but duite_fail. */
+ * contributing to a poisoned object is possible and does not heal it. What a body may call: see
+ * "Tasks that fork". */
 typedef int duite_body(const duite_call *call);
 
 /* Gives the failure of a body its sentence (printf form, at most 200 bytes are kept). Returns code.
@@ -168,8 +187,9 @@ typedef struct duite_kernel {
     size_t args_size; /* bytes of arguments, copied at the fork; no pointers inside */
     int side_effects; /* 1: does more than write its parameters (files): checking mode runs it once
                        */
-    const duite_law *law[DUITE_MAX_ACCESS]; /* of the parameters with DUITE_CW; NULL: duite_sum */
-    const duite_law *rest_law;              /* if rest is DUITE_CW; NULL: duite_sum */
+    const duite_law
+        *law[DUITE_MAX_ACCESS]; /* of the parameters with DUITE_CW or CWP; NULL: duite_sum */
+    const duite_law *rest_law;  /* if rest is DUITE_CW or CWP; NULL: duite_sum */
 } duite_kernel;
 
 /* ---- Start and stop ---- */
@@ -216,8 +236,8 @@ const char *const *duite_mapping_names(void);
  * the caches: so a program has to ask for it. */
 
 /* Checking mode: each body works on private copies of its parameters, between guard pages that are
- * taken away afterwards, and runs twice if it has no side effects. The task fails with
- * DUITE_E_CHECK if it writes to an r parameter or to its arguments, goes beyond the ends of a
+ * taken away afterwards, and runs twice if it has no side effects and forks nothing. The task fails
+ * with DUITE_E_CHECK if it writes to an r parameter or to its arguments, goes beyond the ends of a
  * parameter, uses memory that an earlier task was given, leaves bytes of a w parameter unwritten,
  * or writes other bytes the second time; the sentence names the task, the parameter and the byte.
  * Results of correct programs are the same, at many times the cost. Other memory (globals, heap) is
@@ -342,11 +362,39 @@ int duite_fork_with(duite *rt, const duite_how *how, const duite_kernel *kernel,
                (duite_object[]){__VA_ARGS__})
 
 /* Waits for all tasks forked so far, on all ranks. Returns the error of the task that is first in
- * fork order among those that failed themselves since the last wait, the same on all ranks. If the
- * ranks did not make the same calls since the last wait it returns DUITE_E_DIFFERENT on all of
- * them, and only duite_stop is left. (A remembered error goes first; a task's then waits for the
- * next.) Collective. */
+ * the reference order (a task, then its children) among those that failed themselves since the last
+ * wait, the same on all ranks. If the ranks did not make the same calls since the last wait it
+ * returns DUITE_E_DIFFERENT on all of them, and only duite_stop is left. (A remembered error goes
+ * first; a task's then waits for the next.) Collective. */
 int duite_wait(duite *rt);
+
+/* ---- Tasks that fork ----
+ *
+ * A body may call, with call->rt and on its own thread, duite_new, duite_new_sized, duite_free,
+ * duite_set, duite_set_sized, duite_fork, duite_fork_with (without a rank), duite_get,
+ * duite_get_count, duite_wait, duite_resize, duite_fail, and what tells about the runtime
+ * (duite_rank and the like); all others are DUITE_E_STATE, and so is any call from a thread of the
+ * program's own. In a body they are local: children run on the rank of the task, and no other rank
+ * knows of them.
+ *
+ * Objects: a body names those it was given (param[i].object) and those it made. What it may fork
+ * its children with is said at duite_mode; more is DUITE_E_RIGHT, and so is an object of the main
+ * program that it was not given. duite_set needs the right to w, duite_get that to r. Objects that
+ * a task made die, freed or not, when its last descendant is over.
+ *
+ * Order: a body comes first, then its children in the order of their forks, each with all of its
+ * descendants, then the next task of the one that forked it. What the children leave in a parameter
+ * is passed on as soon as it is there; nobody waits for the rest of them.
+ *
+ * duite_get waits for the value that the children forked so far leave, duite_wait for all of these
+ * with their descendants; what the body does afterwards comes after them. Meanwhile its thread runs
+ * other tasks that come earlier, on the same stack: a body must not wait with a lock held.
+ * duite_wait returns the error that is first in the reference order among the descendants since the
+ * body's last wait; it stays to be told by the main program's, too. A failed child poisons what it
+ * writes, no more: its parent fails only if it says so.
+ *
+ * Errors of calls that return at once are remembered for the body's next get or wait; if there is
+ * none, the task fails with the first of them. */
 
 /* ---- Recorded graphs ---- */
 
@@ -374,11 +422,11 @@ int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *g
  * compiled form, in which a task costs no allocation, lock or search, and a round begins where
  * dependences allow before the last one is over; the tasks forked before and after it that use the
  * same objects wait for the replay as a whole. (Forked are all rounds if the size of an
- * object changes or if contributions of one round and the next are one sum; the first or the last
- * one if its contributions are one sum with those forked before or after the replay.) If an object
- * that the graph uses was freed, build is called again first, and bindings and arguments are those
- * it makes. Errors of that, and DUITE_E_BINDING. rounds times tasks is at most 2^48. Collective;
- * returns at once. */
+ * object changes, if a mode is postponed, or if contributions of one round and the next are one
+ * sum; the first or the last one if its contributions are one sum with those forked before or after
+ * the replay.) If an object that the graph uses was freed, build is called again first, and
+ * bindings and arguments are those it makes. Errors of that, and DUITE_E_BINDING. rounds times
+ * tasks is at most 2^48. Collective; returns at once. */
 int duite_replay(duite *rt, duite_graph graph, uint64_t rounds);
 
 /* Replays while the first element of `flag`, an object that the graph uses or any other, is not

@@ -56,5 +56,18 @@ int recorded_failed(duite *rt, int code);
 int recorded_left(const duite *rt);
 /* Frees all graphs; no task is left. */
 void recorded_stop(duite *rt);
+/* The body that runs on this thread, or NULL; and its calls (inside.c). */
+struct duite_call_private *inside_body(const duite *rt);
+int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t most,
+               bool sized, duite_object *object);
+int inside_free(struct duite_call_private *body, duite_object object);
+int inside_fork(struct duite_call_private *body, const duite_how *how, const duite_kernel *kernel,
+                const void *args, size_t n, const duite_object *objects);
+int inside_set(struct duite_call_private *body, duite_object object, const void *values,
+               const size_t *count, const char *call);
+/* Copies to the values, or tells the count. */
+int inside_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
+               const char *call);
+int inside_wait(struct duite_call_private *body);
 
 #endif

@@ -1,6 +1,6 @@
-/* The calls of the main program: each checks that it may be made, settles the homes of new objects
- * where they matter, and leaves the work to graph/. An error of a call that returns at once is
- * remembered for the next get, wait or stop. */
+/* The calls of the main program (a body's go to inside.c): each checks that it may be made, settles
+ * the homes of new objects where they matter, and leaves the work to graph/. An error of a call
+ * that returns at once is remembered for the next get, wait or stop. */
 #include "runtime/instance.h"
 
 #include "runtime/base/error.h"
@@ -65,8 +65,11 @@ int program_settle(duite *rt)
 
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
 {
+    struct duite_call_private *body = inside_body(rt);
     if (object)
         *object = DUITE_NO_OBJECT;
+    if (body)
+        return inside_new(body, type, count, count, false, object);
     int code = program_enter(rt, "duite_new");
     if (code)
         return code;
@@ -80,8 +83,11 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
 
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite_object *object)
 {
+    struct duite_call_private *body = inside_body(rt);
     if (object)
         *object = DUITE_NO_OBJECT;
+    if (body)
+        return inside_new(body, type, count, most, true, object);
     int code = program_enter(rt, "duite_new_sized");
     if (code)
         return code;
@@ -149,11 +155,14 @@ int duite_home(duite *rt, duite_object object)
 
 int duite_free(duite *rt, duite_object object)
 {
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_free(body, object);
     int code = program_enter(rt, "duite_free");
     if (!code)
         code = program_remember(rt, program_settle(rt));
     if (!code)
-        code = program_remember(rt, graph_free(&rt->graph, work_main(rt->pool), object));
+        code = program_remember(rt, graph_free(&rt->graph.root, work_main(rt->pool), object));
     return code;
 }
 
@@ -162,7 +171,7 @@ int duite_free(duite *rt, duite_object object)
 static bool is_below(void *context)
 {
     const struct graph *graph = context;
-    return atomic_load_explicit(&graph->unfinished, memory_order_acquire) <= graph->resume;
+    return atomic_load_explicit(&graph->root.unfinished, memory_order_acquire) <= graph->resume;
 }
 
 /* This ends: of all unfinished tasks of all ranks, take the first in fork order. What it waits for
@@ -173,7 +182,7 @@ static bool is_below(void *context)
 void program_throttle(duite *rt)
 {
     if (rt->window &&
-        atomic_load_explicit(&rt->graph.unfinished, memory_order_relaxed) > rt->window)
+        atomic_load_explicit(&rt->graph.root.unfinished, memory_order_relaxed) > rt->window)
         work_until(rt->pool, is_below, &rt->graph);
 }
 
@@ -184,7 +193,7 @@ static int fork_task(duite *rt, const struct graph_how *how, const duite_kernel 
         return program_remember(rt, graph_record_fork(rt->building, how, kernel, args, n, objects));
     int code = program_settle(rt);
     if (!code)
-        code = graph_fork(&rt->graph, work_main(rt->pool), how, kernel, args, n, objects);
+        code = graph_fork(&rt->graph.root, work_main(rt->pool), how, kernel, args, n, objects);
     work_tick(rt->pool);
     if (!code)
         program_throttle(rt);
@@ -194,6 +203,9 @@ static int fork_task(duite *rt, const struct graph_how *how, const duite_kernel 
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects)
 {
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_fork(body, NULL, kernel, args, n, objects);
     int code = enter_any(rt, "duite_fork");
     return code
                ? code
@@ -215,6 +227,9 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
 int duite_fork_with(duite *rt, const duite_how *how, const duite_kernel *kernel, const void *args,
                     size_t n, const duite_object *objects)
 {
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_fork(body, how, kernel, args, n, objects);
     int code = enter_any(rt, "duite_fork_with");
     if (code)
         return code;
@@ -232,14 +247,17 @@ int duite_fork_with(duite *rt, const duite_how *how, const duite_kernel *kernel,
 static int set(duite *rt, duite_object object, const void *values, const size_t *count,
                const char *call)
 {
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_set(body, object, values, count, call);
     int code = enter_any(rt, call);
     if (!code && rt->building)
         return program_remember(rt, graph_record_set(rt->building, object, values, count));
     if (!code)
         code = program_remember(rt, program_settle(rt));
     if (!code)
-        code =
-            program_remember(rt, graph_set(&rt->graph, work_main(rt->pool), object, values, count));
+        code = program_remember(
+            rt, graph_set(&rt->graph.root, work_main(rt->pool), object, values, count));
     return code;
 }
 
@@ -302,11 +320,17 @@ static int get_and_recall(duite *rt, duite_object object, int rank, void *values
 
 int duite_get(duite *rt, duite_object object, void *values)
 {
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_get(body, object, values, NULL, "duite_get");
     return get_and_recall(rt, object, GRAPH_ANYWHERE, values, NULL, "duite_get");
 }
 
 int duite_get_count(duite *rt, duite_object object, size_t *count)
 {
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_get(body, object, NULL, count, "duite_get_count");
     return get_and_recall(rt, object, GRAPH_ANYWHERE, NULL, count, "duite_get_count");
 }
 
@@ -320,7 +344,7 @@ int duite_get_at(duite *rt, duite_object object, int rank, void *values)
 static bool drained(void *context)
 {
     struct graph *graph = context;
-    return atomic_load_explicit(&graph->unfinished, memory_order_acquire) == 0;
+    return graph_alone(&graph->root);
 }
 
 static void between(void *context)
@@ -332,9 +356,10 @@ static void between(void *context)
 static struct comm_word own_word(const struct graph *graph)
 {
     struct comm_word own = {0};
-    if (graph->first_failure) {
-        own.failed = graph->first_failure->number + 1;
-        own.failure = *graph->first_failure;
+    const struct data_failure *first = graph->root.failure;
+    if (first) {
+        own.failed = first->number + 1;
+        own.failure = *first;
     }
     return own;
 }
@@ -344,18 +369,20 @@ static struct comm_word own_word(const struct graph *graph)
 static int compare(duite *rt)
 {
     struct graph *graph = &rt->graph;
-    const struct comm_word own = {.forks = graph->forks, .fingerprint = graph->fingerprint};
+    const struct comm_word own = {.forks = graph->root.forks, .fingerprint = graph->fingerprint};
     struct comm_word *words;
     int code = comm_agree(rt->comm, &own, &words, between, rt->pool);
     work_idle_ends(rt->pool);
-    for (int i = 1; i < graph->n_ranks && !code; i++)
-        if (words[i].fingerprint != words[0].fingerprint)
-            code = graph->broken = base_error(DUITE_E_DIFFERENT,
-                                              "ranks 0 and %d forked different tasks, or made "
-                                              "different objects, since the last wait (%llu "
-                                              "and %llu tasks since start)",
-                                              i, (unsigned long long)words[0].forks,
-                                              (unsigned long long)words[i].forks);
+    for (int i = 1; i < graph->n_ranks && !code; i++) {
+        if (words[i].fingerprint == words[0].fingerprint)
+            continue;
+        code =
+            base_error(DUITE_E_DIFFERENT,
+                       "ranks 0 and %d forked different tasks, or made different objects, since "
+                       "the last wait (%llu and %llu tasks since start)",
+                       i, (unsigned long long)words[0].forks, (unsigned long long)words[i].forks);
+        graph->broken = code;
+    }
     graph->fingerprint = 0;
     if (code)
         instance_give_up(rt);
@@ -374,6 +401,9 @@ static const struct data_failure *first_failure(const struct comm_word *words, i
 
 int duite_wait(duite *rt)
 {
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_wait(body);
     int code = program_enter(rt, "duite_wait");
     if (code)
         return code;
@@ -394,7 +424,7 @@ int duite_wait(duite *rt)
     const struct data_failure *failure = first_failure(words, graph->n_ranks);
     if (code || !failure)
         return code;
-    graph->first_failure = NULL;
+    graph_first_failure(&graph->root); /* told */
     return graph_failure_error(graph, failure);
 }
 

@@ -243,7 +243,7 @@ int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
 static int fork_while(duite *rt, struct graph_record *record, duite_object flag, uint64_t most)
 {
     const struct data_object *object = data_object_find(&rt->graph.table, flag);
-    uint64_t forks = rt->graph.forks;
+    uint64_t forks = rt->graph.root.forks;
     duite_type type = object->type;
     void *values = base_alloc(object->room);
     bool holds = true;
@@ -257,7 +257,7 @@ static int fork_while(duite *rt, struct graph_record *record, duite_object flag,
         if (!code && instance_is_broken(rt))
             code = rt->comm ? comm_broken(rt->comm) : rt->graph.broken;
     }
-    rt->graph.forks = forks + most * record->n_calls;
+    rt->graph.root.forks = forks + most * record->n_calls;
     base_free(values);
     return code;
 }

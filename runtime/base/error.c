@@ -55,6 +55,8 @@ const char *duite_code_text(int code)
         return "a body does not keep to what its kernel declares";
     case DUITE_E_SYSTEM:
         return "the operating system refused";
+    case DUITE_E_RIGHT:
+        return "a right the task does not hold";
     case DUITE_E_LAW:
         return "law does not fit";
     case DUITE_E_SIZE:

@@ -11,7 +11,7 @@
  *     fault becomes the failure of the task;
  *   - a body runs twice, with different fills under w: a byte that keeps its fill was not written;
  * a byte that differs otherwise makes the kernel not deterministic. Kernels with side effects or
- *     postponed modes run once.
+ *     postponed modes, and bodies that fork, run once.
  *
  * Memory that is none of duite's (globals, heap, stack) is not watched. A body that faults is left
  * by a jump: what it held (memory, locks) stays held. */

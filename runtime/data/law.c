@@ -162,14 +162,15 @@ int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *la
         const duite_law *law = rest ? kernel->rest_law : kernel->law[i];
         duite_mode mode = rest ? kernel->rest : kernel->access[i];
         bool known = is_listed(built_in, law) || is_listed(laws, law);
-        if (!law || (mode == DUITE_CW && known))
+        if (!law || ((mode == DUITE_CW || mode == DUITE_CWP) && known))
             continue;
         char where[24] = "`rest`";
         if (!rest)
             snprintf(where, sizeof where, "parameter %u", i);
         return base_error(DUITE_E_LAW, "kernel %s, %s: law %s %s", kernel->name, where,
                           law->name ? law->name : "without a name",
-                          known ? "for a parameter that is not cw" : "was not listed at start");
+                          known ? "for a parameter that is not cw or cwp"
+                                : "was not listed at start");
     }
     return DUITE_OK;
 }

@@ -70,24 +70,27 @@ static int reserve(struct data_table *table)
     return DUITE_OK;
 }
 
-static int check_shape(duite_type type, size_t count)
+int data_object_check(duite_type type, size_t count, size_t most)
 {
     size_t size = data_type_size(type);
     if (!size)
         return base_error(DUITE_E_ARGUMENT, "duite_new: %d is no element type", (int)type);
-    if (!count)
+    if (!most)
         return base_error(DUITE_E_ARGUMENT, "duite_new: an object has at least one element");
-    if (count > DATA_MOST_BYTES / size)
+    if (most > DATA_MOST_BYTES / size)
         return base_error(DUITE_E_ARGUMENT,
-                          "duite_new: %zu elements of %zu bytes are more than %zu bytes", count,
+                          "duite_new: %zu elements of %zu bytes are more than %zu bytes", most,
                           size, DATA_MOST_BYTES);
+    if (count > most)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_new_sized: %zu elements are more than %zu at most", count, most);
     return DUITE_OK;
 }
 
 int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name)
 {
     *name = (duite_object){0, 0};
-    int code = check_shape(type, count);
+    int code = data_object_check(type, count, count);
     if (!code)
         code = reserve(table);
     if (code)
@@ -119,10 +122,9 @@ int data_object_new_sized(struct data_table *table, duite_type type, size_t coun
                           duite_object *name)
 {
     *name = (duite_object){0, 0};
-    if (count > most)
-        return base_error(DUITE_E_ARGUMENT,
-                          "duite_new_sized: %zu elements are more than %zu at most", count, most);
-    int code = data_object_new(table, type, most, name);
+    int code = data_object_check(type, count, most);
+    if (!code)
+        code = data_object_new(table, type, most, name);
     if (code)
         return code;
     struct data_object *object = &table->object[name->slot];

@@ -52,6 +52,9 @@ struct data_table {
 int data_table_start(struct data_table *table, int n_ranks);
 void data_table_stop(struct data_table *table);
 
+/* Whether there can be such an object. Errors: type, count. */
+int data_object_check(duite_type type, size_t count, size_t most);
+
 /* Makes an object without home. Errors: type, count, memory. */
 int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name);
 

@@ -25,9 +25,18 @@ struct data_sum *data_sum_new(int n_ranks, const duite_law *law, duite_type type
     return sum;
 }
 
-static void combine(const struct data_sum *sum, void *left, const void *right)
+/* Combines two neighbours into the left one; what is absent is skipped. */
+static void combine(const struct data_sum *sum, struct data_piece *left, struct data_piece *right)
 {
-    sum->law->combine(left, right, sum->count, sum->type);
+    if (left->value && right->value) {
+        sum->law->combine(left->value, right->value, sum->count, sum->type);
+    } else if (right->value) { /* every packet keeps an owner: pieces may share its bytes */
+        struct data_packet *packet = left->packet;
+        left->packet = right->packet;
+        right->packet = packet;
+        left->value = right->value;
+        right->value = NULL;
+    }
 }
 
 struct data_piece *data_piece_new(void)
@@ -159,7 +168,7 @@ const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_pie
     for (size_t i = 0; i < total; i++) {
         all[top++] = all[i];
         for (; top > 1 && siblings(all[top - 2], all[top - 1]); top--) {
-            combine(sum, all[top - 2]->value, all[top - 1]->value);
+            combine(sum, all[top - 2], all[top - 1]);
             all[top - 2]->level++;
         }
     }
@@ -167,9 +176,25 @@ const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_pie
     return NULL;
 }
 
-void data_sum_finish(const struct data_sum *sum, struct data_piece **pieces, size_t n, void *value)
+struct data_piece *data_sum_fold(const struct data_sum *sum, struct data_piece **pieces, size_t n)
 {
     for (size_t i = n - 1; i > 0; i--)
-        combine(sum, pieces[i - 1]->value, pieces[i]->value);
-    combine(sum, value, pieces[0]->value);
+        combine(sum, pieces[i - 1], pieces[i]);
+    return pieces[0]->value ? pieces[0] : NULL;
+}
+
+void data_piece_take(struct data_piece *leaf, struct data_piece *piece)
+{
+    if (!piece)
+        return;
+    leaf->packet = piece->packet;
+    leaf->value = piece->value;
+    piece->packet = NULL;
+}
+
+void data_sum_finish(const struct data_sum *sum, struct data_piece **pieces, size_t n, void *value)
+{
+    const struct data_piece *whole = data_sum_fold(sum, pieces, n);
+    if (whole)
+        sum->law->combine(value, whole->value, sum->count, sum->type);
 }

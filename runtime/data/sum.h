@@ -15,7 +15,7 @@ struct data_piece {
     uint64_t first;
     uint32_t level;
     struct data_packet *packet; /* owns the bytes of value, unless it is shared with other pieces */
-    void *value;                /* NULL until the task ran, or if poisoned */
+    void *value; /* NULL until the task ran, if poisoned, or if it is absent: then it is skipped */
     const struct data_failure *failure; /* poison, or NULL */
 };
 
@@ -30,6 +30,7 @@ struct data_sum {
     uint32_t senders;         /* other ranks with leaves, counted where the object's value is */
     struct data_waiter
         *closer; /* the task that combines or sends; set before the open hold is released */
+    struct data_sum *next;   /* for whoever keeps it */
     uint64_t senders_mask[]; /* a bit a rank */
 };
 
@@ -64,7 +65,14 @@ struct data_waiter *data_sum_release(struct data_sum *sum);
 const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_piece ***out,
                                            size_t *n, int *code);
 
-/* Folds the reduced pieces of a whole sum from the right; value becomes law(value, result). */
+/* Folds the reduced pieces of a whole sum from the right into one of them, which is returned; NULL:
+ * all are absent. */
+struct data_piece *data_sum_fold(const struct data_sum *sum, struct data_piece **pieces, size_t n);
+
+/* `leaf` gets the value of `piece` (NULL: it is absent), which is made of this rank's leaves. */
+void data_piece_take(struct data_piece *leaf, struct data_piece *piece);
+
+/* Folds the reduced pieces of a whole sum; value becomes law(value, result). */
 void data_sum_finish(const struct data_sum *sum, struct data_piece **pieces, size_t n, void *value);
 
 #endif

@@ -33,6 +33,11 @@ bool data_version_await(struct data_version *version, struct data_waiter *waiter
     return true;
 }
 
+bool data_version_ready(const struct data_version *version)
+{
+    return atomic_load_explicit(&version->waiters, memory_order_acquire) == DATA_PRODUCED;
+}
+
 struct data_waiter *data_version_produced(struct data_version *version)
 {
     return atomic_exchange_explicit(&version->waiters, DATA_PRODUCED, memory_order_acq_rel);

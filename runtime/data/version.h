@@ -45,6 +45,9 @@ bool data_version_await(struct data_version *version, struct data_waiter *waiter
  * version. */
 struct data_waiter *data_version_produced(struct data_version *version);
 
+/* Whether the value is there. */
+bool data_version_ready(const struct data_version *version);
+
 static inline void data_version_hold(struct data_version *version)
 {
     atomic_fetch_add_explicit(&version->holds, 1, memory_order_relaxed);

@@ -11,7 +11,8 @@ static size_t align16(size_t bytes)
     return (bytes + 15) / 16 * 16;
 }
 
-struct graph_task *graph_task_new(struct graph *graph, enum graph_kind kind, size_t n, size_t extra)
+struct graph_task *graph_task_new(struct graph_scope *scope, enum graph_kind kind, size_t n,
+                                  size_t extra)
 {
     struct graph_task *task;
     size_t access = align16(sizeof *task + n * sizeof task->access[0]);
@@ -19,7 +20,7 @@ struct graph_task *graph_task_new(struct graph *graph, enum graph_kind kind, siz
     task = base_pool_take(access + param + extra);
     if (!task) {
         base_no_memory("a task");
-        graph_break(graph);
+        graph_break(scope->graph);
         return NULL;
     }
     task->size = access + param + extra;
@@ -28,15 +29,18 @@ struct graph_task *graph_task_new(struct graph *graph, enum graph_kind kind, siz
     task->next = NULL;
     task->kind = kind;
     task->kernel = UINT32_MAX;
-    task->number = graph->forks;
-    task->block = (uint32_t)graph->forks; /* until it is known to run for an object */
+    task->number = scope->forks;
+    task->scope = scope;
+    task->inner = NULL;
+    task->failure = NULL;
+    task->block = (uint32_t)scope->forks; /* until it is known to run for an object */
     task->priority = INT32_MAX;           /* unless the program forks it */
     task->cost = 0;
     task->param = (void *)((char *)task + access);
     task->args = extra ? (char *)task + access + param : NULL;
     for (size_t i = 0; i < n; i++)
         task->access[i] = (struct graph_access){.waiter.task = task};
-    atomic_fetch_add_explicit(&graph->unfinished, 1, memory_order_relaxed);
+    atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
     return task;
 }
 
@@ -57,12 +61,20 @@ void graph_wake(struct graph *graph, void *worker, struct data_waiter *waiter)
         take(graph, worker, waiter->task, 1);
 }
 
-void graph_release(struct graph *graph, void *worker, struct data_version *version)
+/* An heir that is no task passes the value on to a scope above, which may have one like it. */
+static void wake_heir(struct graph *graph, void *worker, struct data_waiter *heir)
 {
-    graph_wake(graph, worker, data_version_release(version));
+    while (heir && !heir->task)
+        heir = graph_pass(worker, heir);
+    graph_wake(graph, worker, heir);
 }
 
-void graph_publish(struct graph *graph, void *worker, struct data_version *version)
+void graph_release(struct graph *graph, void *worker, struct data_version *version)
+{
+    wake_heir(graph, worker, data_version_release(version));
+}
+
+struct data_waiter *graph_produced(struct graph *graph, void *worker, struct data_version *version)
 {
     struct data_waiter *waiter = data_version_produced(version);
     while (waiter) {
@@ -70,7 +82,12 @@ void graph_publish(struct graph *graph, void *worker, struct data_version *versi
         graph_wake(graph, worker, waiter);
         waiter = next;
     }
-    graph_release(graph, worker, version);
+    return data_version_release(version);
+}
+
+void graph_publish(struct graph *graph, void *worker, struct data_version *version)
+{
+    wake_heir(graph, worker, graph_produced(graph, worker, version));
 }
 
 void graph_read(struct graph_task *task, size_t i, struct data_version *version, uint32_t *done)
@@ -121,7 +138,7 @@ static int send_copy(struct graph *graph, void *worker, struct data_object *obje
 {
     struct data_version *version = graph_local(graph, object);
     struct graph_task *task =
-        version ? graph_task_new(graph, GRAPH_SEND, 1, sizeof *task->send) : NULL;
+        version ? graph_task_new(&graph->root, GRAPH_SEND, 1, sizeof *task->send) : NULL;
     if (!task)
         return DUITE_E_MEMORY;
     *task->send = (struct graph_send){.key = graph_key(graph, object), .to = to};

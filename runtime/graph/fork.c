@@ -1,6 +1,7 @@
-/* Forking: every rank comes through here for every task, in the same order, and draws the same
- * conclusions about where it runs and which versions move; it keeps only what it runs, sends or
- * receives itself. */
+/* Forking: every rank comes through here for every task of the main program, in the same order, and
+ * draws the same conclusions about where it runs and which versions move; it keeps only what it
+ * runs, sends or receives itself. A task forks by the same rules in its own scope, whose objects
+ * are here and nowhere else. */
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
@@ -63,75 +64,118 @@ static int check_law(const duite_kernel *kernel, size_t i, const struct data_obj
                       name.generation, data_type_name(object->type));
 }
 
-/* Every object exists, is named once, and can be accumulated into where it is. */
-static int check_objects(struct graph *graph, const duite_kernel *kernel, size_t n,
-                         const duite_object *objects)
+/* An object whose name was checked. */
+static struct data_object *object_of(struct graph_scope *scope, duite_object name)
 {
-    uint64_t mark = graph->forks + 1;
-    for (size_t i = 0; i < n; i++) {
-        struct data_object *object = data_object_find(&graph->table, objects[i]);
-        if (!object)
-            return base_error(DUITE_E_OBJECT, "kernel %s, parameter %zu: object %u.%u %s",
-                              kernel->name, i, objects[i].slot, objects[i].generation,
-                              objects[i].slot ? "was freed or never made" : "names nothing");
-        if (object->mark == mark)
-            return base_error(DUITE_E_ACCESS,
-                              "kernel %s, parameter %zu: the task names object %u.%u twice",
-                              kernel->name, i, objects[i].slot, objects[i].generation);
-        if (data_mode_of(kernel, i) == DUITE_CW) {
-            int code = check_law(kernel, i, object, objects[i]);
-            if (code)
-                return code;
-        }
-        object->mark = mark;
-    }
-    return DUITE_OK;
+    duite_mode right;
+    return scope->depth ? graph_object(scope, name, &right)
+                        : &scope->graph->table.object[name.slot];
 }
 
-void graph_unmark(struct graph *graph, size_t n, const duite_object *objects)
+/* It exists, is named once, may be used so, and can be accumulated into where it is. */
+static int check_object(struct graph_scope *scope, const duite_kernel *kernel, size_t i,
+                        duite_object name)
 {
-    for (size_t i = 0; i < n; i++)
-        if (objects[i].slot < graph->table.n_slots)
-            graph->table.object[objects[i].slot].mark = 0;
+    duite_mode mode = data_mode_of(kernel, i), right;
+    if (scope->depth) {
+        int code = graph_check_right(scope, kernel->name, i, name, mode);
+        if (code)
+            return code;
+    }
+    struct data_object *object = graph_object(scope, name, &right);
+    if (!object)
+        return base_error(DUITE_E_OBJECT, "kernel %s, parameter %zu: object %u.%u %s", kernel->name,
+                          i, name.slot, name.generation,
+                          name.slot ? "was freed or never made" : "names nothing");
+    if (object->mark == scope->forks + 1)
+        return base_error(DUITE_E_ACCESS,
+                          "kernel %s, parameter %zu: the task names object %u.%u twice",
+                          kernel->name, i, name.slot, name.generation);
+    int code = DUITE_OK;
+    if (graph_immediate(mode) == DUITE_CW)
+        code = check_law(kernel, i, object, name);
+    if (!code && right == DUITE_CWP && data_law_of(kernel, i) != object->law)
+        code = graph_wrong_law(scope, kernel, i, name);
+    if (!code)
+        object->mark = scope->forks + 1;
+    return code;
+}
+
+void graph_unmark(struct graph_scope *scope, size_t n, const duite_object *objects)
+{
+    duite_mode right;
+    for (size_t i = 0; i < n; i++) {
+        struct data_object *object = graph_object(scope, objects[i], &right);
+        if (object)
+            object->mark = 0;
+    }
 }
 
 /* The owner rule: the object where a task runs; NULL if it only accumulates. */
-static const struct data_object *owner(const struct graph *graph, const duite_kernel *kernel,
+static const struct data_object *owner(struct graph_scope *scope, const duite_kernel *kernel,
                                        size_t n, const duite_object *objects)
 {
     const struct data_object *first_read = NULL;
     for (size_t i = 0; i < n; i++) {
-        duite_mode mode = data_mode_of(kernel, i);
-        const struct data_object *object = &graph->table.object[objects[i].slot];
+        duite_mode mode = graph_immediate(data_mode_of(kernel, i));
         if (mode == DUITE_W || mode == DUITE_RW)
-            return object;
+            return object_of(scope, objects[i]);
         if (mode == DUITE_R && !first_read)
-            first_read = object;
+            first_read = object_of(scope, objects[i]);
     }
     return first_read;
 }
 
-/* Access i of a task that runs on rank `at`; `task` is NULL on the other ranks. */
-static int use(struct graph *graph, void *worker, int at, const duite_kernel *kernel, size_t i,
-               duite_object name, struct graph_task *task, uint32_t *done)
+static void read_version(struct graph_task *task, size_t i, const struct data_object *object,
+                         struct data_version *version, bool postponed, uint32_t *done)
 {
-    duite_mode mode = data_mode_of(kernel, i);
-    struct data_object *object = &graph->table.object[name.slot];
+    if (!postponed) {
+        graph_read(task, i, version, done);
+        return;
+    }
+    data_version_hold(version);
+    graph_lend(task, i, object, version, NULL);
+    *done += 1;
+}
+
+/* The scope of the task gets the object's hold on the version; the object has from now on the one
+ * that its children will leave. */
+static int lend_version(struct graph_task *task, size_t i, struct data_object *object,
+                        struct data_version *version, uint32_t *done)
+{
+    struct data_version *out = data_version_new();
+    if (!out) {
+        base_no_memory("a version");
+        return graph_break(task->scope->graph);
+    }
+    graph_lend(task, i, object, version, out);
+    object->current = out;
+    *done += 1;
+    return DUITE_OK;
+}
+
+static int contribute(struct graph_scope *scope, void *worker, int at, const duite_kernel *kernel,
+                      size_t i, struct data_object *object, struct graph_task *task, uint32_t *done)
+{
+    int code = graph_contribute(scope, worker, object, data_law_of(kernel, i), at, task, i);
+    if (!code && task && graph_postponed(task->access[i].mode))
+        graph_lend(task, i, object, NULL, NULL);
+    *done += !code;
+    return code;
+}
+
+/* Access i of a task that runs on rank `at`; `task` is NULL on the other ranks. */
+static int use(struct graph_scope *scope, void *worker, int at, const duite_kernel *kernel,
+               size_t i, struct data_object *object, struct graph_task *task, uint32_t *done)
+{
+    struct graph *graph = scope->graph;
+    duite_mode mode = graph_immediate(data_mode_of(kernel, i));
+    bool postponed = graph_postponed(data_mode_of(kernel, i));
     int code = DUITE_OK;
-    if (task) {
-        task->access[i].mode = mode;
-        task->access[i].bytes = object->room;
-        task->access[i].sized = object->sized;
-        task->param[i] =
-            (duite_param){.count = object->most, .type = object->type, .most = object->most};
-    }
-    if (mode == DUITE_CW) {
-        code = graph_contribute(graph, worker, object, data_law_of(kernel, i), at, task, i);
-        *done += !code;
-        return code;
-    }
+    if (mode == DUITE_CW)
+        return contribute(scope, worker, at, kernel, i, object, task, done);
     if (object->leaves)
-        code = graph_close(graph, worker, object);
+        code = graph_close(scope, worker, object);
     if (!code && mode != DUITE_W)
         code = graph_fetch(graph, worker, object, at);
     if (code)
@@ -141,7 +185,7 @@ static int use(struct graph *graph, void *worker, int at, const duite_kernel *ke
         return DUITE_E_MEMORY;
     if (mode == DUITE_R) {
         if (task)
-            graph_read(task, i, version, done);
+            read_version(task, i, object, version, postponed, done);
         return DUITE_OK;
     }
     object->number++;
@@ -149,24 +193,22 @@ static int use(struct graph *graph, void *worker, int at, const duite_kernel *ke
     if (mode == DUITE_W && task)
         version = graph_rename(graph, worker, object);
     if (task)
-        return graph_overwrite(graph, task, i, object, version, done);
+        return postponed ? lend_version(task, i, object, version, done)
+                         : graph_overwrite(graph, task, i, object, version, done);
     graph_forget(graph, worker, object);
     return DUITE_OK;
 }
 
-static struct graph_task *body_task(struct graph *graph, const struct graph_how *how,
-                                    uint32_t index, const void *args, size_t n)
+static void describe(struct graph_task *task, size_t i, duite_mode mode,
+                     const struct data_object *object, uint32_t stamp)
 {
-    const duite_kernel *kernel = graph->kernels[index];
-    struct graph_task *task = graph_task_new(graph, GRAPH_BODY, n, kernel->args_size);
-    if (!task)
-        return NULL;
-    task->kernel = index;
-    task->priority = how->priority;
-    task->cost = how->cost;
-    if (kernel->args_size)
-        memcpy(task->args, args, kernel->args_size);
-    return task;
+    task->access[i].mode = mode;
+    task->access[i].bytes = object->room;
+    task->access[i].sized = object->sized;
+    task->param[i] = (duite_param){.count = object->most,
+                                   .type = object->type,
+                                   .most = object->most,
+                                   .object = {GRAPH_LOCAL_NAME | (uint32_t)i, stamp}};
 }
 
 /* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
@@ -180,41 +222,68 @@ void graph_void(struct graph *graph, void *worker, struct graph_task *task, size
     graph_settled(graph, worker, task, done + missing);
 }
 
-int graph_check(struct graph *graph, int at, const duite_kernel *kernel, const void *args, size_t n,
-                const duite_object *objects, uint32_t *index)
+int graph_check(struct graph_scope *scope, int at, const duite_kernel *kernel, const void *args,
+                size_t n, const duite_object *objects, uint32_t *index)
 {
-    int code = find_kernel(graph, kernel, index);
+    int code = find_kernel(scope->graph, kernel, index);
     if (!code)
-        code = check_call(graph, at, *index, args, n, objects);
+        code = check_call(scope->graph, at, *index, args, n, objects);
     if (code)
         return code;
-    code = check_objects(graph, kernel, n, objects);
-    if (code)
-        graph_unmark(graph, n, objects);
+    for (size_t i = 0; i < n && !code; i++)
+        if ((code = check_object(scope, kernel, i, objects[i])))
+            graph_unmark(scope, i, objects);
     return code;
 }
 
-int graph_fork(struct graph *graph, void *worker, const struct graph_how *how,
-               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
+/* NULL without memory. */
+static struct graph_task *body_task(struct graph_scope *scope, void *worker,
+                                    const struct graph_how *how, uint32_t index, const void *args,
+                                    size_t n)
 {
-    uint32_t index = 0, done = 0;
-    int at = how->at;
-    int code = graph_check(graph, at, kernel, args, n, objects, &index);
-    if (code)
-        return code;
-    graph->forks++;
-    graph_mix(graph, (uint64_t)index << 32 | (uint32_t)at);
-    const struct data_object *own = owner(graph, kernel, n, objects);
-    if (at == GRAPH_ANYWHERE)
-        at = own ? own->home : 0;
+    const duite_kernel *kernel = scope->graph->kernels[index];
+    struct graph_task *task = graph_task_new(scope, GRAPH_BODY, n, kernel->args_size);
+    if (!task)
+        return NULL;
+    task->kernel = index;
+    task->priority = how->priority;
+    task->cost = how->cost;
+    if (kernel->args_size)
+        memcpy(task->args, args, kernel->args_size);
+    size_t postponed = 0;
+    for (size_t i = 0; i < n; i++)
+        postponed += graph_postponed(data_mode_of(kernel, i));
+    if (!postponed || graph_scope_new(task, postponed))
+        return task;
+    base_no_memory("a task");
+    graph_break(scope->graph);
+    graph_void(scope->graph, worker, task, 0, 0);
+    return NULL;
+}
+
+/* Checked: nothing but memory can be missing. */
+static int fork_checked(struct graph_scope *scope, void *worker, const struct graph_how *how,
+                        uint32_t index, const void *args, size_t n, const duite_object *objects)
+{
+    struct graph *graph = scope->graph;
+    const duite_kernel *kernel = graph->kernels[index];
+    const struct data_object *own = owner(scope, kernel, n, objects);
     struct graph_task *task = NULL;
-    if (at == graph->rank && !(task = body_task(graph, how, index, args, n)))
+    uint32_t done = 0, stamp = n ? graph_new_stamp() : 0;
+    int at = how->at;
+    if (at == GRAPH_ANYWHERE)
+        at = scope->depth ? graph->rank : own ? own->home : 0;
+    if (at == graph->rank && !(task = body_task(scope, worker, how, index, args, n)))
         return DUITE_E_MEMORY;
     if (task && own)
         task->block = own->block;
     for (size_t i = 0; i < n; i++) {
-        graph_mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
-        code = use(graph, worker, at, kernel, i, objects[i], task, &done);
+        struct data_object *object = object_of(scope, objects[i]);
+        if (!scope->depth)
+            graph_mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
+        if (task)
+            describe(task, i, data_mode_of(kernel, i), object, stamp);
+        int code = use(scope, worker, at, kernel, i, object, task, &done);
         if (code && task)
             graph_void(graph, worker, task, i, done);
         if (code)
@@ -225,15 +294,34 @@ int graph_fork(struct graph *graph, void *worker, const struct graph_how *how,
     return DUITE_OK;
 }
 
-int graph_free(struct graph *graph, void *worker, duite_object name)
+int graph_fork(struct graph_scope *scope, void *worker, const struct graph_how *how,
+               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
 {
-    struct data_object *object = data_object_find(&graph->table, name);
+    uint32_t index;
+    int code = graph_check(scope, how->at, kernel, args, n, objects, &index);
+    if (code)
+        return code;
+    scope->forks++;
+    if (!scope->depth)
+        graph_mix(scope->graph, (uint64_t)index << 32 | (uint32_t)how->at);
+    return fork_checked(scope, worker, how, index, args, n, objects);
+}
+
+int graph_free(struct graph_scope *scope, void *worker, duite_object name)
+{
+    struct graph *graph = scope->graph;
+    duite_mode right;
+    struct data_object *object = graph_object(scope, name, &right);
     if (!object)
         return DUITE_E_OBJECT;
-    graph_mix(graph, (uint64_t)name.slot << 32 | name.generation);
-    int code = object->leaves ? graph_close(graph, worker, object) : DUITE_OK;
+    if (!scope->depth)
+        graph_mix(graph, (uint64_t)name.slot << 32 | name.generation);
+    int code = object->leaves ? graph_close(scope, worker, object) : DUITE_OK;
     graph_forget(graph, worker, object);
-    data_object_drop(&graph->table, name);
+    if (scope->depth)
+        graph_drop(scope, object);
+    else
+        data_object_drop(&graph->table, name);
     return code;
 }
 
@@ -247,14 +335,14 @@ int graph_copy(struct graph *graph, void *worker, duite_object name, int to,
         return base_error(DUITE_E_ARGUMENT, "duite_get_at: there is no rank %d, only 0 to %d", to,
                           graph->n_ranks - 1);
     graph_mix(graph, (uint64_t)name.slot << 32 | (uint32_t)to);
-    int code = object->leaves ? graph_close(graph, worker, object) : DUITE_OK;
+    int code = object->leaves ? graph_close(&graph->root, worker, object) : DUITE_OK;
     for (int rank = 0; rank < graph->n_ranks && !code; rank++)
         if (to == GRAPH_ANYWHERE || to == rank)
             code = graph_fetch(graph, worker, object, rank);
     if (code || (to != GRAPH_ANYWHERE && to != graph->rank))
         return code;
     struct data_version *version = graph_local(graph, object);
-    struct graph_task *task = version ? graph_task_new(graph, GRAPH_COPY, 1, 0) : NULL;
+    struct graph_task *task = version ? graph_task_new(&graph->root, GRAPH_COPY, 1, 0) : NULL;
     if (!task)
         return DUITE_E_MEMORY;
     task->copy = copy;
@@ -264,4 +352,20 @@ int graph_copy(struct graph *graph, void *worker, duite_object name, int to,
     graph_read(task, 0, version, &done);
     graph_settled(graph, worker, task, done);
     return DUITE_OK;
+}
+
+int graph_pin(struct graph_scope *scope, void *worker, duite_object name,
+              struct data_version **version, size_t *size)
+{
+    duite_mode right;
+    struct data_object *object = graph_object(scope, name, &right);
+    if (!object)
+        return DUITE_E_OBJECT;
+    *size = data_type_size(object->type);
+    int code = object->leaves ? graph_close(scope, worker, object) : DUITE_OK;
+    if (!code && !(*version = graph_local(scope->graph, object)))
+        code = DUITE_E_MEMORY;
+    if (!code)
+        data_version_hold(*version);
+    return code;
 }

@@ -22,7 +22,7 @@ static int check_kernel(const duite_kernel *kernel, uint32_t index, uint32_t *n_
     *n_fixed = 0;
     for (uint32_t i = 0; i < DUITE_MAX_ACCESS; i++) {
         duite_mode mode = kernel->access[i];
-        if ((int)mode < DUITE_NONE || mode > DUITE_CW)
+        if ((int)mode < DUITE_NONE || mode > DUITE_CWP)
             return base_error(DUITE_E_KERNEL, "kernel %s: parameter %u has no such mode: %d",
                               kernel->name, i, (int)mode);
         if (mode != DUITE_NONE && i != *n_fixed)
@@ -30,7 +30,7 @@ static int check_kernel(const duite_kernel *kernel, uint32_t index, uint32_t *n_
                               kernel->name, i);
         *n_fixed += mode != DUITE_NONE;
     }
-    if ((int)kernel->rest < DUITE_NONE || kernel->rest > DUITE_CW)
+    if ((int)kernel->rest < DUITE_NONE || kernel->rest > DUITE_CWP)
         return base_error(DUITE_E_KERNEL, "kernel %s: `rest` has no such mode: %d", kernel->name,
                           (int)kernel->rest);
     return DUITE_OK;
@@ -75,7 +75,8 @@ int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *
     memset(graph, 0, sizeof *graph);
     graph->rank = rank;
     graph->n_ranks = n_ranks;
-    atomic_init(&graph->unfinished, 0);
+    graph->root.graph = graph;
+    atomic_init(&graph->root.unfinished, 0);
     atomic_init(&graph->given_up, 0);
     atomic_init(&graph->rename_bytes, 0);
     atomic_init(&graph->renamed, 0);
@@ -94,6 +95,10 @@ void graph_stop(struct graph *graph)
         if (object->sum)
             data_sum_free(object->sum);
     }
+    for (struct data_sum *sum = graph->unclosed, *next; sum; sum = next) {
+        next = sum->next;
+        data_sum_free(sum);
+    }
     for (struct graph_failure *node = graph->failures, *next; node; node = next) {
         next = node->next;
         base_free(node);
@@ -104,8 +109,9 @@ void graph_stop(struct graph *graph)
     pthread_mutex_destroy(&graph->lock);
 }
 
-const struct data_failure *graph_fail(struct graph *graph, const struct data_failure *failure,
-                                      bool report)
+/* Keeps a failure and tells it to the scope, unless that is NULL, and to all above. */
+static const struct data_failure *keep(struct graph *graph, const struct data_failure *failure,
+                                       struct graph_scope *scope)
 {
     static const struct data_failure unrecorded = {
         .code = DUITE_E_MEMORY, .text = "and there was no memory to record which task failed"};
@@ -118,20 +124,52 @@ const struct data_failure *graph_fail(struct graph *graph, const struct data_fai
         node->next = graph->failures;
         graph->failures = node;
     }
-    if (report)
-        graph->first_failure = data_first(graph->first_failure, kept);
+    for (; scope; scope = scope->parent)
+        scope->failure = data_first(scope->failure, kept);
     pthread_mutex_unlock(&graph->lock);
     return kept;
 }
 
-const struct data_failure *graph_fail_memory(struct graph *graph, const struct graph_task *task)
+const struct data_failure *graph_fail(struct graph *graph, const struct data_failure *failure,
+                                      bool report)
 {
-    struct data_failure failure = {.code = DUITE_E_MEMORY,
-                                   .rank = graph->rank,
-                                   .number = task->number,
-                                   .kernel = task->kernel,
-                                   .text = "no memory for what it writes"};
-    return graph_fail(graph, &failure, true);
+    return keep(graph, failure, report ? &graph->root : NULL);
+}
+
+/* The task's place in the reference order. What a body does after a wait comes after the children
+ * before it. */
+static void place_failure(struct data_failure *failure, const struct graph_task *task)
+{
+    uint64_t index[sizeof failure->path];
+    uint32_t depth = task->scope->depth, most = sizeof index / sizeof index[0];
+    if (depth && depth <= most)
+        index[depth - 1] = task->number;
+    failure->number = task->number;
+    for (const struct graph_scope *scope = task->scope; scope->depth; scope = scope->parent) {
+        failure->number = scope->number;
+        if (scope->depth > 1 && scope->depth - 2 < most)
+            index[scope->depth - 2] = scope->number;
+    }
+    for (uint32_t i = 0; i < depth && i < most; i++)
+        data_path_add(failure, index[i]);
+    if (task->inner && task->inner->segment)
+        data_path_add(failure, task->inner->segment);
+}
+
+const struct data_failure *graph_fail_task(const struct graph_task *task,
+                                           struct data_failure *failure)
+{
+    struct graph *graph = task->scope->graph;
+    failure->rank = graph->rank;
+    failure->kernel = task->kernel;
+    place_failure(failure, task);
+    return keep(graph, failure, task->scope);
+}
+
+const struct data_failure *graph_fail_memory(const struct graph_task *task)
+{
+    struct data_failure failure = {.code = DUITE_E_MEMORY, .text = "no memory for what it writes"};
+    return graph_fail_task(task, &failure);
 }
 
 struct data_packet *graph_poison_packet(struct data_key key, const struct data_failure *failure)
@@ -149,7 +187,9 @@ int graph_failure_error(const struct graph *graph, const struct data_failure *fa
 {
     const char *kernel =
         failure->kernel < graph->n_kernels ? graph->kernels[failure->kernel]->name : "of duite";
-    return base_error(failure->code, "task %llu (kernel %s) failed on rank %d with code %d%s%s",
-                      (unsigned long long)failure->number, kernel, failure->rank, failure->code,
-                      failure->text[0] ? ": " : "", failure->text);
+    char place[120];
+    data_path_print(failure, place, sizeof place);
+    return base_error(failure->code, "task %s (kernel %s) failed on rank %d with code %d%s%s",
+                      place, kernel, failure->rank, failure->code, failure->text[0] ? ": " : "",
+                      failure->text);
 }

@@ -16,6 +16,7 @@ enum graph_kind {
     GRAPH_BODY,    /* a task of the program */
     GRAPH_COMBINE, /* combines the contributions with an object */
     GRAPH_PIECES,  /* combines this rank's contributions, and turns into the SEND of them */
+    GRAPH_GATHER,  /* combines the contributions of a task's children into one of its own */
     GRAPH_SEND,    /* sends a version or pieces to another rank */
     GRAPH_COPY,    /* duite_get: copies a version to the main program */
     GRAPH_VOID,   /* memory ran out while it was forked: does not run, and poisons what it writes */
@@ -27,11 +28,14 @@ enum graph_kind {
     GRAPH_NODE_FLAG /* decides whether there is another round */
 };
 
+struct graph_scope;
+
 /* One parameter of a task. */
 struct graph_access {
     struct data_waiter waiter; /* waits for `in`, as a reader or as its heir */
     duite_mode mode;
     bool sized;               /* the object's size changes */
+    uint32_t lent;            /* postponed: its place in the task's scope, where the rest is */
     struct data_version *in;  /* what is read or overwritten; NULL: a w without bytes to reuse */
     struct data_version *out; /* what is written */
     struct data_sum *sum;     /* cw: what is contributed to */
@@ -44,21 +48,24 @@ struct graph_task {
     uint32_t n;
     struct graph_task *next; /* a link for whoever holds the task: queues, lists */
     enum graph_kind kind;
-    uint32_t kernel; /* index in the list given at start */
-    uint64_t number; /* in fork order */
-    uint32_t block;  /* for schedulers: of the object that it runs for */
+    uint32_t kernel;           /* index in the list given at start */
+    uint64_t number;           /* in fork order among the tasks of its scope */
+    struct graph_scope *scope; /* where it was forked */
+    struct graph_scope *inner; /* what its children may use, or NULL */
+    uint32_t block;            /* for schedulers: of the object that it runs for */
     int32_t priority;
     double cost; /* seconds; 0: not said */
     union {
         void *args;                  /* BODY: its copy of the arguments */
-        struct graph_sum *sum;       /* COMBINE, PIECES */
+        struct graph_sum *sum;       /* COMBINE, PIECES, GATHER */
         struct graph_send *send;     /* SEND */
         struct graph_copy *copy;     /* COPY */
         struct graph_replay *replay; /* REPLAY */
         struct graph_node *node;     /* NODE... */
     };
-    size_t size;        /* of all of it, in bytes */
-    duite_param *param; /* n */
+    size_t size;                        /* of all of it, in bytes */
+    const struct data_failure *failure; /* BODY, VOID: its own, or the poison it met, or NULL */
+    duite_param *param;                 /* n */
     struct graph_access access[];
 };
 
@@ -69,7 +76,7 @@ struct graph_send {
     struct data_packet *packet; /* NULL: the version that the task reads, as it lies */
 };
 
-/* COMBINE and PIECES: the contributions to close. */
+/* COMBINE, PIECES and GATHER: the contributions to close. */
 struct graph_sum {
     struct data_waiter waiter; /* waits for them all */
     struct data_sum *sum;
@@ -82,6 +89,23 @@ struct graph_copy {
     size_t bytes; /* how many there were */
     const struct data_failure *failure;
     _Atomic int done;
+};
+
+/* Where tasks are forked: the main program, or a task. A task's scope (nest.c) holds the objects
+ * that its children may use, each the same chain of versions as the main program's; it lives until
+ * all of its descendants are over. While the body runs the scope is its worker's alone; afterwards
+ * nobody forks here, and only `unfinished` and `failure` change. */
+struct graph_scope {
+    struct graph *graph;
+    struct graph_scope *parent;  /* where its task was forked; NULL: the main program */
+    _Atomic uint64_t unfinished; /* tasks forked here, each with its descendants; values to be
+                                    passed to the scope above; 1 while the body runs */
+    uint64_t forks;              /* so far; inside a task waits count, too */
+    const struct data_failure *failure; /* first in reference order since the last wait; `lock` */
+    uint64_t number;                    /* of its task */
+    uint64_t segment;                   /* `forks` at the last wait of the body */
+    uint32_t depth;                     /* 0: the main program */
+    bool outward;                       /* its children may wait for tasks outside of it */
 };
 
 /* What lies above: handed over at start. `worker` is whoever calls, passed through untouched. */
@@ -106,18 +130,18 @@ struct graph {
     uint32_t *n_fixed; /* parameters in each kernel's `access` */
     uint32_t n_kernels;
     struct graph_hooks hooks;
-    uint64_t forks;       /* so far, on all ranks the same */
-    uint64_t fingerprint; /* of the forks since the last wait */
-    int broken;           /* memory ran out in the middle of a fork: the code of every later call */
+    struct graph_scope root; /* the main program; its `forks` are the same on all ranks, its
+                                `unfinished` the tasks of this one */
+    uint64_t fingerprint;    /* of the main program's forks since the last wait */
+    _Atomic int broken;   /* memory ran out in the middle of a fork: the code of every later call */
     _Atomic int given_up; /* bodies do not run any more */
-    _Atomic uint64_t unfinished;   /* tasks of this rank */
-    uint64_t resume;               /* and as few of them let a throttled main program go on */
+    uint64_t resume;               /* as few unfinished tasks let a throttled main program go on */
     uint64_t rename_most;          /* limit of `rename_bytes` */
     _Atomic uint64_t rename_bytes; /* of packets that exist since a w did not wait */
     _Atomic uint64_t renamed;      /* such w */
-    pthread_mutex_t lock;          /* failures */
+    pthread_mutex_t lock;          /* of the rest, and of the failures of scopes */
     struct graph_failure *failures;
-    const struct data_failure *first_failure; /* in fork order, since the last wait */
+    struct data_sum *unclosed; /* of tasks that are over: there was no memory to combine them */
 };
 
 /* kernels: ended by NULL, checked, the list copied; laws likewise, or NULL, not kept. `hooks` are
@@ -134,42 +158,94 @@ void graph_stop(struct graph *graph);
  * so themselves. */
 void graph_mix(struct graph *graph, uint64_t value);
 
-enum { GRAPH_ANYWHERE = -1 };
+/* ---- Main thread with the graph's root as scope: collective, the homes of all objects are
+ * settled. Or a body with its own scope: local; the task forked runs here. ---- */
 
 /* What a fork says of how its task runs. Priority and cost are the running rank's; they do not
  * belong to the fingerprint. */
+enum { GRAPH_ANYWHERE = -1 };
 struct graph_how {
     int at; /* a rank, or GRAPH_ANYWHERE */
     int32_t priority;
     double cost; /* seconds; 0: not said */
 };
 
-int graph_fork(struct graph *graph, void *worker, const struct graph_how *how,
+int graph_fork(struct graph_scope *scope, void *worker, const struct graph_how *how,
                const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects);
 /* Overwrites with a copy of *count values, or with zeros if they are NULL, without waiting for
  * anything. count NULL: as many as the object has at most. Errors: objects, DUITE_E_SIZE, memory.
  */
-int graph_set(struct graph *graph, void *worker, duite_object object, const void *values,
+int graph_set(struct graph_scope *scope, void *worker, duite_object object, const void *values,
               const size_t *count);
-int graph_free(struct graph *graph, void *worker, duite_object object);
+int graph_free(struct graph_scope *scope, void *worker, duite_object object);
 
 /* Starts copying an object to `copy` on rank `to`, or on all ranks with GRAPH_ANYWHERE. The caller
- * waits for copy->done on the ranks it goes to. */
+ * waits for copy->done on the ranks it goes to. Main thread only. */
 int graph_copy(struct graph *graph, void *worker, duite_object object, int to,
                struct graph_copy *copy);
+/* The version of the object that the forks so far leave, which is or will be here, held for the
+ * caller until graph_release; and the size of an element in bytes. Body only. */
+int graph_pin(struct graph_scope *scope, void *worker, duite_object object,
+              struct data_version **version, size_t *size);
+/* Releases a hold and wakes the heir. */
+void graph_release(struct graph *graph, void *worker, struct data_version *version);
+
+/* ---- A running body ---- */
+
+struct duite_call_private {
+    struct duite_call_private *outer; /* the body that waits below on this thread */
+    struct graph *graph;
+    void *worker;
+    struct graph_task *task;
+    int refused;        /* code of a duite_resize that failed, or 0: it fails with that at least */
+    int remembered;     /* the first error of its calls that it may not have looked at */
+    char sentence[204]; /* of `remembered` */
+    char text[sizeof((struct data_failure *)0)->text]; /* what it says of its failure */
+};
+
+/* The body that runs on this thread for this graph, or NULL. */
+struct duite_call_private *graph_running(const struct graph *graph);
+
+/* Whether a body, running or just over, forked a task or made an object. */
+static inline bool graph_body_forked(const duite_call *call)
+{
+    return call->own->task->inner != NULL;
+}
+
+/* The scope of a running body, made when it is first asked for. NULL without memory. */
+struct graph_scope *graph_inside(struct duite_call_private *body);
+
+/* Makes an object of `count` zeros, and at most `most` elements if its size changes, that belongs
+ * to the task. Errors: type, count, memory. */
+int graph_make(struct duite_call_private *body, duite_type type, size_t count, size_t most,
+               bool sized, duite_object *name);
+
+/* All tasks forked in this scope are over, with their descendants. */
+bool graph_alone(struct graph_scope *scope);
+
+/* What a body does from now on comes after the tasks it forked so far. */
+void graph_close_segment(struct graph_scope *scope);
+
+/* The first failure among the tasks of this scope and their descendants since the last time, or
+ * NULL. */
+const struct data_failure *graph_first_failure(struct graph_scope *scope);
+
+/* DUITE_E_RIGHT or DUITE_E_OBJECT if a child of the body could not have the object with this mode.
+ */
+int graph_check_call(struct duite_call_private *body, const char *call, duite_object object,
+                     duite_mode wanted);
+/* Whether the object, whose name was checked, is a parameter of the body. */
+bool graph_lent(const struct duite_call_private *body, duite_object object);
+
+/* Whether a body that waits in `scope` may have this task run on top of it: a descendant, or, if
+ * its descendants may wait for tasks outside, one that comes earlier in the reference order. */
+bool graph_may_run(const struct graph_scope *scope, const struct graph_task *task);
 
 /* ---- Any worker ---- */
 
-/* What the running body may say of its failure, and what it was refused. */
-struct duite_call_private {
-    struct graph_task *task; /* NULL in replays */
-    int refused;             /* code of a call that failed, or 0: the task fails with it at least */
-    char text[sizeof((struct data_failure *)0)->text];
-};
-
-/* Runs a ready task (not a SEND), which graph_finish then ends. `call` has context, rank, worker
- * and own set. Returns whether a body ran. */
-bool graph_run(struct graph *graph, struct graph_task *task, duite_call *call);
+/* Runs a ready task (not a SEND), which graph_finish then ends. `call` has context, rt, rank and
+ * worker set. Returns whether a body ran. */
+bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const duite_call *call);
 
 /* What became a SEND when it ran is to be sent now. */
 static inline bool graph_to_send(const struct graph_task *task)

@@ -7,7 +7,7 @@
 
 /* A task with n accesses and `extra` bytes behind them (in task->args); pending is n + 1; counted
  * as unfinished. NULL without memory: then the graph is broken. */
-struct graph_task *graph_task_new(struct graph *graph, enum graph_kind kind, size_t n,
+struct graph_task *graph_task_new(struct graph_scope *scope, enum graph_kind kind, size_t n,
                                   size_t extra);
 
 /* Takes `done` and the hold of the fork from pending; the task is ready if nothing is left. */
@@ -16,11 +16,10 @@ void graph_settled(struct graph *graph, void *worker, struct graph_task *task, u
 /* What the waiter waited for is there. NULL is fine. */
 void graph_wake(struct graph *graph, void *worker, struct data_waiter *waiter);
 
-/* Releases a hold and wakes the heir. */
-void graph_release(struct graph *graph, void *worker, struct data_version *version);
-
 /* The version is there: wakes its readers, releases the producer's hold. */
 void graph_publish(struct graph *graph, void *worker, struct data_version *version);
+/* The same, but an heir that may have the version now is returned. */
+struct data_waiter *graph_produced(struct graph *graph, void *worker, struct data_version *version);
 
 /* Makes access i of the task a reader of `version`, or its heir that writes the new version
  * returned by graph_overwrite. *done grows by one if there is nothing to wait for. */
@@ -44,11 +43,65 @@ void graph_forget(struct graph *graph, void *worker, struct data_object *object)
 
 /* Contributions: adds a leaf for access i (task NULL: it runs elsewhere, on rank `at`) after ending
  * a run of another law, and ends the run of them. */
-int graph_contribute(struct graph *graph, void *worker, struct data_object *object,
+int graph_contribute(struct graph_scope *scope, void *worker, struct data_object *object,
                      const duite_law *law, int at, struct graph_task *task, size_t i);
-int graph_close(struct graph *graph, void *worker, struct data_object *object);
-void graph_run_combine(struct graph *graph, struct graph_task *task);
-void graph_run_pieces(struct graph *graph, struct graph_task *task);
+int graph_close(struct graph_scope *scope, void *worker, struct data_object *object);
+void graph_run_combine(struct graph_task *task);
+void graph_run_pieces(struct graph_task *task);
+/* The contributions of a task's children become `leaf` of `sum`, the one it is a contribution to.
+ */
+int graph_gather(struct graph_scope *scope, void *worker, struct data_object *object,
+                 struct data_sum *sum, struct data_piece *leaf);
+void graph_run_gather(struct graph_task *task);
+
+/* ---- Nesting ---- */
+
+static inline bool graph_postponed(duite_mode mode)
+{
+    return mode >= DUITE_RP;
+}
+/* The mode that makes the same dependences. */
+static inline duite_mode graph_immediate(duite_mode mode)
+{
+    return graph_postponed(mode) ? (duite_mode)(mode - DUITE_RP + DUITE_R) : mode;
+}
+const char *graph_mode_name(duite_mode mode);
+
+/* The scope of a task that has room for n postponed parameters. NULL without memory. */
+struct graph_scope *graph_scope_new(struct graph_task *task, size_t n);
+/* Access i of the task, a postponed parameter, moves into its scope: the object with its version,
+ * and `out` or a leaf of `sum`, to be passed back at the end. */
+void graph_lend(struct graph_task *task, size_t i, const struct data_object *object,
+                struct data_version *version, struct data_version *out);
+/* The body is over, or never ran: what the children leave goes to the scope above, poisoned by
+ * `failure` if there is one. */
+void graph_scope_end(struct graph_scope *scope, void *worker, const struct data_failure *failure);
+/* A task of the scope is over with its descendants, or a value was passed on. */
+void graph_left(struct graph_scope *scope);
+/* The object of that name, with the right held on it; NULL with the error's sentence set. */
+struct data_object *graph_object(struct graph_scope *scope, duite_object name, duite_mode *right);
+/* Takes the name of an object that the task made out of use. */
+void graph_drop(struct graph_scope *scope, struct data_object *object);
+/* The slots of the names that bodies use: parameters first, then the objects they made. */
+#define GRAPH_LOCAL_NAME UINT32_C(0x80000000)
+/* Their generations: numbers that no other task or object of this process has had for 2^32 of them.
+ * Threads draw them in batches. */
+uint32_t graph_new_stamp(void);
+/* Passes the value on to which the waiter of a version without task belongs. Returns the heir of
+ * the version it became, if that has no more holds. */
+struct data_waiter *graph_pass(void *worker, struct data_waiter *waiter);
+/* Whether a child may have the object with this mode. For the sentence: the call, or its kernel,
+ * and which parameter it is. */
+int graph_check_right(struct graph_scope *scope, const char *call, size_t i, duite_object name,
+                      duite_mode wanted);
+/* DUITE_E_RIGHT: a child contributes by another law than that of the contribution it is part of. */
+int graph_wrong_law(const struct graph_scope *scope, const duite_kernel *kernel, size_t i,
+                    duite_object name);
+/* A body begins, and ends: meanwhile calls on this thread are this body's. */
+void graph_body_begins(struct duite_call_private *body);
+void graph_body_ends(struct duite_call_private *body);
+
+/* ---- Failures ---- */
 
 /* Access i of an object whose size changes has this packet: tells the body its size; the body is
  * over: what it wrote has the sizes it said. */
@@ -58,15 +111,18 @@ void graph_size_close(struct graph_task *task);
 /* Keeps a failure until stop; `report`: the next wait tells it. Never NULL. */
 const struct data_failure *graph_fail(struct graph *graph, const struct data_failure *failure,
                                       bool report);
+/* The same of a task: its place is filled in; the waits of all scopes above tell it, too. */
+const struct data_failure *graph_fail_task(const struct graph_task *task,
+                                           struct data_failure *failure);
 /* The failure of a task for want of memory. */
-const struct data_failure *graph_fail_memory(struct graph *graph, const struct graph_task *task);
+const struct data_failure *graph_fail_memory(const struct graph_task *task);
 struct data_packet *graph_poison_packet(struct data_key key, const struct data_failure *failure);
 
 /* Fits a fork kernel, arguments and objects? Then *index is the kernel's. The objects are marked as
  * named by the next fork; graph_unmark takes this back. */
-int graph_check(struct graph *graph, int at, const duite_kernel *kernel, const void *args, size_t n,
-                const duite_object *objects, uint32_t *index);
-void graph_unmark(struct graph *graph, size_t n, const duite_object *objects);
+int graph_check(struct graph_scope *scope, int at, const duite_kernel *kernel, const void *args,
+                size_t n, const duite_object *objects, uint32_t *index);
+void graph_unmark(struct graph_scope *scope, size_t n, const duite_object *objects);
 
 /* May the object be set to so many elements? */
 int graph_set_check(const struct data_object *object, duite_object name, size_t count);
@@ -79,16 +135,24 @@ void graph_void(struct graph *graph, void *worker, struct graph_task *task, size
 /* Why nothing runs any more, or NULL. */
 const struct data_failure *graph_given_up(struct graph *graph);
 
+/* Calls the body; returns its failure, or NULL. An error of its calls that it did not look at is
+ * one. */
+const struct data_failure *graph_call_body(struct graph *graph, void *worker,
+                                           struct graph_task *task, const void *args,
+                                           const duite_call *call);
+
 /* A replay: binds the objects; starts the first round. */
-void graph_replay_run(struct graph *graph, struct graph_task *task);
+void graph_replay_run(struct graph_task *task);
 void graph_replay_start(struct graph *graph, void *worker, struct graph_task *task);
 /* A node of a replay: runs it, returns whether a body ran; tells its successors. */
-bool graph_node_run(struct graph *graph, struct graph_task *task, duite_call *call);
+bool graph_node_run(struct graph *graph, void *worker, struct graph_task *task,
+                    const duite_call *call);
 void graph_node_finish(struct graph *graph, void *worker, struct graph_task *task);
 
 /* Publishes what a task wrote, releases what it read, frees it. */
 void graph_over(struct graph *graph, void *worker, struct graph_task *task);
 
+/* Of an object of the main program. */
 static inline struct data_key graph_key(const struct graph *graph, const struct data_object *object)
 {
     duite_object name = data_object_name(&graph->table, object);

@@ -1,6 +1,7 @@
 libduite_la_SOURCES += runtime/graph/depend.c runtime/graph/fork.c runtime/graph/graph.c \
-	runtime/graph/graph.h runtime/graph/internal.h runtime/graph/print.c runtime/graph/record.c runtime/graph/record.h \
+	runtime/graph/graph.h runtime/graph/internal.h runtime/graph/nest.c runtime/graph/nest.h \
+	runtime/graph/print.c runtime/graph/record.c runtime/graph/record.h \
 	runtime/graph/replay.c runtime/graph/replay.h runtime/graph/replay_call.c \
-	runtime/graph/replay_draft.c \
-	runtime/graph/replay_draft.h runtime/graph/replay_plan.c runtime/graph/rename.c runtime/graph/resize.c runtime/graph/run.c runtime/graph/set.c \
+	runtime/graph/replay_draft.c runtime/graph/replay_draft.h runtime/graph/replay_plan.c \
+	runtime/graph/rename.c runtime/graph/resize.c runtime/graph/right.c runtime/graph/run.c runtime/graph/set.c \
 	runtime/graph/sum.c

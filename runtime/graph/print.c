@@ -4,6 +4,8 @@
 
 #include "runtime/base/error.h"
 #include "runtime/data/law.h"
+#include "runtime/data/mode.h"
+#include "runtime/graph/internal.h"
 
 static void print_name(FILE *file, const char *name)
 {
@@ -16,10 +18,8 @@ static void print_name(FILE *file, const char *name)
 
 static void print_use(const struct graph_record *record, size_t object, duite_mode mode, FILE *file)
 {
-    static const char *const modes[] = {
-        [DUITE_R] = "r", [DUITE_W] = "w", [DUITE_RW] = "rw", [DUITE_CW] = "cw"};
     duite_object name = record->object[object].bound;
-    fprintf(file, "\\n%s %u.%u", modes[mode], name.slot, name.generation);
+    fprintf(file, "\\n%s %u.%u", graph_mode_name(mode), name.slot, name.generation);
 }
 
 static void print_fork(const struct graph_record *record, const struct graph_recorded_fork *fork,
@@ -31,9 +31,9 @@ static void print_fork(const struct graph_record *record, const struct graph_rec
     if (fork->how.at >= 0)
         fprintf(file, "\\nat rank %d", fork->how.at);
     for (uint32_t k = 0; k < fork->n; k++) {
-        duite_mode mode = graph_recorded_mode(record->graph, fork, k);
+        duite_mode mode = sets ? DUITE_W : data_mode_of(kernel, k);
         print_use(record, record->use[fork->first + k], mode, file);
-        if (mode == DUITE_CW) {
+        if (graph_immediate(mode) == DUITE_CW) {
             fputs(" ", file);
             print_name(file, data_law_of(kernel, k)->name);
         }

@@ -113,7 +113,9 @@ static void use(struct graph_record *record, duite_object name, duite_mode mode)
 duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_recorded_fork *fork,
                                uint32_t k)
 {
-    return fork->kernel == GRAPH_SETS ? DUITE_W : data_mode_of(graph->kernels[fork->kernel], k);
+    return fork->kernel == GRAPH_SETS
+               ? DUITE_W
+               : graph_immediate(data_mode_of(graph->kernels[fork->kernel], k));
 }
 
 /* The bytes of the arguments are still to be written. */
@@ -148,10 +150,12 @@ int graph_record_fork(struct graph_record *record, const struct graph_how *how,
                       const duite_object *objects)
 {
     uint32_t index;
-    int code = graph_check(record->graph, how->at, kernel, args, n, objects, &index);
+    int code = graph_check(&record->graph->root, how->at, kernel, args, n, objects, &index);
     if (code)
         return code;
-    graph_unmark(record->graph, n, objects);
+    graph_unmark(&record->graph->root, n, objects);
+    for (size_t i = 0; i < n; i++)
+        record->forked |= graph_postponed(data_mode_of(kernel, i));
     struct graph_recorded_fork *fork = append(record, index, how, n, objects, kernel->args_size);
     if (!fork)
         return DUITE_E_MEMORY;

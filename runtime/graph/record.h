@@ -37,7 +37,7 @@ struct graph_recorded_object {
 
 struct graph_plan;
 
-/* The mode in which a fork uses its k-th object. */
+/* The mode in which a fork, with its descendants, uses its k-th object. */
 duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_recorded_fork *fork,
                                uint32_t k);
 
@@ -66,8 +66,8 @@ struct graph_record {
     size_t names_capacity;
     bool whole;   /* build came to its end */
     bool rebound; /* since the bindings were last found to be different objects */
-    bool forked;  /* has no plan: contributions of one round and of the next make one sum, or the
-                     size of an object changes */
+    bool forked;  /* has no plan: contributions of one round and of the next make one sum, the size
+                     of an object changes, or a right is postponed */
     bool trails;  /* some object's contributions end the round: they stay open after the last */
     int failed;   /* code of the first call of build that failed */
     char sentence[512]; /* of it */

@@ -85,7 +85,7 @@ static void reset_nodes(struct graph_plan *plan, const struct graph_replay *repl
     }
 }
 
-void graph_replay_run(struct graph *graph, struct graph_task *task)
+void graph_replay_run(struct graph_task *task)
 {
     struct graph_replay *replay = task->replay;
     struct graph_plan *plan = replay->plan;
@@ -105,7 +105,7 @@ void graph_replay_run(struct graph *graph, struct graph_task *task)
     reset_nodes(plan, replay);
     if (fine)
         return;
-    const struct data_failure *failure = graph_fail_memory(graph, task);
+    const struct data_failure *failure = graph_fail_memory(task);
     for (size_t i = 0; i < plan->n_objects; i++)
         plan->place[i].failure = failure;
     replay->rounds = 0;
@@ -172,16 +172,16 @@ static void clear_leaves(const struct graph_plan *plan, const struct graph_task 
     }
 }
 
-static const struct data_failure *failed(struct graph *graph, const struct graph_task *task,
-                                         int code, const duite_call *call)
+/* The body forked tasks on objects of its own and on what it read. */
+static void leave_scope(struct graph_task *task, void *worker, const struct data_failure *failure)
 {
-    struct data_failure failure = {
-        .code = code, .rank = graph->rank, .number = task->number, .kernel = task->kernel};
-    memcpy(failure.text, call->own->text, sizeof failure.text);
-    return graph_fail(graph, &failure, true);
+    struct graph_scope *inner = task->inner;
+    task->inner = NULL;
+    graph_scope_end(inner, worker, failure);
 }
 
-static bool run_body(struct graph *graph, struct graph_task *task, duite_call *call)
+static bool run_body(struct graph *graph, void *worker, struct graph_task *task,
+                     const duite_call *call)
 {
     const struct graph_node *node = task->node;
     struct graph_plan *plan = node->plan;
@@ -193,20 +193,9 @@ static bool run_body(struct graph *graph, struct graph_task *task, duite_call *c
     if (runs) {
         if (node->n_leaves)
             clear_leaves(plan, task);
-        call->args = node->args;
-        call->param = task->param;
-        call->n_params = task->n;
-        call->own->task = NULL; /* its objects have fixed sizes */
-        call->own->refused = DUITE_OK;
-        call->own->text[0] = '\0';
-        int code = graph->hooks.body
-                       ? graph->hooks.body(graph->hooks.context, graph->kernels[task->kernel],
-                                           task->number, call)
-                       : node->body(call);
-        if (!code)
-            code = call->own->refused;
-        if (code)
-            failure = failed(graph, task, code, call);
+        failure = graph_call_body(graph, worker, task, node->args, call);
+        if (task->inner)
+            leave_scope(task, worker, failure);
     }
     if (failure)
         atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
@@ -280,11 +269,12 @@ static void run_flag(struct graph *graph, struct graph_task *task)
         plan->last = task->node->round;
 }
 
-bool graph_node_run(struct graph *graph, struct graph_task *task, duite_call *call)
+bool graph_node_run(struct graph *graph, void *worker, struct graph_task *task,
+                    const duite_call *call)
 {
     atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
     if (task->kind == GRAPH_NODE)
-        return run_body(graph, task, call);
+        return run_body(graph, worker, task, call);
     if (task->kind == GRAPH_NODE_SET)
         run_set(task);
     else if (task->kind == GRAPH_NODE_SUM)

@@ -14,7 +14,6 @@ struct graph_node_use {
 /* The part of a node that is not a task's; it lies in the cache line behind the task. */
 struct graph_node {
     struct graph_plan *plan;
-    duite_body *body;
     void *args;               /* or what a set writes; NULL: zeros */
     struct graph_task **next; /* n_next tasks that wait for it, those of the next round first */
     uint32_t n_next, n_cyclic;

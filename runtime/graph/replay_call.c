@@ -44,9 +44,10 @@ int graph_replay_fork(struct graph_record *record, void *worker)
         for (uint32_t k = 0; k < fork->n; k++)
             objects[k] = record->object[record->use[fork->first + k]].bound;
         if (fork->kernel == GRAPH_SETS)
-            code = graph_set(graph, worker, objects[0], fork->zeros ? NULL : args, &fork->count);
+            code = graph_set(&graph->root, worker, objects[0], fork->zeros ? NULL : args,
+                             &fork->count);
         else
-            code = graph_fork(graph, worker, &fork->how, graph->kernels[fork->kernel], args,
+            code = graph_fork(&graph->root, worker, &fork->how, graph->kernels[fork->kernel], args,
                               fork->n, objects);
     }
     return code;
@@ -67,7 +68,7 @@ static struct graph_plan *plan_for(struct graph_record *record, void *worker,
 static int use(struct graph *graph, void *worker, struct graph_task *task, size_t i,
                duite_mode mode, struct data_object *object, uint32_t *done)
 {
-    int code = object->leaves ? graph_close(graph, worker, object) : DUITE_OK;
+    int code = object->leaves ? graph_close(&graph->root, worker, object) : DUITE_OK;
     struct data_version *version = object->current;
     task->access[i].mode = mode;
     task->access[i].bytes = object->room;
@@ -119,12 +120,12 @@ int graph_replay_plan(struct graph_record *record, void *worker, const duite_obj
     if (!plan)
         return base_no_memory("a recorded graph");
     struct graph_task *task =
-        graph_task_new(graph, GRAPH_REPLAY, plan->n_objects + 1,
+        graph_task_new(&graph->root, GRAPH_REPLAY, plan->n_objects + 1,
                        sizeof *task->replay + plan->n_objects * sizeof task->replay->block[0]);
     if (!task)
         return DUITE_E_MEMORY;
-    *task->replay = (struct graph_replay){plan, rounds, graph->forks + 1, record->changes};
-    graph->forks += rounds * record->n_calls;
+    *task->replay = (struct graph_replay){plan, rounds, graph->root.forks + 1, record->changes};
+    graph->root.forks += rounds * record->n_calls;
     return use_all(record, worker, task, flag);
 }
 

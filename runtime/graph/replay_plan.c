@@ -54,7 +54,8 @@ static void fill_params(struct graph_plan *plan)
 {
     for (size_t i = 0; i < plan->n_uses; i++) {
         struct graph_place *place = &plan->place[plan->use[i].place];
-        plan->param[i] = (duite_param){place->data, place->count, place->type, place->count};
+        plan->param[i] = (duite_param){
+            .data = place->data, .count = place->count, .type = place->type, .most = place->count};
         place->n_params++;
     }
     size_t at = 0;
@@ -93,6 +94,7 @@ static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, 
                                 .kind = from->kind,
                                 .kernel = UINT32_MAX,
                                 .priority = INT32_MAX,
+                                .scope = &record->graph->root,
                                 .node = node,
                                 .param = plan->param + from->first_use};
     *node = (struct graph_node){.plan = plan,
@@ -117,10 +119,12 @@ static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, 
     task->kernel = fork->kernel;
     task->priority = fork->how.priority;
     task->cost = fork->how.cost;
-    node->body = kernel->body;
     node->args = kernel->args_size ? plan->args + fork->args : NULL;
-    for (uint32_t k = 0; k < fork->n; k++)
+    uint32_t stamp = graph_new_stamp();
+    for (uint32_t k = 0; k < fork->n; k++) {
+        task->param[k].object = (duite_object){GRAPH_LOCAL_NAME | k, stamp};
         node->n_leaves += plan->use[node->first_use + k].place >= plan->n_objects;
+    }
 }
 
 /* Successors in one row, those of the next round before those of the same. */

@@ -27,6 +27,8 @@ static int refuse(const duite_call *call, size_t i, bool sized, size_t count)
         duite_fail(call, 0, "duite_resize: there is no parameter %zu, only %zu", i, call->n_params);
     else if (!sized)
         duite_fail(call, 0, "duite_resize: the object of parameter %zu has a fixed size", i);
+    else if (graph_postponed(call->own->task->access[i].mode))
+        duite_fail(call, 0, "duite_resize: parameter %zu is its children's alone", i);
     else if (!call->own->task->access[i].out)
         duite_fail(call, 0, "duite_resize: parameter %zu is only read", i);
     else
@@ -39,7 +41,8 @@ static int refuse(const duite_call *call, size_t i, bool sized, size_t count)
 int duite_resize(const duite_call *call, size_t i, size_t count)
 {
     struct graph_task *task = call->own->task;
-    bool sized = task && i < call->n_params && task->access[i].sized;
+    bool plain = task->kind == GRAPH_BODY; /* objects of a plan have fixed sizes */
+    bool sized = plain && i < call->n_params && task->access[i].sized;
     if (!sized || !task->access[i].out || count > call->param[i].most)
         return refuse(call, i, sized, count);
     duite_param *param = (duite_param *)&call->param[i]; /* ours to write */

@@ -18,8 +18,7 @@ int duite_fail(const duite_call *call, int code, const char *format, ...)
 }
 
 /* The new version takes over the bytes of the old one. */
-static const struct data_failure *inherit(struct graph *graph, struct graph_task *task,
-                                          struct graph_access *access)
+static const struct data_failure *inherit(struct graph_task *task, struct graph_access *access)
 {
     const struct data_failure *failure = NULL;
     if (access->in) {
@@ -33,26 +32,28 @@ static const struct data_failure *inherit(struct graph *graph, struct graph_task
             data_packet_room(access->out->packet, access->bytes, access->mode == DUITE_RW);
     if (!access->out->packet && !failure &&
         !(access->out->packet = data_packet_new(access->bytes, false)))
-        failure = graph_fail_memory(graph, task);
+        failure = graph_fail_memory(task);
     return failure;
 }
 
 /* Gives the body its parameters; returns the poison among them, or NULL. */
-static const struct data_failure *prepare(struct graph *graph, struct graph_task *task)
+static const struct data_failure *prepare(struct graph_task *task)
 {
     const struct data_failure *failure = NULL;
     for (uint32_t i = 0; i < task->n; i++) {
         struct graph_access *access = &task->access[i];
         struct data_packet *packet = NULL;
+        if (graph_postponed(access->mode))
+            continue;
         if (access->mode == DUITE_R) {
             failure = data_first(failure, access->in->failure);
             packet = access->in->packet;
         } else if (access->mode == DUITE_CW) {
             if (!data_sum_open(access->sum, access->leaf))
-                failure = data_first(failure, graph_fail_memory(graph, task));
+                failure = data_first(failure, graph_fail_memory(task));
             packet = access->leaf->packet;
         } else {
-            failure = data_first(failure, inherit(graph, task, access));
+            failure = data_first(failure, inherit(task, access));
             packet = access->out->packet;
         }
         task->param[i].data = packet ? data_payload(packet) : NULL;
@@ -64,6 +65,7 @@ static const struct data_failure *prepare(struct graph *graph, struct graph_task
 
 static void poison(struct graph_task *task, const struct data_failure *failure)
 {
+    task->failure = failure;
     for (uint32_t i = 0; i < task->n; i++) {
         if (task->access[i].out)
             task->access[i].out->failure = failure;
@@ -72,28 +74,45 @@ static void poison(struct graph_task *task, const struct data_failure *failure)
     }
 }
 
-/* Calls the body; returns its failure, or NULL. */
-static const struct data_failure *call_body(struct graph *graph, struct graph_task *task,
-                                            duite_call *call)
+/* What the body says of its failure: its own sentence, or that of the call whose code it returns.
+ */
+static const struct data_failure *body_failed(const struct duite_call_private *body, int code)
 {
-    call->args = task->args;
-    call->param = task->param;
-    call->n_params = task->n;
-    *call->own = (struct duite_call_private){.task = task};
+    struct data_failure failure = {.code = code};
+    if (!body->text[0] && code == body->remembered)
+        memcpy(failure.text, body->sentence, sizeof failure.text);
+    else
+        memcpy(failure.text, body->text, sizeof failure.text);
+    return graph_fail_task(body->task, &failure);
+}
+
+const struct data_failure *graph_call_body(struct graph *graph, void *worker,
+                                           struct graph_task *task, const void *args,
+                                           const duite_call *template)
+{
+    struct duite_call_private body;
     const duite_kernel *kernel = graph->kernels[task->kernel];
+    duite_call call = *template;
+    body.graph = graph;
+    body.worker = worker;
+    body.task = task;
+    body.refused = DUITE_OK;
+    body.remembered = DUITE_OK;
+    body.text[0] = '\0';
+    call.args = args;
+    call.param = task->param;
+    call.n_params = task->n;
+    call.own = &body;
+    graph_body_begins(&body);
     int code = graph->hooks.body
-                   ? graph->hooks.body(graph->hooks.context, kernel, task->number, call)
-                   : kernel->body(call);
+                   ? graph->hooks.body(graph->hooks.context, kernel, task->number, &call)
+                   : kernel->body(&call);
+    graph_body_ends(&body);
     if (!code)
-        code = call->own->refused;
-    if (!code) {
-        graph_size_close(task);
-        return NULL;
-    }
-    struct data_failure failure = {
-        .code = code, .rank = graph->rank, .number = task->number, .kernel = task->kernel};
-    memcpy(failure.text, call->own->text, sizeof failure.text);
-    return graph_fail(graph, &failure, true);
+        code = body.refused;
+    if (!code)
+        code = body.remembered;
+    return code ? body_failed(&body, code) : NULL;
 }
 
 static const struct data_failure no_memory = {
@@ -119,42 +138,47 @@ static void run_copy(struct graph *graph, struct graph_task *task)
     graph->hooks.notify(graph->hooks.context);
 }
 
-bool graph_run(struct graph *graph, struct graph_task *task, duite_call *call)
+bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const duite_call *call)
 {
     const struct data_failure *failure;
     bool ran = false;
     switch (task->kind) {
     case GRAPH_BODY:
-        failure = prepare(graph, task);
+        failure = prepare(task);
         if (!failure)
             failure = graph_given_up(graph);
         ran = !failure;
         if (!failure)
-            failure = call_body(graph, task, call);
+            failure = graph_call_body(graph, worker, task, task->args, call);
+        if (!failure)
+            graph_size_close(task);
         if (failure)
             poison(task, failure);
         break;
     case GRAPH_VOID:
-        prepare(graph, task);
+        prepare(task);
         poison(task, &no_memory);
         break;
     case GRAPH_COMBINE:
-        graph_run_combine(graph, task);
+        graph_run_combine(task);
         break;
     case GRAPH_PIECES:
-        graph_run_pieces(graph, task);
+        graph_run_pieces(task);
+        break;
+    case GRAPH_GATHER:
+        graph_run_gather(task);
         break;
     case GRAPH_COPY:
         run_copy(graph, task);
         break;
     case GRAPH_REPLAY:
-        graph_replay_run(graph, task);
+        graph_replay_run(task);
         break;
     case GRAPH_NODE:
     case GRAPH_NODE_SET:
     case GRAPH_NODE_SUM:
     case GRAPH_NODE_FLAG:
-        return graph_node_run(graph, task, call);
+        return graph_node_run(graph, worker, task, call);
     case GRAPH_SEND:
         break;
     }
@@ -179,13 +203,16 @@ void graph_over(struct graph *graph, void *worker, struct graph_task *task)
             graph_publish(graph, worker, access->out);
         else if (access->sum)
             graph_wake(graph, worker, data_sum_release(access->sum));
-        else
+        else if (access->in)
             graph_release(graph, worker, access->in);
     }
+    struct graph_scope *scope = task->scope, *inner = task->inner;
+    const struct data_failure *failure = task->failure;
     base_pool_give(task, task->size);
-    uint64_t left = atomic_fetch_sub_explicit(&graph->unfinished, 1, memory_order_acq_rel) - 1;
-    if (left == 0 || left == graph->resume)
-        graph->hooks.notify(graph->hooks.context);
+    if (inner)
+        graph_scope_end(inner, worker, failure); /* it leaves `scope` when its children have */
+    else
+        graph_left(scope);
 }
 
 void graph_lost(struct graph *graph, void *worker, struct data_version *version)

@@ -34,26 +34,30 @@ int graph_set_check(const struct data_object *object, duite_object name, size_t 
                       object->most);
 }
 
-int graph_set(struct graph *graph, void *worker, duite_object name, const void *values,
+int graph_set(struct graph_scope *scope, void *worker, duite_object name, const void *values,
               const size_t *wanted)
 {
-    struct data_object *object = data_object_find(&graph->table, name);
+    struct graph *graph = scope->graph;
+    duite_mode right;
+    struct data_object *object = graph_object(scope, name, &right);
     if (!object)
         return DUITE_E_OBJECT;
     size_t count = wanted ? *wanted : object->most;
     int code = graph_set_check(object, name, count);
     if (code)
         return code;
-    graph_mix(graph, (uint64_t)name.slot << 32 | name.generation);
-    graph_mix(graph, OVERWRITTEN);
-    graph_mix(graph, count);
+    if (!scope->depth) {
+        graph_mix(graph, (uint64_t)name.slot << 32 | name.generation);
+        graph_mix(graph, OVERWRITTEN);
+        graph_mix(graph, count);
+    }
     struct data_version *version = NULL;
     if (object->home == graph->rank &&
         !(version = version_of(values, count * data_type_size(object->type)))) {
         base_no_memory("the values of duite_set");
         return graph_break(graph);
     }
-    code = object->leaves ? graph_close(graph, worker, object) : DUITE_OK;
+    code = object->leaves ? graph_close(scope, worker, object) : DUITE_OK;
     object->number++;
     data_object_moved(object, object->home);
     graph_forget(graph, worker, object);

@@ -11,14 +11,17 @@
 /* A piece on its way: where it stands in the tree; the values follow all of these, each filled up
  * to a multiple of 16 bytes. */
 struct piece_place {
-    uint64_t first, level;
+    uint64_t first;
+    uint32_t level, absent; /* absent: without a value, though there is room for one */
 };
+
+static const struct data_failure no_memory = {
+    .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "there was no memory for contributions"};
 
 static int contribute(struct graph *graph, struct data_object *object, int at,
                       struct graph_task *task, size_t i)
 {
     bool adder = object->holder == graph->rank;
-    uint64_t first = object->leaves++;
     if (!object->sum && (adder || task)) {
         object->sum = data_sum_new(graph->n_ranks, object->law, object->type, object->count);
         if (!object->sum) {
@@ -26,6 +29,7 @@ static int contribute(struct graph *graph, struct data_object *object, int at,
             return graph_break(graph);
         }
     }
+    uint64_t first = object->leaves++;
     if (adder && !task)
         data_sum_sender(object->sum, at);
     if (!task)
@@ -35,40 +39,39 @@ static int contribute(struct graph *graph, struct data_object *object, int at,
     access->leaf = data_sum_leaf(object->sum, first);
     if (access->leaf)
         return DUITE_OK;
+    atomic_store_explicit(&object->sum->lost, &no_memory, memory_order_relaxed);
     base_no_memory("a contribution");
     return graph_break(graph);
 }
 
-int graph_contribute(struct graph *graph, void *worker, struct data_object *object,
+int graph_contribute(struct graph_scope *scope, void *worker, struct data_object *object,
                      const duite_law *law, int at, struct graph_task *task, size_t i)
 {
     int code = DUITE_OK;
     if (object->leaves && object->law != law)
-        code = graph_close(graph, worker, object);
+        code = graph_close(scope, worker, object);
     object->law = law;
-    return code ? code : contribute(graph, object, at, task, i);
+    return code ? code : contribute(scope->graph, object, at, task, i);
 }
 
 /* A task that waits for all contributions, which leave the object; pending counts them as one.
  * Without memory they stay there until stop. */
-static struct graph_task *closer(struct graph *graph, struct data_object *object,
+static struct graph_task *closer(struct graph_scope *scope, struct data_object *object,
                                  enum graph_kind kind, size_t n)
 {
-    struct graph_task *task = graph_task_new(graph, kind, n, sizeof *task->sum);
+    struct graph_task *task = graph_task_new(scope, kind, n, sizeof *task->sum);
     if (!task)
         return NULL;
-    *task->sum = (struct graph_sum){.waiter.task = task,
-                                    .sum = object->sum,
-                                    .send = {graph_key(graph, object), object->holder, NULL}};
+    *task->sum =
+        (struct graph_sum){.waiter.task = task, .sum = object->sum, .send.to = object->holder};
+    if (!scope->depth)
+        task->sum->send.key = graph_key(scope->graph, object);
     task->block = object->block;
     atomic_fetch_add_explicit(&task->pending, 1, memory_order_relaxed);
     object->sum->closer = &task->sum->waiter;
     object->sum = NULL;
     return task;
 }
-
-static const struct data_failure no_memory = {
-    .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "there was no memory for contributions"};
 
 static int expect_pieces(struct graph *graph, void *worker, struct graph_sum *closing)
 {
@@ -82,11 +85,12 @@ static int expect_pieces(struct graph *graph, void *worker, struct graph_sum *cl
     return graph_break(graph);
 }
 
-static int combine_here(struct graph *graph, void *worker, struct data_object *object)
+static int combine_here(struct graph_scope *scope, void *worker, struct data_object *object)
 {
+    struct graph *graph = scope->graph;
     struct data_sum *sum = object->sum;
     struct data_version *version = graph_local(graph, object);
-    struct graph_task *task = version ? closer(graph, object, GRAPH_COMBINE, 1) : NULL;
+    struct graph_task *task = version ? closer(scope, object, GRAPH_COMBINE, 1) : NULL;
     if (!task)
         return DUITE_E_MEMORY;
     uint32_t done = 0;
@@ -103,10 +107,11 @@ static int combine_here(struct graph *graph, void *worker, struct data_object *o
     return code;
 }
 
-static int send_pieces(struct graph *graph, void *worker, struct data_object *object)
+static int send_pieces(struct graph_scope *scope, void *worker, struct data_object *object)
 {
+    struct graph *graph = scope->graph;
     struct data_sum *sum = object->sum;
-    struct graph_task *task = closer(graph, object, GRAPH_PIECES, 0);
+    struct graph_task *task = closer(scope, object, GRAPH_PIECES, 0);
     if (!task)
         return DUITE_E_MEMORY;
     graph_wake(graph, worker, data_sum_release(sum));
@@ -114,23 +119,60 @@ static int send_pieces(struct graph *graph, void *worker, struct data_object *ob
     return DUITE_OK;
 }
 
-int graph_close(struct graph *graph, void *worker, struct data_object *object)
+/* The contributions to an object of a task, which there is no memory to combine, are kept until
+ * stop: their tasks may still run. */
+static void keep_unclosed(struct graph *graph, struct data_object *object)
 {
+    struct data_sum *sum = object->sum;
+    object->sum = NULL;
+    object->leaves = 0;
+    if (!sum)
+        return;
+    pthread_mutex_lock(&graph->lock);
+    sum->next = graph->unclosed;
+    graph->unclosed = sum;
+    pthread_mutex_unlock(&graph->lock);
+}
+
+int graph_gather(struct graph_scope *scope, void *worker, struct data_object *object,
+                 struct data_sum *outer, struct data_piece *leaf)
+{
+    struct graph *graph = scope->graph;
+    struct data_sum *sum = object->sum;
+    struct graph_task *task = closer(scope, object, GRAPH_GATHER, 1);
+    if (!task) {
+        keep_unclosed(graph, object);
+        return DUITE_E_MEMORY;
+    }
+    task->access[0].mode = DUITE_CW;
+    task->access[0].sum = outer;
+    task->access[0].leaf = leaf;
+    object->leaves = 0;
+    graph_wake(graph, worker, data_sum_release(sum));
+    graph_settled(graph, worker, task, 1);
+    return DUITE_OK;
+}
+
+int graph_close(struct graph_scope *scope, void *worker, struct data_object *object)
+{
+    struct graph *graph = scope->graph;
     int code = DUITE_OK;
     object->number++;
     if (object->holder == graph->rank) {
-        code = combine_here(graph, worker, object);
+        code = combine_here(scope, worker, object);
     } else {
         if (object->sum)
-            code = send_pieces(graph, worker, object);
+            code = send_pieces(scope, worker, object);
         graph_forget(graph, worker, object);
     }
+    if (code && scope->depth)
+        keep_unclosed(graph, object);
     object->leaves = 0;
     data_object_moved(object, object->holder);
     return code;
 }
 
-void graph_run_combine(struct graph *graph, struct graph_task *task)
+void graph_run_combine(struct graph_task *task)
 {
     struct graph_sum *sum = task->sum;
     if (!task->n) {
@@ -146,11 +188,27 @@ void graph_run_combine(struct graph *graph, struct graph_task *task)
     out->failure = data_first(in->failure, failure);
     data_version_free(in);
     if (code)
-        out->failure = graph_fail_memory(graph, task);
+        out->failure = graph_fail_memory(task);
     if (!out->failure)
         data_sum_finish(sum->sum, pieces, n, data_payload(out->packet));
     base_free(pieces);
     data_sum_free(sum->sum);
+}
+
+void graph_run_gather(struct graph_task *task)
+{
+    struct data_sum *sum = task->sum->sum;
+    struct data_piece *leaf = task->access[0].leaf, **pieces;
+    size_t n;
+    int code;
+    const struct data_failure *failure = data_sum_reduce(sum, &pieces, &n, &code);
+    if (code)
+        failure = graph_fail_memory(task);
+    leaf->failure = data_first(leaf->failure, failure);
+    if (!leaf->failure)
+        data_piece_take(leaf, data_sum_fold(sum, pieces, n));
+    base_free(pieces);
+    data_sum_free(sum);
 }
 
 static struct data_packet *pack(const struct graph_sum *sum, struct data_piece *const *pieces,
@@ -167,14 +225,16 @@ static struct data_packet *pack(const struct graph_sum *sum, struct data_piece *
     struct piece_place *places = data_payload(packet);
     char *values = (char *)(places + n);
     for (size_t i = 0; i < n; i++) {
-        places[i] = (struct piece_place){pieces[i]->first, pieces[i]->level};
-        memcpy(values + i * stride, pieces[i]->value, bytes);
-        memset(values + i * stride + bytes, 0, stride - bytes);
+        size_t present = pieces[i]->value ? bytes : 0;
+        places[i] = (struct piece_place){pieces[i]->first, pieces[i]->level, !present};
+        if (present)
+            memcpy(values + i * stride, pieces[i]->value, bytes);
+        memset(values + i * stride + present, 0, stride - present);
     }
     return packet;
 }
 
-void graph_run_pieces(struct graph *graph, struct graph_task *task)
+void graph_run_pieces(struct graph_task *task)
 {
     struct graph_sum *sum = task->sum;
     struct data_piece **pieces;
@@ -185,8 +245,7 @@ void graph_run_pieces(struct graph *graph, struct graph_task *task)
     if (!code && !failure)
         packet = pack(sum, pieces, n);
     if (!packet)
-        packet =
-            graph_poison_packet(sum->send.key, failure ? failure : graph_fail_memory(graph, task));
+        packet = graph_poison_packet(sum->send.key, failure ? failure : graph_fail_memory(task));
     base_free(pieces);
     data_sum_free(sum->sum);
     sum->send.packet = packet; /* NULL is noticed by whoever sends */
@@ -220,9 +279,9 @@ static void add_pieces(struct graph *graph, struct data_sum *sum, struct data_pa
     for (uint32_t i = 0; i < n; i++)
         if (!add_piece(graph, sum,
                        (struct data_piece){.first = places[i].first,
-                                           .level = (uint32_t)places[i].level,
+                                           .level = places[i].level,
                                            .packet = i ? NULL : packet,
-                                           .value = values + i * stride}))
+                                           .value = places[i].absent ? NULL : values + i * stride}))
             return;
 }
 

@@ -23,15 +23,16 @@ struct work_worker {
     struct work_pool *pool;
     void *state; /* of the scheduler */
     unsigned index;
-    bool finishing;          /* a task of this worker makes others ready right now */
-    bool in_body;            /* the main thread must not fork */
-    bool polls;              /* holds the seat */
-    bool left_some;          /* tasks in the heap from which it took one: another is to be woken */
-    struct graph_task *next; /* chained: to run directly after this one */
-    double polled;           /* when */
+    bool finishing;                  /* a task of this worker makes others ready right now */
+    bool polls;                      /* holds the seat */
+    bool left_some;                  /* tasks in the heap from which it took one: another is to be
+                                        woken */
+    const struct graph_scope *waits; /* of the body that waits on top; NULL: none does */
+    double within;                   /* seconds of tasks and idling inside the body that runs */
+    struct graph_task *next;         /* chained: to run directly after this one */
+    double polled;                   /* when */
     double idle_since, pause;
     duite_call call;
-    struct duite_call_private own;
     struct counts counts;
     pthread_t thread;
     int unit;          /* to be bound to, or -1 */
@@ -64,5 +65,17 @@ static inline void work_pause_core(void)
     __asm__ volatile("yield");
 #endif
 }
+
+/* Runs the task and what it chains. */
+void work_run(struct work_worker *worker, struct graph_task *task);
+/* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal
+ * it. */
+void work_wake_one(struct work_pool *pool, unsigned queue);
+/* Sends and receives; whether anything happened. */
+bool work_poll(struct work_worker *worker);
+/* Something happened: idling begins anew. */
+void work_stir(struct work_worker *worker);
+/* The worker has something to do again: it leaves the seat to one that sleeps. */
+void work_busy_again(struct work_worker *worker);
 
 #endif

@@ -114,6 +114,13 @@ struct graph_task *work_queue_take(struct work_queue *queue, duite_end end)
     return task;
 }
 
+int64_t work_queue_mark(struct work_queue *queue)
+{
+    if (atomic_load_explicit(&queue->inbox, memory_order_relaxed))
+        return -1;
+    return atomic_load_explicit(&queue->deque.newest, memory_order_relaxed);
+}
+
 struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end end)
 {
     if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_acquire))

@@ -26,6 +26,9 @@ void work_queue_put(struct work_queue *queue, struct graph_task *task);
 void work_queue_push(struct work_queue *queue, struct graph_task *task);
 /* The owner. NULL: empty. */
 struct graph_task *work_queue_take(struct work_queue *queue, duite_end end);
+/* The owner. Never the same after something was pushed or put and before it is taken; -1 or more.
+ */
+int64_t work_queue_mark(struct work_queue *queue);
 /* Anybody, of a queue without owner. NULL: empty, or another one is at it and will look again. */
 struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end end);
 /* A thief, who may take the whole inbox of a busy owner: all but the first go to the thief's own

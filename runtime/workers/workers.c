@@ -23,11 +23,15 @@ enum { LONGEST_CHAIN = 64 }; /* tasks run one after another without a look at th
 
 static duite_ready describe(const struct graph *graph, const struct graph_task *task)
 {
-    static const char *const own[] = {
-        [GRAPH_COMBINE] = "duite_sum",   [GRAPH_PIECES] = "duite_sum",
-        [GRAPH_COPY] = "duite_get",      [GRAPH_VOID] = "duite_fork",
-        [GRAPH_REPLAY] = "duite_replay", [GRAPH_NODE_SET] = "duite_set",
-        [GRAPH_NODE_SUM] = "duite_sum",  [GRAPH_NODE_FLAG] = "duite_replay_while"};
+    static const char *const own[] = {[GRAPH_COMBINE] = "duite_sum",
+                                      [GRAPH_PIECES] = "duite_sum",
+                                      [GRAPH_GATHER] = "duite_sum",
+                                      [GRAPH_COPY] = "duite_get",
+                                      [GRAPH_VOID] = "duite_fork",
+                                      [GRAPH_REPLAY] = "duite_replay",
+                                      [GRAPH_NODE_SET] = "duite_set",
+                                      [GRAPH_NODE_SUM] = "duite_sum",
+                                      [GRAPH_NODE_FLAG] = "duite_replay_while"};
     bool program = task->kind == GRAPH_BODY || task->kind == GRAPH_NODE;
     const char *name = program ? graph->kernels[task->kernel]->name : own[task->kind];
     return (duite_ready){.kernel = name,
@@ -37,9 +41,7 @@ static duite_ready describe(const struct graph *graph, const struct graph_task *
                          .cost = task->cost};
 }
 
-/* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal
- * it. */
-static void wake_one(struct work_pool *pool, unsigned queue)
+void work_wake_one(struct work_pool *pool, unsigned queue)
 {
     atomic_thread_fence(memory_order_seq_cst);
     if (!atomic_load_explicit(&pool->parked, memory_order_relaxed))
@@ -61,7 +63,7 @@ static void place(struct work_worker *worker, struct graph_task *task, const dui
         work_queue_put(&pool->worker[queue].queue, task);
     else
         work_queue_put(&pool->shared, task);
-    wake_one(pool, queue);
+    work_wake_one(pool, queue);
 }
 
 static void on_ready(void *context, void *who, struct graph_task *task)
@@ -73,7 +75,8 @@ static void on_ready(void *context, void *who, struct graph_task *task)
         return;
     }
     duite_ready ready = describe(pool->setup.graph, task);
-    if (worker->finishing && !worker->next && pool->setup.scheduler->chain(worker->state, &ready))
+    if (worker->finishing && !worker->next && pool->setup.scheduler->chain(worker->state, &ready) &&
+        (!worker->waits || graph_may_run(worker->waits, task)))
         worker->next = task;
     else
         place(worker, task, &ready);
@@ -124,29 +127,28 @@ static struct graph_task *find(struct work_worker *worker)
     return task;
 }
 
-static bool poll(struct work_worker *worker)
+bool work_poll(struct work_worker *worker)
 {
     struct comm *comm = worker->pool->setup.comm;
     return comm && comm_poll(comm, worker);
 }
 
-/* Runs the task and what it chains. */
-static void run(struct work_worker *worker, struct graph_task *task)
+void work_run(struct work_worker *worker, struct graph_task *task)
 {
     struct work_pool *pool = worker->pool;
     struct graph *graph = pool->setup.graph;
     struct comm *comm = pool->setup.comm;
     if (worker->left_some)
-        wake_one(pool, DUITE_NO_QUEUE);
+        work_wake_one(pool, DUITE_NO_QUEUE);
     worker->left_some = false;
     for (unsigned length = 1; task; length++) {
-        double start = base_seconds();
-        worker->in_body = true;
-        bool body = graph_run(graph, task, &worker->call);
-        worker->in_body = false;
-        double end = base_seconds();
+        double start = base_seconds(), outer = worker->within;
+        worker->within = 0;
+        bool body = graph_run(graph, worker, task, &worker->call);
+        double end = base_seconds(), own = end - start - worker->within;
+        worker->within = outer + end - start;
         work_bump(&worker->counts.tasks, body);
-        work_bump(&worker->counts.busy, body ? (uint64_t)(1e9 * (end - start)) : 0);
+        work_bump(&worker->counts.busy, body && own > 0 ? (uint64_t)(1e9 * own) : 0);
         worker->finishing = length < LONGEST_CHAIN;
         if (graph_to_send(task))
             comm_send(comm, task);
@@ -155,7 +157,7 @@ static void run(struct work_worker *worker, struct graph_task *task)
         worker->finishing = false;
         if (comm && (comm_posted(comm) || end - worker->polled > POLL_SECONDS)) {
             worker->polled = end;
-            poll(worker);
+            work_poll(worker);
         }
         task = worker->next;
         worker->next = NULL;
@@ -176,24 +178,25 @@ static bool take_seat(struct work_worker *worker)
     return worker->polls;
 }
 
-/* Something happened: idling begins anew. */
-static void stir(struct work_worker *worker)
+void work_stir(struct work_worker *worker)
 {
-    if (worker->idle_since > 0)
-        work_bump(&worker->counts.idle, (uint64_t)(1e9 * (base_seconds() - worker->idle_since)));
+    if (worker->idle_since > 0) {
+        double idle = base_seconds() - worker->idle_since;
+        work_bump(&worker->counts.idle, (uint64_t)(1e9 * idle));
+        worker->within += idle;
+    }
     worker->idle_since = 0;
     worker->pause = WORK_FIRST_PAUSE_SECONDS;
 }
 
-/* Whoever gets busy leaves the seat to one that sleeps. */
-static void busy_again(struct work_worker *worker)
+void work_busy_again(struct work_worker *worker)
 {
-    stir(worker);
+    work_stir(worker);
     if (!worker->polls)
         return;
     worker->polls = false;
     atomic_store_explicit(&worker->pool->seat, 0, memory_order_relaxed);
-    wake_one(worker->pool, DUITE_NO_QUEUE);
+    work_wake_one(worker->pool, DUITE_NO_QUEUE);
 }
 
 /* Spins, or gives way, for the first moments; false once it is time to sleep. */
@@ -250,8 +253,8 @@ static void idle(struct work_worker *worker, const struct wish *wish)
         worker->pause *= 2;
     if (!task)
         return;
-    busy_again(worker);
-    run(worker, task);
+    work_busy_again(worker);
+    work_run(worker, task);
 }
 
 /* Looks for work once; idles if there is none. */
@@ -259,10 +262,10 @@ static void look(struct work_worker *worker, const struct wish *wish)
 {
     struct graph_task *task = find(worker);
     if (task) {
-        busy_again(worker);
-        run(worker, task);
-    } else if (poll(worker)) {
-        stir(worker);
+        work_busy_again(worker);
+        work_run(worker, task);
+    } else if (work_poll(worker)) {
+        work_stir(worker);
     } else {
         idle(worker, wish);
     }
@@ -273,7 +276,7 @@ void work_drain(struct work_pool *pool, bool (*done)(void *), void *context)
     const struct wish wish = {.done = done, .context = context};
     while (!done(context))
         look(&pool->worker[0], &wish);
-    busy_again(&pool->worker[0]);
+    work_busy_again(&pool->worker[0]);
 }
 
 struct until {
@@ -292,7 +295,7 @@ void work_until(struct work_pool *pool, bool (*done)(void *), void *context)
 {
     struct until until = {done, context, pool->setup.comm};
     if (until.comm && comm_posted(until.comm))
-        poll(&pool->worker[0]);
+        work_poll(&pool->worker[0]);
     work_drain(pool, done_or_broken, &until);
 }
 
@@ -303,7 +306,7 @@ void work_once(struct work_pool *pool)
 
 void work_idle_ends(struct work_pool *pool)
 {
-    busy_again(&pool->worker[0]);
+    work_busy_again(&pool->worker[0]);
 }
 
 void work_tick(struct work_pool *pool)
@@ -316,7 +319,7 @@ void work_tick(struct work_pool *pool)
     if (!comm_posted(comm) && now - worker->polled < POLL_SECONDS)
         return;
     worker->polled = now;
-    poll(worker);
+    work_poll(worker);
 }
 
 static void *thread_main(void *argument)
@@ -342,10 +345,8 @@ static bool prepare(struct work_pool *pool, unsigned index, int unit)
     worker->unit = unit;
     worker->state = pool->states + index * lines * BASE_LINE;
     worker->pause = WORK_FIRST_PAUSE_SECONDS;
-    worker->call = (duite_call){.context = setup->context,
-                                .rank = setup->graph->rank,
-                                .worker = index,
-                                .own = &worker->own};
+    worker->call = (duite_call){
+        .context = setup->context, .rt = setup->rt, .rank = setup->graph->rank, .worker = index};
     if (setup->scheduler->start)
         setup->scheduler->start(worker->state, index, setup->threads, setup->seed);
     bool queue = work_queue_start(&worker->queue);
@@ -418,7 +419,7 @@ struct work_worker *work_main(struct work_pool *pool)
 
 bool work_may_fork(struct work_pool *pool)
 {
-    return pthread_equal(pthread_self(), pool->main) && !pool->worker[0].in_body;
+    return pthread_equal(pthread_self(), pool->main) && !graph_running(pool->setup.graph);
 }
 
 void work_count(struct work_pool *pool, duite_counters *counters)

@@ -20,6 +20,7 @@ struct work_setup {
     struct check *check; /* NULL: bodies are called directly */
     const duite_scheduler *scheduler;
     void *context; /* for bodies */
+    duite *rt;     /* for bodies */
     unsigned threads;
     uint64_t seed;
     double spin_seconds; /* 0: workers outnumber cores */
@@ -40,6 +41,12 @@ void work_until(struct work_pool *pool, bool (*done)(void *context), void *conte
 
 /* The same, whether communication broke or not. */
 void work_drain(struct work_pool *pool, bool (*done)(void *context), void *context);
+
+/* Works until done(context) in the middle of a body, with whose scope it waits: runs tasks that
+ * graph_may_run on top of it, on its stack. Returns early if communication broke. The worker whose
+ * body it is. */
+void work_inside(struct work_worker *worker, const struct graph_scope *scope,
+                 bool (*done)(void *context), void *context);
 
 /* One look around by the main thread: a task or a poll; idles a moment if there is nothing. */
 void work_once(struct work_pool *pool);

@@ -361,17 +361,17 @@ static const struct {
     struct explore_plant plant;
 } plants[] = {
     {SERVED("one task for another", leave_one), {"doze", "the announcement", EXPLORE_DROP}},
-    {SERVED("one task for another", leave_one), {"wake_one", "fence", EXPLORE_DROP}},
+    {SERVED("one task for another", leave_one), {"work_wake_one", "fence", EXPLORE_DROP}},
     {SERVED("one task for another", leave_one), {"work_park_wake", "lock", EXPLORE_DROP}},
     {SERVED("one task for another", leave_one), {"work_park_wake", "condition", EXPLORE_DROP}},
     {SERVED("a copy waited for", wait_copy), {"on_notify", "fence", EXPLORE_DROP}},
     {CASE("start, stop", start_stop), {"doze", "&pool->stop", EXPLORE_DROP}},
 #ifndef REAL_QUEUES /* there it takes too long */
-    {SERVED("main polled, and leaves", idle_then_leave), {"wake_one", "fence", EXPLORE_DROP}},
+    {SERVED("main polled, and leaves", idle_then_leave), {"work_wake_one", "fence", EXPLORE_DROP}},
     {SERVED("main polled, and leaves", idle_then_leave),
-     {"busy_again", "&worker->pool->seat", EXPLORE_DROP}},
+     {"work_busy_again", "&worker->pool->seat", EXPLORE_DROP}},
     {LARGE("the poller gets busy", wait_beside),
-     {"busy_again", "&worker->pool->seat", EXPLORE_DROP}},
+     {"work_busy_again", "&worker->pool->seat", EXPLORE_DROP}},
 #endif
 };
 

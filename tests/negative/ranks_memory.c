@@ -61,12 +61,65 @@ static void grow(duite *rt)
     duite_free(rt, list);
 }
 
+/* Parameters under rwp and cwp; adds 1 to both once a leaf, of which there are 2^depth, and counts
+ * them on objects of its own. */
+static int tree(const duite_call *call);
+static const duite_kernel TREE = {
+    .name = "tree", .body = tree, .access = {DUITE_RWP, DUITE_CWP}, .args_size = sizeof(int32_t)};
+static const duite_kernel NEXT = {.name = "next", .body = tree, .access = {DUITE_RW}};
+
+static int tree(const duite_call *call)
+{
+    if (call->n_params == 1) {
+        duite_out(call, 0, int32_t)[0]++;
+        return 0;
+    }
+    const int32_t depth = *(const int32_t *)call->args, less = depth - 1;
+    const duite_object a = call->param[0].object, b = call->param[1].object;
+    if (!depth) {
+        duite_fork(call->rt, &NEXT, NULL, 1, &a);
+        return duite_fork(call->rt, &ADD, NULL, 1, &b);
+    }
+    int32_t values[COUNT] = {0};
+    duite_object made[4];
+    for (int i = 0; i < 4; i++)
+        duite_new(call->rt, DUITE_I32, COUNT, &made[i]);
+    duite_set(call->rt, made[1], values);
+    for (int i = 0; i < 2; i++) {
+        duite_fork(call->rt, &TREE, &less, 2, (duite_object[]){a, b});
+        duite_fork(call->rt, &TREE, &less, 2, (duite_object[]){made[0], made[1]});
+        duite_fork(call->rt, &COPY, NULL, 2, (duite_object[]){made[1], made[2]});
+    }
+    const int code = duite_get(call->rt, made[1], values), waited = duite_wait(call->rt);
+    if (!code && !waited && values[0] != 2 << less)
+        return 99;
+    return code ? code : waited;
+}
+
+/* Tasks that fork, on every rank. */
+static int nest(duite *rt)
+{
+    const int32_t depth = 2;
+    int32_t value[COUNT], sum[COUNT];
+    duite_object a = misuse_new(rt, COUNT), b = misuse_new(rt, COUNT);
+    for (int i = 0; i < ranks; i++)
+        duite_fork_at(rt, i, &TREE, &depth, 2, (duite_object[]){a, b});
+    const int code = duite_get(rt, a, value), other = duite_get(rt, b, sum);
+    duite_free(rt, a);
+    duite_free(rt, b);
+    if (code || other)
+        return code != 99 && other != 99;
+    return value[0] == 4 * ranks && sum[0] == 4 * ranks;
+}
+
 /* One run; returns whether it ended as it may. */
 static int run(void)
 {
     duite *rt = NULL;
     duite_object a[OBJECTS];
+    static const duite_kernel *const KERNELS[] = {&SET, &COPY, &ADD, &TREE, &NEXT, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
+    options.kernels = KERNELS;
     int code = duite_start(&rt, &options), fine = 1;
     if (code)
         return rt == NULL;
@@ -76,7 +129,7 @@ static int run(void)
     duite_follow(rt, a[2], a[1]);
     work(rt, a);
     grow(rt);
-    fine = right(rt, a);
+    fine = right(rt, a) && nest(rt);
     code = duite_wait(rt);
     for (int i = 1; i < OBJECTS; i++)
         duite_free(rt, a[i]);

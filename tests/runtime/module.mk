@@ -9,8 +9,13 @@ tests_runtime_ranks_sizes_LDADD = libduite_core.la
 check_PROGRAMS += tests/runtime/ranks_homes
 tests_runtime_ranks_homes_SOURCES = tests/runtime/ranks_homes.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_ranks_homes_LDADD = libduite_core.la
-dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_long.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh
-TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh
+check_PROGRAMS += tests/runtime/nested_programs
+tests_runtime_nested_programs_SOURCES = tests/runtime/nested_programs.c tests/runtime/nested_program.h \
+    tests/runtime/nested_make.c tests/runtime/nested_interpret.c
+tests_runtime_nested_programs_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_long.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh \
+    tests/runtime/test_nested.sh
+TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh tests/runtime/test_nested.sh
 LONG_TESTS += tests/runtime/test_random_long.sh
 check_PROGRAMS += tests/runtime/ranks_exit
 tests_runtime_ranks_exit_SOURCES = tests/runtime/ranks_exit.c
@@ -27,11 +32,13 @@ tests_runtime_test_rename_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
 RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched tests/runtime/test_check \
-    tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print
+    tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
 tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
 tests_runtime_test_check_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_nested_tasks_SOURCES = tests/runtime/test_nested_tasks.c
+tests_runtime_test_nested_tasks_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_pool_SOURCES = tests/runtime/test_pool.c
 tests_runtime_test_pool_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_laws_SOURCES = tests/runtime/test_laws.c tests/negative/misuse.c tests/negative/misuse.h

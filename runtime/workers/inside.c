@@ -1,0 +1,167 @@
+/* A body that waits: its worker runs, on top of it, tasks that come before what the body does next,
+ * and no others, so that nothing can wait for a body that is buried on a stack. (Of all that is not
+ * over, take what comes first in the reference order: it waits for nothing. If it is a task, every
+ * waiting worker may run it, or waits for its own descendants alone, which will be over without it.
+ * If it is a body that waits, all above it on its stack would come even earlier: so it is on top,
+ * and its descendants are over.) What a worker finds and may not run goes where others look. */
+#include "runtime/base/clock.h"
+#include "runtime/workers/internal.h"
+
+#include <sched.h>
+#include <time.h>
+
+enum {
+    NOT_BARREN = -1,
+    SHARED_DEPTH = 16, /* of the shared queue's new end, that are looked at */
+    MOST_REFUSED = 4   /* tasks taken from others in vain between two pauses */
+};
+#define LONGEST_PAUSE_SECONDS 2e-4
+
+/* What a waiting worker knows. */
+struct wait {
+    const struct graph_scope *scope;
+    unsigned refused; /* tasks taken from others in vain since the last pause */
+    bool paused;      /* just now */
+    int64_t barren;   /* the mark of its own queue when nothing in it might run, or NOT_BARREN */
+};
+
+/* The newest of a queue of this worker that may run; the others keep their places, and those who
+ * did not find them meanwhile look again. */
+static struct graph_task *dig(struct work_pool *pool, struct work_queue *queue,
+                              const struct graph_scope *scope, unsigned depth)
+{
+    struct graph_task *aside = NULL, *task = NULL;
+    bool hidden = false;
+    while (depth-- && (task = work_queue_take(queue, DUITE_NEWEST)) &&
+           !graph_may_run(scope, task)) {
+        task->next = aside;
+        aside = task;
+        task = NULL;
+        hidden = true;
+    }
+    while (aside) {
+        struct graph_task *next = aside->next;
+        work_queue_push(queue, aside);
+        aside = next;
+    }
+    if (hidden)
+        work_wake_one(pool, DUITE_NO_QUEUE);
+    return task;
+}
+
+/* The same of the shared queue, a few at its new end; and one at the old end, which goes to the
+ * new one, so that all come by. */
+static struct graph_task *dig_shared(struct work_pool *pool, const struct graph_scope *scope)
+{
+    struct work_queue *queue = &pool->shared;
+    struct graph_task *task = NULL;
+    if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_acquire))
+        return NULL;
+    task = dig(pool, queue, scope, SHARED_DEPTH);
+    if (!task) {
+        task = work_queue_take(queue, DUITE_OLDEST);
+        if (task && !graph_may_run(scope, task)) {
+            work_queue_push(queue, task);
+            task = NULL;
+        }
+    }
+    atomic_flag_clear_explicit(&queue->token, memory_order_release);
+    return task;
+}
+
+/* Takes from another; what may not run here is left where everybody looks. */
+static struct graph_task *steal_from(struct work_worker *worker, unsigned victim, struct wait *wait)
+{
+    struct work_pool *pool = worker->pool;
+    if (victim == worker->index)
+        return NULL;
+    struct graph_task *task = work_queue_steal(&pool->worker[victim].queue, &worker->queue);
+    if (!task)
+        return NULL;
+    work_bump(&worker->counts.stolen, 1);
+    if (graph_may_run(wait->scope, task))
+        return task;
+    wait->refused++;
+    work_queue_put(&pool->shared, task);
+    work_wake_one(pool, DUITE_NO_QUEUE);
+    return NULL;
+}
+
+/* Of the scheduler's victims; of all, when it has waited for long: what it waits for may lie with
+ * one that waits for what lies here. */
+static struct graph_task *steal(struct work_worker *worker, struct wait *wait)
+{
+    struct work_pool *pool = worker->pool;
+    struct graph_task *task = NULL;
+    for (unsigned attempt = 0; !task && wait->refused < MOST_REFUSED; attempt++) {
+        unsigned victim = pool->setup.scheduler->victim(worker->state, attempt);
+        if (victim >= pool->setup.threads)
+            break;
+        task = steal_from(worker, victim, wait);
+    }
+    for (unsigned i = 0; !task && wait->paused && i < pool->setup.threads; i++)
+        task = steal_from(worker, i, wait);
+    wait->paused = false;
+    return task;
+}
+
+/* Nothing to do for a moment. Nobody wakes a worker that waits in a body: it sleeps briefly. */
+static void moment(struct work_worker *worker, struct wait *wait)
+{
+    double now = base_seconds(), most = worker->pool->setup.spin_seconds;
+    if (worker->idle_since <= 0)
+        worker->idle_since = now;
+    double since = now - worker->idle_since;
+    if (since < most) {
+        work_pause_core();
+    } else if (since < most + WORK_YIELD_SECONDS) {
+        sched_yield();
+    } else {
+        struct timespec pause = {.tv_nsec = (long)(1e9 * worker->pause)};
+        nanosleep(&pause, NULL);
+        if (worker->pause < LONGEST_PAUSE_SECONDS)
+            worker->pause *= 2;
+        wait->refused = 0;
+        wait->paused = true;
+    }
+}
+
+static struct graph_task *find(struct work_worker *worker, struct wait *wait)
+{
+    struct work_pool *pool = worker->pool;
+    struct graph_task *task = NULL;
+    if (wait->barren < 0 || wait->barren != work_queue_mark(&worker->queue)) {
+        task = dig(pool, &worker->queue, wait->scope, UINT32_MAX);
+        wait->barren = task ? NOT_BARREN : work_queue_mark(&worker->queue);
+    }
+    if (!task)
+        task = dig_shared(pool, wait->scope);
+    if (!task)
+        task = steal(worker, wait);
+    worker->left_some =
+        task && (work_queue_ranks(&worker->queue) || work_queue_ranks(&pool->shared));
+    return task;
+}
+
+void work_inside(struct work_worker *worker, const struct graph_scope *scope,
+                 bool (*done)(void *context), void *context)
+{
+    const struct graph_scope *outer = worker->waits;
+    struct comm *comm = worker->pool->setup.comm;
+    struct wait wait = {.scope = scope, .barren = NOT_BARREN};
+    worker->waits = scope;
+    while (!done(context) && !(comm && comm_broken(comm))) {
+        struct graph_task *task = find(worker, &wait);
+        if (task) {
+            work_busy_again(worker);
+            work_run(worker, task);
+            wait = (struct wait){.scope = scope, .barren = NOT_BARREN};
+        } else if (work_poll(worker)) {
+            work_busy_again(worker);
+        } else {
+            moment(worker, &wait);
+        }
+    }
+    work_busy_again(worker);
+    worker->waits = outer;
+}

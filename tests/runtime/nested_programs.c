@@ -1,0 +1,325 @@
+/* Runs random trees of tasks on duite and compares with the interpreter:
+ *
+ *     nested_programs [--seed SEED] [--programs N] [--threads T] [--scheduler NAME] [--print]
+ *
+ * alone or under mpirun; all ranks run each program together. One TAP line. */
+
+#include "tests/runtime/nested_program.h"
+
+#include <getopt.h>
+#include <mpi.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct settings {
+    uint64_t seed;
+    unsigned long programs;
+    unsigned threads;
+    const char *scheduler;
+    bool print;
+};
+
+static struct nest_program program;
+static struct nest_answers answers;
+static _Atomic int ran[NEST_MAX_TASKS];
+static duite_kernel kernels[NEST_KERNELS];
+static const duite_kernel *list[NEST_KERNELS + 1];
+static char names[NEST_KERNELS][8];
+static char running[120];
+static _Atomic int n_found;
+
+/* Tells a difference; from any thread. */
+__attribute__((format(printf, 1, 2))) static void found(const char *format, ...)
+{
+    char text[400];
+    va_list list_of;
+
+    va_start(list_of, format);
+    vsnprintf(text, sizeof text, format, list_of);
+    va_end(list_of);
+    if (atomic_fetch_add(&n_found, 1) < 5)
+        printf("# WRONG: %s: %s\n", running, text);
+}
+
+/* ---- Arithmetic ---- */
+
+size_t nest_size(duite_type type)
+{
+    return type == DUITE_F64 || type == DUITE_I64 ? 8 : 4;
+}
+
+uint64_t nest_mix(uint64_t digest, const void *bytes, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        uint64_t state = digest ^ ((const unsigned char *)bytes)[i];
+
+        digest = duite_random(&state);
+    }
+    return digest;
+}
+
+/* Numbers of very different sizes, so that another order of additions shows. */
+void nest_values(duite_type type, size_t count, uint64_t seed, void *values)
+{
+    for (size_t i = 0; i < count; i++) {
+        const uint64_t random = duite_random(&seed);
+        const int scale = (int)(random >> 60);
+        const double value =
+            (double)((int64_t)(random << 8) >> 8) / (double)(UINT64_C(1) << (20 + 2 * scale));
+
+        if (type == DUITE_F64)
+            ((double *)values)[i] = value;
+        else if (type == DUITE_F32)
+            ((float *)values)[i] = (float)value;
+        else if (type == DUITE_I32)
+            ((uint32_t *)values)[i] = (uint32_t)random;
+        else
+            ((uint64_t *)values)[i] = random;
+    }
+}
+
+uint64_t nest_read(const struct nest_task *task, const duite_param *param)
+{
+    uint64_t digest = task->seed;
+
+    for (unsigned i = 0; i < task->n; i++)
+        if (param[i].data && task->mode[i] != DUITE_W)
+            digest = nest_mix(digest, param[i].data, param[i].count * nest_size(param[i].type));
+    return digest;
+}
+
+void nest_write(const struct nest_task *task, const duite_param *param, uint64_t digest)
+{
+    for (unsigned i = 0; i < task->n; i++)
+        if (param[i].data && task->mode[i] != DUITE_R)
+            nest_values(param[i].type, param[i].count, digest + i, param[i].data);
+}
+
+/* ---- Running ---- */
+
+static int call_one(duite *rt, const struct nest_action *action, duite_object *object,
+                    duite_object *made, unsigned char *value)
+{
+    duite_object objects[NEST_MAX_PARAMS];
+
+    for (unsigned i = 0; i < NEST_MAX_PARAMS; i++)
+        objects[i] = object[action->object[i]];
+    switch (action->kind) {
+    case NEST_NEW:
+        return duite_new(rt, action->type, action->count, made);
+    case NEST_FREE:
+        return duite_free(rt, objects[0]);
+    case NEST_SET:
+        nest_values(action->type, action->count, action->seed, value);
+        return duite_set(rt, objects[0], action->seed ? value : NULL);
+    case NEST_FORK:
+        return duite_fork(rt, &kernels[nest_kernel(&program.task[action->task])], &action->task,
+                          program.task[action->task].n, objects);
+    case NEST_GET:
+        return duite_get(rt, objects[0], value);
+    case NEST_WAIT:
+        return duite_wait(rt);
+    }
+    return 0;
+}
+
+/* Does what a task does, or the main program (self 0), whose answers are compared. */
+static uint64_t act(duite *rt, unsigned self, duite_object *object, uint64_t digest)
+{
+    const struct nest_task *task = &program.task[self];
+    unsigned n = task->n;
+
+    for (unsigned a = 0; a < task->n_actions; a++) {
+        const struct nest_action *action = &task->action[a];
+        const struct nest_answer *answer = &answers.of[a];
+        const bool asks = action->kind == NEST_GET || action->kind == NEST_WAIT;
+        _Alignas(8) unsigned char value[NEST_MAX_COUNT * 8] = {0};
+        const int code = call_one(rt, action, object, &object[n], value);
+
+        n += action->kind == NEST_NEW;
+        if (!asks && code)
+            found("task %u, action %u: code %d: %s", self, a, code, duite_message());
+        if (!asks)
+            continue;
+        digest = nest_mix(digest, &code, sizeof code);
+        if (action->kind == NEST_GET && !code)
+            digest = nest_mix(digest, value, action->count * nest_size(action->type));
+        if (!self && code != answer->code)
+            found("action %u: code %d, expected %d: %s", a, code, answer->code, duite_message());
+        else if (!self && memcmp(value, answer->value, sizeof value) != 0)
+            found("action %u: another value", a);
+    }
+    return digest;
+}
+
+static int body(const duite_call *call)
+{
+    const unsigned self = *(const unsigned *)call->args;
+    const struct nest_task *task = &program.task[self];
+    duite_object object[NEST_MAX_OBJECTS];
+
+    atomic_fetch_add(&ran[self], 1);
+    for (unsigned i = 0; i < task->n; i++) {
+        const duite_mode mode = task->mode[i];
+        const unsigned char *data = call->param[i].data;
+
+        object[i] = call->param[i].object;
+        if ((mode >= DUITE_RP) != !data)
+            found("task %u, parameter %u: data or none", self, i);
+        for (size_t b = 0; mode == DUITE_CW && b < call->param[i].count; b++)
+            if (data[b])
+                found("task %u, parameter %u: a contribution does not begin with zeros", self, i);
+    }
+    nest_write(task, call->param, act(call->rt, self, object, nest_read(task, call->param)));
+    return task->fails;
+}
+
+static void make_kernels(void)
+{
+    for (unsigned k = 0; k < NEST_KERNELS; k++) {
+        struct nest_task task = {.n = k < 1 ? 0 : k < 9 ? 1 : k < 73 ? 2 : 3};
+        unsigned place = k - (k < 1 ? 0 : k < 9 ? 1 : k < 73 ? 9 : 73);
+
+        for (unsigned i = task.n; i-- > 0; place /= 8)
+            task.mode[i] = (duite_mode)(place % 8 + 1);
+        snprintf(names[k], sizeof names[k], "k%u", k);
+        kernels[k] = (duite_kernel){.name = names[k], .body = body, .args_size = sizeof(unsigned)};
+        memcpy(kernels[k].access, task.mode, sizeof task.mode);
+        list[k] = &kernels[k];
+    }
+}
+
+/* Every task ran once, on one rank, or not at all where poison says so; in checking mode those that
+ * do not fork run twice. */
+static void check_runs(bool checking)
+{
+    int here[NEST_MAX_TASKS], sum[NEST_MAX_TASKS];
+
+    for (unsigned i = 0; i < NEST_MAX_TASKS; i++)
+        here[i] = atomic_exchange(&ran[i], 0);
+    MPI_Allreduce(here, sum, NEST_MAX_TASKS, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    for (unsigned i = 1; i < program.n_tasks; i++)
+        if (sum[i] != answers.runs[i] && !(checking && sum[i] == 2 * answers.runs[i]))
+            found("task %u ran %d times, expected %d", i, sum[i], answers.runs[i]);
+}
+
+static void run(const struct settings *settings)
+{
+    static const double spins[] = {0, 1e-6, 1e-4};
+    const char *const *schedulers = duite_scheduler_names();
+    uint64_t random = ~program.seed;
+    duite_object object[NEST_MAX_OBJECTS];
+    duite_options options = duite_options_default();
+    unsigned n = 0;
+    duite *rt;
+
+    while (schedulers[n])
+        n++;
+    options.kernels = list;
+    options.seed = duite_random(&random);
+    options.mapping = duite_mapping_find("cyclic");
+    options.spin_seconds = spins[duite_random(&random) % 3];
+    options.threads = 1 + (unsigned)(duite_random(&random) % 4);
+    const char *scheduler = schedulers[duite_random(&random) % n];
+    if (settings->threads)
+        options.threads = settings->threads;
+    if (settings->scheduler)
+        scheduler = settings->scheduler;
+    options.scheduler = duite_scheduler_find(scheduler);
+    snprintf(running, sizeof running, "--seed %llu --threads %u --scheduler %s",
+             (unsigned long long)program.seed, options.threads, scheduler);
+    if (duite_start(&rt, &options)) {
+        found("start: %s", duite_message());
+        return;
+    }
+    act(rt, 0, object, 0);
+    const int code = duite_stop(&rt);
+    if (code && code != DUITE_E_NOT_FREED && code < 0)
+        found("stop: %s", duite_message());
+    check_runs(options.check);
+}
+
+/* ---- The program ---- */
+
+static void last_words(int signal_number)
+{
+    (void)signal_number;
+    if (write(STDOUT_FILENO, "# hangs: ", 9) > 0 &&
+        write(STDOUT_FILENO, running, strlen(running)) > 0 && write(STDOUT_FILENO, "\n", 1) > 0)
+        _exit(99);
+    _exit(98);
+}
+
+static bool read_options(int argc, char **argv, struct settings *settings)
+{
+    static const struct option options[] = {{"seed", 1, NULL, 's'},    {"programs", 1, NULL, 'p'},
+                                            {"threads", 1, NULL, 't'}, {"scheduler", 1, NULL, 'q'},
+                                            {"print", 0, NULL, 'v'},   {NULL, 0, NULL, 0}};
+
+    for (int c; (c = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        if (c == 's')
+            settings->seed = strtoull(optarg, NULL, 10);
+        else if (c == 'p')
+            settings->programs = strtoul(optarg, NULL, 10);
+        else if (c == 't')
+            settings->threads = (unsigned)atoi(optarg);
+        else if (c == 'q')
+            settings->scheduler = optarg;
+        else if (c == 'v')
+            settings->print = true;
+        else
+            return false;
+    }
+    return optind == argc && (!settings->scheduler || duite_scheduler_find(settings->scheduler));
+}
+
+/* Whether some rank found the program wrong. */
+static bool try_one(const struct settings *settings, uint64_t seed)
+{
+    int rank, wrong, any = 0;
+
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    atomic_store(&n_found, 0);
+    alarm(120);
+    nest_make(&program, seed);
+    if (settings->print && rank == 0)
+        nest_print(&program);
+    if (!nest_interpret(&program, &answers))
+        found("out of memory");
+    else
+        run(settings);
+    wrong = atomic_load(&n_found) > 0;
+    MPI_Allreduce(&wrong, &any, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    alarm(0);
+    return any;
+}
+
+int main(int argc, char **argv)
+{
+    struct settings settings = {.seed = 1, .programs = 1};
+    unsigned long wrong = 0;
+    int rank, given;
+
+    signal(SIGALRM, last_words);
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &given);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    if (!read_options(argc, argv, &settings)) {
+        fprintf(stderr,
+                "%s: [--seed SEED] [--programs N] [--threads T] [--scheduler NAME] [--print]\n",
+                argv[0]);
+        MPI_Abort(MPI_COMM_WORLD, 2);
+    }
+    make_kernels();
+    for (unsigned long i = 0; i < settings.programs && wrong < 20; i++)
+        wrong += try_one(&settings, settings.seed + i);
+    if (rank == 0)
+        printf("%sok 1 - %lu random trees of tasks, %lu wrong\n1..1\n", wrong ? "not " : "",
+               settings.programs, wrong);
+    MPI_Finalize();
+    return wrong != 0;
+}

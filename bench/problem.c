@@ -91,6 +91,24 @@ int problem_marks_wrong(uint64_t *mark, uint64_t n)
     return wrong;
 }
 
+static int64_t (*volatile fib)(unsigned n) = problem_fib;
+
+int64_t problem_fib(unsigned n)
+{
+    return n < 2 ? n : fib(n - 1) + fib(n - 2);
+}
+
+uint64_t problem_fib_calls(unsigned n)
+{
+    uint64_t calls = 1, before = 1; /* of n = 1 and of n = 0 */
+    for (unsigned i = 1; i < n; i++) {
+        uint64_t next = 1 + calls + before;
+        before = calls;
+        calls = next;
+    }
+    return calls;
+}
+
 void problem_work(uint64_t iterations)
 {
     uint64_t x = iterations;

@@ -41,6 +41,10 @@ problem_mark_body problem_mark;
 /* Whether a mark is missing or made twice; clears them. */
 int problem_marks_wrong(uint64_t *mark, uint64_t n);
 
+/* Fibonacci numbers by the book: a call of n makes one of n - 1 and one of n - 2. */
+int64_t problem_fib(unsigned n);
+uint64_t problem_fib_calls(unsigned n);
+
 /* A body that takes time: so many steps, each of which waits for the one before. */
 void problem_work(uint64_t iterations);
 

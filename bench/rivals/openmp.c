@@ -127,10 +127,55 @@ static int independent(void *context, struct serve_request *request, double *val
     return wrong ? serve_fail("wrong answer") : 0;
 }
 
+/* ---- Fibonacci ---- */
+
+static void fib(unsigned n, int64_t *result)
+{
+    int64_t first, second;
+    if (n < 2) {
+        *result = n;
+        return;
+    }
+#pragma omp task shared(first)
+    fib(n - 1, &first);
+#pragma omp task shared(second)
+    fib(n - 2, &second);
+#pragma omp taskwait
+    *result = first + second;
+}
+
+static double time_fib(unsigned n, int threads, int64_t *result)
+{
+    double seconds = 0;
+#pragma omp parallel num_threads(threads)
+#pragma omp master
+    {
+        double start = serve_seconds();
+        fib(n, result);
+        seconds = serve_seconds() - start;
+    }
+    return seconds;
+}
+
+static int fibonacci(void *context, struct serve_request *request, double *value)
+{
+    unsigned n = (unsigned)serve_number(request, "n");
+    int threads = (int)serve_number(request, "threads");
+    int64_t warm = -1, result = -1;
+    (void)context;
+    time_fib(n, threads, &warm);
+    *value = time_fib(n, threads, &result);
+    int64_t right = problem_fib(n);
+    return warm == right && result == right ? 0 : serve_fail("wrong answer");
+}
+
 int main(void)
 {
-    static const struct serve_run runs[] = {
-        {"stencil", stencil}, {"chain", chain}, {"independent", independent}, {0}};
+    static const struct serve_run runs[] = {{"stencil", stencil},
+                                            {"chain", chain},
+                                            {"independent", independent},
+                                            {"fib", fibonacci},
+                                            {0}};
     const struct serve_run *const all[] = {runs, NULL};
     return serve(RIVAL_SETTINGS, all, NULL);
 }

@@ -5,9 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench_case *const CASES[] = {&tasks_stencil, &tasks_chain, &tasks_independent,
-                                                 &tasks_growth,  &tasks_bytes, &tasks_granularity,
-                                                 &tasks_wake,    NULL};
+static const struct bench_case *const CASES[] = {
+    &tasks_stencil,     &tasks_chain,  &tasks_independent,
+    &tasks_fib_case,    &tasks_growth, &tasks_bytes,
+    &tasks_granularity, &tasks_wake,   NULL};
 enum { N_CASES = sizeof CASES / sizeof *CASES - 1 };
 
 /* For two cores and the full sizes. */
@@ -18,6 +19,8 @@ static const struct measure_target TARGETS[] = {
     {"chain_replay_ns_per_task_vs_libomp", 0.03, false},
     {"chain_dynamic_ns_per_task_vs_libomp", 0.08, false},
     {"independent_dynamic_ns_per_task_vs_libomp", 0.7, false},
+    {"fib_ns_per_task_vs_libgomp", 0.5, false},
+    {"fib_speedup_t2", 1.8, true},
     {"independent_growth", 1.5, false},
     {"bytes_per_pending_task", 256, false},
     {"granularity_50_w2_vs_mpi", 1.2, false},
@@ -33,6 +36,10 @@ static const duite_kernel *const KERNELS[] = {&tasks_gate,
                                               &tasks_chain_next,
                                               &tasks_independent_mark,
                                               &tasks_granularity_point,
+                                              &tasks_fib,
+                                              &tasks_fib_flow,
+                                              &tasks_fib_put,
+                                              &tasks_fib_add,
                                               &tasks_wake_up,
                                               NULL};
 
@@ -57,6 +64,7 @@ int tasks_ready(struct tasks_session *session, struct serve_request *request)
     options.context = session;
     options.threads = threads;
     options.scheduler = duite_scheduler_find(scheduler);
+    options.window = 0; /* off: some cases fork a million tasks before one can end */
     return tasks_code(duite_start(&session->rt, &options));
 }
 
@@ -208,7 +216,7 @@ static int serve_tasks(const struct bench *bench)
     const struct serve_run *runs[N_CASES + 1] = {0};
     const char *settings = strcmp(serve_kind(), "duite")
                                ? "one thread, loops that call the same bodies through pointers"
-                               : "duite_options_default() but for threads and scheduler, which "
+                               : "duite_options_default() but for threads and scheduler: it "
                                  "binds a worker to each core";
     for (size_t i = 0; i < N_CASES; i++)
         runs[i] = bench->cases[i]->runs;

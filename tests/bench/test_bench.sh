@@ -6,7 +6,8 @@ bench=$PWD/bench/duite-bench
 skip_unless "$bench"
 plan_later
 
-tasks() { DUITE_TIMEOUT=120 limited "$bench" tasks --quick "$@"; }
+tasks_in_full() { DUITE_TIMEOUT=120 limited "$bench" tasks "$@"; }
+tasks() { tasks_in_full --quick "$@"; }
 
 # says TEXT COMMAND...: whether the command's output holds the text; gives the command's status if it does.
 says() {
@@ -62,6 +63,8 @@ stencil_dynamic_ns_per_task_vs_starpu <= 0.04
 chain_replay_ns_per_task_vs_libomp <= 0.03
 chain_dynamic_ns_per_task_vs_libomp <= 0.08
 independent_dynamic_ns_per_task_vs_libomp <= 0.7
+fib_ns_per_task_vs_libgomp <= 0.5
+fib_speedup_t2 >= 1.8
 independent_growth <= 1.5
 bytes_per_pending_task <= 256
 granularity_50_w2_vs_mpi <= 1.2
@@ -97,6 +100,17 @@ there_and_back() {
          { there[round] = there[round] " " $1; back[round] = " " $1 back[round] }
          END { for (i = 1; i <= round; i++) { print there[i]; if (there[i] != there[1]) differ++ }
                exit !(round == 5 && differ && there[2] == back[3] && there[4] == back[5]) }' "$scratch/log"
+}
+
+# A verdict says how the median and the target compare, whichever side it should be on.
+verdicts_right() {
+    tasks_in_full --only fib --repeats 1 > "$scratch/lines" || return 1
+    awk '{ print }
+         /, target .*: (pass|miss)$/ {
+             least += />=/
+             bound = $(NF - 1) + 0
+             if (($NF == "pass") != (/<=/ ? $2 <= bound : $2 >= bound)) bad++ }
+         END { exit !(least == 1 && !bad) }' "$scratch/lines"
 }
 
 # The targets of a stencil against a StarPU that is very slow, or as fast as it says, and no other rival.
@@ -137,6 +151,7 @@ if liars_bench bench starpu > "$scratch/output" 2>&1 &&
     if ! "$bench" tasks --only wake --repeats 1 2>&1 | grep -q "only --quick"; then
         ok "a target that is kept" judged slow pass 1 0
         ok "a target that is missed" judged count miss 0 1
+        ok "targets on either side" verdicts_right
     fi
     ok "medians and quartiles, without the first round" counted
     ok "a rival that is not there is said" says "stencil_libomp_ns_per_task: not built: " lied_to count

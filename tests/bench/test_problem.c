@@ -82,6 +82,17 @@ START_TEST(test_line)
 }
 END_TEST
 
+START_TEST(test_fib)
+{
+    static const int64_t numbers[] = {0, 1, 1, 2, 3, 5, 8, 13};
+    static const uint64_t calls[] = {1, 1, 3, 5, 9, 15, 25, 41};
+    for (unsigned n = 0; n < 8; n++) {
+        ck_assert_int_eq(problem_fib(n), numbers[n]);
+        ck_assert_uint_eq(problem_fib_calls(n), calls[n]);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bench/problem");
@@ -91,6 +102,7 @@ int main(void)
     tcase_add_test(one, test_chain);
     tcase_add_test(one, test_marks);
     tcase_add_test(one, test_line);
+    tcase_add_test(one, test_fib);
     suite_add_tcase(suite, one);
     return unit_run(suite);
 }

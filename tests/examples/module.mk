@@ -1,5 +1,6 @@
 # The programs that docs/runtime.md explains, each built and run as a user would.
-check_PROGRAMS += tests/examples/dot tests/examples/stencil tests/examples/fib tests/examples/cholesky tests/examples/cg
+check_PROGRAMS += tests/examples/dot tests/examples/stencil tests/examples/cholesky tests/examples/cg \
+	tests/examples/fib tests/examples/quicksort
 tests_examples_dot_SOURCES = tests/examples/dot.c
 tests_examples_dot_LDADD = libduite.la
 tests_examples_stencil_SOURCES = tests/examples/stencil.c
@@ -10,5 +11,7 @@ tests_examples_cg_SOURCES = tests/examples/cg.c
 tests_examples_cg_LDADD = libduite.la -lm
 tests_examples_fib_SOURCES = tests/examples/fib.c
 tests_examples_fib_LDADD = libduite.la
+tests_examples_quicksort_SOURCES = tests/examples/quicksort.c
+tests_examples_quicksort_LDADD = libduite.la
 dist_check_SCRIPTS += tests/examples/test_examples.sh
 TESTS += tests/examples/test_examples.sh

@@ -6,7 +6,7 @@ plan_later
 
 checking() { (DUITE_CHECK=accesses; export DUITE_CHECK; "$@"); }
 
-for example in dot stencil fib cholesky cg; do
+for example in dot stencil cholesky cg fib quicksort; do
     program=tests/examples/$example
     for scheduler in steal fifo lifo priority static shuffle; do
         ok "$example under $scheduler" limited $program $scheduler

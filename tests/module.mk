@@ -40,10 +40,14 @@ check-long:
 check-threads:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS="`for test in $(TESTS); do case $$test in *.sh) ;; \
 	  tests/runtime/* | tests/negative/* | tests/cloth/flow/* | tests/support/*) echo $$test;; esac; done | tr '\n' ' '`"
+# The random programs a hundred times each; takes about half an hour.
+check-threads-long:
+	$(MAKE) $(AM_MAKEFLAGS) check TESTS=tests/runtime/test_threads_long.sh TEST_SUITE_LOG=test-suite-long.log
 check-programs: $(check_PROGRAMS)
-.PHONY: check-long check-threads check-programs
+.PHONY: check-long check-threads check-threads-long check-programs
 
-EXTRA_DIST += tests/arrows.txt tests/support/tap.sh tests/support/run.sh tests/support/count.sh tests/support/lsan.supp tests/support/tsan.supp
+EXTRA_DIST += tests/arrows.txt tests/support/tap.sh tests/support/run.sh tests/support/count.sh tests/support/lsan.supp tests/support/tsan.supp \
+    tests/support/valgrind.supp
 dist_check_SCRIPTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh
 TESTS += tests/support/test_tap.sh tests/arrows.sh tests/documents.sh tests/install.sh tests/readme.sh
 

@@ -14,9 +14,10 @@ tests_runtime_nested_programs_SOURCES = tests/runtime/nested_programs.c tests/ru
     tests/runtime/nested_make.c tests/runtime/nested_interpret.c
 tests_runtime_nested_programs_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_long.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh \
-    tests/runtime/test_nested.sh
-TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh tests/runtime/test_nested.sh
-LONG_TESTS += tests/runtime/test_random_long.sh
+    tests/runtime/test_nested.sh tests/runtime/test_memcheck.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh
+TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh tests/runtime/test_nested.sh \
+    tests/runtime/test_memcheck.sh
+LONG_TESTS += tests/runtime/test_random_long.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh
 check_PROGRAMS += tests/runtime/ranks_exit
 tests_runtime_ranks_exit_SOURCES = tests/runtime/ranks_exit.c
 tests_runtime_ranks_exit_LDADD = libduite_core.la

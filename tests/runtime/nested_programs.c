@@ -231,6 +231,8 @@ static void run(const struct settings *settings)
     if (settings->scheduler)
         scheduler = settings->scheduler;
     options.scheduler = duite_scheduler_find(scheduler);
+    options.window = duite_random(&random) % 4;
+    options.rename_bytes = duite_random(&random) % 3 * 1000;
     snprintf(running, sizeof running, "--seed %llu --threads %u --scheduler %s",
              (unsigned long long)program.seed, options.threads, scheduler);
     if (duite_start(&rt, &options)) {

@@ -209,8 +209,8 @@ typedef struct duite_options {
     uint64_t seed;                           /* of everything random in policies. Default 1 */
     double spin_seconds; /* how long an idle worker spins before it sleeps. Default 100e-6 */
     int bind;            /* bind workers to cores where the rank owns enough. Default 1 */
-    size_t window;       /* most tasks of this rank that are unfinished when a fork returns: see
-                            duite_fork.       Default 0: any number */
+    size_t window;       /* most tasks of this rank that are unfinished when a fork returns, see
+                            duite_fork. Default 0: any number */
     size_t rename_bytes; /* how many bytes of this rank renaming may take, see below. Default 0 */
     int check; /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
                   environment */

@@ -23,7 +23,8 @@ struct subtree {
 
 struct cell {
     duite_type type;
-    size_t count;
+    size_t count, most;
+    unsigned law; /* of the open contributions */
     _Alignas(8) unsigned char value[BYTES];
     struct failure poison, pending; /* pending: of the contributions */
     unsigned writes;
@@ -69,18 +70,54 @@ static void add(const struct cell *cell, void *left, const void *right)
             ((uint64_t *)left)[i] += ((const uint64_t *)right)[i];
 }
 
+/* Of numbers that are never equal to -0 and never NaN. */
+static void choose(const struct cell *cell, void *left, const void *right, bool largest)
+{
+#define CHOOSE(type)                                                                               \
+    if (largest ? ((const type *)right)[i] > ((type *)left)[i]                                     \
+                : ((const type *)right)[i] < ((type *)left)[i])                                    \
+    ((type *)left)[i] = ((const type *)right)[i]
+    for (size_t i = 0; i < cell->count; i++) {
+        if (cell->type == DUITE_F64) {
+            CHOOSE(double);
+        } else if (cell->type == DUITE_F32) {
+            CHOOSE(float);
+        } else if (cell->type == DUITE_I32) {
+            CHOOSE(int32_t);
+        } else {
+            CHOOSE(int64_t);
+        }
+    }
+#undef CHOOSE
+}
+
+static void combine(const struct cell *cell, void *left, const void *right)
+{
+    if (cell->law == 0)
+        add(cell, left, right);
+    else if (cell->law == 3)
+        nest_law(left, right, cell->count, cell->type);
+    else
+        choose(cell, left, right, cell->law == 2);
+}
+
 /* left becomes left and right; what is absent is skipped. */
 static void join(const struct cell *cell, struct subtree *left, const struct subtree *right)
 {
     if (left->present && right->present)
-        add(cell, left->value, right->value);
+        combine(cell, left->value, right->value);
     else if (right->present)
         memcpy(left->value, right->value, BYTES);
     left->present |= right->present;
 }
 
-static void contribute(struct cell *cell, const void *value)
+static void settle(struct cell *cell);
+
+static void contribute(struct cell *cell, unsigned law, const void *value)
 {
+    if (cell->law != law)
+        settle(cell);
+    cell->law = law;
     struct subtree *top = &cell->subtree[cell->n_subtrees++];
 
     *top = (struct subtree){.present = value != NULL};
@@ -108,16 +145,17 @@ static bool fold(struct cell *cell)
 static void settle(struct cell *cell)
 {
     if (fold(cell))
-        add(cell, cell->value, cell->subtree[0].value);
+        combine(cell, cell->value, cell->subtree[0].value);
     cell->poison = first_of(cell->poison, cell->pending);
     cell->pending = NONE;
 }
 
-static void start(struct cell *cell, duite_type type, size_t count)
+static void start(struct cell *cell, duite_type type, size_t count, size_t most)
 {
     memset(cell, 0, sizeof *cell);
     cell->type = type;
     cell->count = count;
+    cell->most = most;
     cell->poison = cell->pending = NONE;
 }
 
@@ -130,6 +168,7 @@ static void set(const struct nest_action *action, struct cell *cell)
     cell->writes++;
     cell->poison = NONE;
     memset(cell->value, 0, BYTES);
+    cell->count = action->seed ? action->count : cell->most;
     if (action->seed)
         nest_values(cell->type, cell->count, action->seed, cell->value);
 }
@@ -173,7 +212,7 @@ static uint64_t act(struct machine *m, struct frame *frame, uint64_t digest)
         if (action->kind == NEST_NEW) {
             struct cell *cell = &frame->made[frame->n_objects];
 
-            start(cell, action->type, action->count);
+            start(cell, action->type, action->count, action->most);
             frame->object[frame->n_objects++] = cell;
         } else if (action->kind == NEST_GET) {
             struct cell *cell = frame->object[action->object[0]];
@@ -208,12 +247,13 @@ static struct failure enter(struct frame *frame, struct frame *above, const unsi
         const duite_mode mode = frame->task->mode[i];
         struct cell *cell = above->object[objects[i]];
 
-        start(&own[i], cell->type, cell->count);
         frame->writes[i] = cell->writes;
-        param[i] = (duite_param){.count = cell->count, .type = cell->type};
         frame->object[i] = immediate(mode) || mode == DUITE_CWP ? &own[i] : cell;
         if (mode != DUITE_CW && mode != DUITE_CWP)
             settle(cell);
+        start(&own[i], cell->type, mode == DUITE_W ? cell->most : cell->count, cell->most);
+        own[i].law = frame->task->law;
+        param[i] = (duite_param){.count = own[i].count, .type = cell->type, .most = cell->most};
         if (immediate(mode))
             param[i].data = own[i].value;
         if (mode == DUITE_R || mode == DUITE_RW) {
@@ -227,7 +267,7 @@ static struct failure enter(struct frame *frame, struct frame *above, const unsi
 
 /* What the task did to the objects of the one above. */
 static void leave(const struct frame *frame, struct frame *above, const unsigned *objects,
-                  struct cell *own, struct failure failure)
+                  struct cell *own, const duite_param *param, struct failure failure)
 {
     for (unsigned i = 0; i < frame->task->n; i++) {
         const duite_mode mode = frame->task->mode[i];
@@ -236,12 +276,14 @@ static void leave(const struct frame *frame, struct frame *above, const unsigned
 
         if (mode == DUITE_W || mode == DUITE_RW) {
             memcpy(cell->value, own[i].value, BYTES);
+            cell->count = param[i].count;
             cell->poison = failure;
             cell->writes++;
         } else if (mode == DUITE_WP || mode == DUITE_RWP) {
             settle(cell);
             if (mode == DUITE_WP && cell->writes == frame->writes[i]) {
                 memset(cell->value, 0, BYTES); /* what was there does not count */
+                cell->count = cell->most;
                 cell->poison = NONE;
             }
             cell->writes++;
@@ -249,10 +291,11 @@ static void leave(const struct frame *frame, struct frame *above, const unsigned
         } else if (mode == DUITE_CW || mode == DUITE_CWP) {
             const bool present = mode == DUITE_CW || fold(&own[i]);
 
+            contribute(cell, frame->task->law,
+                       !present           ? NULL
+                       : mode == DUITE_CW ? own[i].value
+                                          : own[i].subtree[0].value);
             cell->pending = first_of(cell->pending, bad);
-            contribute(cell, !present           ? NULL
-                             : mode == DUITE_CW ? own[i].value
-                                                : own[i].subtree[0].value);
         }
     }
 }
@@ -281,14 +324,18 @@ static void run_task(struct machine *m, struct frame *above, unsigned number,
 
         if (failure.place == NONE.place) {
             m->answers->runs[number] = frame->runs = true;
-            nest_write(task, param, act(m, frame, nest_read(task, param)));
+            const uint64_t digest = act(m, frame, nest_read(task, param));
+
+            for (unsigned i = 0; i < task->n; i++)
+                param[i].count = nest_count(task, param, i, digest);
+            nest_write(task, param, digest);
             if (task->fails) {
                 failure = (struct failure){m->place++, task->fails};
                 fail(above, failure);
             }
             end_segment(m, frame);
         }
-        leave(frame, above, objects, own, failure);
+        leave(frame, above, objects, own, param, failure);
     }
     free(own);
     free(frame);

@@ -12,8 +12,9 @@ struct table {
     unsigned n;
     duite_mode right[NEST_MAX_OBJECTS]; /* DUITE_NONE: freed */
     bool made[NEST_MAX_OBJECTS], written[NEST_MAX_OBJECTS];
+    bool sized[NEST_MAX_OBJECTS];
     duite_type type[NEST_MAX_OBJECTS];
-    size_t count[NEST_MAX_OBJECTS];
+    size_t most[NEST_MAX_OBJECTS];
 };
 
 struct maker {
@@ -45,15 +46,16 @@ static unsigned allowed(duite_mode right)
     }
 }
 
-static duite_mode draw_mode(struct maker *maker, duite_mode right, unsigned depth)
+static duite_mode draw_mode(struct maker *maker, duite_mode right, bool sized, unsigned depth)
 {
-    const unsigned modes = allowed(right);
+    const unsigned sums = 1u << DUITE_CW | 1u << DUITE_CWP;
+    const unsigned modes = allowed(right) & ~(sized ? sums : 0);
 
     for (;;) {
         const duite_mode mode = (duite_mode)(1 + draw(maker, 8));
 
         /* Contributions are the most likely to go wrong: half of all. */
-        if (right == DUITE_RWP && draw(maker, 4) == 0)
+        if (right == DUITE_RWP && !sized && draw(maker, 4) == 0)
             return draw(maker, 2) && depth < MAX_DEPTH ? DUITE_CWP : DUITE_CW;
         if (modes >> mode & 1 && !(mode >= DUITE_RP && depth >= MAX_DEPTH))
             return mode;
@@ -84,23 +86,27 @@ static void make_fork(struct maker *maker, unsigned self, struct table *table, i
 
     memset(task, 0, sizeof *task);
     action->task = child;
+    action->priority = (int32_t)draw(maker, 5) - 2;
+    task->law = draw(maker, 2) ? program->task[self].law : draw(maker, NEST_LAWS);
     for (unsigned tries = 0; given.n < want && tries < 12; tries++) {
         const unsigned object = forced >= 0 ? (unsigned)forced : draw(maker, table->n);
         bool twice = false;
 
         for (unsigned i = 0; i < given.n; i++)
             twice |= action->object[i] == object;
-        if (twice || !allowed(table->right[object]))
+        if (twice || !allowed(table->right[object]) ||
+            (table->right[object] == DUITE_CWP && task->law != program->task[self].law))
             continue;
-        duite_mode mode = draw_mode(maker, table->right[object], depth);
+        duite_mode mode = draw_mode(maker, table->right[object], table->sized[object], depth);
         if (forced >= 0)
             mode = depth < MAX_DEPTH && draw(maker, 2) ? DUITE_WP : DUITE_W;
         table->written[object] |= mode == DUITE_W || mode == DUITE_WP;
         action->object[given.n] = object;
         task->mode[given.n] = mode;
         given.right[given.n] = mode;
+        task->sized[given.n] = given.sized[given.n] = table->sized[object];
         given.type[given.n] = table->type[object];
-        given.count[given.n++] = table->count[object];
+        given.most[given.n++] = table->most[object];
     }
     task->n = given.n;
     make_task(maker, child, &given, depth);
@@ -112,11 +118,14 @@ static void make_new(struct maker *maker, struct nest_task *task, struct table *
     struct nest_action *action = add(task, NEST_NEW);
 
     action->type = TYPES[draw(maker, 5)];
-    action->count = 1 + draw(maker, NEST_MAX_COUNT);
+    action->most = 1 + draw(maker, NEST_MAX_COUNT);
+    action->sized = draw(maker, 4) == 0;
+    action->count = action->sized ? draw(maker, (unsigned)action->most + 1) : action->most;
+    table->sized[table->n] = action->sized;
     table->made[table->n] = true;
     table->right[table->n] = DUITE_RWP;
     table->type[table->n] = action->type;
-    table->count[table->n++] = action->count;
+    table->most[table->n++] = action->most;
 }
 
 /* One thing on an object, if its right allows that. */
@@ -137,9 +146,12 @@ static void make_other(struct maker *maker, struct nest_task *task, struct table
     struct nest_action *action = add(task, kind);
     action->object[0] = object;
     action->type = table->type[object];
-    action->count = table->count[object];
+    action->count = action->most = table->most[object];
+    action->sized = table->sized[object];
     if (kind == NEST_SET) {
         action->seed = draw(maker, 4) ? duite_random(&maker->random) : 0;
+        if (action->sized && action->seed)
+            action->count = draw(maker, (unsigned)action->most + 1);
         table->written[object] = true;
     }
     if (kind == NEST_FREE)
@@ -176,7 +188,8 @@ static void make_get(struct nest_task *task, const struct table *table, unsigned
 
     action->object[0] = object;
     action->type = table->type[object];
-    action->count = table->count[object];
+    action->count = action->most = table->most[object];
+    action->sized = table->sized[object];
 }
 
 static void make_task(struct maker *maker, unsigned self, const struct table *given, unsigned depth)
@@ -217,7 +230,7 @@ unsigned nest_kernel(const struct nest_task *task)
 
     for (unsigned i = 0; i < task->n; i++)
         place = place * 8 + (unsigned)task->mode[i] - 1;
-    return first[task->n] + place;
+    return task->law * NEST_SIGNATURES + first[task->n] + place;
 }
 
 static void print_task(const struct nest_program *program, unsigned self, int indent)
@@ -232,11 +245,12 @@ static void print_task(const struct nest_program *program, unsigned self, int in
 
         printf("# %*s%s", indent, "", kinds[action->kind]);
         if (action->kind == NEST_FORK)
-            printf(" task %u%s:", action->task, child->fails ? " (fails)" : "");
+            printf(" task %u%s, law %u:", action->task, child->fails ? " (fails)" : "", child->law);
         for (unsigned i = 0; action->kind == NEST_FORK && i < child->n; i++)
             printf(" %u %s", action->object[i], modes[child->mode[i]]);
         if (action->kind == NEST_NEW)
-            printf(" type %d count %zu", (int)action->type, action->count);
+            printf(" type %d count %zu of %zu%s", (int)action->type, action->count, action->most,
+                   action->sized ? ", sized" : "");
         else if (action->kind != NEST_FORK && action->kind != NEST_WAIT)
             printf(" %u", action->object[0]);
         printf("\n");

@@ -18,7 +18,9 @@ enum {
     NEST_MAX_ACTIONS = 14,
     NEST_MAX_TASKS = 120,
     NEST_MAX_COUNT = 4,
-    NEST_KERNELS = 1 + 8 + 64 + 512
+    NEST_LAWS = 4, /* sum, min, max, and one of the program's */
+    NEST_SIGNATURES = 1 + 8 + 64 + 512,
+    NEST_KERNELS = NEST_LAWS * NEST_SIGNATURES
 };
 
 enum nest_kind { NEST_NEW, NEST_FREE, NEST_SET, NEST_FORK, NEST_GET, NEST_WAIT };
@@ -29,13 +31,17 @@ struct nest_action {
     unsigned object[NEST_MAX_PARAMS];
     unsigned task; /* fork: which */
     duite_type type;
-    size_t count;
-    uint64_t seed; /* set; 0: zeros */
+    size_t count, most; /* of the object, or (count) of what is set; they differ if it is sized */
+    bool sized;
+    int32_t priority; /* fork */
+    uint64_t seed;    /* set; 0: zeros, as many as there can be */
 };
 
 struct nest_task {
     unsigned n, n_actions;
     duite_mode mode[NEST_MAX_PARAMS];
+    bool sized[NEST_MAX_PARAMS];
+    unsigned law;  /* by which it contributes */
     uint64_t seed; /* of its arithmetic */
     int fails;     /* the code it returns */
     struct nest_action action[NEST_MAX_ACTIONS];
@@ -74,7 +80,12 @@ unsigned nest_kernel(const struct nest_task *task);
 size_t nest_size(duite_type type);
 uint64_t nest_mix(uint64_t digest, const void *bytes, size_t n);
 uint64_t nest_read(const struct nest_task *task, const duite_param *param);
+/* How many elements it leaves of parameter i, which it writes. */
+size_t nest_count(const struct nest_task *task, const duite_param *param, unsigned i,
+                  uint64_t digest);
 void nest_write(const struct nest_task *task, const duite_param *param, uint64_t digest);
 void nest_values(duite_type type, size_t count, uint64_t seed, void *values);
+/* Law number 3: neither associative nor commutative. */
+void nest_law(void *left, const void *right, size_t count, duite_type type);
 
 #endif

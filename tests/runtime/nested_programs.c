@@ -88,10 +88,37 @@ uint64_t nest_read(const struct nest_task *task, const duite_param *param)
     uint64_t digest = task->seed;
 
     for (unsigned i = 0; i < task->n; i++)
-        if (param[i].data && task->mode[i] != DUITE_W)
+        if (param[i].data && task->mode[i] != DUITE_W && task->mode[i] != DUITE_CW)
             digest = nest_mix(digest, param[i].data, param[i].count * nest_size(param[i].type));
     return digest;
 }
+
+size_t nest_count(const struct nest_task *task, const duite_param *param, unsigned i,
+                  uint64_t digest)
+{
+    const bool writes = task->mode[i] == DUITE_W || task->mode[i] == DUITE_RW;
+
+    if (!task->sized[i] || !writes)
+        return param[i].count;
+    digest += i;
+    return duite_random(&digest) % (param[i].most + 1);
+}
+
+void nest_law(void *left, const void *right, size_t count, duite_type type)
+{
+    for (size_t i = 0; i < count; i++)
+        if (type == DUITE_F64)
+            ((double *)left)[i] = 0.5 * ((double *)left)[i] + ((const double *)right)[i];
+        else if (type == DUITE_F32)
+            ((float *)left)[i] = 0.5f * ((float *)left)[i] + ((const float *)right)[i];
+        else if (type == DUITE_I32)
+            ((uint32_t *)left)[i] = 3 * ((uint32_t *)left)[i] + ((const uint32_t *)right)[i];
+        else
+            ((uint64_t *)left)[i] = 3 * ((uint64_t *)left)[i] + ((const uint64_t *)right)[i];
+}
+
+static const duite_law NEST_LAW = {.name = "nest", .combine = nest_law};
+static const duite_law *const LAWS[NEST_LAWS] = {NULL, &duite_min, &duite_max, &NEST_LAW};
 
 void nest_write(const struct nest_task *task, const duite_param *param, uint64_t digest)
 {
@@ -103,24 +130,31 @@ void nest_write(const struct nest_task *task, const duite_param *param, uint64_t
 /* ---- Running ---- */
 
 static int call_one(duite *rt, const struct nest_action *action, duite_object *object,
-                    duite_object *made, unsigned char *value)
+                    duite_object *made, unsigned char *value, size_t *count)
 {
     duite_object objects[NEST_MAX_PARAMS];
+    int code;
 
     for (unsigned i = 0; i < NEST_MAX_PARAMS; i++)
         objects[i] = object[action->object[i]];
     switch (action->kind) {
     case NEST_NEW:
-        return duite_new(rt, action->type, action->count, made);
+        return action->sized ? duite_new_sized(rt, action->type, action->count, action->most, made)
+                             : duite_new(rt, action->type, action->count, made);
     case NEST_FREE:
         return duite_free(rt, objects[0]);
     case NEST_SET:
         nest_values(action->type, action->count, action->seed, value);
-        return duite_set(rt, objects[0], action->seed ? value : NULL);
+        return action->seed ? duite_set_sized(rt, objects[0], value, action->count)
+                            : duite_set(rt, objects[0], NULL);
     case NEST_FORK:
-        return duite_fork(rt, &kernels[nest_kernel(&program.task[action->task])], &action->task,
-                          program.task[action->task].n, objects);
+        return duite_fork_with(rt, &(duite_how){.priority = action->priority},
+                               &kernels[nest_kernel(&program.task[action->task])], &action->task,
+                               program.task[action->task].n, objects);
     case NEST_GET:
+        *count = action->most;
+        if (action->sized && (code = duite_get_count(rt, objects[0], count)))
+            return code;
         return duite_get(rt, objects[0], value);
     case NEST_WAIT:
         return duite_wait(rt);
@@ -139,7 +173,8 @@ static uint64_t act(duite *rt, unsigned self, duite_object *object, uint64_t dig
         const struct nest_answer *answer = &answers.of[a];
         const bool asks = action->kind == NEST_GET || action->kind == NEST_WAIT;
         _Alignas(8) unsigned char value[NEST_MAX_COUNT * 8] = {0};
-        const int code = call_one(rt, action, object, &object[n], value);
+        size_t count = 0;
+        const int code = call_one(rt, action, object, &object[n], value, &count);
 
         n += action->kind == NEST_NEW;
         if (!asks && code)
@@ -148,9 +183,11 @@ static uint64_t act(duite *rt, unsigned self, duite_object *object, uint64_t dig
             continue;
         digest = nest_mix(digest, &code, sizeof code);
         if (action->kind == NEST_GET && !code)
-            digest = nest_mix(digest, value, action->count * nest_size(action->type));
+            digest = nest_mix(digest, value, count * nest_size(action->type));
         if (!self && code != answer->code)
             found("action %u: code %d, expected %d: %s", a, code, answer->code, duite_message());
+        else if (!self && count * nest_size(action->type) != answer->bytes && !code && count)
+            found("action %u: %zu elements", a, count);
         else if (!self && memcmp(value, answer->value, sizeof value) != 0)
             found("action %u: another value", a);
     }
@@ -171,25 +208,34 @@ static int body(const duite_call *call)
         object[i] = call->param[i].object;
         if ((mode >= DUITE_RP) != !data)
             found("task %u, parameter %u: data or none", self, i);
-        for (size_t b = 0; mode == DUITE_CW && b < call->param[i].count; b++)
+        for (size_t b = 0; mode == DUITE_CW && task->law % 3 == 0 && b < call->param[i].count; b++)
             if (data[b])
                 found("task %u, parameter %u: a contribution does not begin with zeros", self, i);
     }
-    nest_write(task, call->param, act(call->rt, self, object, nest_read(task, call->param)));
+    const uint64_t digest = act(call->rt, self, object, nest_read(task, call->param));
+
+    for (unsigned i = 0; i < task->n; i++)
+        if (task->sized[i] && (task->mode[i] == DUITE_W || task->mode[i] == DUITE_RW))
+            duite_resize(call, i, nest_count(task, call->param, i, digest));
+    nest_write(task, call->param, digest);
     return task->fails;
 }
 
 static void make_kernels(void)
 {
     for (unsigned k = 0; k < NEST_KERNELS; k++) {
-        struct nest_task task = {.n = k < 1 ? 0 : k < 9 ? 1 : k < 73 ? 2 : 3};
-        unsigned place = k - (k < 1 ? 0 : k < 9 ? 1 : k < 73 ? 9 : 73);
+        const unsigned s = k % NEST_SIGNATURES;
+        struct nest_task task = {.n = s < 1 ? 0 : s < 9 ? 1 : s < 73 ? 2 : 3};
+        unsigned place = s - (s < 1 ? 0 : s < 9 ? 1 : s < 73 ? 9 : 73);
 
         for (unsigned i = task.n; i-- > 0; place /= 8)
             task.mode[i] = (duite_mode)(place % 8 + 1);
         snprintf(names[k], sizeof names[k], "k%u", k);
         kernels[k] = (duite_kernel){.name = names[k], .body = body, .args_size = sizeof(unsigned)};
         memcpy(kernels[k].access, task.mode, sizeof task.mode);
+        for (unsigned i = 0; i < task.n; i++)
+            if (task.mode[i] == DUITE_CW || task.mode[i] == DUITE_CWP)
+                kernels[k].law[i] = LAWS[k / NEST_SIGNATURES];
         list[k] = &kernels[k];
     }
 }
@@ -221,6 +267,9 @@ static void run(const struct settings *settings)
     while (schedulers[n])
         n++;
     options.kernels = list;
+    options.laws = (const duite_law *const[]){&NEST_LAW, NULL};
+    options.window = (size_t[]){0, 0, 1, 3}[duite_random(&random) % 4];
+    options.rename_bytes = (size_t[]){0, 0, 128, 1 << 20}[duite_random(&random) % 4];
     options.seed = duite_random(&random);
     options.mapping = duite_mapping_find("cyclic");
     options.spin_seconds = spins[duite_random(&random) % 3];

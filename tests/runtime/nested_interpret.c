@@ -42,7 +42,6 @@ struct frame {
     struct cell made[NEST_MAX_OBJECTS];
     unsigned first_pending, n_done; /* actions that wait for the end of the segment: up to n_done */
     struct failure failed;          /* of its descendants since its last wait */
-    bool runs;
 };
 
 struct machine {
@@ -209,7 +208,14 @@ static uint64_t act(struct machine *m, struct frame *frame, uint64_t digest)
         const struct nest_action *action = &frame->task->action[a];
 
         frame->n_done = a + 1;
-        if (action->kind == NEST_NEW) {
+        if (action->kind == NEST_REPLAY) {
+            frame->n_done = a + 1 + (unsigned)action->count;
+            for (size_t round = 0; round < action->most; round++) {
+                frame->first_pending = a + 1;
+                end_segment(m, frame);
+            }
+            a += (unsigned)action->count;
+        } else if (action->kind == NEST_NEW) {
             struct cell *cell = &frame->made[frame->n_objects];
 
             start(cell, action->type, action->count, action->most);
@@ -323,7 +329,7 @@ static void run_task(struct machine *m, struct frame *above, unsigned number,
         struct failure failure = enter(frame, above, objects, own, param);
 
         if (failure.place == NONE.place) {
-            m->answers->runs[number] = frame->runs = true;
+            m->answers->runs[number]++;
             const uint64_t digest = act(m, frame, nest_read(task, param));
 
             for (unsigned i = 0; i < task->n; i++)

@@ -128,6 +128,20 @@ static void make_new(struct maker *maker, struct nest_task *task, struct table *
     table->most[table->n++] = action->most;
 }
 
+static void make_set(struct maker *maker, struct nest_task *task, struct table *table,
+                     unsigned object)
+{
+    struct nest_action *action = add(task, NEST_SET);
+
+    action->object[0] = object;
+    action->type = table->type[object];
+    action->count = action->most = table->most[object];
+    action->seed = draw(maker, 4) ? duite_random(&maker->random) : 0;
+    if (table->sized[object] && action->seed)
+        action->count = draw(maker, (unsigned)action->most + 1);
+    table->written[object] = true;
+}
+
 /* One thing on an object, if its right allows that. */
 static void make_other(struct maker *maker, struct nest_task *task, struct table *table)
 {
@@ -143,19 +157,38 @@ static void make_other(struct maker *maker, struct nest_task *task, struct table
         kind = NEST_FREE;
     else if (draw(maker, 2))
         return;
+    if (kind == NEST_SET) {
+        make_set(maker, task, table, object);
+        return;
+    }
     struct nest_action *action = add(task, kind);
     action->object[0] = object;
     action->type = table->type[object];
     action->count = action->most = table->most[object];
     action->sized = table->sized[object];
-    if (kind == NEST_SET) {
-        action->seed = draw(maker, 4) ? duite_random(&maker->random) : 0;
-        if (action->sized && action->seed)
-            action->count = draw(maker, (unsigned)action->most + 1);
-        table->written[object] = true;
-    }
     if (kind == NEST_FREE)
         table->right[object] = DUITE_NONE;
+}
+
+/* A graph of a few forks and sets, which is replayed. */
+static void make_replay(struct maker *maker, struct table *table)
+{
+    struct nest_task *task = &maker->program->task[0];
+    struct nest_action *replay = add(task, NEST_REPLAY);
+    const unsigned first = task->n_actions, n = 1 + draw(maker, 3);
+
+    replay->most = 1 + draw(maker, 3);
+    for (unsigned tries = 0; tries < n; tries++) {
+        const unsigned object = draw(maker, table->n);
+
+        if (draw(maker, 4))
+            make_fork(maker, 0, table, -1, 1);
+        else if (table->right[object])
+            make_set(maker, task, table, object);
+    }
+    replay->count = task->n_actions - first;
+    if (!replay->count)
+        task->n_actions--;
 }
 
 /* Actions are kept free for what must be written, and for the main program's gets. */
@@ -172,6 +205,8 @@ static void make_actions(struct maker *maker, unsigned self, struct table *table
 
         if (what < 2 && table->n < NEST_MAX_OBJECTS && (self || table->n < 4))
             make_new(maker, task, table);
+        else if (!self && what < 4 && table->n && program->n_tasks < NEST_MAX_TASKS - 90)
+            make_replay(maker, table);
         else if (what < 8 && table->n && depth < MAX_DEPTH &&
                  program->n_tasks < NEST_MAX_TASKS - 60)
             make_fork(maker, self, table, -1, depth + 1);
@@ -236,7 +271,7 @@ unsigned nest_kernel(const struct nest_task *task)
 static void print_task(const struct nest_program *program, unsigned self, int indent)
 {
     static const char *const modes[] = {"", "r", "w", "rw", "cw", "rp", "wp", "rwp", "cwp"};
-    static const char *const kinds[] = {"new", "free", "set", "fork", "get", "wait"};
+    static const char *const kinds[] = {"new", "free", "set", "fork", "get", "wait", "replay"};
     const struct nest_task *task = &program->task[self];
 
     for (unsigned a = 0; a < task->n_actions; a++) {
@@ -251,6 +286,8 @@ static void print_task(const struct nest_program *program, unsigned self, int in
         if (action->kind == NEST_NEW)
             printf(" type %d count %zu of %zu%s", (int)action->type, action->count, action->most,
                    action->sized ? ", sized" : "");
+        else if (action->kind == NEST_REPLAY)
+            printf(" the next %zu, %zu times", action->count, action->most);
         else if (action->kind != NEST_FORK && action->kind != NEST_WAIT)
             printf(" %u", action->object[0]);
         printf("\n");

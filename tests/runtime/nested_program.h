@@ -15,7 +15,7 @@
 enum {
     NEST_MAX_PARAMS = 3,
     NEST_MAX_OBJECTS = 12, /* a task's parameters and what it makes */
-    NEST_MAX_ACTIONS = 14,
+    NEST_MAX_ACTIONS = 20,
     NEST_MAX_TASKS = 120,
     NEST_MAX_COUNT = 4,
     NEST_LAWS = 4, /* sum, min, max, and one of the program's */
@@ -23,7 +23,15 @@ enum {
     NEST_KERNELS = NEST_LAWS * NEST_SIGNATURES
 };
 
-enum nest_kind { NEST_NEW, NEST_FREE, NEST_SET, NEST_FORK, NEST_GET, NEST_WAIT };
+enum nest_kind {
+    NEST_NEW,
+    NEST_FREE,
+    NEST_SET,
+    NEST_FORK,
+    NEST_GET,
+    NEST_WAIT,
+    NEST_REPLAY /* main program: the next `count` actions, forks and sets, `most` times */
+};
 
 /* What a task does, one thing after the other; objects by their place in its table. */
 struct nest_action {
@@ -63,7 +71,7 @@ struct nest_answer {
 
 struct nest_answers {
     struct nest_answer of[NEST_MAX_ACTIONS]; /* of the main program's actions */
-    unsigned char runs[NEST_MAX_TASKS];
+    int runs[NEST_MAX_TASKS];
 };
 
 void nest_make(struct nest_program *program, uint64_t seed);

@@ -156,10 +156,38 @@ static int call_one(duite *rt, const struct nest_action *action, duite_object *o
         if (action->sized && (code = duite_get_count(rt, objects[0], count)))
             return code;
         return duite_get(rt, objects[0], value);
-    case NEST_WAIT:
+    default:
         return duite_wait(rt);
     }
-    return 0;
+}
+
+/* What is recorded, and who names it. */
+struct built {
+    const struct nest_action *action; /* count of them follow it */
+    duite_object *object;
+};
+
+static int build(duite *rt, void *context)
+{
+    const struct built *built = context;
+    unsigned char value[NEST_MAX_COUNT * 8];
+    size_t count;
+    int code = 0;
+
+    for (size_t i = 1; i <= built->action->count && !code; i++)
+        code = call_one(rt, &built->action[i], built->object, NULL, value, &count);
+    return code;
+}
+
+static int replay(duite *rt, const struct nest_action *action, duite_object *object)
+{
+    duite_graph graph;
+    int code = duite_graph_new(rt, build, &(struct built){action, object}, &graph);
+
+    if (code)
+        return code;
+    code = duite_replay(rt, graph, action->most);
+    return code ? code : duite_graph_free(rt, graph);
 }
 
 /* Does what a task does, or the main program (self 0), whose answers are compared. */
@@ -174,7 +202,12 @@ static uint64_t act(duite *rt, unsigned self, duite_object *object, uint64_t dig
         const bool asks = action->kind == NEST_GET || action->kind == NEST_WAIT;
         _Alignas(8) unsigned char value[NEST_MAX_COUNT * 8] = {0};
         size_t count = 0;
-        const int code = call_one(rt, action, object, &object[n], value, &count);
+        const int code = action->kind == NEST_REPLAY
+                             ? replay(rt, action, object)
+                             : call_one(rt, action, object, &object[n], value, &count);
+
+        if (action->kind == NEST_REPLAY)
+            a += (unsigned)action->count;
 
         n += action->kind == NEST_NEW;
         if (!asks && code)

@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 void *base_alloc(size_t size)
 {
@@ -12,6 +13,17 @@ void *base_alloc(size_t size)
         return NULL;
     size_t lines = (size + BASE_LINE - 1) / BASE_LINE;
     return aligned_alloc(BASE_LINE, (lines ? lines : 1) * BASE_LINE);
+}
+
+void *base_alloc_large(size_t size)
+{
+    static const size_t PAGE = (size_t)2 << 20;
+    if (size < PAGE || size % PAGE)
+        return base_alloc(size);
+    void *memory = aligned_alloc(PAGE, size);
+    if (memory)
+        madvise(memory, size, MADV_HUGEPAGE); /* advice: without it the pages are small */
+    return memory;
 }
 
 void *base_alloc_zero(size_t size)

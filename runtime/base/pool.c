@@ -1,12 +1,18 @@
-/* A free block is in one place: the list of one thread, or a batch in the common store of its size.
- * Batches and chunks are moved under `lock`; it is held for a few instructions, once per BATCH
- * blocks. */
+/* A free block is in one place: a magazine, which one thread or the common store holds. Blocks are
+ * named by pointers in magazines, not linked, so that taking and giving never touch a block's own
+ * memory: it may still lie in another core's cache. After Bonwick & Adams, Magazines and vmem,
+ * USENIX 2001. What is under `lock` is held for a few instructions, once per MAGAZINE blocks.
+ *
+ * New blocks are cut one after another from a thread's region, so that what is taken together lies
+ * together. */
 #include "runtime/base/pool.h"
 
 #include "runtime/base/memory.h"
 
 #include <sched.h>
 #include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
 
 /* The sanitizers must see each block's birth and death. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -20,27 +26,48 @@
 #define DIRECT 0
 #endif
 
-enum { LARGEST = 24, BATCH = 32, CHUNK_BYTES = 1 << 16 }; /* LARGEST: cache lines of a block */
+enum {
+    GRAIN = 16,
+    LARGEST = 1536, /* bytes of a block */
+    N_SIZES = LARGEST / GRAIN + 1,
+    MAGAZINE = 30 /* blocks: a magazine takes four cache lines */
+};
 
-struct block {
-    struct block *next;  /* in a list or batch */
-    struct block *batch; /* the next batch; in the first block of a batch */
+/* A new chunk is as large as all before it together, between these. */
+#define SMALLEST_CHUNK ((size_t)1 << 16)
+#define LARGEST_CHUNK  ((size_t)1 << 22)
+
+struct magazine {
+    struct magazine *next; /* in the store */
+    size_t n;
+    void *block[MAGAZINE];
 };
 
 struct chunk {
     struct chunk *next;
 };
 
+/* What a thread that ended left of a chunk. */
+struct region {
+    struct region *next;
+    char *end;
+};
+
 static atomic_flag lock = ATOMIC_FLAG_INIT;
-static struct block *store[LARGEST + 1]; /* batches of BATCH blocks */
+static struct magazine *store[N_SIZES]; /* with blocks */
+static struct magazine *empties;
 static struct chunk *chunks;
+static struct region *regions;
+static size_t chunk_bytes; /* of all chunks */
 static unsigned runtimes;
 
-struct list {
-    struct block *first;
-    unsigned n;
+/* What a thread has at hand of one size. `loaded` serves; `spare` is full or empty. */
+struct shelf {
+    struct magazine *loaded, *spare;
 };
-static _Thread_local struct list own[LARGEST + 1];
+
+static _Thread_local struct shelf shelves[N_SIZES];
+static _Thread_local char *region, *region_end;
 
 static void acquire(void)
 {
@@ -55,94 +82,168 @@ static void release(void)
     atomic_flag_clear_explicit(&lock, memory_order_release);
 }
 
-static size_t lines_of(size_t size)
-{
-    return size ? (size - 1) / BASE_LINE + 1 : 1;
-}
+/* ---- New memory ---- */
 
-/* Cuts a new chunk into blocks of the calling thread. */
-static void cut_chunk(struct list *list, size_t lines)
+static bool take_region(void)
 {
-    struct chunk *chunk = base_alloc(CHUNK_BYTES);
+    acquire();
+    struct region *left = regions;
+    if (left)
+        regions = left->next;
+    size_t bytes = chunk_bytes < SMALLEST_CHUNK  ? SMALLEST_CHUNK
+                   : chunk_bytes > LARGEST_CHUNK ? LARGEST_CHUNK
+                                                 : chunk_bytes;
+    release();
+    if (left) {
+        region = (char *)left;
+        region_end = left->end;
+        return true;
+    }
+    struct chunk *chunk = base_alloc_large(bytes);
     if (!chunk)
-        return;
+        return false;
     acquire();
     chunk->next = chunks;
     chunks = chunk;
+    chunk_bytes += bytes;
     release();
-    size_t bytes = lines * BASE_LINE;
-    char *at = (char *)chunk + BASE_LINE;
-    for (; at + bytes <= (char *)chunk + CHUNK_BYTES; at += bytes) {
-        struct block *block = (struct block *)(void *)at;
-        block->next = list->first;
-        list->first = block;
-        list->n++;
+    region = (char *)chunk + BASE_LINE;
+    region_end = (char *)chunk + bytes;
+    return true;
+}
+
+/* Blocks of whole cache lines begin with one. */
+static void *cut(size_t bytes)
+{
+    size_t align = bytes % BASE_LINE ? GRAIN : BASE_LINE;
+    for (;;) {
+        size_t skip = -(uintptr_t)region % align;
+        if ((size_t)(region_end - region) >= skip + bytes) {
+            char *block = region + skip;
+            region = block + bytes;
+            return block;
+        }
+        if (!take_region())
+            return NULL;
     }
 }
 
-static void refill(struct list *list, size_t lines)
+static void leave_region(void)
 {
+    size_t skip = -(uintptr_t)region % BASE_LINE;
+    if ((size_t)(region_end - region) >= skip + LARGEST) {
+        struct region *left = (struct region *)(void *)(region + skip);
+        left->end = region_end;
+        acquire();
+        left->next = regions;
+        regions = left;
+        release();
+    }
+    region = region_end = NULL;
+}
+
+/* ---- Magazines ---- */
+
+static void *take_from_store(size_t size)
+{
+    struct shelf *shelf = &shelves[size];
     acquire();
-    struct block *batch = store[lines];
-    if (batch)
-        store[lines] = batch->batch;
-    release();
-    if (!batch) {
-        cut_chunk(list, lines);
-        return;
+    struct magazine *full = store[size];
+    if (full)
+        store[size] = full->next;
+    if (full && shelf->spare) {
+        shelf->spare->next = empties;
+        empties = shelf->spare;
     }
-    list->first = batch;
-    for (list->n = 0; batch; batch = batch->next)
-        list->n++;
+    release();
+    if (!full)
+        return cut(size * GRAIN);
+    shelf->spare = shelf->loaded;
+    shelf->loaded = full;
+    return full->block[--full->n];
 }
 
-/* Moves up to `n` blocks into the store. */
-static void hand_over(struct list *list, size_t lines, unsigned n)
+static void *take(size_t size)
 {
-    struct block *first = list->first, *last = first;
-    if (!first)
-        return;
-    unsigned moved = 1;
-    for (; moved < n && last->next; moved++)
-        last = last->next;
-    list->first = last->next;
-    list->n -= moved;
-    last->next = NULL;
+    struct shelf *shelf = &shelves[size];
+    struct magazine *spare = shelf->spare;
+    if (!spare || !spare->n)
+        return take_from_store(size);
+    shelf->spare = shelf->loaded;
+    shelf->loaded = spare;
+    return spare->block[--spare->n];
+}
+
+/* Both magazines are full, or not there yet. Without memory for one more the block is lost until
+ * the last runtime ends. */
+static void give_to_store(void *block, size_t size)
+{
+    struct shelf *shelf = &shelves[size];
     acquire();
-    first->batch = store[lines];
-    store[lines] = first;
+    struct magazine *empty = empties;
+    if (empty)
+        empties = empty->next;
     release();
+    if (!empty && !(empty = cut(sizeof *empty)))
+        return;
+    if (shelf->spare) {
+        acquire();
+        shelf->spare->next = store[size];
+        store[size] = shelf->spare;
+        release();
+    }
+    shelf->spare = shelf->loaded;
+    shelf->loaded = empty;
+    empty->block[0] = block;
+    empty->n = 1;
 }
 
-void *base_pool_take(size_t size)
+static void give(void *block, size_t size)
 {
-    size_t lines = lines_of(size);
-    if (DIRECT || lines > LARGEST)
-        return base_alloc(size);
-    struct list *list = &own[lines];
-    if (!list->first)
-        refill(list, lines);
-    struct block *block = list->first;
-    if (!block)
-        return NULL;
-    list->first = block->next;
-    list->n--;
-    return block;
-}
-
-void base_pool_give(void *memory, size_t size)
-{
-    size_t lines = lines_of(size);
-    if (DIRECT || lines > LARGEST || !memory) {
-        base_free(memory);
+    struct shelf *shelf = &shelves[size];
+    struct magazine *spare = shelf->spare;
+    if (!spare || spare->n) {
+        give_to_store(block, size);
         return;
     }
-    struct list *list = &own[lines];
-    struct block *block = memory;
-    block->next = list->first;
-    list->first = block;
-    if (++list->n >= 2 * BATCH)
-        hand_over(list, lines, BATCH);
+    shelf->spare = shelf->loaded;
+    shelf->loaded = spare;
+    spare->block[spare->n++] = block;
+}
+
+void *base_pool_take(size_t bytes)
+{
+    size_t size = (bytes + GRAIN - 1) / GRAIN;
+    if (DIRECT || bytes > LARGEST)
+        return base_alloc(bytes);
+    struct magazine *loaded = shelves[size].loaded;
+    return loaded && loaded->n ? loaded->block[--loaded->n] : take(size);
+}
+
+void base_pool_give(void *block, size_t bytes)
+{
+    size_t size = (bytes + GRAIN - 1) / GRAIN;
+    if (DIRECT || bytes > LARGEST || !block) {
+        base_free(block);
+        return;
+    }
+    struct magazine *loaded = shelves[size].loaded;
+    if (loaded && loaded->n < MAGAZINE)
+        loaded->block[loaded->n++] = block;
+    else
+        give(block, size);
+}
+
+/* ---- Threads and runtimes ---- */
+
+/* The calling thread holds the lock. */
+static void put_away(struct magazine *magazine, size_t size)
+{
+    if (!magazine)
+        return;
+    struct magazine **list = magazine->n ? &store[size] : &empties;
+    magazine->next = *list;
+    *list = magazine;
 }
 
 void base_pool_enter(void)
@@ -154,9 +255,15 @@ void base_pool_enter(void)
 
 void base_pool_thread_end(void)
 {
-    for (size_t lines = 1; lines <= LARGEST; lines++)
-        while (own[lines].first)
-            hand_over(&own[lines], lines, BATCH);
+    acquire();
+    for (size_t size = 0; size < N_SIZES; size++) {
+        put_away(shelves[size].loaded, size);
+        put_away(shelves[size].spare, size);
+        shelves[size] = (struct shelf){NULL, NULL};
+    }
+    release();
+    if (region)
+        leave_region();
 }
 
 void base_pool_leave(void)
@@ -167,8 +274,11 @@ void base_pool_leave(void)
     if (--runtimes == 0) {
         chunk = chunks;
         chunks = NULL;
-        for (size_t lines = 1; lines <= LARGEST; lines++)
-            store[lines] = NULL;
+        for (size_t size = 0; size < N_SIZES; size++)
+            store[size] = NULL;
+        empties = NULL;
+        regions = NULL;
+        chunk_bytes = 0;
     }
     release();
     while (chunk) {

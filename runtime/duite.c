@@ -194,7 +194,6 @@ static int start_graph(duite *rt, const duite_options *options)
                               code ? NULL : options->laws);
     if (!code)
         code = started;
-    rt->graph.resume = options->window - options->window / 4;
     rt->graph.rename_most = options->rename_bytes;
     if (!code && options->check)
         code = check_start(&rt->check);
@@ -244,7 +243,7 @@ bool instance_is_broken(const duite *rt)
 static bool nothing_left(void *context)
 {
     duite *rt = context;
-    uint64_t left = atomic_load_explicit(&rt->graph.root.unfinished, memory_order_acquire);
+    uint64_t left = work_unfinished(rt->pool);
     return !left || (rt->comm && left == comm_stuck(rt->comm));
 }
 

@@ -168,12 +168,6 @@ int duite_free(duite *rt, duite_object object)
 
 /* ---- Tasks ---- */
 
-static bool is_below(void *context)
-{
-    const struct graph *graph = context;
-    return atomic_load_explicit(&graph->root.unfinished, memory_order_acquire) <= graph->resume;
-}
-
 /* This ends: of all unfinished tasks of all ranks, take the first in fork order. What it waits for
  * was forked before it, runs, and is over. A rank that has not come to its fork yet, and so does
  * not send what it needs, is not throttled: all tasks it has are even earlier, so they are over.
@@ -181,9 +175,8 @@ static bool is_below(void *context)
  * earlier tasks only. Messages go on, since a throttled rank sends and receives as it works. */
 void program_throttle(duite *rt)
 {
-    if (rt->window &&
-        atomic_load_explicit(&rt->graph.root.unfinished, memory_order_relaxed) > rt->window)
-        work_until(rt->pool, is_below, &rt->graph);
+    if (rt->window)
+        work_throttle(rt->pool, rt->window);
 }
 
 static int fork_task(duite *rt, const struct graph_how *how, const duite_kernel *kernel,
@@ -343,8 +336,7 @@ int duite_get_at(duite *rt, duite_object object, int rank, void *values)
 
 static bool drained(void *context)
 {
-    struct graph *graph = context;
-    return graph_alone(&graph->root);
+    return !work_unfinished(context);
 }
 
 static void between(void *context)
@@ -411,7 +403,7 @@ int duite_wait(duite *rt)
     work_tick(rt->pool);
     if (rt->comm && (code = compare(rt)))
         return code;
-    work_until(rt->pool, drained, graph);
+    work_until(rt->pool, drained, rt->pool);
     struct comm_word own = own_word(graph), *words = &own;
     if (rt->comm)
         code = comm_agree(rt->comm, &own, &words, between, rt->pool);

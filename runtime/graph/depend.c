@@ -40,13 +40,17 @@ struct graph_task *graph_task_new(struct graph_scope *scope, enum graph_kind kin
     task->args = extra ? (char *)task + access + param : NULL;
     for (size_t i = 0; i < n; i++)
         task->access[i] = (struct graph_access){.waiter.task = task};
-    atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
+    if (scope->parent)
+        atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
+    else
+        scope->graph->tasks++;
     return task;
 }
 
 static void take(struct graph *graph, void *worker, struct graph_task *task, uint32_t taken)
 {
-    if (atomic_fetch_sub_explicit(&task->pending, taken, memory_order_acq_rel) == taken)
+    if (atomic_load_explicit(&task->pending, memory_order_acquire) == taken ||
+        atomic_fetch_sub_explicit(&task->pending, taken, memory_order_acq_rel) == taken)
         graph->hooks.ready(graph->hooks.context, worker, task);
 }
 

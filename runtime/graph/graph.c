@@ -76,7 +76,6 @@ int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *
     graph->rank = rank;
     graph->n_ranks = n_ranks;
     graph->root.graph = graph;
-    atomic_init(&graph->root.unfinished, 0);
     atomic_init(&graph->given_up, 0);
     atomic_init(&graph->rename_bytes, 0);
     atomic_init(&graph->renamed, 0);

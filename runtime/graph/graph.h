@@ -99,7 +99,8 @@ struct graph_scope {
     struct graph *graph;
     struct graph_scope *parent;  /* where its task was forked; NULL: the main program */
     _Atomic uint64_t unfinished; /* tasks forked here, each with its descendants; values to be
-                                    passed to the scope above; 1 while the body runs */
+                                    passed to the scope above; 1 while the body runs. Of the main
+                                    program: see graph_hooks.over */
     uint64_t forks;              /* so far; inside a task waits count, too */
     const struct data_failure *failure; /* first in reference order since the last wait; `lock` */
     uint64_t number;                    /* of its task */
@@ -113,6 +114,8 @@ struct graph_hooks {
     void *context;
     /* A task may run; a SEND may be posted, and ends with graph_finish when its bytes are gone. */
     void (*ready)(void *context, void *worker, struct graph_task *task);
+    /* So many more tasks of the main program are over; -1: there is one more to come. */
+    void (*over)(void *context, void *worker, int tasks);
     /* Calls the body of the task with that number, and returns its code. NULL: called directly. */
     int (*body)(void *context, const duite_kernel *kernel, uint64_t number, duite_call *call);
     /* Something the main program may be waiting for happened. */
@@ -124,22 +127,25 @@ struct graph_hooks {
 };
 
 struct graph {
+    /* Read by all workers, with every task. */
     int rank, n_ranks;
-    struct data_table table;
     const duite_kernel **kernels;
     uint32_t *n_fixed; /* parameters in each kernel's `access` */
     uint32_t n_kernels;
-    struct graph_hooks hooks;
-    struct graph_scope root; /* the main program; its `forks` are the same on all ranks, its
-                                `unfinished` the tasks of this one */
-    uint64_t fingerprint;    /* of the main program's forks since the last wait */
-    _Atomic int broken;   /* memory ran out in the middle of a fork: the code of every later call */
     _Atomic int given_up; /* bodies do not run any more */
-    uint64_t resume;               /* as few unfinished tasks let a throttled main program go on */
-    uint64_t rename_most;          /* limit of `rename_bytes` */
-    _Atomic uint64_t rename_bytes; /* of packets that exist since a w did not wait */
-    _Atomic uint64_t renamed;      /* such w */
-    pthread_mutex_t lock;          /* of the rest, and of the failures of scopes */
+    struct graph_hooks hooks;
+    /* The main thread's, written with every fork: on cache lines of its own. */
+    _Alignas(
+        64) struct graph_scope root; /* the main program; its `forks` are the same on all ranks */
+    uint64_t fingerprint;            /* of the main program's forks since the last wait */
+    uint64_t tasks;                  /* of this rank that it forked, or that serve it */
+    uint64_t rename_most;            /* limit of `rename_bytes` */
+    struct data_table table;
+    /* Seldom used. */
+    _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
+    _Atomic uint64_t rename_bytes;   /* of packets that exist since a w did not wait */
+    _Atomic uint64_t renamed;        /* such w */
+    pthread_mutex_t lock;            /* of the rest, and of the failures of scopes */
     struct graph_failure *failures;
     struct data_sum *unclosed; /* of tasks that are over: there was no memory to combine them */
 };

@@ -77,7 +77,7 @@ void graph_lend(struct graph_task *task, size_t i, const struct data_object *obj
  * `failure` if there is one. */
 void graph_scope_end(struct graph_scope *scope, void *worker, const struct data_failure *failure);
 /* A task of the scope is over with its descendants, or a value was passed on. */
-void graph_left(struct graph_scope *scope);
+void graph_left(struct graph *graph, struct graph_scope *scope, void *worker);
 /* The object of that name, with the right held on it; NULL with the error's sentence set. */
 struct data_object *graph_object(struct graph_scope *scope, duite_object name, duite_mode *right);
 /* Takes the name of an object that the task made out of use. */

@@ -131,7 +131,7 @@ struct graph_scope *graph_inside(struct duite_call_private *body)
         }
         nest_of(task->inner)->body = body;
         if (task->kind == GRAPH_NODE) /* the main program waits for what it forks, too */
-            atomic_fetch_add_explicit(&task->scope->unfinished, 1, memory_order_relaxed);
+            body->graph->hooks.over(body->graph->hooks.context, body->worker, -1);
     }
     return task->inner;
 }
@@ -292,15 +292,11 @@ void graph_drop(struct graph_scope *scope, struct data_object *object)
 
 /* ---- The end ---- */
 
-void graph_left(struct graph_scope *scope)
+void graph_left(struct graph *graph, struct graph_scope *scope, void *worker)
 {
-    for (;;) {
+    while (scope != &graph->root) {
         struct graph_scope *parent = scope->parent;
-        struct graph *graph = scope->graph;
-        uint64_t left = atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) - 1;
-        if (!parent && (left == 0 || left == graph->resume))
-            graph->hooks.notify(graph->hooks.context);
-        if (left || !parent)
+        if (atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) != 1)
             return;
         struct graph_nest *nest = nest_of(scope);
         if (nest->moved)
@@ -308,6 +304,7 @@ void graph_left(struct graph_scope *scope)
         base_pool_give(nest, nest->size);
         scope = parent;
     }
+    graph->hooks.over(graph->hooks.context, worker, 1);
 }
 
 static const struct data_failure no_memory = {
@@ -335,7 +332,7 @@ struct data_waiter *graph_pass(void *worker, struct data_waiter *waiter)
     if (exit->untouched && !out->failure)
         give_zeros(exit);
     struct data_waiter *heir = graph_produced(scope->graph, worker, out);
-    graph_left(scope);
+    graph_left(scope->graph, scope, worker);
     return heir;
 }
 
@@ -391,7 +388,7 @@ void graph_scope_end(struct graph_scope *scope, void *worker, const struct data_
             graph_forget(graph, worker, object);
         }
     }
-    graph_left(scope);
+    graph_left(graph, scope, worker);
 }
 
 /* ---- Waiting ---- */

@@ -212,7 +212,7 @@ void graph_over(struct graph *graph, void *worker, struct graph_task *task)
     if (inner)
         graph_scope_end(inner, worker, failure); /* it leaves `scope` when its children have */
     else
-        graph_left(scope);
+        graph_left(graph, scope, worker);
 }
 
 void graph_lost(struct graph *graph, void *worker, struct data_version *version)

@@ -21,6 +21,7 @@ bool work_deque_start(struct work_deque *deque, uint64_t slots)
     struct work_ring *ring = ring_new(slots, NULL);
     atomic_init(&deque->oldest, 0);
     atomic_init(&deque->newest, 0);
+    deque->seen = 0;
     atomic_init(&deque->ring, ring);
     return ring != NULL;
 }
@@ -54,12 +55,16 @@ static struct work_ring *grow(struct work_deque *deque, struct work_ring *ring, 
 bool work_deque_push(struct work_deque *deque, struct graph_task *task)
 {
     int64_t newest = atomic_load_explicit(&deque->newest, memory_order_relaxed);
-    int64_t oldest = atomic_load_explicit(&deque->oldest, memory_order_acquire);
     struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
-    if (newest - oldest > (int64_t)ring->mask && !(ring = grow(deque, ring, oldest, newest)))
-        return false;
+    if (newest - deque->seen > (int64_t)ring->mask) {
+        deque->seen = atomic_load_explicit(&deque->oldest, memory_order_acquire);
+        if (newest - deque->seen > (int64_t)ring->mask &&
+            !(ring = grow(deque, ring, deque->seen, newest)))
+            return false;
+    }
     atomic_store_explicit(&ring->slot[(uint64_t)newest & ring->mask], task, memory_order_relaxed);
-    atomic_store_explicit(&deque->newest, newest + 1, memory_order_release);
+    /* Sequentially consistent: whoever pushes looks for sleepers next. */
+    atomic_exchange_explicit(&deque->newest, newest + 1, memory_order_seq_cst);
     return true;
 }
 

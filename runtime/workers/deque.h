@@ -20,6 +20,7 @@ struct work_deque {
     _Alignas(64) _Atomic int64_t oldest; /* thieves take here */
     _Alignas(64) _Atomic int64_t newest; /* the owner pushes here: one past the last */
     _Atomic(struct work_ring *) ring;
+    int64_t seen; /* by the owner: an earlier value of `oldest` */
 };
 
 /* slots: of the first ring, a power of 2. False without memory. */

@@ -108,13 +108,14 @@ static struct graph_task *steal(struct work_worker *worker, struct wait *wait)
 /* Nothing to do for a moment. Nobody wakes a worker that waits in a body: it sleeps briefly. */
 static void moment(struct work_worker *worker, struct wait *wait)
 {
-    double now = base_seconds(), most = worker->pool->setup.spin_seconds;
-    if (worker->idle_since <= 0)
+    const struct work_pool *pool = worker->pool;
+    uint64_t now = base_ticks();
+    if (!worker->idle_since)
         worker->idle_since = now;
-    double since = now - worker->idle_since;
-    if (since < most) {
+    uint64_t since = now - worker->idle_since;
+    if (since < pool->spin_ticks) {
         work_pause_core();
-    } else if (since < most + WORK_YIELD_SECONDS) {
+    } else if (since < pool->spin_ticks + pool->yield_ticks) {
         sched_yield();
     } else {
         struct timespec pause = {.tv_nsec = (long)(1e9 * worker->pause)};

@@ -14,7 +14,8 @@
 #define WORK_FIRST_PAUSE_SECONDS 2e-5
 
 struct counts {
-    _Atomic uint64_t tasks, placed, stolen, chained, busy, idle; /* the last two in ns */
+    _Atomic uint64_t over;                                       /* tasks of all kinds */
+    _Atomic uint64_t tasks, placed, stolen, chained, busy, idle; /* the last two in ticks */
 };
 
 struct work_worker {
@@ -24,14 +25,15 @@ struct work_worker {
     void *state; /* of the scheduler */
     unsigned index;
     bool finishing;                  /* a task of this worker makes others ready right now */
+    bool may_chain;                  /* ... and may run one of them next */
     bool polls;                      /* holds the seat */
     bool left_some;                  /* tasks in the heap from which it took one: another is to be
                                         woken */
     const struct graph_scope *waits; /* of the body that waits on top; NULL: none does */
-    double within;                   /* seconds of tasks and idling inside the body that runs */
+    uint64_t within;                 /* ticks of tasks and idling inside the body that runs */
     struct graph_task *next;         /* chained: to run directly after this one */
-    double polled;                   /* when */
-    double idle_since, pause;
+    uint64_t polled, idle_since;     /* when, in ticks; 0: busy */
+    double pause;
     duite_call call;
     struct counts counts;
     pthread_t thread;
@@ -43,12 +45,17 @@ struct work_pool {
     struct work_setup setup;
     struct work_worker *worker; /* setup.threads of them */
     unsigned char *states;
+    double tick; /* seconds */
+    uint64_t poll_ticks, spin_ticks, yield_ticks;
     unsigned started; /* threads, worker 0 among them */
     pthread_t main;
     struct work_queue shared;
     _Alignas(64) _Atomic int stop;
     _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
     _Alignas(64) _Atomic int seat;   /* taken by the idle worker that polls */
+    /* Of the throttled main thread, see count.c. */
+    uint64_t look;                        /* how many tasks it forks before it counts again */
+    _Alignas(64) _Atomic uint64_t wanted; /* tasks that are to be over, or 0 */
 };
 
 static inline void work_bump(_Atomic uint64_t *count, uint64_t by)
@@ -69,8 +76,12 @@ static inline void work_pause_core(void)
 /* Runs the task and what it chains. */
 void work_run(struct work_worker *worker, struct graph_task *task);
 /* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal
- * it. */
+ * it. What it is woken for was made known by a sequentially consistent read-modify-write, or before
+ * a fence, against the announcement of a sleeper. */
 void work_wake_one(struct work_pool *pool, unsigned queue);
+/* Hooks of the graph: graph_hooks.over, graph_hooks.notify. */
+void work_over(void *context, void *worker, int tasks);
+void work_notify(void *context);
 /* Sends and receives; whether anything happened. */
 bool work_poll(struct work_worker *worker);
 /* Something happened: idling begins anew. */

@@ -43,8 +43,7 @@ static duite_ready describe(const struct graph *graph, const struct graph_task *
 
 void work_wake_one(struct work_pool *pool, unsigned queue)
 {
-    atomic_thread_fence(memory_order_seq_cst);
-    if (!atomic_load_explicit(&pool->parked, memory_order_relaxed))
+    if (!atomic_load_explicit(&pool->parked, memory_order_seq_cst))
         return;
     unsigned n = pool->setup.threads, first = queue < n ? queue : 0;
     for (unsigned i = 0; i < n; i++)
@@ -57,7 +56,9 @@ static void place(struct work_worker *worker, struct graph_task *task, const dui
     struct work_pool *pool = worker->pool;
     unsigned queue = pool->setup.scheduler->place(worker->state, ready);
     work_bump(&worker->counts.placed, 1);
-    if (queue == worker->index)
+    /* What the main thread forks is left for others to take all at once, which costs both sides
+     * less than a deque that one fills as the other empties it. */
+    if (queue == worker->index && worker->finishing)
         work_queue_push(&worker->queue, task);
     else if (queue < pool->setup.threads)
         work_queue_put(&pool->worker[queue].queue, task);
@@ -75,7 +76,7 @@ static void on_ready(void *context, void *who, struct graph_task *task)
         return;
     }
     duite_ready ready = describe(pool->setup.graph, task);
-    if (worker->finishing && !worker->next && pool->setup.scheduler->chain(worker->state, &ready) &&
+    if (worker->may_chain && !worker->next && pool->setup.scheduler->chain(worker->state, &ready) &&
         (!worker->waits || graph_may_run(worker->waits, task)))
         worker->next = task;
     else
@@ -88,7 +89,7 @@ static int on_body(void *context, const duite_kernel *kernel, uint64_t number, d
     return check_call(pool->setup.check, &(struct check_task){kernel, number}, call);
 }
 
-static void on_notify(void *context)
+void work_notify(void *context)
 {
     struct work_pool *pool = context;
     atomic_thread_fence(memory_order_seq_cst);
@@ -138,24 +139,28 @@ void work_run(struct work_worker *worker, struct graph_task *task)
     struct work_pool *pool = worker->pool;
     struct graph *graph = pool->setup.graph;
     struct comm *comm = pool->setup.comm;
-    if (worker->left_some)
+    if (worker->left_some) {
+        atomic_thread_fence(memory_order_seq_cst);
         work_wake_one(pool, DUITE_NO_QUEUE);
+    }
     worker->left_some = false;
     for (unsigned length = 1; task; length++) {
-        double start = base_seconds(), outer = worker->within;
+        uint64_t start = base_ticks(), outer = worker->within;
         worker->within = 0;
         bool body = graph_run(graph, worker, task, &worker->call);
-        double end = base_seconds(), own = end - start - worker->within;
+        uint64_t end = base_ticks(), own = end - start - worker->within;
         worker->within = outer + end - start;
         work_bump(&worker->counts.tasks, body);
-        work_bump(&worker->counts.busy, body && own > 0 ? (uint64_t)(1e9 * own) : 0);
-        worker->finishing = length < LONGEST_CHAIN;
+        work_bump(&worker->counts.busy, body && own <= end - start ? own : 0);
+        worker->finishing = true;
+        worker->may_chain = length < LONGEST_CHAIN;
         if (graph_to_send(task))
             comm_send(comm, task);
         else
             graph_finish(graph, worker, task);
         worker->finishing = false;
-        if (comm && (comm_posted(comm) || end - worker->polled > POLL_SECONDS)) {
+        worker->may_chain = false;
+        if (comm && (comm_posted(comm) || end - worker->polled > pool->poll_ticks)) {
             worker->polled = end;
             work_poll(worker);
         }
@@ -180,9 +185,9 @@ static bool take_seat(struct work_worker *worker)
 
 void work_stir(struct work_worker *worker)
 {
-    if (worker->idle_since > 0) {
-        double idle = base_seconds() - worker->idle_since;
-        work_bump(&worker->counts.idle, (uint64_t)(1e9 * idle));
+    if (worker->idle_since) {
+        uint64_t idle = base_ticks() - worker->idle_since;
+        work_bump(&worker->counts.idle, idle);
         worker->within += idle;
     }
     worker->idle_since = 0;
@@ -195,22 +200,25 @@ void work_busy_again(struct work_worker *worker)
     if (!worker->polls)
         return;
     worker->polls = false;
-    atomic_store_explicit(&worker->pool->seat, 0, memory_order_relaxed);
+    atomic_exchange_explicit(&worker->pool->seat, 0, memory_order_seq_cst);
     work_wake_one(worker->pool, DUITE_NO_QUEUE);
 }
 
 /* Spins, or gives way, for the first moments; false once it is time to sleep. */
 static bool spin(struct work_worker *worker)
 {
-    double now = base_seconds(), most = worker->pool->setup.spin_seconds;
-    if (worker->idle_since <= 0)
+    const struct work_pool *pool = worker->pool;
+    uint64_t now = base_ticks();
+    if (!worker->idle_since) {
         worker->idle_since = now;
-    double since = now - worker->idle_since;
-    if (since < most) {
+        work_notify(worker->pool); /* the main thread may wait for the last task to be over */
+    }
+    uint64_t since = now - worker->idle_since;
+    if (since < pool->spin_ticks) {
         work_pause_core();
         return true;
     }
-    if (worker->polls && most <= 0 && since < WORK_YIELD_SECONDS) {
+    if (worker->polls && !pool->spin_ticks && since < pool->yield_ticks) {
         sched_yield();
         return true;
     }
@@ -315,8 +323,8 @@ void work_tick(struct work_pool *pool)
     struct comm *comm = pool->setup.comm;
     if (!comm)
         return;
-    double now = base_seconds();
-    if (!comm_posted(comm) && now - worker->polled < POLL_SECONDS)
+    uint64_t now = base_ticks();
+    if (!comm_posted(comm) && now - worker->polled < pool->poll_ticks)
         return;
     worker->polled = now;
     work_poll(worker);
@@ -376,6 +384,10 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     pool->setup = *setup;
     pool->setup.cores = NULL; /* the caller's: copied to the workers */
     pool->main = pthread_self();
+    pool->tick = base_tick_seconds();
+    pool->poll_ticks = (uint64_t)(POLL_SECONDS / pool->tick);
+    pool->spin_ticks = (uint64_t)(setup->spin_seconds / pool->tick);
+    pool->yield_ticks = (uint64_t)(WORK_YIELD_SECONDS / pool->tick);
     pool->worker = base_alloc_zero(n * sizeof pool->worker[0]);
     pool->states = base_alloc_zero(n * lines * BASE_LINE);
     bool fine = pool->worker && pool->states && work_queue_start(&pool->shared);
@@ -383,7 +395,8 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
         fine = prepare(pool, i, setup->cores ? setup->cores[i] : -1);
     setup->graph->hooks = (struct graph_hooks){.context = pool,
                                                .ready = on_ready,
-                                               .notify = on_notify,
+                                               .notify = work_notify,
+                                               .over = work_over,
                                                .body = setup->check ? on_body : NULL,
                                                .expect = on_expect};
     return fine ? start_threads(pool) : base_no_memory("the workers");
@@ -430,7 +443,9 @@ void work_count(struct work_pool *pool, duite_counters *counters)
         counters->placed += atomic_load_explicit(&counts->placed, memory_order_relaxed);
         counters->stolen += atomic_load_explicit(&counts->stolen, memory_order_relaxed);
         counters->chained += atomic_load_explicit(&counts->chained, memory_order_relaxed);
-        counters->busy += 1e-9 * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
-        counters->idle += 1e-9 * (double)atomic_load_explicit(&counts->idle, memory_order_relaxed);
+        counters->busy +=
+            pool->tick * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
+        counters->idle +=
+            pool->tick * (double)atomic_load_explicit(&counts->idle, memory_order_relaxed);
     }
 }

@@ -57,6 +57,13 @@ void work_idle_ends(struct work_pool *pool);
 /* Sends what was posted and, now and then, polls: the main thread calls it as it forks. */
 void work_tick(struct work_pool *pool);
 
+/* Tasks of this rank that are not over. Main thread. */
+uint64_t work_unfinished(const struct work_pool *pool);
+
+/* Works while more than `most` of them are not, until a quarter less is, or communication broke.
+ * Main thread. */
+void work_throttle(struct work_pool *pool, uint64_t most);
+
 /* Counts of all workers of this rank. Exact when no task is left. */
 void work_count(struct work_pool *pool, duite_counters *counters);
 

@@ -2,8 +2,8 @@
 #define TESTS_MODEL_PLAIN_QUEUE_H
 
 /* In place of queue.c, where sleep and waking are explored: queues that have what matters for them,
- * in a few steps. A task is a bit, by its number. What the owner pushes may be seen late, what is
- * put is seen at once; a task is there until its bit is in `taken`. */
+ * in a few steps. A task is a bit, by its number. What is pushed and put is seen
+ * at once; a task is there until its bit is in `taken`. */
 #include "runtime/workers/queue.h"
 
 #include "tests/model/atomics.h"
@@ -33,14 +33,19 @@ void work_queue_stop(struct work_queue *queue)
 void work_queue_put(struct work_queue *queue, struct graph_task *task)
 {
     struct plain *all = plain(queue);
-    atomic_fetch_add(&all->put, (uint64_t)1 << task->number);
+    uint64_t bit = (uint64_t)1 << task->number;
+    if (explore_planted("work_queue_put", "the put")) /* seen late; one thread puts */
+        atomic_store_explicit(&all->put, all->put | bit, memory_order_release);
+    else
+        atomic_fetch_add(&all->put, bit);
 }
 
 void work_queue_push(struct work_queue *queue, struct graph_task *task)
 {
     struct plain *all = plain(queue);
     uint64_t before = atomic_load_explicit(&all->pushed, memory_order_relaxed);
-    atomic_store_explicit(&all->pushed, before | (uint64_t)1 << task->number, memory_order_release);
+    atomic_exchange_explicit(&all->pushed, before | (uint64_t)1 << task->number,
+                             memory_order_seq_cst);
 }
 
 static struct graph_task *plain_take(struct work_queue *queue)

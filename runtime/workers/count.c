@@ -1,0 +1,53 @@
+/* How many tasks are over: each worker counts its own on its own cache lines, and who wants to know
+ * adds them up. So a task costs no line that workers share.
+ *
+ * The main thread, which waits for a number of tasks to be over, may sleep. It is woken by a worker
+ * that runs out of work (workers.c), or, while it is throttled and work goes on, by one that finds
+ * `wanted` reached. */
+#include "runtime/workers/internal.h"
+
+static uint64_t over(const struct work_pool *pool)
+{
+    uint64_t sum = 0;
+    for (unsigned i = 0; i < pool->setup.threads; i++)
+        sum += atomic_load_explicit(&pool->worker[i].counts.over, memory_order_acquire);
+    return sum;
+}
+
+void work_over(void *context, void *who, int tasks)
+{
+    struct work_pool *pool = context;
+    struct work_worker *worker = who;
+    uint64_t before = atomic_load_explicit(&worker->counts.over, memory_order_relaxed);
+    atomic_store_explicit(&worker->counts.over, before + (uint64_t)tasks, memory_order_release);
+    uint64_t wanted = atomic_load_explicit(&pool->wanted, memory_order_relaxed);
+    if (wanted && over(pool) >= wanted)
+        work_notify(pool);
+}
+
+uint64_t work_unfinished(const struct work_pool *pool)
+{
+    return pool->setup.graph->tasks - over(pool);
+}
+
+static bool is_reached(void *context)
+{
+    const struct work_pool *pool = context;
+    return over(pool) >= atomic_load_explicit(&pool->wanted, memory_order_relaxed);
+}
+
+void work_throttle(struct work_pool *pool, uint64_t most)
+{
+    const struct graph *graph = pool->setup.graph;
+    if (graph->tasks < pool->look)
+        return;
+    uint64_t left = work_unfinished(pool);
+    if (left > most) {
+        atomic_store(&pool->wanted, graph->tasks - (most - most / 4));
+        work_until(pool, is_reached, pool);
+        atomic_store(&pool->wanted, 0);
+        left = work_unfinished(pool);
+    }
+    /* There cannot be more than `most` before so many are added. */
+    pool->look = graph->tasks + (left < most ? most - left : 0) + 1;
+}

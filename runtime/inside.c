@@ -162,7 +162,7 @@ static bool alone(void *context)
 
 int inside_wait(struct duite_call_private *body)
 {
-    struct graph_scope *scope = body->task->inner;
+    struct graph_scope *scope = body->scope;
     if (!scope)
         return recall(body);
     if (!graph_alone(scope))

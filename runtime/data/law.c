@@ -9,21 +9,6 @@
 #include <string.h>
 #include <xxhash.h>
 
-size_t data_type_size(duite_type type)
-{
-    switch (type) {
-    case DUITE_BYTE:
-        return 1;
-    case DUITE_I32:
-    case DUITE_F32:
-        return 4;
-    case DUITE_I64:
-    case DUITE_F64:
-        return 8;
-    }
-    return 0;
-}
-
 const char *data_type_name(duite_type type)
 {
     static const char *const names[] = {"numbers", "bytes", "i32", "i64", "f32", "f64"};

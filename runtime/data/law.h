@@ -8,7 +8,12 @@
 #include <stdint.h>
 
 /* Element types: bytes of an element, 0 for no type; their name in a sentence. */
-size_t data_type_size(duite_type type);
+static inline size_t data_type_size(duite_type type)
+{
+    static const unsigned char size[] = {
+        [DUITE_BYTE] = 1, [DUITE_I32] = 4, [DUITE_I64] = 8, [DUITE_F32] = 4, [DUITE_F64] = 8};
+    return (size_t)type < sizeof size ? size[type] : 0;
+}
 const char *data_type_name(duite_type type);
 
 /* Laws by which contributions combine. A kernel points at the laws of its cw parameters; all of

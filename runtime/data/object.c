@@ -134,11 +134,10 @@ int data_object_new_sized(struct data_table *table, duite_type type, size_t coun
     return DUITE_OK;
 }
 
-struct data_object *data_object_find(struct data_table *table, duite_object name)
+struct data_object *data_object_missing(const struct data_table *table, duite_object name)
 {
-    struct data_object *object = name.slot < table->n_slots ? &table->object[name.slot] : NULL;
-    if (object && object->generation == name.generation && name.generation % 2)
-        return object;
+    const struct data_object *object =
+        name.slot < table->n_slots ? &table->object[name.slot] : NULL;
     if (!name.slot)
         base_error(DUITE_E_OBJECT, "the object names nothing: was it made?");
     else if (object && name.generation < object->generation)

@@ -62,8 +62,17 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, dui
 int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t most,
                           duite_object *name);
 
+/* Sets the sentence of the error that no object has this name. Returns NULL. */
+struct data_object *data_object_missing(const struct data_table *table, duite_object name);
+
 /* The object of that name, or NULL with the error's sentence set. */
-struct data_object *data_object_find(struct data_table *table, duite_object name);
+static inline struct data_object *data_object_find(struct data_table *table, duite_object name)
+{
+    struct data_object *object = &table->object[name.slot];
+    if (name.slot < table->n_slots && object->generation == name.generation && name.generation % 2)
+        return object;
+    return data_object_missing(table, name);
+}
 
 /* Takes the name out of use. The caller has released `current`. */
 void data_object_drop(struct data_table *table, duite_object name);
@@ -74,6 +83,12 @@ bool data_object_has_copy(const struct data_table *table, const struct data_obje
                           int rank);
 void data_object_add_copy(struct data_table *table, struct data_object *object, int rank);
 void data_object_moved(struct data_object *object, int holder);
+
+/* A version of the object, as of data_version_new. */
+static inline struct data_version *data_object_version(const struct data_object *object)
+{
+    return data_version_new(object->type, object->most, object->sized);
+}
 
 /* The hint of the object in a slot, or NULL if its home is settled. The slot is not free. */
 struct data_hint *data_hint_find(const struct data_table *table, uint32_t slot);

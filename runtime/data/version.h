@@ -1,18 +1,19 @@
 #ifndef DUITE_DATA_VERSION_H
 #define DUITE_DATA_VERSION_H
 
+#include "runtime/base/pool.h"
 #include "runtime/data/failure.h"
+#include "runtime/data/law.h"
 #include "runtime/data/packet.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>
 
-struct graph_task;
-
-/* A link that makes a task wait for something: embedded in the task's access. */
+/* A link that makes a task wait for something: embedded in the task. */
 struct data_waiter {
     struct data_waiter *next;
-    struct graph_task *task;
+    uint32_t back; /* bytes from the beginning of the task; 0: it is no task that waits */
+    uint32_t mode; /* of the access it is embedded in */
 };
 
 /* The value of an object between two writes, on one rank.
@@ -26,27 +27,71 @@ struct data_version {
     _Atomic(struct data_waiter *)
         waiters; /* tasks that want to read; DATA_PRODUCED once they may */
     _Atomic uint32_t holds;
-    struct data_waiter *heir; /* set before the object's hold is released */
+    bool sized, renamed; /* its size is its own; other bytes took its place, see rename_bytes */
+    uint8_t type;
+    size_t most; /* elements there may be; there are as many, or fewer if it is sized */
+    union {      /* set before the object's hold is released */
+        struct data_waiter *heir;
+        _Atomic uint64_t *rename_bytes; /* renamed: there its room is counted until it dies */
+    };
     struct data_packet
         *packet; /* NULL: no bytes yet; they are undefined, or the version is poisoned */
     const struct data_failure *failure; /* poison, or NULL; set before it is produced */
-    size_t renamed; /* cache lines of the packet that took its place, or 0: counted until it dies */
-    _Atomic uint64_t *rename_bytes; /* there, in bytes; set like the heir */
 };
 
-/* A version held by its producer and by its object. NULL without memory. */
-struct data_version *data_version_new(void);
+/* In place of a list of waiters: the value is there. */
+extern struct data_waiter data_produced_mark;
+#define DATA_PRODUCED (&data_produced_mark)
 
-/* Lets `waiter` wait for the value. False if the value is there already: then nothing is kept. The
- * caller holds it. */
-bool data_version_await(struct data_version *version, struct data_waiter *waiter);
+/* A version held by its producer and by its object. NULL without memory. */
+static inline struct data_version *data_version_new(duite_type type, size_t most, bool sized)
+{
+    struct data_version *version = base_pool_take(sizeof *version);
+    if (!version)
+        return NULL;
+    *version = (struct data_version){
+        .holds = 2, .type = (uint8_t)type, .most = most, .sized = sized, .heir = NULL};
+    return version;
+}
+
+/* Frees a version whose bytes were taken over by its heir, or that never had any. */
+static inline void data_version_free(struct data_version *version)
+{
+    base_pool_give(version, sizeof *version);
+}
+
+/* Bytes of the largest version. */
+static inline size_t data_version_room(const struct data_version *version)
+{
+    return version->most * data_type_size((duite_type)version->type);
+}
+
+/* Lets `waiter` wait for the value. False if the value is there already: then nothing is kept, and
+ * the producer's writes are seen. The caller holds it. */
+static inline bool data_version_await(struct data_version *version, struct data_waiter *waiter)
+{
+    struct data_waiter *first = atomic_load_explicit(&version->waiters, memory_order_acquire);
+    do {
+        if (first == DATA_PRODUCED)
+            return false;
+        waiter->next = first;
+    } while (!atomic_compare_exchange_weak_explicit(&version->waiters, &first, waiter,
+                                                    memory_order_acq_rel, memory_order_acquire));
+    return true;
+}
 
 /* The value is there: returns the list of waiters, linked by next. The producer still holds the
  * version. */
-struct data_waiter *data_version_produced(struct data_version *version);
+static inline struct data_waiter *data_version_produced(struct data_version *version)
+{
+    return atomic_exchange_explicit(&version->waiters, DATA_PRODUCED, memory_order_acq_rel);
+}
 
 /* Whether the value is there. */
-bool data_version_ready(const struct data_version *version);
+static inline bool data_version_ready(const struct data_version *version)
+{
+    return atomic_load_explicit(&version->waiters, memory_order_acquire) == DATA_PRODUCED;
+}
 
 static inline void data_version_hold(struct data_version *version)
 {
@@ -59,11 +104,16 @@ static inline bool data_version_is_alone(const struct data_version *version)
     return atomic_load_explicit(&version->holds, memory_order_relaxed) == 1;
 }
 
-/* Releases a hold. Returns the heir if this was the last one, and NULL otherwise; frees a version
- * without heir. */
-struct data_waiter *data_version_release(struct data_version *version);
+/* Nobody holds it any more: returns the heir, or frees a version without one. */
+struct data_waiter *data_version_end(struct data_version *version);
 
-/* Frees a version whose bytes were taken over by its heir, or that never had any. */
-void data_version_free(struct data_version *version);
+/* Releases a hold. Returns the heir if this was the last one, and NULL otherwise; frees a version
+ * without heir. The last release sees every access to the bytes. */
+static inline struct data_waiter *data_version_release(struct data_version *version)
+{
+    if (atomic_fetch_sub_explicit(&version->holds, 1, memory_order_acq_rel) != 1)
+        return NULL;
+    return data_version_end(version);
+}
 
 #endif

@@ -6,40 +6,34 @@
 #include "runtime/base/error.h"
 #include "runtime/base/pool.h"
 
-static size_t align16(size_t bytes)
-{
-    return (bytes + 15) / 16 * 16;
-}
-
 struct graph_task *graph_task_new(struct graph_scope *scope, enum graph_kind kind, size_t n,
                                   size_t extra)
 {
     struct graph_task *task;
-    size_t access = align16(sizeof *task + n * sizeof task->access[0]);
-    size_t param = align16(n * sizeof task->param[0]);
-    task = base_pool_take(access + param + extra);
+    size_t bytes = sizeof *task + n * sizeof task->access[0] + extra;
+    size_t grains = (bytes + GRAPH_GRAIN - 1) / GRAPH_GRAIN;
+    task = grains <= UINT32_MAX ? base_pool_take(grains * GRAPH_GRAIN) : NULL;
     if (!task) {
         base_no_memory("a task");
         graph_break(scope->graph);
         return NULL;
     }
-    task->size = access + param + extra;
-    atomic_init(&task->pending, (uint32_t)n + 1);
-    task->n = (uint32_t)n;
-    task->next = NULL;
-    task->kind = kind;
-    task->kernel = UINT32_MAX;
-    task->number = scope->forks;
-    task->scope = scope;
-    task->inner = NULL;
-    task->failure = NULL;
-    task->block = (uint32_t)scope->forks; /* until it is known to run for an object */
-    task->priority = INT32_MAX;           /* unless the program forks it */
-    task->cost = 0;
-    task->param = (void *)((char *)task + access);
-    task->args = extra ? (char *)task + access + param : NULL;
+    *task = (struct graph_task){
+        .pending = (uint32_t)n + 1,
+        .n = (uint32_t)n,
+        .scope = scope,
+        .number = scope->forks,
+        .kernel = UINT32_MAX,
+        .block = (uint32_t)scope->forks, /* until it is known to run for an object */
+        .priority = INT32_MAX,           /* unless the program forks it */
+        .grains = (uint32_t)grains,
+        .kind = kind,
+    };
+    if (kind > GRAPH_BODY && extra)
+        task->sum = graph_task_rest(task, n);
     for (size_t i = 0; i < n; i++)
-        task->access[i] = (struct graph_access){.waiter.task = task};
+        task->access[i] = (struct graph_access){
+            .waiter.back = (uint32_t)(sizeof *task + i * sizeof task->access[0])};
     if (scope->parent)
         atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
     else
@@ -59,16 +53,21 @@ void graph_settled(struct graph *graph, void *worker, struct graph_task *task, u
     take(graph, worker, task, done + 1);
 }
 
+static struct graph_task *task_of(struct data_waiter *waiter)
+{
+    return (struct graph_task *)(void *)((char *)waiter - waiter->back);
+}
+
 void graph_wake(struct graph *graph, void *worker, struct data_waiter *waiter)
 {
     if (waiter)
-        take(graph, worker, waiter->task, 1);
+        take(graph, worker, task_of(waiter), 1);
 }
 
 /* An heir that is no task passes the value on to a scope above, which may have one like it. */
 static void wake_heir(struct graph *graph, void *worker, struct data_waiter *heir)
 {
-    while (heir && !heir->task)
+    while (heir && !heir->back)
         heir = graph_pass(worker, heir);
     graph_wake(graph, worker, heir);
 }
@@ -106,7 +105,7 @@ int graph_overwrite(struct graph *graph, struct graph_task *task, size_t i,
                     struct data_object *object, struct data_version *version, uint32_t *done)
 {
     struct graph_access *access = &task->access[i];
-    access->out = data_version_new();
+    access->out = data_object_version(object);
     if (!access->out) {
         base_no_memory("a version");
         return graph_break(graph);
@@ -123,7 +122,7 @@ struct data_version *graph_local(struct graph *graph, struct data_object *object
 {
     if (object->current)
         return object->current;
-    struct data_version *version = data_version_new();
+    struct data_version *version = data_object_version(object);
     if (version)
         version->packet = data_packet_new(object->bytes, true);
     if (!version || !version->packet) {
@@ -147,7 +146,7 @@ static int send_copy(struct graph *graph, void *worker, struct data_object *obje
         return DUITE_E_MEMORY;
     *task->send = (struct graph_send){.key = graph_key(graph, object), .to = to};
     uint32_t done = 0;
-    task->access[0].mode = DUITE_R;
+    task->access[0].waiter.mode = DUITE_R;
     graph_read(task, 0, version, &done);
     graph_settled(graph, worker, task, done);
     return DUITE_OK;
@@ -155,7 +154,7 @@ static int send_copy(struct graph *graph, void *worker, struct data_object *obje
 
 static int await_copy(struct graph *graph, void *worker, struct data_object *object)
 {
-    struct data_version *version = data_version_new();
+    struct data_version *version = data_object_version(object);
     if (!version) {
         base_no_memory("a version");
         return graph_break(graph);

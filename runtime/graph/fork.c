@@ -7,14 +7,7 @@
 #include "runtime/base/error.h"
 #include "runtime/data/mode.h"
 
-#include <duite_policy.h>
 #include <string.h>
-
-void graph_mix(struct graph *graph, uint64_t value)
-{
-    uint64_t state = graph->fingerprint ^ value;
-    graph->fingerprint = duite_random(&state);
-}
 
 static int find_kernel(const struct graph *graph, const duite_kernel *kernel, uint32_t *index)
 {
@@ -32,8 +25,8 @@ static int check_call(const struct graph *graph, int at, uint32_t index, const v
                       const duite_object *objects)
 {
     const duite_kernel *kernel = graph->kernels[index];
-    size_t fixed = graph->n_fixed[index];
-    if (n < fixed || (n > fixed && kernel->rest == DUITE_NONE) || n > UINT32_MAX / 2)
+    size_t fixed = graph->fixed[index].n;
+    if (n < fixed || (n > fixed && kernel->rest == DUITE_NONE) || n > GRAPH_MOST_OBJECTS)
         return base_error(DUITE_E_ACCESS, "kernel %s takes %s%zu objects, not %zu", kernel->name,
                           kernel->rest == DUITE_NONE ? "" : "at least ", fixed, n);
     if (n && !objects)
@@ -64,25 +57,38 @@ static int check_law(const duite_kernel *kernel, size_t i, const struct data_obj
                       name.generation, data_type_name(object->type));
 }
 
-/* An object whose name was checked. */
-static struct data_object *object_of(struct graph_scope *scope, duite_object name)
+/* What is known of a task before anything is changed for it. */
+enum { FEW = 16 };
+struct sketch {
+    uint32_t kernel;                 /* index in the list given at start */
+    uint32_t owner;                  /* the parameter it runs for; NOBODY: it only accumulates */
+    struct data_object *object[FEW]; /* the first ones, of the main program: these stay in place */
+};
+
+enum { NOBODY = UINT32_MAX };
+
+/* Object i, whose name was checked. */
+static struct data_object *object_of(struct graph_scope *scope, const struct sketch *sketch,
+                                     size_t i, duite_object name)
 {
     duite_mode right;
-    return scope->depth ? graph_object(scope, name, &right)
-                        : &scope->graph->table.object[name.slot];
+    if (scope->depth)
+        return graph_object(scope, name, &right);
+    return i < FEW ? sketch->object[i] : &scope->graph->table.object[name.slot];
 }
 
 /* It exists, is named once, may be used so, and can be accumulated into where it is. */
 static int check_object(struct graph_scope *scope, const duite_kernel *kernel, size_t i,
-                        duite_object name)
+                        duite_mode mode, duite_object name, struct sketch *sketch)
 {
-    duite_mode mode = data_mode_of(kernel, i), right;
+    duite_mode right = DUITE_RWP;
     if (scope->depth) {
         int code = graph_check_right(scope, kernel->name, i, name, mode);
         if (code)
             return code;
     }
-    struct data_object *object = graph_object(scope, name, &right);
+    struct data_object *object = scope->depth ? graph_object(scope, name, &right)
+                                              : data_object_find(&scope->graph->table, name);
     if (!object)
         return base_error(DUITE_E_OBJECT, "kernel %s, parameter %zu: object %u.%u %s", kernel->name,
                           i, name.slot, name.generation,
@@ -96,9 +102,12 @@ static int check_object(struct graph_scope *scope, const duite_kernel *kernel, s
         code = check_law(kernel, i, object, name);
     if (!code && right == DUITE_CWP && data_law_of(kernel, i) != object->law)
         code = graph_wrong_law(scope, kernel, i, name);
-    if (!code)
-        object->mark = scope->forks + 1;
-    return code;
+    if (code)
+        return code;
+    object->mark = scope->forks + 1;
+    if (i < FEW)
+        sketch->object[i] = object;
+    return DUITE_OK;
 }
 
 void graph_unmark(struct graph_scope *scope, size_t n, const duite_object *objects)
@@ -109,21 +118,6 @@ void graph_unmark(struct graph_scope *scope, size_t n, const duite_object *objec
         if (object)
             object->mark = 0;
     }
-}
-
-/* The owner rule: the object where a task runs; NULL if it only accumulates. */
-static const struct data_object *owner(struct graph_scope *scope, const duite_kernel *kernel,
-                                       size_t n, const duite_object *objects)
-{
-    const struct data_object *first_read = NULL;
-    for (size_t i = 0; i < n; i++) {
-        duite_mode mode = graph_immediate(data_mode_of(kernel, i));
-        if (mode == DUITE_W || mode == DUITE_RW)
-            return object_of(scope, objects[i]);
-        if (mode == DUITE_R && !first_read)
-            first_read = object_of(scope, objects[i]);
-    }
-    return first_read;
 }
 
 static void read_version(struct graph_task *task, size_t i, const struct data_object *object,
@@ -143,7 +137,7 @@ static void read_version(struct graph_task *task, size_t i, const struct data_ob
 static int lend_version(struct graph_task *task, size_t i, struct data_object *object,
                         struct data_version *version, uint32_t *done)
 {
-    struct data_version *out = data_version_new();
+    struct data_version *out = data_object_version(object);
     if (!out) {
         base_no_memory("a version");
         return graph_break(task->scope->graph);
@@ -158,7 +152,7 @@ static int contribute(struct graph_scope *scope, void *worker, int at, const dui
                       size_t i, struct data_object *object, struct graph_task *task, uint32_t *done)
 {
     int code = graph_contribute(scope, worker, object, data_law_of(kernel, i), at, task, i);
-    if (!code && task && graph_postponed(task->access[i].mode))
+    if (!code && task && graph_postponed((duite_mode)task->access[i].waiter.mode))
         graph_lend(task, i, object, NULL, NULL);
     *done += !code;
     return code;
@@ -166,17 +160,18 @@ static int contribute(struct graph_scope *scope, void *worker, int at, const dui
 
 /* Access i of a task that runs on rank `at`; `task` is NULL on the other ranks. */
 static int use(struct graph_scope *scope, void *worker, int at, const duite_kernel *kernel,
-               size_t i, struct data_object *object, struct graph_task *task, uint32_t *done)
+               size_t i, duite_mode declared, struct data_object *object, struct graph_task *task,
+               uint32_t *done)
 {
     struct graph *graph = scope->graph;
-    duite_mode mode = graph_immediate(data_mode_of(kernel, i));
-    bool postponed = graph_postponed(data_mode_of(kernel, i));
+    duite_mode mode = graph_immediate(declared);
+    bool postponed = graph_postponed(declared);
     int code = DUITE_OK;
     if (mode == DUITE_CW)
         return contribute(scope, worker, at, kernel, i, object, task, done);
     if (object->leaves)
         code = graph_close(scope, worker, object);
-    if (!code && mode != DUITE_W)
+    if (!code && mode != DUITE_W && graph->n_ranks > 1)
         code = graph_fetch(graph, worker, object, at);
     if (code)
         return code;
@@ -199,40 +194,57 @@ static int use(struct graph_scope *scope, void *worker, int at, const duite_kern
     return DUITE_OK;
 }
 
-static void describe(struct graph_task *task, size_t i, duite_mode mode,
-                     const struct data_object *object, uint32_t stamp)
-{
-    task->access[i].mode = mode;
-    task->access[i].bytes = object->room;
-    task->access[i].sized = object->sized;
-    task->param[i] = (duite_param){.count = object->most,
-                                   .type = object->type,
-                                   .most = object->most,
-                                   .object = {GRAPH_LOCAL_NAME | (uint32_t)i, stamp}};
-}
-
 /* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
  */
 void graph_void(struct graph *graph, void *worker, struct graph_task *task, size_t made,
                 uint32_t done)
 {
     uint32_t missing = task->n - (uint32_t)made;
+    if (task->kind != GRAPH_BODY)
+        task->inner = NULL;
     task->kind = GRAPH_VOID;
     task->n = (uint32_t)made;
     graph_settled(graph, worker, task, done + missing);
 }
 
+/* The objects, and the owner rule. */
+static int check_objects(struct graph_scope *scope, const duite_kernel *kernel, size_t n,
+                         const duite_object *objects, struct sketch *sketch)
+{
+    uint32_t first_read = NOBODY;
+    sketch->owner = NOBODY;
+    for (uint32_t i = 0; i < n; i++) {
+        duite_mode mode = data_mode_of(kernel, i), same = graph_immediate(mode);
+        int code = check_object(scope, kernel, i, mode, objects[i], sketch);
+        if (code) {
+            graph_unmark(scope, i, objects);
+            return code;
+        }
+        if ((same == DUITE_W || same == DUITE_RW) && sketch->owner == NOBODY)
+            sketch->owner = i;
+        if (same == DUITE_R && first_read == NOBODY)
+            first_read = i;
+    }
+    if (sketch->owner == NOBODY)
+        sketch->owner = first_read;
+    return DUITE_OK;
+}
+
+static int check(struct graph_scope *scope, int at, const duite_kernel *kernel, const void *args,
+                 size_t n, const duite_object *objects, struct sketch *sketch)
+{
+    int code = find_kernel(scope->graph, kernel, &sketch->kernel);
+    if (!code)
+        code = check_call(scope->graph, at, sketch->kernel, args, n, objects);
+    return code ? code : check_objects(scope, kernel, n, objects, sketch);
+}
+
 int graph_check(struct graph_scope *scope, int at, const duite_kernel *kernel, const void *args,
                 size_t n, const duite_object *objects, uint32_t *index)
 {
-    int code = find_kernel(scope->graph, kernel, index);
-    if (!code)
-        code = check_call(scope->graph, at, *index, args, n, objects);
-    if (code)
-        return code;
-    for (size_t i = 0; i < n && !code; i++)
-        if ((code = check_object(scope, kernel, i, objects[i])))
-            graph_unmark(scope, i, objects);
+    struct sketch sketch;
+    int code = check(scope, at, kernel, args, n, objects, &sketch);
+    *index = sketch.kernel;
     return code;
 }
 
@@ -247,13 +259,13 @@ static struct graph_task *body_task(struct graph_scope *scope, void *worker,
         return NULL;
     task->kernel = index;
     task->priority = how->priority;
-    task->cost = how->cost;
+    task->cost = (float)how->cost;
     if (kernel->args_size)
-        memcpy(task->args, args, kernel->args_size);
-    size_t postponed = 0;
-    for (size_t i = 0; i < n; i++)
-        postponed += graph_postponed(data_mode_of(kernel, i));
-    if (!postponed || graph_scope_new(task, postponed))
+        memcpy(graph_task_rest(task, n), args, kernel->args_size);
+    size_t fixed = scope->graph->fixed[index].n, postponed = scope->graph->fixed[index].postponed;
+    if (graph_postponed(kernel->rest))
+        postponed += n - fixed;
+    if (!postponed || (task->inner = graph_scope_new(task, postponed)))
         return task;
     base_no_memory("a task");
     graph_break(scope->graph);
@@ -263,27 +275,31 @@ static struct graph_task *body_task(struct graph_scope *scope, void *worker,
 
 /* Checked: nothing but memory can be missing. */
 static int fork_checked(struct graph_scope *scope, void *worker, const struct graph_how *how,
-                        uint32_t index, const void *args, size_t n, const duite_object *objects)
+                        const struct sketch *sketch, const void *args, size_t n,
+                        const duite_object *objects)
 {
     struct graph *graph = scope->graph;
-    const duite_kernel *kernel = graph->kernels[index];
-    const struct data_object *own = owner(scope, kernel, n, objects);
+    const duite_kernel *kernel = graph->kernels[sketch->kernel];
+    const struct data_object *own =
+        sketch->owner == NOBODY ? NULL
+                                : object_of(scope, sketch, sketch->owner, objects[sketch->owner]);
     struct graph_task *task = NULL;
-    uint32_t done = 0, stamp = n ? graph_new_stamp() : 0;
+    uint32_t done = 0;
     int at = how->at;
     if (at == GRAPH_ANYWHERE)
         at = scope->depth ? graph->rank : own ? own->home : 0;
-    if (at == graph->rank && !(task = body_task(scope, worker, how, index, args, n)))
+    if (at == graph->rank && !(task = body_task(scope, worker, how, sketch->kernel, args, n)))
         return DUITE_E_MEMORY;
     if (task && own)
         task->block = own->block;
     for (size_t i = 0; i < n; i++) {
-        struct data_object *object = object_of(scope, objects[i]);
+        struct data_object *object = object_of(scope, sketch, i, objects[i]);
+        duite_mode mode = data_mode_of(kernel, i);
         if (!scope->depth)
             graph_mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         if (task)
-            describe(task, i, data_mode_of(kernel, i), object, stamp);
-        int code = use(scope, worker, at, kernel, i, object, task, &done);
+            task->access[i].waiter.mode = mode;
+        int code = use(scope, worker, at, kernel, i, mode, object, task, &done);
         if (code && task)
             graph_void(graph, worker, task, i, done);
         if (code)
@@ -297,14 +313,14 @@ static int fork_checked(struct graph_scope *scope, void *worker, const struct gr
 int graph_fork(struct graph_scope *scope, void *worker, const struct graph_how *how,
                const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
 {
-    uint32_t index;
-    int code = graph_check(scope, how->at, kernel, args, n, objects, &index);
+    struct sketch sketch;
+    int code = check(scope, how->at, kernel, args, n, objects, &sketch);
     if (code)
         return code;
     scope->forks++;
     if (!scope->depth)
-        graph_mix(scope->graph, (uint64_t)index << 32 | (uint32_t)how->at);
-    return fork_checked(scope, worker, how, index, args, n, objects);
+        graph_mix(scope->graph, (uint64_t)sketch.kernel << 32 | (uint32_t)how->at);
+    return fork_checked(scope, worker, how, &sketch, args, n, objects);
 }
 
 int graph_free(struct graph_scope *scope, void *worker, duite_object name)
@@ -348,7 +364,7 @@ int graph_copy(struct graph *graph, void *worker, duite_object name, int to,
     task->copy = copy;
     task->block = object->block;
     uint32_t done = 0;
-    task->access[0].mode = DUITE_R;
+    task->access[0].waiter.mode = DUITE_R;
     graph_read(task, 0, version, &done);
     graph_settled(graph, worker, task, done);
     return DUITE_OK;

@@ -13,22 +13,23 @@ struct graph_failure {
     struct data_failure failure;
 };
 
-static int check_kernel(const duite_kernel *kernel, uint32_t index, uint32_t *n_fixed)
+static int check_kernel(const duite_kernel *kernel, uint32_t index, struct graph_fixed *fixed)
 {
     if (!kernel->name || !kernel->name[0])
         return base_error(DUITE_E_KERNEL, "kernel %u of the list has no name", index);
     if (!kernel->body)
         return base_error(DUITE_E_KERNEL, "kernel %s has no body", kernel->name);
-    *n_fixed = 0;
+    *fixed = (struct graph_fixed){0};
     for (uint32_t i = 0; i < DUITE_MAX_ACCESS; i++) {
         duite_mode mode = kernel->access[i];
         if ((int)mode < DUITE_NONE || mode > DUITE_CWP)
             return base_error(DUITE_E_KERNEL, "kernel %s: parameter %u has no such mode: %d",
                               kernel->name, i, (int)mode);
-        if (mode != DUITE_NONE && i != *n_fixed)
+        if (mode != DUITE_NONE && i != fixed->n)
             return base_error(DUITE_E_KERNEL, "kernel %s: parameter %u has a mode after DUITE_NONE",
                               kernel->name, i);
-        *n_fixed += mode != DUITE_NONE;
+        fixed->n += mode != DUITE_NONE;
+        fixed->postponed += graph_postponed(mode);
     }
     if ((int)kernel->rest < DUITE_NONE || kernel->rest > DUITE_CWP)
         return base_error(DUITE_E_KERNEL, "kernel %s: `rest` has no such mode: %d", kernel->name,
@@ -52,13 +53,13 @@ static int take_kernels(struct graph *graph, const duite_kernel *const *kernels,
     while (kernels[n])
         n++;
     graph->kernels = base_alloc(n * sizeof graph->kernels[0]);
-    graph->n_fixed = base_alloc(n * sizeof *graph->n_fixed);
-    if (!graph->kernels || !graph->n_fixed)
+    graph->fixed = base_alloc(n * sizeof *graph->fixed);
+    if (!graph->kernels || !graph->fixed)
         return base_no_memory("the list of kernels");
     memcpy(graph->kernels, kernels, n * sizeof graph->kernels[0]);
     graph->n_kernels = (uint32_t)n;
     for (uint32_t i = 0; i < n; i++) {
-        int code = check_kernel(graph->kernels[i], i, &graph->n_fixed[i]);
+        int code = check_kernel(graph->kernels[i], i, &graph->fixed[i]);
         if (!code)
             code = check_unique(graph->kernels, i);
         if (!code)
@@ -102,7 +103,7 @@ void graph_stop(struct graph *graph)
         next = node->next;
         base_free(node);
     }
-    base_free(graph->n_fixed);
+    base_free(graph->fixed);
     base_free(graph->kernels);
     data_table_stop(&graph->table);
     pthread_mutex_destroy(&graph->lock);
@@ -137,7 +138,8 @@ const struct data_failure *graph_fail(struct graph *graph, const struct data_fai
 
 /* The task's place in the reference order. What a body does after a wait comes after the children
  * before it. */
-static void place_failure(struct data_failure *failure, const struct graph_task *task)
+static void place_failure(struct data_failure *failure, const struct graph_task *task,
+                          const struct graph_scope *inner)
 {
     uint64_t index[sizeof failure->path];
     uint32_t depth = task->scope->depth, most = sizeof index / sizeof index[0];
@@ -151,24 +153,25 @@ static void place_failure(struct data_failure *failure, const struct graph_task 
     }
     for (uint32_t i = 0; i < depth && i < most; i++)
         data_path_add(failure, index[i]);
-    if (task->inner && task->inner->segment)
-        data_path_add(failure, task->inner->segment);
+    if (inner && inner->segment)
+        data_path_add(failure, inner->segment);
 }
 
 const struct data_failure *graph_fail_task(const struct graph_task *task,
+                                           const struct graph_scope *inner,
                                            struct data_failure *failure)
 {
     struct graph *graph = task->scope->graph;
     failure->rank = graph->rank;
     failure->kernel = task->kernel;
-    place_failure(failure, task);
+    place_failure(failure, task, inner);
     return keep(graph, failure, task->scope);
 }
 
 const struct data_failure *graph_fail_memory(const struct graph_task *task)
 {
     struct data_failure failure = {.code = DUITE_E_MEMORY, .text = "no memory for what it writes"};
-    return graph_fail_task(task, &failure);
+    return graph_fail_task(task, NULL, &failure);
 }
 
 struct data_packet *graph_poison_packet(struct data_key key, const struct data_failure *failure)

@@ -3,6 +3,7 @@
 
 #include "runtime/data/object.h"
 
+#include <duite_policy.h>
 #include <pthread.h>
 #include <stdatomic.h>
 
@@ -30,44 +31,54 @@ enum graph_kind {
 
 struct graph_scope;
 
-/* One parameter of a task. */
+/* One parameter of a task: half a cache line. Everything else about the object is said by the
+ * versions, the sum, or, if it is postponed, by the task's scope. */
 struct graph_access {
-    struct data_waiter waiter; /* waits for `in`, as a reader or as its heir */
-    duite_mode mode;
-    bool sized;               /* the object's size changes */
-    uint32_t lent;            /* postponed: its place in the task's scope, where the rest is */
-    struct data_version *in;  /* what is read or overwritten; NULL: a w without bytes to reuse */
-    struct data_version *out; /* what is written */
-    struct data_sum *sum;     /* cw: what is contributed to */
-    struct data_piece *leaf;  /* cw: this task's part of it */
-    size_t bytes;             /* of the object, at most */
+    struct data_waiter waiter; /* waits for `in`, as a reader or as its heir; its mode is that of
+                                  the access */
+    union {
+        struct data_version *in; /* read or overwritten; NULL: a w without bytes to reuse */
+        struct data_piece *leaf; /* cw: this task's part of the sum */
+        size_t lent;             /* postponed: its place in the task's scope */
+    };
+    union {
+        struct data_version *out; /* w, rw: what is written; r: NULL */
+        struct data_sum *sum;     /* cw: what is contributed to; NULL: it was lent */
+    };
 };
 
+/* One cache line, then the accesses, then, on a multiple of 16 bytes, arguments or what the union
+ * points to. */
 struct graph_task {
     _Atomic uint32_t pending; /* accesses that wait, and 1 while it is being forked */
     uint32_t n;
     struct graph_task *next; /* a link for whoever holds the task: queues, lists */
-    enum graph_kind kind;
-    uint32_t kernel;           /* index in the list given at start */
-    uint64_t number;           /* in fork order among the tasks of its scope */
-    struct graph_scope *scope; /* where it was forked */
-    struct graph_scope *inner; /* what its children may use, or NULL */
-    uint32_t block;            /* for schedulers: of the object that it runs for */
-    int32_t priority;
-    double cost; /* seconds; 0: not said */
     union {
-        void *args;                  /* BODY: its copy of the arguments */
+        struct graph_scope *inner;   /* BODY, VOID: what its children may use, or NULL */
         struct graph_sum *sum;       /* COMBINE, PIECES, GATHER */
         struct graph_send *send;     /* SEND */
         struct graph_copy *copy;     /* COPY */
         struct graph_replay *replay; /* REPLAY */
         struct graph_node *node;     /* NODE... */
     };
-    size_t size;                        /* of all of it, in bytes */
-    const struct data_failure *failure; /* BODY, VOID: its own, or the poison it met, or NULL */
-    duite_param *param;                 /* n */
+    struct graph_scope *scope; /* where it was forked */
+    uint64_t number;           /* in fork order among the tasks of its scope */
+    uint32_t kernel;           /* index in the list given at start */
+    uint32_t block;            /* for schedulers: of the object that it runs for */
+    int32_t priority;
+    float cost;      /* seconds; 0: not said */
+    uint32_t grains; /* of all of it, GRAPH_GRAIN bytes each */
+    enum graph_kind kind;
     struct graph_access access[];
 };
+
+enum { GRAPH_GRAIN = 16, GRAPH_MOST_OBJECTS = 1 << 26 /* of a task */ };
+
+/* What lies behind the accesses: of a BODY its copy of the arguments. n is as when it was made. */
+static inline void *graph_task_rest(struct graph_task *task, size_t n)
+{
+    return (char *)task + sizeof *task + n * sizeof task->access[0];
+}
 
 /* SEND: a version and where it goes. */
 struct graph_send {
@@ -130,7 +141,9 @@ struct graph {
     /* Read by all workers, with every task. */
     int rank, n_ranks;
     const duite_kernel **kernels;
-    uint32_t *n_fixed; /* parameters in each kernel's `access` */
+    struct graph_fixed { /* parameters in each kernel's `access` */
+        uint32_t n, postponed;
+    } * fixed;
     uint32_t n_kernels;
     _Atomic int given_up; /* bodies do not run any more */
     struct graph_hooks hooks;
@@ -160,9 +173,15 @@ void graph_stop(struct graph *graph);
 
 /* ---- Main thread, collective; the homes of all objects are settled ---- */
 
-/* Makes something that all ranks do alike part of the fingerprint. Forks, sets, frees and copies do
- * so themselves. */
-void graph_mix(struct graph *graph, uint64_t value);
+/* Makes something that all ranks do alike part of the fingerprint, if there are others. Forks,
+ * sets, frees and copies do so themselves. */
+static inline void graph_mix(struct graph *graph, uint64_t value)
+{
+    if (graph->n_ranks == 1)
+        return;
+    uint64_t state = graph->fingerprint ^ value;
+    graph->fingerprint = duite_random(&state);
+}
 
 /* ---- Main thread with the graph's root as scope: collective, the homes of all objects are
  * settled. Or a body with its own scope: local; the task forked runs here. ---- */
@@ -203,6 +222,8 @@ struct duite_call_private {
     struct graph *graph;
     void *worker;
     struct graph_task *task;
+    const duite_param *param;  /* as the runtime keeps them */
+    struct graph_scope *scope; /* what its children may use, or NULL as long as it has none */
     int refused;        /* code of a duite_resize that failed, or 0: it fails with that at least */
     int remembered;     /* the first error of its calls that it may not have looked at */
     char sentence[204]; /* of `remembered` */
@@ -215,7 +236,7 @@ struct duite_call_private *graph_running(const struct graph *graph);
 /* Whether a body, running or just over, forked a task or made an object. */
 static inline bool graph_body_forked(const duite_call *call)
 {
-    return call->own->task->inner != NULL;
+    return call->own->scope != NULL;
 }
 
 /* The scope of a running body, made when it is first asked for. NULL without memory. */

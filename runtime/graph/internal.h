@@ -5,7 +5,7 @@
 
 /* Shared by the files of this folder only. */
 
-/* A task with n accesses and `extra` bytes behind them (in task->args); pending is n + 1; counted
+/* A task with n accesses and `extra` bytes behind them (graph_task_rest); pending is n + 1; counted
  * as unfinished. NULL without memory: then the graph is broken. */
 struct graph_task *graph_task_new(struct graph_scope *scope, enum graph_kind kind, size_t n,
                                   size_t extra);
@@ -68,14 +68,18 @@ static inline duite_mode graph_immediate(duite_mode mode)
 const char *graph_mode_name(duite_mode mode);
 
 /* The scope of a task that has room for n postponed parameters. NULL without memory. */
-struct graph_scope *graph_scope_new(struct graph_task *task, size_t n);
+struct graph_scope *graph_scope_new(const struct graph_task *task, size_t n);
 /* Access i of the task, a postponed parameter, moves into its scope: the object with its version,
  * and `out` or a leaf of `sum`, to be passed back at the end. */
 void graph_lend(struct graph_task *task, size_t i, const struct data_object *object,
                 struct data_version *version, struct data_version *out);
-/* The body is over, or never ran: what the children leave goes to the scope above, poisoned by
- * `failure` if there is one. */
-void graph_scope_end(struct graph_scope *scope, void *worker, const struct data_failure *failure);
+/* The object that became of a postponed parameter: access->lent. */
+const struct data_object *graph_lent_object(const struct graph_scope *scope, size_t lent);
+/* The task of the scope failed, or met poison: so does all that it leaves. */
+void graph_scope_fail(struct graph_scope *scope, const struct data_failure *failure);
+/* The body is over, or never ran: what the children leave goes to the scope above, poisoned if the
+ * scope was told of a failure. */
+void graph_scope_end(struct graph_scope *scope, void *worker);
 /* A task of the scope is over with its descendants, or a value was passed on. */
 void graph_left(struct graph *graph, struct graph_scope *scope, void *worker);
 /* The object of that name, with the right held on it; NULL with the error's sentence set. */
@@ -103,16 +107,22 @@ void graph_body_ends(struct duite_call_private *body);
 
 /* ---- Failures ---- */
 
-/* Access i of an object whose size changes has this packet: tells the body its size; the body is
- * over: what it wrote has the sizes it said. */
-void graph_size_open(struct graph_task *task, size_t i, struct data_packet *packet);
-void graph_size_close(struct graph_task *task);
+/* What a BODY writes by this access: w or rw. */
+static inline struct data_version *graph_written(const struct graph_access *access)
+{
+    return access->waiter.mode == DUITE_W || access->waiter.mode == DUITE_RW ? access->out : NULL;
+}
+
+/* The body is over: what it wrote has the sizes it said. */
+void graph_size_close(struct graph_task *task, const duite_param *param);
 
 /* Keeps a failure until stop; `report`: the next wait tells it. Never NULL. */
 const struct data_failure *graph_fail(struct graph *graph, const struct data_failure *failure,
                                       bool report);
-/* The same of a task: its place is filled in; the waits of all scopes above tell it, too. */
+/* The same of a task, with its scope or NULL: its place is filled in; the waits of all scopes above
+ * tell it, too. */
 const struct data_failure *graph_fail_task(const struct graph_task *task,
+                                           const struct graph_scope *inner,
                                            struct data_failure *failure);
 /* The failure of a task for want of memory. */
 const struct data_failure *graph_fail_memory(const struct graph_task *task);
@@ -136,9 +146,11 @@ void graph_void(struct graph *graph, void *worker, struct graph_task *task, size
 const struct data_failure *graph_given_up(struct graph *graph);
 
 /* Calls the body; returns its failure, or NULL. An error of its calls that it did not look at is
+ * one. *scope is what its children may use: NULL if it has none, also afterwards if it did not get
  * one. */
 const struct data_failure *graph_call_body(struct graph *graph, void *worker,
                                            struct graph_task *task, const void *args,
+                                           const duite_param *param, struct graph_scope **scope,
                                            const duite_call *call);
 
 /* A replay: binds the objects; starts the first round. */

@@ -45,8 +45,8 @@ void graph_body_begins(struct duite_call_private *body)
 {
     body->outer = running;
     running = body;
-    if (body->task->inner)
-        nest_of(body->task->inner)->body = body;
+    if (body->scope)
+        nest_of(body->scope)->body = body;
 }
 
 void graph_body_ends(struct duite_call_private *body)
@@ -70,7 +70,7 @@ bool graph_known(struct graph_scope *scope, duite_object name, duite_mode *right
             *local = &nest->local[task->access[i].lent];
         else if (*right == DUITE_R && nest->first_read)
             *local = &nest->local[nest->first_read - 1 + i];
-        return name.generation == task->param[i].object.generation;
+        return name.generation == body->param[i].object.generation;
     }
     uint32_t at = i - task->n + nest->n_lent;
     if (at >= nest->n_local)
@@ -102,7 +102,7 @@ static size_t size_of(size_t n_lent)
     return sizeof(struct graph_nest) + n_lent * sizeof(struct graph_exit);
 }
 
-struct graph_scope *graph_scope_new(struct graph_task *task, size_t n)
+struct graph_scope *graph_scope_new(const struct graph_task *task, size_t n)
 {
     enum { SPARE = 3 };
     size_t exits = size_of(n), size = exits + (n + SPARE) * sizeof(struct data_object);
@@ -117,23 +117,28 @@ struct graph_scope *graph_scope_new(struct graph_task *task, size_t n)
                                 .size = size,
                                 .local = (void *)((char *)nest + exits)};
     atomic_init(&nest->scope.unfinished, 1);
-    task->inner = &nest->scope;
-    return task->inner;
+    return &nest->scope;
+}
+
+const struct data_object *graph_lent_object(const struct graph_scope *scope, size_t lent)
+{
+    return &((const struct graph_nest *)scope)->local[lent];
 }
 
 struct graph_scope *graph_inside(struct duite_call_private *body)
 {
-    struct graph_task *task = body->task;
-    if (!task->inner) {
-        if (!graph_scope_new(task, 0)) {
+    const struct graph_task *task = body->task;
+    if (!body->scope) {
+        body->scope = graph_scope_new(task, 0);
+        if (!body->scope) {
             base_no_memory("what a task forks");
             return NULL;
         }
-        nest_of(task->inner)->body = body;
+        nest_of(body->scope)->body = body;
         if (task->kind == GRAPH_NODE) /* the main program waits for what it forks, too */
             body->graph->hooks.over(body->graph->hooks.context, body->worker, -1);
     }
-    return task->inner;
+    return body->scope;
 }
 
 void graph_lend(struct graph_task *task, size_t i, const struct data_object *object,
@@ -145,12 +150,10 @@ void graph_lend(struct graph_task *task, size_t i, const struct data_object *obj
     *exit = (struct graph_exit){.scope = task->inner,
                                 .out = out,
                                 .bytes = object->room,
-                                .overwrites = access->mode == DUITE_WP};
-    if (access->sum) {
+                                .overwrites = access->waiter.mode == DUITE_WP};
+    if (access->waiter.mode == DUITE_CWP) {
         exit->sum = access->sum;
         exit->leaf = access->leaf;
-        access->sum = NULL;
-        access->leaf = NULL;
     }
     int rank = nest->scope.graph->rank;
     nest->local[nest->n_lent] = (struct data_object){.type = object->type,
@@ -166,7 +169,7 @@ void graph_lend(struct graph_task *task, size_t i, const struct data_object *obj
                                                      .current = version};
     access->lent = nest->n_lent;
     nest->n_local = ++nest->n_lent;
-    nest->scope.outward |= access->mode != DUITE_CWP;
+    nest->scope.outward |= access->waiter.mode != DUITE_CWP;
 }
 
 /* Places for n more objects, one after the other. */
@@ -227,15 +230,16 @@ int graph_make(struct duite_call_private *body, duite_type type, size_t count, s
 
 /* What the body reads, as a version: the very one, or, in a replay, which works in place, a copy.
  */
-static struct data_version *version_read(const struct graph_task *task, uint32_t i)
+static struct data_version *version_read(const struct duite_call_private *body, uint32_t i)
 {
+    const struct graph_task *task = body->task;
     if (task->kind != GRAPH_NODE) {
         data_version_hold(task->access[i].in);
         return task->access[i].in;
     }
-    const duite_param *param = &task->param[i];
+    const duite_param *param = &body->param[i];
     size_t bytes = param->count * data_type_size(param->type);
-    struct data_version *version = data_version_new();
+    struct data_version *version = data_version_new(param->type, param->most, false);
     if (version)
         version->packet = data_packet_new(bytes, false);
     if (!version || !version->packet) {
@@ -262,7 +266,7 @@ int graph_lend_reads(struct graph_scope *scope)
     nest->first_read = first + 1;
     int rank = scope->graph->rank;
     for (uint32_t i = 0; i < task->n; i++) {
-        const duite_param *param = &task->param[i];
+        const duite_param *param = &nest->body->param[i];
         struct data_object *object = &nest->local[first + i];
         if (data_mode_of(scope->graph->kernels[task->kernel], i) != DUITE_R)
             continue;
@@ -273,7 +277,7 @@ int graph_lend_reads(struct graph_scope *scope)
                                        .home = rank,
                                        .holder = rank,
                                        .block = task->block,
-                                       .current = version_read(task, i)};
+                                       .current = version_read(nest->body, i)};
         if (!object->current) {
             base_no_memory("what a task reads");
             return graph_break(scope->graph);
@@ -369,9 +373,15 @@ static void contribute(struct graph_exit *exit, void *worker, struct data_object
     graph_wake(scope->graph, worker, data_sum_release(exit->sum));
 }
 
-void graph_scope_end(struct graph_scope *scope, void *worker, const struct data_failure *failure)
+void graph_scope_fail(struct graph_scope *scope, const struct data_failure *failure)
+{
+    nest_of(scope)->failure = failure;
+}
+
+void graph_scope_end(struct graph_scope *scope, void *worker)
 {
     struct graph_nest *nest = nest_of(scope);
+    const struct data_failure *failure = nest->failure;
     struct graph *graph = scope->graph;
     for (uint32_t i = 0; i < nest->n_local; i++) {
         struct data_object *object = &nest->local[i];

@@ -20,8 +20,9 @@ struct graph_exit {
 struct graph_nest {
     struct graph_scope scope; /* first */
     struct duite_call_private *body;
-    uint32_t n_lent;  /* parameters: the first objects */
-    uint32_t n_local; /* objects; freed ones are among them */
+    const struct data_failure *failure; /* of the task, or NULL */
+    uint32_t n_lent;                    /* parameters: the first objects */
+    uint32_t n_local;                   /* objects; freed ones are among them */
     uint32_t room;
     uint32_t vacant;     /* index + 1 of the first freed object, or 0 */
     uint32_t first_read; /* index + 1 of the first of n objects, one a parameter: those under r

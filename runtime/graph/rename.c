@@ -6,8 +6,7 @@
 struct data_version *graph_rename(struct graph *graph, void *worker, struct data_object *object)
 {
     struct data_version *version = object->current;
-    size_t lines = data_packet_lines(object->room);
-    uint64_t bytes = lines * sizeof(struct data_packet);
+    uint64_t bytes = data_packet_memory(object->room);
     if (!version || bytes > graph->rename_most || data_version_is_alone(version))
         return version;
     if (atomic_fetch_add_explicit(&graph->rename_bytes, bytes, memory_order_relaxed) >
@@ -16,7 +15,7 @@ struct data_version *graph_rename(struct graph *graph, void *worker, struct data
         return version;
     }
     atomic_fetch_add_explicit(&graph->renamed, 1, memory_order_relaxed);
-    version->renamed = lines;
+    version->renamed = true;
     version->rename_bytes = &graph->rename_bytes;
     object->current = NULL;
     graph_release(graph, worker, version);

@@ -173,11 +173,10 @@ static void clear_leaves(const struct graph_plan *plan, const struct graph_task 
 }
 
 /* The body forked tasks on objects of its own and on what it read. */
-static void leave_scope(struct graph_task *task, void *worker, const struct data_failure *failure)
+static void leave_scope(struct graph_scope *scope, void *worker, const struct data_failure *failure)
 {
-    struct graph_scope *inner = task->inner;
-    task->inner = NULL;
-    graph_scope_end(inner, worker, failure);
+    graph_scope_fail(scope, failure);
+    graph_scope_end(scope, worker);
 }
 
 static bool run_body(struct graph *graph, void *worker, struct graph_task *task,
@@ -193,9 +192,10 @@ static bool run_body(struct graph *graph, void *worker, struct graph_task *task,
     if (runs) {
         if (node->n_leaves)
             clear_leaves(plan, task);
-        failure = graph_call_body(graph, worker, task, node->args, call);
-        if (task->inner)
-            leave_scope(task, worker, failure);
+        struct graph_scope *scope = NULL;
+        failure = graph_call_body(graph, worker, task, node->args, node->param, &scope, call);
+        if (scope)
+            leave_scope(scope, worker, failure);
     }
     if (failure)
         atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
@@ -242,7 +242,8 @@ static void run_sum(struct graph_task *task)
     if (failure)
         set_poison(plan, task, failure);
     else
-        combine(plan->place[plan->use[task->node->first_use + 1].place].law, task->param, task->n);
+        combine(plan->place[plan->use[task->node->first_use + 1].place].law, task->node->param,
+                task->n);
 }
 
 bool graph_flag_holds(duite_type type, const void *values)
@@ -264,7 +265,7 @@ static void run_flag(struct graph *graph, struct graph_task *task)
     bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
     plan->stop = task->node->round == plan->last || graph_given_up(graph) ||
                  (tainted && find_poison(plan, task)) ||
-                 !graph_flag_holds(task->param->type, task->param->data);
+                 !graph_flag_holds(task->node->param->type, task->node->param->data);
     if (plan->stop)
         plan->last = task->node->round;
 }

@@ -15,6 +15,7 @@ struct graph_node_use {
 struct graph_node {
     struct graph_plan *plan;
     void *args;               /* or what a set writes; NULL: zeros */
+    duite_param *param;       /* task->n */
     struct graph_task **next; /* n_next tasks that wait for it, those of the next round first */
     uint32_t n_next, n_cyclic;
     uint32_t steady;    /* predecessors in this round and the last one */

@@ -70,8 +70,7 @@ static int use(struct graph *graph, void *worker, struct graph_task *task, size_
 {
     int code = object->leaves ? graph_close(&graph->root, worker, object) : DUITE_OK;
     struct data_version *version = object->current;
-    task->access[i].mode = mode;
-    task->access[i].bytes = object->room;
+    task->access[i].waiter.mode = mode;
     if (!code && mode != DUITE_W && !(version = graph_local(graph, object)))
         code = DUITE_E_MEMORY;
     if (code)

@@ -95,9 +95,9 @@ static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, 
                                 .kernel = UINT32_MAX,
                                 .priority = INT32_MAX,
                                 .scope = &record->graph->root,
-                                .node = node,
-                                .param = plan->param + from->first_use};
+                                .node = node};
     *node = (struct graph_node){.plan = plan,
+                                .param = plan->param + from->first_use,
                                 .n_next = from->n_next,
                                 .n_cyclic = from->n_next_cyclic,
                                 .steady = from->within + from->cyclic,
@@ -118,11 +118,11 @@ static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, 
     const duite_kernel *kernel = record->graph->kernels[fork->kernel];
     task->kernel = fork->kernel;
     task->priority = fork->how.priority;
-    task->cost = fork->how.cost;
+    task->cost = (float)fork->how.cost;
     node->args = kernel->args_size ? plan->args + fork->args : NULL;
     uint32_t stamp = graph_new_stamp();
     for (uint32_t k = 0; k < fork->n; k++) {
-        task->param[k].object = (duite_object){GRAPH_LOCAL_NAME | k, stamp};
+        node->param[k].object = (duite_object){GRAPH_LOCAL_NAME | k, stamp};
         node->n_leaves += plan->use[node->first_use + k].place >= plan->n_objects;
     }
 }

@@ -6,19 +6,24 @@
 
 #include <string.h>
 
-void graph_size_open(struct graph_task *task, size_t i, struct data_packet *packet)
+void graph_size_close(struct graph_task *task, const duite_param *param)
 {
-    duite_param *param = &task->param[i];
-    if (packet && task->access[i].mode != DUITE_W)
-        param->count = packet->bytes / data_type_size(param->type);
+    for (uint32_t i = 0; i < task->n; i++) {
+        struct data_version *out = graph_written(&task->access[i]);
+        if (out && out->sized)
+            data_packet_resize(out->packet, param[i].count * data_type_size(param[i].type));
+    }
 }
 
-void graph_size_close(struct graph_task *task)
+/* Of parameter i; false in a plan, whose objects have fixed sizes. */
+static bool is_sized(const struct graph_task *task, size_t i)
 {
-    for (uint32_t i = 0; i < task->n; i++)
-        if (task->access[i].sized && task->access[i].out)
-            data_packet_resize(task->access[i].out->packet,
-                               task->param[i].count * data_type_size(task->param[i].type));
+    const struct graph_access *access = &task->access[i];
+    if (task->kind != GRAPH_BODY || access->waiter.mode == DUITE_CW)
+        return false;
+    if (graph_postponed((duite_mode)access->waiter.mode))
+        return graph_lent_object(task->inner, access->lent)->sized;
+    return access->out ? access->out->sized : access->in->sized;
 }
 
 static int refuse(const duite_call *call, size_t i, bool sized, size_t count)
@@ -27,9 +32,9 @@ static int refuse(const duite_call *call, size_t i, bool sized, size_t count)
         duite_fail(call, 0, "duite_resize: there is no parameter %zu, only %zu", i, call->n_params);
     else if (!sized)
         duite_fail(call, 0, "duite_resize: the object of parameter %zu has a fixed size", i);
-    else if (graph_postponed(call->own->task->access[i].mode))
+    else if (graph_postponed((duite_mode)call->own->task->access[i].waiter.mode))
         duite_fail(call, 0, "duite_resize: parameter %zu is its children's alone", i);
-    else if (!call->own->task->access[i].out)
+    else if (!graph_written(&call->own->task->access[i]))
         duite_fail(call, 0, "duite_resize: parameter %zu is only read", i);
     else
         duite_fail(call, 0, "duite_resize: parameter %zu: %zu elements are more than %zu at most",
@@ -41,9 +46,8 @@ static int refuse(const duite_call *call, size_t i, bool sized, size_t count)
 int duite_resize(const duite_call *call, size_t i, size_t count)
 {
     struct graph_task *task = call->own->task;
-    bool plain = task->kind == GRAPH_BODY; /* objects of a plan have fixed sizes */
-    bool sized = plain && i < call->n_params && task->access[i].sized;
-    if (!sized || !task->access[i].out || count > call->param[i].most)
+    bool sized = i < call->n_params && is_sized(task, i);
+    if (!sized || !graph_written(&task->access[i]) || count > call->param[i].most)
         return refuse(call, i, sized, count);
     duite_param *param = (duite_param *)&call->param[i]; /* ours to write */
     size_t size = data_type_size(param->type);

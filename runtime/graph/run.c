@@ -18,60 +18,106 @@ int duite_fail(const duite_call *call, int code, const char *format, ...)
 }
 
 /* The new version takes over the bytes of the old one. */
-static const struct data_failure *inherit(struct graph_task *task, struct graph_access *access)
+static const struct data_failure *inherit(const struct graph_task *task,
+                                          struct graph_access *access)
 {
     const struct data_failure *failure = NULL;
-    if (access->in) {
-        access->out->packet = access->in->packet;
-        failure = access->mode == DUITE_RW ? access->in->failure : NULL;
-        data_version_free(access->in);
+    struct data_version *in = access->in, *out = access->out;
+    bool keep = access->waiter.mode == DUITE_RW;
+    if (in) {
+        out->packet = in->packet;
+        failure = keep ? in->failure : NULL;
+        data_version_free(in);
         access->in = NULL;
     }
-    if (access->sized && access->out->packet)
-        access->out->packet =
-            data_packet_room(access->out->packet, access->bytes, access->mode == DUITE_RW);
-    if (!access->out->packet && !failure &&
-        !(access->out->packet = data_packet_new(access->bytes, false)))
+    if (out->sized && out->packet)
+        out->packet = data_packet_room(out->packet, data_version_room(out), keep);
+    if (!out->packet && !failure && !(out->packet = data_packet_new(data_version_room(out), false)))
         failure = graph_fail_memory(task);
     return failure;
 }
 
-/* Gives the body its parameters; returns the poison among them, or NULL. */
-static const struct data_failure *prepare(struct graph_task *task)
+/* What the body gets of a version; `fresh`: it finds unspecified bytes there. */
+static void describe(duite_param *param, const struct data_version *version, bool fresh)
 {
-    const struct data_failure *failure = NULL;
+    duite_type type = (duite_type)version->type;
+    struct data_packet *packet = version->packet;
+    param->data = packet ? data_payload(packet) : NULL;
+    param->count =
+        version->sized && packet && !fresh ? packet->bytes / data_type_size(type) : version->most;
+    param->type = type;
+    param->most = version->most;
+}
+
+static void describe_lent(duite_param *param, const struct data_object *object)
+{
+    *param = (duite_param){.count = object->most, .type = object->type, .most = object->most};
+}
+
+static const struct data_failure *open_leaf(const struct graph_task *task,
+                                            const struct graph_access *access, duite_param *param)
+{
+    const struct data_sum *sum = access->sum;
+    const struct data_failure *failure =
+        data_sum_open(sum, access->leaf) ? NULL : graph_fail_memory(task);
+    struct data_packet *packet = access->leaf->packet;
+    *param = (duite_param){.data = packet ? data_payload(packet) : NULL,
+                           .count = sum->count,
+                           .type = sum->type,
+                           .most = sum->count};
+    return failure;
+}
+
+/* Gives the body its parameters; returns the poison among them, or NULL. */
+static const struct data_failure *prepare(struct graph_task *task, duite_param *param, bool *sized)
+{
+    const struct data_failure *failure = NULL, *new = NULL;
+    uint32_t stamp = task->n ? graph_new_stamp() : 0;
     for (uint32_t i = 0; i < task->n; i++) {
         struct graph_access *access = &task->access[i];
-        struct data_packet *packet = NULL;
-        if (graph_postponed(access->mode))
-            continue;
-        if (access->mode == DUITE_R) {
-            failure = data_first(failure, access->in->failure);
-            packet = access->in->packet;
-        } else if (access->mode == DUITE_CW) {
-            if (!data_sum_open(access->sum, access->leaf))
-                failure = data_first(failure, graph_fail_memory(task));
-            packet = access->leaf->packet;
-        } else {
-            failure = data_first(failure, inherit(task, access));
-            packet = access->out->packet;
+        switch (access->waiter.mode) {
+        case DUITE_R:
+            new = access->in->failure;
+            describe(&param[i], access->in, false);
+            break;
+        case DUITE_W:
+        case DUITE_RW:
+            new = inherit(task, access);
+            *sized |= access->out->sized;
+            describe(&param[i], access->out, access->waiter.mode == DUITE_W);
+            break;
+        case DUITE_CW:
+            new = open_leaf(task, access, &param[i]);
+            break;
+        default:
+            new = NULL;
+            describe_lent(&param[i], graph_lent_object(task->inner, access->lent));
         }
-        task->param[i].data = packet ? data_payload(packet) : NULL;
-        if (access->sized)
-            graph_size_open(task, i, packet);
+        if (new)
+            failure = data_first(failure, new);
+        param[i].object = (duite_object){GRAPH_LOCAL_NAME | i, stamp};
     }
     return failure;
 }
 
+/* What it writes is poisoned, and the bytes of what it overwrites are taken over. */
 static void poison(struct graph_task *task, const struct data_failure *failure)
 {
-    task->failure = failure;
     for (uint32_t i = 0; i < task->n; i++) {
-        if (task->access[i].out)
-            task->access[i].out->failure = failure;
-        if (task->access[i].leaf)
-            task->access[i].leaf->failure = failure;
+        struct graph_access *access = &task->access[i];
+        struct data_version *out = graph_written(access);
+        if (out && access->in) {
+            out->packet = access->in->packet;
+            data_version_free(access->in);
+            access->in = NULL;
+        }
+        if (out)
+            out->failure = failure;
+        if (access->waiter.mode == DUITE_CW)
+            access->leaf->failure = failure;
     }
+    if (task->inner)
+        graph_scope_fail(task->inner, failure);
 }
 
 /* What the body says of its failure: its own sentence, or that of the call whose code it returns.
@@ -83,11 +129,12 @@ static const struct data_failure *body_failed(const struct duite_call_private *b
         memcpy(failure.text, body->sentence, sizeof failure.text);
     else
         memcpy(failure.text, body->text, sizeof failure.text);
-    return graph_fail_task(body->task, &failure);
+    return graph_fail_task(body->task, body->scope, &failure);
 }
 
 const struct data_failure *graph_call_body(struct graph *graph, void *worker,
                                            struct graph_task *task, const void *args,
+                                           const duite_param *param, struct graph_scope **scope,
                                            const duite_call *template)
 {
     struct duite_call_private body;
@@ -96,11 +143,13 @@ const struct data_failure *graph_call_body(struct graph *graph, void *worker,
     body.graph = graph;
     body.worker = worker;
     body.task = task;
+    body.param = param;
+    body.scope = *scope;
     body.refused = DUITE_OK;
     body.remembered = DUITE_OK;
     body.text[0] = '\0';
     call.args = args;
-    call.param = task->param;
+    call.param = param;
     call.n_params = task->n;
     call.own = &body;
     graph_body_begins(&body);
@@ -108,6 +157,7 @@ const struct data_failure *graph_call_body(struct graph *graph, void *worker,
                    ? graph->hooks.body(graph->hooks.context, kernel, task->number, &call)
                    : kernel->body(&call);
     graph_body_ends(&body);
+    *scope = body.scope;
     if (!code)
         code = body.refused;
     if (!code)
@@ -138,25 +188,51 @@ static void run_copy(struct graph *graph, struct graph_task *task)
     graph->hooks.notify(graph->hooks.context);
 }
 
+/* Whether the body ran. */
+static bool run_body(struct graph *graph, void *worker, struct graph_task *task, duite_param *param,
+                     const duite_call *call)
+{
+    bool sized = false; /* it writes an object that changes its size */
+    const struct data_failure *failure = prepare(task, param, &sized);
+    if (!failure)
+        failure = graph_given_up(graph);
+    bool runs = !failure;
+    size_t args_size = graph->kernels[task->kernel]->args_size;
+    if (runs)
+        failure =
+            graph_call_body(graph, worker, task, args_size ? graph_task_rest(task, task->n) : NULL,
+                            param, &task->inner, call);
+    if (failure)
+        poison(task, failure);
+    else if (sized)
+        graph_size_close(task, param);
+    return runs;
+}
+
+/* The same with memory for the parameters. */
+static bool run_task(struct graph *graph, void *worker, struct graph_task *task,
+                     const duite_call *call)
+{
+    enum { FEW = 8 };
+    duite_param few[FEW];
+    if (task->n <= FEW)
+        return run_body(graph, worker, task, few, call);
+    duite_param *param = base_pool_take(task->n * sizeof *param);
+    if (!param) {
+        poison(task, graph_fail_memory(task));
+        return false;
+    }
+    bool ran = run_body(graph, worker, task, param, call);
+    base_pool_give(param, task->n * sizeof *param);
+    return ran;
+}
+
 bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const duite_call *call)
 {
-    const struct data_failure *failure;
-    bool ran = false;
     switch (task->kind) {
     case GRAPH_BODY:
-        failure = prepare(task);
-        if (!failure)
-            failure = graph_given_up(graph);
-        ran = !failure;
-        if (!failure)
-            failure = graph_call_body(graph, worker, task, task->args, call);
-        if (!failure)
-            graph_size_close(task);
-        if (failure)
-            poison(task, failure);
-        break;
+        return run_task(graph, worker, task, call);
     case GRAPH_VOID:
-        prepare(task);
         poison(task, &no_memory);
         break;
     case GRAPH_COMBINE:
@@ -182,7 +258,7 @@ bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const
     case GRAPH_SEND:
         break;
     }
-    return ran;
+    return false;
 }
 
 void graph_finish(struct graph *graph, void *worker, struct graph_task *task)
@@ -195,22 +271,34 @@ void graph_finish(struct graph *graph, void *worker, struct graph_task *task)
         graph_over(graph, worker, task);
 }
 
+static void release(struct graph *graph, void *worker, const struct graph_access *access)
+{
+    switch (access->waiter.mode) {
+    case DUITE_R:
+        graph_release(graph, worker, access->in);
+        break;
+    case DUITE_W:
+    case DUITE_RW:
+        graph_publish(graph, worker, access->out);
+        break;
+    case DUITE_CW:
+        graph_wake(graph, worker, data_sum_release(access->sum));
+        break;
+    default: /* postponed: the scope's */
+        break;
+    }
+}
+
 void graph_over(struct graph *graph, void *worker, struct graph_task *task)
 {
-    for (uint32_t i = 0; i < task->n; i++) {
-        struct graph_access *access = &task->access[i];
-        if (access->out)
-            graph_publish(graph, worker, access->out);
-        else if (access->sum)
-            graph_wake(graph, worker, data_sum_release(access->sum));
-        else if (access->in)
-            graph_release(graph, worker, access->in);
-    }
-    struct graph_scope *scope = task->scope, *inner = task->inner;
-    const struct data_failure *failure = task->failure;
-    base_pool_give(task, task->size);
+    for (uint32_t i = 0; i < task->n; i++)
+        release(graph, worker, &task->access[i]);
+    struct graph_scope *scope = task->scope;
+    struct graph_scope *inner =
+        task->kind == GRAPH_BODY || task->kind == GRAPH_VOID ? task->inner : NULL;
+    base_pool_give(task, (size_t)task->grains * GRAPH_GRAIN);
     if (inner)
-        graph_scope_end(inner, worker, failure); /* it leaves `scope` when its children have */
+        graph_scope_end(inner, worker); /* it leaves `scope` when its children have */
     else
         graph_left(graph, scope, worker);
 }

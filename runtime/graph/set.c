@@ -8,9 +8,11 @@
 
 enum { OVERWRITTEN = 0x736574 }; /* tells a set from a free in the fingerprint */
 
-static struct data_version *version_of(const void *values, size_t bytes)
+static struct data_version *version_of(const struct data_object *object, const void *values,
+                                       size_t count)
 {
-    struct data_version *version = data_version_new();
+    size_t bytes = count * data_type_size(object->type);
+    struct data_version *version = data_object_version(object);
     struct data_packet *packet = version ? data_packet_new(bytes, !values) : NULL;
     if (!packet) {
         if (version)
@@ -52,8 +54,7 @@ int graph_set(struct graph_scope *scope, void *worker, duite_object name, const 
         graph_mix(graph, count);
     }
     struct data_version *version = NULL;
-    if (object->home == graph->rank &&
-        !(version = version_of(values, count * data_type_size(object->type)))) {
+    if (object->home == graph->rank && !(version = version_of(object, values, count))) {
         base_no_memory("the values of duite_set");
         return graph_break(graph);
     }

@@ -63,7 +63,9 @@ static struct graph_task *closer(struct graph_scope *scope, struct data_object *
     if (!task)
         return NULL;
     *task->sum =
-        (struct graph_sum){.waiter.task = task, .sum = object->sum, .send.to = object->holder};
+        (struct graph_sum){.waiter.back = (uint32_t)((char *)&task->sum->waiter - (char *)task),
+                           .sum = object->sum,
+                           .send.to = object->holder};
     if (!scope->depth)
         task->sum->send.key = graph_key(scope->graph, object);
     task->block = object->block;
@@ -94,7 +96,7 @@ static int combine_here(struct graph_scope *scope, void *worker, struct data_obj
     if (!task)
         return DUITE_E_MEMORY;
     uint32_t done = 0;
-    task->access[0].mode = DUITE_RW;
+    task->access[0].waiter.mode = DUITE_RW;
     int code = graph_overwrite(graph, task, 0, object, version, &done);
     if (code) { /* the contributions are dropped once they are all there */
         task->n = 0;
@@ -144,7 +146,7 @@ int graph_gather(struct graph_scope *scope, void *worker, struct data_object *ob
         keep_unclosed(graph, object);
         return DUITE_E_MEMORY;
     }
-    task->access[0].mode = DUITE_CW;
+    task->access[0].waiter.mode = DUITE_CW;
     task->access[0].sum = outer;
     task->access[0].leaf = leaf;
     object->leaves = 0;

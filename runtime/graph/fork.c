@@ -65,7 +65,7 @@ struct sketch {
     struct data_object *object[FEW]; /* the first ones, of the main program: these stay in place */
 };
 
-enum { NOBODY = UINT32_MAX };
+#define NOBODY UINT32_MAX
 
 /* Object i, whose name was checked. */
 static struct data_object *object_of(struct graph_scope *scope, const struct sketch *sketch,

@@ -1,5 +1,5 @@
-/* How many tasks are over: each worker counts its own on its own cache lines, and who wants to know
- * adds them up. So a task costs no line that workers share.
+/* What workers count, above all how many tasks are over: each worker counts its own on its own
+ * cache lines, and who wants to know adds them up. So a task costs no line that workers share.
  *
  * The main thread, which waits for a number of tasks to be over, may sleep. It is woken by a worker
  * that runs out of work (workers.c), or, while it is throttled and work goes on, by one that finds
@@ -50,4 +50,19 @@ void work_throttle(struct work_pool *pool, uint64_t most)
     }
     /* There cannot be more than `most` before so many are added. */
     pool->look = graph->tasks + (left < most ? most - left : 0) + 1;
+}
+
+void work_count(struct work_pool *pool, duite_counters *counters)
+{
+    for (unsigned i = 0; i < pool->setup.threads; i++) {
+        struct counts *counts = &pool->worker[i].counts;
+        counters->tasks += atomic_load_explicit(&counts->tasks, memory_order_relaxed);
+        counters->placed += atomic_load_explicit(&counts->placed, memory_order_relaxed);
+        counters->stolen += atomic_load_explicit(&counts->stolen, memory_order_relaxed);
+        counters->chained += atomic_load_explicit(&counts->chained, memory_order_relaxed);
+        counters->busy +=
+            pool->tick * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
+        counters->idle +=
+            pool->tick * (double)atomic_load_explicit(&counts->idle, memory_order_relaxed);
+    }
 }

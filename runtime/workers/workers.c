@@ -434,18 +434,3 @@ bool work_may_fork(struct work_pool *pool)
 {
     return pthread_equal(pthread_self(), pool->main) && !graph_running(pool->setup.graph);
 }
-
-void work_count(struct work_pool *pool, duite_counters *counters)
-{
-    for (unsigned i = 0; i < pool->setup.threads; i++) {
-        struct counts *counts = &pool->worker[i].counts;
-        counters->tasks += atomic_load_explicit(&counts->tasks, memory_order_relaxed);
-        counters->placed += atomic_load_explicit(&counts->placed, memory_order_relaxed);
-        counters->stolen += atomic_load_explicit(&counts->stolen, memory_order_relaxed);
-        counters->chained += atomic_load_explicit(&counts->chained, memory_order_relaxed);
-        counters->busy +=
-            pool->tick * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
-        counters->idle +=
-            pool->tick * (double)atomic_load_explicit(&counts->idle, memory_order_relaxed);
-    }
-}

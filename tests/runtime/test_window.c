@@ -13,7 +13,7 @@ static int step(const duite_call *call)
 {
     for (volatile int i = 0; i < 500; i++)
         ;
-    duite_out(call, 0, int32_t)[0] += duite_in(call, 1, int32_t)[0] + 1;
+    duite_out(call, 0, uint32_t)[0] += duite_in(call, 1, uint32_t)[0] + 1; /* wraps around */
     atomic_fetch_add(&n_over, 1);
     return 0;
 }

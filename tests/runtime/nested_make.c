@@ -21,6 +21,7 @@ struct maker {
     struct nest_program *program;
     uint64_t random;
     unsigned fails; /* one task in so many; 0: none */
+    bool plain;     /* the next fork postpones nothing: graphs of such tasks have a plan */
 };
 
 static unsigned draw(struct maker *maker, unsigned below)
@@ -56,8 +57,8 @@ static duite_mode draw_mode(struct maker *maker, duite_mode right, bool sized, u
 
         /* Contributions are the most likely to go wrong: half of all. */
         if (right == DUITE_RWP && !sized && draw(maker, 4) == 0)
-            return draw(maker, 2) && depth < MAX_DEPTH ? DUITE_CWP : DUITE_CW;
-        if (modes >> mode & 1 && !(mode >= DUITE_RP && depth >= MAX_DEPTH))
+            return draw(maker, 2) && depth < MAX_DEPTH && !maker->plain ? DUITE_CWP : DUITE_CW;
+        if (modes >> mode & 1 && !(mode >= DUITE_RP && (depth >= MAX_DEPTH || maker->plain)))
             return mode;
     }
 }
@@ -109,6 +110,7 @@ static void make_fork(struct maker *maker, unsigned self, struct table *table, i
         given.most[given.n++] = table->most[object];
     }
     task->n = given.n;
+    maker->plain = false;
     make_task(maker, child, &given, depth);
 }
 
@@ -177,15 +179,19 @@ static void make_replay(struct maker *maker, struct table *table)
     struct nest_action *replay = add(task, NEST_REPLAY);
     const unsigned first = task->n_actions, n = 1 + draw(maker, 3);
 
+    const bool plain = draw(maker, 3) > 0;
+
     replay->most = 1 + draw(maker, 3);
     for (unsigned tries = 0; tries < n; tries++) {
         const unsigned object = draw(maker, table->n);
 
+        maker->plain = plain;
         if (draw(maker, 4))
             make_fork(maker, 0, table, -1, 1);
         else if (table->right[object])
             make_set(maker, task, table, object);
     }
+    maker->plain = false;
     replay->count = task->n_actions - first;
     if (!replay->count)
         task->n_actions--;
@@ -238,7 +244,7 @@ static void make_task(struct maker *maker, unsigned self, const struct table *gi
         task->fails = 1 + (int)self;
     make_actions(maker, self, &table, depth);
     for (unsigned i = 0; i < task->n; i++)
-        if (task->mode[i] == DUITE_WP && !table.written[i] && draw(maker, 4))
+        if (task->mode[i] == DUITE_WP && !table.written[i] && draw(maker, 3))
             make_fork(maker, self, &table, (int)i, depth + 1);
     for (unsigned i = 0; !self && i < table.n; i++)
         if (table.right[i] && task->n_actions < NEST_MAX_ACTIONS)

@@ -185,13 +185,22 @@ static int twice(const duite_call *call)
     return DUITE_FORK(call->rt, &APPEND, args_of(call), call->param[0].object);
 }
 
+static int nothing(const duite_call *call)
+{
+    (void)call;
+    return 0;
+}
+
+static const duite_kernel NOTHING = {.name = "nothing", .body = nothing, .access = {DUITE_WP}};
+
 /* ---- Cases ---- */
 
 static void start(unsigned threads)
 {
     static const duite_kernel *const KERNELS[] = {
         &PUT,        &APPEND,   &COPY,     &FAILS,          &DEEPER, &DEEPER_WAITING,
-        &APPEND_ALL, &FAIL_ALL, &FOR_EVER, &THROUGH_READER, &TWICE,  NULL};
+        &APPEND_ALL, &FAIL_ALL, &FOR_EVER, &THROUGH_READER, &TWICE,  &NOTHING,
+        NULL};
     duite_options options = duite_options_default();
 
     options.kernels = KERNELS;
@@ -287,6 +296,10 @@ START_TEST(failures)
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
     ck_assert_int_eq(duite_get(rt, object, &value), 22);
     ck_assert_int_eq(duite_get(rt, other, &value), 21);
+    DUITE_FORK(rt, &NOTHING, NULL, other); /* a w that nobody does leaves zeros */
+    holds(other, 0);
+    DUITE_FORK(rt, &FAILS, DUITE_ARGS(struct args, .code = 23), other);
+    ck_assert_int_eq(duite_wait(rt), 23);
     duite_set(rt, object, NULL);
     holds(object, 0);
     DUITE_FORK(rt, &DEEPER, DUITE_ARGS(struct args, .n = 3), other); /* heals */

@@ -69,6 +69,8 @@ static void wake_heir(struct graph *graph, void *worker, struct data_waiter *hei
 {
     while (heir && !heir->back)
         heir = graph_pass(worker, heir);
+    if (heir) /* an access: another core wrote what its task will need next */
+        __builtin_prefetch(((struct graph_access *)(void *)heir)->out, 1);
     graph_wake(graph, worker, heir);
 }
 

@@ -50,8 +50,9 @@ enum {
     DUITE_E_RIGHT = -11,    /* a task gives a child more than it holds itself (see duite_mode) */
     DUITE_E_LAW = -12,      /* a law that is malformed, not listed, or for another element type */
     DUITE_E_BINDING = -13,  /* what is bound to an object of a recorded graph does not fit it */
-    DUITE_E_SIZE = -14, /* an object grows beyond its maximum, or changes a size that is fixed */
-    DUITE_E_CHECK = -15 /* checking mode: a body does not keep to what its kernel declares */
+    DUITE_E_SIZE = -14,  /* an object grows beyond its maximum, or changes a size that is fixed */
+    DUITE_E_CHECK = -15, /* checking mode: a body does not keep to what its kernel declares */
+    DUITE_E_VIEW = -16 /* a view is used otherwise than under r, or cannot be, or is left behind */
 };
 
 /* The sentence of the last call of this thread that failed; never NULL. Valid until the next
@@ -276,6 +277,23 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
  * gets have as many as there are. It cannot be accumulated into (cw: DUITE_E_ACCESS). Collective;
  * no communication. */
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite_object *object);
+
+/* Makes a view of an object: a name for some of its elements, used like that of an object of its
+ * own with n elements, in the order of `indices` (copied; each below the object's count; one may
+ * come several times). A task that reads it (r, rp) finds what the object has there as the tasks
+ * forked so far leave it, poison as well, and only these elements travel between ranks; so it is
+ * with duite_get. A view has the home of its object. To the order of tasks, reading it is a read of
+ * the whole object: it ends contributions. Where the object has changed since the view was read
+ * last, its elements are gathered once, on the rank that holds the object, for all who read the
+ * view until the next change. A task may read views of an object that it writes: they have the
+ * elements from before. In replays a view is what it was when the graph was recorded, or what is
+ * bound to it; a view can be bound to an object that the graph does not write (DUITE_E_VIEW).
+ *
+ * DUITE_E_VIEW: an index is too large; the object is a view itself, or changes its size. Later: a
+ * view is used otherwise than under r and rp, or set, hinted, or part of duite_follow; an object is
+ * freed before its views (duite_free frees these). DUITE_E_ARGUMENT: n is 0. Main program only.
+ * Collective; no communication. */
+int duite_view(duite *rt, duite_object object, size_t n, const size_t *indices, duite_object *view);
 
 /* Frees an object after the last earlier access; `object` names nothing afterwards. Collective. */
 int duite_free(duite *rt, duite_object object);

@@ -35,10 +35,12 @@ bool instance_is_broken(const duite *rt);
  * Does nothing the second time. */
 void instance_give_up(duite *rt);
 
-/* ---- Shared by program.c and recorded.c ---- */
+/* ---- Shared by program.c, objects.c and recorded.c ---- */
 
 /* May this call be made now? */
 int program_enter(duite *rt, const char *call);
+/* The same, even while a graph is recorded. */
+int program_enter_any(duite *rt, const char *call);
 /* Keeps an error for the next get, wait or stop, or, inside build, for who called it. Returns code.
  */
 int program_remember(duite *rt, int code);

@@ -4,14 +4,11 @@
 #include "runtime/instance.h"
 
 #include "runtime/base/error.h"
-#include "runtime/base/memory.h"
 #include "runtime/map/map.h"
 
 #include <stdio.h>
-#include <string.h>
 
-/* May this call be made now, even while a graph is recorded? */
-static int enter_any(duite *rt, const char *call)
+int program_enter_any(duite *rt, const char *call)
 {
     if (!rt)
         return base_error(DUITE_E_ARGUMENT, "%s: no runtime", call);
@@ -26,7 +23,7 @@ static int enter_any(duite *rt, const char *call)
 
 int program_enter(duite *rt, const char *call)
 {
-    int code = enter_any(rt, call);
+    int code = program_enter_any(rt, call);
     if (code || !rt->building)
         return code;
     return program_remember(rt,
@@ -59,111 +56,6 @@ static int recall(duite *rt)
 int program_settle(duite *rt)
 {
     return map_settle(&rt->graph.table, rt->mapping, rt->seed);
-}
-
-/* ---- Objects ---- */
-
-int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
-{
-    struct duite_call_private *body = inside_body(rt);
-    if (object)
-        *object = DUITE_NO_OBJECT;
-    if (body)
-        return inside_new(body, type, count, count, false, object);
-    int code = program_enter(rt, "duite_new");
-    if (code)
-        return code;
-    if (!object)
-        return program_remember(
-            rt, base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
-    graph_mix(&rt->graph, count);
-    graph_mix(&rt->graph, (uint64_t)type);
-    return program_remember(rt, data_object_new(&rt->graph.table, type, count, object));
-}
-
-int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite_object *object)
-{
-    struct duite_call_private *body = inside_body(rt);
-    if (object)
-        *object = DUITE_NO_OBJECT;
-    if (body)
-        return inside_new(body, type, count, most, true, object);
-    int code = program_enter(rt, "duite_new_sized");
-    if (code)
-        return code;
-    if (!object)
-        return program_remember(
-            rt, base_error(DUITE_E_ARGUMENT, "duite_new_sized: nowhere to put the object"));
-    graph_mix(&rt->graph, count);
-    graph_mix(&rt->graph, most);
-    graph_mix(&rt->graph, (uint64_t)type);
-    return program_remember(rt, data_object_new_sized(&rt->graph.table, type, count, most, object));
-}
-
-static void mix_name(duite *rt, duite_object object)
-{
-    graph_mix(&rt->graph, (uint64_t)object.slot << 32 | object.generation);
-}
-
-static void mix_double(duite *rt, double value)
-{
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    graph_mix(&rt->graph, bits);
-}
-
-static void mix_hint(duite *rt, duite_object object, double weight, size_t n,
-                     const duite_object *neighbours, const double *edge_weights)
-{
-    mix_name(rt, object);
-    mix_double(rt, weight);
-    graph_mix(&rt->graph, n);
-    for (size_t i = 0; i < n && neighbours; i++)
-        mix_name(rt, neighbours[i]);
-    for (size_t i = 0; i < n && edge_weights; i++)
-        mix_double(rt, edge_weights[i]);
-}
-
-int duite_hint(duite *rt, duite_object object, double weight, size_t n,
-               const duite_object *neighbours, const double *edge_weights)
-{
-    int code = program_enter(rt, "duite_hint");
-    if (code)
-        return code;
-    mix_hint(rt, object, weight, n, neighbours, edge_weights);
-    return program_remember(
-        rt, map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights));
-}
-
-int duite_follow(duite *rt, duite_object object, duite_object leader)
-{
-    int code = program_enter(rt, "duite_follow");
-    if (code)
-        return code;
-    mix_name(rt, object);
-    mix_name(rt, leader);
-    return program_remember(rt, map_follow(&rt->graph.table, object, leader));
-}
-
-int duite_home(duite *rt, duite_object object)
-{
-    if (enter_any(rt, "duite_home") || program_settle(rt))
-        return -1;
-    const struct data_object *found = data_object_find(&rt->graph.table, object);
-    return found ? found->home : -1;
-}
-
-int duite_free(duite *rt, duite_object object)
-{
-    struct duite_call_private *body = inside_body(rt);
-    if (body)
-        return inside_free(body, object);
-    int code = program_enter(rt, "duite_free");
-    if (!code)
-        code = program_remember(rt, program_settle(rt));
-    if (!code)
-        code = program_remember(rt, graph_free(&rt->graph.root, work_main(rt->pool), object));
-    return code;
 }
 
 /* ---- Tasks ---- */
@@ -199,7 +91,7 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
     struct duite_call_private *body = inside_body(rt);
     if (body)
         return inside_fork(body, NULL, kernel, args, n, objects);
-    int code = enter_any(rt, "duite_fork");
+    int code = program_enter_any(rt, "duite_fork");
     return code
                ? code
                : fork_task(rt, &(struct graph_how){.at = GRAPH_ANYWHERE}, kernel, args, n, objects);
@@ -208,7 +100,7 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
                   const duite_object *objects)
 {
-    int code = enter_any(rt, "duite_fork_at");
+    int code = program_enter_any(rt, "duite_fork_at");
     if (code)
         return code;
     if (rank < 0)
@@ -223,7 +115,7 @@ int duite_fork_with(duite *rt, const duite_how *how, const duite_kernel *kernel,
     struct duite_call_private *body = inside_body(rt);
     if (body)
         return inside_fork(body, how, kernel, args, n, objects);
-    int code = enter_any(rt, "duite_fork_with");
+    int code = program_enter_any(rt, "duite_fork_with");
     if (code)
         return code;
     struct graph_how own = {.at = GRAPH_ANYWHERE};
@@ -243,7 +135,7 @@ static int set(duite *rt, duite_object object, const void *values, const size_t 
     struct duite_call_private *body = inside_body(rt);
     if (body)
         return inside_set(body, object, values, count, call);
-    int code = enter_any(rt, call);
+    int code = program_enter_any(rt, call);
     if (!code && rt->building)
         return program_remember(rt, graph_record_set(rt->building, object, values, count));
     if (!code)

@@ -1,6 +1,6 @@
 /* A slot's generation is odd while an object lives in it and grows by one at birth and at death, so
  * that a stale name never fits again (until 2^31 objects have lived in one slot). */
-#include "runtime/data/object.h"
+#include "runtime/data/view.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -36,6 +36,8 @@ static void hint_clear(struct data_hint *hint)
 void data_table_stop(struct data_table *table)
 {
     data_hints_forget(table);
+    for (uint32_t slot = 1; slot < table->n_slots; slot++)
+        data_view_release(table->object[slot].view);
     free(table->unsettled);
     free(table->vacant);
     free(table->blocks);
@@ -179,6 +181,10 @@ void data_object_drop(struct data_table *table, duite_object name)
     struct data_object *object = &table->object[name.slot];
     object->generation++;
     object->current = NULL;
+    if (object->view)
+        table->object[object->view->parent].n_views--;
+    data_view_release(object->view);
+    object->view = NULL;
     table->vacant[table->n_vacant++] = name.slot;
     table->n_alive--;
 }

@@ -23,6 +23,8 @@ struct data_object {
     uint64_t leaves;              /* contributions forked since the last other access */
     const duite_law *law;         /* of these */
     struct data_sum *sum;         /* those that concern this rank, or NULL */
+    struct data_view *view;       /* it is a view (view.h); NULL: it is none */
+    uint32_t n_views;             /* views of it that are alive */
     bool copied;                  /* some rank beside the holder has a copy: `copies` says which */
 };
 

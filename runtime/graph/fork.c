@@ -6,6 +6,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/data/mode.h"
+#include "runtime/data/view.h"
 
 #include <string.h>
 
@@ -62,6 +63,7 @@ enum { FEW = 16 };
 struct sketch {
     uint32_t kernel;                 /* index in the list given at start */
     uint32_t owner;                  /* the parameter it runs for; NOBODY: it only accumulates */
+    bool views;                      /* some are views */
     struct data_object *object[FEW]; /* the first ones, of the main program: these stay in place */
 };
 
@@ -98,13 +100,16 @@ static int check_object(struct graph_scope *scope, const duite_kernel *kernel, s
                           "kernel %s, parameter %zu: the task names object %u.%u twice",
                           kernel->name, i, name.slot, name.generation);
     int code = DUITE_OK;
-    if (graph_immediate(mode) == DUITE_CW)
+    if (object->view && graph_immediate(mode) != DUITE_R)
+        code = data_view_refuse(&scope->graph->table, object, kernel->name);
+    if (!code && graph_immediate(mode) == DUITE_CW)
         code = check_law(kernel, i, object, name);
     if (!code && right == DUITE_CWP && data_law_of(kernel, i) != object->law)
         code = graph_wrong_law(scope, kernel, i, name);
     if (code)
         return code;
     object->mark = scope->forks + 1;
+    sketch->views |= object->view != NULL;
     if (i < FEW)
         sketch->object[i] = object;
     return DUITE_OK;
@@ -213,6 +218,7 @@ static int check_objects(struct graph_scope *scope, const duite_kernel *kernel, 
 {
     uint32_t first_read = NOBODY;
     sketch->owner = NOBODY;
+    sketch->views = false;
     for (uint32_t i = 0; i < n; i++) {
         duite_mode mode = data_mode_of(kernel, i), same = graph_immediate(mode);
         int code = check_object(scope, kernel, i, mode, objects[i], sketch);
@@ -273,6 +279,16 @@ static struct graph_task *body_task(struct graph_scope *scope, void *worker,
     return NULL;
 }
 
+/* All of them before any other access: the task may write their parents. */
+static int gather_views(struct graph_scope *scope, void *worker, const struct sketch *sketch,
+                        size_t n, const duite_object *objects)
+{
+    int code = DUITE_OK;
+    for (size_t i = 0; i < n && !code; i++)
+        code = graph_view_gather(scope->graph, worker, object_of(scope, sketch, i, objects[i]));
+    return code;
+}
+
 /* Checked: nothing but memory can be missing. */
 static int fork_checked(struct graph_scope *scope, void *worker, const struct graph_how *how,
                         const struct sketch *sketch, const void *args, size_t n,
@@ -283,6 +299,9 @@ static int fork_checked(struct graph_scope *scope, void *worker, const struct gr
     const struct data_object *own =
         sketch->owner == NOBODY ? NULL
                                 : object_of(scope, sketch, sketch->owner, objects[sketch->owner]);
+    int code = sketch->views ? gather_views(scope, worker, sketch, n, objects) : DUITE_OK;
+    if (code)
+        return code;
     struct graph_task *task = NULL;
     uint32_t done = 0;
     int at = how->at;
@@ -299,7 +318,7 @@ static int fork_checked(struct graph_scope *scope, void *worker, const struct gr
             graph_mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         if (task)
             task->access[i].waiter.mode = mode;
-        int code = use(scope, worker, at, kernel, i, mode, object, task, &done);
+        code = use(scope, worker, at, kernel, i, mode, object, task, &done);
         if (code && task)
             graph_void(graph, worker, task, i, done);
         if (code)
@@ -330,6 +349,9 @@ int graph_free(struct graph_scope *scope, void *worker, duite_object name)
     struct data_object *object = graph_object(scope, name, &right);
     if (!object)
         return DUITE_E_OBJECT;
+    if (object->n_views)
+        return base_error(DUITE_E_VIEW, "duite_free: object %u.%u has %u views that are not freed",
+                          name.slot, name.generation, object->n_views);
     if (!scope->depth)
         graph_mix(graph, (uint64_t)name.slot << 32 | name.generation);
     int code = object->leaves ? graph_close(scope, worker, object) : DUITE_OK;
@@ -352,6 +374,8 @@ int graph_copy(struct graph *graph, void *worker, duite_object name, int to,
                           graph->n_ranks - 1);
     graph_mix(graph, (uint64_t)name.slot << 32 | (uint32_t)to);
     int code = object->leaves ? graph_close(&graph->root, worker, object) : DUITE_OK;
+    if (!code)
+        code = graph_view_gather(graph, worker, object);
     for (int rank = 0; rank < graph->n_ranks && !code; rank++)
         if (to == GRAPH_ANYWHERE || to == rank)
             code = graph_fetch(graph, worker, object, rank);

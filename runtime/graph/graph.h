@@ -19,14 +19,16 @@ enum graph_kind {
     GRAPH_PIECES,  /* combines this rank's contributions, and turns into the SEND of them */
     GRAPH_GATHER,  /* combines the contributions of a task's children into one of its own */
     GRAPH_SEND,    /* sends a version or pieces to another rank */
+    GRAPH_VIEW,    /* writes a view's elements from its object */
     GRAPH_COPY,    /* duite_get: copies a version to the main program */
     GRAPH_VOID,   /* memory ran out while it was forked: does not run, and poisons what it writes */
     GRAPH_REPLAY, /* replays of a recorded graph: begins them; over when the last round is */
     /* Nodes of a replay: */
-    GRAPH_NODE,     /* a task of the program */
-    GRAPH_NODE_SET, /* duite_set */
-    GRAPH_NODE_SUM, /* combines contributions with an object */
-    GRAPH_NODE_FLAG /* decides whether there is another round */
+    GRAPH_NODE,      /* a task of the program */
+    GRAPH_NODE_SET,  /* duite_set */
+    GRAPH_NODE_SUM,  /* combines contributions with an object */
+    GRAPH_NODE_VIEW, /* writes a view's elements from its object */
+    GRAPH_NODE_FLAG  /* decides whether there is another round */
 };
 
 struct graph_scope;
@@ -57,6 +59,7 @@ struct graph_task {
         struct graph_scope *inner;   /* BODY, VOID: what its children may use, or NULL */
         struct graph_sum *sum;       /* COMBINE, PIECES, GATHER */
         struct graph_send *send;     /* SEND */
+        struct data_view *view;      /* VIEW: held */
         struct graph_copy *copy;     /* COPY */
         struct graph_replay *replay; /* REPLAY */
         struct graph_node *node;     /* NODE... */

@@ -38,6 +38,10 @@ struct data_version *graph_local(struct graph *graph, struct data_object *object
 /* Sees to it that rank `to` gets the current version: sends, awaits, or notes that others do. */
 int graph_fetch(struct graph *graph, void *worker, struct data_object *object, int to);
 
+/* The object may be a view: sees to it that it has the elements that the forks so far leave in its
+ * parent, before it is read. */
+int graph_view_gather(struct graph *graph, void *worker, struct data_object *object);
+
 /* The object has a new version on another rank: this rank's copy is stale. */
 void graph_forget(struct graph *graph, void *worker, struct data_object *object);
 
@@ -135,7 +139,8 @@ int graph_check(struct graph_scope *scope, int at, const duite_kernel *kernel, c
 void graph_unmark(struct graph_scope *scope, size_t n, const duite_object *objects);
 
 /* May the object be set to so many elements? */
-int graph_set_check(const struct data_object *object, duite_object name, size_t count);
+int graph_set_check(const struct graph *graph, const struct data_object *object, duite_object name,
+                    size_t count);
 
 /* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
  */

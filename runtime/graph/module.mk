@@ -4,4 +4,4 @@ libduite_la_SOURCES += runtime/graph/depend.c runtime/graph/fork.c runtime/graph
 	runtime/graph/replay.c runtime/graph/replay.h runtime/graph/replay_call.c \
 	runtime/graph/replay_draft.c runtime/graph/replay_draft.h runtime/graph/replay_plan.c \
 	runtime/graph/rename.c runtime/graph/resize.c runtime/graph/right.c runtime/graph/run.c runtime/graph/set.c \
-	runtime/graph/sum.c
+	runtime/graph/sum.c runtime/graph/view.c

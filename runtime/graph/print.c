@@ -50,6 +50,10 @@ static void print_draft(const struct graph_draft *draft, FILE *file)
         if (node->kind == GRAPH_NODE_SUM) {
             fputs("duite_sum", file);
             print_use(record, draft->use[node->first_use].place, DUITE_RW, file);
+        } else if (node->kind == GRAPH_NODE_VIEW) {
+            fputs("duite_view", file);
+            print_use(record, draft->use[node->first_use].place, DUITE_R, file);
+            print_use(record, draft->use[node->first_use + 1].place, DUITE_W, file);
         } else {
             print_fork(record, &record->fork[node->fork], file);
         }

@@ -7,6 +7,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/data/mode.h"
+#include "runtime/data/view.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -66,7 +67,7 @@ static bool reserve(struct graph_record *record, size_t n, size_t bytes)
     return record->index && ROOM(fork, forks_capacity, record->n_forks + 1) &&
            ROOM(call, calls_capacity, record->n_calls + 1) &&
            ROOM(use, uses_capacity, record->n_uses + n + 1) && ROOM(names, names_capacity, n + 1) &&
-           ROOM(object, objects_capacity, record->n_objects + n + 1) &&
+           ROOM(object, objects_capacity, record->n_objects + 2 * n + 1) &&
            ROOM(args, args_capacity, record->args_bytes + bytes + 1);
 #undef ROOM
 }
@@ -75,7 +76,8 @@ static struct graph_recorded_object *find(const struct graph_record *record, dui
 {
     uint32_t index = name.slot < record->n_slots ? record->index[name.slot] : 0;
     struct graph_recorded_object *object = index ? &record->object[index - 1] : NULL;
-    return object && object->recorded.generation == name.generation ? object : NULL;
+    bool found = object && object->named && object->recorded.generation == name.generation;
+    return found ? object : NULL;
 }
 
 static uint32_t index_of(struct graph_record *record, duite_object name)
@@ -93,11 +95,8 @@ static uint32_t index_of(struct graph_record *record, duite_object name)
     return *index - 1;
 }
 
-static void use(struct graph_record *record, duite_object name, duite_mode mode)
+static void note(struct graph_recorded_object *object, duite_mode mode)
 {
-    uint32_t index = index_of(record, name);
-    struct graph_recorded_object *object = &record->object[index];
-    record->use[record->n_uses++] = index;
     if (mode == DUITE_CW) {
         object->leads |= !object->read && !object->written;
         object->reads_old |= !object->read && !object->written;
@@ -108,6 +107,22 @@ static void use(struct graph_record *record, duite_object name, duite_mode mode)
     object->read |= mode == DUITE_R;
     object->written |= mode != DUITE_R;
     object->trails = false;
+}
+
+static void use(struct graph_record *record, duite_object name, duite_mode mode)
+{
+    const struct data_table *table = &record->graph->table;
+    const struct data_view *view = table->object[name.slot].view;
+    uint32_t index = index_of(record, name);
+    record->use[record->n_uses++] = index;
+    record->object[index].named = true;
+    note(&record->object[index], mode);
+    if (!view)
+        return;
+    uint32_t parent = index_of(record, data_object_name(table, &table->object[view->parent]));
+    note(&record->object[parent], DUITE_R);
+    record->object[index].parent = parent + 1;
+    record->views = true;
 }
 
 duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_recorded_fork *fork,
@@ -173,7 +188,7 @@ int graph_record_set(struct graph_record *record, duite_object name, const void 
         return DUITE_E_OBJECT;
     size_t count = wanted ? *wanted : object->most;
     size_t bytes = values ? count * data_type_size(object->type) : 0;
-    int code = graph_set_check(object, name, count);
+    int code = graph_set_check(record->graph, object, name, count);
     if (code)
         return code;
     struct graph_recorded_fork *fork =
@@ -245,6 +260,11 @@ int graph_record_bind(struct graph_record *record, duite_object recorded, duite_
             recorded.slot, recorded.generation, object->sized ? "at most " : "", object->count,
             data_type_name(object->type), name.slot, name.generation,
             other->sized ? "at most " : "", other->most, data_type_name(other->type));
+    if (object->written || object->sums) {
+        int code = data_view_refuse(&record->graph->table, other, "duite_graph_bind");
+        if (code)
+            return code;
+    }
     graph_mix(record->graph, (uint64_t)recorded.slot << 32 | recorded.generation);
     graph_mix(record->graph, (uint64_t)name.slot << 32 | name.generation);
     object->bound = name;
@@ -275,6 +295,8 @@ int graph_record_distinct(struct graph_record *record)
     for (size_t i = 0; i < record->n_objects && !code; i++) {
         const struct graph_recorded_object *object = &record->object[i];
         uint64_t *mark = &table->object[object->bound.slot].mark;
+        if (!object->named)
+            continue;
         if (*mark)
             code = base_error(DUITE_E_BINDING,
                               "objects %u.%u and %u.%u of a recorded graph are both bound to %u.%u",

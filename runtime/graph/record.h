@@ -33,6 +33,8 @@ struct graph_recorded_object {
     bool sums;          /* contributed to */
     bool reads_old;     /* the first access is not a w */
     bool leads, trails; /* contributions before any other access in a round, and after all others */
+    bool named;         /* by a fork or set; else by its views only, and cannot be bound */
+    uint32_t parent;    /* of a view: the place of its object in `object`, plus 1; else 0 */
 };
 
 struct graph_plan;
@@ -40,6 +42,14 @@ struct graph_plan;
 /* The mode in which a fork, with its descendants, uses its k-th object. */
 duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_recorded_fork *fork,
                                uint32_t k);
+
+/* The recorded object is a view of one that the graph writes: rounds gather it. */
+static inline bool graph_recorded_gathers(const struct graph_recorded_object *objects,
+                                          const struct graph_recorded_object *object)
+{
+    const struct graph_recorded_object *parent = &objects[object->parent - 1];
+    return object->parent && (parent->written || parent->sums);
+}
 
 /* Arguments that changed since the last replay; one block of memory. */
 struct graph_change {
@@ -68,6 +78,7 @@ struct graph_record {
     bool rebound; /* since the bindings were last found to be different objects */
     bool forked;  /* has no plan: contributions of one round and of the next make one sum, the size
                      of an object changes, or a right is postponed */
+    bool views;   /* reads views */
     bool trails;  /* some object's contributions end the round: they stay open after the last */
     int failed;   /* code of the first call of build that failed */
     char sentence[512]; /* of it */

@@ -13,6 +13,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/data/view.h"
 
 #include <string.h>
 
@@ -246,6 +247,18 @@ static void run_sum(struct graph_task *task)
                 task->n);
 }
 
+static void run_view(struct graph_task *task)
+{
+    struct graph_node *node = task->node;
+    const duite_param *param = node->param; /* the object, the view */
+    bool tainted = atomic_load_explicit(&node->plan->tainted, memory_order_relaxed);
+    const struct data_failure *failure = tainted ? find_poison(node->plan, task) : NULL;
+    if (tainted)
+        set_poison(node->plan, task, failure);
+    if (!failure)
+        data_view_gather(node->view, data_type_size(param->type), param[0].data, param[1].data);
+}
+
 bool graph_flag_holds(duite_type type, const void *values)
 {
     static const char zero[8];
@@ -280,6 +293,8 @@ bool graph_node_run(struct graph *graph, void *worker, struct graph_task *task,
         run_set(task);
     else if (task->kind == GRAPH_NODE_SUM)
         run_sum(task);
+    else if (task->kind == GRAPH_NODE_VIEW)
+        run_view(task);
     else
         run_flag(graph, task);
     return false;

@@ -14,7 +14,10 @@ struct graph_node_use {
 /* The part of a node that is not a task's; it lies in the cache line behind the task. */
 struct graph_node {
     struct graph_plan *plan;
-    void *args;               /* or what a set writes; NULL: zeros */
+    union {
+        void *args;             /* or what a set writes; NULL: zeros */
+        struct data_view *view; /* NODE_VIEW: held */
+    };
     duite_param *param;       /* task->n */
     struct graph_task **next; /* n_next tasks that wait for it, those of the next round first */
     uint32_t n_next, n_cyclic;
@@ -40,6 +43,7 @@ struct graph_place {
 struct graph_plan {
     _Atomic uint32_t refs; /* the record, and each replay on its way */
     struct graph *graph;
+    size_t n_filled; /* nodes that were made so far */
     size_t n_nodes, n_calls, n_uses, n_roots, n_sinks, n_places;
     size_t n_objects;         /* places that are objects */
     unsigned char *nodes;     /* the tasks: GRAPH_NODE_BYTES each */

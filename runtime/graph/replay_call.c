@@ -6,6 +6,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/data/view.h"
 
 /* Do open contributions go on in the first round? */
 static bool goes_on(const struct graph_record *record)
@@ -17,12 +18,27 @@ static bool goes_on(const struct graph_record *record)
     return false;
 }
 
+/* A plan knows the views that were recorded: nothing is bound in their place, or in that of their
+ * objects, and no other object by a view. */
+static bool views_changed(const struct graph_record *record, const duite_object *flag)
+{
+    const struct data_object *objects = record->graph->table.object;
+    bool changed = flag && objects[flag->slot].view;
+    for (size_t i = 0; i < record->n_objects && !changed; i++) {
+        duite_object bound = record->object[i].bound, recorded = record->object[i].recorded;
+        if (bound.slot != recorded.slot || bound.generation != recorded.generation)
+            changed = record->views || objects[bound.slot].view;
+    }
+    return changed;
+}
+
 void graph_replay_split(const struct graph_record *record, const duite_object *flag,
                         uint64_t rounds, uint64_t *before, uint64_t *after)
 {
     bool begins = rounds && goes_on(record);
     bool forked = record->graph->n_ranks > 1 || record->forked ||
-                  (flag && record->graph->table.object[flag->slot].sized);
+                  (flag && record->graph->table.object[flag->slot].sized) ||
+                  views_changed(record, flag);
     /* A flag's own contributions end with the round, since it is read. */
     for (size_t i = 0; flag && i < record->n_objects; i++)
         forked |=
@@ -84,6 +100,17 @@ static int use(struct graph *graph, void *worker, struct graph_task *task, size_
     return graph_overwrite(graph, task, i, object, version, done);
 }
 
+/* Views that the rounds read but do not gather. */
+static int gather_all(struct graph_record *record, void *worker)
+{
+    int code = DUITE_OK;
+    for (size_t i = 0; i < record->n_objects && record->views && !code; i++)
+        if (record->plan->place[i].mode == DUITE_R)
+            code = graph_view_gather(record->graph, worker,
+                                     &record->graph->table.object[record->object[i].bound.slot]);
+    return code;
+}
+
 static int use_all(struct graph_record *record, void *worker, struct graph_task *task,
                    const duite_object *flag)
 {
@@ -118,6 +145,9 @@ int graph_replay_plan(struct graph_record *record, void *worker, const duite_obj
     struct graph_plan *plan = plan_for(record, worker, flag);
     if (!plan)
         return base_no_memory("a recorded graph");
+    int code = gather_all(record, worker);
+    if (code)
+        return code;
     struct graph_task *task =
         graph_task_new(&graph->root, GRAPH_REPLAY, plan->n_objects + 1,
                        sizeof *task->replay + plan->n_objects * sizeof task->replay->block[0]);

@@ -1,12 +1,13 @@
 /* A draft lists the nodes of one round in order: the forks, before each access that ends
- * contributions the node that adds them, and last the node that reads the flag. Two rounds of it
- * are then gone through with the last writer of each place and the readers since: what waits for a
- * node of its own round gives the edges within a round, what waits for one of the round before
- * gives those from round to round. Every edge but one to or from the deciding node joins two uses
- * of one place of which one writes: conflicts are symmetric, so a node that comes after T in a
- * round and releases T of the next one runs after T, and one that comes before T runs, in the next
- * round, after T. A node thus never hears of the next round before it has begun this one. The roots
- * of a round and the deciding node are joined both ways for the same reason. */
+ * contributions the node that adds them, before the first one that reads a view, and the first
+ * after its object was written, the node that gathers it, and last the node that reads the flag.
+ * Two rounds of it are then gone through with the last writer of each place and the readers since:
+ * what waits for a node of its own round gives the edges within a round, what waits for one of the
+ * round before gives those from round to round. Every edge but one to or from the deciding node
+ * joins two uses of one place of which one writes: conflicts are symmetric, so a node that comes
+ * after T in a round and releases T of the next one runs after T, and one that comes before T runs,
+ * in the next round, after T. A node thus never hears of the next round before it has begun this
+ * one. The roots of a round and the deciding node are joined both ways for the same reason. */
 #include "runtime/graph/replay_draft.h"
 #include "runtime/graph/internal.h"
 
@@ -60,6 +61,23 @@ static void close_sum(struct graph_draft *draft, uint32_t object, size_t fork)
     }
 }
 
+/* A view of an object that nobody writes is gathered before the replay. */
+static void gather_view(struct graph_draft *draft, uint32_t view, size_t fork)
+{
+    const struct graph_recorded_object *objects = draft->record->object;
+    if (!graph_recorded_gathers(objects, &objects[view]))
+        return;
+    uint32_t parent = objects[view].parent - 1;
+    close_sum(draft, parent, fork);
+    uint64_t now = draft->place[parent].writes + 1;
+    if (draft->place[view].seen == now)
+        return;
+    draft->place[view].seen = now;
+    struct graph_draft_node *node = add_node(draft, GRAPH_NODE_VIEW, fork);
+    add_use(draft, node, parent, true, false);
+    add_use(draft, node, view, false, true);
+}
+
 static void draft_fork(struct graph_draft *draft, size_t i)
 {
     const struct graph_record *record = draft->record;
@@ -67,13 +85,16 @@ static void draft_fork(struct graph_draft *draft, size_t i)
     bool sets = fork->kernel == GRAPH_SETS;
     const duite_kernel *kernel = sets ? NULL : record->graph->kernels[fork->kernel];
     const uint32_t *object = record->use + fork->first;
-    for (uint32_t k = 0; k < fork->n; k++)
+    for (uint32_t k = 0; k < fork->n; k++) {
         if (graph_recorded_mode(record->graph, fork, k) != DUITE_CW ||
             draft->place[object[k]].law != data_law_of(kernel, k))
             close_sum(draft, object[k], i);
+        gather_view(draft, object[k], i);
+    }
     struct graph_draft_node *node = add_node(draft, sets ? GRAPH_NODE_SET : GRAPH_NODE, i);
     for (uint32_t k = 0; k < fork->n; k++) {
         duite_mode mode = graph_recorded_mode(record->graph, fork, k);
+        draft->place[object[k]].writes += mode != DUITE_R;
         if (mode == DUITE_CW)
             add_use(draft, node, add_leaf(draft, object[k], data_law_of(kernel, k)), false, true);
         else
@@ -177,7 +198,7 @@ void graph_draft_free(struct graph_draft *draft)
 
 bool graph_draft_make(struct graph_draft *draft, size_t n_objects, size_t flag)
 {
-    size_t n = draft->record->n_uses, nodes = draft->record->n_forks + n + 1, uses = 3 * n + 1;
+    size_t n = draft->record->n_uses, nodes = draft->record->n_forks + 2 * n + 1, uses = 5 * n + 1;
     size_t places = n_objects + n;
     draft->n_places = draft->n_objects = n_objects;
     draft->node = base_alloc(nodes * sizeof *draft->node);

@@ -19,7 +19,8 @@ struct graph_draft_place {
     const duite_law *law;         /* object: of what is open; buffer: of the contribution */
     uint32_t first, last, n_open; /* object: buffers of the contributions that are open */
     uint32_t next;                /* buffer: the next of these */
-    size_t writer, reader;        /* node of two rounds; head of a list */
+    uint64_t writes, seen; /* so far in a round; view: its object's at the last gather, plus 1 */
+    size_t writer, reader; /* node of two rounds; head of a list */
 };
 
 struct graph_draft_reader {

@@ -4,6 +4,7 @@
 #include "runtime/graph/replay_draft.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/data/view.h"
 
 #include <string.h>
 
@@ -14,8 +15,10 @@ static void fill_places(struct graph_plan *plan, const struct graph_draft *draft
     for (size_t i = 0; i < record->n_objects; i++) {
         const struct graph_recorded_object *object = &record->object[i];
         bool written = object->written || object->sums;
+        bool gathers = graph_recorded_gathers(record->object, object);
         plan->place[i] = (struct graph_place){.type = object->type,
-                                              .mode = !written            ? DUITE_R
+                                              .mode = gathers             ? DUITE_W
+                                                      : !written          ? DUITE_R
                                                       : object->reads_old ? DUITE_RW
                                                                           : DUITE_W,
                                               .count = object->count};
@@ -84,6 +87,14 @@ static uint32_t owner(const struct graph_plan *plan, const struct graph_draft_no
     return first_read;
 }
 
+/* The one that a node gathers. */
+static struct data_view *hold_view(const struct graph_plan *plan, const struct graph_record *record,
+                                   const struct graph_node *node)
+{
+    uint32_t view = plan->use[node->first_use + 1].place;
+    return data_view_hold(record->graph->table.object[record->object[view].recorded.slot].view);
+}
+
 static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, size_t i)
 {
     const struct graph_record *record = draft->record;
@@ -109,6 +120,9 @@ static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, 
     if (!from->within)
         plan->root[plan->n_roots++] = task;
     plan->n_sinks += node->sink;
+    plan->n_filled++;
+    if (from->kind == GRAPH_NODE_VIEW)
+        node->view = hold_view(plan, record, node);
     if (from->kind != GRAPH_NODE && from->kind != GRAPH_NODE_SET)
         return;
     const struct graph_recorded_fork *fork = &record->fork[from->fork];
@@ -226,6 +240,9 @@ void graph_plan_release(struct graph_plan *plan)
 {
     if (atomic_fetch_sub_explicit(&plan->refs, 1, memory_order_acq_rel) != 1)
         return;
+    for (size_t i = 0; i < plan->n_filled; i++)
+        if (graph_plan_task(plan, i)->kind == GRAPH_NODE_VIEW)
+            data_view_release(graph_plan_task(plan, i)->node->view);
     base_free(plan->nodes);
     base_free(plan->root);
     base_free(plan->next);

@@ -3,6 +3,7 @@
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/pool.h"
+#include "runtime/data/view.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -175,6 +176,17 @@ const struct data_failure *graph_given_up(struct graph *graph)
     return atomic_load_explicit(&graph->given_up, memory_order_relaxed) ? &lost : NULL;
 }
 
+static void run_view(struct graph_task *task)
+{
+    struct data_version *in = task->access[0].in, *out = task->access[1].out;
+    const struct data_failure *failure = data_first(in->failure, inherit(task, &task->access[1]));
+    if (!failure)
+        data_view_gather(task->view, data_type_size((duite_type)in->type), data_payload(in->packet),
+                         data_payload(out->packet));
+    out->failure = failure;
+    data_view_release(task->view);
+}
+
 static void run_copy(struct graph *graph, struct graph_task *task)
 {
     struct graph_copy *copy = task->copy;
@@ -244,6 +256,9 @@ bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const
     case GRAPH_GATHER:
         graph_run_gather(task);
         break;
+    case GRAPH_VIEW:
+        run_view(task);
+        break;
     case GRAPH_COPY:
         run_copy(graph, task);
         break;
@@ -253,6 +268,7 @@ bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const
     case GRAPH_NODE:
     case GRAPH_NODE_SET:
     case GRAPH_NODE_SUM:
+    case GRAPH_NODE_VIEW:
     case GRAPH_NODE_FLAG:
         return graph_node_run(graph, worker, task, call);
     case GRAPH_SEND:

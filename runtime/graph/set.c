@@ -3,6 +3,7 @@
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
+#include "runtime/data/view.h"
 
 #include <string.h>
 
@@ -27,8 +28,12 @@ static struct data_version *version_of(const struct data_object *object, const v
     return version;
 }
 
-int graph_set_check(const struct data_object *object, duite_object name, size_t count)
+int graph_set_check(const struct graph *graph, const struct data_object *object, duite_object name,
+                    size_t count)
 {
+    int code = data_view_refuse(&graph->table, object, "duite_set");
+    if (code)
+        return code;
     if (count == object->most || (object->sized && count < object->most))
         return DUITE_OK;
     return base_error(DUITE_E_SIZE, "duite_set_sized: %zu elements, and object %u.%u has %s%zu",
@@ -45,7 +50,7 @@ int graph_set(struct graph_scope *scope, void *worker, duite_object name, const 
     if (!object)
         return DUITE_E_OBJECT;
     size_t count = wanted ? *wanted : object->most;
-    int code = graph_set_check(object, name, count);
+    int code = graph_set_check(graph, object, name, count);
     if (code)
         return code;
     if (!scope->depth) {

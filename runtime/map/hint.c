@@ -2,8 +2,16 @@
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
+#include "runtime/data/view.h"
 
 #include <stdlib.h>
+
+/* It exists and is no view, whose home is its object's. */
+static int check_object(struct data_table *table, duite_object name, const char *call)
+{
+    const struct data_object *object = data_object_find(table, name);
+    return object ? data_view_refuse(table, object, call) : DUITE_E_OBJECT;
+}
 
 static int check_weight(const char *what, double weight)
 {
@@ -19,9 +27,9 @@ static int check_edges(struct data_table *table, size_t n, const duite_object *n
     if (n && !neighbours)
         return base_error(DUITE_E_ARGUMENT, "duite_hint: no neighbours given");
     for (size_t i = 0; i < n; i++) {
-        if (!data_object_find(table, neighbours[i]))
-            return DUITE_E_OBJECT;
-        int code = check_weight("edge weight", edge_weights ? edge_weights[i] : 1);
+        int code = check_object(table, neighbours[i], "duite_hint");
+        if (!code)
+            code = check_weight("edge weight", edge_weights ? edge_weights[i] : 1);
         if (code)
             return code;
     }
@@ -49,9 +57,9 @@ static int add_edges(struct data_hint *hint, size_t n, const duite_object *neigh
 int map_hint(struct data_table *table, duite_object object, double weight, size_t n,
              const duite_object *neighbours, const double *edge_weights)
 {
-    if (!data_object_find(table, object))
-        return DUITE_E_OBJECT;
-    int code = check_weight("weight", weight);
+    int code = check_object(table, object, "duite_hint");
+    if (!code)
+        code = check_weight("weight", weight);
     if (!code)
         code = check_edges(table, n, neighbours, edge_weights);
     struct data_hint *hint = code ? NULL : data_hint_find(table, object.slot);
@@ -75,8 +83,11 @@ static bool follows(struct data_table *table, uint32_t slot, uint32_t object)
 
 int map_follow(struct data_table *table, duite_object object, duite_object leader)
 {
-    if (!data_object_find(table, object) || !data_object_find(table, leader))
-        return DUITE_E_OBJECT;
+    int code = check_object(table, object, "duite_follow");
+    if (!code)
+        code = check_object(table, leader, "duite_follow");
+    if (code)
+        return code;
     struct data_hint *hint = data_hint_find(table, object.slot);
     if (follows(table, leader.slot, object.slot))
         return base_error(DUITE_E_ARGUMENT, "duite_follow: object %u.%u would follow itself",

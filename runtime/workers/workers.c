@@ -26,11 +26,13 @@ static duite_ready describe(const struct graph *graph, const struct graph_task *
     static const char *const own[] = {[GRAPH_COMBINE] = "duite_sum",
                                       [GRAPH_PIECES] = "duite_sum",
                                       [GRAPH_GATHER] = "duite_sum",
+                                      [GRAPH_VIEW] = "duite_view",
                                       [GRAPH_COPY] = "duite_get",
                                       [GRAPH_VOID] = "duite_fork",
                                       [GRAPH_REPLAY] = "duite_replay",
                                       [GRAPH_NODE_SET] = "duite_set",
                                       [GRAPH_NODE_SUM] = "duite_sum",
+                                      [GRAPH_NODE_VIEW] = "duite_view",
                                       [GRAPH_NODE_FLAG] = "duite_replay_while"};
     bool program = task->kind == GRAPH_BODY || task->kind == GRAPH_NODE;
     const char *name = program ? graph->kernels[task->kernel]->name : own[task->kind];

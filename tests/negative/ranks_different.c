@@ -123,6 +123,7 @@ enum difference {
     ANOTHER_SIZE,
     ANOTHER_MAXIMUM,
     ANOTHER_COUNT,
+    ANOTHER_VIEW,
     ONE_SET_MORE,
     ONE_FREE_MORE,
     ANOTHER_HINT,
@@ -177,6 +178,8 @@ static void differ(duite *rt, enum difference what, duite_object a, duite_object
         duite_new_sized(rt, DUITE_I32, 2, odd ? 5 : 6, &made);
     if (what == ANOTHER_COUNT && !duite_new_sized(rt, DUITE_I32, 2, 6, &made))
         duite_set_sized(rt, made, NULL, odd ? 3 : 4);
+    if (what == ANOTHER_VIEW)
+        duite_view(rt, a, 2, odd ? (size_t[]){0, 1} : (size_t[]){0, 2}, &made);
     if (what == ONE_SET_MORE && odd)
         duite_set(rt, a, NULL);
     if (what == ONE_FREE_MORE && odd)
@@ -216,11 +219,11 @@ static void different_forks(enum difference what, const char *name, int at_stop)
 int main(void)
 {
     static const char *const NAMES[] = {
-        "a fork more",    "another kernel",  "another object",  "another rank",
-        "an object more", "another size",    "another maximum", "another count of values",
-        "a set more",     "a free more",     "another hint",    "another leader",
-        "another build",  "another binding", "a replay more",   "another round",
-        "a graph less"};
+        "a fork more",    "another kernel", "another object",  "another rank",
+        "an object more", "another size",   "another maximum", "another count of values",
+        "another view",   "a set more",     "a free more",     "another hint",
+        "another leader", "another build",  "another binding", "a replay more",
+        "another round",  "a graph less"};
 
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);

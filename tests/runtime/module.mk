@@ -1,7 +1,7 @@
 check_PROGRAMS += tests/runtime/random_programs
 tests_runtime_random_programs_SOURCES = tests/runtime/random_programs.c tests/runtime/random_program.h \
     tests/runtime/random_make.c tests/runtime/random_make.h tests/runtime/random_graphs.c \
-    tests/runtime/random_cells.c tests/runtime/random_cells.h tests/runtime/random_print.c tests/runtime/random_laws.c tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c
+    tests/runtime/random_cells.c tests/runtime/random_cells.h tests/runtime/random_print.c tests/runtime/random_views.c tests/runtime/random_laws.c tests/runtime/random_bodies.c tests/runtime/random_interpret.c tests/runtime/random_run.c
 tests_runtime_random_programs_LDADD = libduite_core.la
 check_PROGRAMS += tests/runtime/ranks_sizes
 tests_runtime_ranks_sizes_SOURCES = tests/runtime/ranks_sizes.c tests/negative/misuse.c tests/negative/misuse.h
@@ -9,6 +9,11 @@ tests_runtime_ranks_sizes_LDADD = libduite_core.la
 check_PROGRAMS += tests/runtime/ranks_homes
 tests_runtime_ranks_homes_SOURCES = tests/runtime/ranks_homes.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_ranks_homes_LDADD = libduite_core.la
+check_PROGRAMS += tests/runtime/ranks_views
+tests_runtime_ranks_views_SOURCES = tests/runtime/ranks_views.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_ranks_views_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/runtime/test_ranks_views.sh
+TESTS += tests/runtime/test_ranks_views.sh
 check_PROGRAMS += tests/runtime/nested_programs
 tests_runtime_nested_programs_SOURCES = tests/runtime/nested_programs.c tests/runtime/nested_program.h \
     tests/runtime/nested_make.c tests/runtime/nested_interpret.c
@@ -33,7 +38,7 @@ tests_runtime_test_rename_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
 RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched tests/runtime/test_check \
-    tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print
+    tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
 tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
@@ -55,6 +60,8 @@ tests_runtime_test_graphs_change_SOURCES = tests/runtime/test_graphs_change.c \
 tests_runtime_test_graphs_refused_SOURCES = tests/runtime/test_graphs_refused.c \
     tests/runtime/graphs_fixture.c tests/runtime/graphs_fixture.h
 tests_runtime_test_graphs_refused_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_views_SOURCES = tests/runtime/test_views.c
+tests_runtime_test_views_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graph_print_SOURCES = tests/runtime/test_graph_print.c
 tests_runtime_test_graph_print_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_change_LDADD = $(DUITE_TEST_LIBS)

@@ -123,14 +123,14 @@ static int fork_task(struct run *run, const struct prog_op *op)
     return code;
 }
 
-/* A kernel of one parameter that is given one object twice. */
-static void wrong_fork(struct run *run, const struct prog_op *op)
+/* A kernel that contributes to one object is given it twice; a view it could not have at all. */
+static void wrong_fork(struct run *run, const struct prog_op *op, int expected)
 {
-    const duite_object object = run->object[op->object];
+    const duite_object objects[] = {run->object[op->object], run->object[op->object]};
     const struct prog_args args = {0};
+    const size_t n = prog_is_view(run->prog, op->object) ? 1 : 2;
 
-    expect(run, "fork", DUITE_FORK(run->rt, &run->prog->kernel[0], &args, object, object),
-           DUITE_E_ACCESS);
+    expect(run, "fork", duite_fork(run->rt, &run->prog->kernel[0], &args, n, objects), expected);
 }
 
 static void hint(struct run *run, const struct prog_op *op)
@@ -177,7 +177,11 @@ static void make(struct run *run, const struct prog_op *op)
 {
     duite_object *object = &run->object[op->object];
 
-    if (op->most)
+    if (op->kind == PROG_VIEW)
+        expect(run, "view",
+               prog_make_view(run->rt, run->prog, op, run->object[op->objects[0]], object),
+               DUITE_OK);
+    else if (op->most)
         expect(run, "new_sized", duite_new_sized(run->rt, op->type, op->count, op->most, object),
                DUITE_OK);
     else
@@ -271,6 +275,7 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
 
     switch (op->kind) {
     case PROG_NEW:
+    case PROG_VIEW:
         make(run, op);
         break;
     case PROG_FREE:
@@ -304,7 +309,7 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
         ask_home(run, op->object);
         break;
     case PROG_WRONG:
-        wrong_fork(run, op);
+        wrong_fork(run, op, answer->code);
         break;
     case PROG_SKIP:
     case PROG_GRAPH_FORK:
@@ -344,6 +349,8 @@ static void check_places(struct run *run, const struct prog_context *context)
         run->at = i;
         if (op->kind == PROG_FOLLOW && run->home[op->object] != run->home[op->objects[0]])
             found(run, "object %u does not live with %u", op->object, op->objects[0]);
+        if (op->kind == PROG_VIEW && run->home[op->object] != run->home[op->objects[0]])
+            found(run, "view %u does not live with %u", op->object, op->objects[0]);
         if (op->kind != PROG_FORK && op->kind != PROG_GRAPH_FORK)
             continue;
         if (op->kind == PROG_GRAPH_FORK && run->prog->n_ranks > 1 && rebound)

@@ -20,7 +20,7 @@ repeat "$programs programs a hundred times" --base 51000000 --programs $programs
 repeat "with window 1" --base 52000000 --programs $programs --window 1
 repeat "with window 1 and no renaming" --base 53000000 --programs $programs --window 1 --rename 0
 repeat "without a window, renaming everything" --base 54000000 --programs $programs --window 0 --rename 1000000000
-for scheduler in steal fifo lifo static shuffle; do
+for scheduler in steal fifo lifo priority static shuffle; do
     repeat "by $scheduler on four threads" --base 55000000 --programs $programs --threads 4 --scheduler $scheduler
 done
 ok "random trees of tasks" limited tests/runtime/nested_programs --seed 56000000 --programs $((100 * programs))

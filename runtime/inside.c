@@ -108,7 +108,7 @@ static bool there(void *context)
     return data_version_ready(context);
 }
 
-/* The value of a pinned version, or how many bytes it has. */
+/* The value of the version, or how many bytes it has. */
 static int read_value(struct duite_call_private *body, struct data_version *version, void *values,
                       size_t *bytes)
 {
@@ -137,11 +137,10 @@ static int get(struct duite_call_private *body, duite_object object, void *value
     if (!code && !values && !count)
         code = base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
     if (!code)
-        code = graph_pin(graph_inside(body), body->worker, object, &version, &size);
+        code = graph_see(graph_inside(body), body->worker, object, &version, &size);
     if (code)
         return code;
     code = read_value(body, version, values, &bytes);
-    graph_release(body->graph, body->worker, version);
     if (!code && count)
         *count = bytes / size;
     return code;

@@ -64,7 +64,7 @@ struct sketch {
     uint32_t kernel;                 /* index in the list given at start */
     uint32_t owner;                  /* the parameter it runs for; NOBODY: it only accumulates */
     bool views;                      /* some are views */
-    struct data_object *object[FEW]; /* the first ones, of the main program: these stay in place */
+    struct data_object *object[FEW]; /* the first ones */
 };
 
 #define NOBODY UINT32_MAX
@@ -74,9 +74,7 @@ static struct data_object *object_of(struct graph_scope *scope, const struct ske
                                      size_t i, duite_object name)
 {
     duite_mode right;
-    if (scope->depth)
-        return graph_object(scope, name, &right);
-    return i < FEW ? sketch->object[i] : &scope->graph->table.object[name.slot];
+    return i < FEW ? sketch->object[i] : graph_object(scope, name, &right);
 }
 
 /* It exists, is named once, may be used so, and can be accumulated into where it is. */
@@ -84,11 +82,6 @@ static int check_object(struct graph_scope *scope, const duite_kernel *kernel, s
                         duite_mode mode, duite_object name, struct sketch *sketch)
 {
     duite_mode right = DUITE_RWP;
-    if (scope->depth) {
-        int code = graph_check_right(scope, kernel->name, i, name, mode);
-        if (code)
-            return code;
-    }
     struct data_object *object = scope->depth ? graph_object(scope, name, &right)
                                               : data_object_find(&scope->graph->table, name);
     if (!object)
@@ -212,6 +205,16 @@ void graph_void(struct graph *graph, void *worker, struct graph_task *task, size
     graph_settled(graph, worker, task, done + missing);
 }
 
+/* A body's rights. What it reads may come into its scope, whose objects move then. */
+static int check_rights(struct graph_scope *scope, const duite_kernel *kernel, size_t n,
+                        const duite_object *objects)
+{
+    int code = DUITE_OK;
+    for (size_t i = 0; i < n && !code; i++)
+        code = graph_check_right(scope, kernel->name, i, objects[i], data_mode_of(kernel, i));
+    return code;
+}
+
 /* The objects, and the owner rule. */
 static int check_objects(struct graph_scope *scope, const duite_kernel *kernel, size_t n,
                          const duite_object *objects, struct sketch *sketch)
@@ -242,6 +245,8 @@ static int check(struct graph_scope *scope, int at, const duite_kernel *kernel, 
     int code = find_kernel(scope->graph, kernel, &sketch->kernel);
     if (!code)
         code = check_call(scope->graph, at, sketch->kernel, args, n, objects);
+    if (!code && scope->depth)
+        code = check_rights(scope, kernel, n, objects);
     return code ? code : check_objects(scope, kernel, n, objects, sketch);
 }
 
@@ -394,7 +399,7 @@ int graph_copy(struct graph *graph, void *worker, duite_object name, int to,
     return DUITE_OK;
 }
 
-int graph_pin(struct graph_scope *scope, void *worker, duite_object name,
+int graph_see(struct graph_scope *scope, void *worker, duite_object name,
               struct data_version **version, size_t *size)
 {
     duite_mode right;
@@ -405,7 +410,5 @@ int graph_pin(struct graph_scope *scope, void *worker, duite_object name,
     int code = object->leaves ? graph_close(scope, worker, object) : DUITE_OK;
     if (!code && !(*version = graph_local(scope->graph, object)))
         code = DUITE_E_MEMORY;
-    if (!code)
-        data_version_hold(*version);
     return code;
 }

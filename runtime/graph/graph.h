@@ -211,9 +211,9 @@ int graph_free(struct graph_scope *scope, void *worker, duite_object object);
  * waits for copy->done on the ranks it goes to. Main thread only. */
 int graph_copy(struct graph *graph, void *worker, duite_object object, int to,
                struct graph_copy *copy);
-/* The version of the object that the forks so far leave, which is or will be here, held for the
- * caller until graph_release; and the size of an element in bytes. Body only. */
-int graph_pin(struct graph_scope *scope, void *worker, duite_object object,
+/* The version of the object that the forks so far leave, which is or will be here and stays the
+ * object's until the body's next call; and the size of an element in bytes. Body only. */
+int graph_see(struct graph_scope *scope, void *worker, duite_object object,
               struct data_version **version, size_t *size);
 /* Releases a hold and wakes the heir. */
 void graph_release(struct graph *graph, void *worker, struct data_version *version);

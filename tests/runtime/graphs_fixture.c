@@ -3,9 +3,9 @@
 
 static int digit(const duite_call *call)
 {
-    int64_t *x = duite_out(call, 0, int64_t);
+    uint64_t *x = duite_out(call, 0, uint64_t); /* wraps around */
 
-    x[0] = 10 * x[0] + *(const int32_t *)call->args;
+    x[0] = 10 * x[0] + (uint64_t) * (const int32_t *)call->args;
     return 0;
 }
 

@@ -313,7 +313,8 @@ int duite_get_count(duite *rt, duite_object object, size_t *count);
 /* Copies the object, as the tasks forked so far leave it, into `values` (count elements) on every
  * rank. Returns when the bytes are there; other tasks go on. Of a poisoned object: the code of the
  * failure that is first in fork order among those it descends from, and `values` stays as it was.
- * Collective. */
+ * If it waits long because the ranks did not make the same calls: DUITE_E_DIFFERENT, as of
+ * duite_wait. Collective. */
 int duite_get(duite *rt, duite_object object, void *values);
 
 /* The same on one rank only; the others ignore `values` and return DUITE_OK at once, even if the

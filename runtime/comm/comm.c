@@ -24,7 +24,8 @@ static int prepare(struct comm *comm)
     if (MPI_Comm_rank(comm->mpi, &comm->rank) || MPI_Comm_size(comm->mpi, &comm->n_ranks))
         return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
     comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
-    if (!comm_farewells_start(&comm->farewells, comm->n_ranks) || !comm->words)
+    if (!comm_farewells_start(&comm->farewells, comm->n_ranks) ||
+        !comm_calls_start(&comm->calls, comm->n_ranks) || !comm->words)
         return base_no_memory("communication");
     if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
         MPI_Type_commit(&comm->line))
@@ -65,12 +66,17 @@ bool comm_stop(struct comm *comm)
     }
     if (lost) /* MPI may still read and write here: all of it stays */
         return false;
+    while (!comm_is_broken(comm) && !comm_questions_over(comm)) {
+        comm_poll(comm, NULL);
+        sched_yield();
+    }
     comm_catch_up(comm);
     if (comm->line != MPI_DATATYPE_NULL)
         MPI_Type_free(&comm->line);
     comm_requests_free(&comm->sends);
     comm_requests_free(&comm->receives);
     comm_farewells_stop(&comm->farewells);
+    comm_calls_stop(&comm->calls);
     comm_arrivals_stop(&comm->arrivals);
     base_free(comm->words);
     base_free(comm);
@@ -191,8 +197,8 @@ static void receive(struct comm *comm, struct found *found)
     for (int i = 0; i < done; i++) {
         struct data_packet *packet = comm->receives.what[comm->receives.n + i];
         data_packet_came(packet);
-        if (packet->kind == DATA_FAREWELL) {
-            comm_farewell_hear(comm, packet);
+        if (packet->kind == DATA_FAREWELL || packet->kind == DATA_QUESTION) {
+            (packet->kind == DATA_FAREWELL ? comm_farewell_hear : comm_question_hear)(comm, packet);
             data_packet_free(packet);
         } else {
             packet->next = found->packets;
@@ -282,6 +288,7 @@ bool comm_poll(struct comm *comm, void *worker)
             return any;
         start_sends(comm, &found);
         receive(comm, &found);
+        comm_question_ask(comm);
         comm_farewell_say(comm);
         comm_unlock(comm);
         any = any || found.any || found.packets || found.sent;

@@ -40,20 +40,38 @@ int comm_expect(struct comm *comm, void *worker, struct data_key key, struct dat
  * thread. */
 bool comm_poll(struct comm *comm, void *worker);
 
+/* ---- Calls that block, made by all ranks alike ---- */
+
+/* This rank enters one, and has forked what the fingerprint says. True if so many were logged that
+ * all ranks must agree now. Main thread. */
+bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint);
+
+/* It waits in it for data, or not any more. Differences are found while it waits: then
+ * communication breaks. Main thread. */
+void comm_waits(struct comm *comm, bool waits);
+
+enum { COMM_MOST_SUMS = 16 };
+
 /* What the ranks tell one another when they wait for all: each its own, `all` one a rank. */
 struct comm_word {
-    uint64_t forks, fingerprint,
-        failed; /* failed: number + 1 of this rank's first failed task in fork order, or 0 */
-    struct data_failure failure;
+    uint64_t forks, fingerprint; /* to be the same on all */
+    uint64_t questions;          /* the comm's own */
+    uint64_t failed; /* number + 1 of this rank's first failed task in fork order, or 0 */
+    union {
+        struct data_failure failure;
+        double sums[COMM_MOST_SUMS];
+    };
 };
 
 /* Exchanges words; *all, one a rank, is the comm's and good until the next call. Calls
- * between(context) while it waits, so that others get on. Collective, main thread. */
+ * between(context) while it waits, so that others get on. DUITE_E_DIFFERENT if the fingerprints
+ * differ: then communication is broken. Collective, main thread. */
 int comm_agree(struct comm *comm, const struct comm_word *own, struct comm_word **all,
                void (*between)(void *context), void *context);
 
-/* Sums n <= 16 doubles over all ranks, in place. As comm_agree. */
-int comm_sum(struct comm *comm, double *values, int n, void (*between)(void *context),
+/* Sums the first n <= COMM_MOST_SUMS `sums` of the words over all ranks, in place. As comm_agree.
+ */
+int comm_sum(struct comm *comm, struct comm_word *word, int n, void (*between)(void *context),
              void *context);
 
 /* ---- When it breaks ----

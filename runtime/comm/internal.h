@@ -4,12 +4,10 @@
 #include "runtime/comm/arrivals.h"
 #include "runtime/comm/comm.h"
 #include "runtime/comm/farewell.h"
+#include "runtime/comm/question.h"
 #include "runtime/comm/requests.h"
 
 /* Shared by the files of this folder only. */
-
-enum { COMM_MOST_SUMS = 16 };
-_Static_assert(COMM_MOST_SUMS * sizeof(double) <= sizeof(struct comm_word), "sums travel as words");
 
 struct comm {
     MPI_Comm mpi;
@@ -24,6 +22,7 @@ struct comm {
     atomic_flag breaking;        /* taken by the one who breaks */
     struct comm_farewell reason; /* of `broken`, written before it is set */
     struct comm_farewells farewells;
+    struct comm_calls calls;
     uint64_t entered;        /* collective calls */
     MPI_Request request;     /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words; /* one a rank, and this rank's own */

@@ -133,8 +133,8 @@ static void between(void *context)
 
 static void collective(void)
 {
-    double value = 1;
-    comm_sum(its.comm, &value, 1, between, NULL);
+    struct comm_word word = {.sums = {1}};
+    comm_sum(its.comm, &word, 1, between, NULL);
 }
 
 static void post_beside(void)

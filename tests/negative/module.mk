@@ -1,10 +1,12 @@
 MISUSE = tests/negative/misuse.c tests/negative/misuse.h
 check_PROGRAMS += tests/negative/ranks_failures tests/negative/ranks_different tests/negative/ranks_groups \
-                  tests/negative/ranks_memory tests/negative/ranks_memory_graphs tests/negative/ranks_system
+                  tests/negative/ranks_memory tests/negative/ranks_memory_graphs tests/negative/ranks_system tests/negative/ranks_blocking
 tests_negative_ranks_failures_SOURCES = tests/negative/ranks_failures.c $(MISUSE)
 tests_negative_ranks_failures_LDADD = libduite_core.la
 tests_negative_ranks_different_SOURCES = tests/negative/ranks_different.c $(MISUSE)
 tests_negative_ranks_different_LDADD = libduite_core.la
+tests_negative_ranks_blocking_SOURCES = tests/negative/ranks_blocking.c $(MISUSE)
+tests_negative_ranks_blocking_LDADD = libduite_core.la
 tests_negative_ranks_groups_SOURCES = tests/negative/ranks_groups.c $(MISUSE)
 tests_negative_ranks_groups_LDADD = libduite_core.la
 STARVE = tests/negative/starve.c tests/negative/starve.h

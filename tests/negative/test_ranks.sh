@@ -13,6 +13,7 @@ for n in 2 3; do
     ok "the system refuses on one of $n ranks" ranks $n tests/negative/ranks_system
     ok "failures on $n ranks" ranks $n tests/negative/ranks_failures
     ok "different programs on $n ranks" ranks $n tests/negative/ranks_different
+    ok "different calls on $n ranks" ranks $n tests/negative/ranks_blocking
     ok "groups of $n ranks" ranks $n tests/negative/ranks_groups
 done
 quick || ok "groups of 4 ranks" ranks 4 tests/negative/ranks_groups

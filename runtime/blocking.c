@@ -1,0 +1,215 @@
+/* The calls of the main program that block: gets, waits and sums over all ranks. All ranks make the
+ * same ones; each enters a log of them, so that differences are found even where one rank waits for
+ * data that no other one thinks of sending. */
+#include "runtime/instance.h"
+
+#include "runtime/base/error.h"
+
+/* The remembered error, which is told once. */
+static int recall(duite *rt)
+{
+    int code = rt->remembered;
+    rt->remembered = DUITE_OK;
+    return code ? base_error(code, "%s", rt->sentence) : DUITE_OK;
+}
+
+static bool copy_done(void *context)
+{
+    return atomic_load_explicit(&((struct graph_copy *)context)->done, memory_order_acquire);
+}
+
+static void between(void *context)
+{
+    work_once(context);
+}
+
+/* What this rank tells the others: what it forked, and what failed. */
+static struct comm_word own_word(const struct graph *graph)
+{
+    struct comm_word own = {.forks = graph->root.forks, .fingerprint = graph->fingerprint};
+    const struct data_failure *first = graph->root.failure;
+    if (first) {
+        own.failed = first->number + 1;
+        own.failure = *first;
+    }
+    return own;
+}
+
+static int agree(duite *rt, struct comm_word **words)
+{
+    const struct comm_word own = own_word(&rt->graph);
+    int code = comm_agree(rt->comm, &own, words, between, rt->pool);
+    work_idle_ends(rt->pool);
+    if (code)
+        instance_give_up(rt);
+    return code;
+}
+
+/* This rank makes a call that blocks, as all do. */
+static int enter_blocking(duite *rt, const char *call)
+{
+    struct comm_word *words;
+    if (!rt->comm)
+        return DUITE_OK;
+    for (const char *c = call; *c; c++)
+        graph_mix(&rt->graph, (unsigned char)*c);
+    return comm_call(rt->comm, call, rt->graph.fingerprint) ? agree(rt, &words) : DUITE_OK;
+}
+
+/* Works until the copy is there. */
+static void await(duite *rt, struct graph_copy *copy)
+{
+    if (rt->comm)
+        comm_waits(rt->comm, true);
+    work_until(rt->pool, copy_done, copy);
+    if (rt->comm)
+        comm_waits(rt->comm, false);
+    if (!copy_done(copy))
+        instance_give_up(rt); /* the task that would have copied is over, then */
+}
+
+/* Copies to the values, or tells the count, whichever is wanted here. */
+int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
+                const char *call)
+{
+    bool here = rank == GRAPH_ANYWHERE || rank == rt->graph.rank;
+    struct graph_copy copy = {.values = values};
+    int code = program_settle(rt);
+    if (!code)
+        code = graph_copy(&rt->graph, work_main(rt->pool), object, rank, &copy);
+    work_tick(rt->pool);
+    if (code == DUITE_E_MEMORY)
+        return program_remember(rt, code);
+    if (!code)
+        code = enter_blocking(rt, call);
+    if (code || !here)
+        return code;
+    await(rt, &copy);
+    if (rt->comm && comm_broken(rt->comm))
+        return comm_broken(rt->comm);
+    if (!values && !count) /* found out only now: the other ranks count on this one */
+        return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
+    if (copy.failure)
+        return graph_failure_error(&rt->graph, copy.failure);
+    if (count)
+        *count = copy.bytes / data_type_size(data_object_find(&rt->graph.table, object)->type);
+    return DUITE_OK;
+}
+
+/* The get does its work, whatever was remembered. */
+static int get_and_recall(duite *rt, duite_object object, int rank, void *values, size_t *count,
+                          const char *call)
+{
+    int code = program_enter(rt, call);
+    if (code)
+        return code;
+    code = program_get(rt, object, rank, values, count, call);
+    int before = recall(rt);
+    return before ? before : code;
+}
+
+int duite_get(duite *rt, duite_object object, void *values)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_get(body, object, values, NULL, "duite_get");
+    return get_and_recall(rt, object, GRAPH_ANYWHERE, values, NULL, "duite_get");
+}
+
+int duite_get_count(duite *rt, duite_object object, size_t *count)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_get(body, object, NULL, count, "duite_get_count");
+    return get_and_recall(rt, object, GRAPH_ANYWHERE, NULL, count, "duite_get_count");
+}
+
+int duite_get_at(duite *rt, duite_object object, int rank, void *values)
+{
+    if (rank < 0)
+        return base_error(DUITE_E_ARGUMENT, "duite_get_at: there is no rank %d", rank);
+    return get_and_recall(rt, object, rank, values, NULL, "duite_get_at");
+}
+
+static bool drained(void *context)
+{
+    return !work_unfinished(context);
+}
+
+/* The failure that is first in fork order among those of n ranks, or NULL. */
+static const struct data_failure *first_failure(const struct comm_word *words, int n)
+{
+    const struct comm_word *first = NULL;
+    for (int i = 0; i < n; i++)
+        if (words[i].failed && (!first || words[i].failed < first->failed))
+            first = &words[i];
+    return first ? &first->failure : NULL;
+}
+
+int duite_wait(duite *rt)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_wait(body);
+    int code = program_enter(rt, "duite_wait");
+    if (code)
+        return code;
+    struct graph *graph = &rt->graph;
+    struct comm_word own, *words = &own;
+    work_tick(rt->pool);
+    /* Before anything is waited for: did all ranks fork the same? */
+    code = enter_blocking(rt, "duite_wait");
+    if (rt->comm && !code)
+        code = agree(rt, &words);
+    if (code)
+        return code;
+    work_until(rt->pool, drained, rt->pool);
+    own = own_word(graph);
+    if (rt->comm && (code = agree(rt, &words)))
+        return code;
+    work_idle_ends(rt->pool);
+    code = recall(rt);
+    const struct data_failure *failure = first_failure(words, graph->n_ranks);
+    if (code || !failure)
+        return code;
+    graph_first_failure(&graph->root); /* told */
+    return graph_failure_error(graph, failure);
+}
+
+/* ---- Counters ---- */
+
+int duite_count_all(duite *rt, duite_counters *counters)
+{
+    int code = program_enter(rt, "duite_count_all");
+    if (code || !counters)
+        return code ? code
+                    : base_error(DUITE_E_ARGUMENT, "duite_count_all: nowhere to put the counters");
+    duite_counters own = {0};
+    work_count(rt->pool, &own);
+    if (rt->comm)
+        comm_count(rt->comm, &own.messages, &own.bytes);
+    struct comm_word word = {
+        .sums = {(double)own.tasks, (double)own.placed, (double)own.stolen, (double)own.chained,
+                 (double)own.messages, (double)own.bytes, own.busy, own.idle,
+                 (double)atomic_load_explicit(&rt->graph.renamed, memory_order_relaxed)}};
+    const double *sums = word.sums;
+    code = enter_blocking(rt, "duite_count_all");
+    word.forks = rt->graph.root.forks;
+    word.fingerprint = rt->graph.fingerprint;
+    if (rt->comm && !code)
+        code = comm_sum(rt->comm, &word, 9, between, rt->pool);
+    work_idle_ends(rt->pool);
+    if (code)
+        instance_give_up(rt);
+    *counters = (duite_counters){.tasks = (uint64_t)sums[0],
+                                 .placed = (uint64_t)sums[1],
+                                 .stolen = (uint64_t)sums[2],
+                                 .chained = (uint64_t)sums[3],
+                                 .messages = (uint64_t)sums[4],
+                                 .bytes = (uint64_t)sums[5],
+                                 .busy = sums[6],
+                                 .idle = sums[7],
+                                 .renamed = (uint64_t)sums[8],
+                                 .graphs_recorded = rt->graphs_recorded};
+    return code;
+}

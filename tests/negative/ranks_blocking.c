@@ -78,6 +78,8 @@ static void differ(enum call call, enum call of_last, const char *name)
     duite_fork_at(rt, ranks - 1, &SET, &(int32_t){3}, 1, &object);
     if (call == of_last && rank == 0)
         duite_fork_at(rt, 0, &SET, &(int32_t){4}, 1, &object);
+    if (call == GET && mine == WAIT)
+        usleep(500000); /* what the others asked meanwhile is kept */
     for (int i = 0; i < 3 && !code && rt; i++)
         code = make(mine, &rt, object);
     if (!code && rt) /* a rank that always had what it asked for learns of it now */

@@ -35,10 +35,12 @@ static struct comm_word own_word(const struct graph *graph)
     return own;
 }
 
-static int agree(duite *rt, struct comm_word **words)
+static int agree(duite *rt, const struct work_why *why, struct comm_word **words)
 {
     const struct comm_word own = own_word(&rt->graph);
+    work_waits(rt->pool, why);
     int code = comm_agree(rt->comm, &own, words, between, rt->pool);
+    work_waits(rt->pool, NULL);
     work_idle_ends(rt->pool);
     if (code)
         instance_give_up(rt);
@@ -53,15 +55,16 @@ static int enter_blocking(duite *rt, const char *call)
         return DUITE_OK;
     for (const char *c = call; *c; c++)
         graph_mix(&rt->graph, (unsigned char)*c);
-    return comm_call(rt->comm, call, rt->graph.fingerprint) ? agree(rt, &words) : DUITE_OK;
+    const struct work_why why = {call, "the other ranks to come to it", NULL};
+    return comm_call(rt->comm, call, rt->graph.fingerprint) ? agree(rt, &why, &words) : DUITE_OK;
 }
 
 /* Works until the copy is there. */
-static void await(duite *rt, struct graph_copy *copy)
+static void await(duite *rt, const struct work_why *why, struct graph_copy *copy)
 {
     if (rt->comm)
         comm_waits(rt->comm, true);
-    work_until(rt->pool, copy_done, copy);
+    work_until(rt->pool, why, copy_done, copy);
     if (rt->comm)
         comm_waits(rt->comm, false);
     if (!copy_done(copy))
@@ -84,7 +87,8 @@ int program_get(duite *rt, duite_object object, int rank, void *values, size_t *
         code = enter_blocking(rt, call);
     if (code || !here)
         return code;
-    await(rt, &copy);
+    const struct data_key key = graph_version_of(&rt->graph, object);
+    await(rt, &(struct work_why){call, NULL, &key}, &copy);
     if (rt->comm && comm_broken(rt->comm))
         return comm_broken(rt->comm);
     if (!values && !count) /* found out only now: the other ranks count on this one */
@@ -146,12 +150,12 @@ static const struct data_failure *first_failure(const struct comm_word *words, i
     return first ? &first->failure : NULL;
 }
 
-int duite_wait(duite *rt)
+int program_wait(duite *rt, const char *call)
 {
     struct duite_call_private *body = inside_body(rt);
     if (body)
         return inside_wait(body);
-    int code = program_enter(rt, "duite_wait");
+    int code = program_enter(rt, call);
     if (code)
         return code;
     struct graph *graph = &rt->graph;
@@ -160,12 +164,14 @@ int duite_wait(duite *rt)
     /* Before anything is waited for: did all ranks fork the same? */
     code = enter_blocking(rt, "duite_wait");
     if (rt->comm && !code)
-        code = agree(rt, &words);
+        code = agree(rt, &(struct work_why){call, "the other ranks to come to it", NULL}, &words);
     if (code)
         return code;
-    work_until(rt->pool, drained, rt->pool);
+    work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, drained,
+               rt->pool);
     own = own_word(graph);
-    if (rt->comm && (code = agree(rt, &words)))
+    if (rt->comm &&
+        (code = agree(rt, &(struct work_why){call, "the tasks of other ranks", NULL}, &words)))
         return code;
     work_idle_ends(rt->pool);
     code = recall(rt);
@@ -174,6 +180,11 @@ int duite_wait(duite *rt)
         return code;
     graph_first_failure(&graph->root); /* told */
     return graph_failure_error(graph, failure);
+}
+
+int duite_wait(duite *rt)
+{
+    return program_wait(rt, "duite_wait");
 }
 
 /* ---- Counters ---- */
@@ -196,8 +207,10 @@ int duite_count_all(duite *rt, duite_counters *counters)
     code = enter_blocking(rt, "duite_count_all");
     word.forks = rt->graph.root.forks;
     word.fingerprint = rt->graph.fingerprint;
+    work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
     if (rt->comm && !code)
         code = comm_sum(rt->comm, &word, 9, between, rt->pool);
+    work_waits(rt->pool, NULL);
     work_idle_ends(rt->pool);
     if (code)
         instance_give_up(rt);

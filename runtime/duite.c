@@ -16,6 +16,16 @@
 #include <string.h>
 #include <xxhash.h>
 
+/* A number of the environment, or -1 if it is none. */
+static double seconds_of(const char *text, double otherwise)
+{
+    char *end;
+    if (!text)
+        return otherwise;
+    double seconds = strtod(text, &end);
+    return end == text || *end ? -1 : seconds;
+}
+
 duite_options duite_options_default(void)
 {
     const char *check = getenv("DUITE_CHECK");
@@ -26,6 +36,7 @@ duite_options duite_options_default(void)
                            .scheduler = &sched_steal,
                            .mapping = &map_metis,
                            .seed = 1,
+                           .stuck_seconds = seconds_of(getenv("DUITE_STUCK_SECONDS"), 60),
                            .spin_seconds = 100e-6,
                            .bind = 1};
 }
@@ -96,6 +107,10 @@ static int check_rest(const duite_options *options)
                           "duite_start: DUITE_CHECK has no such mode; there is \"accesses\"");
     if (!(options->spin_seconds >= 0))
         return base_error(DUITE_E_ARGUMENT, "duite_start: spin_seconds is not >= 0");
+    if (!(options->stuck_seconds >= 0 && options->stuck_seconds <= 1e9))
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: stuck_seconds (or DUITE_STUCK_SECONDS) is not a number "
+                          "from 0 to 1e9");
     return DUITE_OK;
 }
 
@@ -227,6 +242,7 @@ static int start_workers(duite *rt, const duite_options *options, int code)
                                  .rt = rt,
                                  .threads = threads,
                                  .seed = options->seed,
+                                 .stuck_seconds = options->stuck_seconds,
                                  .spin_seconds = rt->oversubscribed ? 0 : options->spin_seconds,
                                  .cores = bind ? cores.unit + host.before : NULL});
     work_cores_free(&cores);
@@ -335,7 +351,7 @@ int duite_stop(duite **out)
         return base_error(DUITE_E_STATE, "duite_stop is for the main thread, outside of bodies");
     if (rt->building)
         return program_enter(rt, "duite_stop");
-    int code = duite_wait(rt);
+    int code = program_wait(rt, "duite_stop");
     if (!code)
         code = not_freed(rt);
     end(rt);

@@ -213,8 +213,11 @@ typedef struct duite_options {
     size_t window;       /* most tasks of this rank that are unfinished when a fork returns, see
                             duite_fork. Default 0: any number */
     size_t rename_bytes; /* how many bytes of this rank renaming may take, see below. Default 0 */
-    int check; /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
-                  environment */
+    double
+        stuck_seconds; /* when nothing moves for so long, who waits for what is told, see below; 0:
+                          never. Default 60, or what DUITE_STUCK_SECONDS in the environment says */
+    int check;         /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
+                          environment */
 } duite_options;
 
 /* The defaults, as the fields say; reads the environment. Local. */
@@ -245,6 +248,12 @@ const char *const *duite_mapping_names(void);
  * not watched, and a body that faults is left by a jump: what it held stays held. The signals
  * SIGSEGV and SIGBUS are the runtime's meanwhile; faults that are none of these go on to the
  * handler there was. */
+
+/* A standstill: the main program waits (in a get, a wait, a stop, or a fork, for the window) and
+ * for options.stuck_seconds no task of this rank began or ended and no message came. Then this rank
+ * writes to standard error, in at most 20 lines, what the main program waits for, which bodies run,
+ * which tasks wait for them, which for objects from which rank. A long body looks the same; nothing
+ * is changed or ended. A further one is told once it lasts twice as long. */
 
 /* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. On several
  * ranks its workers call MPI at any time until duite_stop: a program that calls MPI meanwhile needs

@@ -48,6 +48,8 @@ int program_remember(duite *rt, int code);
 int program_settle(duite *rt);
 /* Works while more tasks than the window allows are unfinished. Called after forks. */
 void program_throttle(duite *rt);
+/* duite_wait, under the name of who calls it. */
+int program_wait(duite *rt, const char *call);
 /* Copies to the values, or tells the count, whichever is wanted here. */
 int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
                 const char *call);

@@ -307,7 +307,8 @@ int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
         return DUITE_E_OBJECT;
     if (!rounds)
         return base_error(DUITE_E_ARGUMENT, "duite_graph_rounds: nowhere to put the number");
-    work_until(rt->pool, is_over, found->record);
+    work_until(rt->pool, &(struct work_why){"duite_graph_rounds", "the last replay", NULL}, is_over,
+               found->record);
     *rounds = graph_replay_rounds(found->record);
     return DUITE_OK;
 }

@@ -121,6 +121,18 @@ enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_pa
     return take;
 }
 
+void comm_arrivals_look(struct comm_arrivals *arrivals,
+                        void (*awaited)(void *context, const struct data_key *key,
+                                        const struct comm_target *target, uint32_t packets),
+                        void *context)
+{
+    pthread_mutex_lock(&arrivals->lock);
+    for (const struct comm_arrival *arrival = arrivals->table; arrival; arrival = arrival->hh.next)
+        if (arrival->wanted)
+            awaited(context, &arrival->key, &arrival->target, arrival->wanted);
+    pthread_mutex_unlock(&arrivals->lock);
+}
+
 bool comm_arrivals_close(struct comm_arrivals *arrivals, struct comm_target *target)
 {
     struct comm_arrival *arrival, *next;

@@ -14,10 +14,11 @@ struct comm_arrivals {
         *table; /* uthash by key: expected and not all there, or there and not expected yet */
 };
 
-/* To whom a packet goes: one of the two is set. */
+/* To whom a packet goes: one of the two is set; and the rank it comes from, or -1: several. */
 struct comm_target {
     struct data_version *version;
     struct data_sum *sum;
+    int from;
 };
 
 void comm_arrivals_start(struct comm_arrivals *arrivals);
@@ -37,6 +38,13 @@ enum comm_take {
 /* A packet came. */
 enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_packet *packet,
                                   struct comm_target *target);
+
+/* Calls back with all that is awaited, and how many packets of it. Meanwhile nobody is given a
+ * packet that is awaited here. */
+void comm_arrivals_look(struct comm_arrivals *arrivals,
+                        void (*awaited)(void *context, const struct data_key *key,
+                                        const struct comm_target *target, uint32_t packets),
+                        void *context);
 
 /* From the first call on nothing is expected any more, and what comes is lost. Returns one by one
  * the targets that wait, each once for every packet that it wants; false: there are no more. */

@@ -201,6 +201,7 @@ static void receive(struct comm *comm, struct found *found)
             (packet->kind == DATA_FAREWELL ? comm_farewell_hear : comm_question_hear)(comm, packet);
             data_packet_free(packet);
         } else {
+            atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
             packet->next = found->packets;
             found->packets = packet;
         }
@@ -241,10 +242,9 @@ static void deliver(struct comm *comm, void *worker, struct found *found)
     }
 }
 
-int comm_expect(struct comm *comm, void *worker, struct data_key key, struct data_version *version,
-                struct data_sum *sum, uint32_t packets)
+int comm_expect(struct comm *comm, void *worker, struct data_key key, struct comm_target target,
+                uint32_t packets)
 {
-    struct comm_target target = {.version = version, .sum = sum};
     struct data_packet *early;
     if (!comm_arrivals_expect(&comm->arrivals, key, target, packets, &early))
         return base_no_memory("messages to come");
@@ -301,4 +301,22 @@ void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
 {
     *messages = atomic_load_explicit(&comm->messages, memory_order_relaxed);
     *bytes = atomic_load_explicit(&comm->bytes, memory_order_relaxed);
+}
+
+/* ---- Looks from outside ---- */
+
+uint64_t comm_movement(struct comm *comm)
+{
+    return atomic_load_explicit(&comm->messages, memory_order_relaxed) +
+           atomic_load_explicit(&comm->came, memory_order_relaxed);
+}
+
+void comm_look(struct comm *comm, const struct comm_looker *looker)
+{
+    comm_arrivals_look(&comm->arrivals, looker->awaited, looker->context);
+    if (!comm_try_lock(comm))
+        return;
+    for (int i = 0; i < comm->sends.n; i++)
+        looker->sending(looker->context, ((struct graph_task *)comm->sends.what[i])->send);
+    comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
 }

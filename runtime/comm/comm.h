@@ -1,6 +1,7 @@
 #ifndef DUITE_COMM_COMM_H
 #define DUITE_COMM_COMM_H
 
+#include "runtime/comm/arrivals.h"
 #include "runtime/graph/graph.h"
 
 #include <mpi.h>
@@ -33,12 +34,26 @@ bool comm_posted(struct comm *comm);
 
 /* The packets of that key belong to a version, or to a sum; those that came already are delivered.
  * Main thread. */
-int comm_expect(struct comm *comm, void *worker, struct data_key key, struct data_version *version,
-                struct data_sum *sum, uint32_t packets);
+int comm_expect(struct comm *comm, void *worker, struct data_key key, struct comm_target target,
+                uint32_t packets);
 
 /* Sends, receives, delivers and finishes what can be. Returns whether anything happened. Any
  * thread. */
 bool comm_poll(struct comm *comm, void *worker);
+
+/* Calls back with all that is awaited (see comm_arrivals_look) and what is being sent, as far as
+ * MPI can be asked right now. A task that waits for something awaited stays as it is during the
+ * call. Any thread. */
+struct comm_looker {
+    void *context;
+    void (*awaited)(void *context, const struct data_key *key, const struct comm_target *target,
+                    uint32_t packets);
+    void (*sending)(void *context, const struct graph_send *send);
+};
+void comm_look(struct comm *comm, const struct comm_looker *looker);
+
+/* A number that changes with each message that comes or goes. */
+uint64_t comm_movement(struct comm *comm);
 
 /* ---- Calls that block, made by all ranks alike ---- */
 

@@ -23,10 +23,10 @@ struct comm {
     struct comm_farewell reason; /* of `broken`, written before it is set */
     struct comm_farewells farewells;
     struct comm_calls calls;
-    uint64_t entered;        /* collective calls */
-    MPI_Request request;     /* of the last one; MPI_REQUEST_NULL once it is over */
-    struct comm_word *words; /* one a rank, and this rank's own */
-    _Atomic uint64_t messages, bytes;
+    uint64_t entered;                       /* collective calls */
+    MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
+    struct comm_word *words;                /* one a rank, and this rank's own */
+    _Atomic uint64_t messages, bytes, came; /* the last one: received */
 };
 
 /* comm_broke for want of memory. */

@@ -80,6 +80,14 @@ static inline bool data_version_await(struct data_version *version, struct data_
     return true;
 }
 
+/* Those who wait for the value, linked by next, as long as somebody keeps it from being there; NULL
+ * if it is. */
+static inline const struct data_waiter *data_version_waiters(const struct data_version *version)
+{
+    struct data_waiter *first = atomic_load_explicit(&version->waiters, memory_order_acquire);
+    return first == DATA_PRODUCED ? NULL : first;
+}
+
 /* The value is there: returns the list of waiters, linked by next. The producer still holds the
  * version. */
 static inline struct data_waiter *data_version_produced(struct data_version *version)

@@ -162,8 +162,8 @@ static int await_copy(struct graph *graph, void *worker, struct data_object *obj
         return graph_break(graph);
     }
     object->current = version;
-    if (!graph->hooks.expect(graph->hooks.context, worker, graph_key(graph, object), version, NULL,
-                             1))
+    if (!graph->hooks.expect(graph->hooks.context, worker, graph_key(graph, object), object->holder,
+                             version, NULL, 1))
         return DUITE_OK;
     object->current = NULL;
     data_version_free(version);

@@ -185,6 +185,11 @@ struct data_packet *graph_poison_packet(struct data_key key, const struct data_f
     return packet;
 }
 
+struct data_key graph_version_of(const struct graph *graph, duite_object object)
+{
+    return graph_key(graph, &graph->table.object[object.slot]);
+}
+
 int graph_failure_error(const struct graph *graph, const struct data_failure *failure)
 {
     const char *kernel =

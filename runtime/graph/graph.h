@@ -134,10 +134,10 @@ struct graph_hooks {
     int (*body)(void *context, const duite_kernel *kernel, uint64_t number, duite_call *call);
     /* Something the main program may be waiting for happened. */
     void (*notify)(void *context);
-    /* The version or the pieces of that key come from elsewhere: call graph_arrived or
-     * graph_pieces_arrived with each packet. 0, or DUITE_E_MEMORY. */
-    int (*expect)(void *context, void *worker, struct data_key key, struct data_version *version,
-                  struct data_sum *sum, uint32_t packets);
+    /* The version or the pieces of that key come from that rank, or from several (-1): call
+     * graph_arrived or graph_pieces_arrived with each packet. 0, or DUITE_E_MEMORY. */
+    int (*expect)(void *context, void *worker, struct data_key key, int from,
+                  struct data_version *version, struct data_sum *sum, uint32_t packets);
 };
 
 struct graph {
@@ -283,6 +283,18 @@ static inline bool graph_to_send(const struct graph_task *task)
     return task->kind == GRAPH_SEND;
 }
 
+/* The task whose link it is, if it is a task that waits. */
+static inline const struct graph_task *graph_who_waits(const struct data_waiter *waiter)
+{
+    return (const struct graph_task *)(const void *)((const char *)waiter - waiter->back);
+}
+
+/* Whether the task calls a body of the program. */
+static inline bool graph_has_body(const struct graph_task *task)
+{
+    return task->kind == GRAPH_BODY || task->kind == GRAPH_NODE;
+}
+
 /* The task is over: publishes what it wrote, makes its successors ready, frees it. */
 void graph_finish(struct graph *graph, void *worker, struct graph_task *task);
 
@@ -299,6 +311,9 @@ void graph_pieces_lost(struct graph *graph, void *worker, struct data_sum *sum);
 /* The bytes of a ready SEND, under its key: the version itself, or send->packet, which the caller
  * frees once it is sent. NULL without memory. */
 struct data_packet *graph_send_packet(struct graph_task *send);
+
+/* The version that the forks so far leave. Main thread; the object exists. */
+struct data_key graph_version_of(const struct graph *graph, duite_object object);
 
 /* Sets the sentence of a failure; returns its code. */
 int graph_failure_error(const struct graph *graph, const struct data_failure *failure);

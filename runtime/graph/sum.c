@@ -79,7 +79,7 @@ static int expect_pieces(struct graph *graph, void *worker, struct graph_sum *cl
 {
     struct data_sum *sum = closing->sum;
     atomic_fetch_add_explicit(&sum->pending, sum->senders, memory_order_relaxed);
-    if (!graph->hooks.expect(graph->hooks.context, worker, closing->send.key, NULL, sum,
+    if (!graph->hooks.expect(graph->hooks.context, worker, closing->send.key, -1, NULL, sum,
                              sum->senders))
         return DUITE_OK;
     atomic_store_explicit(&sum->lost, &no_memory, memory_order_relaxed);

@@ -44,7 +44,8 @@ void work_throttle(struct work_pool *pool, uint64_t most)
     uint64_t left = work_unfinished(pool);
     if (left > most) {
         atomic_store(&pool->wanted, graph->tasks - (most - most / 4));
-        work_until(pool, is_reached, pool);
+        work_until(pool, &(struct work_why){"duite_fork", "room in its window", NULL}, is_reached,
+                   pool);
         atomic_store(&pool->wanted, 0);
         left = work_unfinished(pool);
     }

@@ -3,6 +3,7 @@
 
 #include "runtime/workers/park.h"
 #include "runtime/workers/queue.h"
+#include "runtime/workers/watch.h"
 #include "runtime/workers/workers.h"
 
 #include <sched.h>
@@ -36,6 +37,7 @@ struct work_worker {
     double pause;
     duite_call call;
     struct counts counts;
+    _Atomic(const struct graph_task *) runs; /* whose body runs, for the one who watches */
     pthread_t thread;
     int unit;          /* to be bound to, or -1 */
     cpu_set_t binding; /* of worker 0 before start */
@@ -50,7 +52,9 @@ struct work_pool {
     unsigned started; /* threads, worker 0 among them */
     pthread_t main;
     struct work_queue shared;
+    struct work_watch watch;
     _Alignas(64) _Atomic int stop;
+    _Atomic int watched;             /* somebody reads the tasks that run: they must not go on */
     _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
     _Alignas(64) _Atomic int seat;   /* taken by the idle worker that polls */
     /* Of the throttled main thread, see count.c. */
@@ -62,6 +66,24 @@ static inline void work_bump(_Atomic uint64_t *count, uint64_t by)
 {
     uint64_t now = atomic_load_explicit(count, memory_order_relaxed);
     atomic_store_explicit(count, now + by, memory_order_relaxed);
+}
+
+/* Whose body runs, from now on; returns whose did: a body that waits has others on top of it. */
+static inline const struct graph_task *work_enters(struct work_worker *worker,
+                                                   const struct graph_task *task)
+{
+    const struct graph_task *below = atomic_load_explicit(&worker->runs, memory_order_relaxed);
+    atomic_store_explicit(&worker->runs, graph_has_body(task) ? task : NULL, memory_order_release);
+    return below;
+}
+
+/* The worker's task is over, but nothing of it was published or freed yet. */
+static inline void work_leaves(struct work_worker *worker, const struct graph_task *below)
+{
+    atomic_store_explicit(&worker->runs, below, memory_order_release);
+    atomic_signal_fence(memory_order_seq_cst); /* the watcher has the fence: see watch.c */
+    if (atomic_load_explicit(&worker->pool->watched, memory_order_acquire))
+        work_watch_passes(worker->pool);
 }
 
 static inline void work_pause_core(void)

@@ -98,11 +98,12 @@ void work_notify(void *context)
     work_park_wake(&pool->worker[0].park);
 }
 
-static int on_expect(void *context, void *who, struct data_key key, struct data_version *version,
-                     struct data_sum *sum, uint32_t packets)
+static int on_expect(void *context, void *who, struct data_key key, int from,
+                     struct data_version *version, struct data_sum *sum, uint32_t packets)
 {
     struct work_pool *pool = context;
-    return comm_expect(pool->setup.comm, who, key, version, sum, packets);
+    const struct comm_target target = {version, sum, from};
+    return comm_expect(pool->setup.comm, who, key, target, packets);
 }
 
 /* ---- One worker's work ---- */
@@ -149,7 +150,9 @@ void work_run(struct work_worker *worker, struct graph_task *task)
     for (unsigned length = 1; task; length++) {
         uint64_t start = base_ticks(), outer = worker->within;
         worker->within = 0;
+        const struct graph_task *below = work_enters(worker, task);
         bool body = graph_run(graph, worker, task, &worker->call);
+        work_leaves(worker, below);
         uint64_t end = base_ticks(), own = end - start - worker->within;
         worker->within = outer + end - start;
         work_bump(&worker->counts.tasks, body);
@@ -301,12 +304,15 @@ static bool done_or_broken(void *context)
     return until->done(until->context) || (until->comm && comm_broken(until->comm));
 }
 
-void work_until(struct work_pool *pool, bool (*done)(void *), void *context)
+void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)(void *),
+                void *context)
 {
     struct until until = {done, context, pool->setup.comm};
     if (until.comm && comm_posted(until.comm))
         work_poll(&pool->worker[0]);
+    work_waits(pool, why);
     work_drain(pool, done_or_broken, &until);
+    work_waits(pool, NULL);
 }
 
 void work_once(struct work_pool *pool)
@@ -401,7 +407,9 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
                                                .over = work_over,
                                                .body = setup->check ? on_body : NULL,
                                                .expect = on_expect};
-    return fine ? start_threads(pool) : base_no_memory("the workers");
+    int code = fine ? start_threads(pool) : base_no_memory("the workers");
+    int watched = work_watch_start(pool, code ? 0 : setup->stuck_seconds);
+    return code ? code : watched;
 }
 
 void work_stop(struct work_pool *pool)
@@ -409,6 +417,7 @@ void work_stop(struct work_pool *pool)
     if (!pool)
         return;
     atomic_store(&pool->stop, 1);
+    work_watch_stop(pool);
     for (unsigned i = 1; i < pool->started; i++) {
         atomic_thread_fence(memory_order_seq_cst);
         work_park_wake(&pool->worker[i].park);

@@ -23,7 +23,8 @@ struct work_setup {
     duite *rt;     /* for bodies */
     unsigned threads;
     uint64_t seed;
-    double spin_seconds; /* 0: workers outnumber cores */
+    double spin_seconds;  /* 0: workers outnumber cores */
+    double stuck_seconds; /* a standstill that is told; 0: none is */
     const int *cores; /* threads of them to bind to, as the operating system numbers them; NULL: no
                          binding */
 };
@@ -36,8 +37,18 @@ void work_stop(struct work_pool *pool);
 /* Worker 0, for calls by the main thread. */
 struct work_worker *work_main(struct work_pool *pool);
 
+/* What the main program waits for, for those who ask when nothing moves: words, or a version. */
+struct work_why {
+    const char *call, *what; /* constants; what NULL: the version */
+    const struct data_key *key;
+};
+
+/* From now on the main program waits; NULL: it does not. Main thread. */
+void work_waits(struct work_pool *pool, const struct work_why *why);
+
 /* Works until done(context) or communication broke. Main thread. */
-void work_until(struct work_pool *pool, bool (*done)(void *context), void *context);
+void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)(void *context),
+                void *context);
 
 /* The same, whether communication broke or not. */
 void work_drain(struct work_pool *pool, bool (*done)(void *context), void *context);

@@ -120,14 +120,13 @@ void comm_send_packet(struct comm *comm, struct data_packet *packet, int to)
     (void)to;
 }
 
-int comm_expect(struct comm *comm, void *worker, struct data_key key, struct data_version *version,
-                struct data_sum *sum, uint32_t packets)
+int comm_expect(struct comm *comm, void *worker, struct data_key key, struct comm_target target,
+                uint32_t packets)
 {
     (void)comm;
     (void)worker;
     (void)key;
-    (void)version;
-    (void)sum;
+    (void)target;
     (void)packets;
     return 0;
 }
@@ -161,6 +160,14 @@ static void fall_asleep(struct work_park *park, double seconds)
         work_park_announce(park);
     work_park_sleep(park, seconds);
 }
+
+/* Nobody watches for a standstill here. */
+#include "runtime/workers/internal.h"
+#define work_watch_start(pool, seconds) nothing()
+#define work_watch_stop(pool)           nothing()
+#define work_waits(pool, why)           ((void)(why))
+#define work_enters(worker, task)       NULL
+#define work_leaves(worker, below)      ((void)(below))
 
 #define work_park_announce announce
 #define work_park_sleep    fall_asleep
@@ -232,7 +239,7 @@ static void wait(unsigned threads, const duite_scheduler *scheduler, int tasks)
     its.graph.tasks = (uint64_t)tasks;
     for (int i = 0; i < tasks; i++)
         ready(i);
-    work_until(its.pool, drained, NULL);
+    work_until(its.pool, NULL, drained, NULL);
 }
 
 static void start_stop(void)
@@ -279,7 +286,7 @@ static void wait_copy(void)
     start_workers(2, &sched_steal, false);
     its.graph.tasks = 2;
     ready(0);
-    work_until(its.pool, copied, NULL);
+    work_until(its.pool, NULL, copied, NULL);
 }
 
 static void wait_one_stop(void)
@@ -315,7 +322,7 @@ static void wait_beside(void)
     start_workers(2, &sched_steal, true);
     its.graph.tasks = 2;
     receive(0);
-    work_until(its.pool, drained, NULL);
+    work_until(its.pool, NULL, drained, NULL);
 }
 
 #ifdef REAL_QUEUES

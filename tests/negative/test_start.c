@@ -77,6 +77,11 @@ START_TEST(malformed_options)
     options.spin_seconds = __builtin_nan("");
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
     options = misuse_options(MPI_COMM_WORLD);
+    options.stuck_seconds = -1;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
+    options.stuck_seconds = __builtin_nan("");
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
+    options = misuse_options(MPI_COMM_WORLD);
     options.threads = 1000000;
     ck_assert_int_ne(duite_start(&rt, &options), DUITE_OK);
     ck_assert_ptr_null(rt);

@@ -23,6 +23,11 @@ dist_check_SCRIPTS += tests/runtime/test_random.sh tests/runtime/test_random_lon
 TESTS += tests/runtime/random_programs tests/runtime/test_random.sh tests/runtime/test_sizes.sh tests/runtime/test_homes.sh tests/runtime/test_nested.sh \
     tests/runtime/test_memcheck.sh
 LONG_TESTS += tests/runtime/test_random_long.sh tests/runtime/test_memcheck_long.sh tests/runtime/test_threads_long.sh
+check_PROGRAMS += tests/runtime/ranks_stuck
+tests_runtime_ranks_stuck_SOURCES = tests/runtime/ranks_stuck.c
+tests_runtime_ranks_stuck_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/runtime/test_stuck.sh
+TESTS += tests/runtime/test_stuck.sh
 check_PROGRAMS += tests/runtime/ranks_exit
 tests_runtime_ranks_exit_SOURCES = tests/runtime/ranks_exit.c
 tests_runtime_ranks_exit_LDADD = libduite_core.la

@@ -290,6 +290,7 @@ static void check_runs(bool checking)
 static void run(const struct settings *settings)
 {
     static const double spins[] = {0, 1e-6, 1e-4};
+    static const size_t windows[] = {0, 0, 1, 3}, renames[] = {0, 300, 5000, SIZE_MAX};
     const char *const *schedulers = duite_scheduler_names();
     uint64_t random = ~program.seed;
     duite_object object[NEST_MAX_OBJECTS];
@@ -308,6 +309,8 @@ static void run(const struct settings *settings)
     options.spin_seconds = spins[duite_random(&random) % 3];
     options.threads = 1 + (unsigned)(duite_random(&random) % 4);
     const char *scheduler = schedulers[duite_random(&random) % n];
+    options.window = windows[duite_random(&random) % 4];
+    options.rename_bytes = renames[duite_random(&random) % 4];
     if (settings->threads)
         options.threads = settings->threads;
     if (settings->scheduler)

@@ -1,0 +1,105 @@
+/* Programs that stand still for a while, on any number of ranks: the task that all wait for sleeps,
+ * or what comes from other ranks is held up on the last one. What is told goes to standard error.
+ */
+#include <duite.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static double held_until;
+
+static double seconds(void)
+{
+    struct timespec now;
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Instead of MPI's own: what was sent is not seen yet. */
+int MPI_Improbe(int source, int tag, MPI_Comm comm, int *flag, MPI_Message *message,
+                MPI_Status *status)
+{
+    *flag = 0;
+    return seconds() < held_until ? MPI_SUCCESS
+                                  : PMPI_Improbe(source, tag, comm, flag, message, status);
+}
+
+static int nap(const duite_call *call)
+{
+    const double length = *(const double *)call->args;
+    struct timespec left = {(time_t)length, (long)(1e9 * (length - (double)(time_t)length))};
+
+    while (nanosleep(&left, &left))
+        ;
+    duite_out(call, 0, int32_t)[0] = 1 + duite_in(call, 1, int32_t)[0];
+    return 0;
+}
+
+static int take(const duite_call *call)
+{
+    duite_out(call, 0, int32_t)[0] = 10 * duite_in(call, 1, int32_t)[0];
+    return 0;
+}
+
+static int over(const duite_call *call)
+{
+    duite_out(call, 0, int32_t)[0] = 7;
+    return 0;
+}
+
+static const duite_kernel NAP = {
+    .name = "nap", .body = nap, .access = {DUITE_W, DUITE_R}, .args_size = sizeof(double)};
+static const duite_kernel TAKE = {.name = "take", .body = take, .access = {DUITE_W, DUITE_R}};
+static const duite_kernel OVER = {.name = "over", .body = over, .access = {DUITE_W}};
+
+/* Task 1 makes object 1 and reads 4; 2 and 3 read 1, on the last rank and the first; 4 overwrites
+ * 4. */
+static int run(duite *rt, double length, const char *wait)
+{
+    const int last = duite_ranks(rt) - 1;
+    duite_object object[4];
+    int32_t value = 0;
+    int code = 0;
+
+    for (int i = 0; i < 4; i++)
+        code |= duite_new(rt, DUITE_I32, 1, &object[i]);
+    code |= duite_fork_at(rt, 0, &NAP, &length, 2, (duite_object[]){object[0], object[3]});
+    code |= duite_fork_at(rt, last, &TAKE, NULL, 2, (duite_object[]){object[1], object[0]});
+    code |= duite_fork_at(rt, 0, &TAKE, NULL, 2, (duite_object[]){object[2], object[0]});
+    code |= duite_fork_at(rt, 0, &OVER, NULL, 1, &object[3]);
+    if (!strcmp(wait, "get"))
+        code |= duite_get(rt, object[1], &value) || value != 10;
+    else if (!strcmp(wait, "wait"))
+        code |= duite_wait(rt);
+    for (int i = 0; i < 4; i++)
+        code |= duite_free(rt, object[i]);
+    return code;
+}
+
+/* ranks_stuck THREADS WINDOW NAP HELD get|wait|stop: seconds that the first task naps, and that
+ * messages are held up. */
+int main(int argc, char **argv)
+{
+    static const duite_kernel *const KERNELS[] = {&NAP, &TAKE, &OVER, NULL};
+    duite_options options = duite_options_default();
+    duite *rt;
+
+    if (argc < 6)
+        return 2;
+    options.kernels = KERNELS;
+    options.threads = (unsigned)atoi(argv[1]);
+    options.window = (size_t)atoi(argv[2]);
+    if (duite_start(&rt, &options)) {
+        fprintf(stderr, "%s\n", duite_message());
+        return 3;
+    }
+    if (duite_rank(rt) == duite_ranks(rt) - 1)
+        held_until = seconds() + atof(argv[4]);
+    int code = run(rt, atof(argv[3]), argv[5]);
+
+    code |= duite_stop(&rt);
+    return code ? 1 : 0;
+}

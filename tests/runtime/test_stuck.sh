@@ -1,0 +1,59 @@
+#!/bin/sh
+# A program that stands still tells who waits for what, and goes on unharmed.
+. "${srcdir:-.}/tests/support/tap.sh"
+plan_later
+
+stuck=tests/runtime/ranks_stuck # THREADS WINDOW NAP HELD get|wait|stop
+nothing="and for [0-9.]* s no task of this rank began or ended and no message came"
+DUITE_STUCK_SECONDS=0.2
+export DUITE_STUCK_SECONDS
+
+# NAME COMMAND...: passes when COMMAND does; `tells` then looks at what it printed.
+case_of() {
+    ok "$@"
+    cp "$scratch/output" "$scratch/told"
+}
+found() { grep -q "^duite: rank $1\$" "$scratch/told" || ! cat "$scratch/told"; }
+tells() { ok "tells: rank $1" found "$1"; }
+seldom() { test "$(grep -c "^duite: rank 0: duite_get" "$scratch/told")" -le 2; } # once, or a start was slow as well
+quiet() { ! grep "^duite:" "$scratch/told"; }
+
+case_of "a body that naps, two ranks" ranks 2 $stuck 2 0 2 0 get
+tells "0: duite_get waits for object 2\.1, version 1, $nothing"
+tells "0: worker [01].* runs task 1 (kernel nap)"
+tells "0: task 3 (kernel take) (and 1 more) waits for what task 1 (kernel nap) writes to parameter 0"
+tells "0: .* waits for object 2\.1, version 1, which has not come from rank 1"
+ok "tells it once" seldom
+tells "1: duite_get waits for object 2\.1, version 1, $nothing"
+tells "1: no worker runs a task"
+tells "1: task 2 (kernel take) waits for object 1\.1, version 1, which has not come from rank 0"
+tells "1: unfinished tasks of this rank: [0-9]*"
+
+case_of "the main thread naps itself, one rank" limited $stuck 1 0 2 0 stop
+tells "0: duite_stop waits for all tasks of this rank, $nothing"
+tells "0: worker 0 (the main thread) runs task 1 (kernel nap)"
+tells "0: task 2 (kernel take) (and 1 more) waits for what task 1 (kernel nap) writes to parameter 0"
+
+case_of "a full window" limited $stuck 2 1 2 0 wait
+tells "0: duite_fork waits for room in its window, $nothing"
+
+case_of "a message that is late" ranks 2 $stuck 2 0 0 2 wait
+tells "1: duite_wait waits for all tasks of this rank, $nothing"
+tells "1: no worker runs a task"
+tells "1: task 2 (kernel take) waits for object 1\.1, version 1, which has not come from rank 0"
+tells "0: duite_wait waits for the tasks of other ranks, $nothing"
+tells "0: unfinished tasks of this rank: 0"
+
+DUITE_STUCK_SECONDS=0
+case_of "nobody watches" ranks 2 $stuck 2 0 0.5 0 get
+ok "tells nothing" quiet
+DUITE_STUCK_SECONDS=60
+case_of "not for so long" ranks 2 $stuck 2 0 0.5 0.5 get
+ok "tells nothing" quiet
+
+DUITE_STUCK_SECONDS=0.001
+ok "looked at all the time, one rank" limited tests/runtime/nested_programs --seed 400000 --programs 100
+ok "looked at all the time, three ranks" ranks 3 tests/runtime/random_programs --base 400000 --programs 100
+
+DUITE_STUCK_SECONDS=soon
+exits 3 "seconds that are none" limited $stuck 1 0 0 0 get

@@ -216,7 +216,8 @@ static bool spin(struct work_worker *worker)
     uint64_t now = base_ticks();
     if (!worker->idle_since) {
         worker->idle_since = now;
-        work_notify(worker->pool); /* the main thread may wait for the last task to be over */
+        if (worker->index) /* the main thread may wait for the last task to be over */
+            work_notify(worker->pool);
     }
     uint64_t since = now - worker->idle_since;
     if (since < pool->spin_ticks) {

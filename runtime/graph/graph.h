@@ -277,6 +277,12 @@ bool graph_may_run(const struct graph_scope *scope, const struct graph_task *tas
  * worker set. Returns whether a body ran. */
 bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const duite_call *call);
 
+/* Whether bodies do not run any more. */
+static inline bool graph_has_given_up(const struct graph *graph)
+{
+    return atomic_load_explicit(&graph->given_up, memory_order_relaxed);
+}
+
 /* What became a SEND when it ran is to be sent now. */
 static inline bool graph_to_send(const struct graph_task *task)
 {

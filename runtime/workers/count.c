@@ -1,9 +1,10 @@
 /* What workers count, above all how many tasks are over: each worker counts its own on its own
  * cache lines, and who wants to know adds them up. So a task costs no line that workers share.
  *
- * The main thread, which waits for a number of tasks to be over, may sleep. It is woken by a worker
- * that runs out of work (workers.c), or, while it is throttled and work goes on, by one that finds
- * `wanted` reached. */
+ * The main thread, which waits for a number of tasks to be over, may sleep. It says what it waits
+ * for: all of them (`awaited`), or, while it is throttled, fewer (`wanted`). It is woken by a
+ * worker that runs out of work and finds one of these reached; and by one that does so at the end
+ * of a task, if it is throttled. */
 #include "runtime/workers/internal.h"
 
 static uint64_t over(const struct work_pool *pool)
@@ -22,6 +23,20 @@ void work_over(void *context, void *who, int tasks)
     atomic_store_explicit(&worker->counts.over, before + (uint64_t)tasks, memory_order_release);
     uint64_t wanted = atomic_load_explicit(&pool->wanted, memory_order_relaxed);
     if (wanted && over(pool) >= wanted)
+        work_notify(pool);
+}
+
+void work_ran_out(struct work_worker *worker)
+{
+    struct work_pool *pool = worker->pool;
+    if (!worker->index)
+        return;
+    /* Against the main thread, which says what it waits for and then adds up. */
+    atomic_thread_fence(memory_order_seq_cst);
+    uint64_t awaited = atomic_load_explicit(&pool->awaited, memory_order_relaxed);
+    uint64_t wanted = atomic_load_explicit(&pool->wanted, memory_order_relaxed);
+    uint64_t least = wanted ? wanted : awaited;
+    if ((least && over(pool) >= least) || graph_has_given_up(pool->setup.graph))
         work_notify(pool);
 }
 

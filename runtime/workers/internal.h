@@ -60,6 +60,7 @@ struct work_pool {
     /* Of the throttled main thread, see count.c. */
     uint64_t look;                        /* how many tasks it forks before it counts again */
     _Alignas(64) _Atomic uint64_t wanted; /* tasks that are to be over, or 0 */
+    _Atomic uint64_t awaited;             /* of the main thread that waits: the same */
 };
 
 static inline void work_bump(_Atomic uint64_t *count, uint64_t by)
@@ -104,6 +105,8 @@ void work_wake_one(struct work_pool *pool, unsigned queue);
 /* Hooks of the graph: graph_hooks.over, graph_hooks.notify. */
 void work_over(void *context, void *worker, int tasks);
 void work_notify(void *context);
+/* The worker finds no task: does the main thread wait for just that? */
+void work_ran_out(struct work_worker *worker);
 /* Sends and receives; whether anything happened. */
 bool work_poll(struct work_worker *worker);
 /* Something happened: idling begins anew. */

@@ -216,8 +216,7 @@ static bool spin(struct work_worker *worker)
     uint64_t now = base_ticks();
     if (!worker->idle_since) {
         worker->idle_since = now;
-        if (worker->index) /* the main thread may wait for the last task to be over */
-            work_notify(worker->pool);
+        work_ran_out(worker);
     }
     uint64_t since = now - worker->idle_since;
     if (since < pool->spin_ticks) {
@@ -288,8 +287,10 @@ static void look(struct work_worker *worker, const struct wish *wish)
 void work_drain(struct work_pool *pool, bool (*done)(void *), void *context)
 {
     const struct wish wish = {.done = done, .context = context};
+    atomic_store(&pool->awaited, pool->setup.graph->tasks);
     while (!done(context))
         look(&pool->worker[0], &wish);
+    atomic_store_explicit(&pool->awaited, 0, memory_order_relaxed);
     work_busy_again(&pool->worker[0]);
 }
 

@@ -98,6 +98,7 @@ static int try_program(const struct prog *prog, const struct prog_setup *setup,
     int wrong = 0;
 
     for (unsigned long i = 0; i < repeat && !wrong; i++) {
+        alarm(120);
         *report = (struct prog_report){0, "out of memory"};
         if (answers)
             prog_run(prog, answers, setup, report, &where);
@@ -176,7 +177,6 @@ static int run_seed(const struct settings *settings, uint64_t seed, MPI_Comm com
         "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s --window %zu --rename %zu",
         (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
         setup.window, setup.rename);
-    alarm(settings->one ? 600 : 120);
     prog = prog_make(seed, ranks);
     if (!prog)
         MPI_Abort(MPI_COMM_WORLD, 99);

@@ -123,10 +123,16 @@ int64_t work_queue_mark(struct work_queue *queue)
 
 struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end end)
 {
-    if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_acquire))
-        return take_oldest(&queue->deque);
-    struct graph_task *task = work_queue_take(queue, end);
-    atomic_flag_clear_explicit(&queue->token, memory_order_release);
+    struct graph_task *task;
+    do {
+        if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_seq_cst))
+            return take_oldest(&queue->deque);
+        task = work_queue_take(queue, end);
+        /* Others were turned away by the token, and may have been woken for what came after this
+         * look: with it in the inbox, nobody would come back. */
+        atomic_flag_clear_explicit(&queue->token,
+                                   task ? memory_order_release : memory_order_seq_cst);
+    } while (!task && atomic_load_explicit(&queue->inbox, memory_order_seq_cst));
     return task;
 }
 

@@ -109,20 +109,25 @@ static void note(struct graph_recorded_object *object, duite_mode mode)
     object->trails = false;
 }
 
-static void use(struct graph_record *record, duite_object name, duite_mode mode)
+/* A fork reads the views that it names before it does anything to their objects. */
+static void use_view(struct graph_record *record, duite_object name)
 {
     const struct data_table *table = &record->graph->table;
     const struct data_view *view = table->object[name.slot].view;
-    uint32_t index = index_of(record, name);
-    record->use[record->n_uses++] = index;
-    record->object[index].named = true;
-    note(&record->object[index], mode);
     if (!view)
         return;
     uint32_t parent = index_of(record, data_object_name(table, &table->object[view->parent]));
     note(&record->object[parent], DUITE_R);
-    record->object[index].parent = parent + 1;
+    record->object[index_of(record, name)].parent = parent + 1;
     record->views = true;
+}
+
+static void use(struct graph_record *record, duite_object name, duite_mode mode)
+{
+    uint32_t index = index_of(record, name);
+    record->use[record->n_uses++] = index;
+    record->object[index].named = true;
+    note(&record->object[index], mode);
 }
 
 duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_recorded_fork *fork,
@@ -153,6 +158,8 @@ static struct graph_recorded_fork *append(struct graph_record *record, uint32_t 
                                          .args = record->args_bytes};
     record->args_bytes += whole;
     graph_mix(record->graph, (uint64_t)kernel << 32 | (uint32_t)how->at);
+    for (size_t i = 0; i < n; i++)
+        use_view(record, objects[i]);
     for (size_t i = 0; i < n; i++) {
         graph_mix(record->graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         use(record, objects[i], graph_recorded_mode(record->graph, fork, (uint32_t)i));

@@ -341,6 +341,29 @@ START_TEST(old_poison)
 }
 END_TEST
 
+/* A view is read first, also by a task that names it last. */
+static int spreads(duite *rt, void *context)
+{
+    const struct made *m = context;
+
+    return DUITE_FORK(rt, &SPREAD, NULL, m->a, m->view);
+}
+
+START_TEST(poison_spreads)
+{
+    struct made m = begin(2, 0);
+    duite_graph graph;
+
+    ck_assert_int_eq(duite_graph_new(m.rt, spreads, &m, &graph), 0);
+    DUITE_FORK(m.rt, &FAIL, NULL, m.a);
+    ck_assert_int_eq(duite_replay(m.rt, graph, 2), 0);
+    ck_assert_int_eq(duite_get(m.rt, m.a, &(int64_t[COUNT]){0}), 77);
+    ck_assert_int_eq(duite_wait(m.rt), 77);
+    ck_assert_int_eq(duite_graph_free(m.rt, graph), 0);
+    end(&m);
+}
+END_TEST
+
 /* The flag may be a view. */
 static int counts_down(duite *rt, void *context)
 {
@@ -428,6 +451,7 @@ int main(void)
     tcase_add_test(test, poison);
     tcase_add_loop_test(test, replayed, 0, (int)(sizeof BUILDS / sizeof *BUILDS));
     tcase_add_test(test, old_poison);
+    tcase_add_test(test, poison_spreads);
     tcase_add_test(test, flag);
     tcase_add_test(test, bound);
     tcase_add_test(test, freed);

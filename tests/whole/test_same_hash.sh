@@ -4,7 +4,7 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless tests/whole/same_hash
 scene=$srcdir/cloth/scenes/sheet.yaml
-small='cloths[0].mesh.grid.nx=40 cloths[0].mesh.grid.ny=40 grain=100 time.end=0.002'
+small='cloths[0].mesh.grid.nx=40 cloths[0].mesh.grid.ny=40 grain=100 time.end=0.001'
 
 plan_later
 if test "${DUITE_LONG:-}" = 1; then

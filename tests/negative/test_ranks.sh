@@ -3,7 +3,6 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-DUITE_TIMEOUT=${DUITE_TIMEOUT:-60}
 ok "out of memory on 1 rank" ranks 1 tests/negative/ranks_memory
 ok "out of memory on 1 rank with graphs" ranks 1 tests/negative/ranks_memory_graphs
 ok "the system refuses on 1 rank" ranks 1 tests/negative/ranks_system

@@ -1,6 +1,7 @@
 #!/bin/sh
 # run.sh TEST: runs one test for automake's TAP driver, which takes the 77 of a skipped test for a failure. A test that is
 # stuck ends after an hour.
+. "${0%/*}/mpi.sh"
 case $1 in
     # AddressSanitizer's slow unwinder, which sees through Open MPI, waits for itself in the loader of llvmpipe's code.
     *tests/cloth/view/*) unset ASAN_OPTIONS ;;

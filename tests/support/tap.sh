@@ -24,15 +24,7 @@ tap_cases=0
 tap_failed=0
 tap_plan=no
 
-if test "$(id -u)" = 0; then
-    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-fi
-export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
-# Ranks that wait inside MPI let others run: where other programs run too, starts and stops take twenty times as long else.
-export OMPI_MCA_mpi_yield_when_idle=1
-# hwloc: silent about caches that a virtual machine reports wrongly, and no look for graphics cards on ten X displays, which
-# takes seconds at each start where localhost has no name.
-export HWLOC_HIDE_ERRORS=2 HWLOC_COMPONENTS="${HWLOC_COMPONENTS:--gl}"
+. "$srcdir/tests/support/mpi.sh"
 
 tap_end() {
     tap_status=$?

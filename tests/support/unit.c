@@ -12,7 +12,7 @@ __attribute__((constructor)) static void prepare(void)
 {
     setenv("CK_DEFAULT_TIMEOUT", "120", 0);
     setenv("HWLOC_HIDE_ERRORS", "2", 0);
-    setenv("HWLOC_COMPONENTS", "-gl", 0); /* as in tap.sh */
+    setenv("HWLOC_COMPONENTS", "-gl", 0); /* as in mpi.sh */
     if (geteuid() == 0) {
         setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);
         setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);

@@ -1,0 +1,14 @@
+# Sourced by run.sh and tap.sh: what Open MPI and hwloc are to do where tests run. What the user set wins.
+
+if test "$(id -u)" = 0; then
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+fi
+export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
+# Ranks that wait inside MPI let others run: where other programs run too, starts and stops take twenty times as long else.
+export OMPI_MCA_mpi_yield_when_idle=1
+# One machine's shared memory is enough: without a look for network cards, and a daemon for a program without mpirun, a
+# start takes a tenth of the time.
+export OMPI_MCA_pml="${OMPI_MCA_pml:-ob1}" OMPI_MCA_btl="${OMPI_MCA_btl:-^ofi,openib}" OMPI_MCA_ess_singleton_isolated=1
+# hwloc: silent about caches that a virtual machine reports wrongly, and no look for graphics cards on ten X displays, which
+# takes seconds at each start where localhost has no name.
+export HWLOC_HIDE_ERRORS=2 HWLOC_COMPONENTS="${HWLOC_COMPONENTS:--gl}"

@@ -73,3 +73,4 @@ include tests/negative/module.mk
 include tests/model/module.mk
 include tests/examples/module.mk
 include tests/bench/module.mk
+include tests/cluster/module.mk

@@ -123,7 +123,9 @@ static uint64_t hash_kernels(const struct graph *graph)
         hash = XXH64(k->name, strlen(k->name) + 1, hash);
         hash = XXH64(k->access, sizeof k->access, hash);
         hash = XXH64(&k->rest, sizeof k->rest, hash);
+        uint64_t replicated = k->replicated != 0;
         hash = XXH64(&args_size, sizeof args_size, hash);
+        hash = XXH64(&replicated, sizeof replicated, hash);
         hash = data_law_hash_kernel(k, hash);
     }
     return hash;

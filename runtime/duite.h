@@ -191,7 +191,17 @@ typedef struct duite_kernel {
     const duite_law
         *law[DUITE_MAX_ACCESS]; /* of the parameters with DUITE_CW or CWP; NULL: duite_sum */
     const duite_law *rest_law;  /* if rest is DUITE_CW or CWP; NULL: duite_sum */
+    int replicated;             /* 1: a task of the main program runs on every rank, see below */
 } duite_kernel;
+
+/* Replicated kernels: for small results that every rank needs, such as the scalars of an iteration.
+ * Their tasks run on all ranks, each on a copy of what they read, so that nobody waits for a
+ * message with the result; in a recorded graph only where the result is read. (In a task they run
+ * there, as all its children do.) The body must leave the same bytes everywhere: it depends on what
+ * it reads and on its arguments alone, not on call->rank, call->context or anything else that
+ * differs. Modes are r, w and rw; no side effects (DUITE_E_KERNEL at start), and no rank is named
+ * at the fork (DUITE_E_ARGUMENT). duite_counters count such a task once for each rank that runs it.
+ */
 
 /* ---- Start and stop ---- */
 

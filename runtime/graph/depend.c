@@ -182,6 +182,14 @@ int graph_fetch(struct graph *graph, void *worker, struct data_object *object, i
     return DUITE_OK;
 }
 
+int graph_fetch_all(struct graph *graph, void *worker, struct data_object *object)
+{
+    int code = DUITE_OK;
+    for (int rank = 0; rank < graph->n_ranks && !code; rank++)
+        code = graph_fetch(graph, worker, object, rank);
+    return code;
+}
+
 void graph_forget(struct graph *graph, void *worker, struct data_object *object)
 {
     if (!object->current)

@@ -38,6 +38,10 @@ static int check_call(const struct graph *graph, int at, uint32_t index, const v
     if (at < GRAPH_ANYWHERE || at >= graph->n_ranks)
         return base_error(DUITE_E_ARGUMENT, "kernel %s: there is no rank %d, only 0 to %d",
                           kernel->name, at, graph->n_ranks - 1);
+    if (kernel->replicated && at != GRAPH_ANYWHERE)
+        return base_error(DUITE_E_ARGUMENT,
+                          "kernel %s is replicated: it runs on all ranks, and none can be named",
+                          kernel->name);
     return DUITE_OK;
 }
 
@@ -164,13 +168,15 @@ static int use(struct graph_scope *scope, void *worker, int at, const duite_kern
     struct graph *graph = scope->graph;
     duite_mode mode = graph_immediate(declared);
     bool postponed = graph_postponed(declared);
+    bool everywhere = kernel->replicated && !scope->depth;
     int code = DUITE_OK;
     if (mode == DUITE_CW)
         return contribute(scope, worker, at, kernel, i, object, task, done);
     if (object->leaves)
         code = graph_close(scope, worker, object);
     if (!code && mode != DUITE_W && graph->n_ranks > 1)
-        code = graph_fetch(graph, worker, object, at);
+        code = everywhere ? graph_fetch_all(graph, worker, object)
+                          : graph_fetch(graph, worker, object, at);
     if (code)
         return code;
     struct data_version *version = object->current;
@@ -182,7 +188,9 @@ static int use(struct graph_scope *scope, void *worker, int at, const duite_kern
         return DUITE_OK;
     }
     object->number++;
-    data_object_moved(object, at);
+    data_object_moved(object, everywhere ? object->home : at);
+    for (int rank = 0; everywhere && rank < graph->n_ranks; rank++)
+        data_object_add_copy(&graph->table, object, rank);
     if (mode == DUITE_W && task)
         version = graph_rename(graph, worker, object);
     if (task)
@@ -311,7 +319,7 @@ static int fork_checked(struct graph_scope *scope, void *worker, const struct gr
     uint32_t done = 0;
     int at = how->at;
     if (at == GRAPH_ANYWHERE)
-        at = scope->depth ? graph->rank : own ? own->home : 0;
+        at = scope->depth || kernel->replicated ? graph->rank : own ? own->home : 0;
     if (at == graph->rank && !(task = body_task(scope, worker, how, sketch->kernel, args, n)))
         return DUITE_E_MEMORY;
     if (task && own)
@@ -381,9 +389,9 @@ int graph_copy(struct graph *graph, void *worker, duite_object name, int to,
     int code = object->leaves ? graph_close(&graph->root, worker, object) : DUITE_OK;
     if (!code)
         code = graph_view_gather(graph, worker, object);
-    for (int rank = 0; rank < graph->n_ranks && !code; rank++)
-        if (to == GRAPH_ANYWHERE || to == rank)
-            code = graph_fetch(graph, worker, object, rank);
+    if (!code)
+        code = to == GRAPH_ANYWHERE ? graph_fetch_all(graph, worker, object)
+                                    : graph_fetch(graph, worker, object, to);
     if (code || (to != GRAPH_ANYWHERE && to != graph->rank))
         return code;
     struct data_version *version = graph_local(graph, object);

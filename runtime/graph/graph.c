@@ -13,6 +13,22 @@ struct graph_failure {
     struct data_failure failure;
 };
 
+/* What runs on several ranks leaves the same everywhere, and nothing else. */
+static int check_replicated(const duite_kernel *kernel)
+{
+    const char *why = kernel->side_effects ? "has side effects" : NULL;
+    for (uint32_t i = 0; i <= DUITE_MAX_ACCESS && !why; i++) {
+        duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : kernel->rest;
+        if (mode == DUITE_CW)
+            why = "accumulates (cw), which would count once for each rank";
+        else if (graph_postponed(mode))
+            why = "has a postponed mode: its children would run once for each rank";
+    }
+    return kernel->replicated && why
+               ? base_error(DUITE_E_KERNEL, "kernel %s is replicated, but %s", kernel->name, why)
+               : DUITE_OK;
+}
+
 static int check_kernel(const duite_kernel *kernel, uint32_t index, struct graph_fixed *fixed)
 {
     if (!kernel->name || !kernel->name[0])
@@ -34,7 +50,7 @@ static int check_kernel(const duite_kernel *kernel, uint32_t index, struct graph
     if ((int)kernel->rest < DUITE_NONE || kernel->rest > DUITE_CWP)
         return base_error(DUITE_E_KERNEL, "kernel %s: `rest` has no such mode: %d", kernel->name,
                           (int)kernel->rest);
-    return DUITE_OK;
+    return check_replicated(kernel);
 }
 
 static int check_unique(const duite_kernel *const kernels[], uint32_t index)

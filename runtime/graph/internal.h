@@ -37,6 +37,8 @@ struct data_version *graph_local(struct graph *graph, struct data_object *object
 
 /* Sees to it that rank `to` gets the current version: sends, awaits, or notes that others do. */
 int graph_fetch(struct graph *graph, void *worker, struct data_object *object, int to);
+/* The same for all ranks. */
+int graph_fetch_all(struct graph *graph, void *worker, struct data_object *object);
 
 /* The object may be a view: sees to it that it has the elements that the forks so far leave in its
  * parent, before it is read. */

@@ -47,6 +47,8 @@ const duite_kernel FAIL = {
 const duite_kernel MANY = {
     .name = "many", .body = empty_body, .access = {DUITE_R}, .rest = DUITE_R};
 const duite_kernel EMPTY = {.name = "empty", .body = empty_body};
+const duite_kernel EVERYWHERE = {
+    .name = "everywhere", .body = copy_body, .access = {DUITE_R, DUITE_W}, .replicated = 1};
 const duite_kernel UNLISTED = {.name = "unlisted", .body = empty_body, .access = {DUITE_RW}};
 
 static void finalise(void)
@@ -67,7 +69,8 @@ void misuse_mpi(void)
 
 duite_options misuse_options(MPI_Comm comm)
 {
-    static const duite_kernel *const LIST[] = {&SET, &COPY, &ADD, &FAIL, &MANY, &EMPTY, NULL};
+    static const duite_kernel *const LIST[] = {&SET,  &COPY,  &ADD,        &FAIL,
+                                               &MANY, &EMPTY, &EVERYWHERE, NULL};
     duite_options options = duite_options_default();
 
     options.comm = comm;

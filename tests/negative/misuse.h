@@ -8,8 +8,8 @@
 
 /* Kernels: SET writes its argument; COPY adds 1 to what it reads; ADD contributes 1; FAIL writes
  * and fails with its argument; MANY reads one and any number more; EMPTY has no parameters.
- * UNLISTED is not listed. */
-extern const duite_kernel SET, COPY, ADD, FAIL, MANY, EMPTY, UNLISTED;
+ * EVERYWHERE is COPY, replicated; UNLISTED is not listed. */
+extern const duite_kernel SET, COPY, ADD, FAIL, MANY, EMPTY, EVERYWHERE, UNLISTED;
 
 /* Initialises MPI unless it is, to be finalised at exit. */
 void misuse_mpi(void);

@@ -154,6 +154,8 @@ START_TEST(ranks_outside)
             DUITE_E_ARGUMENT);
     refused(duite_fork_at(rt, 1, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
     refused(duite_fork_at(rt, -1, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
+    refused(duite_fork_at(rt, 0, &EVERYWHERE, NULL, 2, (duite_object[]){a, b}), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_fork(rt, &EVERYWHERE, NULL, 2, (duite_object[]){a, b}), DUITE_OK);
     ck_assert_int_eq(duite_get_at(rt, a, 1, value), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_get_at(rt, a, -1, value), DUITE_E_ARGUMENT);
 }

@@ -45,6 +45,30 @@ START_TEST(malformed_kernels)
 }
 END_TEST
 
+/* What runs on several ranks must leave the same everywhere. */
+START_TEST(replicated_kernels)
+{
+    duite_kernel kernel = EVERYWHERE;
+
+    kernel.name = "alike";
+    kernel.side_effects = 1;
+    refuses(kernel, "side effects");
+    kernel = ADD;
+    kernel.replicated = 1;
+    refuses(kernel, "add");
+    kernel = MANY;
+    kernel.replicated = 1;
+    kernel.rest = DUITE_CW;
+    refuses(kernel, "accumulates");
+    kernel.rest = DUITE_RP;
+    refuses(kernel, "postponed");
+    kernel = COPY;
+    kernel.replicated = 1;
+    kernel.access[1] = DUITE_RWP;
+    refuses(kernel, "postponed");
+}
+END_TEST
+
 START_TEST(kernel_twice)
 {
     const duite_kernel *list[] = {&SET, &ADD, &SET, NULL};
@@ -251,6 +275,7 @@ int main(void)
     TCase *cases = tcase_create("start and stop");
 
     tcase_add_test(cases, malformed_kernels);
+    tcase_add_test(cases, replicated_kernels);
     tcase_add_test(cases, kernel_twice);
     tcase_add_test(cases, malformed_options);
     tcase_add_test(cases, malformed_policies);

@@ -14,6 +14,11 @@ tests_runtime_ranks_views_SOURCES = tests/runtime/ranks_views.c tests/negative/m
 tests_runtime_ranks_views_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_ranks_views.sh
 TESTS += tests/runtime/test_ranks_views.sh
+check_PROGRAMS += tests/runtime/ranks_replicated
+tests_runtime_ranks_replicated_SOURCES = tests/runtime/ranks_replicated.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_ranks_replicated_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/runtime/test_plans.sh
+TESTS += tests/runtime/test_plans.sh
 check_PROGRAMS += tests/runtime/nested_programs
 tests_runtime_nested_programs_SOURCES = tests/runtime/nested_programs.c tests/runtime/nested_program.h \
     tests/runtime/nested_make.c tests/runtime/nested_interpret.c

@@ -50,6 +50,15 @@ static const duite_law *draw_law(struct maker *m, duite_mode mode)
     return mode != DUITE_CW || law >= PROG_N_LAWS ? NULL : prog_law_given((enum prog_law)law);
 }
 
+static int may_replicate(const duite_kernel *kernel)
+{
+    int may = kernel->rest != DUITE_CW;
+
+    for (unsigned i = 0; i < n_listed(kernel); i++)
+        may &= kernel->access[i] != DUITE_CW;
+    return may;
+}
+
 /* The first two kernels accumulate and update one object: what finds most. */
 static void make_kernels(struct maker *m)
 {
@@ -71,6 +80,7 @@ static void make_kernels(struct maker *m)
             kernel->rest = draw_mode(m);
         kernel->rest_law = draw_law(m, kernel->rest);
         kernel->args_size = sizeof(struct prog_args) - make_below(m, PROG_ARGS_PADDING);
+        kernel->replicated = may_replicate(kernel) && make_one_in(m, 3);
         prog->list[k] = kernel;
     }
 }
@@ -185,6 +195,8 @@ struct prog_op *make_push_fork(struct maker *m, const struct prog_op *draft)
     memcpy(op->objects, draft->objects, sizeof op->objects);
     op->number = (unsigned)prog->n_forks++;
     op->rank = make_one_in(m, 8) ? (int)make_below(m, (unsigned)prog->n_ranks) : -1;
+    if (prog->kernel[op->kernel].replicated)
+        op->rank = -1;
     op->fails = make_one_in(m, m->failing) ? 1 + (int)make_below(m, 1000) : 0;
     op->exceeds = op->n && make_one_in(m, 6 * m->failing) ? 1 + make_below(m, op->n) : 0;
     op->pause = make_one_in(m, m->pausing) ? 1 + make_below(m, make_one_in(m, 4) ? 20000 : 500) : 0;

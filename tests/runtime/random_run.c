@@ -336,7 +336,18 @@ static int owner(const struct run *run, const struct prog_op *op)
     return 0;
 }
 
-/* Every task ran once, where it should; followers live with their leaders. */
+/* A replicated kernel's task runs everywhere, or, in a graph, where its result is read. */
+static void check_place(struct run *run, const struct prog_op *op, int ran)
+{
+    const int runs = run->answers->runs[op->number];
+    const int everywhere = run->prog->kernel[op->kernel].replicated;
+    const int should = everywhere || owner(run, op) == run->rank ? runs : 0;
+
+    if (everywhere && op->kind == PROG_GRAPH_FORK ? ran > should : ran != should)
+        found(run, "task %u ran %d times here, expected %d", op->number, ran, should);
+}
+
+/* Followers live with their leaders, tasks where they should. */
 static void check_places(struct run *run, const struct prog_context *context)
 {
     int rebound = 0; /* then its tasks may run on several ranks */
@@ -355,11 +366,7 @@ static void check_places(struct run *run, const struct prog_context *context)
             continue;
         if (op->kind == PROG_GRAPH_FORK && run->prog->n_ranks > 1 && rebound)
             continue;
-        const int ran = atomic_load(&context->ran[op->number]);
-        const int should = owner(run, op) == run->rank ? run->answers->runs[op->number] : 0;
-
-        if (ran != should)
-            found(run, "task %u ran %d times here, expected %d", op->number, ran, should);
+        check_place(run, op, atomic_load(&context->ran[op->number]));
     }
 }
 

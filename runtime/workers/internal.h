@@ -32,6 +32,7 @@ struct work_worker {
                                         woken */
     const struct graph_scope *waits; /* of the body that waits on top; NULL: none does */
     uint64_t within;                 /* ticks of tasks and idling inside the body that runs */
+    uint64_t gap;                    /* ticks between chained tasks, when last looked at */
     struct graph_task *next;         /* chained: to run directly after this one */
     uint64_t polled, idle_since;     /* when, in ticks; 0: busy */
     double pause;

@@ -35,6 +35,15 @@ struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end en
  * queue. */
 struct graph_task *work_queue_steal(struct work_queue *victim, struct work_queue *own);
 
+/* Anybody; a look without order. */
+static inline bool work_queue_is_empty(const struct work_queue *queue)
+{
+    return !atomic_load_explicit(&queue->inbox, memory_order_relaxed) &&
+           !atomic_load_explicit(&queue->heap.n, memory_order_relaxed) &&
+           atomic_load_explicit(&queue->deque.oldest, memory_order_relaxed) >=
+               atomic_load_explicit(&queue->deque.newest, memory_order_relaxed);
+}
+
 /* Are there tasks in the heap? Who finds another one at it goes away empty-handed, and may sleep:
  * whoever took a task and leaves some there wakes another. */
 static inline bool work_queue_ranks(struct work_queue *queue)

@@ -52,9 +52,13 @@ static struct work_ring *grow(struct work_deque *deque, struct work_ring *ring, 
     return larger;
 }
 
-bool work_deque_push(struct work_deque *deque, struct graph_task *task)
+int64_t work_deque_end(const struct work_deque *deque)
 {
-    int64_t newest = atomic_load_explicit(&deque->newest, memory_order_relaxed);
+    return atomic_load_explicit(&deque->newest, memory_order_relaxed);
+}
+
+bool work_deque_fill(struct work_deque *deque, int64_t newest, struct graph_task *task)
+{
     struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
     if (newest - deque->seen > (int64_t)ring->mask) {
         deque->seen = atomic_load_explicit(&deque->oldest, memory_order_acquire);
@@ -63,8 +67,21 @@ bool work_deque_push(struct work_deque *deque, struct graph_task *task)
             return false;
     }
     atomic_store_explicit(&ring->slot[(uint64_t)newest & ring->mask], task, memory_order_relaxed);
+    return true;
+}
+
+void work_deque_show(struct work_deque *deque, int64_t newest)
+{
     /* Sequentially consistent: whoever pushes looks for sleepers next. */
-    atomic_exchange_explicit(&deque->newest, newest + 1, memory_order_seq_cst);
+    atomic_exchange_explicit(&deque->newest, newest, memory_order_seq_cst);
+}
+
+bool work_deque_push(struct work_deque *deque, struct graph_task *task)
+{
+    int64_t newest = work_deque_end(deque);
+    if (!work_deque_fill(deque, newest, task))
+        return false;
+    work_deque_show(deque, newest + 1);
     return true;
 }
 

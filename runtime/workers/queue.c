@@ -49,11 +49,18 @@ static struct graph_task *empty_inbox(struct work_queue *queue)
     return oldest;
 }
 
+/* A list, oldest first. What finds no memory for a larger ring goes to the inbox, which has no
+ * bound. */
 static void push_all(struct work_queue *queue, struct graph_task *task)
 {
+    int64_t newest = work_deque_end(&queue->deque);
+    for (; task && work_deque_fill(&queue->deque, newest, task); newest++)
+        task = task->next;
+    if (newest != work_deque_end(&queue->deque))
+        work_deque_show(&queue->deque, newest);
     while (task) {
         struct graph_task *next = task->next;
-        work_queue_push(queue, task);
+        work_queue_put(queue, task);
         task = next;
     }
 }

@@ -118,7 +118,7 @@ static int read_value(struct duite_call_private *body, struct data_version *vers
     if (!data_version_ready(version))
         return broken(body);
     graph_close_segment(scope);
-    if (version->failure)
+    if (version->poisoned)
         return graph_failure_error(body->graph, version->failure);
     *bytes = version->packet->bytes;
     if (values)

@@ -27,7 +27,7 @@
 #endif
 
 enum {
-    GRAIN = 16,
+    GRAIN = 8,
     LARGEST = 1536, /* bytes of a block */
     N_SIZES = LARGEST / GRAIN + 1,
     AHEAD = 2,
@@ -113,10 +113,10 @@ static bool take_region(void)
     return true;
 }
 
-/* Blocks of whole cache lines begin with one. */
+/* Blocks of whole cache lines begin with one, all others with a multiple of 16 bytes. */
 static void *cut(size_t bytes)
 {
-    size_t align = bytes % BASE_LINE ? GRAIN : BASE_LINE;
+    size_t align = bytes % BASE_LINE ? 2 * GRAIN : BASE_LINE;
     for (;;) {
         size_t skip = -(uintptr_t)region % align;
         if ((size_t)(region_end - region) >= skip + bytes) {
@@ -145,6 +145,17 @@ static void leave_region(void)
 
 /* ---- Magazines ---- */
 
+/* Blocks of an odd number of grains come in pairs, so that nothing is lost between them and others.
+ */
+static void *new_block(size_t size)
+{
+    size_t bytes = size * GRAIN;
+    char *block = cut(size % 2 ? 2 * bytes : bytes);
+    if (block && size % 2)
+        base_pool_give(block + bytes, bytes);
+    return block;
+}
+
 static void *take_from_store(size_t size)
 {
     struct shelf *shelf = &shelves[size];
@@ -158,7 +169,7 @@ static void *take_from_store(size_t size)
     }
     release();
     if (!full)
-        return cut(size * GRAIN);
+        return new_block(size);
     shelf->spare = shelf->loaded;
     shelf->loaded = full;
     return full->block[--full->n];

@@ -7,8 +7,8 @@
  * messages. Each thread keeps some of each size at hand; whole batches move between threads. The
  * general allocator locks here, and a futex costs more than a task. */
 
-/* size bytes, aligned to a cache line if they are whole lines, else to 16 bytes; not cleared; NULL
- * without memory. */
+/* size bytes, not cleared, aligned to a cache line if they are whole lines, to 16 bytes if they are
+ * a multiple of that, else to 8. NULL without memory. */
 void *base_pool_take(size_t size);
 /* Gives back what was taken with the same size, on any thread. NULL is fine. */
 void base_pool_give(void *memory, size_t size);

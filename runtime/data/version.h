@@ -28,15 +28,17 @@ struct data_version {
         waiters; /* tasks that want to read; DATA_PRODUCED once they may */
     _Atomic uint32_t holds;
     bool sized, renamed; /* its size is its own; other bytes took its place, see rename_bytes */
+    bool poisoned;       /* in place of bytes; set before it is produced */
     uint8_t type;
     size_t most; /* elements there may be; there are as many, or fewer if it is sized */
     union {      /* set before the object's hold is released */
         struct data_waiter *heir;
         _Atomic uint64_t *rename_bytes; /* renamed: there its room is counted until it dies */
     };
-    struct data_packet
-        *packet; /* NULL: no bytes yet; they are undefined, or the version is poisoned */
-    const struct data_failure *failure; /* poison, or NULL; set before it is produced */
+    union {
+        struct data_packet *packet;         /* NULL: no bytes yet; they are undefined */
+        const struct data_failure *failure; /* poisoned: why; never NULL */
+    };
 };
 
 /* In place of a list of waiters: the value is there. */
@@ -65,6 +67,21 @@ static inline size_t data_version_room(const struct data_version *version)
 {
     return version->most * data_type_size((duite_type)version->type);
 }
+
+/* Why there are no bytes, or NULL. */
+static inline const struct data_failure *data_version_failure(const struct data_version *version)
+{
+    return version->poisoned ? version->failure : NULL;
+}
+
+/* The bytes; NULL: none yet, or it is poisoned. */
+static inline struct data_packet *data_version_packet(const struct data_version *version)
+{
+    return version->poisoned ? NULL : version->packet;
+}
+
+/* Puts poison in place of the bytes, which are freed; failure NULL: changes nothing. */
+void data_version_poison(struct data_version *version, const struct data_failure *failure);
 
 /* Lets `waiter` wait for the value. False if the value is there already: then nothing is kept, and
  * the producer's writes are seen. The caller holds it. */

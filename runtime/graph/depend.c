@@ -204,7 +204,7 @@ struct data_packet *graph_send_packet(struct graph_task *task)
     if (send->packet || !task->n)
         return send->packet;
     const struct data_version *version = task->access[0].in;
-    if (version->failure)
+    if (version->poisoned)
         return send->packet = graph_poison_packet(send->key, version->failure);
     /* The same bytes may be on their way to another rank already: then the header says just this.
      */

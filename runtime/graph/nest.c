@@ -322,7 +322,7 @@ static void give_zeros(const struct graph_exit *exit)
         data_packet_free(out->packet);
     out->packet = data_packet_new(exit->bytes, true);
     if (!out->packet)
-        out->failure = graph_fail(exit->scope->graph, &no_memory, true);
+        data_version_poison(out, graph_fail(exit->scope->graph, &no_memory, true));
 }
 
 struct data_waiter *graph_pass(void *worker, struct data_waiter *waiter)
@@ -330,10 +330,12 @@ struct data_waiter *graph_pass(void *worker, struct data_waiter *waiter)
     struct graph_exit *exit = (struct graph_exit *)waiter;
     struct graph_scope *scope = exit->scope;
     struct data_version *out = exit->out;
-    out->packet = exit->in->packet;
-    out->failure = data_first(exit->untouched ? NULL : exit->in->failure, exit->failure);
+    const struct data_failure *failure =
+        data_first(exit->untouched ? NULL : data_version_failure(exit->in), exit->failure);
+    out->packet = data_version_packet(exit->in);
     data_version_free(exit->in);
-    if (exit->untouched && !out->failure)
+    data_version_poison(out, failure);
+    if (exit->untouched && !failure)
         give_zeros(exit);
     struct data_waiter *heir = graph_produced(scope->graph, worker, out);
     graph_left(scope->graph, scope, worker);
@@ -348,7 +350,7 @@ static void give_back(struct graph_exit *exit, void *worker, struct data_object 
     exit->in = object->current;
     exit->failure = failure;
     if (!exit->in) {
-        exit->out->failure = failure;
+        data_version_poison(exit->out, failure);
         if (!failure)
             give_zeros(exit);
         graph_publish(scope->graph, worker, exit->out);

@@ -37,8 +37,8 @@ static void move_place(struct graph_plan *plan, struct graph_place *place, void 
 static bool bind(struct graph_plan *plan, struct graph_access *access, struct graph_place *place)
 {
     struct data_version *in = access->in;
-    struct data_packet *packet = in ? in->packet : NULL;
-    place->failure = in && place->mode != DUITE_W ? in->failure : NULL;
+    struct data_packet *packet = in ? data_version_packet(in) : NULL;
+    place->failure = in && place->mode != DUITE_W ? data_version_failure(in) : NULL;
     if (place->failure)
         atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
     if (place->mode != DUITE_R) {
@@ -117,7 +117,7 @@ static void end(struct graph *graph, void *worker, struct graph_plan *plan, uint
     struct graph_task *task = plan->replay;
     for (size_t i = 0; i < plan->n_objects; i++)
         if (task->access[i].out)
-            task->access[i].out->failure = plan->place[i].failure;
+            data_version_poison(task->access[i].out, plan->place[i].failure);
     atomic_store_explicit(&plan->rounds, rounds, memory_order_relaxed);
     atomic_fetch_add_explicit(&plan->over, 1, memory_order_release);
     graph->hooks.notify(graph->hooks.context);

@@ -26,8 +26,8 @@ static const struct data_failure *inherit(const struct graph_task *task,
     struct data_version *in = access->in, *out = access->out;
     bool keep = access->waiter.mode == DUITE_RW;
     if (in) {
-        out->packet = in->packet;
-        failure = keep ? in->failure : NULL;
+        out->packet = data_version_packet(in);
+        failure = keep ? data_version_failure(in) : NULL;
         data_version_free(in);
         access->in = NULL;
     }
@@ -42,7 +42,7 @@ static const struct data_failure *inherit(const struct graph_task *task,
 static void describe(duite_param *param, const struct data_version *version, bool fresh)
 {
     duite_type type = (duite_type)version->type;
-    struct data_packet *packet = version->packet;
+    struct data_packet *packet = data_version_packet(version);
     param->data = packet ? data_payload(packet) : NULL;
     param->count =
         version->sized && packet && !fresh ? packet->bytes / data_type_size(type) : version->most;
@@ -78,7 +78,7 @@ static const struct data_failure *prepare(struct graph_task *task, duite_param *
         struct graph_access *access = &task->access[i];
         switch (access->waiter.mode) {
         case DUITE_R:
-            new = access->in->failure;
+            new = data_version_failure(access->in);
             describe(&param[i], access->in, false);
             break;
         case DUITE_W:
@@ -108,12 +108,12 @@ static void poison(struct graph_task *task, const struct data_failure *failure)
         struct graph_access *access = &task->access[i];
         struct data_version *out = graph_written(access);
         if (out && access->in) {
-            out->packet = access->in->packet;
+            out->packet = data_version_packet(access->in);
             data_version_free(access->in);
             access->in = NULL;
         }
         if (out)
-            out->failure = failure;
+            data_version_poison(out, failure);
         if (access->waiter.mode == DUITE_CW)
             access->leaf->failure = failure;
     }
@@ -179,11 +179,12 @@ const struct data_failure *graph_given_up(struct graph *graph)
 static void run_view(struct graph_task *task)
 {
     struct data_version *in = task->access[0].in, *out = task->access[1].out;
-    const struct data_failure *failure = data_first(in->failure, inherit(task, &task->access[1]));
+    const struct data_failure *failure =
+        data_first(data_version_failure(in), inherit(task, &task->access[1]));
     if (!failure)
         data_view_gather(task->view, data_type_size((duite_type)in->type), data_payload(in->packet),
                          data_payload(out->packet));
-    out->failure = failure;
+    data_version_poison(out, failure);
     data_view_release(task->view);
 }
 
@@ -191,10 +192,10 @@ static void run_copy(struct graph *graph, struct graph_task *task)
 {
     struct graph_copy *copy = task->copy;
     const struct data_version *version = task->access[0].in;
-    copy->failure = version->failure;
-    if (!version->failure)
+    copy->failure = data_version_failure(version);
+    if (!copy->failure)
         copy->bytes = version->packet->bytes;
-    if (!version->failure && copy->values)
+    if (!copy->failure && copy->values)
         memcpy(copy->values, data_payload(version->packet), copy->bytes);
     atomic_store_explicit(&copy->done, 1, memory_order_release);
     graph->hooks.notify(graph->hooks.context);
@@ -321,7 +322,7 @@ void graph_over(struct graph *graph, void *worker, struct graph_task *task)
 
 void graph_lost(struct graph *graph, void *worker, struct data_version *version)
 {
-    version->failure = &lost;
+    data_version_poison(version, &lost);
     graph_publish(graph, worker, version);
 }
 
@@ -335,7 +336,7 @@ void graph_arrived(struct graph *graph, void *worker, struct data_version *versi
                    struct data_packet *packet)
 {
     if (packet->kind == DATA_POISON) {
-        version->failure = graph_fail(graph, data_payload(packet), false);
+        data_version_poison(version, graph_fail(graph, data_payload(packet), false));
         data_packet_free(packet);
     } else {
         version->packet = packet;

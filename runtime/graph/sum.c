@@ -186,12 +186,11 @@ void graph_run_combine(struct graph_task *task)
     size_t n;
     int code;
     const struct data_failure *failure = data_sum_reduce(sum->sum, &pieces, &n, &code);
-    out->packet = in->packet;
-    out->failure = data_first(in->failure, failure);
+    out->packet = data_version_packet(in);
+    failure = code ? graph_fail_memory(task) : data_first(data_version_failure(in), failure);
     data_version_free(in);
-    if (code)
-        out->failure = graph_fail_memory(task);
-    if (!out->failure)
+    data_version_poison(out, failure);
+    if (!failure)
         data_sum_finish(sum->sum, pieces, n, data_payload(out->packet));
     base_free(pieces);
     data_sum_free(sum->sum);

@@ -20,13 +20,13 @@ double flow_now(void)
 
 const duite_kernel *const *flow_kernels(void)
 {
-    static const duite_kernel *const all[] = {&flow_ready,     &flow_initial,     &flow_force,
-                                              &flow_explicit,  &flow_implicit,    &flow_matrix,
-                                              &flow_start,     &flow_matvec,      &flow_update,
-                                              &flow_direction, &flow_velocity_dv, &flow_velocity_a,
-                                              &flow_position,  &flow_collide,     &flow_status,
-                                              &flow_frame,     &flow_stretch,     &flow_most,
-                                              &flow_seconds,   &flow_tell,        NULL};
+    static const duite_kernel *const all[] = {&flow_ready,    &flow_initial,     &flow_force,
+                                              &flow_explicit, &flow_implicit,    &flow_matrix,
+                                              &flow_begin,    &flow_start,       &flow_pass,
+                                              &flow_scalars,  &flow_velocity_dv, &flow_velocity_a,
+                                              &flow_position, &flow_collide,     &flow_status,
+                                              &flow_frame,    &flow_stretch,     &flow_most,
+                                              &flow_seconds,  &flow_tell,        NULL};
     return all;
 }
 
@@ -165,7 +165,10 @@ static int run_begin(struct flow_state *state)
             flow->room[3 * v + c] = flow->start[v][c];
     state->begun = true;
     flow_objects_make(state);
-    return DUITE_OK;
+    if (flow->model->integrator == MODEL_EXPLICIT_EULER)
+        return DUITE_OK;
+    const int failed = flow_far_make(state);
+    return failed ? failed : flow_cg_record(state);
 }
 
 /* All steps, or until a stop that was asked for has had its frame. */
@@ -215,8 +218,6 @@ static const char *own_sentence(const char *message, int code)
  * travels with a failure. */
 static const char *reason(const struct flow_state *state, int code)
 {
-    if (state->text[0])
-        return state->text;
     if (code == FLOW_NOT_WRITTEN && state->flow->trouble.code)
         return state->flow->trouble.text;
     return code > 0 ? own_sentence(duite_message(), code) : duite_message();

@@ -2,6 +2,7 @@
 #define CLOTH_SOLVE_BLOCK_H
 
 #include "cloth/physics/vec.h"
+#include "cloth/solve/cg.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -20,33 +21,20 @@ struct solve_block {
     const uint32_t *column; /* row[n]: the higher end of each inner spring */
 };
 
-/* Springs into one other block: `own` the row here, `other` the row in the array of the neighbour.
- */
+/* Springs into other blocks: `own` the row here, `other` the row in an array of copies. */
 struct solve_cut {
     size_t n;
     const uint32_t (*end)[2]; /* n: own, other */
 };
 
-/* q = sum over the springs into one other block; q is added to, and zeroed by the caller before the
- * first. */
+/* q = sum over the springs into other blocks; q is added to, and zeroed by the caller before. */
 void solve_matvec_cut(const struct solve_cut *cut, const phys_vec *value, const phys_vec *p,
                       const phys_vec *p_other, phys_vec *q);
 
 /* Adds inner springs and the diagonal to q, which holds the cut springs' part, and filters: q = S A
- * p. value: row[n], of the inner springs. Returns p . q. */
-double solve_matvec(const struct solve_block *block, const phys_vec *value, const phys_vec *p,
-                    phys_vec *q);
-
-/* dv = 0, r = p = S b. Returns r . r. */
-double solve_start(size_t n, const double *free, const phys_vec *b, phys_vec *dv, phys_vec *r,
-                   phys_vec *p);
-
-/* dv += alpha p, r -= alpha q. Returns r . r. */
-double solve_update(size_t n, double alpha, const phys_vec *p, const phys_vec *q, phys_vec *dv,
-                    phys_vec *r);
-
-/* p = r + beta p. */
-void solve_direction(size_t n, double beta, const phys_vec *r, phys_vec *p);
+ * p. value: row[n], of the inner springs. Writes the dots p.q, r.q and q.q (cloth/solve/cg.h). */
+void solve_matvec(const struct solve_block *block, const phys_vec *value, const phys_vec *p,
+                  const phys_vec *r, phys_vec *q, double dots[SOLVE_DOTS]);
 
 /* Adds the sum over the free rows of b - A dv to lost[3] (kg m/s), for a dv that is zero where
  * particles are held. The springs between free rows cancel in this sum, wherever their ends are;

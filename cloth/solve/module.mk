@@ -1,1 +1,3 @@
-libduite_cloth_la_SOURCES += cloth/solve/block.c cloth/solve/block.h
+libduite_cloth_la_SOURCES += \
+    cloth/solve/block.c cloth/solve/block.h \
+    cloth/solve/cg.c cloth/solve/cg.h

@@ -4,7 +4,8 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless tests/whole/same_hash
 scene=$srcdir/cloth/scenes/sheet.yaml
-small='cloths[0].mesh.grid.nx=40 cloths[0].mesh.grid.ny=40 grain=100 time.end=0.001'
+# Gravity aside, or the first step of a flat sheet would end after as many iterations as there are masses: four.
+small='cloths[0].mesh.grid.nx=40 cloths[0].mesh.grid.ny=40 grain=100 time.end=0.001 gravity=[4,-9.81,2] solver.stop.relative=0.3'
 
 plan_later
 if test "${DUITE_LONG:-}" = 1; then

@@ -256,6 +256,7 @@ int flow_tables_make(struct flow_tables *tables, const struct flow_particles *pa
         place_particles(tables, particles, blocks, h);
         number_rims(tables, side, n_sides, rim_of);
         fill_blocks(tables, springs, side, n_sides, rim_of);
+        code = flow_copies_make(tables, error);
     }
     free(side);
     free(rim_of);
@@ -281,6 +282,9 @@ void flow_tables_free(struct flow_tables *t)
     free(t->rim);
     free(t->slot);
     free(t->cut);
+    free(t->copies);
+    free(t->copy);
+    free(t->copy_end);
     free(t->stiffness);
     free(t->damping);
     free(t->length);

@@ -6,6 +6,8 @@
 #include "cloth/physics/spring.h"
 #include "cloth/solve/block.h"
 
+#include <stdbool.h>
+
 /* What does not change during a run, for all blocks, on every rank. All cloths of a model together:
  * vertices are numbered cloth after cloth in the input's order, places block after block
  * (cloth/mesh/blocks.h). */
@@ -62,6 +64,10 @@ struct flow_table {
     uint32_t n_rim;           /* rows that any neighbour needs, */
     const uint32_t *rim;      /* n_rim: ascending */
     const uint32_t (*end)[2]; /* inner: rows; cut: row here, place in the neighbour's rim */
+    uint32_t n_copies;        /* rows that the cut springs end at, neighbour after neighbour */
+    const uint32_t *copies;   /* n_slots + 1: those of slot s are copies[s] .. */
+    const uint32_t *copy;     /* n_copies: places in the neighbour's rim */
+    const uint32_t (*copy_end)[2]; /* cut springs: row here, number of the copy */
     const double *stiffness, *damping, *length;
     const unsigned char *stretch;
     struct solve_block matrix;
@@ -77,6 +83,7 @@ struct flow_tables {
     double *mass, *drag, *free, *diagonal;
     phys_vec *load, *position, *velocity;
     uint32_t (*end)[2], (*held)[2], *row, *column, *rim, *slot, *cut;
+    uint32_t *copies, *copy, (*copy_end)[2];
     double *stiffness, *damping, *length;
     unsigned char *stretch;
 };
@@ -86,6 +93,9 @@ int flow_tables_make(struct flow_tables *tables, const struct flow_particles *pa
                      const struct flow_springs *springs, const struct mesh_blocks *blocks, double h,
                      struct cloth_error *error);
 void flow_tables_free(struct flow_tables *tables);
+
+/* The part of it that finds the copies, when all else is there. Error: CLOTH_E_MEMORY. */
+int flow_copies_make(struct flow_tables *tables, struct cloth_error *error);
 
 /* The inner springs of a block; those into neighbour slot s. */
 static inline struct phys_springs flow_table_springs(const struct flow_table *t, uint32_t from,

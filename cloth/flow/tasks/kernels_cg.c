@@ -1,81 +1,125 @@
-/* Conjugate gradients, a body a block and vector operation. Scalars are shared objects: every body
- * reads the same bits and decides the same. */
+/* Conjugate gradients, a body a block and pass (cloth/solve/cg.h). Factors and what comes next are
+ * a shared object: every body reads the same bits and does the same. A block keeps copies of r and
+ * p of the rows that its cut springs need, and changes them as their owner does: of a neighbour it
+ * reads rows of q only. */
 #include "cloth/flow/tasks/bodies.h"
 
+#include <math.h>
 #include <string.h>
+
+static int begin(const duite_call *call)
+{
+    *duite_out(call, 0, struct solve_scalars) = solve_scalars_start(flow_args_of(call)->step);
+    return 0;
+}
+const duite_kernel flow_begin = {.name = "cg_begin",
+                                 .body = begin,
+                                 .access = {DUITE_W},
+                                 .args_size = sizeof(struct flow_args),
+                                 .replicated = 1};
+
+/* Three numbers a row; one, which nobody reads, if there are no rows. */
+static void write_rim(const struct flow_table *t, const phys_vec *q, double *rim)
+{
+    solve_pack(t->n_rim, t->rim, q, rim);
+    if (!t->n_rim)
+        rim[0] = 0;
+}
 
 static int start(const duite_call *call)
 {
     const struct flow_table *t = flow_table_of(call);
-    phys_vec *p = duite_out(call, 3, phys_vec);
-    *duite_out(call, 5, double) =
-        solve_start(t->n, t->free, duite_in(call, 0, phys_vec), duite_out(call, 1, phys_vec),
-                    duite_out(call, 2, phys_vec), p);
-    flow_write_rim(t, p, duite_out(call, 4, phys_vec));
+    phys_vec *q = duite_out(call, 4, phys_vec);
+    solve_start(t->n, t->free, duite_in(call, 0, phys_vec), duite_out(call, 1, phys_vec),
+                duite_out(call, 2, phys_vec), duite_out(call, 3, phys_vec), q);
+    memset(duite_out(call, 5, phys_vec), 0, duite_count(call, 5) * sizeof(double));
+    write_rim(t, q, duite_out(call, 6, double));
     return 0;
 }
 FLOW_TIMED(start, FLOW_CG)
-const duite_kernel flow_start = {.name = "cg_start",
-                                 .body = start_timed,
-                                 .access = {DUITE_R, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_CW},
-                                 .args_size = sizeof(struct flow_args)};
-
-static int matvec(const duite_call *call)
-{
-    const struct flow_table *t = flow_table_of(call);
-    const phys_vec *p = duite_in(call, 0, phys_vec), *value = duite_in(call, 1, phys_vec);
-    phys_vec *q = duite_out(call, 2, phys_vec);
-    memset(q, 0, t->n * sizeof *q);
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        const uint32_t from = t->n_inner + t->cut[s];
-        const struct solve_cut cut = {t->cut[s + 1] - t->cut[s], t->end + from};
-        solve_matvec_cut(&cut, value + from, p, duite_in(call, 4 + s, phys_vec), q);
-    }
-    *duite_out(call, 3, double) = solve_matvec(&t->matrix, value, p, q);
-    return 0;
-}
-FLOW_TIMED(matvec, FLOW_CG)
-const duite_kernel flow_matvec = {.name = "cg_matvec",
-                                  .body = matvec_timed,
-                                  .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_CW},
-                                  .rest = DUITE_R,
-                                  .args_size = sizeof(struct flow_args)};
-
-/* Where r is nothing, nothing is left to do. */
-static int update(const duite_call *call)
-{
-    const struct flow_table *t = flow_table_of(call);
-    const double pq = *duite_in(call, 0, double), rho = *duite_in(call, 1, double);
-    const bool done = rho < FLOW_NOTHING;
-    if (!(pq > 0) && !done)
-        return duite_fail(call, FLOW_INDEFINITE,
-                          "step %u: conjugate gradients broke down (p.Ap = %g, r.r = %g): the "
-                          "matrix is not positive definite, or forces are beyond "
-                          "all measure",
-                          flow_args_of(call)->step + 1, pq, rho);
-    *duite_out(call, 6, double) = solve_update(
-        t->n, done ? 0 : rho / pq, duite_in(call, 2, phys_vec), duite_in(call, 3, phys_vec),
-        duite_out(call, 4, phys_vec), duite_out(call, 5, phys_vec));
-    return 0;
-}
-FLOW_TIMED(update, FLOW_CG)
-const duite_kernel flow_update = {
-    .name = "cg_update",
-    .body = update_timed,
-    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW, DUITE_CW},
+const duite_kernel flow_start = {
+    .name = "cg_start",
+    .body = start_timed,
+    .access = {DUITE_R, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W},
     .args_size = sizeof(struct flow_args)};
 
-static int direction(const duite_call *call)
+enum { A = 1, DV, R, P, Q, COPIES, RIM, SUMS, NEIGHBOURS }; /* parameters of a pass */
+
+static void advance_copies(const duite_call *call, const struct flow_table *t,
+                           const struct solve_scalars *scalars)
+{
+    phys_vec *r = duite_out(call, COPIES, phys_vec), *p = r + t->n_copies;
+    const uint32_t *at = flow_of(call)->at + (t->copy - flow_of(call)->tables.copy);
+    for (uint32_t s = 0; s < t->n_slots; s++) {
+        const uint32_t from = t->copies[s];
+        solve_advance_copies(t->copies[s + 1] - from, scalars->alpha, scalars->beta,
+                             duite_in(call, NEIGHBOURS + s, double), at + from, r + from, p + from);
+    }
+}
+
+static void multiply(const duite_call *call, const struct flow_table *t, double dots[SOLVE_DOTS])
+{
+    const phys_vec *value = duite_in(call, A, phys_vec), *p = duite_in(call, P, phys_vec);
+    phys_vec *q = duite_out(call, Q, phys_vec);
+    const struct solve_cut cut = {t->n_cut, t->copy_end};
+    memset(q, 0, t->n * sizeof *q);
+    solve_matvec_cut(&cut, value + t->n_inner, p, duite_in(call, COPIES, phys_vec) + t->n_copies,
+                     q);
+    solve_matvec(&t->matrix, value, p, duite_in(call, R, phys_vec), q, dots);
+    write_rim(t, q, duite_out(call, RIM, double));
+}
+
+static int pass(const duite_call *call)
 {
     const struct flow_table *t = flow_table_of(call);
-    const double rho_new = *duite_in(call, 0, double), rho = *duite_in(call, 1, double);
-    phys_vec *p = duite_out(call, 3, phys_vec);
-    solve_direction(t->n, rho < FLOW_NOTHING ? 0 : rho_new / rho, duite_in(call, 2, phys_vec), p);
-    flow_write_rim(t, p, duite_out(call, 4, phys_vec));
+    const struct solve_scalars *scalars = duite_in(call, 0, struct solve_scalars);
+    double *dots = duite_out(call, SUMS, double);
+    if (scalars->phase == SOLVE_DONE)
+        return 0;
+    dots[SOLVE_RR] = solve_advance(t->n, scalars->alpha, scalars->beta, duite_in(call, Q, phys_vec),
+                                   duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
+                                   duite_out(call, P, phys_vec));
+    if (scalars->phase == SOLVE_LAST)
+        return 0;
+    advance_copies(call, t, scalars);
+    multiply(call, t, dots);
     return 0;
 }
-FLOW_TIMED(direction, FLOW_CG)
-const duite_kernel flow_direction = {.name = "cg_direction",
-                                     .body = direction_timed,
-                                     .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W},
-                                     .args_size = sizeof(struct flow_args)};
+FLOW_TIMED(pass, FLOW_CG)
+const duite_kernel flow_pass = {.name = "cg_pass",
+                                .body = pass_timed,
+                                .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW,
+                                           DUITE_RW, DUITE_RW, DUITE_CW},
+                                .rest = DUITE_R,
+                                .args_size = sizeof(struct flow_args)};
+
+static struct solve_stop stop_of(const struct model *model)
+{
+    return (struct solve_stop){.count = model->stop == MODEL_STOP_COUNT,
+                               .relative = model->stop == MODEL_STOP_RELATIVE,
+                               .tolerance = model->tolerance,
+                               .most = model->max_iterations};
+}
+
+/* Of what is the same on every rank, the model too. */
+static int scalars(const duite_call *call)
+{
+    const struct solve_stop stop = stop_of(flow_of(call)->model);
+    struct solve_scalars *next = duite_out(call, 2, struct solve_scalars);
+    const int outcome = solve_scalars_next(&stop, duite_in(call, 0, double),
+                                           duite_in(call, 1, struct solve_scalars), next);
+    if (outcome == SOLVE_BREAKDOWN)
+        return duite_fail(call, FLOW_INDEFINITE,
+                          "step %.0f: conjugate gradients broke down (p.Ap = %g, r.r = %g): the "
+                          "matrix is not positive definite, or forces are beyond all measure",
+                          next->step + 1, next->curvature, next->square);
+    if (outcome == SOLVE_NOT_CONVERGED)
+        return duite_fail(call, FLOW_NOT_CONVERGED,
+                          "step %.0f: conjugate gradients stopped at a residual of %g after %.0f "
+                          "iterations, %g was asked for; allow more iterations, a larger tolerance "
+                          "or a smaller h",
+                          next->step + 1, sqrt(next->square), next->iterations, sqrt(next->wanted));
+    return 0;
+}
+const duite_kernel flow_scalars = {
+    .name = "cg_scalars", .body = scalars, .access = {DUITE_R, DUITE_R, DUITE_W}, .replicated = 1};

@@ -118,14 +118,18 @@ const duite_kernel flow_matrix = {.name = "matrix",
                                   .rest = DUITE_R,
                                   .args_size = ARGS};
 
-/* v += dv, and what the solve lost of the momentum. */
+/* v += dv, and what the solve took and lost of the momentum. A solve that failed leaves no scalars:
+ * then this does not run. */
 static int velocity_dv(const duite_call *call)
 {
     const struct flow_table *t = flow_table_of(call);
     const phys_vec *dv = duite_in(call, 2, phys_vec);
     phys_vec *v = duite_out(call, 3, phys_vec);
+    double *status = duite_out(call, 6, double);
     solve_lost(&t->matrix, &t->held, duite_in(call, 1, phys_vec), duite_in(call, 0, phys_vec), dv,
-               duite_out(call, 5, double) + FLOW_LOST);
+               status + FLOW_LOST);
+    if (flow_args_of(call)->block == 0)
+        status[FLOW_ITERATIONS] = duite_in(call, 5, struct solve_scalars)->iterations;
     phys_advance(t->n, 1, dv, v);
     flow_write_rim(t, v, duite_out(call, 4, phys_vec));
     return check(call, v, "velocity");
@@ -134,7 +138,7 @@ FLOW_TIMED(velocity_dv, FLOW_VELOCITY)
 const duite_kernel flow_velocity_dv = {
     .name = "velocity_implicit",
     .body = velocity_dv_timed,
-    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
+    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_R, DUITE_CW},
     .args_size = ARGS};
 
 /* v += h a. */

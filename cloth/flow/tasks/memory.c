@@ -31,6 +31,7 @@ static void take(struct flow_state *state)
     state->block = cloth_alloc(tables->n_blocks, sizeof *state->block, &flow->trouble);
     state->refs = cloth_alloc(refs, sizeof *state->refs, &flow->trouble);
     state->rows = cloth_alloc(larger(4 * rows, slots), sizeof *state->rows, &flow->trouble);
+    flow_far_take(state);
     if (duite_rank(state->rt) == 0)
         flow->room = cloth_alloc(flow->n_vertices, 6 * sizeof *flow->room, &flow->trouble);
 }
@@ -68,6 +69,7 @@ void flow_memory_free(struct flow_state *state)
     free(state->block);
     free(state->refs);
     free(state->rows);
+    flow_far_free(state);
     flow->clock = NULL;
     flow->room = NULL;
     state->block = NULL;

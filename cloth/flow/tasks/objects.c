@@ -4,12 +4,17 @@
 
 #include <stddef.h>
 
-/* Makes an object of some rows (at least one) beside a block's x. A failure is returned once more
- * by the next get. */
+/* Makes an object of some numbers (at least one) beside a block's x. A failure is returned once
+ * more by the next get. */
+static void make_numbers(duite *rt, size_t n, duite_object x, duite_object *object)
+{
+    duite_new(rt, DUITE_F64, n ? n : 1, object);
+    duite_follow(rt, *object, x);
+}
+
 static void make(duite *rt, size_t rows, duite_object x, duite_object *object)
 {
-    duite_new(rt, DUITE_F64, 4 * (rows ? rows : 1), object);
-    duite_follow(rt, *object, x);
+    make_numbers(rt, 4 * (rows ? rows : 1), x, object);
 }
 
 static void make_block(duite *rt, const struct flow_table *t, struct flow_objects *o)
@@ -24,9 +29,10 @@ static void make_block(duite *rt, const struct flow_table *t, struct flow_object
     make(rt, t->n, o->x, &o->q);
     make(rt, t->n_rim, o->x, &o->rim_x);
     make(rt, t->n_rim, o->x, &o->rim_v);
-    make(rt, t->n_rim, o->x, &o->rim_p);
-    duite_new(rt, DUITE_F64, 1, &o->stretch);
-    duite_follow(rt, o->stretch, o->x);
+    make(rt, 2 * (size_t)t->n_copies, o->x, &o->copies);
+    for (int i = 0; i < 2; i++)
+        make_numbers(rt, 3 * (size_t)t->n_rim, o->x, o->rim_q + i);
+    make_numbers(rt, 1, o->x, &o->stretch);
 }
 
 static void hint(struct flow_state *state, uint32_t b)
@@ -57,8 +63,8 @@ void flow_objects_make(struct flow_state *state)
     for (uint32_t b = 0; b < tables->n_blocks; b++)
         hint(state, b);
     for (int i = 0; i < 2; i++) {
-        make_shared(state, DUITE_F64, 1, state->pq + i);
-        make_shared(state, DUITE_F64, 1, state->rho + i);
+        make_shared(state, DUITE_F64, SOLVE_DOTS, state->sums + i);
+        make_shared(state, DUITE_F64, SOLVE_SCALARS, state->scalars + i);
         make_shared(state, DUITE_F64, FLOW_STATUS, state->status + i);
     }
     make_shared(state, DUITE_I64, 1, &state->token);
@@ -80,17 +86,20 @@ static int release(duite *rt, size_t n, const duite_object *object)
 
 int flow_objects_free(struct flow_state *state)
 {
-    int code = DUITE_OK;
+    int code = state->solve.generation ? duite_graph_free(state->rt, state->solve) : DUITE_OK;
+    const int unviewed = release(state->rt, state->far.n_views, state->far.view);
+    code = code ? code : unviewed;
     for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
         const struct flow_objects *o = state->block + b;
-        const duite_object all[] = {o->x, o->v, o->f,     o->a,     o->dv,    o->r,
-                                    o->p, o->q, o->rim_x, o->rim_v, o->rim_p, o->stretch};
+        const duite_object all[] = {o->x,     o->v,        o->f,        o->a,      o->dv,
+                                    o->r,     o->p,        o->q,        o->copies, o->rim_x,
+                                    o->rim_v, o->rim_q[0], o->rim_q[1], o->stretch};
         const int failed = release(state->rt, sizeof all / sizeof *all, all);
         code = code ? code : failed;
     }
-    const duite_object all[] = {state->pq[0],     state->pq[1],     state->rho[0], state->rho[1],
-                                state->status[0], state->status[1], state->token,  state->most,
-                                state->seconds,   state->told};
+    const duite_object all[] = {
+        state->sums[0],   state->sums[1], state->scalars[0], state->scalars[1], state->status[0],
+        state->status[1], state->token,   state->most,       state->seconds,    state->told};
     const int failed = release(state->rt, sizeof all / sizeof *all, all);
     return code ? code : failed;
 }

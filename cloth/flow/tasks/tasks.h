@@ -28,12 +28,8 @@ struct flow_clock {
     _Alignas(64) double seconds[FLOW_PARTS];
 };
 
-/* Codes of bodies that fail; the last one is the main program's. */
+/* Codes of bodies that fail. */
 enum { FLOW_DIVERGED = 1, FLOW_INDEFINITE, FLOW_NOT_WRITTEN, FLOW_NO_MEMORY, FLOW_NOT_CONVERGED };
-
-/* A residual with r.r below this ((kg m/s)^2) is zero: p.Ap is about r.r times a mass, and would
- * underflow before r.r does. */
-#define FLOW_NOTHING 1e-280
 
 struct flow {
     const struct model *model;
@@ -46,7 +42,8 @@ struct flow {
 
     /* Of the run that is on. */
     unsigned n_clocks;
-    struct flow_clock *clock;   /* a worker */
+    struct flow_clock *clock; /* a worker */
+    uint32_t *at; /* of each copy of all blocks: its place in what a pass reads of the neighbour */
     struct cloth_error trouble; /* of this rank: why it cannot begin, why a frame was not written;
                                  * changed by the main thread when no task runs, and by `frame` */
     atomic_int stop;            /* set by the main thread, read by the task `status` */
@@ -66,7 +63,12 @@ struct flow_args {
 };
 
 /* Indices into the status of a step, F64 x 8, zero before the step and summed by its tasks. */
-enum { FLOW_LOST = 0 /* three: sum of b - A dv over free rows */, FLOW_STOP = 3, FLOW_STATUS = 8 };
+enum {
+    FLOW_LOST = 0, /* three: sum of b - A dv over free rows */
+    FLOW_STOP = 3,
+    FLOW_ITERATIONS,
+    FLOW_STATUS = 8
+};
 /* Indices into what rank 0 tells, I64 x 2. */
 enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
 
@@ -78,24 +80,36 @@ extern const duite_kernel flow_force;    /* r x, r v, w f; rims of x, rims of v 
 extern const duite_kernel flow_explicit; /* rw f: acceleration */
 extern const duite_kernel flow_implicit; /* r x, r v, rw f: right-hand side; rims of x, rims of v */
 extern const duite_kernel flow_matrix;   /* r x, w a; rims of x */
-extern const duite_kernel flow_start;    /* r f, w dv, w r, w p, w rim of p, cw rho */
-extern const duite_kernel flow_matvec;   /* r p, r a, w q, cw pq; rims of p */
-extern const duite_kernel flow_update;   /* r pq, r rho, r p, r q, rw dv, rw r, cw new rho */
-extern const duite_kernel flow_direction;   /* r new rho, r rho, r r, rw p, w rim of p */
-extern const duite_kernel flow_velocity_dv; /* r f, r a, r dv, rw v, w rim of v, cw status */
-extern const duite_kernel flow_velocity_a;  /* r f, rw v, w rim of v, cw status */
-extern const duite_kernel flow_position;    /* r v, rw x, w rim of x, cw status */
-extern const duite_kernel flow_collide;     /* rw x, rw v, w rim of x, w rim of v */
-extern const duite_kernel flow_status;      /* cw status: on rank 0, whether a stop was asked for */
-extern const duite_kernel flow_frame;       /* rw token; x of all blocks: on rank 0 */
-extern const duite_kernel flow_stretch;     /* r x, w stretch; rims of x */
-extern const duite_kernel flow_most;        /* w stretch; stretch of all blocks */
-extern const duite_kernel flow_seconds;     /* cw seconds: of this rank */
-extern const duite_kernel flow_tell;        /* w told: what rank 0 knows */
+extern const duite_kernel flow_begin;    /* w scalars */
+extern const duite_kernel flow_start;    /* r f, w dv, w r, w p, w q, w copies, w rim of q */
+extern const duite_kernel flow_pass;     /* r scalars, r a, rw dv, rw r, rw p, rw q, rw copies, rw
+                                            rim of q, cw sums; the other rims of q, or views of them */
+extern const duite_kernel flow_scalars;  /* r sums, r scalars, w next scalars */
+extern const duite_kernel
+    flow_velocity_dv; /* r f, r a, r dv, rw v, w rim of v, r scalars, cw status */
+extern const duite_kernel flow_velocity_a; /* r f, rw v, w rim of v, cw status */
+extern const duite_kernel flow_position;   /* r v, rw x, w rim of x, cw status */
+extern const duite_kernel flow_collide;    /* rw x, rw v, w rim of x, w rim of v */
+extern const duite_kernel flow_status;     /* cw status: on rank 0, whether a stop was asked for */
+extern const duite_kernel flow_frame;      /* rw token; x of all blocks: on rank 0 */
+extern const duite_kernel flow_stretch;    /* r x, w stretch; rims of x */
+extern const duite_kernel flow_most;       /* w stretch; stretch of all blocks */
+extern const duite_kernel flow_seconds;    /* cw seconds: of this rank */
+extern const duite_kernel flow_tell;       /* w told: what rank 0 knows */
 
-/* Shared objects of a block. */
+/* Shared objects of a block. copies: r of its copies, then p. rim_q: three numbers a row. */
 struct flow_objects {
-    duite_object x, v, f, a, dv, r, p, q, rim_x, rim_v, rim_p, stretch;
+    duite_object x, v, f, a, dv, r, p, q, copies, rim_x, rim_v, rim_q[2], stretch;
+};
+
+/* What passes read of their neighbours' rims of q (far.c). */
+struct flow_far {
+    duite_object *read[2]; /* a neighbour of each block, block after block: rim_q[0], rim_q[1] */
+    duite_object *view;    /* n_views that were made */
+    size_t n_views;
+    int *home;        /* a block */
+    uint32_t *number; /* room for the rows of any rim, */
+    size_t *element;  /* and for its numbers */
 };
 
 /* A run as the main program sees it; the same on every rank. */
@@ -107,14 +121,14 @@ struct flow_state {
     struct flow_report *report;
     struct cloth_error *error;
     struct flow_objects *block;
-    duite_object pq[2], rho[2], status[2], token, most, seconds, told;
+    struct flow_far far;
+    duite_graph solve; /* a round of conjugate gradients */
+    duite_object sums[2], scalars[2], status[2], token, most, seconds, told;
     duite_object *refs; /* room for the objects of any task */
     double *rows;       /* room for the rows of any block, or a number for each neighbour */
     uint64_t next_frame;
-    uint64_t iterations; /* CG's, of the last step whose solve is done */
-    bool begun;          /* all ranks have their memory, objects are made */
-    bool stopping;       /* a stop was agreed: ends after the next frame */
-    char text[512];      /* why the main program itself gave up; empty: ask duite_message */
+    bool begun;    /* all ranks have their memory, objects are made */
+    bool stopping; /* a stop was agreed: ends after the next frame */
 };
 
 /* Functions of the main program. Collective. They return 0 or what duite returned, which flow_run
@@ -140,9 +154,16 @@ int flow_step(struct flow_state *state, uint64_t step);
 /* Waits for a step that was forked whole; adds what it says of itself to the report and shows it to
  * the program. */
 int flow_step_status(struct flow_state *state, uint64_t step);
-/* Solves for dv, waiting for all but the last tasks; the step before is waited for when the solve
- * has begun. */
+/* Records a round of the solve; once a run, when its objects are made. */
+int flow_cg_record(struct flow_state *state);
+/* Forks the solve for dv; the step before is waited for when it has begun. */
 int flow_cg(struct flow_state *state, uint64_t step);
+
+/* What a solve reads of neighbours: memory, a part of flow_memory_take; which object it is, when
+ * objects are made. */
+void flow_far_take(struct flow_state *state);
+void flow_far_free(struct flow_state *state);
+int flow_far_make(struct flow_state *state);
 
 /* The step after which a frame is written. */
 uint64_t flow_frame_step(const struct model *model, uint64_t frame);

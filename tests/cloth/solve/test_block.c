@@ -101,18 +101,20 @@ static void build(void)
     }
 }
 
-/* q = S A p over both halves; returns p . q. */
-static double matvec(const phys_vec *p, phys_vec *q)
+/* q = S A p over both halves; the dots, but for r . r, are added up. */
+static void matvec(const phys_vec *p, const phys_vec *r, phys_vec *q, double dots[SOLVE_DOTS])
 {
-    double dot = 0;
+    dots[SOLVE_PQ] = dots[SOLVE_RQ] = dots[SOLVE_QQ] = 0;
     memset(q, 0, N * sizeof *q);
     for (int s = 0; s < 2; s++) {
         const struct half *h = half + s;
+        double part[SOLVE_DOTS];
         phys_vec *own = q + s * ROWS;
         solve_matvec_cut(&h->cut, h->value + h->n_inner, p + s * ROWS, p + (1 - s) * ROWS, own);
-        dot += solve_matvec(&h->block, h->value, p + s * ROWS, own);
+        solve_matvec(&h->block, h->value, p + s * ROWS, r + s * ROWS, own, part);
+        for (int i = SOLVE_PQ; i < SOLVE_DOTS; i++)
+            dots[i] += part[i];
     }
-    return dot;
 }
 
 static double is_free(int dof)
@@ -129,22 +131,28 @@ static void random_vector(phys_vec *p)
 
 START_TEST(matvec_is_the_dense_product)
 {
-    phys_vec p[N], q[N];
+    phys_vec p[N], r[N], q[N];
+    double dots[SOLVE_DOTS];
     build();
     for (int trial = 0; trial < 20; trial++) {
         random_vector(p);
-        const double dot = matvec(p, q);
-        double sum = 0;
+        random_vector(r);
+        matvec(p, r, q, dots);
+        double pq = 0, rq = 0, qq = 0;
         for (int i = 0; i < DOFS; i++) {
             double y = 0;
             for (int j = 0; j < DOFS; j++)
                 y += dense[i][j] * p[j / 3][j % 3];
             y *= is_free(i);
-            sum += y * p[i / 3][i % 3];
+            pq += y * p[i / 3][i % 3];
+            rq += y * r[i / 3][i % 3];
+            qq += y * y;
             ck_assert_double_eq_tol(q[i / 3][i % 3], y, 1e-13);
         }
-        ck_assert_double_eq_tol(dot, sum, 1e-12);
-        ck_assert_double_gt(dot, 0);
+        ck_assert_double_eq_tol(dots[SOLVE_PQ], pq, 1e-12);
+        ck_assert_double_eq_tol(dots[SOLVE_RQ], rq, 1e-12);
+        ck_assert_double_eq_tol(dots[SOLVE_QQ], qq, 1e-11);
+        ck_assert_double_gt(pq, 0);
         for (int i = 0; i < N; i++)
             ck_assert_double_eq(q[i][3], 0);
     }
@@ -154,11 +162,12 @@ END_TEST
 START_TEST(matvec_is_symmetric)
 {
     phys_vec p[N], q[N], ap[N], aq[N];
+    double dots[SOLVE_DOTS];
     build();
     random_vector(p);
     random_vector(q);
-    matvec(p, ap);
-    matvec(q, aq);
+    matvec(p, q, ap, dots);
+    matvec(q, p, aq, dots);
     double one = 0, other = 0;
     for (int i = 0; i < N; i++) {
         one += phys_dot(q + i, ap + i);
@@ -172,12 +181,13 @@ END_TEST
 START_TEST(rigid_motion_feels_the_mass_alone)
 {
     phys_vec p[N], q[N];
+    double dots[SOLVE_DOTS];
     build();
     for (int i = 0; i < N; i++) {
         half[i / ROWS].free[i % ROWS] = 1;
         p[i] = (phys_vec){0.1, 0.7, -0.3, 0};
     }
-    matvec(p, q);
+    matvec(p, p, q, dots);
     for (int i = 0; i < N; i++)
         for (int c = 0; c < 3; c++)
             ck_assert_double_eq(q[i][c], half[i / ROWS].diagonal[i % ROWS] * p[i][c]);
@@ -211,25 +221,27 @@ static void eliminate(const phys_vec *b, double *x)
 }
 
 /* So many iterations of conjugate gradients from zero. Returns r . r. */
-static double iterate(const phys_vec *b, phys_vec *dv, int count)
+static double iterate(const phys_vec *b, phys_vec *dv, uint32_t count)
 {
     phys_vec r[N], p[N], q[N];
-    double rho = 0;
+    double dots[SOLVE_DOTS] = {0};
+    const struct solve_stop stop = {.count = true, .most = count};
+    struct solve_scalars scalars = solve_scalars_start(0);
     memset(dv, 0x55, N * sizeof *dv);
-    for (int s = 0; s < 2; s++) {
-        const int at = s * ROWS;
-        rho += solve_start(ROWS, half[s].free, b + at, dv + at, r + at, p + at);
+    for (int at = 0; at < N; at += ROWS)
+        solve_start(ROWS, half[at / ROWS].free, b + at, dv + at, r + at, p + at, q + at);
+    while (scalars.phase != SOLVE_DONE) {
+        const struct solve_scalars now = scalars;
+        dots[SOLVE_RR] = 0;
+        for (int at = 0; at < N; at += ROWS)
+            dots[SOLVE_RR] +=
+                solve_advance(ROWS, now.alpha, now.beta, q + at, dv + at, r + at, p + at);
+        if (now.phase == SOLVE_ON)
+            matvec(p, r, q, dots);
+        ck_assert_int_eq(solve_scalars_next(&stop, dots, &now, &scalars), SOLVE_OK);
     }
-    for (int k = 0; k < count; k++) {
-        const double alpha = rho / matvec(p, q), before = rho;
-        rho = 0;
-        for (int s = 0; s < 2; s++)
-            rho +=
-                solve_update(ROWS, alpha, p + s * ROWS, q + s * ROWS, dv + s * ROWS, r + s * ROWS);
-        for (int s = 0; s < 2; s++)
-            solve_direction(ROWS, rho / before, r + s * ROWS, p + s * ROWS);
-    }
-    return rho;
+    ck_assert_double_eq(scalars.iterations, count);
+    return scalars.square;
 }
 
 START_TEST(cg_solves)
@@ -256,7 +268,8 @@ START_TEST(lost_is_the_sum_of_the_residual)
     for (int i = 0; i < N; i++)
         b[i] = (phys_vec){draw(), draw(), draw(), 0};
     iterate(b, dv, 3);
-    matvec(dv, q);
+    double dots[SOLVE_DOTS];
+    matvec(dv, dv, q, dots);
     double lost[3] = {0}, sum[3] = {0};
     for (int s = 0; s < 2; s++)
         solve_lost(&half[s].block, &half[s].hold, half[s].value, b + s * ROWS, dv + s * ROWS, lost);
@@ -270,26 +283,6 @@ START_TEST(lost_is_the_sum_of_the_residual)
 }
 END_TEST
 
-/* The interleaved sums of the update cover every row, whatever the remainder by four. */
-START_TEST(update_at_every_size)
-{
-    for (size_t n = 0; n < 12; n++) {
-        phys_vec p[12] = {{0}}, q[12] = {{0}}, dv[12] = {{0}}, r[12] = {{0}};
-        for (size_t i = 0; i < n; i++) {
-            p[i] = (phys_vec){1, 2, 3, 0};
-            q[i] = (phys_vec){1, 1, 1, 0};
-            r[i] = (phys_vec){(double)i, 1, 3, 0};
-        }
-        double sum = 0;
-        for (size_t i = 0; i < n; i++)
-            sum += ((double)i - 2) * ((double)i - 2) + 1 + 1;
-        ck_assert_double_eq(solve_update(n, 2, p, q, dv, r), sum);
-        for (size_t i = 0; i < n; i++)
-            ck_assert(dv[i][2] == 6 && r[i][0] == (double)i - 2);
-    }
-}
-END_TEST
-
 int main(void)
 {
     Suite *suite = suite_create("block");
@@ -299,7 +292,6 @@ int main(void)
     tcase_add_test(cases, rigid_motion_feels_the_mass_alone);
     tcase_add_test(cases, cg_solves);
     tcase_add_test(cases, lost_is_the_sum_of_the_residual);
-    tcase_add_test(cases, update_at_every_size);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

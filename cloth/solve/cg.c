@@ -1,0 +1,127 @@
+/* Sums run in four interleaved parts, rows ascending; copies of rows see the same operations on the
+ * same numbers as the rows themselves, so that their bits stay equal. */
+#include "cloth/solve/cg.h"
+
+#include <math.h>
+#include <string.h>
+
+struct solve_scalars solve_scalars_start(double step)
+{
+    return (struct solve_scalars){.phase = SOLVE_ON, .alpha = 1, .step = step};
+}
+
+/* What is not a number is not small: then p.q is none either. The square of a small tolerance may
+ * be zero: then nothing is small enough. */
+static bool small_enough(double square, double wanted)
+{
+    return isfinite(square) && (square <= wanted || square < SOLVE_NOTHING);
+}
+
+static double wanted(const struct solve_stop *stop, double square)
+{
+    const double tolerance = stop->tolerance * stop->tolerance;
+    return stop->relative ? tolerance * square : tolerance;
+}
+
+/* alpha and beta of the next pass. Where r is nothing, nothing is left to do. */
+static int next_factors(const double dots[SOLVE_DOTS], struct solve_scalars *after)
+{
+    const double square = dots[SOLVE_RR], curvature = dots[SOLVE_PQ];
+    after->alpha = after->beta = 0;
+    if (square < SOLVE_NOTHING)
+        return SOLVE_OK;
+    if (!(curvature > 0))
+        return SOLVE_BREAKDOWN;
+    const double alpha = square / curvature;
+    const double next = square - 2 * alpha * dots[SOLVE_RQ] + alpha * alpha * dots[SOLVE_QQ];
+    after->alpha = alpha;
+    after->beta = next > 0 ? next / square : 0; /* what rounding leaves of nothing may be < 0 */
+    return SOLVE_OK;
+}
+
+int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
+                       const struct solve_scalars *before, struct solve_scalars *after)
+{
+    *after = *before;
+    if (before->phase == SOLVE_DONE)
+        return SOLVE_OK;
+    after->square = dots[SOLVE_RR];
+    after->curvature = dots[SOLVE_PQ];
+    after->phase = SOLVE_DONE;
+    if (before->phase == SOLVE_LAST)
+        return SOLVE_OK;
+    if (before->iterations == 0)
+        after->wanted = wanted(stop, after->square);
+    if (!stop->count && small_enough(after->square, after->wanted))
+        return SOLVE_OK;
+    if (before->iterations == stop->most)
+        return stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED;
+    after->iterations = before->iterations + 1;
+    after->phase = stop->count && after->iterations == stop->most ? SOLVE_LAST : SOLVE_ON;
+    return next_factors(dots, after);
+}
+
+PHYS_CLONES
+void solve_start(size_t n, const double *restrict free, const phys_vec *restrict b,
+                 phys_vec *restrict dv, phys_vec *restrict r, phys_vec *restrict p,
+                 phys_vec *restrict q)
+{
+    for (size_t a = 0; a < n; a++)
+        q[a] = -(free[a] * b[a]);
+    memset(dv, 0, n * sizeof *dv);
+    memset(r, 0, n * sizeof *r);
+    memset(p, 0, n * sizeof *p);
+}
+
+/* r and p of one row. */
+PHYS_INLINE void turn(double alpha, double beta, const phys_vec *q, phys_vec *r, phys_vec *p)
+{
+    const phys_vec left = *r - alpha * *q;
+    *r = left;
+    *p = left + beta * *p;
+}
+
+/* One row; its r * r is added to dot. */
+PHYS_INLINE void advance(size_t a, double alpha, double beta, const phys_vec *q, phys_vec *dv,
+                         phys_vec *r, phys_vec *p, phys_vec *dot)
+{
+    dv[a] += alpha * p[a];
+    turn(alpha, beta, q + a, r + a, p + a);
+    *dot += r[a] * r[a];
+}
+
+PHYS_CLONES
+double solve_advance(size_t n, double alpha, double beta, const phys_vec *restrict q,
+                     phys_vec *restrict dv, phys_vec *restrict r, phys_vec *restrict p)
+{
+    phys_vec dot[4] = {{0}};
+    size_t a = 0;
+    for (; a + 4 <= n; a += 4) {
+        advance(a, alpha, beta, q, dv, r, p, dot);
+        advance(a + 1, alpha, beta, q, dv, r, p, dot + 1);
+        advance(a + 2, alpha, beta, q, dv, r, p, dot + 2);
+        advance(a + 3, alpha, beta, q, dv, r, p, dot + 3);
+    }
+    for (; a < n; a++)
+        advance(a, alpha, beta, q, dv, r, p, dot + (a & 3));
+    const phys_vec all = (dot[0] + dot[2]) + (dot[1] + dot[3]);
+    return phys_lanes(&all);
+}
+
+PHYS_CLONES
+void solve_advance_copies(size_t n, double alpha, double beta, const double *restrict q,
+                          const uint32_t *restrict at, phys_vec *restrict r, phys_vec *restrict p)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double *row = q + 3 * (size_t)at[i];
+        const phys_vec value = {row[0], row[1], row[2], 0};
+        turn(alpha, beta, &value, r + i, p + i);
+    }
+}
+
+void solve_pack(size_t n, const uint32_t *at, const phys_vec *q, double *packed)
+{
+    for (size_t i = 0; i < n; i++)
+        for (size_t c = 0; c < 3; c++)
+            packed[3 * i + c] = q[at[i]][c];
+}

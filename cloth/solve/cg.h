@@ -1,0 +1,76 @@
+#ifndef CLOTH_SOLVE_CG_H
+#define CLOTH_SOLVE_CG_H
+
+#include "cloth/physics/vec.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Conjugate gradients on S A dv = S b from dv = 0, with one reduction an iteration. A pass over all
+ * rows ends an iteration and begins the next one:
+ *
+ *     dv += alpha p,  r -= alpha q,  p = r + beta p,  q = S A p,  and the dots r.r, p.q, r.q, q.q
+ *
+ * From the dots come alpha = r.r / p.q and beta, before the next r is there, by its square
+ * |r - alpha q|^2 = r.r - 2 alpha r.q + alpha^2 q.q. The recurrence that goes on from this number
+ * is unstable (Saad 1985); here it serves one iteration, and the next pass has the true r.r
+ * (Meurant 1987), so the residual is as good as that of the two-reduction form. What other ranks
+ * need of a pass, rows of q and dots, is known at one time. */
+
+/* What a pass sums. */
+enum { SOLVE_RR, SOLVE_PQ, SOLVE_RQ, SOLVE_QQ, SOLVE_DOTS };
+
+/* A residual with r.r below this ((kg m/s)^2) is zero: p.Ap is about r.r times a mass, and would
+ * underflow before r.r does. */
+#define SOLVE_NOTHING 1e-280
+
+/* When to stop. */
+struct solve_stop {
+    bool count;    /* after exactly `most` iterations, without a look at the residual */
+    bool relative; /* tolerance is against |S b|, else absolute (kg m/s) */
+    double tolerance;
+    uint32_t most; /* a solve that needs more iterations has failed */
+};
+
+/* What the next pass does. Numbers are doubles: the structure is a shared object. */
+enum { SOLVE_DONE, SOLVE_LAST /* dv and r only */, SOLVE_ON };
+struct solve_scalars {
+    double phase; /* first: not zero while there is something to do */
+    double alpha, beta;
+    double iterations; /* that dv has had after the next pass; at the end: those of the solve */
+    double wanted;     /* (kg m/s)^2: r.r at which to stop */
+    double square;     /* r.r of the last pass */
+    double curvature;  /* p.q of the last pass */
+    double step;       /* the caller's */
+};
+enum { SOLVE_SCALARS = sizeof(struct solve_scalars) / sizeof(double) };
+
+/* Before the first pass. */
+struct solve_scalars solve_scalars_start(double step);
+
+/* From the dots of a pass, what the next one does. Returns SOLVE_OK; or why there is none: p.Ap is
+ * not positive, or so many iterations were not enough. `after` says in any case with what numbers.
+ */
+enum { SOLVE_OK, SOLVE_BREAKDOWN, SOLVE_NOT_CONVERGED };
+int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
+                       const struct solve_scalars *before, struct solve_scalars *after);
+
+/* Vectors of a block before the first pass, n rows: dv = r = p = 0, q = - S b. With alpha = 1 and
+ * beta = 0 the first pass makes r = p = S b of them. */
+void solve_start(size_t n, const double *free, const phys_vec *b, phys_vec *dv, phys_vec *r,
+                 phys_vec *p, phys_vec *q);
+
+/* The first half of a pass: dv += alpha p, r -= alpha q, p = r + beta p. Returns r.r. */
+double solve_advance(size_t n, double alpha, double beta, const phys_vec *q, phys_vec *dv,
+                     phys_vec *r, phys_vec *p);
+
+/* The same for copies of another block's rows, to the same bits: r and p of n rows, row i has its q
+ * in q[3 at[i]] and the two numbers behind it. */
+void solve_advance_copies(size_t n, double alpha, double beta, const double *q, const uint32_t *at,
+                          phys_vec *r, phys_vec *p);
+
+/* Rows at[0] .. at[n - 1] of q, three numbers each, for the neighbours. */
+void solve_pack(size_t n, const uint32_t *at, const phys_vec *q, double *packed);
+
+#endif

@@ -1,0 +1,212 @@
+/* The vectors of a pass row by row, the factors against those of the two-reduction form on a system
+ * of diagonal matrix, and each way a solve ends. */
+#include "cloth/solve/cg.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { N = 24 };
+
+/* The interleaved sums cover every row, whatever the remainder by four. */
+START_TEST(advance_at_every_size)
+{
+    for (size_t n = 0; n < 12; n++) {
+        phys_vec p[12] = {{0}}, q[12] = {{0}}, dv[12] = {{0}}, r[12] = {{0}};
+        for (size_t i = 0; i < n; i++) {
+            p[i] = (phys_vec){1, 2, 3, 0};
+            q[i] = (phys_vec){1, 1, 1, 0};
+            r[i] = (phys_vec){(double)i, 1, 3, 0};
+        }
+        double sum = 0;
+        for (size_t i = 0; i < n; i++)
+            sum += ((double)i - 2) * ((double)i - 2) + 1 + 1;
+        ck_assert_double_eq(solve_advance(n, 2, 0.5, q, dv, r, p), sum);
+        for (size_t i = 0; i < n; i++)
+            ck_assert(dv[i][2] == 6 && r[i][0] == (double)i - 2 && p[i][0] == (double)i - 1.5);
+    }
+}
+END_TEST
+
+/* What a neighbour sees of some rows, through packed numbers in another order, has their bits. */
+START_TEST(copies_keep_the_bits)
+{
+    static const uint32_t rim[] = {1, 4, 5, 7}, at[] = {3, 0, 2};
+    phys_vec p[8], q[8], dv[8] = {{0}}, r[8], copy_r[3], copy_p[3];
+    double packed[12];
+    for (int i = 0; i < 8; i++) {
+        p[i] = (phys_vec){sqrt(i + 2), 1.0 / (i + 3), 0.1 * i, 0};
+        q[i] = (phys_vec){1.0 / (i + 1), sqrt(i), -0.7, 0};
+        r[i] = (phys_vec){0.3, -i / 7.0, sqrt(3 * i), 0};
+    }
+    for (int i = 0; i < 3; i++) {
+        copy_r[i] = r[rim[at[i]]];
+        copy_p[i] = p[rim[at[i]]];
+    }
+    solve_pack(4, rim, q, packed);
+    solve_advance_copies(3, 0.123, 0.77, packed, at, copy_r, copy_p);
+    solve_advance(8, 0.123, 0.77, q, dv, r, p);
+    for (int i = 0; i < 3; i++) {
+        ck_assert_int_eq(memcmp(copy_r + i, r + rim[at[i]], sizeof *r), 0);
+        ck_assert_int_eq(memcmp(copy_p + i, p + rim[at[i]], sizeof *p), 0);
+    }
+}
+END_TEST
+
+/* A system with a diagonal matrix whose entries lie far apart. */
+static double entry(int i)
+{
+    return 1 + i * i;
+}
+
+struct run {
+    phys_vec dv[N], r[N], p[N], q[N];
+    struct solve_scalars scalars;
+};
+
+static void start(struct run *run, double size)
+{
+    double free[N];
+    phys_vec b[N];
+    for (int i = 0; i < N; i++) {
+        free[i] = i % 5 != 0;
+        b[i] = (phys_vec){size, size * sin(i), size / (i + 1), 0};
+    }
+    memset(run, 0x55, sizeof *run);
+    run->scalars = solve_scalars_start(11);
+    solve_start(N, free, b, run->dv, run->r, run->p, run->q);
+}
+
+/* A pass. Returns what solve_scalars_next does. */
+static int pass(struct run *run, const struct solve_stop *stop, double sign)
+{
+    const struct solve_scalars now = run->scalars;
+    double dots[SOLVE_DOTS] = {0};
+    dots[SOLVE_RR] = solve_advance(N, now.alpha, now.beta, run->q, run->dv, run->r, run->p);
+    for (int i = 0; i < N; i++) {
+        run->q[i] = sign * entry(i) * run->p[i];
+        dots[SOLVE_PQ] += phys_dot(run->p + i, run->q + i);
+        dots[SOLVE_RQ] += phys_dot(run->r + i, run->q + i);
+        dots[SOLVE_QQ] += phys_dot(run->q + i, run->q + i);
+    }
+    return solve_scalars_next(stop, dots, &now, &run->scalars);
+}
+
+/* One pass more than iterations; where their count is known, the last one needs no product. */
+static int solve(struct run *run, const struct solve_stop *stop, double size)
+{
+    int code = SOLVE_OK;
+    unsigned passes = 0;
+    double phase = SOLVE_ON;
+    start(run, size);
+    for (; run->scalars.phase != SOLVE_DONE && !code; passes++) {
+        phase = run->scalars.phase;
+        code = pass(run, stop, 1);
+    }
+    ck_assert_double_eq(phase, stop->count && stop->most ? SOLVE_LAST : SOLVE_ON);
+    ck_assert_double_eq(run->scalars.iterations + 1, passes);
+    ck_assert_double_eq(run->scalars.step, 11);
+    return code;
+}
+
+/* alpha and beta from the squares of residuals that are there. */
+START_TEST(factors_are_those_of_two_reductions)
+{
+    struct run run;
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-8, .most = 100};
+    start(&run, 1);
+    ck_assert_int_eq(pass(&run, &stop, 1), SOLVE_OK);
+    for (int k = 0; k < 12; k++) {
+        const struct solve_scalars now = run.scalars;
+        ck_assert_double_eq_tol(now.alpha, now.square / now.curvature, 1e-15 * now.alpha);
+        ck_assert_int_eq(pass(&run, &stop, 1), SOLVE_OK);
+        const double beta = run.scalars.square / now.square;
+        ck_assert_double_eq_tol(now.beta, beta, 1e-12 * beta);
+    }
+}
+END_TEST
+
+START_TEST(the_residual_is_true)
+{
+    struct run run;
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-13, .most = 1000};
+    ck_assert_int_eq(solve(&run, &stop, 1), SOLVE_OK);
+    ck_assert_double_le(run.scalars.square, run.scalars.wanted);
+    for (int i = 0; i < N; i++) {
+        const double free = i % 5 != 0;
+        const double b[3] = {free, free * sin(i), free / (i + 1)};
+        for (int c = 0; c < 3; c++)
+            ck_assert_double_eq_tol(entry(i) * run.dv[i][c], b[c], 1e-12);
+    }
+}
+END_TEST
+
+START_TEST(every_way_to_stop)
+{
+    struct run run, other;
+    struct solve_stop stop = {.count = true, .most = 5};
+    ck_assert_int_eq(solve(&run, &stop, 1), SOLVE_OK);
+    ck_assert_double_eq(run.scalars.iterations, 5);
+    stop = (struct solve_stop){.tolerance = sqrt(run.scalars.square) * (1 + 1e-12), .most = 5};
+    ck_assert_int_eq(solve(&other, &stop, 1), SOLVE_OK); /* absolute, just reached */
+    ck_assert_double_eq(other.scalars.iterations, 5);
+    ck_assert_int_eq(memcmp(run.dv, other.dv, sizeof run.dv), 0);
+    stop.most = 4;
+    ck_assert_int_eq(solve(&other, &stop, 1), SOLVE_NOT_CONVERGED);
+    ck_assert_double_eq(other.scalars.iterations, 4);
+    stop = (struct solve_stop){.count = true, .most = 0};
+    ck_assert_int_eq(solve(&other, &stop, 1), SOLVE_OK);
+    ck_assert_double_eq(other.dv[1][0], 0);
+    stop = (struct solve_stop){.count = true, .most = 1};
+    ck_assert_int_eq(solve(&other, &stop, 1), SOLVE_OK);
+    ck_assert_double_ne(other.dv[1][0], 0);
+}
+END_TEST
+
+/* Nothing on the right side, or so little that its square is nothing. */
+START_TEST(nothing_to_solve)
+{
+    static const double sizes[] = {0, 1e-150, 1e-170};
+    for (int i = 0; i < 3; i++) {
+        struct run run;
+        struct solve_stop stop = {.relative = true, .most = 9};
+        ck_assert_int_eq(solve(&run, &stop, sizes[i]), SOLVE_OK);
+        ck_assert_double_eq(run.scalars.iterations, 0);
+        stop.count = true;
+        ck_assert_int_eq(solve(&run, &stop, sizes[i]), SOLVE_OK);
+        ck_assert_double_eq(run.scalars.iterations, 9);
+        ck_assert_double_eq(run.dv[1][0], 0);
+    }
+}
+END_TEST
+
+/* A matrix that is negative, and one beyond all numbers. */
+START_TEST(breakdowns)
+{
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-3, .most = 9};
+    struct run run;
+    start(&run, 1);
+    ck_assert_int_eq(pass(&run, &stop, -1), SOLVE_BREAKDOWN);
+    ck_assert_double_lt(run.scalars.curvature, 0);
+    start(&run, 1e200);
+    int code = SOLVE_OK;
+    for (int i = 0; i < 3 && !code; i++)
+        code = pass(&run, &stop, 1);
+    ck_assert_int_eq(code, SOLVE_BREAKDOWN);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("cg");
+    TCase *cases = tcase_create("cg");
+    tcase_add_test(cases, advance_at_every_size);
+    tcase_add_test(cases, copies_keep_the_bits);
+    tcase_add_test(cases, factors_are_those_of_two_reductions);
+    tcase_add_test(cases, the_residual_is_true);
+    tcase_add_test(cases, every_way_to_stop);
+    tcase_add_test(cases, nothing_to_solve);
+    tcase_add_test(cases, breakdowns);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -114,6 +114,8 @@ static struct graph_task *take(struct work_queue *queue, duite_end end)
 
 struct graph_task *work_queue_take(struct work_queue *queue, duite_end end)
 {
+    if (work_queue_is_empty(queue)) /* an idle worker asks all the time */
+        return NULL;
     struct graph_task *task = take(queue, end);
     /* A ring that could not grow leaves tasks in the inbox: run them from there. */
     if (!task && (task = empty_inbox(queue)))
@@ -131,6 +133,8 @@ int64_t work_queue_mark(struct work_queue *queue)
 struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end end)
 {
     struct graph_task *task;
+    if (work_queue_is_empty(queue))
+        return NULL;
     do {
         if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_seq_cst))
             return take_oldest(&queue->deque);

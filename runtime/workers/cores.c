@@ -1,14 +1,45 @@
-/* Everything about cores is asked once, at start. */
+/* Everything about cores is asked at start. The machine's topology takes hwloc most of a
+ * millisecond, twenty times all else that a start does: it is loaded once in a process, and kept
+ * for the next. */
 #include "runtime/workers/cores.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
 #include <hwloc.h>
+#include <pthread.h>
 #include <sched.h>
 #include <xxhash.h>
 
-static int list(struct work_cores *cores, hwloc_topology_t topology)
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static hwloc_topology_t topology; /* NULL: not loaded; `lock` */
+
+/* The calling thread holds the lock. */
+static int load(void)
+{
+    hwloc_topology_t new;
+    if (topology)
+        return DUITE_OK;
+    if (hwloc_topology_init(&new))
+        return base_error(DUITE_E_SYSTEM, "hwloc cannot start");
+    hwloc_topology_set_all_types_filter(new, HWLOC_TYPE_FILTER_KEEP_NONE);
+    hwloc_topology_set_type_filter(new, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL);
+    if (hwloc_topology_load(new)) {
+        hwloc_topology_destroy(new);
+        return base_error(DUITE_E_SYSTEM, "hwloc cannot read the machine's topology");
+    }
+    topology = new;
+    return DUITE_OK;
+}
+
+__attribute__((destructor)) static void unload(void)
+{
+    if (topology)
+        hwloc_topology_destroy(topology);
+}
+
+/* Those that this process may use now. */
+static int list(struct work_cores *cores)
 {
     hwloc_bitmap_t allowed = hwloc_bitmap_alloc();
     if (!allowed)
@@ -38,15 +69,11 @@ static int list(struct work_cores *cores, hwloc_topology_t topology)
 int work_cores_find(struct work_cores *cores)
 {
     *cores = (struct work_cores){0};
-    hwloc_topology_t topology;
-    if (hwloc_topology_init(&topology))
-        return base_error(DUITE_E_SYSTEM, "hwloc cannot start");
-    hwloc_topology_set_all_types_filter(topology, HWLOC_TYPE_FILTER_KEEP_NONE);
-    hwloc_topology_set_type_filter(topology, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL);
-    int code = hwloc_topology_load(topology)
-                   ? base_error(DUITE_E_SYSTEM, "hwloc cannot read the machine's topology")
-                   : list(cores, topology);
-    hwloc_topology_destroy(topology);
+    pthread_mutex_lock(&lock);
+    int code = load();
+    if (!code)
+        code = list(cores);
+    pthread_mutex_unlock(&lock);
     if (!code && !cores->n)
         code = base_error(DUITE_E_SYSTEM, "hwloc finds no core that this process may use");
     if (code)

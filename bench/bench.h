@@ -18,6 +18,7 @@ struct bench_case {
     /* Says what is measured and how it is called; runs nothing. */
     void (*plan)(struct measure *measure, const struct bench_options *options);
     const struct serve_run *runs; /* by our own process, and the sequential twin's */
+    uint64_t most_rounds;         /* where a round takes long; 0: as many as are asked for */
 };
 
 struct bench {
@@ -30,6 +31,6 @@ struct bench {
     int (*serve)(const struct bench *bench);
 };
 
-extern const struct bench bench_tasks;
+extern const struct bench bench_tasks, bench_ranks;
 
 #endif

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench *const BENCHES[] = {&bench_tasks};
+static const struct bench *const BENCHES[] = {&bench_tasks, &bench_ranks};
 enum { N_BENCHES = sizeof BENCHES / sizeof *BENCHES, MOST_ONLY = 32 };
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
@@ -224,6 +224,12 @@ static void conclude(const unsigned verdicts[MEASURE_VERDICTS])
     report_number(&report, "targets_not_measured", verdicts[MEASURE_UNKNOWN]);
 }
 
+static size_t rounds(const struct command *command, const struct bench_case *one)
+{
+    const uint64_t most = one->most_rounds;
+    return most && most < command->repeats ? most : command->repeats;
+}
+
 static int run(const struct command *command, struct measure *measure)
 {
     int failed = report_start(&report, command->json != NULL);
@@ -235,7 +241,7 @@ static int run(const struct command *command, struct measure *measure)
         if (!chosen(command, *one))
             continue;
         plan(command, *one, measure);
-        failed = measure_run(measure, (*one)->name, command->repeats, &seed, settings);
+        failed = measure_run(measure, (*one)->name, rounds(command, *one), &seed, settings);
         if (!failed)
             report_all(measure, verdicts);
         measure_free(measure);

@@ -3,14 +3,20 @@
 # built with sanitizers.
 BENCH_RIVALS =
 BENCH_SHARED = bench/problem.c bench/problem.h bench/serve.c bench/serve.h
-check_PROGRAMS += bench/duite-bench
-bench_duite_bench_SOURCES = bench/duite-bench.c bench/bench.h bench/measure.c bench/measure.h \
+check_LTLIBRARIES += bench/libbench.la
+bench_libbench_la_SOURCES = bench/bench.h bench/measure.c bench/measure.h \
 	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
 	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/fib.c \
 	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/stencil.c \
-	bench/tasks/wake.c $(BENCH_SHARED)
-bench_duite_bench_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"'
-bench_duite_bench_LDADD = libduite_core.la -lm
+	bench/tasks/wake.c bench/ranks/cg.c bench/ranks/forks.c bench/ranks/memory.c bench/ranks/ranks.c \
+	bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/twin.c \
+	$(BENCH_SHARED)
+bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \
+	-DBENCH_HOSTS='"$(abs_top_srcdir)/tests/cluster/hosts.sh"'
+bench_libbench_la_LIBADD = libduite_cloth.la libduite_core.la
+check_PROGRAMS += bench/duite-bench
+bench_duite_bench_SOURCES = bench/duite-bench.c
+bench_duite_bench_LDADD = bench/libbench.la -lm
 EXTRA_DIST += bench/rivals/openmp.c
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c

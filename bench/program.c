@@ -21,15 +21,24 @@
     .settings = {"OMP_WAIT_POLICY=passive", BOUND},                                                \
     .crowded = {"OMP_WAIT_POLICY=passive", "OMP_DYNAMIC=false"}
 
+/* A rank that waits keeps its core. */
+#define TURNS                                                                                      \
+    {                                                                                              \
+        "OMPI_MCA_mpi_yield_when_idle=0"                                                           \
+    }
+
 static const struct program PROGRAMS[] = {
-    {"duite", NULL, "", NULL, {0}, {0}},
-    {"sequential", NULL, "", NULL, {0}, {0}},
-    {"libgomp", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, "libgomp_passive", ACTIVE},
-    {"libgomp_passive", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, NULL, PASSIVE},
-    {"libomp", "rivals/libomp", RIVAL_LIBOMP_MISSING, "libomp_passive", ACTIVE},
-    {"libomp_passive", "rivals/libomp", RIVAL_LIBOMP_MISSING, NULL, PASSIVE},
-    {"starpu", "rivals/starpu", RIVAL_STARPU_MISSING, NULL, {"STARPU_SILENT=1"}, {0}},
-    {"mpi", "rivals/mpi", RIVAL_MPI_MISSING, NULL, {"OMPI_MCA_mpi_yield_when_idle=0"}, {0}},
+    {"duite", NULL, "", NULL, false, {0}, {0}},
+    {"duite_hosts", NULL, "", NULL, true, {0}, {0}},
+    {"twin", NULL, "", NULL, false, TURNS, {0}},
+    {"twin_hosts", NULL, "", NULL, true, TURNS, {0}},
+    {"sequential", NULL, "", NULL, false, {0}, {0}},
+    {"libgomp", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, "libgomp_passive", false, ACTIVE},
+    {"libgomp_passive", "rivals/libgomp", RIVAL_LIBGOMP_MISSING, NULL, false, PASSIVE},
+    {"libomp", "rivals/libomp", RIVAL_LIBOMP_MISSING, "libomp_passive", false, ACTIVE},
+    {"libomp_passive", "rivals/libomp", RIVAL_LIBOMP_MISSING, NULL, false, PASSIVE},
+    {"starpu", "rivals/starpu", RIVAL_STARPU_MISSING, NULL, false, {"STARPU_SILENT=1"}, {0}},
+    {"mpi", "rivals/mpi", RIVAL_MPI_MISSING, NULL, false, TURNS, {0}},
 };
 
 const struct program *program_find(const char *kind)
@@ -52,13 +61,28 @@ static const char *path_of(const struct program *program)
     return path;
 }
 
+/* Why there are no hosts here, in the words of the script that makes them; or NULL. Asked once. */
+static const char *hosts_missing(void)
+{
+    static char why[200] = "no hosts: the script that makes them does not start";
+    static int failed = -1;
+    FILE *answer = failed < 0 ? popen("sh '" BENCH_HOSTS "' 1 true 2>&1", "r") : NULL;
+    if (answer) {
+        if (!fgets(why, sizeof why, answer))
+            snprintf(why, sizeof why, "no hosts here");
+        why[strcspn(why, "\n")] = '\0';
+        failed = pclose(answer) != 0;
+    }
+    return failed ? why : NULL;
+}
+
 const char *program_missing(const struct program *program)
 {
     static char why[200];
     if (!program)
         return "unknown";
     if (!access(path_of(program), X_OK))
-        return NULL;
+        return program->hosts ? hosts_missing() : NULL;
     snprintf(why, sizeof why, "not built: %s%s",
              *program->missing ? program->missing : "make bench",
              *program->missing ? " is missing" : " builds it");
@@ -96,6 +120,11 @@ void program_command(const struct program *program, const char *ranks, const cha
 {
     const char *mpirun = getenv("MPIRUN");
     size_t n = 0;
+    if (program->hosts) {
+        argv[n++] = "sh";
+        argv[n++] = BENCH_HOSTS;
+        argv[n++] = ranks;
+    }
     if (ranks) {
         argv[n++] = mpirun && *mpirun ? mpirun : BENCH_MPIRUN;
         argv[n++] = "--oversubscribe";

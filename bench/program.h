@@ -1,12 +1,15 @@
 #ifndef BENCH_PROGRAM_H
 #define BENCH_PROGRAM_H
 
+#include <stdbool.h>
+
 /* What can be measured: which file it is, how it is best set up, and what its absence is due to. */
 struct program {
     const char *kind;
     const char *file;    /* beside duite-bench; NULL: duite-bench itself */
     const char *missing; /* the package that configure did not find, or "" */
     const char *other;   /* the kind of the same program in another setting, or NULL */
+    bool hosts;          /* each rank on a host of its own, by tests/cluster/hosts.sh */
     /* NAME=VALUE words where each thread has a core, and where not; a user's own setting of a name
      * goes first */
     const char *settings[5], *crowded[5];

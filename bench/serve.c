@@ -2,6 +2,7 @@
  * wrong answer, says so and goes on. */
 #include "bench/serve.h"
 
+#include <sched.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,6 +92,18 @@ static FILE *connect_to(const char *path)
     return NULL;
 }
 
+void serve_bind(int rank)
+{
+    cpu_set_t allowed, one;
+    CPU_ZERO(&one);
+    if (sched_getaffinity(0, sizeof allowed, &allowed) || CPU_COUNT(&allowed) <= rank)
+        return;
+    for (size_t core = 0, n = 0; core < CPU_SETSIZE; core++)
+        if (CPU_ISSET(core, &allowed) && n++ == (size_t)rank)
+            CPU_SET(core, &one);
+    sched_setaffinity(0, sizeof one, &one);
+}
+
 int serve_wanted(void)
 {
     return getenv("DUITE_BENCH_SOCKET") != NULL;
@@ -110,7 +123,7 @@ int serve(const char *settings, const struct serve_run *const *runs, void *conte
         fprintf(stderr, "this program is started by duite-bench\n");
         return 2;
     }
-    dprintf(fileno(bench), "hello %s %ld %s\n", rank ? rank : "0", (long)getpid(), settings);
+    dprintf(fileno(bench), "hello %s %s\n", rank ? rank : "0", settings);
     char line[512];
     while (fgets(line, sizeof line, bench)) {
         double value = 0;

@@ -32,6 +32,9 @@ int serve_no_memory(void);
 /* Seconds since some fixed moment. */
 double serve_seconds(void);
 
+/* Rank r takes the r-th of the cores that it may use, as a binding mpirun would. */
+void serve_bind(int rank);
+
 /* Whether the bench started this process. */
 int serve_wanted(void);
 /* As what: the kind of subject, "" if there is no bench. */

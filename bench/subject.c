@@ -143,21 +143,23 @@ static void note_settings(struct subject *subject, const char *text)
 static bool welcome(struct subject *subject, int door)
 {
     char line[500];
-    long pid;
     int rank, settings = 0;
+    struct ucred peer; /* a process of another namespace is not called here what it calls itself */
+    socklen_t size = sizeof peer;
     int socket = accept4(door, NULL, NULL, SOCK_CLOEXEC);
     FILE *answers = socket < 0 ? NULL : fdopen(socket, "r");
     if (!answers)
         return false;
     if (!receive(answers, START_SECONDS, line, sizeof line) ||
-        sscanf(line, "hello %d %ld %n", &rank, &pid, &settings) < 2) {
+        sscanf(line, "hello %d %n", &rank, &settings) < 1 ||
+        getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) || peer.pid <= 0) {
         fclose(answers);
         return false;
     }
-    subject->rank[subject->n++] = (struct rank){answers, socket, (pid_t)pid};
+    subject->rank[subject->n++] = (struct rank){answers, socket, peer.pid};
     if (rank == 0)
         note_settings(subject, line + settings);
-    kill((pid_t)pid, SIGSTOP);
+    kill(peer.pid, SIGSTOP);
     return true;
 }
 

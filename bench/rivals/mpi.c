@@ -5,7 +5,6 @@
 #include "bench/serve.h"
 
 #include <mpi.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -132,19 +131,6 @@ static int granularity(void *context, struct serve_request *request, double *val
     return wrong ? serve_fail("wrong answer") : 0;
 }
 
-/* Rank r takes the r-th of the cores that it may use, as a binding mpirun would. */
-static void bind(int rank)
-{
-    cpu_set_t allowed, one;
-    CPU_ZERO(&one);
-    if (sched_getaffinity(0, sizeof allowed, &allowed) || CPU_COUNT(&allowed) <= rank)
-        return;
-    for (size_t core = 0, n = 0; core < CPU_SETSIZE; core++)
-        if (CPU_ISSET(core, &allowed) && n++ == (size_t)rank)
-            CPU_SET(core, &one);
-    sched_setaffinity(0, sizeof one, &one);
-}
-
 int main(void)
 {
     static const struct serve_run runs[] = {{"granularity", granularity}, {0}};
@@ -160,7 +146,7 @@ int main(void)
     for (char *c = version; *c; c++)
         if (*c == ',' || *c == '\n')
             *c = '\0'; /* the name and the number */
-    bind(line.rank);
+    serve_bind(line.rank);
     snprintf(settings, sizeof settings, "%s, a rank a core, bound, ends sent first", version);
     int status = serve(settings, all, &line);
     MPI_Finalize();

@@ -110,4 +110,4 @@ static int bytes(void *context, struct serve_request *request, double *value)
 static const struct serve_run RUNS[] = {{"bytes", bytes}, {0}};
 
 const struct bench_case tasks_bytes = {
-    "bytes", "memory of 1,000,000 stencil tasks behind one that does not end", plan, RUNS};
+    "bytes", "memory of 1,000,000 stencil tasks behind one that does not end", plan, RUNS, 0};

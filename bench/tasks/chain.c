@@ -98,5 +98,5 @@ static int sequential(void *context, struct serve_request *request, double *valu
 static const struct serve_run RUNS[] = {
     {"chain_dynamic", dynamic}, {"chain_replay", replay}, {"chain_sequential", sequential}, {0}};
 
-const struct bench_case tasks_chain = {"chain", "tasks that all change one object (rw)", plan,
-                                       RUNS};
+const struct bench_case tasks_chain = {"chain", "tasks that all change one object (rw)", plan, RUNS,
+                                       0};

@@ -140,4 +140,4 @@ static const struct serve_run RUNS[] = {
     {"fib", waiting}, {"fib_flow", flowing}, {"fib_sequential", sequential}, {0}};
 
 const struct bench_case tasks_fib_case = {"fib", "tasks that fork and wait: Fibonacci numbers",
-                                          plan, RUNS};
+                                          plan, RUNS, 0};

@@ -188,6 +188,19 @@ static int time_line(struct tasks_rounds *rounds, double *value)
     return code;
 }
 
+/* On several ranks: each has a range of the line. */
+static int place(duite *rt, const struct line *line)
+{
+    const duite_object *point = line->object;
+    int code = 0;
+    for (size_t i = 0; i < line->points; i++) {
+        code |= duite_follow(rt, point[line->points + i], point[i]);
+        if (i)
+            code |= duite_hint(rt, point[i], 1, 1, &point[i - 1], NULL);
+    }
+    return tasks_code(code);
+}
+
 static int run(struct tasks_session *session, struct serve_request *request, bool replayed,
                double *value)
 {
@@ -198,6 +211,8 @@ static int run(struct tasks_session *session, struct serve_request *request, boo
     int code = line.object ? tasks_ready(session, request) : serve_no_memory();
     if (!code)
         code = tasks_objects(session, DUITE_I64, 2, 2 * line.points, line.object);
+    if (!code)
+        code = place(session->rt, &line);
     if (!code) {
         struct tasks_rounds rounds = {.rt = session->rt,
                                       .fork = fork_round,
@@ -249,4 +264,4 @@ static const struct serve_run RUNS[] = {{"granularity_replay", replay},
                                         {0}};
 
 const struct bench_case tasks_granularity = {
-    "granularity", "the shortest body with half of peak speed, on 2 and 16 points", plan, RUNS};
+    "granularity", "the shortest body with half of peak speed, on 2 and 16 points", plan, RUNS, 0};

@@ -76,4 +76,4 @@ static int growth(void *context, struct serve_request *request, double *value)
 static const struct serve_run RUNS[] = {{"growth", growth}, {0}};
 
 const struct bench_case tasks_growth = {
-    "growth", "independent tasks, 1,000,000 ahead against 1,000", plan, RUNS};
+    "growth", "independent tasks, 1,000,000 ahead against 1,000", plan, RUNS, 0};

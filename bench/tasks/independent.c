@@ -82,4 +82,5 @@ static int sequential(void *context, struct serve_request *request, double *valu
 static const struct serve_run RUNS[] = {
     {"independent_dynamic", dynamic}, {"independent_sequential", sequential}, {0}};
 
-const struct bench_case tasks_independent = {"independent", "tasks that share nothing", plan, RUNS};
+const struct bench_case tasks_independent = {"independent", "tasks that share nothing", plan, RUNS,
+                                             0};

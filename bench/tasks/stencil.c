@@ -170,4 +170,4 @@ static const struct serve_run RUNS[] = {{"stencil_dynamic", dynamic},
                                         {0}};
 
 const struct bench_case tasks_stencil = {
-    "stencil", "a ring of points: 3 reads and 1 write a task, empty bodies", plan, RUNS};
+    "stencil", "a ring of points: 3 reads and 1 write a task, empty bodies", plan, RUNS, 0};

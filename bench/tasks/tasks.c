@@ -83,6 +83,7 @@ void tasks_free_objects(struct tasks_session *session, size_t n, const duite_obj
 {
     for (size_t i = 0; i < n; i++)
         duite_free(session->rt, object[i]);
+    duite_wait(session->rt); /* nothing is on its way to another rank when this one leaves duite */
 }
 
 /* ---- Rounds ---- */

@@ -100,4 +100,4 @@ static int idle(void *context, struct serve_request *request, double *value)
 static const struct serve_run RUNS[] = {{"wake", wake}, {"idle", idle}, {0}};
 
 const struct bench_case tasks_wake = {
-    "wake", "waking a worker that sleeps; what an idle program uses", plan, RUNS};
+    "wake", "waking a worker that sleeps; what an idle program uses", plan, RUNS, 0};

@@ -4,7 +4,10 @@ if HAVE_CHECK
 check_PROGRAMS += tests/bench/test_problem
 tests_bench_test_problem_SOURCES = tests/bench/test_problem.c bench/problem.c bench/problem.h
 tests_bench_test_problem_LDADD = tests/support/libunit.la $(CHECK_LIBS)
-TESTS += tests/bench/test_problem
+check_PROGRAMS += tests/bench/test_sheet
+tests_bench_test_sheet_SOURCES = tests/bench/test_sheet.c
+tests_bench_test_sheet_LDADD = bench/libbench.la tests/support/libunit.la $(CHECK_LIBS)
+TESTS += tests/bench/test_problem tests/bench/test_sheet
 endif
-dist_check_SCRIPTS += tests/bench/test_bench.sh
-TESTS += tests/bench/test_bench.sh
+dist_check_SCRIPTS += tests/bench/test_bench.sh tests/bench/test_ranks.sh
+TESTS += tests/bench/test_bench.sh tests/bench/test_ranks.sh

@@ -1,5 +1,5 @@
 /* A block's objects live where its positions live; the graph that mappings see is the one of the
- * blocks: a block weighs its vertices, and two blocks exchange their rims. */
+ * blocks: a block weighs its vertices, and two blocks exchange what each has copies of. */
 #include "cloth/flow/tasks/tasks.h"
 
 #include <stddef.h>
@@ -42,7 +42,7 @@ static void hint(struct flow_state *state, uint32_t b)
     const struct flow_table *t = tables->block + b;
     for (uint32_t s = 0; s < t->n_slots; s++) {
         state->refs[s] = state->block[t->slot[s]].x;
-        bytes[s] = (double)(t->n_rim + tables->block[t->slot[s]].n_rim) * sizeof(phys_vec);
+        bytes[s] = 3.0 * sizeof(double) * (t->copies[s + 1] - t->copies[s]);
     }
     duite_hint(state->rt, state->block[b].x, t->n, t->n_slots, state->refs, bytes);
 }

@@ -1,0 +1,74 @@
+/* The most memory that the largest rank ever held, from its start to its end, of a run of a large
+ * sheet: four ranks against one. */
+#include "bench/ranks/ranks.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static struct measure_series *add(struct measure *measure, const struct bench_options *options,
+                                  unsigned ranks)
+{
+    struct measure_series *series = measure_series(
+        measure, ranks_ours(ranks, 1), "memory side=%u grain=%u threads=1 scheduler=%s",
+        options->quick ? 30 : 1000, options->quick ? 50 : 1000, options->scheduler);
+    series->fresh = true;
+    return series;
+}
+
+static void plan(struct measure *measure, const struct bench_options *options)
+{
+    const struct measure_series *four = add(measure, options, 4);
+    const struct measure_series *one = add(measure, options, 1);
+    measure_value(measure, one, 1e-6, "MB", "memory_r1");
+    measure_value(measure, four, 1e-6, "MB", "memory_r4");
+    measure_ratio(measure, four, one, "memory_r4_vs_r1");
+}
+
+/* Bytes, or 0 if the system does not say. */
+static double peak(void)
+{
+    char line[200];
+    double kilobytes = 0;
+    FILE *file = fopen("/proc/self/status", "r");
+    while (file && fgets(line, sizeof line, file))
+        if (sscanf(line, "VmHWM: %lf kB", &kilobytes) == 1)
+            break;
+    if (file)
+        fclose(file);
+    return 1024 * kilobytes;
+}
+
+static int run(struct ranks_session *session, struct serve_request *request)
+{
+    struct sheet *sheet = &session->sheet;
+    struct cloth_error error = {0};
+    struct flow_report report;
+    duite *rt = NULL;
+    const uint32_t side = (uint32_t)serve_number(request, "side");
+    sheet_model(sheet, side, (uint32_t)serve_number(request, "grain"));
+    int code = mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, &error);
+    if (!code)
+        code = flow_prepare(&sheet->flow, &sheet->model, 1, &error);
+    if (code)
+        return serve_fail("%s", error.text);
+    code = ranks_start_cloth(session, request, &rt);
+    if (!code && flow_run(sheet->flow, rt, NULL, NULL, &report, &error))
+        code = serve_fail("%s", error.text);
+    if (!code && report.cg_iterations_total != sheet->model.max_iterations)
+        code = serve_fail("wrong answer: %g iterations", (double)report.cg_iterations_total);
+    return ranks_stop_cloth(&rt, code);
+}
+
+static int memory(void *context, struct serve_request *request, double *value)
+{
+    struct ranks_session *session = context;
+    const int code = run(session, request);
+    *value = peak();
+    sheet_free(&session->sheet);
+    return code;
+}
+
+static const struct serve_run RUNS[] = {{"memory", memory}, {0}};
+
+const struct bench_case ranks_memory = {
+    "memory", "peak memory of a sheet of 1,000,000 vertices, 4 ranks against 1", plan, RUNS, 3};

@@ -1,0 +1,259 @@
+/* Tables are those of the cloth; vectors are by place, so a block's are a part of each array. */
+#include "bench/ranks/sheet.h"
+
+#include "bench/serve.h"
+#include "cloth/physics/particle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct flow_tables *sheet_tables(const struct sheet *sheet)
+{
+    return &sheet->flow->tables;
+}
+
+size_t sheet_row(const struct sheet *sheet, uint32_t block)
+{
+    return sheet_tables(sheet)->block[block].first;
+}
+
+size_t sheet_rim(const struct sheet *sheet, uint32_t block)
+{
+    const struct flow_tables *tables = sheet_tables(sheet);
+    return 3 * (size_t)(tables->block[block].rim - tables->rim);
+}
+
+/* ---- Making ---- */
+
+/* cloth/scenes/sheet.yaml, of any size. */
+void sheet_model(struct sheet *sheet, uint32_t side, uint32_t grain)
+{
+    static const double corner[3][3] = {{-0.5, 0, -0.5}, {0.5, 0, -0.5}, {0, 0, 0.5}};
+    sheet->side = side;
+    sheet->material = (struct model_material){
+        .density = 0.2, .stretch = 5000, .shear = 2500, .damping_stiffness = 0.015};
+    sheet->cloth.pins = sheet->pin;
+    sheet->cloth.n_pins = 3;
+    for (int i = 0; i < 3; i++) {
+        sheet->pin[i].kind = MODEL_PIN_NEAREST;
+        memcpy(sheet->pin[i].point, corner[i], sizeof corner[i]);
+    }
+    sheet->model = (struct model){.n_materials = 1,
+                                  .n_cloths = 1,
+                                  .materials = &sheet->material,
+                                  .cloths = &sheet->cloth,
+                                  .gravity = {0, -9.81, 0},
+                                  .h = 0.001,
+                                  .end = 0.001,
+                                  .fps = 1,
+                                  .integrator = MODEL_IMPLICIT_EULER,
+                                  .stop = MODEL_STOP_COUNT,
+                                  .max_iterations = 2,
+                                  .grain = grain};
+}
+
+static void wave(struct flow_tables *t, uint32_t n)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        const double x = t->position[i][0], z = t->position[i][2];
+        t->position[i][1] += 0.01 * sin(9 * x) * cos(7 * z);
+        t->velocity[i] = t->free[i] * (phys_vec){0.1 * sin(5 * z), 0.2 * cos(6 * x), 0.1 * x, 0};
+    }
+}
+
+static size_t n_copies(const struct flow_tables *t)
+{
+    const struct flow_table *last = t->block + t->n_blocks - 1;
+    return (size_t)(last->copy - t->copy) + last->n_copies;
+}
+
+static size_t n_rim(const struct flow_tables *t)
+{
+    const struct flow_table *last = t->block + t->n_blocks - 1;
+    return (size_t)(last->rim - t->rim) + last->n_rim;
+}
+
+static size_t n_values(const struct flow_tables *t)
+{
+    const struct flow_table *last = t->block + t->n_blocks - 1;
+    return (size_t)(last->end - (const uint32_t(*)[2])t->end) + last->n_inner + last->n_cut;
+}
+
+static phys_vec *vectors(size_t n)
+{
+    phys_vec *rows = aligned_alloc(64, ((n + 2) & ~(size_t)1) * sizeof *rows);
+    if (rows)
+        memset(rows, 0, n * sizeof *rows);
+    return rows;
+}
+
+static int allocate(struct sheet *s)
+{
+    const struct flow_tables *t = sheet_tables(s);
+    const size_t rows = s->flow->blocks.n_places;
+    phys_vec **array[] = {&s->b, &s->dv, &s->r, &s->p, &s->q, &s->answer};
+    bool has = true;
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        has = (*array[i] = vectors(rows)) && has;
+    has = (s->value = vectors(n_values(t))) && has;
+    has = (s->copy_r = vectors(n_copies(t))) && has;
+    has = (s->copy_p = vectors(n_copies(t))) && has;
+    for (int i = 0; i < 2; i++)
+        has = (s->rim[i] = calloc(3 * n_rim(t) + 1, sizeof(double))) && has;
+    return has ? 0 : serve_no_memory();
+}
+
+void sheet_free(struct sheet *s)
+{
+    phys_vec *array[] = {s->b, s->dv, s->r, s->p, s->q, s->answer, s->value, s->copy_r, s->copy_p};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        free(array[i]);
+    free(s->rim[0]);
+    free(s->rim[1]);
+    flow_free(s->flow);
+    mesh_free(&s->cloth.mesh);
+    *s = (struct sheet){0};
+}
+
+/* b and the matrix of a block, as the bodies force, right_side and matrix make them; x and v of the
+ * rims are in place of their objects. */
+static void make_block(struct sheet *s, const struct flow_table *t, const phys_vec *rim_x,
+                       const phys_vec *rim_v)
+{
+    const struct flow_tables *all = sheet_tables(s);
+    const double h = s->model.h;
+    const phys_vec *x = t->position, *v = t->velocity;
+    phys_vec *b = s->b + t->first, *value = s->value + (t->end - (const uint32_t(*)[2])all->end);
+    struct phys_springs springs = flow_table_inner(t);
+    phys_outside(t->n, t->load, t->drag, v, b);
+    phys_springs_force(&springs, x, v, b);
+    for (uint32_t i = 0; i < t->n_slots; i++) {
+        const size_t at = (size_t)(all->block[t->slot[i]].rim - all->rim);
+        springs = flow_table_cut(t, i);
+        phys_springs_force_cut(&springs, x, v, rim_x + at, rim_v + at, b);
+    }
+    for (uint32_t i = 0; i < t->n; i++)
+        b[i] = h * b[i];
+    springs = flow_table_inner(t);
+    phys_springs_stiffness(&springs, h * h, x, v, b);
+    phys_springs_matrix(&springs, h, x, x, value);
+    for (uint32_t i = 0; i < t->n_slots; i++) {
+        const size_t at = (size_t)(all->block[t->slot[i]].rim - all->rim);
+        springs = flow_table_cut(t, i);
+        phys_springs_stiffness_cut(&springs, h * h, x, v, rim_x + at, rim_v + at, b);
+        phys_springs_matrix(&springs, h, x, rim_x + at, value + t->n_inner + t->cut[i]);
+    }
+}
+
+static int make_system(struct sheet *s)
+{
+    const struct flow_tables *all = sheet_tables(s);
+    phys_vec *rim_x = vectors(n_rim(all)), *rim_v = vectors(n_rim(all));
+    for (uint32_t b = 0; b < all->n_blocks && rim_x && rim_v; b++) {
+        const struct flow_table *t = all->block + b;
+        for (uint32_t i = 0; i < t->n_rim; i++) {
+            rim_x[(t->rim - all->rim) + i] = t->position[t->rim[i]];
+            rim_v[(t->rim - all->rim) + i] = t->velocity[t->rim[i]];
+        }
+    }
+    const bool has = rim_x && rim_v;
+    for (uint32_t b = 0; b < all->n_blocks && has; b++)
+        make_block(s, all->block + b, rim_x, rim_v);
+    free(rim_x);
+    free(rim_v);
+    return has ? 0 : serve_no_memory();
+}
+
+int sheet_ready(struct sheet *sheet, uint32_t side, uint32_t grain)
+{
+    struct cloth_error error = {0};
+    if (sheet->flow && sheet->side == side && sheet->model.grain == grain)
+        return 0;
+    sheet_free(sheet);
+    sheet_model(sheet, side, grain);
+    if (mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, &error) ||
+        flow_prepare(&sheet->flow, &sheet->model, 1, &error))
+        return serve_fail("%s", error.text);
+    wave(&sheet->flow->tables, sheet->flow->blocks.n_places);
+    const int code = allocate(sheet);
+    return code ? code : make_system(sheet);
+}
+
+/* ---- Solving ---- */
+
+void sheet_start(struct sheet *s, uint32_t block)
+{
+    const struct flow_table *t = sheet_tables(s)->block + block;
+    const size_t first = t->first, copies = (size_t)(t->copy - sheet_tables(s)->copy);
+    solve_start(t->n, t->free, s->b + first, s->dv + first, s->r + first, s->p + first,
+                s->q + first);
+    memset(s->copy_r + copies, 0, t->n_copies * sizeof *s->copy_r);
+    memset(s->copy_p + copies, 0, t->n_copies * sizeof *s->copy_p);
+    solve_pack(t->n_rim, t->rim, s->q + first, s->rim[0] + sheet_rim(s, block));
+}
+
+void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *scalars, int from,
+                double dots[SOLVE_DOTS])
+{
+    const struct flow_tables *all = sheet_tables(s);
+    const struct flow_table *t = all->block + block;
+    const size_t first = t->first, copies = (size_t)(t->copy - all->copy);
+    const phys_vec *value = s->value + (t->end - (const uint32_t(*)[2])all->end);
+    phys_vec *q = s->q + first, *p = s->p + first;
+    dots[SOLVE_RR] =
+        solve_advance(t->n, scalars->alpha, scalars->beta, q, s->dv + first, s->r + first, p);
+    if (scalars->phase == SOLVE_LAST)
+        return;
+    for (uint32_t i = 0; i < t->n_slots; i++)
+        solve_advance_copies(t->copies[i + 1] - t->copies[i], scalars->alpha, scalars->beta,
+                             s->rim[from] + sheet_rim(s, t->slot[i]), t->copy + t->copies[i],
+                             s->copy_r + copies + t->copies[i], s->copy_p + copies + t->copies[i]);
+    memset(q, 0, t->n * sizeof *q);
+    solve_matvec_cut(&(struct solve_cut){t->n_cut, t->copy_end}, value + t->n_inner, p,
+                     s->copy_p + copies, q);
+    solve_matvec(&t->matrix, value, p, s->r + first, q, dots);
+    solve_pack(t->n_rim, t->rim, q, s->rim[1 - from] + sheet_rim(s, block));
+}
+
+/* The runtime's tree over the sums of blocks first .. first + n - 1 (docs/design.md,
+ * Contributions), left in sum[first]. */
+static void add_tree(double (*sum)[SOLVE_DOTS], size_t first, size_t n)
+{
+    size_t left = 1;
+    while (2 * left < n)
+        left *= 2;
+    if (n < 2)
+        return;
+    add_tree(sum, first, left);
+    add_tree(sum, first + left, n - left);
+    for (int i = 0; i < SOLVE_DOTS; i++)
+        sum[first][i] += sum[first + left][i];
+}
+
+int sheet_solve(struct sheet *s, uint32_t count)
+{
+    const uint32_t n = sheet_tables(s)->n_blocks;
+    const struct solve_stop stop = {.count = true, .most = count};
+    struct solve_scalars scalars = solve_scalars_start(0);
+    if (s->answered == count)
+        return 0;
+    double(*sum)[SOLVE_DOTS] = malloc(n * sizeof *sum);
+    int code = sum ? 0 : serve_no_memory();
+    for (uint32_t b = 0; b < n && !code; b++)
+        sheet_start(s, b);
+    for (int from = 0; scalars.phase != SOLVE_DONE && !code; from = 1 - from) {
+        const struct solve_scalars now = scalars;
+        memset(sum, 0, n * sizeof *sum);
+        for (uint32_t b = 0; b < n; b++)
+            sheet_pass(s, b, &now, from, sum[b]);
+        add_tree(sum, 0, n);
+        if (solve_scalars_next(&stop, sum[0], &now, &scalars))
+            code = serve_fail("the solve breaks down");
+    }
+    free(sum);
+    memcpy(s->answer, s->dv, s->flow->blocks.n_places * sizeof *s->dv);
+    s->square = scalars.square;
+    s->answered = count;
+    return code;
+}

@@ -1,0 +1,47 @@
+#ifndef BENCH_RANKS_SHEET_H
+#define BENCH_RANKS_SHEET_H
+
+#include "cloth/flow/tasks/tasks.h"
+
+/* The system of one step of a sheet that hangs, waved and moving, cut into blocks, and conjugate
+ * gradients on it by plain loops: what the twin does between its messages, and, over all blocks
+ * with the runtime's tree of sums, the answer to the last bit. A bench looks into the cloth's own
+ * folders, as a test does. */
+struct sheet {
+    struct model model; /* its stop is a count of iterations */
+    struct model_material material;
+    struct model_cloth cloth;
+    struct model_pin pin[3];
+    struct flow *flow;
+    uint32_t side; /* vertices */
+    /* Block after block: rows by place, values by side of springs, r and then p of each copy, three
+     * numbers a rim row. */
+    phys_vec *b, *dv, *r, *p, *q, *value, *copy_r, *copy_p;
+    double *rim[2];
+    phys_vec *answer; /* dv after so many iterations; 0: of none */
+    uint32_t answered;
+    double square; /* r.r then */
+};
+
+/* A sheet of side x side vertices, with a grain, made unless it is there already. 0, or what
+ * serve_fail returns. */
+int sheet_ready(struct sheet *sheet, uint32_t side, uint32_t grain);
+/* A flow of it alone, as a run of the cloth begins: the model with two iterations and one step. */
+void sheet_model(struct sheet *sheet, uint32_t side, uint32_t grain);
+void sheet_free(struct sheet *sheet);
+
+const struct flow_tables *sheet_tables(const struct sheet *sheet);
+/* The first row of a block, and the first number of its rim. */
+size_t sheet_row(const struct sheet *sheet, uint32_t block);
+size_t sheet_rim(const struct sheet *sheet, uint32_t block);
+
+/* What a task of the cloth's solve does on a block: before the first pass; in a pass that reads
+ * rim[from] of the neighbours and writes rim[1 - from]. */
+void sheet_start(struct sheet *sheet, uint32_t block);
+void sheet_pass(struct sheet *sheet, uint32_t block, const struct solve_scalars *scalars, int from,
+                double dots[SOLVE_DOTS]);
+
+/* Solves by so many iterations, unless the answer is there. 0, or what serve_fail returns. */
+int sheet_solve(struct sheet *sheet, uint32_t count);
+
+#endif

@@ -19,4 +19,16 @@ void base_free(void *memory);
  * moved, or NULL and leaves everything as it was. */
 void *base_grow(void *array, size_t *capacity, size_t needed, size_t element);
 
+/* Has the line brought to be written soon: taken from another core's cache, where only a read line
+ * would be left to it, and the first write, or an atomic operation behind it, would wait. */
+static inline void base_prefetch(const void *line)
+{
+#if defined(__x86_64__)
+    /* What __builtin_prefetch makes of it only for the newest processors; others skip it. */
+    __asm__ volatile("prefetchw %0" : : "m"(*(const char *)line));
+#else
+    __builtin_prefetch(line, 1);
+#endif
+}
+
 #endif

@@ -234,7 +234,7 @@ void *base_pool_take(size_t bytes)
     /* What is taken soon may lie in another core's cache: have it brought. */
     if (loaded->n > AHEAD)
         for (size_t line = 0; line < bytes; line += BASE_LINE)
-            __builtin_prefetch((char *)loaded->block[loaded->n - 1 - AHEAD] + line, 1);
+            base_prefetch((char *)loaded->block[loaded->n - 1 - AHEAD] + line);
     return loaded->block[--loaded->n];
 }
 

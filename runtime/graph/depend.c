@@ -4,6 +4,7 @@
 #include "runtime/graph/internal.h"
 
 #include "runtime/base/error.h"
+#include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
 
 struct graph_task *graph_task_new(struct graph_scope *scope, enum graph_kind kind, size_t n,
@@ -70,7 +71,7 @@ static void wake_heir(struct graph *graph, void *worker, struct data_waiter *hei
     while (heir && !heir->back)
         heir = graph_pass(worker, heir);
     if (heir) /* an access: another core wrote what its task will need next */
-        __builtin_prefetch(((struct graph_access *)(void *)heir)->out, 1);
+        base_prefetch(((struct graph_access *)(void *)heir)->out);
     graph_wake(graph, worker, heir);
 }
 

@@ -15,6 +15,7 @@ enum {
     GRAIN,
     KEYS,
     MAPPING,
+    BALANCE,
     OUTPUT,
     QUIET,
     REPORT,
@@ -38,7 +39,8 @@ static const struct argp_option OPTIONS[] = {
     {"threads", THREADS, "N", 0, "workers of each rank (default: its share of the cores)", 3},
     {"scheduler", SCHEDULER, "NAME", 0, "which worker runs which task next (default: steal)", 3},
     {"mapping", MAPPING, "NAME", 0, "which rank keeps which block (default: metis)", 3},
-    {"seed", SEED, "N", 0, "of all that is random in schedulers and mappings (default: 1)", 3},
+    {"balance", BALANCE, "NAME", 0, "which tasks run on other ranks (default: none)", 3},
+    {"seed", SEED, "N", 0, "of all that is random in the policies (default: 1)", 3},
     {"keys", KEYS, NULL, 0, "list the keys of scene files, with units, ranges and defaults", 4},
     {"help", '?', NULL, 0, "this text", 4},
     {"usage", USAGE, NULL, 0, "a short text", 4},
@@ -99,6 +101,18 @@ static int choose_mapping(struct argp_state *state, struct simulate_options *run
         return 0;
     argp_failure(state, 0, 0, "--mapping %s: there is no mapping of this name; known are %s", name,
                  join(duite_mapping_names(), known, sizeof known));
+    return EINVAL;
+}
+
+static int choose_balance(struct argp_state *state, struct simulate_options *run, const char *name)
+{
+    char known[200];
+    run->balance_name = name;
+    run->balance = duite_balancer_find(name);
+    if (run->balance)
+        return 0;
+    argp_failure(state, 0, 0, "--balance %s: there is no balancer of this name; known are %s", name,
+                 join(duite_balancer_names(), known, sizeof known));
     return EINVAL;
 }
 
@@ -208,6 +222,8 @@ static error_t parse(int key, char *value, struct argp_state *state)
         return choose_scheduler(state, &command->run, value);
     case MAPPING:
         return choose_mapping(state, &command->run, value);
+    case BALANCE:
+        return choose_balance(state, &command->run, value);
     case THREADS:
     case SEED:
         return parse_number(command, state, key, value);
@@ -286,6 +302,8 @@ int main(int argc, char **argv)
                                       .scheduler_name = "steal",
                                       .mapping = duite_mapping_find("metis"),
                                       .mapping_name = "metis",
+                                      .balance = duite_balancer_find("none"),
+                                      .balance_name = "none",
                                       .seed = 1},
                               .talks = rank == 0};
     int code = agree(command_line(&command, argc, argv));

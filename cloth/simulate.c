@@ -163,6 +163,7 @@ static int execute(struct run *run)
     options.threads = run->options->threads;
     options.scheduler = run->options->scheduler;
     options.mapping = run->options->mapping;
+    options.balance = run->options->balance;
     options.seed = run->options->seed;
     if (!runtime_fails(&error, duite_start(&rt, &options))) {
         run_flow(run, rt, &error);

@@ -15,7 +15,8 @@ struct simulate_options {
     const char *output, *report;             /* folder of frames, JSON file; NULL: none */
     const struct duite_scheduler *scheduler; /* never NULL */
     const struct duite_mapping *mapping;     /* never NULL */
-    const char *scheduler_name, *mapping_name;
+    const struct duite_balancer *balance;    /* never NULL */
+    const char *scheduler_name, *mapping_name, *balance_name;
     unsigned threads; /* 0: the rank's share of the cores */
     uint64_t seed;
     bool quiet; /* neither progress nor summary */

@@ -54,9 +54,10 @@ void summary_print(FILE *file, const struct summary *summary)
             "  blocks           %" PRIu64 " of about %" PRIu64 " vertices, partition %016" PRIx64
             "\n",
             report->blocks, report->grain, report->partition_hash);
-    fprintf(file, "  ran on           %d ranks x %u threads, scheduler %s, mapping %s\n",
+    fprintf(file,
+            "  ran on           %d ranks x %u threads, scheduler %s, mapping %s, balance %s\n",
             summary->ranks, summary->threads, summary->options->scheduler_name,
-            summary->options->mapping_name);
+            summary->options->mapping_name, summary->options->balance_name);
     fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
             model->h, report->simulated_seconds);
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
@@ -96,7 +97,7 @@ static void add_setting(struct output_report *json, const struct summary *summar
     output_report_integer(json, "threads", summary->threads);
     output_report_text(json, "scheduler", summary->options->scheduler_name);
     output_report_text(json, "mapping", summary->options->mapping_name);
-    output_report_null(json, "balance");
+    output_report_text(json, "balance", summary->options->balance_name);
 }
 
 static void add_times(struct output_report *json, const struct flow_report *report)
@@ -142,7 +143,7 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_null(json, "graphs_recorded");
     output_report_integer(json, "messages", counters->messages);
     output_report_integer(json, "bytes_moved", counters->bytes);
-    output_report_null(json, "delegated_tasks");
+    output_report_integer(json, "delegated_tasks", counters->delegated);
     output_report_null(json, "migrated_objects");
     output_report_number(json, "busy_fraction", ratio(counters->busy, total));
     output_report_number(json, "idle_fraction", ratio(counters->idle, total));

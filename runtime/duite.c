@@ -2,10 +2,12 @@
  * failed half-way is stopped by the same path. All ranks agree on whether a start succeeded. */
 #include "runtime/instance.h"
 
+#include "runtime/balance/balance.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
 #include "runtime/comm/host.h"
+#include "runtime/graph/away.h"
 #include "runtime/map/map.h"
 #include "runtime/sched/sched.h"
 #include "runtime/workers/cores.h"
@@ -35,6 +37,7 @@ duite_options duite_options_default(void)
                                                                  : -1,
                            .scheduler = &sched_steal,
                            .mapping = &map_metis,
+                           .balance = &balance_none,
                            .seed = 1,
                            .stuck_seconds = seconds_of(getenv("DUITE_STUCK_SECONDS"), 60),
                            .spin_seconds = 100e-6,
@@ -99,6 +102,10 @@ static int check_rest(const duite_options *options)
                           "duite_start: no scheduler, or one without all its functions");
     if (!options->mapping || !options->mapping->name || !options->mapping->map)
         return base_error(DUITE_E_ARGUMENT, "duite_start: no mapping");
+    const duite_balancer *b = options->balance;
+    if (!b || !b->name || !b->victim != !b->give)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: no balancer, or one with only one of victim and give");
     if (options->threads > 4096)
         return base_error(DUITE_E_ARGUMENT, "duite_start: %u threads are more than 4096",
                           options->threads);
@@ -133,7 +140,7 @@ static uint64_t hash_kernels(const struct graph *graph)
 
 /* What must be the same on all ranks. */
 struct started {
-    uint64_t kernels, laws, seed, scheduler, mapping;
+    uint64_t kernels, laws, seed, scheduler, mapping, balance;
 };
 
 static const char *difference(const struct started *a, const struct started *b)
@@ -146,7 +153,9 @@ static const char *difference(const struct started *a, const struct started *b)
         return "seeds";
     if (a->scheduler != b->scheduler)
         return "schedulers";
-    return a->mapping != b->mapping ? "mappings" : NULL;
+    if (a->mapping != b->mapping)
+        return "mappings";
+    return a->balance != b->balance ? "balancers" : NULL;
 }
 
 static int compare(const struct started *all, int n, int rank)
@@ -188,7 +197,8 @@ static int agree(duite *rt, const duite_options *options, int code)
             .kernels = hash_kernels(&rt->graph),
             .laws = data_laws_hash(options->laws, 0),
             .scheduler = XXH64(options->scheduler->name, strlen(options->scheduler->name), 0),
-            .mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0)};
+            .mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0),
+            .balance = XXH64(options->balance->name, strlen(options->balance->name), 0)};
         code = MPI_Allgather(&own, sizeof own, MPI_BYTE, all, sizeof own, MPI_BYTE, rt->mpi)
                    ? base_error(DUITE_E_MPI, "MPI_Allgather failed")
                    : compare(all, (int)n, rt->graph.rank);
@@ -240,6 +250,7 @@ static int start_workers(duite *rt, const duite_options *options, int code)
                                  .comm = rt->comm,
                                  .check = rt->check,
                                  .scheduler = options->scheduler,
+                                 .balancer = options->balance,
                                  .context = options->context,
                                  .rt = rt,
                                  .threads = threads,
@@ -261,7 +272,7 @@ bool instance_is_broken(const duite *rt)
 static bool nothing_left(void *context)
 {
     duite *rt = context;
-    uint64_t left = work_unfinished(rt->pool);
+    uint64_t left = work_unfinished(rt->pool) + graph_guests(&rt->graph);
     return !left || (rt->comm && left == comm_stuck(rt->comm));
 }
 
@@ -325,7 +336,10 @@ int duite_start(duite **out, const duite_options *options)
     if (code) {
         end(rt);
     } else {
-        comm_open(rt->comm);
+        bool moves = options->balance->victim || options->balance->place;
+        if (rt->comm && moves)
+            comm_measure(rt->comm);
+        comm_open(rt->comm, options->balance->victim != NULL);
         *out = rt;
     }
     return code;

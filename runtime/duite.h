@@ -188,6 +188,8 @@ typedef struct duite_kernel {
     size_t args_size; /* bytes of arguments, copied at the fork; no pointers inside */
     int side_effects; /* 1: does more than write its parameters (files): checking mode runs it once
                        */
+    int stays; /* 1: its tasks run where duite_fork says, on no other rank: for bodies that need
+                  what only that rank's context has */
     const duite_law
         *law[DUITE_MAX_ACCESS]; /* of the parameters with DUITE_CW or CWP; NULL: duite_sum */
     const duite_law *rest_law;  /* if rest is DUITE_CW or CWP; NULL: duite_sum */
@@ -207,6 +209,7 @@ typedef struct duite_kernel {
 
 struct duite_scheduler; /* duite_policy.h */
 struct duite_mapping;
+struct duite_balancer;
 
 typedef struct duite_options {
     MPI_Comm comm;                      /* who takes part; duplicated. Default MPI_COMM_WORLD */
@@ -217,6 +220,7 @@ typedef struct duite_options {
         threads; /* workers of this rank, the main thread among them; 0: its share of the cores */
     const struct duite_scheduler *scheduler; /* default: steal */
     const struct duite_mapping *mapping;     /* default: metis */
+    const struct duite_balancer *balance;    /* default: none; see below */
     uint64_t seed;                           /* of everything random in policies. Default 1 */
     double spin_seconds; /* how long an idle worker spins before it sleeps. Default 100e-6 */
     int bind;            /* bind workers to cores where the rank owns enough. Default 1 */
@@ -237,8 +241,18 @@ duite_options duite_options_default(void);
  */
 const struct duite_scheduler *duite_scheduler_find(const char *name);
 const struct duite_mapping *duite_mapping_find(const char *name);
+const struct duite_balancer *duite_balancer_find(const char *name);
 const char *const *duite_scheduler_names(void);
 const char *const *duite_mapping_names(void);
+const char *const *duite_balancer_names(void);
+
+/* Delegation: with the balancer `delegate` a rank that has nothing to do asks others for ready
+ * tasks, one at a time and ever less often, and is given some whose bodies are thought to take
+ * longer than the way of their inputs there and of their outputs back. Tasks that may go are those
+ * whose fork named no rank and whose kernel postpones nothing, has no side effects and does not say
+ * `stays`; in recorded graphs, those of rounds that are forked. Such a body runs wherever there is
+ * time: what it finds by its context must serve there, too. Results and failures are the same; a
+ * failure names the rank on which the body ran. `scatter` sends leaves anywhere, for tests. */
 
 /* Renaming: a task that overwrites an object (w) which earlier tasks still read, write or send is
  * given fresh memory and does not wait for them, as long as all such memory of a rank, headers
@@ -511,6 +525,7 @@ typedef struct duite_counters {
     double idle;       /* seconds without a task, over all workers, up to each one's last task */
     uint64_t renamed;  /* tasks' parameters (w) that got fresh memory instead of waiting */
     uint64_t graphs_recorded; /* calls of build functions; the same on every rank, counted once */
+    uint64_t delegated;       /* tasks that ran on another rank than duite_fork says */
 } duite_counters;
 
 /* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.

@@ -1,10 +1,10 @@
 #ifndef DUITE_POLICY_H
 #define DUITE_POLICY_H
 
-/* For authors of schedulers and mappings: the tables of functions that the runtime asks. The
- * built-in policies use exactly these. A policy decides; the runtime owns queues, stealing, sleep,
- * wake-up and messages. Functions of a table take no locks, read no clock, and draw random numbers
- * only from their own state. */
+/* For authors of schedulers, mappings and balancers: the tables of functions that the runtime asks.
+ * The built-in policies use exactly these. A policy decides; the runtime owns queues, stealing,
+ * sleep, wake-up and messages. Functions of a table take no locks, read no clock, and draw random
+ * numbers only from their own state. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -81,6 +81,49 @@ typedef struct duite_mapping {
      * rank. Returns 0, or a duite code. */
     int (*map)(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
 } duite_mapping;
+
+/* ---- Balancers: which ready tasks run on another rank ---- */
+
+/* A ready task that may run on any rank: a leaf (no parameter of its kernel is postponed) of the
+ * main program's or of a tree of tasks, whose fork named no rank and whose kernel neither stays
+ * (duite_kernel.stays) nor has side effects. Its inputs travel there and its outputs back. */
+typedef struct duite_leaf {
+    const char *kernel;
+    uint64_t number; /* its place in fork order */
+    double cost;     /* seconds: as the fork said, else what bodies of its kernel took on this rank,
+                        the later ones counting more; 0: none ran yet */
+    size_t bytes;    /* that travel there and back */
+    double transfer; /* seconds that this takes, after a measurement at start */
+} duite_leaf;
+
+/* A rank that asks for tasks, and what there is here. */
+typedef struct duite_asked {
+    int rank;       /* who asks */
+    unsigned idle;  /* workers there that have nothing to do */
+    unsigned ready; /* tasks, leaves or not, that were ready here and found when it was served */
+    unsigned given; /* of them to this rank, so far */
+} duite_asked;
+
+#define DUITE_NO_RANK (-1)
+
+typedef struct duite_balancer {
+    const char *name;
+    const char *summary;
+    size_t state_size; /* bytes of private state a worker; zeroed before start; used by that worker
+                          only */
+
+    /* Prepares the state of one worker. Optional, as are the others; without any of them nothing
+     * moves. */
+    void (*start)(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed);
+    /* This rank has nothing to do, for the attempt-th time in a row (0, 1, ...): the rank to ask
+     * for tasks, or DUITE_NO_RANK: none now. `giver` is the one that gave last, or DUITE_NO_RANK.
+     * *seconds: for so long the question stands, and nobody else is asked. */
+    int (*victim)(void *state, unsigned attempt, int giver, double *seconds);
+    /* Whether the leaf goes to the rank that asks. Needed with victim. */
+    int (*give)(void *state, const duite_asked *asked, const duite_leaf *leaf);
+    /* The rank on which a leaf that just became ready runs, asked for or not; the own one: here. */
+    int (*place)(void *state, const duite_leaf *leaf);
+} duite_balancer;
 
 /* A random number and the next state (SplitMix64: Steele, Lea, Flood 2014). Any state is a good
  * seed. */

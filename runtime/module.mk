@@ -16,6 +16,7 @@ include runtime/data/module.mk
 include runtime/graph/module.mk
 include runtime/sched/module.mk
 include runtime/map/module.mk
+include runtime/balance/module.mk
 include runtime/comm/module.mk
 include runtime/check/module.mk
 include runtime/workers/module.mk

@@ -100,11 +100,11 @@ commented() {
     done
 }
 
-listed() { # FILE: the fields of options and counters, the modes, schedulers and mappings are in it
+listed() { # FILE: the fields of options and counters, the modes and policies are in it
     {
         sed -n '/^typedef struct duite_options/,/^}/p; /^typedef struct duite_counters/,/^}/p' "$srcdir/runtime/duite.h" |
             tr '\n' ' ' | sed 's|/\*|\n&|g; s|\*/|&\n|g' | grep -v '^/\*' | tr ';' '\n' | sed -n 's/.*[ *]\([a-z_]*\) *$/\1/p' | grep -v '^duite_'
-        grep -oh '\.name = "[a-z]*"' "$srcdir"/runtime/sched/*.c "$srcdir"/runtime/map/*.c | cut -d'"' -f2
+        grep -oh '\.name = "[a-z]*"' "$srcdir"/runtime/sched/*.c "$srcdir"/runtime/map/*.c "$srcdir"/runtime/balance/*.c | cut -d'"' -f2
         grep -o '^ *DUITE_[RWC]*W*P*\>' "$srcdir/runtime/duite.h" | tr -d ' ' | grep -v '_$'
     } | mentions "$1"
 }

@@ -6,6 +6,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"
+#include "runtime/graph/away.h"
 
 #include <sched.h>
 #include <stdlib.h>
@@ -25,7 +26,8 @@ static int prepare(struct comm *comm)
         return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
     comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
     if (!comm_farewells_start(&comm->farewells, comm->n_ranks) ||
-        !comm_calls_start(&comm->calls, comm->n_ranks) || !comm->words)
+        !comm_calls_start(&comm->calls, comm->n_ranks) ||
+        !comm_asks_start(&comm->asks, comm->n_ranks) || !comm->words)
         return base_no_memory("communication");
     if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
         MPI_Type_commit(&comm->line))
@@ -48,28 +50,34 @@ int comm_start(struct comm **out, MPI_Comm mpi, struct graph *graph)
     return prepare(comm);
 }
 
-void comm_open(struct comm *comm)
+void comm_open(struct comm *comm, bool asks)
 {
     if (!comm)
         return;
+    comm->may_ask = asks;
     comm_unlock(comm);
+}
+
+/* Nothing is on its way, neither of a whole run nor of one that broke. */
+static bool is_over(struct comm *comm)
+{
+    if (comm_is_broken(comm))
+        return comm_is_lost(comm) || comm_is_quiet(comm);
+    return comm_questions_over(comm) && !comm->sends.n && (!comm->may_ask || comm_asks_over(comm));
 }
 
 bool comm_stop(struct comm *comm)
 {
     if (!comm)
         return true;
-    bool lost = comm_is_lost(comm);
-    while (comm_is_broken(comm) && !lost && !comm_is_quiet(comm)) {
+    if (comm->may_ask)
+        comm_asks_end(comm);
+    while (!is_over(comm)) {
         comm_poll(comm, NULL);
         sched_yield();
     }
-    if (lost) /* MPI may still read and write here: all of it stays */
+    if (comm_is_lost(comm)) /* MPI may still read and write here: all of it stays */
         return false;
-    while (!comm_is_broken(comm) && !comm_questions_over(comm)) {
-        comm_poll(comm, NULL);
-        sched_yield();
-    }
     comm_catch_up(comm);
     if (comm->line != MPI_DATATYPE_NULL)
         MPI_Type_free(&comm->line);
@@ -77,6 +85,7 @@ bool comm_stop(struct comm *comm)
     comm_requests_free(&comm->receives);
     comm_farewells_stop(&comm->farewells);
     comm_calls_stop(&comm->calls);
+    comm_asks_stop(&comm->asks);
     comm_arrivals_stop(&comm->arrivals);
     base_free(comm->words);
     base_free(comm);
@@ -188,6 +197,27 @@ static bool start_receive(struct comm *comm)
     return true;
 }
 
+/* What is the comm's own is seen to at once; true: that was it. */
+static bool hear(struct comm *comm, struct data_packet *packet)
+{
+    switch (packet->kind) {
+    case DATA_FAREWELL:
+        comm_farewell_hear(comm, packet);
+        break;
+    case DATA_QUESTION:
+        comm_question_hear(comm, packet);
+        break;
+    case DATA_ASK:
+    case DATA_LAST:
+        comm_ask_hear(comm, packet);
+        break;
+    default:
+        return false;
+    }
+    data_packet_free(packet);
+    return true;
+}
+
 static void receive(struct comm *comm, struct found *found)
 {
     int done;
@@ -197,14 +227,11 @@ static void receive(struct comm *comm, struct found *found)
     for (int i = 0; i < done; i++) {
         struct data_packet *packet = comm->receives.what[comm->receives.n + i];
         data_packet_came(packet);
-        if (packet->kind == DATA_FAREWELL || packet->kind == DATA_QUESTION) {
-            (packet->kind == DATA_FAREWELL ? comm_farewell_hear : comm_question_hear)(comm, packet);
-            data_packet_free(packet);
-        } else {
-            atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
-            packet->next = found->packets;
-            found->packets = packet;
-        }
+        if (hear(comm, packet))
+            continue;
+        atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
+        packet->next = found->packets;
+        found->packets = packet;
     }
 }
 
@@ -217,22 +244,41 @@ static void deliver_to(struct comm *comm, void *worker, struct comm_target targe
         graph_pieces_arrived(comm->graph, worker, target.sum, packet);
 }
 
+/* A task of another rank; once communication is broken nobody waits for it. */
+static void deliver_guest(struct comm *comm, void *worker, struct data_packet *packet)
+{
+    if (!comm_is_broken(comm) && graph_guest_arrived(comm->graph, worker, packet))
+        return;
+    data_packet_free(packet);
+    comm_broke_memory(comm, "a task of another rank");
+}
+
+static void deliver_value(struct comm *comm, void *worker, struct data_packet *packet)
+{
+    struct comm_target target = {0};
+    switch (comm_arrivals_take(&comm->arrivals, packet, &target)) {
+    case COMM_WANTED:
+        deliver_to(comm, worker, target, packet);
+        break;
+    case COMM_KEPT:
+        break;
+    case COMM_LOST:
+        data_packet_free(packet);
+        comm_broke_memory(comm, "a message that came early");
+    }
+}
+
 static void deliver(struct comm *comm, void *worker, struct found *found)
 {
     while (found->packets) {
         struct data_packet *packet = found->packets;
-        struct comm_target target = {0};
         found->packets = packet->next;
-        switch (comm_arrivals_take(&comm->arrivals, packet, &target)) {
-        case COMM_WANTED:
-            deliver_to(comm, worker, target, packet);
-            break;
-        case COMM_KEPT:
-            break;
-        case COMM_LOST:
-            data_packet_free(packet);
-            comm_broke_memory(comm, "a message that came early");
-        }
+        if (packet->kind == DATA_GUEST)
+            deliver_guest(comm, worker, packet);
+        else if (packet->kind == DATA_RESULT)
+            graph_came_home(comm->graph, worker, packet);
+        else
+            deliver_value(comm, worker, packet);
     }
     while (found->sent) {
         struct graph_task *task = found->sent;
@@ -265,6 +311,7 @@ void comm_give_up(struct comm *comm, void *worker)
         else
             graph_pieces_lost(comm->graph, worker, target.sum);
     }
+    graph_away_lost(comm->graph, worker);
 }
 
 uint64_t comm_stuck(struct comm *comm)
@@ -299,8 +346,10 @@ bool comm_poll(struct comm *comm, void *worker)
 
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
 {
-    *messages = atomic_load_explicit(&comm->messages, memory_order_relaxed);
-    *bytes = atomic_load_explicit(&comm->bytes, memory_order_relaxed);
+    uint64_t asked = atomic_load_explicit(&comm->asks.sent, memory_order_relaxed);
+    *messages = atomic_load_explicit(&comm->messages, memory_order_relaxed) + asked;
+    *bytes = atomic_load_explicit(&comm->bytes, memory_order_relaxed) +
+             asked * sizeof(struct data_packet);
 }
 
 /* ---- Looks from outside ---- */
@@ -316,7 +365,10 @@ void comm_look(struct comm *comm, const struct comm_looker *looker)
     comm_arrivals_look(&comm->arrivals, looker->awaited, looker->context);
     if (!comm_try_lock(comm))
         return;
-    for (int i = 0; i < comm->sends.n; i++)
-        looker->sending(looker->context, ((struct graph_task *)comm->sends.what[i])->send);
+    for (int i = 0; i < comm->sends.n; i++) {
+        const struct graph_task *task = comm->sends.what[i];
+        if (task->kind == GRAPH_SEND)
+            looker->sending(looker->context, task->send);
+    }
     comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
 }

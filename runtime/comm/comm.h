@@ -18,9 +18,10 @@ struct comm;
  * memory; comm_stop is due all the same. */
 int comm_start(struct comm **comm, MPI_Comm mpi, struct graph *graph);
 
-/* From now on messages are sent and received. Before, the lock keeps workers out of MPI, so that
- * the main thread may call it while it starts. NULL is fine. */
-void comm_open(struct comm *comm);
+/* From now on messages are sent and received; `asks`: ranks may ask others for tasks, the same on
+ * all. Before, the lock keeps workers out of MPI, so that the main thread may call it while it
+ * starts. All ranks come here or none. NULL is fine. */
+void comm_open(struct comm *comm, bool asks);
 
 /* Frees everything; no other thread is left, no task either. All ranks have agreed (comm_agree)
  * that nothing is on its way; or communication is broken, and it waits until that is so:
@@ -54,6 +55,31 @@ void comm_look(struct comm *comm, const struct comm_looker *looker);
 
 /* A number that changes with each message that comes or goes. */
 uint64_t comm_movement(struct comm *comm);
+
+/* ---- Ranks that have nothing to do ---- */
+
+/* Measures what a message costs between ranks. Before comm_open; collective, blocks. A failure is
+ * told by the next call. */
+void comm_measure(struct comm *comm);
+
+/* Seconds for a message there and another one back, of so many bytes together. */
+double comm_transfer(const struct comm *comm, size_t bytes);
+
+/* Asks a rank for tasks, for so many workers; the question stands for so many seconds. False: not
+ * now. */
+bool comm_ask(struct comm *comm, int rank, unsigned idle, double seconds);
+
+/* A question that stands here. */
+struct comm_asker {
+    int rank;
+    unsigned idle;
+    double until;
+};
+
+/* Whether there may be one; takes one, false: none now; puts one back that got no answer. */
+bool comm_is_asked(struct comm *comm);
+bool comm_asked(struct comm *comm, struct comm_asker *asker);
+void comm_asks_again(struct comm *comm, const struct comm_asker *asker);
 
 /* ---- Calls that block, made by all ranks alike ---- */
 

@@ -93,7 +93,8 @@ bool comm_is_quiet(struct comm *comm)
     if (!comm_try_lock(comm))
         return false;
     bool quiet = comm->farewells.said && comm->farewells.heard == comm->n_ranks - 1 &&
-                 !comm->sends.n && !comm->receives.n && comm_questions_sent(comm);
+                 !comm->sends.n && !comm->receives.n && comm_questions_sent(comm) &&
+                 comm_asks_sent(comm);
     if (quiet)
         MPI_Testall(comm->n_ranks, comm->farewells.request, &sent, MPI_STATUSES_IGNORE);
     comm_unlock(comm);

@@ -2,6 +2,7 @@
 #define DUITE_COMM_INTERNAL_H
 
 #include "runtime/comm/arrivals.h"
+#include "runtime/comm/ask.h"
 #include "runtime/comm/comm.h"
 #include "runtime/comm/farewell.h"
 #include "runtime/comm/question.h"
@@ -23,6 +24,8 @@ struct comm {
     struct comm_farewell reason; /* of `broken`, written before it is set */
     struct comm_farewells farewells;
     struct comm_calls calls;
+    bool may_ask;
+    struct comm_asks asks;
     uint64_t entered;                       /* collective calls */
     MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words;                /* one a rank, and this rank's own */

@@ -167,6 +167,14 @@ const duite_law *data_law_of(const duite_kernel *kernel, size_t i)
     return law ? law : &duite_sum;
 }
 
+void data_law_neutral(const duite_law *law, void *values, size_t count, duite_type type)
+{
+    if (law->neutral)
+        law->neutral(values, count, type);
+    else
+        memset(values, 0, count * data_type_size(type));
+}
+
 bool data_law_fits(const duite_law *law, duite_type type)
 {
     return law->type ? law->type == type : type != DUITE_BYTE;

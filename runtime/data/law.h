@@ -30,6 +30,9 @@ int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *la
 /* The law of parameter i, which is cw. Never NULL. */
 const duite_law *data_law_of(const duite_kernel *kernel, size_t i);
 
+/* Writes the law's neutral elements. */
+void data_law_neutral(const duite_law *law, void *values, size_t count, duite_type type);
+
 /* Whether the law is for objects of this type. */
 bool data_law_fits(const duite_law *law, duite_type type);
 

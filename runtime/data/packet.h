@@ -7,7 +7,17 @@
 
 /* The bytes of one version of an object, with room for a message header in front of them, so that
  * they are sent and received where they lie. */
-enum data_packet_kind { DATA_VALUE = 1, DATA_PIECES, DATA_POISON, DATA_FAREWELL, DATA_QUESTION };
+enum data_packet_kind {
+    DATA_VALUE = 1,
+    DATA_PIECES,
+    DATA_POISON,
+    DATA_FAREWELL,
+    DATA_QUESTION,
+    DATA_ASK,    /* a rank without work asks for tasks */
+    DATA_LAST,   /* ... and will not ask again */
+    DATA_GUEST,  /* a task to be run here */
+    DATA_RESULT, /* what such a task left */
+};
 
 /* Names a version on all ranks: the object and how many writes it had. */
 struct data_key {

@@ -7,18 +7,15 @@
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
 
-struct graph_task *graph_task_new(struct graph_scope *scope, enum graph_kind kind, size_t n,
-                                  size_t extra)
+struct graph_task *graph_task_make(struct graph_scope *scope, enum graph_kind kind, size_t n,
+                                   size_t extra)
 {
     struct graph_task *task;
     size_t bytes = sizeof *task + n * sizeof task->access[0] + extra;
     size_t grains = (bytes + GRAPH_GRAIN - 1) / GRAPH_GRAIN;
     task = grains <= UINT32_MAX ? base_pool_take(grains * GRAPH_GRAIN) : NULL;
-    if (!task) {
-        base_no_memory("a task");
-        graph_break(scope->graph);
+    if (!task)
         return NULL;
-    }
     *task = (struct graph_task){
         .pending = (uint32_t)n + 1,
         .n = (uint32_t)n,
@@ -35,6 +32,18 @@ struct graph_task *graph_task_new(struct graph_scope *scope, enum graph_kind kin
     for (size_t i = 0; i < n; i++)
         task->access[i] = (struct graph_access){
             .waiter.back = (uint32_t)(sizeof *task + i * sizeof task->access[0])};
+    return task;
+}
+
+struct graph_task *graph_task_new(struct graph_scope *scope, enum graph_kind kind, size_t n,
+                                  size_t extra)
+{
+    struct graph_task *task = graph_task_make(scope, kind, n, extra);
+    if (!task) {
+        base_no_memory("a task");
+        graph_break(scope->graph);
+        return NULL;
+    }
     if (scope->parent)
         atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
     else

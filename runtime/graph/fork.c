@@ -279,6 +279,7 @@ static struct graph_task *body_task(struct graph_scope *scope, void *worker,
     task->kernel = index;
     task->priority = how->priority;
     task->cost = (float)how->cost;
+    task->pinned = how->at != GRAPH_ANYWHERE;
     if (kernel->args_size)
         memcpy(graph_task_rest(task, n), args, kernel->args_size);
     size_t fixed = scope->graph->fixed[index].n, postponed = scope->graph->fixed[index].postponed;

@@ -93,9 +93,11 @@ int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *
     graph->rank = rank;
     graph->n_ranks = n_ranks;
     graph->root.graph = graph;
+    graph->root.top = &graph->root;
     atomic_init(&graph->given_up, 0);
     atomic_init(&graph->rename_bytes, 0);
     atomic_init(&graph->renamed, 0);
+    atomic_init(&graph->guests, 0);
     pthread_mutex_init(&graph->lock, NULL); /* cannot fail with default attributes */
     int code = data_table_start(&graph->table, n_ranks);
     if (!code)
@@ -146,6 +148,12 @@ static const struct data_failure *keep(struct graph *graph, const struct data_fa
     return kept;
 }
 
+const struct data_failure *graph_fail_below(struct graph *graph, const struct data_failure *failure,
+                                            struct graph_scope *scope)
+{
+    return keep(graph, failure, scope);
+}
+
 const struct data_failure *graph_fail(struct graph *graph, const struct data_failure *failure,
                                       bool report)
 {
@@ -153,12 +161,13 @@ const struct data_failure *graph_fail(struct graph *graph, const struct data_fai
 }
 
 /* The task's place in the reference order. What a body does after a wait comes after the children
- * before it. */
-static void place_failure(struct data_failure *failure, const struct graph_task *task,
-                          const struct graph_scope *inner)
+ * before it. A guest's place goes on from the one it has at home. */
+void graph_place(struct data_failure *failure, const struct graph_task *task,
+                 const struct graph_scope *inner)
 {
     uint64_t index[sizeof failure->path];
     uint32_t depth = task->scope->depth, most = sizeof index / sizeof index[0];
+    const struct data_failure *home = graph_guest_place(task->scope->top);
     if (depth && depth <= most)
         index[depth - 1] = task->number;
     failure->number = task->number;
@@ -166,6 +175,11 @@ static void place_failure(struct data_failure *failure, const struct graph_task 
         failure->number = scope->number;
         if (scope->depth > 1 && scope->depth - 2 < most)
             index[scope->depth - 2] = scope->number;
+    }
+    if (home) {
+        failure->number = home->number;
+        failure->path_length = home->path_length;
+        memcpy(failure->path, home->path, sizeof home->path);
     }
     for (uint32_t i = 0; i < depth && i < most; i++)
         data_path_add(failure, index[i]);
@@ -180,7 +194,7 @@ const struct data_failure *graph_fail_task(const struct graph_task *task,
     struct graph *graph = task->scope->graph;
     failure->rank = graph->rank;
     failure->kernel = task->kernel;
-    place_failure(failure, task, inner);
+    graph_place(failure, task, inner);
     return keep(graph, failure, task->scope);
 }
 

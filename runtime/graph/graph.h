@@ -22,6 +22,9 @@ enum graph_kind {
     GRAPH_VIEW,    /* writes a view's elements from its object */
     GRAPH_COPY,    /* duite_get: copies a version to the main program */
     GRAPH_VOID,   /* memory ran out while it was forked: does not run, and poisons what it writes */
+    GRAPH_AWAY,   /* a BODY that runs on another rank */
+    GRAPH_GUEST,  /* a task of another rank that runs here */
+    GRAPH_RESULT, /* a GUEST that is over: sends what it left */
     GRAPH_REPLAY, /* replays of a recorded graph: begins them; over when the last round is */
     /* Nodes of a replay: */
     GRAPH_NODE,      /* a task of the program */
@@ -58,7 +61,8 @@ struct graph_task {
     union {
         struct graph_scope *inner;   /* BODY, VOID: what its children may use, or NULL */
         struct graph_sum *sum;       /* COMBINE, PIECES, GATHER */
-        struct graph_send *send;     /* SEND */
+        struct graph_send *send;     /* SEND, AWAY, RESULT */
+        struct graph_guest *guest;   /* GUEST */
         struct data_view *view;      /* VIEW: held */
         struct graph_copy *copy;     /* COPY */
         struct graph_replay *replay; /* REPLAY */
@@ -71,7 +75,8 @@ struct graph_task {
     int32_t priority;
     float cost;      /* seconds; 0: not said */
     uint32_t grains; /* of all of it, GRAPH_GRAIN bytes each */
-    enum graph_kind kind;
+    enum graph_kind kind : 16;
+    unsigned pinned : 16; /* its fork named a rank: no other one runs it */
     struct graph_access access[];
 };
 
@@ -111,7 +116,9 @@ struct graph_copy {
  * nobody forks here, and only `unfinished` and `failure` change. */
 struct graph_scope {
     struct graph *graph;
-    struct graph_scope *parent;  /* where its task was forked; NULL: the main program */
+    struct graph_scope *parent;  /* where its task was forked; NULL: the main program, or a guest's
+                                    `above` */
+    struct graph_scope *top;     /* the last of the parents: the main program's, or a guest's */
     _Atomic uint64_t unfinished; /* tasks forked here, each with its descendants; values to be
                                     passed to the scope above; 1 while the body runs. Of the main
                                     program: see graph_hooks.over */
@@ -161,8 +168,11 @@ struct graph {
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
     _Atomic uint64_t rename_bytes;   /* of packets that exist since a w did not wait */
     _Atomic uint64_t renamed;        /* such w */
+    _Atomic uint64_t guests;         /* tasks of other ranks that are here */
     pthread_mutex_t lock;            /* of the rest, and of the failures of scopes */
     struct graph_failure *failures;
+    struct graph_away *away;   /* tasks on other ranks */
+    bool away_closed;          /* no more of them */
     struct data_sum *unclosed; /* of tasks that are over: there was no memory to combine them */
 };
 
@@ -267,8 +277,9 @@ int graph_check_call(struct duite_call_private *body, const char *call, duite_ob
 /* Whether the object, whose name was checked, is a parameter of the body. */
 bool graph_lent(const struct duite_call_private *body, duite_object object);
 
-/* Whether a body that waits in `scope` may have this task run on top of it: a descendant, or, if
- * its descendants may wait for tasks outside, one that comes earlier in the reference order. */
+/* Whether a body that waits in `scope` may have this task run on top of it: a descendant; or, if
+ * its descendants may wait for tasks outside, one that comes earlier in the reference order; or any
+ * of a guest's, if it is none itself. */
 bool graph_may_run(const struct graph_scope *scope, const struct graph_task *task);
 
 /* ---- Any worker ---- */
@@ -283,10 +294,10 @@ static inline bool graph_has_given_up(const struct graph *graph)
     return atomic_load_explicit(&graph->given_up, memory_order_relaxed);
 }
 
-/* What became a SEND when it ran is to be sent now. */
+/* It is to be sent now: it was made for that, or turned into it. */
 static inline bool graph_to_send(const struct graph_task *task)
 {
-    return task->kind == GRAPH_SEND;
+    return task->kind == GRAPH_SEND || task->kind == GRAPH_AWAY || task->kind == GRAPH_RESULT;
 }
 
 /* The task whose link it is, if it is a task that waits. */
@@ -298,7 +309,7 @@ static inline const struct graph_task *graph_who_waits(const struct data_waiter 
 /* Whether the task calls a body of the program. */
 static inline bool graph_has_body(const struct graph_task *task)
 {
-    return task->kind == GRAPH_BODY || task->kind == GRAPH_NODE;
+    return task->kind == GRAPH_BODY || task->kind == GRAPH_NODE || task->kind == GRAPH_GUEST;
 }
 
 /* The task is over: publishes what it wrote, makes its successors ready, frees it. */

@@ -10,6 +10,10 @@
 struct graph_task *graph_task_new(struct graph_scope *scope, enum graph_kind kind, size_t n,
                                   size_t extra);
 
+/* The same, not counted. NULL without memory: nothing else happened. */
+struct graph_task *graph_task_make(struct graph_scope *scope, enum graph_kind kind, size_t n,
+                                   size_t extra);
+
 /* Takes `done` and the hold of the fork from pending; the task is ready if nothing is left. */
 void graph_settled(struct graph *graph, void *worker, struct graph_task *task, uint32_t done);
 
@@ -130,6 +134,13 @@ const struct data_failure *graph_fail(struct graph *graph, const struct data_fai
 const struct data_failure *graph_fail_task(const struct graph_task *task,
                                            const struct graph_scope *inner,
                                            struct data_failure *failure);
+/* Its place: number and path. */
+void graph_place(struct data_failure *failure, const struct graph_task *task,
+                 const struct graph_scope *inner);
+/* The failure of a descendant of this scope, whose place it has: the waits of the scope and of all
+ * above tell it. */
+const struct data_failure *graph_fail_below(struct graph *graph, const struct data_failure *failure,
+                                            struct graph_scope *scope);
 /* The failure of a task for want of memory. */
 const struct data_failure *graph_fail_memory(const struct graph_task *task);
 struct data_packet *graph_poison_packet(struct data_key key, const struct data_failure *failure);
@@ -151,6 +162,8 @@ void graph_void(struct graph *graph, void *worker, struct graph_task *task, size
 
 /* Why nothing runs any more, or NULL. */
 const struct data_failure *graph_given_up(struct graph *graph);
+/* What did not come since communication broke. */
+const struct data_failure *graph_lost_failure(void);
 
 /* Calls the body; returns its failure, or NULL. An error of its calls that it did not look at is
  * one. *scope is what its children may use: NULL if it has none, also afterwards if it did not get
@@ -167,6 +180,27 @@ void graph_replay_start(struct graph *graph, void *worker, struct graph_task *ta
 bool graph_node_run(struct graph *graph, void *worker, struct graph_task *task,
                     const duite_call *call);
 void graph_node_finish(struct graph *graph, void *worker, struct graph_task *task);
+
+/* ---- On other ranks: see away.h, parcel.h ---- */
+
+/* The place of the guest that has this top, or NULL: it is the main program's. */
+const struct data_failure *graph_guest_place(const struct graph_scope *top);
+/* Whether parameter i of a guest changes its size. */
+bool graph_guest_sized(const struct graph_task *task, size_t i);
+/* A guest: runs, returns whether a body ran; the body is over; so are its descendants; it is sent.
+ */
+bool graph_guest_run(struct graph *graph, void *worker, struct graph_task *task,
+                     const duite_call *call);
+void graph_guest_finish(void *worker, struct graph_task *task);
+void graph_guest_over(struct graph_scope *above, void *worker);
+void graph_guest_gone(struct graph *graph, struct graph_task *task);
+/* A task that went away is sent. */
+void graph_away_sent(struct graph *graph, void *worker, struct graph_task *task);
+/* A task that is back does what its body would have done; result NULL: it is lost. */
+void graph_run_result(struct graph *graph, struct graph_task *task, struct data_packet *result);
+/* Gives the parameters, prepared for a body, what it left; or its failure. */
+const struct data_failure *graph_take_result(const struct graph_task *task, duite_param *param,
+                                             struct data_packet *result);
 
 /* Publishes what a task wrote, releases what it read, frees it. */
 void graph_over(struct graph *graph, void *worker, struct graph_task *task);

@@ -1,4 +1,4 @@
-libduite_la_SOURCES += runtime/graph/depend.c runtime/graph/fork.c runtime/graph/graph.c \
+libduite_la_SOURCES += runtime/graph/away.c runtime/graph/away.h runtime/graph/guest.c runtime/graph/parcel.h runtime/graph/depend.c runtime/graph/fork.c runtime/graph/graph.c \
 	runtime/graph/graph.h runtime/graph/internal.h runtime/graph/nest.c runtime/graph/nest.h \
 	runtime/graph/print.c runtime/graph/record.c runtime/graph/record.h \
 	runtime/graph/replay.c runtime/graph/replay.h runtime/graph/replay_call.c \

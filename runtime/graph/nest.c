@@ -111,6 +111,7 @@ struct graph_scope *graph_scope_new(const struct graph_task *task, size_t n)
         return NULL;
     *nest = (struct graph_nest){.scope = {.graph = task->scope->graph,
                                           .parent = task->scope,
+                                          .top = task->scope->top,
                                           .number = task->number,
                                           .depth = task->scope->depth + 1},
                                 .room = (uint32_t)(n + SPARE),
@@ -228,12 +229,11 @@ int graph_make(struct duite_call_private *body, duite_type type, size_t count, s
     return DUITE_OK;
 }
 
-/* What the body reads, as a version: the very one, or, in a replay, which works in place, a copy.
- */
+/* What the body reads, as a version: the very one, or a copy of what lies in place. */
 static struct data_version *version_read(const struct duite_call_private *body, uint32_t i)
 {
     const struct graph_task *task = body->task;
-    if (task->kind != GRAPH_NODE) {
+    if (task->kind == GRAPH_BODY) {
         data_version_hold(task->access[i].in);
         return task->access[i].in;
     }
@@ -298,17 +298,18 @@ void graph_drop(struct graph_scope *scope, struct data_object *object)
 
 void graph_left(struct graph *graph, struct graph_scope *scope, void *worker)
 {
-    while (scope != &graph->root) {
-        struct graph_scope *parent = scope->parent;
+    for (struct graph_scope *parent; (parent = scope->parent); scope = parent) {
         if (atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) != 1)
             return;
         struct graph_nest *nest = nest_of(scope);
         if (nest->moved)
             base_pool_give(nest->local, nest->room * sizeof *nest->local);
         base_pool_give(nest, nest->size);
-        scope = parent;
     }
-    graph->hooks.over(graph->hooks.context, worker, 1);
+    if (scope == &graph->root)
+        graph->hooks.over(graph->hooks.context, worker, 1);
+    else
+        graph_guest_over(scope, worker);
 }
 
 static const struct data_failure no_memory = {
@@ -433,6 +434,8 @@ bool graph_may_run(const struct graph_scope *scope, const struct graph_task *tas
         a_number = a->number;
     if (a == scope)
         return true;
+    if (a->top != scope->top) /* guests wait for nothing of ours, so they must not wait for us */
+        return scope->top == &scope->graph->root;
     if (!scope->outward)
         return false;
     for (; a->depth > b->depth; a = a->parent)

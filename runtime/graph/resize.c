@@ -19,11 +19,19 @@ void graph_size_close(struct graph_task *task, const duite_param *param)
 static bool is_sized(const struct graph_task *task, size_t i)
 {
     const struct graph_access *access = &task->access[i];
+    if (task->kind == GRAPH_GUEST)
+        return graph_guest_sized(task, i);
     if (task->kind != GRAPH_BODY || access->waiter.mode == DUITE_CW)
         return false;
     if (graph_postponed((duite_mode)access->waiter.mode))
         return graph_lent_object(task->inner, access->lent)->sized;
     return access->out ? access->out->sized : access->in->sized;
+}
+
+static bool is_written(const struct graph_task *task, size_t i)
+{
+    duite_mode mode = (duite_mode)task->access[i].waiter.mode;
+    return mode == DUITE_W || mode == DUITE_RW;
 }
 
 static int refuse(const duite_call *call, size_t i, bool sized, size_t count)
@@ -34,7 +42,7 @@ static int refuse(const duite_call *call, size_t i, bool sized, size_t count)
         duite_fail(call, 0, "duite_resize: the object of parameter %zu has a fixed size", i);
     else if (graph_postponed((duite_mode)call->own->task->access[i].waiter.mode))
         duite_fail(call, 0, "duite_resize: parameter %zu is its children's alone", i);
-    else if (!graph_written(&call->own->task->access[i]))
+    else if (!is_written(call->own->task, i))
         duite_fail(call, 0, "duite_resize: parameter %zu is only read", i);
     else
         duite_fail(call, 0, "duite_resize: parameter %zu: %zu elements are more than %zu at most",
@@ -47,7 +55,7 @@ int duite_resize(const duite_call *call, size_t i, size_t count)
 {
     struct graph_task *task = call->own->task;
     bool sized = i < call->n_params && is_sized(task, i);
-    if (!sized || !graph_written(&task->access[i]) || count > call->param[i].most)
+    if (!sized || !is_written(task, i) || count > call->param[i].most)
         return refuse(call, i, sized, count);
     duite_param *param = (duite_param *)&call->param[i]; /* ours to write */
     size_t size = data_type_size(param->type);

@@ -171,6 +171,11 @@ static const struct data_failure no_memory = {
 static const struct data_failure lost = {
     .code = DUITE_E_MPI, .kernel = UINT32_MAX, .text = "communication between the ranks broke"};
 
+const struct data_failure *graph_lost_failure(void)
+{
+    return &lost;
+}
+
 const struct data_failure *graph_given_up(struct graph *graph)
 {
     return atomic_load_explicit(&graph->given_up, memory_order_relaxed) ? &lost : NULL;
@@ -201,20 +206,27 @@ static void run_copy(struct graph *graph, struct graph_task *task)
     graph->hooks.notify(graph->hooks.context);
 }
 
-/* Whether the body ran. */
+/* What is done instead of a body's work. */
+struct stand_in {
+    struct data_packet *result; /* what it left on another rank; NULL: it is lost */
+};
+
+/* Whether the body ran; `instead` NULL: it is to run here. */
 static bool run_body(struct graph *graph, void *worker, struct graph_task *task, duite_param *param,
-                     const duite_call *call)
+                     const duite_call *call, const struct stand_in *instead)
 {
     bool sized = false; /* it writes an object that changes its size */
     const struct data_failure *failure = prepare(task, param, &sized);
-    if (!failure)
+    if (!failure && !instead)
         failure = graph_given_up(graph);
-    bool runs = !failure;
+    bool runs = !failure && !instead;
     size_t args_size = graph->kernels[task->kernel]->args_size;
     if (runs)
         failure =
             graph_call_body(graph, worker, task, args_size ? graph_task_rest(task, task->n) : NULL,
                             param, &task->inner, call);
+    else if (!failure)
+        failure = graph_take_result(task, param, instead->result);
     if (failure)
         poison(task, failure);
     else if (sized)
@@ -224,27 +236,32 @@ static bool run_body(struct graph *graph, void *worker, struct graph_task *task,
 
 /* The same with memory for the parameters. */
 static bool run_task(struct graph *graph, void *worker, struct graph_task *task,
-                     const duite_call *call)
+                     const duite_call *call, const struct stand_in *instead)
 {
     enum { FEW = 8 };
     duite_param few[FEW];
     if (task->n <= FEW)
-        return run_body(graph, worker, task, few, call);
+        return run_body(graph, worker, task, few, call, instead);
     duite_param *param = base_pool_take(task->n * sizeof *param);
     if (!param) {
         poison(task, graph_fail_memory(task));
         return false;
     }
-    bool ran = run_body(graph, worker, task, param, call);
+    bool ran = run_body(graph, worker, task, param, call, instead);
     base_pool_give(param, task->n * sizeof *param);
     return ran;
+}
+
+void graph_run_result(struct graph *graph, struct graph_task *task, struct data_packet *result)
+{
+    run_task(graph, NULL, task, NULL, &(struct stand_in){result});
 }
 
 bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const duite_call *call)
 {
     switch (task->kind) {
     case GRAPH_BODY:
-        return run_task(graph, worker, task, call);
+        return run_task(graph, worker, task, call, NULL);
     case GRAPH_VOID:
         poison(task, &no_memory);
         break;
@@ -272,7 +289,11 @@ bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const
     case GRAPH_NODE_VIEW:
     case GRAPH_NODE_FLAG:
         return graph_node_run(graph, worker, task, call);
+    case GRAPH_GUEST:
+        return graph_guest_run(graph, worker, task, call);
     case GRAPH_SEND:
+    case GRAPH_AWAY:
+    case GRAPH_RESULT:
         break;
     }
     return false;
@@ -284,6 +305,12 @@ void graph_finish(struct graph *graph, void *worker, struct graph_task *task)
         graph_node_finish(graph, worker, task);
     else if (task->kind == GRAPH_REPLAY)
         graph_replay_start(graph, worker, task);
+    else if (task->kind == GRAPH_GUEST)
+        graph_guest_finish(worker, task);
+    else if (task->kind == GRAPH_RESULT)
+        graph_guest_gone(graph, task);
+    else if (task->kind == GRAPH_AWAY)
+        graph_away_sent(graph, worker, task);
     else
         graph_over(graph, worker, task);
 }

@@ -76,6 +76,7 @@ void work_count(struct work_pool *pool, duite_counters *counters)
         counters->placed += atomic_load_explicit(&counts->placed, memory_order_relaxed);
         counters->stolen += atomic_load_explicit(&counts->stolen, memory_order_relaxed);
         counters->chained += atomic_load_explicit(&counts->chained, memory_order_relaxed);
+        counters->delegated += atomic_load_explicit(&counts->delegated, memory_order_relaxed);
         counters->busy +=
             pool->tick * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
         counters->idle +=

@@ -1,6 +1,7 @@
 #ifndef DUITE_WORKERS_INTERNAL_H
 #define DUITE_WORKERS_INTERNAL_H
 
+#include "runtime/workers/balance.h"
 #include "runtime/workers/park.h"
 #include "runtime/workers/queue.h"
 #include "runtime/workers/watch.h"
@@ -15,8 +16,9 @@
 #define WORK_FIRST_PAUSE_SECONDS 2e-5
 
 struct counts {
-    _Atomic uint64_t over;                                       /* tasks of all kinds */
-    _Atomic uint64_t tasks, placed, stolen, chained, busy, idle; /* the last two in ticks */
+    _Atomic uint64_t over; /* tasks of all kinds */
+    _Atomic uint64_t tasks, placed, stolen, chained, delegated;
+    _Atomic uint64_t busy, idle; /* in ticks */
 };
 
 struct work_worker {
@@ -54,6 +56,7 @@ struct work_pool {
     pthread_t main;
     struct work_queue shared;
     struct work_watch watch;
+    struct work_balance *balance; /* NULL: nothing moves between ranks */
     _Alignas(64) _Atomic int stop;
     _Atomic int watched;             /* somebody reads the tasks that run: they must not go on */
     _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
@@ -97,6 +100,15 @@ static inline void work_pause_core(void)
 #endif
 }
 
+/* What an idle worker waits for beside tasks, and how it may sleep meanwhile. */
+struct work_wish {
+    bool (*done)(void *context); /* NULL: nothing */
+    void *context;
+    bool unheard; /* nobody wakes the worker for it: sleep for a pause at most */
+};
+
+/* Looks for work once; idles for a moment if there is none. */
+void work_look(struct work_worker *worker, const struct work_wish *wish);
 /* Runs the task and what it chains. */
 void work_run(struct work_worker *worker, struct graph_task *task);
 /* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal

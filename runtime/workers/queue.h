@@ -44,6 +44,16 @@ static inline bool work_queue_is_empty(const struct work_queue *queue)
                atomic_load_explicit(&queue->deque.newest, memory_order_relaxed);
 }
 
+/* About how many tasks it has; an inbox counts as one. Anybody may look. */
+static inline size_t work_queue_size(const struct work_queue *queue)
+{
+    int64_t newest = atomic_load_explicit(&queue->deque.newest, memory_order_relaxed);
+    int64_t oldest = atomic_load_explicit(&queue->deque.oldest, memory_order_relaxed);
+    return (newest > oldest ? (size_t)(newest - oldest) : 0) +
+           (atomic_load_explicit(&queue->inbox, memory_order_relaxed) != NULL) +
+           atomic_load_explicit(&queue->heap.n, memory_order_relaxed);
+}
+
 /* Are there tasks in the heap? Who finds another one at it goes away empty-handed, and may sleep:
  * whoever took a task and leaves some there wakes another. */
 static inline bool work_queue_ranks(struct work_queue *queue)

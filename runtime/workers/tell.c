@@ -1,6 +1,7 @@
 /* What is told of a standstill. Bodies that run, and messages that are awaited, are what all other
  * tasks wait for; both are held where they are during the look (work_leaves, comm_look), and with
  * them the tasks that wait for them. */
+#include "runtime/graph/away.h"
 #include "runtime/workers/internal.h"
 
 #include <linux/membarrier.h>
@@ -138,6 +139,16 @@ static void tell_sending(void *context, const struct graph_send *send)
          send->key.slot, send->key.generation, (unsigned long long)send->key.number, send->to);
 }
 
+/* A task that another rank runs; it stays away as long as it is looked at. */
+static void tell_away(void *context, const struct graph_task *task, int rank)
+{
+    struct page *page = context;
+    line(page, "%s is on rank %d, which has not sent what it leaves", words_of(page, task).text,
+         rank);
+    for (uint32_t i = 0; i < task->n; i++)
+        tell_waiters(page, task, i);
+}
+
 /* ---- All of it ---- */
 
 static void tell_main(struct page *page, double seconds)
@@ -174,6 +185,7 @@ void work_tell(struct work_pool *pool, double seconds)
     tell_bodies(&page, hold_workers(pool));
     if (pool->setup.comm)
         comm_look(pool->setup.comm, &looker);
+    graph_away_look(pool->setup.graph, tell_away, &page);
     line(&page, "unfinished tasks of this rank: %llu", (unsigned long long)unfinished(pool));
     atomic_store_explicit(&pool->watched, 0, memory_order_release);
     pthread_mutex_unlock(&pool->watch.lock);

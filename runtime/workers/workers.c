@@ -36,8 +36,7 @@ static duite_ready describe(const struct graph *graph, const struct graph_task *
                                       [GRAPH_NODE_SUM] = "duite_sum",
                                       [GRAPH_NODE_VIEW] = "duite_view",
                                       [GRAPH_NODE_FLAG] = "duite_replay_while"};
-    bool program = task->kind == GRAPH_BODY || task->kind == GRAPH_NODE;
-    const char *name = program ? graph->kernels[task->kernel]->name : own[task->kind];
+    const char *name = graph_has_body(task) ? graph->kernels[task->kernel]->name : own[task->kind];
     return (duite_ready){.kernel = name,
                          .number = task->number,
                          .block = task->block,
@@ -71,14 +70,24 @@ static void place(struct work_worker *worker, struct graph_task *task, const dui
     work_wake_one(pool, queue);
 }
 
+/* Whether the task goes to another rank. */
+static bool moves(struct work_worker *worker, struct graph_task *task)
+{
+    if (task->kind == GRAPH_GUEST)
+        work_guest_came(worker->pool->balance, task);
+    return work_placed_away(worker, task);
+}
+
 static void on_ready(void *context, void *who, struct graph_task *task)
 {
     struct work_pool *pool = context;
     struct work_worker *worker = who;
-    if (task->kind == GRAPH_SEND) {
+    if (graph_to_send(task)) {
         comm_send(pool->setup.comm, task);
         return;
     }
+    if (pool->balance && moves(worker, task))
+        return;
     duite_ready ready = describe(pool->setup.graph, task);
     if (worker->may_chain && !worker->next && pool->setup.scheduler->chain(worker->state, &ready) &&
         (!worker->waits || graph_may_run(worker->waits, task)))
@@ -171,6 +180,8 @@ void work_run(struct work_worker *worker, struct graph_task *task)
     worker->left_some = false;
     uint64_t start = base_ticks();
     for (unsigned length = 1; task; length++) {
+        if (pool->balance && work_begins(worker, task))
+            start = base_ticks();
         uint64_t outer = worker->within;
         worker->within = 0;
         const struct graph_task *below = work_enters(worker, task);
@@ -181,6 +192,8 @@ void work_run(struct work_worker *worker, struct graph_task *task)
         worker->within = outer + took;
         work_bump(&worker->counts.tasks, body);
         work_bump(&worker->counts.busy, body ? own : 0);
+        if (pool->balance && body)
+            work_learn(worker, task->kernel, own);
         worker->finishing = true;
         worker->may_chain = may_chain(worker, length);
         if (graph_to_send(task))
@@ -192,6 +205,8 @@ void work_run(struct work_worker *worker, struct graph_task *task)
         if (comm && (comm_posted(comm) || end - worker->polled > pool->poll_ticks)) {
             worker->polled = end;
             work_poll(worker);
+            if (pool->balance)
+                work_serve(worker);
         }
         task = worker->next;
         worker->next = NULL;
@@ -255,16 +270,10 @@ static bool spin(struct work_worker *worker)
     return false;
 }
 
-/* What an idle worker waits for beside tasks, and how it may sleep meanwhile. */
-struct wish {
-    bool (*done)(void *context); /* NULL: nothing */
-    void *context;
-    bool unheard; /* nobody wakes the worker for it: sleep for a pause at most */
-};
-
 /* Sleeps until woken, or for so many seconds if they are > 0. Returns a task if there was one at
  * the last look; does not sleep if nobody polls. */
-static struct graph_task *doze(struct work_worker *worker, double seconds, const struct wish *wish)
+static struct graph_task *doze(struct work_worker *worker, double seconds,
+                               const struct work_wish *wish)
 {
     struct work_pool *pool = worker->pool;
     bool polled = worker->polls;
@@ -281,9 +290,12 @@ static struct graph_task *doze(struct work_worker *worker, double seconds, const
 }
 
 /* Nothing to do: one moment of idling. */
-static void idle(struct work_worker *worker, const struct wish *wish)
+static void idle(struct work_worker *worker, const struct work_wish *wish)
 {
+    struct work_pool *pool = worker->pool;
     bool polls = take_seat(worker);
+    if (polls && pool->balance && worker->idle_since)
+        work_beg(worker, base_ticks() - worker->idle_since);
     if (spin(worker))
         return;
     struct graph_task *task = doze(worker, polls || wish->unheard ? worker->pause : 0, wish);
@@ -295,8 +307,7 @@ static void idle(struct work_worker *worker, const struct wish *wish)
     work_run(worker, task);
 }
 
-/* Looks for work once; idles if there is none. */
-static void look(struct work_worker *worker, const struct wish *wish)
+void work_look(struct work_worker *worker, const struct work_wish *wish)
 {
     struct graph_task *task = find(worker);
     if (task) {
@@ -309,69 +320,13 @@ static void look(struct work_worker *worker, const struct wish *wish)
     }
 }
 
-void work_drain(struct work_pool *pool, bool (*done)(void *), void *context)
-{
-    const struct wish wish = {.done = done, .context = context};
-    atomic_store(&pool->awaited, pool->setup.graph->tasks);
-    while (!done(context))
-        look(&pool->worker[0], &wish);
-    atomic_store_explicit(&pool->awaited, 0, memory_order_relaxed);
-    work_busy_again(&pool->worker[0]);
-}
-
-struct until {
-    bool (*done)(void *context);
-    void *context;
-    struct comm *comm;
-};
-
-static bool done_or_broken(void *context)
-{
-    const struct until *until = context;
-    return until->done(until->context) || (until->comm && comm_broken(until->comm));
-}
-
-void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)(void *),
-                void *context)
-{
-    struct until until = {done, context, pool->setup.comm};
-    if (until.comm && comm_posted(until.comm))
-        work_poll(&pool->worker[0]);
-    work_waits(pool, why);
-    work_drain(pool, done_or_broken, &until);
-    work_waits(pool, NULL);
-}
-
-void work_once(struct work_pool *pool)
-{
-    look(&pool->worker[0], &(struct wish){.unheard = true});
-}
-
-void work_idle_ends(struct work_pool *pool)
-{
-    work_busy_again(&pool->worker[0]);
-}
-
-void work_tick(struct work_pool *pool)
-{
-    struct work_worker *worker = &pool->worker[0];
-    struct comm *comm = pool->setup.comm;
-    if (!comm)
-        return;
-    uint64_t now = base_ticks();
-    if (!comm_posted(comm) && now - worker->polled < pool->poll_ticks)
-        return;
-    worker->polled = now;
-    work_poll(worker);
-}
-
 static void *thread_main(void *argument)
 {
     struct work_worker *worker = argument;
     struct work_pool *pool = worker->pool;
     work_cores_bind(worker->unit);
     while (!atomic_load_explicit(&pool->stop, memory_order_acquire))
-        look(worker, &(struct wish){0});
+        work_look(worker, &(struct work_wish){0});
     base_pool_thread_end();
     return NULL;
 }
@@ -428,6 +383,8 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     bool fine = pool->worker && pool->states && work_queue_start(&pool->shared);
     for (unsigned i = 0; i < n && fine; i++)
         fine = prepare(pool, i, setup->cores ? setup->cores[i] : -1);
+    if (fine)
+        fine = !work_balance_start(&pool->balance, pool);
     setup->graph->hooks = (struct graph_hooks){.context = pool,
                                                .ready = on_ready,
                                                .notify = work_notify,
@@ -439,10 +396,16 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     return code ? code : watched;
 }
 
+static void tell_nobody(void *context)
+{
+    (void)context;
+}
+
 void work_stop(struct work_pool *pool)
 {
     if (!pool)
         return;
+    pool->setup.graph->hooks.notify = tell_nobody; /* communication may break later still */
     atomic_store(&pool->stop, 1);
     work_watch_stop(pool);
     for (unsigned i = 1; i < pool->started; i++) {
@@ -458,17 +421,8 @@ void work_stop(struct work_pool *pool)
             work_park_stop(&pool->worker[i].park);
     }
     work_queue_stop(&pool->shared);
+    work_balance_stop(pool->balance);
     base_free(pool->worker);
     base_free(pool->states);
     base_free(pool);
-}
-
-struct work_worker *work_main(struct work_pool *pool)
-{
-    return &pool->worker[0];
-}
-
-bool work_may_fork(struct work_pool *pool)
-{
-    return pthread_equal(pthread_self(), pool->main) && !graph_running(pool->setup.graph);
 }

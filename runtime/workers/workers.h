@@ -19,8 +19,9 @@ struct work_setup {
     struct comm *comm;   /* NULL: one rank */
     struct check *check; /* NULL: bodies are called directly */
     const duite_scheduler *scheduler;
-    void *context; /* for bodies */
-    duite *rt;     /* for bodies */
+    const duite_balancer *balancer; /* NULL: nothing moves */
+    void *context;                  /* for bodies */
+    duite *rt;                      /* for bodies */
     unsigned threads;
     uint64_t seed;
     double spin_seconds;  /* 0: workers outnumber cores */

@@ -96,7 +96,7 @@ static void start(void)
         its.send[i].packet = &its.packet[i];
     }
     explore_check(!comm_start(&its.comm, MPI_COMM_NULL, &its.graph));
-    comm_open(its.comm);
+    comm_open(its.comm, false);
 }
 
 static void post(int i)

@@ -106,6 +106,9 @@ static void different_options(void)
     options.mapping = duite_mapping_find(rank == 0 ? "metis" : "cyclic");
     tap_case(duite_start(&rt, &options) == DUITE_E_DIFFERENT && !rt, "another mapping");
     options = misuse_options(MPI_COMM_WORLD);
+    options.balance = duite_balancer_find(rank == 0 ? "delegate" : "scatter");
+    tap_case(duite_start(&rt, &options) == DUITE_E_DIFFERENT && !rt, "another balancer");
+    options = misuse_options(MPI_COMM_WORLD);
     options.seed = rank == 0 ? 5 : 6;
     tap_case(duite_start(&rt, &options) == DUITE_E_DIFFERENT && !rt, "another seed");
     options = misuse_options(MPI_COMM_WORLD);

@@ -220,8 +220,10 @@ START_TEST(words)
     ck_assert_ptr_nonnull(duite_code_text(-1000));
     ck_assert_ptr_null(duite_scheduler_find("no such"));
     ck_assert_ptr_null(duite_mapping_find("no such"));
+    ck_assert_ptr_null(duite_balancer_find("no such"));
     ck_assert_ptr_null(duite_scheduler_find(NULL));
     ck_assert_ptr_null(duite_mapping_find(NULL));
+    ck_assert_ptr_null(duite_balancer_find(NULL));
 }
 END_TEST
 

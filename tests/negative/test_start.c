@@ -143,6 +143,16 @@ START_TEST(malformed_policies)
     options.mapping = &mapping;
     mapping.map = NULL;
     refuses_options(&options, "mapping");
+    options = misuse_options(MPI_COMM_WORLD);
+    duite_balancer balance = *duite_balancer_find("delegate");
+    options.balance = NULL;
+    refuses_options(&options, "balancer");
+    options.balance = &balance;
+    balance.give = NULL;
+    refuses_options(&options, "balancer");
+    balance = *duite_balancer_find("none");
+    balance.name = NULL;
+    refuses_options(&options, "balancer");
 }
 END_TEST
 

@@ -39,6 +39,12 @@ tests_runtime_ranks_exit_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_exit.sh
 TESTS += tests/runtime/test_exit.sh
 
+check_PROGRAMS += tests/runtime/ranks_delegate
+tests_runtime_ranks_delegate_SOURCES = tests/runtime/ranks_delegate.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_ranks_delegate_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/runtime/test_delegate.sh
+TESTS += tests/runtime/test_delegate.sh
+
 if HAVE_CHECK
 AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_rename
 check_PROGRAMS += $(AHEAD_TESTS)

@@ -1,6 +1,7 @@
 /* Runs random trees of tasks on duite and compares with the interpreter:
  *
- *     nested_programs [--seed SEED] [--programs N] [--threads T] [--scheduler NAME] [--print]
+ *     nested_programs [--seed SEED] [--programs N] [--threads T] [--scheduler NAME] [--balance
+ * NAME] [--print]
  *
  * alone or under mpirun; all ranks run each program together. One TAP line. */
 
@@ -20,7 +21,7 @@ struct settings {
     uint64_t seed;
     unsigned long programs;
     unsigned threads;
-    const char *scheduler;
+    const char *scheduler, *balance;
     bool print;
 };
 
@@ -318,8 +319,14 @@ static void run(const struct settings *settings)
     options.scheduler = duite_scheduler_find(scheduler);
     options.window = duite_random(&random) % 4;
     options.rename_bytes = duite_random(&random) % 3 * 1000;
-    snprintf(running, sizeof running, "--seed %llu --threads %u --scheduler %s",
-             (unsigned long long)program.seed, options.threads, scheduler);
+    const char *const *balancers = duite_balancer_names();
+    for (n = 0; balancers[n]; n++)
+        ;
+    const char *balance =
+        settings->balance ? settings->balance : balancers[duite_random(&random) % n];
+    options.balance = duite_balancer_find(balance);
+    snprintf(running, sizeof running, "--seed %llu --threads %u --scheduler %s --balance %s",
+             (unsigned long long)program.seed, options.threads, scheduler, balance);
     if (duite_start(&rt, &options)) {
         found("start: %s", duite_message());
         return;
@@ -346,7 +353,8 @@ static bool read_options(int argc, char **argv, struct settings *settings)
 {
     static const struct option options[] = {{"seed", 1, NULL, 's'},    {"programs", 1, NULL, 'p'},
                                             {"threads", 1, NULL, 't'}, {"scheduler", 1, NULL, 'q'},
-                                            {"print", 0, NULL, 'v'},   {NULL, 0, NULL, 0}};
+                                            {"balance", 1, NULL, 'a'}, {"print", 0, NULL, 'v'},
+                                            {NULL, 0, NULL, 0}};
 
     for (int c; (c = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         if (c == 's')
@@ -357,12 +365,15 @@ static bool read_options(int argc, char **argv, struct settings *settings)
             settings->threads = (unsigned)atoi(optarg);
         else if (c == 'q')
             settings->scheduler = optarg;
+        else if (c == 'a')
+            settings->balance = optarg;
         else if (c == 'v')
             settings->print = true;
         else
             return false;
     }
-    return optind == argc && (!settings->scheduler || duite_scheduler_find(settings->scheduler));
+    return optind == argc && (!settings->scheduler || duite_scheduler_find(settings->scheduler)) &&
+           (!settings->balance || duite_balancer_find(settings->balance));
 }
 
 /* Whether some rank found the program wrong. */

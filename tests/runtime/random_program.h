@@ -124,7 +124,7 @@ struct prog_context {
 struct prog_setup {
     MPI_Comm comm;
     unsigned threads;
-    const char *scheduler, *mapping;
+    const char *scheduler, *mapping, *balance;
     uint64_t seed;
     double spin;
     size_t window, rename;

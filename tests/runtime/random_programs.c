@@ -1,6 +1,6 @@
 /* Runs random programs on groups of 1 to 4 of the ranks of one job, each group on its own. A
- * program is its seed and the number of ranks; threads, scheduler and mapping follow from the seed
- * too unless they are given. */
+ * program is its seed and the number of ranks; threads, scheduler, mapping and balancer follow from
+ * the seed too unless they are given. */
 
 #include "tests/runtime/random_program.h"
 
@@ -14,7 +14,7 @@ struct settings {
     uint64_t seed; /* of one program, or the first of many */
     int one, ranks, threads, window, verbose;
     unsigned long programs, repeat;
-    const char *scheduler, *mapping, *rename;
+    const char *scheduler, *mapping, *balance, *rename;
 };
 
 static char running[256]; /* the program that runs, for the handler */
@@ -63,6 +63,10 @@ static struct prog_setup draw_setup(const struct settings *settings, uint64_t se
     setup.rename = RENAMES[duite_random(&random) % (sizeof RENAMES / sizeof *RENAMES)];
     setup.scheduler = schedulers[duite_random(&random) % count_names(schedulers)];
     setup.mapping = mappings[duite_random(&random) % count_names(mappings)];
+    setup.balance =
+        duite_balancer_names()[duite_random(&random) % count_names(duite_balancer_names())];
+    if (settings->balance)
+        setup.balance = settings->balance;
     if (settings->window >= 0)
         setup.window = (size_t)settings->window;
     if (settings->rename)
@@ -172,11 +176,11 @@ static int run_seed(const struct settings *settings, uint64_t seed, MPI_Comm com
     int ranks, wrong;
 
     MPI_Comm_size(comm, &ranks);
-    snprintf(
-        running, sizeof running,
-        "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s --window %zu --rename %zu",
-        (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
-        setup.window, setup.rename);
+    snprintf(running, sizeof running,
+             "--seed %llu --ranks %d --threads %u --scheduler %s --mapping %s --balance %s "
+             "--window %zu --rename %zu",
+             (unsigned long long)seed, ranks, setup.threads, setup.scheduler, setup.mapping,
+             setup.balance, setup.window, setup.rename);
     prog = prog_make(seed, ranks);
     if (!prog)
         MPI_Abort(MPI_COMM_WORLD, 99);
@@ -241,7 +245,8 @@ static int read_options(int argc, char **argv, struct settings *settings)
         {"seed", 1, NULL, 's'},    {"base", 1, NULL, 'b'},    {"ranks", 1, NULL, 'r'},
         {"threads", 1, NULL, 't'}, {"repeat", 1, NULL, 'n'},  {"programs", 1, NULL, 'p'},
         {"mapping", 1, NULL, 'm'}, {"verbose", 0, NULL, 'v'}, {"scheduler", 1, NULL, 'q'},
-        {"window", 1, NULL, 'w'},  {"rename", 1, NULL, 'e'},  {NULL, 0, NULL, 0}};
+        {"balance", 1, NULL, 'a'}, {"window", 1, NULL, 'w'},  {"rename", 1, NULL, 'e'},
+        {NULL, 0, NULL, 0}};
 
     for (int c; (c = getopt_long(argc, argv, "", OPTIONS, NULL)) != -1;) {
         settings->one |= c == 's';
@@ -261,6 +266,8 @@ static int read_options(int argc, char **argv, struct settings *settings)
             settings->programs = strtoul(optarg, NULL, 10);
         else if (c == 'm')
             settings->mapping = optarg;
+        else if (c == 'a')
+            settings->balance = optarg;
         else if (c == 'q')
             settings->scheduler = optarg;
         else if (c == 'v')
@@ -269,6 +276,7 @@ static int read_options(int argc, char **argv, struct settings *settings)
             return 1;
     }
     return (settings->scheduler && !duite_scheduler_find(settings->scheduler)) ||
+           (settings->balance && !duite_balancer_find(settings->balance)) ||
            (settings->mapping && !duite_mapping_find(settings->mapping));
 }
 
@@ -300,7 +308,8 @@ int main(int argc, char **argv)
         fprintf(
             stderr,
             "%s: --base SEED --programs N, on 1 to 4 ranks; or --seed SEED --ranks R [--threads T] "
-            "[--scheduler S] [--mapping M] [--window W] [--rename BYTES] [--repeat N] [--verbose], "
+            "[--scheduler S] [--mapping M] [--balance B] [--window W] [--rename BYTES] [--repeat "
+            "N] [--verbose], "
             "on R ranks or "
             "more\n",
             argv[0]);

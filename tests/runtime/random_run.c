@@ -336,20 +336,46 @@ static int owner(const struct run *run, const struct prog_op *op)
     return 0;
 }
 
-/* A replicated kernel's task runs everywhere, or, in a graph, where its result is read. */
-static void check_place(struct run *run, const struct prog_op *op, int ran)
+/* A task ran once where it should, or, if it may be moved (`all` is not NULL), once on all ranks
+ * together. A replicated kernel's runs everywhere, or, in a graph, where its result is read. */
+static void check_place(struct run *run, const struct prog_op *op, int ran,
+                        const unsigned char *all)
 {
     const int runs = run->answers->runs[op->number];
     const int everywhere = run->prog->kernel[op->kernel].replicated;
     const int should = everywhere || owner(run, op) == run->rank ? runs : 0;
 
+    if (all && !everywhere && op->rank < 0) {
+        if (all[op->number] != runs)
+            found(run, "task %u ran %d times, expected %d", op->number, all[op->number], runs);
+        return;
+    }
     if (everywhere && op->kind == PROG_GRAPH_FORK ? ran > should : ran != should)
         found(run, "task %u ran %d times here, expected %d", op->number, ran, should);
 }
 
-/* Followers live with their leaders, tasks where they should. */
-static void check_places(struct run *run, const struct prog_context *context)
+/* How often each task ran on all ranks, modulo 256; NULL without memory. */
+static unsigned char *count_runs(const struct run *run, const struct prog_context *context,
+                                 MPI_Comm comm)
 {
+    const size_t n = run->prog->n_forks + 1;
+    unsigned char *here = malloc(2 * n);
+
+    for (size_t i = 0; i < n && here; i++)
+        here[i] = atomic_load(&context->ran[i]);
+    if (here)
+        MPI_Allreduce(here, here + n, (int)n, MPI_UNSIGNED_CHAR, MPI_SUM, comm);
+    if (here)
+        memmove(here, here + n, n);
+    return here;
+}
+
+/* Followers live with their leaders, tasks where they should. */
+static void check_places(struct run *run, const struct prog_context *context,
+                         const struct prog_setup *setup)
+{
+    const int moves = strcmp(setup->balance, "none") != 0;
+    unsigned char *all = moves ? count_runs(run, context, setup->comm) : NULL;
     int rebound = 0; /* then its tasks may run on several ranks */
 
     for (size_t i = 0; i < run->prog->n_graphs; i++)
@@ -366,8 +392,9 @@ static void check_places(struct run *run, const struct prog_context *context)
             continue;
         if (op->kind == PROG_GRAPH_FORK && run->prog->n_ranks > 1 && rebound)
             continue;
-        check_place(run, op, atomic_load(&context->ran[op->number]));
+        check_place(run, op, atomic_load(&context->ran[op->number]), all);
     }
+    free(all);
 }
 
 static void run_operations(struct run *run, const struct prog_setup *setup,
@@ -383,6 +410,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     options.threads = setup->threads;
     options.scheduler = duite_scheduler_find(setup->scheduler);
     options.mapping = duite_mapping_find(setup->mapping);
+    options.balance = duite_balancer_find(setup->balance);
     options.seed = setup->seed;
     options.spin_seconds = setup->spin;
     options.bind = 0;
@@ -412,7 +440,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     expect(run, "stop", duite_stop(&run->rt), run->answers->stop);
     if (run->rt)
         found(run, "stop left *rt");
-    check_places(run, context);
+    check_places(run, context, setup);
 }
 
 void prog_run(const struct prog *prog, const struct prog_answers *answers,

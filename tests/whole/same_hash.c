@@ -1,5 +1,6 @@
 /* One scene, one hash: runs it over ranks x threads x schedulers x mappings, and over seeds of
- * `shuffle`, in one job of MPI, and compares every state_hash with that of one rank and one thread.
+ * `shuffle`, each time with the next balancer, in one job of MPI, and compares every state_hash
+ * with that of one rank and one thread.
  *
  *   mpirun -n N same_hash SCENE all|some SEEDS [KEY=VALUE]...
  *
@@ -43,15 +44,16 @@ static duite_options options_of(const struct config *config, struct flow *flow, 
 }
 
 /* Returns the hash, or 0 with the sentence in *error. */
-static uint64_t run(const struct model *model, const struct config *config, MPI_Comm comm,
-                    struct cloth_error *error)
+static uint64_t run(const struct model *model, const struct config *config, const char *balance,
+                    MPI_Comm comm, struct cloth_error *error)
 {
     struct flow *flow;
     struct flow_report report = {0};
     duite *rt;
     if (flow_prepare(&flow, model, config->ranks, error))
         return 0;
-    const duite_options options = options_of(config, flow, comm);
+    duite_options options = options_of(config, flow, comm);
+    options.balance = duite_balancer_find(balance);
     int code = duite_start(&rt, &options);
     if (!code) {
         flow_run(flow, rt, NULL, NULL, &report, error);
@@ -63,15 +65,25 @@ static uint64_t run(const struct model *model, const struct config *config, MPI_
     return error->code ? 0 : report.state_hash;
 }
 
+static const char *next_balance(int check)
+{
+    const char *const *names = duite_balancer_names();
+    int n = 0;
+    while (names[n])
+        n++;
+    return names[check % n];
+}
+
 static void check(struct checks *checks, const struct config *config)
 {
     MPI_Comm comm;
     const bool in = checks->world_rank < config->ranks;
     struct cloth_error error = {0};
     uint64_t hash = 0;
+    const char *balance = next_balance(checks->n++);
     MPI_Comm_split(MPI_COMM_WORLD, in ? 0 : MPI_UNDEFINED, checks->world_rank, &comm);
     if (in) {
-        hash = run(checks->model, config, comm, &error);
+        hash = run(checks->model, config, balance, comm, &error);
         MPI_Comm_free(&comm);
     }
     /* Ranks that are not needed wait without getting in the way. */
@@ -89,9 +101,9 @@ static void check(struct checks *checks, const struct config *config)
         checks->expected = hash;
     const bool same = hash && hash == checks->expected;
     checks->failed += !same;
-    printf("%s %d - %d ranks, %u threads, %s, %s, seed %" PRIu64 ": %016" PRIx64 " %s\n",
-           same ? "ok" : "not ok", ++checks->n, config->ranks, config->threads, config->scheduler,
-           config->mapping, config->seed, hash, error.text);
+    printf("%s %d - %d ranks, %u threads, %s, %s, %s, seed %" PRIu64 ": %016" PRIx64 " %s\n",
+           same ? "ok" : "not ok", checks->n, config->ranks, config->threads, config->scheduler,
+           config->mapping, balance, config->seed, hash, error.text);
     fflush(stdout);
 }
 

@@ -75,6 +75,8 @@ ok "a scheduler of no name" wrong "duite-cloth: --scheduler lazy: there is no sc
     --scheduler lazy
 ok "a mapping of no name" wrong "duite-cloth: --mapping flat: there is no mapping of this name; known are " scene.yaml \
     --mapping flat
+ok "a balancer of no name" wrong "duite-cloth: --balance fair: there is no balancer of this name; known are none, " \
+    scene.yaml --balance fair
 ok "a time that is none" wrong "duite-cloth: --end soon: time.end is soon; a finite number > 0 (s) is expected" scene.yaml \
     --end soon
 
@@ -85,7 +87,8 @@ hash=$(value state_hash)
 ok "the summary names scene, hash and folder" sh -c 'grep -q "^handkerchief$" printed && grep -q "state hash  *$1$" printed &&
     grep -q "frames .* in frames$" printed' sh "$hash"
 ok "the report says what was run" eval 'is scene handkerchief && is vertices 64 && is triangles 98 && is grain 20 &&
-    is blocks 4 && is ranks 1 && is scheduler steal && is mapping metis && is steps 80 && is balance null'
+    is blocks 4 && is ranks 1 && is scheduler steal && is mapping metis && is steps 80 && is balance none &&
+    is delegated_tasks 0'
 ok "hashes have 16 digits" eval 'echo "$hash $(value partition_hash)" | grep -qxE "[0-9a-f]{16} [0-9a-f]{16}"'
 
 all_keys() { # exactly the keys of the manual page, in its order
@@ -110,6 +113,9 @@ ok "the same on 2 ranks" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 1
 ok "the same on 2 ranks with 2 threads, cyclic, shuffled" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 2 \
     --mapping cyclic --scheduler shuffle --seed 7
 ok "the report names them" eval 'is ranks 2 && is threads 2 && is scheduler shuffle && is mapping cyclic'
+ok "the same on 2 ranks with tasks that run on either" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 1 --balance scatter
+ok "the report counts these" eval 'is balance scatter && test "$(value delegated_tasks)" -gt 0'
+ok "the same with tasks for who is idle" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 1 --balance delegate
 checked() { # the kernels keep to their declarations
     run scene.yaml --end 0.004 --report report.json --quiet || return 1
     plain=$(value state_hash)

@@ -1,0 +1,53 @@
+/* delegate: an idle rank asks one other for tasks, the one that gave last or a random one, and
+ * waits ever longer before it asks again; who is asked gives half of what is ready, of it what
+ * costs more than its way. Half, because the giver works on meanwhile; and the last ready task
+ * stays, since the giver's own worker takes it next. After Blumofe & Leiserson (1999), with half of
+ * a queue instead of one task: Hendler & Shavit, Non-blocking steal-half work queues, PODC 2002. */
+#include "runtime/balance/balance.h"
+
+/* How long a question stands: the first, and the longest. */
+#define FIRST_SECONDS   5e-4
+#define LONGEST_SECONDS 5e-2
+
+struct state {
+    uint64_t random;
+    int rank, n_ranks;
+};
+
+static void start(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed)
+{
+    struct state *own = state;
+    *own = (struct state){.random = (seed * 1000003 + (uint64_t)rank) * 4099 + worker,
+                          .rank = rank,
+                          .n_ranks = n_ranks};
+}
+
+static int victim(void *state, unsigned attempt, int giver, double *seconds)
+{
+    struct state *own = state;
+    double pause = FIRST_SECONDS;
+    for (unsigned i = 0; i < attempt && pause < LONGEST_SECONDS; i++)
+        pause *= 2;
+    *seconds = pause < LONGEST_SECONDS ? pause : LONGEST_SECONDS;
+    if (own->n_ranks == 1)
+        return DUITE_NO_RANK;
+    if (!attempt && giver != DUITE_NO_RANK)
+        return giver;
+    int others = own->n_ranks - 1;
+    return (own->rank + 1 + (int)(duite_random(&own->random) % (uint64_t)others)) % own->n_ranks;
+}
+
+static int give(void *state, const duite_asked *asked, const duite_leaf *leaf)
+{
+    (void)state;
+    return leaf->cost > leaf->transfer && asked->given < asked->ready / 2;
+}
+
+const duite_balancer balance_delegate = {
+    .name = "delegate",
+    .summary = "idle ranks get ready leaf tasks that cost more than their way",
+    .state_size = sizeof(struct state),
+    .start = start,
+    .victim = victim,
+    .give = give,
+};

@@ -1,0 +1,282 @@
+/* The balancer's state and what a body costs belong to one worker each; others only read the costs.
+ * When this rank asks next is known by numbers that any worker may write: a question too many or
+ * too few does no harm. */
+#include "runtime/workers/balance.h"
+
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/graph/away.h"
+#include "runtime/workers/internal.h"
+
+#include <string.h>
+
+enum {
+    DEPTH = 64,       /* tasks of a queue that are looked at for one who asks */
+    MEMORY_SHIFT = 3, /* of costs: the last 2^3 bodies count most */
+    STOCK = 4, /* guests a worker, the one that runs among them: with fewer it asks for more */
+};
+
+#define FIRST_ASK_SECONDS 2e-5 /* so long a worker idles before it asks */
+#define SERVE_SECONDS     2e-5 /* between two looks for tasks to give */
+
+struct work_balance {
+    const duite_balancer *balancer;
+    unsigned char *states; /* one a worker, lines apart */
+    size_t stride;
+    double tick;
+    uint64_t first_ask, serve_ticks;
+    _Atomic uint64_t *cost; /* ticks, a row of kernels for each worker; 0: none ran */
+    size_t row;
+    _Atomic uint64_t next, served; /* ticks: when to ask, when it was given last */
+    _Atomic unsigned attempt;
+    _Atomic int giver;
+};
+
+int work_balance_start(struct work_balance **out, struct work_pool *pool)
+{
+    const duite_balancer *balancer = pool->setup.balancer;
+    const struct graph *graph = pool->setup.graph;
+    unsigned n = pool->setup.threads;
+    *out = NULL;
+    if (!balancer || graph->n_ranks == 1 || !(balancer->victim || balancer->place))
+        return DUITE_OK;
+    struct work_balance *balance = *out = base_alloc_zero(sizeof *balance);
+    if (!balance)
+        return base_no_memory("the balancer");
+    balance->balancer = balancer;
+    balance->tick = pool->tick;
+    balance->first_ask = (uint64_t)(FIRST_ASK_SECONDS / pool->tick);
+    balance->serve_ticks = (uint64_t)(SERVE_SECONDS / pool->tick);
+    balance->giver = DUITE_NO_RANK;
+    balance->stride = (balancer->state_size / BASE_LINE + 2) * BASE_LINE;
+    balance->row = (graph->n_kernels / 8 + 2) * 8;
+    balance->states = base_alloc_zero(n * balance->stride);
+    balance->cost = base_alloc_zero(n * balance->row * sizeof *balance->cost);
+    if (!balance->states || !balance->cost)
+        return base_no_memory("the balancer");
+    for (unsigned i = 0; i < n && balancer->start; i++)
+        balancer->start(balance->states + i * balance->stride, graph->rank, graph->n_ranks, i,
+                        pool->setup.seed);
+    return DUITE_OK;
+}
+
+void work_balance_stop(struct work_balance *balance)
+{
+    if (!balance)
+        return;
+    base_free(balance->states);
+    base_free(balance->cost);
+    base_free(balance);
+}
+
+static void *state_of(const struct work_worker *worker)
+{
+    const struct work_balance *balance = worker->pool->balance;
+    return balance->states + worker->index * balance->stride;
+}
+
+/* ---- What a task costs ---- */
+
+void work_learn(struct work_worker *worker, uint32_t kernel, uint64_t ticks)
+{
+    const struct work_balance *balance = worker->pool->balance;
+    _Atomic uint64_t *cost = &balance->cost[worker->index * balance->row + kernel];
+    uint64_t before = atomic_load_explicit(cost, memory_order_relaxed);
+    uint64_t now = before ? before - (before >> MEMORY_SHIFT) + (ticks >> MEMORY_SHIFT) : ticks;
+    atomic_store_explicit(cost, now ? now : 1, memory_order_relaxed);
+}
+
+/* The mean of the workers that know; 0: none does. */
+static double cost_of(const struct work_pool *pool, uint32_t kernel)
+{
+    const struct work_balance *balance = pool->balance;
+    double sum = 0;
+    unsigned known = 0;
+    for (unsigned i = 0; i < pool->setup.threads; i++) {
+        uint64_t ticks =
+            atomic_load_explicit(&balance->cost[i * balance->row + kernel], memory_order_relaxed);
+        sum += (double)ticks;
+        known += ticks > 0;
+    }
+    return known ? balance->tick * sum / known : 0;
+}
+
+/* False: it may not go. */
+static bool describe(const struct work_pool *pool, const struct graph_task *task, duite_leaf *leaf)
+{
+    const struct graph *graph = pool->setup.graph;
+    size_t bytes;
+    if (!graph_may_go(graph, task, &bytes))
+        return false;
+    *leaf = (duite_leaf){.kernel = graph->kernels[task->kernel]->name,
+                         .number = task->number,
+                         .cost = task->cost > 0 ? task->cost : cost_of(pool, task->kernel),
+                         .bytes = bytes,
+                         .transfer = comm_transfer(pool->setup.comm, bytes)};
+    return true;
+}
+
+static bool send(struct work_worker *worker, struct graph_task *task, int to)
+{
+    if (!graph_send_away(worker->pool->setup.graph, worker, task, to))
+        return false;
+    work_bump(&worker->counts.delegated, 1);
+    return true;
+}
+
+/* It goes to who asks before its own worker can take it: of a tree whose tasks become ready a few
+ * at a time hardly a leaf would be left between two tasks. */
+static bool given_at_once(struct work_worker *worker, struct graph_task *task,
+                          const duite_leaf *leaf)
+{
+    const struct work_pool *pool = worker->pool;
+    size_t others = work_queue_size(&worker->queue) + work_queue_size(&pool->shared);
+    struct comm_asker asker;
+    if (!comm_asked(pool->setup.comm, &asker))
+        return false;
+    const duite_asked asked = {
+        .rank = asker.rank, .idle = asker.idle, .ready = 1 + (unsigned)others};
+    bool given = pool->balance->balancer->give(state_of(worker), &asked, leaf) &&
+                 send(worker, task, asker.rank);
+    if (!given)
+        comm_asks_again(pool->setup.comm, &asker);
+    return given;
+}
+
+bool work_placed_away(struct work_worker *worker, struct graph_task *task)
+{
+    const struct work_pool *pool = worker->pool;
+    const duite_balancer *balancer = pool->balance->balancer;
+    int own = pool->setup.graph->rank, to = own;
+    duite_leaf leaf;
+    bool asked = balancer->give && comm_is_asked(pool->setup.comm);
+    if ((!balancer->place && !asked) || !describe(pool, task, &leaf))
+        return false;
+    if (balancer->place)
+        to = balancer->place(state_of(worker), &leaf);
+    if (to >= 0 && to < pool->setup.graph->n_ranks && to != own)
+        return send(worker, task, to);
+    return asked && given_at_once(worker, task, &leaf);
+}
+
+/* ---- Giving ---- */
+
+struct gift {
+    struct work_worker *worker;
+    duite_asked asked;
+};
+
+/* Oldest first: the owner works on the newest. What is not given goes back in its old order. */
+static void give_or_keep(struct gift *gift, struct work_queue *queue, struct graph_task *task)
+{
+    const struct work_pool *pool = gift->worker->pool;
+    while (task) {
+        struct graph_task *next = task->next;
+        duite_leaf leaf;
+        if (describe(pool, task, &leaf) &&
+            pool->balance->balancer->give(state_of(gift->worker), &gift->asked, &leaf) &&
+            send(gift->worker, task, gift->asked.rank))
+            gift->asked.given++;
+        else
+            work_queue_push(queue, task);
+        task = next;
+    }
+}
+
+static void give_from(struct gift *gift, struct work_queue *queue)
+{
+    struct graph_task *taken = NULL, *task;
+    for (unsigned i = 0; i < DEPTH && (task = work_queue_take(queue, DUITE_NEWEST)); i++) {
+        task->next = taken;
+        taken = task;
+        gift->asked.ready++;
+    }
+    give_or_keep(gift, queue, taken);
+}
+
+static void give(struct work_worker *worker, const struct comm_asker *asker, unsigned *given)
+{
+    struct work_pool *pool = worker->pool;
+    struct gift gift = {.worker = worker, .asked = {.rank = asker->rank, .idle = asker->idle}};
+    give_from(&gift, &worker->queue);
+    if (!atomic_flag_test_and_set_explicit(&pool->shared.token, memory_order_acquire)) {
+        give_from(&gift, &pool->shared);
+        atomic_flag_clear_explicit(&pool->shared.token, memory_order_seq_cst);
+    }
+    /* Those who did not find them meanwhile look again. */
+    atomic_thread_fence(memory_order_seq_cst);
+    if (gift.asked.ready > gift.asked.given)
+        work_wake_one(pool, DUITE_NO_QUEUE);
+    *given = gift.asked.given;
+}
+
+void work_serve(struct work_worker *worker)
+{
+    struct work_balance *balance = worker->pool->balance;
+    struct comm *comm = worker->pool->setup.comm;
+    struct comm_asker asker;
+    uint64_t now = base_ticks();
+    if (!comm_is_asked(comm) ||
+        now - atomic_load_explicit(&balance->served, memory_order_relaxed) < balance->serve_ticks)
+        return;
+    atomic_store_explicit(&balance->served, now, memory_order_relaxed);
+    unsigned given = 1;
+    while (given && comm_asked(comm, &asker)) {
+        give(worker, &asker, &given);
+        if (!given)
+            comm_asks_again(comm, &asker);
+    }
+    work_poll(worker);
+}
+
+/* ---- Asking ---- */
+
+/* Unless the last question still stands. */
+static void ask(struct work_worker *worker)
+{
+    struct work_pool *pool = worker->pool;
+    struct work_balance *balance = pool->balance;
+    uint64_t now = base_ticks();
+    double seconds = 0;
+    if (!balance->balancer->victim || graph_has_given_up(pool->setup.graph) ||
+        now < atomic_load_explicit(&balance->next, memory_order_relaxed))
+        return;
+    unsigned attempt = atomic_load_explicit(&balance->attempt, memory_order_relaxed);
+    int giver = atomic_load_explicit(&balance->giver, memory_order_relaxed);
+    int rank = balance->balancer->victim(state_of(worker), attempt, giver, &seconds);
+    unsigned idle = 1 + (unsigned)atomic_load_explicit(&pool->parked, memory_order_relaxed);
+    bool other = rank >= 0 && rank < pool->setup.graph->n_ranks && rank != pool->setup.graph->rank;
+    if (other && !comm_ask(pool->setup.comm, rank, idle, seconds))
+        return;
+    atomic_store_explicit(&balance->next, now + (uint64_t)(seconds / balance->tick),
+                          memory_order_relaxed);
+    atomic_store_explicit(&balance->attempt, attempt + 1, memory_order_relaxed);
+    work_poll(worker);
+}
+
+void work_beg(struct work_worker *worker, uint64_t idle)
+{
+    if (idle >= worker->pool->balance->first_ask)
+        ask(worker);
+}
+
+void work_guest_came(struct work_balance *balance, const struct graph_task *guest)
+{
+    atomic_store_explicit(&balance->giver, graph_guest_home(guest), memory_order_relaxed);
+    atomic_store_explicit(&balance->attempt, 0, memory_order_relaxed);
+    atomic_store_explicit(&balance->next, 0, memory_order_relaxed);
+}
+
+bool work_begins(struct work_worker *worker, const struct graph_task *task)
+{
+    const struct work_pool *pool = worker->pool;
+    if (task->kind != GRAPH_GUEST)
+        return false;
+    uint64_t guests = graph_guests(pool->setup.graph);
+    size_t ready = work_queue_size(&worker->queue) + work_queue_size(&pool->shared);
+    bool last = guests <= STOCK * pool->setup.threads && ready < guests;
+    if (last)
+        ask(worker);
+    return last;
+}

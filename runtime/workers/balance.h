@@ -1,0 +1,38 @@
+#ifndef DUITE_WORKERS_BALANCE_H
+#define DUITE_WORKERS_BALANCE_H
+
+#include "runtime/graph/graph.h"
+
+#include <duite_policy.h>
+
+/* What workers do for a balancer: they measure what bodies cost, ask other ranks for tasks when
+ * there are none, and give some to those who ask. A pool without a balancer, or with one that moves
+ * nothing, or on one rank, has none of this (NULL). */
+struct work_balance;
+struct work_pool;
+struct work_worker;
+
+/* The pool has its setup and its workers. *balance NULL: nothing moves. Errors: memory. */
+int work_balance_start(struct work_balance **balance, struct work_pool *pool);
+void work_balance_stop(struct work_balance *balance); /* NULL is fine */
+
+/* A task became ready: true if it was sent to another rank. */
+bool work_placed_away(struct work_worker *worker, struct graph_task *task);
+
+/* A task of another rank came. */
+void work_guest_came(struct work_balance *balance, const struct graph_task *guest);
+
+/* A task is about to run: one of the last of other ranks', with nothing else here, is the moment to
+ * ask for more. Whether that took time. */
+bool work_begins(struct work_worker *worker, const struct graph_task *task);
+
+/* The body of a kernel took so many ticks. */
+void work_learn(struct work_worker *worker, uint32_t kernel, uint64_t ticks);
+
+/* Between tasks: gives to those who ask. */
+void work_serve(struct work_worker *worker);
+
+/* The worker, which polls for all that idle, has nothing to do since so many ticks: asks. */
+void work_beg(struct work_worker *worker, uint64_t idle);
+
+#endif

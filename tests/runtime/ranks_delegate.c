@@ -1,0 +1,355 @@
+/* Tasks that run on other ranks than their own: which of them may, what comes back, failures, waits
+ * inside, and who asks how often. All objects of a case live on one rank. */
+
+#include "tests/negative/misuse.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+enum { TASKS = 40, MOST = 50 };
+
+static atomic_int ran[4]; /* on this rank: plain, pinned, stays, files */
+static int rank;
+
+/* Adds what it reads and its argument to 1: a sum over what all three kinds of parameters hold. */
+static int mix_body(const duite_call *call)
+{
+    const int32_t add = *(const int32_t *)call->args;
+
+    atomic_fetch_add(&ran[0], 1);
+    duite_out(call, 1, int32_t)[0] += duite_in(call, 0, int32_t)[0] + add;
+    duite_out(call, 2, int32_t)[0] = add;
+    duite_out(call, 3, int32_t)[0] += add;
+    return 0;
+}
+static const duite_kernel MIX = {.name = "mix",
+                                 .body = mix_body,
+                                 .access = {DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
+                                 .args_size = sizeof(int32_t)};
+
+static int count_body(const duite_call *call)
+{
+    atomic_fetch_add(&ran[*(const int32_t *)call->args], 1);
+    duite_out(call, 0, int32_t)[0] += 1;
+    return 0;
+}
+static const duite_kernel PLAIN = {
+    .name = "plain", .body = count_body, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
+static const duite_kernel STAYS = {.name = "stays",
+                                   .body = count_body,
+                                   .access = {DUITE_RW},
+                                   .args_size = sizeof(int32_t),
+                                   .stays = 1};
+static const duite_kernel FILES = {.name = "files",
+                                   .body = count_body,
+                                   .access = {DUITE_RW},
+                                   .args_size = sizeof(int32_t),
+                                   .side_effects = 1};
+
+/* Of an object that changes its size: 1 more than it had, each as large as their number. */
+static int grow_body(const duite_call *call)
+{
+    const size_t n = duite_count(call, 0) + 1;
+    const int code = duite_resize(call, 0, n);
+
+    for (size_t i = 0; !code && i < n; i++)
+        duite_out(call, 0, int32_t)[i] = (int32_t)n;
+    return code;
+}
+static const duite_kernel GROW = {.name = "grow", .body = grow_body, .access = {DUITE_RW}};
+
+static int shrink_body(const duite_call *call)
+{
+    return duite_resize(call, 0, duite_count(call, 0) == MOST ? 0 : 1);
+}
+static const duite_kernel SHRINK = {.name = "shrink", .body = shrink_body, .access = {DUITE_W}};
+
+/* Forks children of its own, waits for them, and tells what they left. */
+static int parent_body(const duite_call *call)
+{
+    duite_object own;
+    int32_t value = 0;
+
+    duite_new(call->rt, DUITE_I32, 1, &own);
+    for (int32_t i = 0; i < 3; i++)
+        DUITE_FORK(call->rt, &PLAIN, DUITE_ARGS(int32_t, 0), own);
+    const int code = duite_get(call->rt, own, &value);
+
+    duite_out(call, 0, int32_t)[0] += value;
+    return code;
+}
+static const duite_kernel PARENT = {.name = "parent", .body = parent_body, .access = {DUITE_RW}};
+
+/* Its child fails, which it does not care about. */
+static int careless_body(const duite_call *call)
+{
+    duite_object own;
+
+    duite_new(call->rt, DUITE_I32, 1, &own);
+    DUITE_FORK(call->rt, &FAIL, DUITE_ARGS(int32_t, 23), own);
+    duite_out(call, 0, int32_t)[0] = 5;
+    return 0;
+}
+static const duite_kernel CARELESS = {
+    .name = "careless", .body = careless_body, .access = {DUITE_RW}};
+
+/* A tree: the first leaf forked fails with 31, a later one with 32. */
+static int tree_body(const duite_call *call)
+{
+    const duite_object lent = call->param[0].object;
+
+    DUITE_FORK(call->rt, &PLAIN, DUITE_ARGS(int32_t, 0), lent);
+    DUITE_FORK(call->rt, &FAIL, DUITE_ARGS(int32_t, 31), lent);
+    const int told = duite_wait(call->rt);
+    duite_set(call->rt, lent, &(int32_t){told});
+    DUITE_FORK(call->rt, &FAIL, DUITE_ARGS(int32_t, 32), lent);
+    return 0;
+}
+static const duite_kernel TREE = {.name = "tree", .body = tree_body, .access = {DUITE_RWP}};
+
+static int doze_body(const duite_call *call)
+{
+    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+    duite_out(call, 0, int32_t)[0] += 1;
+    return 0;
+}
+static const duite_kernel DOZE = {.name = "doze", .body = doze_body, .access = {DUITE_CW}};
+
+static const duite_kernel *const LIST[] = {&MIX,    &PLAIN, &STAYS,  &FILES,    &GROW,
+                                           &SHRINK, &FAIL,  &PARENT, &CARELESS, &TREE,
+                                           &DOZE,   &SET,   &COPY,   NULL};
+
+static duite *start(const char *balance)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = NULL;
+
+    options.kernels = LIST;
+    options.threads = 1;
+    options.balance = duite_balancer_find(balance);
+    if (duite_start(&rt, &options))
+        printf("# %s\n", duite_message());
+    for (int i = 0; i < 4; i++)
+        atomic_store(&ran[i], 0);
+    return rt;
+}
+
+static duite_object new_beside(duite *rt, duite_object leader)
+{
+    const duite_object object = misuse_new(rt, 1);
+
+    duite_follow(rt, object, leader);
+    return object;
+}
+
+static int32_t value_of(duite *rt, duite_object object)
+{
+    int32_t value = -1;
+
+    duite_get(rt, object, &value);
+    return value;
+}
+
+static uint64_t delegated(duite *rt)
+{
+    duite_counters counters;
+
+    duite_wait(rt);
+    return duite_count_all(rt, &counters) ? 0 : counters.delegated;
+}
+
+static void say(const char *balance, const char *what, int right)
+{
+    char name[100];
+
+    snprintf(name, sizeof name, "%s: %s", balance, what);
+    tap_case(right, name);
+}
+
+/* All values are those of fork order. */
+static void values(const char *balance)
+{
+    duite *rt = start(balance);
+    duite_object in = misuse_new(rt, 1), object[TASKS], last = new_beside(rt, in),
+                 sum = new_beside(rt, in);
+    int right = 1;
+
+    DUITE_FORK(rt, &SET, &(int32_t){7}, in);
+    for (int32_t i = 0; i < TASKS; i++)
+        object[i] = new_beside(rt, in);
+    for (int32_t i = 0; i < TASKS; i++) {
+        DUITE_FORK(rt, &MIX, &i, in, object[i], last, sum);
+        DUITE_FORK(rt, &PARENT, NULL, object[i]);
+    }
+    for (int32_t i = 0; i < TASKS; i++)
+        right &= value_of(rt, object[i]) == 7 + i + 3;
+    say(balance, "every task has its value", right);
+    say(balance, "the last write is left", value_of(rt, last) == TASKS - 1);
+    say(balance, "contributions come home", value_of(rt, sum) == TASKS * (TASKS - 1) / 2);
+    const int moves = !strcmp(balance, "scatter") && duite_ranks(rt) > 1;
+
+    say(balance, "tasks ran elsewhere if they could", (delegated(rt) > 0) == moves);
+    for (int i = 0; i < TASKS; i++)
+        duite_free(rt, object[i]);
+    duite_free(rt, in);
+    duite_free(rt, last);
+    duite_free(rt, sum);
+    say(balance, "stop", duite_stop(&rt) == DUITE_OK);
+}
+
+/* What must not move does not. */
+static void pinned(void)
+{
+    duite *rt = start("scatter");
+    duite_object object = misuse_new(rt, 1);
+    const int here = duite_home(rt, object) == rank;
+
+    for (int i = 0; i < TASKS; i++) {
+        duite_fork_at(rt, duite_home(rt, object), &PLAIN, &(int32_t){1}, 1, &object);
+        DUITE_FORK(rt, &STAYS, DUITE_ARGS(int32_t, 2), object);
+        DUITE_FORK(rt, &FILES, DUITE_ARGS(int32_t, 3), object);
+    }
+    tap_case(value_of(rt, object) == 3 * TASKS, "all ran");
+    tap_case((atomic_load(&ran[1]) > 0) == here, "tasks whose fork names a rank run there");
+    tap_case((atomic_load(&ran[2]) > 0) == here, "a kernel that stays stays");
+    tap_case((atomic_load(&ran[3]) > 0) == here, "and one with side effects");
+    tap_case(delegated(rt) == 0, "and nothing is counted");
+    duite_free(rt, object);
+    duite_stop(&rt);
+}
+
+static void sizes(void)
+{
+    duite *rt = start("scatter");
+    duite_object object;
+    int32_t value[MOST];
+    size_t count = 0;
+
+    duite_new_sized(rt, DUITE_I32, 0, MOST, &object);
+    for (int i = 0; i < TASKS; i++)
+        DUITE_FORK(rt, &GROW, NULL, object);
+    int code = duite_get_count(rt, object, &count);
+    tap_case(!code && count == TASKS && !duite_get(rt, object, value) && value[TASKS - 1] == TASKS,
+             "sizes come home");
+    DUITE_FORK(rt, &SHRINK, NULL, object);
+    tap_case(!duite_get_count(rt, object, &count) && count == 0, "nothing, too");
+    for (int i = 0; i < MOST + 2; i++)
+        DUITE_FORK(rt, &GROW, NULL, object);
+    tap_case(duite_get(rt, object, value) == DUITE_E_SIZE, "too large a size is an error");
+    duite_free(rt, object);
+    duite_wait(rt);
+    duite_stop(&rt);
+}
+
+/* Of tasks of the main program. */
+static void poison(void)
+{
+    duite *rt = start("scatter");
+    duite_object a = misuse_new(rt, 1), b = new_beside(rt, a);
+
+    for (int32_t i = 0; i < TASKS; i++) {
+        DUITE_FORK(rt, &FAIL, DUITE_ARGS(int32_t, 10 + i), a);
+        DUITE_FORK(rt, &PLAIN, DUITE_ARGS(int32_t, 0), a);
+        DUITE_FORK(rt, &COPY, NULL, a, b);
+        DUITE_FORK(rt, &PLAIN, DUITE_ARGS(int32_t, 0), b);
+    }
+    tap_case(duite_get(rt, b, &(int32_t){0}) == 10, "poison comes home");
+    tap_case(strstr(duite_message(), "task 1 (kernel fail)") &&
+                 strstr(duite_message(), "sentence 10 of a body"),
+             "with its sentence");
+    tap_case(duite_wait(rt) == 10, "a wait tells the first failure");
+    DUITE_FORK(rt, &SET, &(int32_t){4}, a);
+    tap_case(value_of(rt, a) == 4, "a w clears it");
+    duite_free(rt, a);
+    duite_free(rt, b);
+    tap_case(duite_stop(&rt) == DUITE_OK, "stop after failures");
+}
+
+/* Of children, of guests and of tasks that stay. */
+static void children(void)
+{
+    duite *rt = start("scatter");
+    duite_object a = misuse_new(rt, 1);
+    int right = 1;
+
+    for (int i = 0; i < TASKS; i++)
+        DUITE_FORK(rt, &CARELESS, NULL, a);
+    tap_case(value_of(rt, a) == 5, "a child's failure is not its parent's");
+    tap_case(duite_wait(rt) == 23 && strstr(duite_message(), "task 1.1 (kernel fail)"),
+             "but a wait tells it, with its place");
+    tap_case(duite_wait(rt) == DUITE_OK, "once");
+    for (int i = 0; i < TASKS; i++) {
+        duite_set(rt, a, NULL);
+        DUITE_FORK(rt, &TREE, NULL, a);
+        right &= duite_wait(rt) == 31;
+        right &= duite_get(rt, a, &(int32_t){0}) == 32;
+    }
+    tap_case(right, "in a tree the first is told, and each to who asks for it");
+    DUITE_FORK(rt, &SET, &(int32_t){4}, a);
+    duite_free(rt, a);
+    duite_stop(&rt);
+}
+
+/* One rank has pinned work for 0.2 s, all others have nothing to do. */
+static uint64_t messages_of_idling(const char *balance)
+{
+    duite *rt = start(balance);
+    duite_object object = misuse_new(rt, 1);
+    duite_counters counters = {0};
+
+    for (int i = 0; i < 100; i++)
+        duite_fork_at(rt, duite_home(rt, object), &DOZE, NULL, 1, &object);
+    duite_wait(rt);
+    duite_count_all(rt, &counters);
+    duite_free(rt, object);
+    duite_stop(&rt);
+    return counters.messages;
+}
+
+/* Leaves of 2 ms on one rank: others take some of them. */
+static void given(void)
+{
+    duite *rt = start("delegate");
+    duite_object object = misuse_new(rt, 1);
+
+    for (int i = 0; i < 100; i++)
+        DUITE_FORK(rt, &DOZE, NULL, object);
+    tap_case(value_of(rt, object) == 100, "delegate: all ran");
+    tap_case((delegated(rt) > 0) == (duite_ranks(rt) > 1), "delegate: idle ranks got some");
+    duite_free(rt, object);
+    duite_stop(&rt);
+}
+
+/* The ranks go different ways while tasks are away. */
+static void different(void)
+{
+    duite *rt = start("scatter");
+    duite_object a = misuse_new(rt, 1), b = new_beside(rt, a);
+    const int alone = duite_ranks(rt) == 1;
+
+    for (int32_t i = 0; i < TASKS; i++)
+        DUITE_FORK(rt, &MIX, &i, a, b, misuse_new(rt, 1), misuse_new(rt, 1));
+    if (rank == 0)
+        DUITE_FORK(rt, &PLAIN, DUITE_ARGS(int32_t, 0), a);
+    tap_case(alone || duite_wait(rt) == DUITE_E_DIFFERENT, "different programs are found");
+    tap_case((duite_stop(&rt) != DUITE_OK) && !rt, "and stop ends");
+}
+
+int main(void)
+{
+    misuse_mpi();
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    values("none");
+    values("scatter");
+    pinned();
+    sizes();
+    poison();
+    children();
+    tap_case(messages_of_idling("none") == 0, "without a balancer nobody asks");
+    tap_case(messages_of_idling("delegate") <= 2000, "idle ranks ask ever less often");
+    given();
+    different();
+    return tap_done();
+}

@@ -216,7 +216,7 @@ void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *sca
     solve_pack(t->n_rim, t->rim, q, s->rim[1 - from] + sheet_rim(s, block));
 }
 
-/* The runtime's tree over the sums of blocks first .. first + n - 1 (docs/design.md,
+/* The runtime's tree over the sums of tasks first .. first + n - 1 (docs/design.md,
  * Contributions), left in sum[first]. */
 static void add_tree(double (*sum)[SOLVE_DOTS], size_t first, size_t n)
 {
@@ -245,8 +245,8 @@ int sheet_solve(struct sheet *s, uint32_t count)
     for (int from = 0; scalars.phase != SOLVE_DONE && !code; from = 1 - from) {
         const struct solve_scalars now = scalars;
         memset(sum, 0, n * sizeof *sum);
-        for (uint32_t b = 0; b < n; b++)
-            sheet_pass(s, b, &now, from, sum[b]);
+        for (uint32_t i = 0; i < n; i++)
+            sheet_pass(s, sheet_order(n, i, from), &now, from, sum[i]);
         add_tree(sum, 0, n);
         if (solve_scalars_next(&stop, sum[0], &now, &scalars))
             code = serve_fail("the solve breaks down");

@@ -38,6 +38,11 @@ size_t sheet_rim(const struct sheet *sheet, uint32_t block);
 /* What a task of the cloth's solve does on a block: before the first pass; in a pass that reads
  * rim[from] of the neighbours and writes rim[1 - from]. */
 void sheet_start(struct sheet *sheet, uint32_t block);
+/* Of n blocks the i-th of a pass: passes go to and fro. */
+static inline uint32_t sheet_order(uint32_t n, uint32_t i, int from)
+{
+    return from ? n - 1 - i : i;
+}
 void sheet_pass(struct sheet *sheet, uint32_t block, const struct solve_scalars *scalars, int from,
                 double dots[SOLVE_DOTS]);
 

@@ -155,13 +155,15 @@ static int take_rows(struct twin *twin, double *rim)
 static void pass_blocks(struct twin *twin, bool border, const struct solve_scalars *now, int from,
                         double sum[SOLVE_DOTS])
 {
-    for (uint32_t b = twin->first[twin->rank]; b < twin->first[twin->rank + 1]; b++) {
+    const uint32_t first = twin->first[twin->rank], n = twin->first[twin->rank + 1] - first;
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t b = first + sheet_order(n, i, from);
         double dots[SOLVE_DOTS] = {0};
         if (twin->border[b] != border)
             continue;
         sheet_pass(twin->sheet, b, now, from, dots);
-        for (int i = 0; i < SOLVE_DOTS; i++)
-            sum[i] += dots[i];
+        for (int k = 0; k < SOLVE_DOTS; k++)
+            sum[k] += dots[k];
     }
 }
 

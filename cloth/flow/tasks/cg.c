@@ -1,7 +1,8 @@
 /* Conjugate gradients by tasks (Zara 2001), recorded once a run and replayed in each step until its
  * scalars say that it is done. A round is two passes, which read the rims of q in turn: the one
- * that others still read is not the one that is written. When the solve is done with the first pass
- * of a round, the second one does nothing. */
+ * that others still read is not the one that is written. Passes go to and fro over the blocks:
+ * those that come last in one, whose rows the caches still have, come first in the next. When the
+ * solve is done with the first pass of a round, the second one does nothing. */
 #include "cloth/flow/tasks/tasks.h"
 
 /* Pass number `from` of a round: a task a block, and the one that makes the next factors. */
@@ -11,7 +12,8 @@ static int fork_pass(struct flow_state *state, int from)
     const int to = 1 - from;
     struct flow_args args = {0};
     int code = duite_set(state->rt, state->sums[from], NULL);
-    for (; args.block < tables->n_blocks && !code; args.block++) {
+    for (uint32_t i = 0; i < tables->n_blocks && !code; i++) {
+        args.block = from ? tables->n_blocks - 1 - i : i;
         const struct flow_objects *o = state->block + args.block;
         const struct flow_table *t = tables->block + args.block;
         const duite_object *q = state->far.read[from] + (t->slot - tables->slot);

@@ -292,9 +292,9 @@ static void end(duite *rt)
     if (instance_is_broken(rt))
         instance_give_up(rt);
     work_stop(rt->pool);
+    recorded_stop(rt); /* closes their channels */
     if (comm_stop(rt->comm))
         MPI_Comm_free(&rt->mpi);
-    recorded_stop(rt);
     graph_stop(&rt->graph);
     check_stop(rt->check);
     base_free(rt);

@@ -470,21 +470,25 @@ typedef int duite_build(duite *rt, void *context);
 int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *graph);
 
 /* Forks the graph's tasks `rounds` times, one round after the other: the results, the failures and
- * the numbers of tasks are those of forking them by hand. On one rank the rounds run from a
+ * the numbers of tasks are those of forking them by hand. The rounds run from a
  * compiled form, in which a task costs no allocation, lock or search, and a round begins where
- * dependences allow before the last one is over; the tasks forked before and after it that use the
- * same objects wait for the replay as a whole. (Forked are all rounds if the size of an
- * object changes, if a mode is postponed, or if contributions of one round and the next are one
- * sum; the first or the last one if its contributions are one sum with those forked before or after
- * the replay.) If an object that the graph uses was freed, build is called again first, and
- * bindings and arguments are those it makes. Errors of that, and DUITE_E_BINDING. rounds times
- * tasks is at most 2^48. Collective; returns at once. */
+ * dependences allow before the last one is over. On several ranks a rank sends each other one in a
+ * round at most one message for each phase of what moves between them: for what is made from
+ * nothing of other ranks, for what is made from that, and so on; contributions ride along. What
+ * the rounds only read is moved before the first one. The tasks forked before and after it that use
+ * the same objects wait for the replay as a whole. (Forked are all rounds if the size of an object
+ * changes, if a mode is postponed, or if contributions of one round and the next are one sum; the
+ * first or the last one if its contributions are one sum with those forked before or after the
+ * replay.) If an object that the graph uses was freed, build is called again first, and bindings
+ * and arguments are those it makes. Errors of that, and DUITE_E_BINDING. rounds times tasks is at
+ * most 2^48. Collective; returns at once. */
 int duite_replay(duite *rt, duite_graph graph, uint64_t rounds);
 
 /* Replays while the first element of `flag`, an object that the graph uses or any other, is not
  * zero after a round: at least one round, at most `most`. A flag that is poisoned ends it. Tasks
- * forked later are numbered as if there had been `most` rounds. Collective; returns at once on one
- * rank, on several when the last round is forked. */
+ * forked later are numbered as if there had been `most` rounds. All ranks must be able to read the
+ * flag: written by a replicated kernel it costs no message. Collective; returns at once, or, if the
+ * rounds are forked (duite_replay), when the last one is. */
 int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t most);
 
 /* Waits for the last replay of the graph and writes how many rounds it had; 0 before the first.

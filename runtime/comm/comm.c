@@ -15,6 +15,7 @@
 struct found {
     struct data_packet *packets;
     struct graph_task *sent;
+    struct graph_task *nodes; /* of channels, that are through */
     bool any;
 };
 
@@ -32,6 +33,8 @@ static int prepare(struct comm *comm)
     if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
         MPI_Type_commit(&comm->line))
         return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
+    if (!comm_channels_start(comm))
+        return base_error(DUITE_E_MPI, "MPI_Comm_get_attr failed");
     return DUITE_OK;
 }
 
@@ -79,6 +82,8 @@ bool comm_stop(struct comm *comm)
     if (comm_is_lost(comm)) /* MPI may still read and write here: all of it stays */
         return false;
     comm_catch_up(comm);
+    if (!comm_channels_stop(comm))
+        return false;
     if (comm->line != MPI_DATATYPE_NULL)
         MPI_Type_free(&comm->line);
     comm_requests_free(&comm->sends);
@@ -107,7 +112,8 @@ void comm_send(struct comm *comm, struct graph_task *task)
 
 bool comm_posted(struct comm *comm)
 {
-    return atomic_load_explicit(&comm->posts, memory_order_relaxed) != NULL;
+    return atomic_load_explicit(&comm->posts, memory_order_relaxed) ||
+           atomic_load_explicit(&comm->channels.ready, memory_order_relaxed);
 }
 
 /* False: it was not sent, and never will be. */
@@ -280,6 +286,11 @@ static void deliver(struct comm *comm, void *worker, struct found *found)
         else
             deliver_value(comm, worker, packet);
     }
+    while (found->nodes) {
+        struct graph_task *node = found->nodes;
+        found->nodes = node->next;
+        graph_finish(comm->graph, worker, node);
+    }
     while (found->sent) {
         struct graph_task *task = found->sent;
         found->sent = task->next;
@@ -305,6 +316,10 @@ int comm_expect(struct comm *comm, void *worker, struct data_key key, struct com
 void comm_give_up(struct comm *comm, void *worker)
 {
     struct comm_target target;
+    while (!comm_try_lock(comm))
+        sched_yield();
+    comm_channels_give_up(comm);
+    comm_unlock(comm);
     while (comm_arrivals_close(&comm->arrivals, &target)) {
         if (target.version)
             graph_lost(comm->graph, worker, target.version);
@@ -326,22 +341,57 @@ uint64_t comm_stuck(struct comm *comm)
 
 /* ---- Progress ---- */
 
-bool comm_poll(struct comm *comm, void *worker)
+/* Nodes that are finished make others ready: those are taken by the pass that finished them. */
+static _Thread_local bool passing;
+
+/* While a recorded graph waits for its messages others are looked for less often. */
+enum { SELDOM = 8 };
+
+static void look_around(struct comm *comm, struct found *found)
 {
-    bool any = false;
+    if (comm->channels.awaited.n && ++comm->channels.looks % SELDOM)
+        return;
+    receive(comm, found);
+    comm_question_ask(comm);
+    comm_farewell_say(comm);
+}
+
+static bool pass(struct comm *comm, void *worker, bool looks)
+{
+    bool any = false, outer = passing;
+    passing = true;
     do {
         struct found found = {0};
         if (!comm_try_lock(comm))
-            return any;
-        start_sends(comm, &found);
-        receive(comm, &found);
-        comm_question_ask(comm);
-        comm_farewell_say(comm);
+            break;
+        if (comm->sends.n || atomic_load_explicit(&comm->posts, memory_order_relaxed))
+            start_sends(comm, &found);
+        found.nodes = comm_channels_pass(comm, NULL);
+        if (looks)
+            look_around(comm, &found);
         comm_unlock(comm);
-        any = any || found.any || found.packets || found.sent;
+        any = any || found.any || found.packets || found.sent || found.nodes;
         deliver(comm, worker, &found);
     } while (comm_left_to_us(comm));
+    passing = outer;
     return any;
+}
+
+bool comm_poll(struct comm *comm, void *worker)
+{
+    return pass(comm, worker, true);
+}
+
+bool comm_awaits(struct comm *comm)
+{
+    return atomic_load_explicit(&comm->channels.awaits, memory_order_relaxed);
+}
+
+void comm_channel_ready(struct comm *comm, void *worker, struct graph_task *node)
+{
+    comm_channel_post(comm, node);
+    if (!passing)
+        pass(comm, worker, false);
 }
 
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)

@@ -33,6 +33,17 @@ bool comm_stop(struct comm *comm);
 void comm_send(struct comm *comm, struct graph_task *task);
 bool comm_posted(struct comm *comm);
 
+/* Opens the channels of a recorded graph (graph_hooks.open). Main thread, all ranks alike. Errors:
+ * DUITE_E_MPI, memory. */
+int comm_channels_open(struct comm *comm, struct graph_channels *channels);
+
+/* A node of a channel is ready: sends what it sends right now, or awaits its message; it is
+ * finished when that is through. Any thread. */
+void comm_channel_ready(struct comm *comm, void *worker, struct graph_task *node);
+
+/* Messages of recorded graphs are awaited. Any thread. */
+bool comm_awaits(struct comm *comm);
+
 /* The packets of that key belong to a version, or to a sum; those that came already are delivered.
  * Main thread. */
 int comm_expect(struct comm *comm, void *worker, struct data_key key, struct comm_target target,
@@ -123,6 +134,8 @@ int comm_sum(struct comm *comm, struct comm_word *word, int n, void (*between)(v
 
 /* Breaks; the first reason counts. Any thread. */
 void comm_broke(struct comm *comm, int code, const char *sentence);
+/* The same for want of memory for something. */
+void comm_broke_memory(struct comm *comm, const char *what);
 
 /* The code with the sentence set once communication is broken, else 0. */
 int comm_broken(struct comm *comm);

@@ -3,6 +3,7 @@
 
 #include "runtime/comm/arrivals.h"
 #include "runtime/comm/ask.h"
+#include "runtime/comm/channel.h"
 #include "runtime/comm/comm.h"
 #include "runtime/comm/farewell.h"
 #include "runtime/comm/question.h"
@@ -19,6 +20,7 @@ struct comm {
     _Atomic(struct graph_task *) posts;
     struct comm_requests sends, receives; /* touched by the holder of `lock` only */
     struct comm_arrivals arrivals;
+    struct comm_channels channels;
     _Atomic int broken;
     atomic_flag breaking;        /* taken by the one who breaks */
     struct comm_farewell reason; /* of `broken`, written before it is set */
@@ -31,9 +33,6 @@ struct comm {
     struct comm_word *words;                /* one a rank, and this rank's own */
     _Atomic uint64_t messages, bytes, came; /* the last one: received */
 };
-
-/* comm_broke for want of memory. */
-void comm_broke_memory(struct comm *comm, const char *what);
 
 /* Joins the collective calls that other ranks entered before communication broke. All ranks are at
  * their end. */

@@ -5,9 +5,8 @@
 
 #include <stdlib.h>
 
-MPI_Request *comm_requests_place(struct comm_requests *requests)
+bool comm_requests_room(struct comm_requests *requests, size_t needed)
 {
-    size_t needed = (size_t)requests->n + 1;
     void *moved[3] = {
         base_grow(requests->request, &requests->capacity[0], needed, sizeof(MPI_Request)),
         base_grow(requests->what, &requests->capacity[1], needed, sizeof(void *)),
@@ -18,7 +17,13 @@ MPI_Request *comm_requests_place(struct comm_requests *requests)
         requests->what = moved[1];
     if (moved[2])
         requests->index = moved[2];
-    return moved[0] && moved[1] && moved[2] ? &requests->request[requests->n] : NULL;
+    return moved[0] && moved[1] && moved[2];
+}
+
+MPI_Request *comm_requests_place(struct comm_requests *requests)
+{
+    return comm_requests_room(requests, (size_t)requests->n + 1) ? &requests->request[requests->n]
+                                                                 : NULL;
 }
 
 void comm_requests_started(struct comm_requests *requests, void *what)

@@ -2,6 +2,7 @@
 #define DUITE_COMM_REQUESTS_H
 
 #include <mpi.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 /* MPI requests under way, and what each is about. */
@@ -17,6 +18,9 @@ struct comm_requests {
  * without memory. */
 MPI_Request *comm_requests_place(struct comm_requests *requests);
 void comm_requests_started(struct comm_requests *requests, void *what);
+
+/* Memory for so many at once, so that places are always there. False without. */
+bool comm_requests_room(struct comm_requests *requests, size_t n);
 
 /* Tests all; moves what is done to the end of the arrays: what[n .. n + *done). Returns MPI's code.
  */

@@ -27,11 +27,15 @@ enum graph_kind {
     GRAPH_RESULT, /* a GUEST that is over: sends what it left */
     GRAPH_REPLAY, /* replays of a recorded graph: begins them; over when the last round is */
     /* Nodes of a replay: */
-    GRAPH_NODE,      /* a task of the program */
-    GRAPH_NODE_SET,  /* duite_set */
-    GRAPH_NODE_SUM,  /* combines contributions with an object */
-    GRAPH_NODE_VIEW, /* writes a view's elements from its object */
-    GRAPH_NODE_FLAG  /* decides whether there is another round */
+    GRAPH_NODE,         /* a task of the program */
+    GRAPH_NODE_SET,     /* duite_set */
+    GRAPH_NODE_SUM,     /* combines contributions with an object */
+    GRAPH_NODE_PARTIAL, /* combines this rank's contributions as far as they go */
+    GRAPH_NODE_COPY,    /* copies a value that is about to be overwritten, or came from elsewhere */
+    GRAPH_NODE_VIEW,    /* writes a view's elements from its object */
+    GRAPH_NODE_FLAG,    /* decides whether there is another round */
+    GRAPH_NODE_SEND,    /* sends a message to another rank, */
+    GRAPH_NODE_RECEIVE  /* or awaits one: both are the communication's to run */
 };
 
 struct graph_scope;
@@ -130,10 +134,40 @@ struct graph_scope {
     bool outward;                       /* its children may wait for tasks outside of it */
 };
 
+/* A recorded graph's message of one round to or from another rank: fixed in size and order, so that
+ * it needs no name but its tag and its turn. */
+struct graph_channel {
+    struct graph_task *node; /* SEND or RECEIVE */
+    int peer;
+    int tag; /* to begin with the phase; who opens the channels adds a number of their own */
+    bool sends;
+    size_t bytes; /* room for a message; without failures to tell it is shorter */
+    void *own;    /* of who opens */
+};
+
+/* All of one plan, with messages of so many phases on all ranks. Closed by whoever lets go of the
+ * plan last, from any thread. */
+struct graph_channels {
+    struct graph_channel *channel;
+    size_t n;
+    int phases;
+    void (*close)(struct graph_channels *channels); /* set when they are opened */
+    void *own;
+};
+
+/* A SEND writes its message, which has so many bytes; a RECEIVE reads it, or poisons all that it
+ * would have brought. Afterwards the node is to be finished. Any worker. */
+size_t graph_channel_pack(struct graph_task *node, void *message);
+void graph_channel_unpack(struct graph_task *node, const void *message);
+void graph_channel_lost(struct graph_task *node);
+/* Of a SEND or RECEIVE. */
+struct graph_channel *graph_channel_of(const struct graph_task *node);
+
 /* What lies above: handed over at start. `worker` is whoever calls, passed through untouched. */
 struct graph_hooks {
     void *context;
-    /* A task may run; a SEND may be posted, and ends with graph_finish when its bytes are gone. */
+    /* A task may run; a SEND may be posted, and ends with graph_finish when its bytes are gone; so
+     * do NODE_SEND and NODE_RECEIVE when their message is written or read. */
     void (*ready)(void *context, void *worker, struct graph_task *task);
     /* So many more tasks of the main program are over; -1: there is one more to come. */
     void (*over)(void *context, void *worker, int tasks);
@@ -145,6 +179,10 @@ struct graph_hooks {
      * graph_arrived or graph_pieces_arrived with each packet. 0, or DUITE_E_MEMORY. */
     int (*expect)(void *context, void *worker, struct data_key key, int from,
                   struct data_version *version, struct data_sum *sum, uint32_t packets);
+    /* Opens channels, which all ranks do alike. Main thread. Errors: memory, DUITE_E_MPI. */
+    int (*open)(void *context, struct graph_channels *channels);
+    /* Memory ran out for something that other ranks wait for: the work of all ends. */
+    void (*starved)(void *context, const char *what);
 };
 
 struct graph {
@@ -304,6 +342,12 @@ static inline bool graph_to_send(const struct graph_task *task)
 static inline const struct graph_task *graph_who_waits(const struct data_waiter *waiter)
 {
     return (const struct graph_task *)(const void *)((const char *)waiter - waiter->back);
+}
+
+/* Whether it is run by who communicates. */
+static inline bool graph_is_channel(const struct graph_task *task)
+{
+    return task->kind >= GRAPH_NODE_SEND;
 }
 
 /* Whether the task calls a body of the program. */

@@ -47,8 +47,10 @@ duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_rec
 static inline bool graph_recorded_gathers(const struct graph_recorded_object *objects,
                                           const struct graph_recorded_object *object)
 {
+    if (!object->parent)
+        return false;
     const struct graph_recorded_object *parent = &objects[object->parent - 1];
-    return object->parent && (parent->written || parent->sums);
+    return parent->written || parent->sums;
 }
 
 /* Arguments that changed since the last replay; one block of memory. */

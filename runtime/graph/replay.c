@@ -39,6 +39,8 @@ static bool bind(struct graph_plan *plan, struct graph_access *access, struct gr
     struct data_version *in = access->in;
     struct data_packet *packet = in ? data_version_packet(in) : NULL;
     place->failure = in && place->mode != DUITE_W ? data_version_failure(in) : NULL;
+    if (place->mode == DUITE_NONE)
+        return true;
     if (place->failure)
         atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
     if (place->mode != DUITE_R) {
@@ -98,6 +100,8 @@ void graph_replay_run(struct graph_task *task)
     atomic_store_explicit(&plan->left, plan->decides ? UNKNOWN : (int64_t)plan->n_sinks,
                           memory_order_relaxed);
     change_args(plan, replay->changes);
+    for (size_t i = plan->n_objects; i < plan->n_places; i++)
+        plan->place[i].failure = NULL;
     for (size_t i = 0; i < plan->n_objects; i++)
         fine &= bind(plan, &task->access[i], &plan->place[i]);
     if (task->access[plan->n_objects].in) /* the turn */
@@ -110,6 +114,8 @@ void graph_replay_run(struct graph_task *task)
     for (size_t i = 0; i < plan->n_objects; i++)
         plan->place[i].failure = failure;
     replay->rounds = 0;
+    if (plan->words)
+        plan->graph->hooks.starved(plan->graph->hooks.context, "a replay");
 }
 
 static void end(struct graph *graph, void *worker, struct graph_plan *plan, uint64_t rounds)
@@ -164,7 +170,7 @@ static void clear_leaves(const struct graph_plan *plan, const struct graph_task 
     const struct graph_node_use *use = plan->use + task->node->first_use;
     for (uint32_t i = 0; i < task->n; i++) {
         const struct graph_place *place = &plan->place[use[i].place];
-        if (use[i].place < plan->n_objects)
+        if (!place->law)
             continue;
         if (place->law->neutral)
             place->law->neutral(place->data, place->count, place->type);
@@ -217,46 +223,47 @@ static void run_set(struct graph_task *task)
         place->failure = NULL;
 }
 
-/* The first parameter is the object, the others are the leaves; as data_sum_reduce and
- * data_sum_finish do. */
-static void combine(const duite_law *law, const duite_param *param, uint32_t n)
+static void merge(const struct graph_node *node)
 {
-    size_t count = param->count;
-    duite_type type = param->type;
-    void *stack[64];
-    uint32_t top = 0;
-    for (uint32_t i = 1; i < n; i++) {
-        stack[top++] = param[i].data;
-        for (uint32_t leaves = i; leaves % 2 == 0; leaves /= 2, top--)
-            law->combine(stack[top - 2], stack[top - 1], count, type);
-    }
-    for (; top > 1; top--)
-        law->combine(stack[top - 2], stack[top - 1], count, type);
-    law->combine(param[0].data, stack[0], count, type);
+    const struct graph_tree *tree = node->tree;
+    const duite_param *param = node->param;
+    for (size_t i = 0; i < tree->n; i++)
+        tree->law->combine(param[tree->merge[i].left].data, param[tree->merge[i].right].data,
+                           param->count, param->type);
 }
 
+/* The first parameter of a sum is the object, the others are the pieces. */
 static void run_sum(struct graph_task *task)
 {
-    struct graph_plan *plan = task->node->plan;
+    struct graph_node *node = task->node;
+    struct graph_plan *plan = node->plan;
+    const duite_param *param = node->param;
     bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
     const struct data_failure *failure = tainted ? find_poison(plan, task) : NULL;
-    if (failure)
+    if (failure) {
         set_poison(plan, task, failure);
-    else
-        combine(plan->place[plan->use[task->node->first_use + 1].place].law, task->node->param,
-                task->n);
+        return;
+    }
+    merge(node);
+    if (task->kind == GRAPH_NODE_SUM)
+        node->tree->law->combine(param[0].data, param[1].data, param->count, param->type);
 }
 
+/* A view, or a copy. */
 static void run_view(struct graph_task *task)
 {
     struct graph_node *node = task->node;
-    const duite_param *param = node->param; /* the object, the view */
+    const duite_param *param = node->param; /* from, to */
     bool tainted = atomic_load_explicit(&node->plan->tainted, memory_order_relaxed);
     const struct data_failure *failure = tainted ? find_poison(node->plan, task) : NULL;
     if (tainted)
         set_poison(node->plan, task, failure);
-    if (!failure)
+    if (failure)
+        return;
+    if (task->kind == GRAPH_NODE_VIEW)
         data_view_gather(node->view, data_type_size(param->type), param[0].data, param[1].data);
+    else
+        memcpy(param[1].data, param[0].data, param->count * data_type_size(param->type));
 }
 
 bool graph_flag_holds(duite_type type, const void *values)
@@ -291,9 +298,9 @@ bool graph_node_run(struct graph *graph, void *worker, struct graph_task *task,
         return run_body(graph, worker, task, call);
     if (task->kind == GRAPH_NODE_SET)
         run_set(task);
-    else if (task->kind == GRAPH_NODE_SUM)
+    else if (task->kind == GRAPH_NODE_SUM || task->kind == GRAPH_NODE_PARTIAL)
         run_sum(task);
-    else if (task->kind == GRAPH_NODE_VIEW)
+    else if (task->kind == GRAPH_NODE_VIEW || task->kind == GRAPH_NODE_COPY)
         run_view(task);
     else
         run_flag(graph, task);

@@ -3,7 +3,20 @@
 
 #include "runtime/graph/record.h"
 
-/* A plan: a record compiled to flat arrays for one rank. Used by this folder only. */
+/* A plan: a record compiled to flat arrays, of several ranks for this one's part. Used by this
+ * folder only. */
+
+/* A step of a sum: parameter `left` becomes law(left, right). */
+struct graph_merge {
+    uint32_t left, right;
+};
+
+/* All steps of a node that adds. */
+struct graph_tree {
+    const duite_law *law;
+    const struct graph_merge *merge;
+    size_t n;
+};
 
 /* What a node does to a place. */
 struct graph_node_use {
@@ -15,8 +28,10 @@ struct graph_node_use {
 struct graph_node {
     struct graph_plan *plan;
     union {
-        void *args;             /* or what a set writes; NULL: zeros */
-        struct data_view *view; /* NODE_VIEW: held */
+        void *args;                    /* or what a set writes; NULL: zeros */
+        struct data_view *view;        /* NODE_VIEW: held */
+        struct graph_channel *channel; /* NODE_SEND, NODE_RECEIVE */
+        const struct graph_tree *tree; /* NODE_SUM, NODE_PARTIAL */
     };
     duite_param *param;       /* task->n */
     struct graph_task **next; /* n_next tasks that wait for it, those of the next round first */
@@ -29,16 +44,19 @@ struct graph_node {
 };
 
 /* Bytes that nodes use: first the objects of the record and the flag, if it is none of them, then
- * the buffers of contributions. */
+ * the buffers of contributions, of what comes from other ranks, and of copies. */
 struct graph_place {
     void *data;
     const struct data_failure *failure; /* poison; kept only once the plan is tainted */
     duite_type type;
-    duite_mode mode; /* of the whole replay: r, w or rw; none for buffers */
+    duite_mode mode; /* of the whole replay on this rank: r, w or rw; none for buffers, and for
+                        objects whose values neither come from outside nor stay here */
     size_t count, bytes;
-    const duite_law *law;         /* buffers: of the contribution */
+    const duite_law *law;         /* of a contribution */
     size_t first_param, n_params; /* in param_of: those that point here */
 };
+
+struct graph_draft;
 
 struct graph_plan {
     _Atomic uint32_t refs; /* the record, and each replay on its way */
@@ -57,6 +75,14 @@ struct graph_plan {
     uint32_t *param_of;
     struct graph_place *place;
     unsigned char *args, *buffers;
+    struct graph_merge *merge;
+    struct graph_tree *tree;
+    size_t n_trees;
+    /* Of several ranks. */
+    struct graph_channels channels;
+    size_t words;          /* of a set of ranks; 0: there is one rank */
+    uint64_t *enter, *end; /* by object: the ranks whose rounds begin with it, that have it after */
+    int *home;             /* by object: when the plan was made */
     bool decides; /* the last node reads a flag and decides whether there is another round */
     size_t flag_place;
     /* Main thread only. */
@@ -97,6 +123,23 @@ struct graph_plan *graph_plan_new(const struct graph_record *record, const duite
 /* Could graph_plan_new have made this plan? */
 bool graph_plan_fits(const struct graph_plan *plan, const struct graph_record *record,
                      const duite_object *flag);
+/* Of several ranks: makes the draft of this rank's part; later, with all nodes there, opens the
+ * channels. */
+bool graph_plan_spread(struct graph_plan *plan, struct graph_draft *draft,
+                       const duite_object *flag);
+int graph_plan_open(struct graph_plan *plan, const struct graph_draft *draft);
+/* The mode of a whole replay on this rank. */
+duite_mode graph_plan_mode(const struct graph_plan *plan, size_t i);
+/* Sees to it that all ranks whose rounds begin with an object's value get it. */
+int graph_plan_fetch(const struct graph_plan *plan, void *worker, size_t i,
+                     struct data_object *object);
+/* The object has a new version where the plan leaves it. False: the plan does not write it. */
+bool graph_plan_moves(const struct graph_plan *plan, size_t i, struct data_object *object);
+/* Bytes of a node's message with all its failures. */
+size_t graph_channel_room(const struct graph_plan *plan, const struct graph_task *task);
+/* Whether the homes are those that the plan was made for. */
+bool graph_plan_at_home(const struct graph_plan *plan, const struct graph_record *record);
+
 /* The record lets go of its plan; a replay is over. NULL is fine. */
 void graph_plan_drop(struct graph_plan *plan, void *worker);
 void graph_plan_release(struct graph_plan *plan);

@@ -36,8 +36,7 @@ void graph_replay_split(const struct graph_record *record, const duite_object *f
                         uint64_t rounds, uint64_t *before, uint64_t *after)
 {
     bool begins = rounds && goes_on(record);
-    bool forked = record->graph->n_ranks > 1 || record->forked ||
-                  (flag && record->graph->table.object[flag->slot].sized) ||
+    bool forked = record->forked || (flag && record->graph->table.object[flag->slot].sized) ||
                   views_changed(record, flag);
     /* A flag's own contributions end with the round, since it is read. */
     for (size_t i = 0; flag && i < record->n_objects; i++)
@@ -80,23 +79,55 @@ static struct graph_plan *plan_for(struct graph_record *record, void *worker,
     return record->plan = graph_plan_new(record, flag);
 }
 
-/* One access of the replay's task: as that of any task on one rank. */
-static int use(struct graph *graph, void *worker, struct graph_task *task, size_t i,
-               duite_mode mode, struct data_object *object, uint32_t *done)
+/* The object that place i of the plan stands for, or the turn. */
+static struct data_object *object_at(const struct graph_record *record, size_t i,
+                                     const duite_object *flag)
 {
+    if (i == record->plan->n_objects)
+        return &record->plan->turn;
+    duite_object name = i < record->n_objects ? record->object[i].bound : *flag;
+    return &record->graph->table.object[name.slot];
+}
+
+/* Before an object is used: all ranks know where its value must be now, and where it will be. The
+ * copies of ranks that do not write it are stale. */
+static int move(const struct graph_plan *plan, void *worker, size_t i, struct data_object *object,
+                duite_mode mode)
+{
+    struct graph *graph = plan->graph;
     int code = object->leaves ? graph_close(&graph->root, worker, object) : DUITE_OK;
-    struct data_version *version = object->current;
-    task->access[i].waiter.mode = mode;
-    if (!code && mode != DUITE_W && !(version = graph_local(graph, object)))
-        code = DUITE_E_MEMORY;
-    if (code)
+    if (!code && plan->words && i < plan->n_objects)
+        code = graph_plan_fetch(plan, worker, i, object);
+    if (code || mode == DUITE_R)
         return code;
-    if (mode == DUITE_R) {
-        graph_read(task, i, version, done);
+    if (mode != DUITE_W && mode != DUITE_NONE && !graph_local(graph, object))
+        return DUITE_E_MEMORY;
+    if (plan->words && i < plan->n_objects) {
+        if (graph_plan_moves(plan, i, object) && mode == DUITE_NONE)
+            graph_forget(graph, worker, object);
         return DUITE_OK;
     }
     object->number++;
     data_object_moved(object, graph->rank);
+    return DUITE_OK;
+}
+
+/* One access of the replay's task: as that of any task on one rank. */
+static int use(struct graph *graph, struct graph_task *task, size_t i, duite_mode mode,
+               struct data_object *object, uint32_t *done)
+{
+    struct data_version *version = object->current;
+    task->access[i].waiter.mode = mode;
+    if (mode == DUITE_NONE) {
+        *done += 1;
+        return DUITE_OK;
+    }
+    if (mode != DUITE_W && !(version = graph_local(graph, object)))
+        return DUITE_E_MEMORY;
+    if (mode == DUITE_R) {
+        graph_read(task, i, version, done);
+        return DUITE_OK;
+    }
     return graph_overwrite(graph, task, i, object, version, done);
 }
 
@@ -105,7 +136,7 @@ static int gather_all(struct graph_record *record, void *worker)
 {
     int code = DUITE_OK;
     for (size_t i = 0; i < record->n_objects && record->views && !code; i++)
-        if (record->plan->place[i].mode == DUITE_R)
+        if (!graph_recorded_gathers(record->object, &record->object[i]))
             code = graph_view_gather(record->graph, worker,
                                      &record->graph->table.object[record->object[i].bound.slot]);
     return code;
@@ -119,13 +150,12 @@ static int use_all(struct graph_record *record, void *worker, struct graph_task 
     uint32_t done = 0;
     for (size_t i = 0; i <= plan->n_objects; i++) {
         duite_mode mode = i < plan->n_objects ? plan->place[i].mode : DUITE_W;
-        struct data_object *object = &plan->turn;
-        if (i < plan->n_objects) {
-            duite_object name = i < record->n_objects ? record->object[i].bound : *flag;
-            object = &graph->table.object[name.slot];
+        struct data_object *object = object_at(record, i, flag);
+        if (i < plan->n_objects)
             task->replay->block[i] = object->block;
-        }
-        int code = use(graph, worker, task, i, mode, object, &done);
+        int code = move(plan, worker, i, object, mode);
+        if (!code)
+            code = use(graph, task, i, mode, object, &done);
         if (code) {
             graph_void(graph, worker, task, i, done);
             return code;

@@ -17,20 +17,53 @@
 
 /* ---- The nodes of a round ---- */
 
-static struct graph_draft_node *add_node(struct graph_draft *draft, enum graph_kind kind,
-                                         size_t fork)
+struct graph_draft_node *graph_draft_node(struct graph_draft *draft, enum graph_kind kind,
+                                          size_t fork)
 {
     struct graph_draft_node *node = &draft->node[draft->n_nodes++];
-    *node =
-        (struct graph_draft_node){.kind = kind, .fork = (uint32_t)fork, .first_use = draft->n_uses};
+    *node = (struct graph_draft_node){.kind = kind,
+                                      .fork = (uint32_t)fork,
+                                      .first_use = draft->n_uses,
+                                      .first_merge = draft->n_merges};
     return node;
 }
 
-static void add_use(struct graph_draft *draft, struct graph_draft_node *node, size_t place,
-                    bool reads, bool writes)
+void graph_draft_use(struct graph_draft *draft, struct graph_draft_node *node, size_t place,
+                     bool reads, bool writes)
 {
     draft->use[draft->n_uses++] = (struct graph_node_use){(uint32_t)place, reads, writes};
     node->n_uses++;
+}
+
+void graph_draft_merge(struct graph_draft *draft, struct graph_draft_node *node, size_t left,
+                       size_t right)
+{
+    draft->merge[draft->n_merges++] = (struct graph_merge){(uint32_t)left, (uint32_t)right};
+    node->n_merges++;
+}
+
+/* The two halves of one complete subtree? */
+static bool siblings(const struct graph_draft_piece *l, const struct graph_draft_piece *r)
+{
+    uint64_t half = UINT64_C(1) << l->level;
+    return l->level == r->level && l->first + half == r->first && l->first % (2 * half) == 0;
+}
+
+size_t graph_draft_push(struct graph_draft *draft, struct graph_draft_node *node,
+                        struct graph_draft_piece *piece, size_t n)
+{
+    for (n++; n > 1 && siblings(&piece[n - 2], &piece[n - 1]); n--) {
+        graph_draft_merge(draft, node, piece[n - 2].param, piece[n - 1].param);
+        piece[n - 2].level++;
+    }
+    return n;
+}
+
+void graph_draft_fold(struct graph_draft *draft, struct graph_draft_node *node,
+                      const struct graph_draft_piece *piece, size_t n)
+{
+    for (size_t i = n; i-- > 1;)
+        graph_draft_merge(draft, node, piece[i - 1].param, piece[i].param);
 }
 
 /* A buffer for a contribution, and its place in the row of those that are open. */
@@ -53,12 +86,19 @@ static void close_sum(struct graph_draft *draft, uint32_t object, size_t fork)
     struct graph_draft_place *whole = &draft->place[object];
     if (!whole->n_open)
         return;
-    struct graph_draft_node *node = add_node(draft, GRAPH_NODE_SUM, fork);
-    add_use(draft, node, object, true, true);
-    for (uint32_t leaf = whole->first; whole->n_open; leaf = draft->place[leaf].next) {
-        add_use(draft, node, leaf, true, false);
+    struct graph_draft_node *node = graph_draft_node(draft, GRAPH_NODE_SUM, fork);
+    struct graph_draft_piece piece[64]; /* a counter's bits */
+    size_t n = 0;
+    node->law = whole->law;
+    graph_draft_use(draft, node, object, true, true);
+    for (uint32_t leaf = whole->first, i = 0; whole->n_open; leaf = draft->place[leaf].next, i++) {
+        graph_draft_use(draft, node, leaf, true, false);
         whole->n_open--;
+        piece[n] = (struct graph_draft_piece){.first = i, .param = i + 1};
+        if (draft->merge)
+            n = graph_draft_push(draft, node, piece, n);
     }
+    graph_draft_fold(draft, node, piece, n);
 }
 
 /* A view of an object that nobody writes is gathered before the replay. */
@@ -73,9 +113,9 @@ static void gather_view(struct graph_draft *draft, uint32_t view, size_t fork)
     if (draft->place[view].seen == now)
         return;
     draft->place[view].seen = now;
-    struct graph_draft_node *node = add_node(draft, GRAPH_NODE_VIEW, fork);
-    add_use(draft, node, parent, true, false);
-    add_use(draft, node, view, false, true);
+    struct graph_draft_node *node = graph_draft_node(draft, GRAPH_NODE_VIEW, fork);
+    graph_draft_use(draft, node, parent, true, false);
+    graph_draft_use(draft, node, view, false, true);
 }
 
 static void draft_fork(struct graph_draft *draft, size_t i)
@@ -91,20 +131,21 @@ static void draft_fork(struct graph_draft *draft, size_t i)
             close_sum(draft, object[k], i);
         gather_view(draft, object[k], i);
     }
-    struct graph_draft_node *node = add_node(draft, sets ? GRAPH_NODE_SET : GRAPH_NODE, i);
+    struct graph_draft_node *node = graph_draft_node(draft, sets ? GRAPH_NODE_SET : GRAPH_NODE, i);
     for (uint32_t k = 0; k < fork->n; k++) {
         duite_mode mode = graph_recorded_mode(record->graph, fork, k);
         draft->place[object[k]].writes += mode != DUITE_R;
         if (mode == DUITE_CW)
-            add_use(draft, node, add_leaf(draft, object[k], data_law_of(kernel, k)), false, true);
+            graph_draft_use(draft, node, add_leaf(draft, object[k], data_law_of(kernel, k)), false,
+                            true);
         else
-            add_use(draft, node, object[k], mode != DUITE_W, mode != DUITE_R);
+            graph_draft_use(draft, node, object[k], mode != DUITE_W, mode != DUITE_R);
     }
 }
 
 /* Contributions that are open at the end of a round are added there: no plan is made for rounds
  * that begin with contributions to the same object. */
-static void draft_round(struct graph_draft *draft, size_t flag)
+static void draft_nodes(struct graph_draft *draft, size_t flag)
 {
     size_t n = draft->record->n_forks;
     for (size_t i = 0; i < n; i++)
@@ -112,7 +153,8 @@ static void draft_round(struct graph_draft *draft, size_t flag)
     for (uint32_t i = 0; i < draft->record->n_objects; i++)
         close_sum(draft, i, n ? n - 1 : 0);
     if (draft->decides)
-        add_use(draft, add_node(draft, GRAPH_NODE_FLAG, n ? n - 1 : 0), flag, true, false);
+        graph_draft_use(draft, graph_draft_node(draft, GRAPH_NODE_FLAG, n ? n - 1 : 0), flag, true,
+                        false);
 }
 
 /* ---- Edges ---- */
@@ -193,24 +235,46 @@ void graph_draft_free(struct graph_draft *draft)
     base_free(draft->place);
     base_free(draft->reader);
     base_free(draft->mark);
+    base_free(draft->merge);
+    base_free(draft->channel);
     free(draft->edge);
 }
 
-bool graph_draft_make(struct graph_draft *draft, size_t n_objects, size_t flag)
+bool graph_draft_room(struct graph_draft *draft, size_t nodes, size_t uses, size_t places,
+                      size_t merges, size_t channels)
 {
-    size_t n = draft->record->n_uses, nodes = draft->record->n_forks + 2 * n + 1, uses = 5 * n + 1;
-    size_t places = n_objects + n;
-    draft->n_places = draft->n_objects = n_objects;
-    draft->node = base_alloc(nodes * sizeof *draft->node);
-    draft->use = base_alloc(uses * sizeof *draft->use);
+    draft->node = base_alloc((nodes + 1) * sizeof *draft->node);
+    draft->use = base_alloc((uses + 1) * sizeof *draft->use);
     draft->place = base_alloc_zero((places + 1) * sizeof *draft->place);
-    if (!draft->node || !draft->use || !draft->place)
+    draft->channel = base_alloc((channels + 1) * sizeof *draft->channel);
+    if (merges)
+        draft->merge = base_alloc(merges * sizeof *draft->merge);
+    return draft->node && draft->use && draft->place && draft->channel && (!merges || draft->merge);
+}
+
+bool graph_draft_round(struct graph_draft *draft, size_t n_objects, size_t flag)
+{
+    size_t n = draft->record->n_uses;
+    bool whole = draft->record->graph->n_ranks == 1;
+    draft->n_places = draft->n_objects = n_objects;
+    if (!graph_draft_room(draft, draft->record->n_forks + 2 * n + 1, 5 * n + 1, n_objects + n,
+                          whole ? n + 1 : 0, 0))
         return false;
-    draft_round(draft, flag);
+    draft_nodes(draft, flag);
+    return true;
+}
+
+bool graph_draft_edges(struct graph_draft *draft)
+{
     draft->reader = base_alloc((2 * draft->n_uses + 1) * sizeof *draft->reader);
     draft->mark = base_alloc_zero((2 * draft->n_nodes + 1) * sizeof *draft->mark);
     if (!draft->reader || !draft->mark)
         return false;
     add_edges(draft);
     return !draft->failed;
+}
+
+bool graph_draft_make(struct graph_draft *draft, size_t n_objects, size_t flag)
+{
+    return graph_draft_round(draft, n_objects, flag) && graph_draft_edges(draft);
 }

@@ -10,7 +10,10 @@ struct graph_draft_node {
     enum graph_kind kind;
     uint32_t fork;
     size_t first_use, n_uses;
-    uint32_t within, cyclic; /* predecessors */
+    size_t first_merge, n_merges; /* SUM, PARTIAL */
+    const duite_law *law;         /* of these */
+    uint32_t channel;             /* SEND, RECEIVE */
+    uint32_t within, cyclic;      /* predecessors */
     uint32_t n_next, n_next_cyclic;
 };
 
@@ -32,6 +35,13 @@ struct graph_draft_edge {
     bool cyclic;
 };
 
+/* A message a round, to or from another rank; its node's uses are what it carries, in order. */
+struct graph_draft_channel {
+    int peer;
+    uint32_t phase;
+    bool sends;
+};
+
 struct graph_draft {
     const struct graph_record *record;
     struct graph_draft_node *node;
@@ -43,8 +53,43 @@ struct graph_draft {
     size_t *mark; /* by node of two rounds: the last one an edge goes to */
     struct graph_draft_edge *edge;
     size_t n_edges, edges_capacity;
+    struct graph_merge *merge;
+    size_t n_merges;
+    struct graph_draft_channel *channel;
+    size_t n_channels;
     bool decides, failed;
 };
+
+/* Memory for so many nodes, uses, places (zero), merges and channels at most. False without. */
+bool graph_draft_room(struct graph_draft *draft, size_t nodes, size_t uses, size_t places,
+                      size_t merges, size_t channels);
+/* Appends a node, a use to the last node, a merge of two of its parameters. */
+struct graph_draft_node *graph_draft_node(struct graph_draft *draft, enum graph_kind kind,
+                                          size_t fork);
+void graph_draft_use(struct graph_draft *draft, struct graph_draft_node *node, size_t place,
+                     bool reads, bool writes);
+void graph_draft_merge(struct graph_draft *draft, struct graph_draft_node *node, size_t left,
+                       size_t right);
+
+/* The pieces of a sum in order: complete subtrees of its leaves. */
+struct graph_draft_piece {
+    uint64_t first; /* leaf */
+    uint32_t level; /* 2^level leaves */
+    uint32_t param; /* of the node that merges them; what comes of two is where the left one was */
+};
+/* Appends a piece, and merges what are siblings then: as data_sum_reduce does. Returns how many
+ * there are then. */
+size_t graph_draft_push(struct graph_draft *draft, struct graph_draft_node *node,
+                        struct graph_draft_piece *piece, size_t n);
+/* Folds what is left from the right, into the first one. */
+void graph_draft_fold(struct graph_draft *draft, struct graph_draft_node *node,
+                      const struct graph_draft_piece *piece, size_t n);
+
+/* The nodes of draft->record for all ranks, without edges; merges of sums only if there is one
+ * rank. False without memory. */
+bool graph_draft_round(struct graph_draft *draft, size_t n_objects, size_t flag);
+/* The edges between them. False without memory. */
+bool graph_draft_edges(struct graph_draft *draft);
 
 /* Makes the draft of draft->record for places n_objects (the flag, if draft->decides, is place
  * `flag`). False without memory; graph_draft_free is due all the same. */

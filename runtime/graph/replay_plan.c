@@ -8,26 +8,33 @@
 
 #include <string.h>
 
+/* Of a whole replay on one rank. */
+static duite_mode mode_of(const struct graph_record *record,
+                          const struct graph_recorded_object *object)
+{
+    if (graph_recorded_gathers(record->object, object))
+        return DUITE_W;
+    if (!object->written && !object->sums)
+        return DUITE_R;
+    return object->reads_old ? DUITE_RW : DUITE_W;
+}
+
 static void fill_places(struct graph_plan *plan, const struct graph_draft *draft,
                         const duite_object *flag)
 {
     const struct graph_record *record = draft->record;
     for (size_t i = 0; i < record->n_objects; i++) {
         const struct graph_recorded_object *object = &record->object[i];
-        bool written = object->written || object->sums;
-        bool gathers = graph_recorded_gathers(record->object, object);
-        plan->place[i] = (struct graph_place){.type = object->type,
-                                              .mode = gathers             ? DUITE_W
-                                                      : !written          ? DUITE_R
-                                                      : object->reads_old ? DUITE_RW
-                                                                          : DUITE_W,
-                                              .count = object->count};
+        plan->place[i] = (struct graph_place){
+            .type = object->type, .mode = mode_of(record, object), .count = object->count};
     }
     if (plan->n_objects > record->n_objects) {
         const struct data_object *object = &record->graph->table.object[flag->slot];
         plan->place[record->n_objects] =
             (struct graph_place){.type = object->type, .mode = DUITE_R, .count = object->count};
     }
+    for (size_t i = 0; i < plan->n_objects && plan->words; i++)
+        plan->place[i].mode = graph_plan_mode(plan, i);
     for (size_t i = plan->n_objects; i < plan->n_places; i++) {
         const struct graph_place *whole = &plan->place[draft->place[i].object];
         plan->place[i] = (struct graph_place){
@@ -37,19 +44,29 @@ static void fill_places(struct graph_plan *plan, const struct graph_draft *draft
         plan->place[i].bytes = plan->place[i].count * data_type_size(plan->place[i].type);
 }
 
+/* For all that is used and is no object's from outside. */
 static bool alloc_buffers(struct graph_plan *plan)
 {
+    static unsigned char used;
     size_t bytes = 0;
+    for (size_t i = 0; i < plan->n_uses; i++)
+        plan->place[plan->use[i].place].data = &used;
     for (int fill = 0; fill < 2; fill++) {
         bytes = 0;
-        for (size_t i = plan->n_objects; i < plan->n_places; i++) {
+        for (size_t i = 0; i < plan->n_places; i++) {
+            struct graph_place *place = &plan->place[i];
+            if (place->mode != DUITE_NONE || !place->data)
+                continue;
             if (fill)
-                plan->place[i].data = plan->buffers + bytes;
-            bytes += (plan->place[i].bytes + 63) / 64 * 64;
+                place->data = plan->buffers + bytes;
+            bytes += (place->bytes + 63) / 64 * 64;
         }
         if (!fill && !(plan->buffers = base_alloc(bytes + 1)))
             return false;
     }
+    for (size_t i = 0; i < plan->n_places; i++)
+        if (plan->place[i].data == &used)
+            plan->place[i].data = NULL;
     return true;
 }
 
@@ -95,6 +112,27 @@ static struct data_view *hold_view(const struct graph_plan *plan, const struct g
     return data_view_hold(record->graph->table.object[record->object[view].recorded.slot].view);
 }
 
+/* What a task or a set is given. */
+static void fill_call(struct graph_plan *plan, const struct graph_record *record,
+                      const struct graph_draft_node *from, struct graph_task *task)
+{
+    struct graph_node *node = task->node;
+    const struct graph_recorded_fork *fork = &record->fork[from->fork];
+    node->args = fork->zeros ? NULL : plan->args + fork->args;
+    if (from->kind == GRAPH_NODE_SET)
+        return;
+    const duite_kernel *kernel = record->graph->kernels[fork->kernel];
+    task->kernel = fork->kernel;
+    task->priority = fork->how.priority;
+    task->cost = (float)fork->how.cost;
+    node->args = kernel->args_size ? plan->args + fork->args : NULL;
+    uint32_t stamp = graph_new_stamp();
+    for (uint32_t k = 0; k < fork->n; k++) {
+        node->param[k].object = (duite_object){GRAPH_LOCAL_NAME | k, stamp};
+        node->n_leaves += plan->place[plan->use[node->first_use + k].place].law != NULL;
+    }
+}
+
 static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, size_t i)
 {
     const struct graph_record *record = draft->record;
@@ -123,24 +161,14 @@ static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, 
     plan->n_filled++;
     if (from->kind == GRAPH_NODE_VIEW)
         node->view = hold_view(plan, record, node);
-    if (from->kind != GRAPH_NODE && from->kind != GRAPH_NODE_SET)
-        return;
-    const struct graph_recorded_fork *fork = &record->fork[from->fork];
-    node->args = fork->zeros ? NULL : plan->args + fork->args;
-    if (from->kind == GRAPH_NODE_SET)
-        return;
-    const duite_kernel *kernel = record->graph->kernels[fork->kernel];
-    task->kernel = fork->kernel;
-    task->priority = fork->how.priority;
-    task->cost = (float)fork->how.cost;
-    node->args = kernel->args_size ? plan->args + fork->args : NULL;
-    uint32_t stamp = graph_new_stamp();
-    for (uint32_t k = 0; k < fork->n; k++) {
-        node->param[k].object = (duite_object){GRAPH_LOCAL_NAME | k, stamp};
-        node->n_leaves += plan->use[node->first_use + k].place >= plan->n_objects;
+    if (from->kind == GRAPH_NODE_SUM || from->kind == GRAPH_NODE_PARTIAL) {
+        node->tree = &plan->tree[plan->n_trees++];
+        plan->tree[plan->n_trees - 1] =
+            (struct graph_tree){from->law, plan->merge + from->first_merge, from->n_merges};
     }
+    if (from->kind == GRAPH_NODE || from->kind == GRAPH_NODE_SET)
+        fill_call(plan, record, from, task);
 }
-
 /* Successors in one row, those of the next round before those of the same. */
 static void fill_next(struct graph_plan *plan, const struct graph_draft *draft)
 {
@@ -160,12 +188,16 @@ static void fill_next(struct graph_plan *plan, const struct graph_draft *draft)
         }
 }
 
-static bool fill(struct graph_plan *plan, const struct graph_draft *draft, const duite_object *flag)
+static size_t count_trees(const struct graph_draft *draft)
 {
-    plan->n_nodes = draft->n_nodes;
-    plan->n_uses = draft->n_uses;
-    plan->n_places = draft->n_places;
-    plan->n_calls = draft->record->n_calls;
+    size_t n = 0;
+    for (size_t i = 0; i < draft->n_nodes; i++)
+        n += draft->node[i].kind == GRAPH_NODE_SUM || draft->node[i].kind == GRAPH_NODE_PARTIAL;
+    return n;
+}
+
+static bool alloc_arrays(struct graph_plan *plan, const struct graph_draft *draft)
+{
     plan->nodes = base_alloc(plan->n_nodes * GRAPH_NODE_BYTES + 1);
     plan->root = base_alloc((plan->n_nodes + 1) * sizeof(struct graph_task *));
     plan->next = base_alloc((draft->n_edges + 1) * sizeof(struct graph_task *));
@@ -177,16 +209,31 @@ static bool fill(struct graph_plan *plan, const struct graph_draft *draft, const
     plan->param_of = base_alloc((plan->n_uses + 1) * sizeof *plan->param_of);
     plan->place = base_alloc((plan->n_places + 1) * sizeof *plan->place);
     plan->args = base_alloc(draft->record->args_bytes + 1);
-    if (!plan->nodes || !plan->root || !plan->next || !plan->first || !plan->call || !plan->owner ||
-        !plan->use || !plan->param || !plan->param_of || !plan->place || !plan->args)
+    plan->merge = base_alloc(draft->n_merges * sizeof *plan->merge + 1);
+    plan->tree = base_alloc(count_trees(draft) * sizeof *plan->tree + 1);
+    return plan->nodes && plan->root && plan->next && plan->first && plan->call && plan->owner &&
+           plan->use && plan->param && plan->param_of && plan->place && plan->args && plan->merge &&
+           plan->tree;
+}
+
+static bool fill(struct graph_plan *plan, const struct graph_draft *draft, const duite_object *flag)
+{
+    const struct graph_record *record = draft->record;
+    plan->n_nodes = draft->n_nodes;
+    plan->n_uses = draft->n_uses;
+    plan->n_places = draft->n_places;
+    plan->n_calls = record->n_calls;
+    if (!alloc_arrays(plan, draft))
         return false;
     memcpy(plan->use, draft->use, plan->n_uses * sizeof *plan->use);
+    if (draft->n_merges)
+        memcpy(plan->merge, draft->merge, draft->n_merges * sizeof *plan->merge);
     fill_places(plan, draft, flag);
     if (!alloc_buffers(plan))
         return false;
     fill_params(plan);
-    if (draft->record->args_bytes)
-        memcpy(plan->args, draft->record->args, draft->record->args_bytes);
+    if (record->args_bytes)
+        memcpy(plan->args, record->args, record->args_bytes);
     for (size_t i = 0; i < plan->n_nodes; i++)
         fill_node(plan, draft, i);
     fill_next(plan, draft);
@@ -206,7 +253,7 @@ static size_t find_flag(const struct graph_record *record, duite_object flag)
 bool graph_plan_fits(const struct graph_plan *plan, const struct graph_record *record,
                      const duite_object *flag)
 {
-    if (plan->decides != (flag != NULL))
+    if (plan->decides != (flag != NULL) || !graph_plan_at_home(plan, record))
         return false;
     if (!flag)
         return true;
@@ -227,8 +274,12 @@ struct graph_plan *graph_plan_new(const struct graph_record *record, const duite
     plan->decides = flag != NULL;
     plan->flag_place = flag ? find_flag(record, *flag) : 0;
     plan->n_objects = record->n_objects + (flag && plan->flag_place == record->n_objects);
-    bool fine =
-        graph_draft_make(&draft, plan->n_objects, plan->flag_place) && fill(plan, &draft, flag);
+    bool fine = record->graph->n_ranks > 1
+                    ? graph_plan_spread(plan, &draft, flag)
+                    : graph_draft_make(&draft, plan->n_objects, plan->flag_place);
+    fine = fine && fill(plan, &draft, flag);
+    if (fine && plan->words)
+        fine = !graph_plan_open(plan, &draft);
     graph_draft_free(&draft);
     if (fine)
         return plan;
@@ -240,6 +291,8 @@ void graph_plan_release(struct graph_plan *plan)
 {
     if (atomic_fetch_sub_explicit(&plan->refs, 1, memory_order_acq_rel) != 1)
         return;
+    if (plan->channels.close)
+        plan->channels.close(&plan->channels);
     for (size_t i = 0; i < plan->n_filled; i++)
         if (graph_plan_task(plan, i)->kind == GRAPH_NODE_VIEW)
             data_view_release(graph_plan_task(plan, i)->node->view);
@@ -255,6 +308,12 @@ void graph_plan_release(struct graph_plan *plan)
     base_free(plan->place);
     base_free(plan->args);
     base_free(plan->buffers);
+    base_free(plan->merge);
+    base_free(plan->tree);
+    base_free(plan->channels.channel);
+    base_free(plan->enter);
+    base_free(plan->end);
+    base_free(plan->home);
     base_free(plan);
 }
 

@@ -286,6 +286,8 @@ bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const
     case GRAPH_NODE:
     case GRAPH_NODE_SET:
     case GRAPH_NODE_SUM:
+    case GRAPH_NODE_PARTIAL:
+    case GRAPH_NODE_COPY:
     case GRAPH_NODE_VIEW:
     case GRAPH_NODE_FLAG:
         return graph_node_run(graph, worker, task, call);
@@ -294,6 +296,8 @@ bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const
     case GRAPH_SEND:
     case GRAPH_AWAY:
     case GRAPH_RESULT:
+    case GRAPH_NODE_SEND:
+    case GRAPH_NODE_RECEIVE:
         break;
     }
     return false;

@@ -12,7 +12,10 @@
 /* Shared by the files of this folder only. */
 
 /* A poller without a core of its own gives way for so long before it pauses. */
-#define WORK_YIELD_SECONDS       1e-4
+#define WORK_YIELD_SECONDS 1e-4
+/* A rank in the middle of a replay does so for longer: its neighbours are, too, and if each sleeps
+ * until the other wakes, they go on doing so. */
+#define WORK_AWAIT_SECONDS       1e-2
 #define WORK_FIRST_PAUSE_SECONDS 2e-5
 
 struct counts {
@@ -51,7 +54,7 @@ struct work_pool {
     struct work_worker *worker; /* setup.threads of them */
     unsigned char *states;
     double tick; /* seconds */
-    uint64_t poll_ticks, spin_ticks, yield_ticks;
+    uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks;
     unsigned started; /* threads, worker 0 among them */
     pthread_t main;
     struct work_queue shared;
@@ -115,9 +118,14 @@ void work_run(struct work_worker *worker, struct graph_task *task);
  * it. What it is woken for was made known by a sequentially consistent read-modify-write, or before
  * a fence, against the announcement of a sleeper. */
 void work_wake_one(struct work_pool *pool, unsigned queue);
-/* Hooks of the graph: graph_hooks.over, graph_hooks.notify. */
+/* Hooks of the graph, under their names in graph_hooks. */
 void work_over(void *context, void *worker, int tasks);
 void work_notify(void *context);
+int work_body(void *context, const duite_kernel *kernel, uint64_t number, duite_call *call);
+int work_expect(void *context, void *worker, struct data_key key, int from,
+                struct data_version *version, struct data_sum *sum, uint32_t packets);
+int work_open(void *context, struct graph_channels *channels);
+void work_starved(void *context, const char *what);
 /* The worker finds no task: does the main thread wait for just that? */
 void work_ran_out(struct work_worker *worker);
 /* Sends and receives; whether anything happened. */

@@ -16,8 +16,7 @@
  * these, those before which the clock is read. */
 enum { LONGEST_CHAIN = 64, CLOCKED = 16 };
 
-/* Seconds between polls while there is work, and while there is none: the pause doubles up to the
- * longest. */
+/* Seconds between polls while there is work; while there is none, the longest pause. */
 #define POLL_SECONDS          5e-6
 #define LONGEST_PAUSE_SECONDS 1e-3
 
@@ -34,6 +33,8 @@ static duite_ready describe(const struct graph *graph, const struct graph_task *
                                       [GRAPH_REPLAY] = "duite_replay",
                                       [GRAPH_NODE_SET] = "duite_set",
                                       [GRAPH_NODE_SUM] = "duite_sum",
+                                      [GRAPH_NODE_PARTIAL] = "duite_sum",
+                                      [GRAPH_NODE_COPY] = "duite_replay",
                                       [GRAPH_NODE_VIEW] = "duite_view",
                                       [GRAPH_NODE_FLAG] = "duite_replay_while"};
     const char *name = graph_has_body(task) ? graph->kernels[task->kernel]->name : own[task->kind];
@@ -86,6 +87,10 @@ static void on_ready(void *context, void *who, struct graph_task *task)
         comm_send(pool->setup.comm, task);
         return;
     }
+    if (graph_is_channel(task)) {
+        comm_channel_ready(pool->setup.comm, worker, task);
+        return;
+    }
     if (pool->balance && moves(worker, task))
         return;
     duite_ready ready = describe(pool->setup.graph, task);
@@ -96,25 +101,11 @@ static void on_ready(void *context, void *who, struct graph_task *task)
         place(worker, task, &ready);
 }
 
-static int on_body(void *context, const duite_kernel *kernel, uint64_t number, duite_call *call)
-{
-    struct work_pool *pool = context;
-    return check_call(pool->setup.check, &(struct check_task){kernel, number}, call);
-}
-
 void work_notify(void *context)
 {
     struct work_pool *pool = context;
     atomic_thread_fence(memory_order_seq_cst);
     work_park_wake(&pool->worker[0].park);
-}
-
-static int on_expect(void *context, void *who, struct data_key key, int from,
-                     struct data_version *version, struct data_sum *sum, uint32_t packets)
-{
-    struct work_pool *pool = context;
-    const struct comm_target target = {version, sum, from};
-    return comm_expect(pool->setup.comm, who, key, target, packets);
 }
 
 /* ---- One worker's work ---- */
@@ -263,11 +254,13 @@ static bool spin(struct work_worker *worker)
         work_pause_core();
         return true;
     }
-    if (worker->polls && !pool->spin_ticks && since < pool->yield_ticks) {
+    uint64_t yields = !worker->polls                  ? 0
+                      : comm_awaits(pool->setup.comm) ? pool->await_ticks
+                      : pool->spin_ticks              ? 0
+                                                      : pool->yield_ticks;
+    if (since < yields)
         sched_yield();
-        return true;
-    }
-    return false;
+    return since < yields;
 }
 
 /* Sleeps until woken, or for so many seconds if they are > 0. Returns a task if there was one at
@@ -378,6 +371,7 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     pool->poll_ticks = (uint64_t)(POLL_SECONDS / pool->tick);
     pool->spin_ticks = (uint64_t)(setup->spin_seconds / pool->tick);
     pool->yield_ticks = (uint64_t)(WORK_YIELD_SECONDS / pool->tick);
+    pool->await_ticks = (uint64_t)(WORK_AWAIT_SECONDS / pool->tick);
     pool->worker = base_alloc_zero(n * sizeof pool->worker[0]);
     pool->states = base_alloc_zero(n * lines * BASE_LINE);
     bool fine = pool->worker && pool->states && work_queue_start(&pool->shared);
@@ -389,8 +383,10 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
                                                .ready = on_ready,
                                                .notify = work_notify,
                                                .over = work_over,
-                                               .body = setup->check ? on_body : NULL,
-                                               .expect = on_expect};
+                                               .body = setup->check ? work_body : NULL,
+                                               .expect = work_expect,
+                                               .open = work_open,
+                                               .starved = work_starved};
     int code = fine ? start_threads(pool) : base_no_memory("the workers");
     int watched = work_watch_start(pool, code ? 0 : setup->stuck_seconds);
     return code ? code : watched;

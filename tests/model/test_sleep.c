@@ -113,6 +113,32 @@ void comm_send(struct comm *comm, struct graph_task *task)
     (void)task;
 }
 
+void comm_channel_ready(struct comm *comm, void *worker, struct graph_task *node)
+{
+    (void)comm;
+    (void)worker;
+    (void)node;
+}
+
+int comm_channels_open(struct comm *comm, struct graph_channels *channels)
+{
+    (void)comm;
+    (void)channels;
+    return 0;
+}
+
+bool comm_awaits(struct comm *comm)
+{
+    (void)comm;
+    return false;
+}
+
+void comm_broke_memory(struct comm *comm, const char *what)
+{
+    (void)comm;
+    (void)what;
+}
+
 void comm_send_packet(struct comm *comm, struct data_packet *packet, int to)
 {
     (void)comm;
@@ -181,6 +207,7 @@ static void fall_asleep(struct work_park *park, double seconds)
 #define work_park_sleep    fall_asleep
 #include "runtime/workers/count.c"
 #include "runtime/workers/main.c"
+#include "runtime/workers/hooks.c"
 #include "runtime/workers/workers.c"
 
 #ifndef REAL_QUEUES

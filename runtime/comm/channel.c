@@ -1,0 +1,349 @@
+/* A channel's turn counts its messages from the opening on, over all replays; a message lies in the
+ * buffer of its turn's parity. Nothing tells a sender that its message was read, since in most
+ * graphs it cannot come far without an answer; so that none comes too far, every sixteenth message
+ * of a channel is sent so that MPI tells when it was received: a rank is at most so many rounds
+ * ahead. */
+#include "runtime/comm/channel.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/comm/internal.h"
+
+#include <limits.h>
+#include <sched.h>
+
+enum { CHECKED_TURN = 16 };
+
+struct side {
+    const struct graph_channel *channel;
+    struct comm_group *group;
+    unsigned char *buffer[2];
+    MPI_Request request[2];
+    uint64_t turn;
+};
+
+struct comm_group {
+    struct comm_group *next;
+    struct comm *comm;
+    int first_tag, n_tags;
+    size_t n;
+    struct side side[];
+};
+
+/* ---- Start and stop ---- */
+
+bool comm_channels_start(struct comm *comm)
+{
+    int *most = NULL, known = 0;
+    comm->channels.next_tag = 1; /* 0 is that of all other messages */
+    if (MPI_Comm_get_attr(comm->mpi, MPI_TAG_UB, &most, &known))
+        return false;
+    comm->channels.last_tag = known ? *most : 32767; /* what MPI guarantees */
+    return true;
+}
+
+static void free_group(struct comm_group *group)
+{
+    for (size_t i = 0; i < group->n; i++) {
+        base_free(group->side[i].buffer[0]);
+        base_free(group->side[i].buffer[1]);
+    }
+    base_free(group);
+}
+
+/* Whether MPI has done with the group's memory. */
+static bool is_quiet(struct comm_group *group)
+{
+    for (size_t i = 0; i < group->n; i++) {
+        int done = 0;
+        if (MPI_Testall(2, group->side[i].request, &done, MPI_STATUSES_IGNORE) || !done)
+            return false;
+    }
+    return true;
+}
+
+/* Frees those that are closed and quiet. */
+static void sweep(struct comm *comm)
+{
+    struct comm_group **link = &comm->channels.closed;
+    while (*link) {
+        struct comm_group *group = *link;
+        if (is_quiet(group)) {
+            *link = group->next;
+            free_group(group);
+        } else {
+            link = &group->next;
+        }
+    }
+}
+
+bool comm_channels_stop(struct comm *comm)
+{
+    sweep(comm);
+    while (comm->channels.closed && !comm_is_broken(comm)) { /* the others have received it all */
+        sched_yield();
+        sweep(comm);
+    }
+    comm_requests_free(&comm->channels.awaited);
+    return !comm->channels.closed;
+}
+
+/* ---- Opening and closing: all ranks in the same order ---- */
+
+/* The first of n tags that no open plan has, from where the last ones were taken; the same on all
+ * ranks, since plans are made and let go alike. 0 if there are none. */
+static int take_tags(struct comm_channels *channels, int n)
+{
+    int first = channels->next_tag;
+    for (int wraps = 0; wraps < 2;) {
+        const struct comm_group *taken = channels->open;
+        if (first > channels->last_tag - n) {
+            first = 1;
+            wraps++;
+        }
+        while (taken &&
+               (taken->first_tag >= first + n || taken->first_tag + taken->n_tags <= first))
+            taken = taken->next;
+        if (!taken) {
+            channels->next_tag = first + n;
+            return first;
+        }
+        first = taken->first_tag + taken->n_tags;
+    }
+    return 0;
+}
+
+static bool post_receive(struct comm *comm, struct side *side, size_t turn)
+{
+    const struct graph_channel *channel = side->channel;
+    MPI_Request *request = &side->request[turn % 2];
+    bool large = channel->bytes > INT_MAX;
+    size_t count = large ? (channel->bytes + 63) / 64 : channel->bytes;
+    int mpi = MPI_Irecv(side->buffer[turn % 2], (int)count, large ? comm->line : MPI_BYTE,
+                        channel->peer, channel->tag, comm->mpi, request);
+    return comm_mpi_ok(comm, mpi, "MPI_Irecv");
+}
+
+static struct comm_group *new_group(struct comm *comm, struct graph_channels *channels)
+{
+    struct comm_group *group = base_alloc_zero(sizeof *group + channels->n * sizeof group->side[0]);
+    if (!group)
+        return NULL;
+    group->comm = comm;
+    group->n = channels->n;
+    bool fine = true;
+    for (size_t i = 0; i < channels->n; i++) {
+        struct side *side = &group->side[i];
+        side->channel = &channels->channel[i];
+        side->group = group;
+        for (int k = 0; k < 2; k++) {
+            side->request[k] = MPI_REQUEST_NULL;
+            side->buffer[k] = base_alloc(side->channel->bytes);
+            fine &= side->buffer[k] != NULL;
+        }
+        channels->channel[i].own = side;
+    }
+    if (fine)
+        return group;
+    free_group(group);
+    return NULL;
+}
+
+static void lock(struct comm *comm)
+{
+    while (!comm_try_lock(comm))
+        sched_yield();
+}
+
+/* A plan is let go: what was posted for another round will not come. */
+static void close_channels(struct graph_channels *channels)
+{
+    struct comm_group *group = channels->own, **link;
+    struct comm *comm = group->comm;
+    lock(comm);
+    for (link = &comm->channels.open; *link != group; link = &(*link)->next)
+        ;
+    *link = group->next;
+    for (size_t i = 0; i < group->n && !comm_is_lost(comm); i++)
+        for (int k = 0; k < 2 && !group->side[i].channel->sends; k++) {
+            comm->channels.room--;
+            if (group->side[i].request[k] != MPI_REQUEST_NULL)
+                MPI_Cancel(&group->side[i].request[k]);
+        }
+    group->next = comm->channels.closed;
+    comm->channels.closed = group;
+    if (!comm_is_lost(comm))
+        sweep(comm);
+    comm_unlock(comm);
+}
+
+/* Under the lock. */
+static int open_group(struct comm *comm, struct comm_group *group, struct graph_channels *channels)
+{
+    int first = take_tags(&comm->channels, channels->phases + 1);
+    if (!first)
+        return base_error(DUITE_E_MPI, "MPI has no tags for %d phases of a recorded graph: %d",
+                          channels->phases, comm->channels.last_tag);
+    group->first_tag = first;
+    group->n_tags = channels->phases + 1;
+    group->next = comm->channels.open;
+    comm->channels.open = group;
+    channels->own = group;
+    channels->close = close_channels;
+    for (size_t i = 0; i < channels->n; i++) {
+        channels->channel[i].tag += first;
+        if (channels->channel[i].sends)
+            continue;
+        comm->channels.room += 2;
+        if (!post_receive(comm, &group->side[i], 0) || !post_receive(comm, &group->side[i], 1))
+            return DUITE_E_MPI;
+    }
+    return comm_requests_room(&comm->channels.awaited, comm->channels.room + 1)
+               ? DUITE_OK
+               : base_no_memory("messages to come");
+}
+
+int comm_channels_open(struct comm *comm, struct graph_channels *channels)
+{
+    struct comm_group *group = new_group(comm, channels);
+    if (!group)
+        return base_no_memory("the messages of a recorded graph");
+    lock(comm);
+    sweep(comm);
+    int code = open_group(comm, group, channels);
+    comm_unlock(comm);
+    if (!channels->close)
+        free_group(group);
+    return code;
+}
+
+/* ---- Messages ---- */
+
+void comm_channel_post(struct comm *comm, struct graph_task *node)
+{
+    struct graph_task *first = atomic_load_explicit(&comm->channels.ready, memory_order_relaxed);
+    do
+        node->next = first;
+    while (!atomic_compare_exchange_weak_explicit(&comm->channels.ready, &first, node,
+                                                  memory_order_release, memory_order_relaxed));
+    atomic_thread_fence(memory_order_seq_cst); /* as in comm_send */
+}
+
+static void push(struct graph_task **list, struct graph_task *node)
+{
+    node->next = *list;
+    *list = node;
+}
+
+/* Once communication is broken messages end as if they had been sent. */
+static void start_send(struct comm *comm, struct graph_task *node, struct side *side,
+                       struct graph_task **over)
+{
+    const struct graph_channel *channel = side->channel;
+    MPI_Request *request = &side->request[side->turn % 2];
+    int free = 1;
+    if (!comm_is_broken(comm) && *request != MPI_REQUEST_NULL &&
+        !comm_mpi_ok(comm, MPI_Test(request, &free, MPI_STATUS_IGNORE), "MPI_Test"))
+        free = 1;
+    if (!free) {
+        push(&comm->channels.stalled, node);
+        return;
+    }
+    if (comm_is_broken(comm)) {
+        graph_channel_lost(node);
+        push(over, node);
+        return;
+    }
+    void *buffer = side->buffer[side->turn % 2];
+    size_t bytes = graph_channel_pack(node, buffer);
+    bool large = channel->bytes > INT_MAX;
+    int count = (int)(large ? (bytes + 63) / 64 : bytes);
+    MPI_Datatype type = large ? comm->line : MPI_BYTE;
+    int mpi = side->turn++ % CHECKED_TURN == CHECKED_TURN - 1
+                  ? MPI_Issend(buffer, count, type, channel->peer, channel->tag, comm->mpi, request)
+                  : MPI_Isend(buffer, count, type, channel->peer, channel->tag, comm->mpi, request);
+    if (comm_mpi_ok(comm, mpi, "MPI_Isend")) {
+        atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
+        atomic_fetch_add_explicit(&comm->bytes, bytes, memory_order_relaxed);
+    }
+    push(over, node);
+}
+
+static void await(struct comm *comm, struct graph_task *node, struct side *side,
+                  struct graph_task **over)
+{
+    if (comm->channels.lost) {
+        graph_channel_lost(node);
+        push(over, node);
+        return;
+    }
+    *comm_requests_place(&comm->channels.awaited) = side->request[side->turn % 2];
+    comm_requests_started(&comm->channels.awaited, side);
+    side->request[side->turn % 2] = MPI_REQUEST_NULL;
+}
+
+static void start(struct comm *comm, struct graph_task *nodes, struct graph_task **over)
+{
+    while (nodes) {
+        struct graph_task *node = nodes;
+        struct side *side = graph_channel_of(node)->own;
+        nodes = node->next;
+        if (side->channel->sends)
+            start_send(comm, node, side, over);
+        else
+            await(comm, node, side, over);
+    }
+}
+
+/* What is too long for its buffer was sent by another graph. */
+static bool received(struct comm *comm, int mpi)
+{
+    if (mpi == MPI_SUCCESS)
+        return true;
+    comm_broke(comm, DUITE_E_DIFFERENT,
+               "a message of a recorded graph does not fit: the ranks recorded different graphs, "
+               "or MPI failed");
+    return false;
+}
+
+static void receive(struct comm *comm, struct graph_task **over)
+{
+    struct comm_requests *awaited = &comm->channels.awaited;
+    int done;
+    if (!received(comm, comm_requests_test(awaited, &done)))
+        return;
+    for (int i = 0; i < done; i++) {
+        struct side *side = awaited->what[awaited->n + i];
+        graph_channel_unpack(side->channel->node, side->buffer[side->turn % 2]);
+        atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
+        post_receive(comm, side, side->turn++);
+        push(over, side->channel->node);
+    }
+}
+
+struct graph_task *comm_channels_pass(struct comm *comm, struct graph_task *over)
+{
+    struct comm_channels *channels = &comm->channels;
+    if (atomic_load_explicit(&channels->ready, memory_order_relaxed))
+        start(comm, atomic_exchange_explicit(&channels->ready, NULL, memory_order_acquire), &over);
+    if (channels->stalled) {
+        struct graph_task *nodes = channels->stalled;
+        channels->stalled = NULL;
+        start(comm, nodes, &over);
+    }
+    if (channels->awaited.n)
+        receive(comm, &over);
+    atomic_store_explicit(&channels->awaits, channels->awaited.n > 0, memory_order_relaxed);
+    return over;
+}
+
+void comm_channels_give_up(struct comm *comm)
+{
+    struct comm_requests *awaited = &comm->channels.awaited;
+    comm->channels.lost = true;
+    while (awaited->n) {
+        struct side *side = awaited->what[--awaited->n];
+        side->request[side->turn % 2] = awaited->request[awaited->n];
+        comm_channel_post(comm, side->channel->node);
+    }
+}

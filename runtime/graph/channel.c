@@ -1,0 +1,129 @@
+/* The messages of a plan. A message has all values that a round makes on one rank for another in
+ * one phase, in the order of the node's uses, which is the same on both sides; what is poisoned has
+ * its failure at the end instead. A node that sends or receives is ready like any other: when what
+ * it sends is made, or when nobody reads any more what it overwrites. */
+#include "runtime/graph/internal.h"
+#include "runtime/graph/replay.h"
+
+#include <string.h>
+
+struct message {
+    uint32_t failures; /* behind the values */
+    uint32_t unused;   /* keeps the values on a multiple of 8 */
+};
+
+struct message_failure {
+    uint64_t use; /* of the node */
+    struct data_failure failure;
+};
+
+static const struct data_failure lost = {
+    .code = DUITE_E_MPI, .kernel = UINT32_MAX, .text = "communication between the ranks broke"};
+
+static size_t room_of(const struct graph_place *place)
+{
+    return (place->bytes + 7) / 8 * 8;
+}
+
+static size_t bytes_of_values(const struct graph_plan *plan, const struct graph_task *task)
+{
+    const struct graph_node_use *use = plan->use + task->node->first_use;
+    size_t bytes = 0;
+    for (uint32_t i = 0; i < task->n; i++)
+        bytes += room_of(&plan->place[use[i].place]);
+    return bytes;
+}
+
+size_t graph_channel_room(const struct graph_plan *plan, const struct graph_task *task)
+{
+    return sizeof(struct message) + bytes_of_values(plan, task) +
+           task->n * sizeof(struct message_failure);
+}
+
+struct graph_channel *graph_channel_of(const struct graph_task *task)
+{
+    return task->node->channel;
+}
+
+/* As graph_node_run begins: from now on the node counts for its next round. */
+static struct graph_plan *begin(struct graph_task *task)
+{
+    atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
+    return task->node->plan;
+}
+
+static size_t pack_failures(const struct graph_plan *plan, const struct graph_task *task,
+                            struct message *message, char *at)
+{
+    const struct graph_node_use *use = plan->use + task->node->first_use;
+    for (uint32_t i = 0; i < task->n; i++) {
+        const struct data_failure *failure = plan->place[use[i].place].failure;
+        struct message_failure told = {.use = i};
+        if (!failure)
+            continue;
+        told.failure = *failure;
+        memcpy(at + message->failures++ * sizeof told, &told, sizeof told);
+    }
+    return message->failures * sizeof(struct message_failure);
+}
+
+size_t graph_channel_pack(struct graph_task *task, void *bytes)
+{
+    const struct graph_plan *plan = begin(task);
+    const struct graph_node_use *use = plan->use + task->node->first_use;
+    struct message *message = bytes;
+    char *at = (char *)(message + 1);
+    for (uint32_t i = 0; i < task->n; i++) {
+        const struct graph_place *place = &plan->place[use[i].place];
+        size_t room = room_of(place);
+        if (place->data)
+            memcpy(at, place->data, place->bytes);
+        memset(at + place->bytes, 0, room - place->bytes);
+        at += room;
+    }
+    *message = (struct message){0};
+    if (atomic_load_explicit(&plan->tainted, memory_order_relaxed))
+        at += pack_failures(plan, task, message, at);
+    return (size_t)(at - (char *)bytes);
+}
+
+/* Poisons, or heals, what came. */
+static void unpack_failures(struct graph_plan *plan, const struct graph_task *task,
+                            const struct message *message, const char *at)
+{
+    const struct graph_node_use *use = plan->use + task->node->first_use;
+    for (uint32_t i = 0; i < task->n; i++)
+        plan->place[use[i].place].failure = NULL;
+    for (uint32_t i = 0; i < message->failures; i++) {
+        struct message_failure told;
+        memcpy(&told, at + i * sizeof told, sizeof told);
+        plan->place[use[told.use].place].failure = graph_fail(plan->graph, &told.failure, false);
+    }
+    if (message->failures)
+        atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+}
+
+void graph_channel_unpack(struct graph_task *task, const void *bytes)
+{
+    struct graph_plan *plan = begin(task);
+    const struct graph_node_use *use = plan->use + task->node->first_use;
+    const struct message *message = bytes;
+    const char *at = (const char *)(message + 1);
+    for (uint32_t i = 0; i < task->n; i++) {
+        const struct graph_place *place = &plan->place[use[i].place];
+        memcpy(place->data, at, place->bytes);
+        at += room_of(place);
+    }
+    if (message->failures || atomic_load_explicit(&plan->tainted, memory_order_relaxed))
+        unpack_failures(plan, task, message, at);
+}
+
+void graph_channel_lost(struct graph_task *task)
+{
+    struct graph_plan *plan = begin(task);
+    const struct graph_node_use *use = plan->use + task->node->first_use;
+    atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+    for (uint32_t i = 0; i < task->n; i++)
+        if (use[i].writes)
+            plan->place[use[i].place].failure = &lost;
+}

@@ -1,0 +1,26 @@
+/* What the graph asks of checking mode and of the communication, which it does not know. */
+#include "runtime/workers/internal.h"
+
+int work_body(void *context, const duite_kernel *kernel, uint64_t number, duite_call *call)
+{
+    struct work_pool *pool = context;
+    return check_call(pool->setup.check, &(struct check_task){kernel, number}, call);
+}
+
+int work_expect(void *context, void *who, struct data_key key, int from,
+                struct data_version *version, struct data_sum *sum, uint32_t packets)
+{
+    struct work_pool *pool = context;
+    const struct comm_target target = {version, sum, from};
+    return comm_expect(pool->setup.comm, who, key, target, packets);
+}
+
+int work_open(void *context, struct graph_channels *channels)
+{
+    return comm_channels_open(((struct work_pool *)context)->setup.comm, channels);
+}
+
+void work_starved(void *context, const char *what)
+{
+    comm_broke_memory(((struct work_pool *)context)->setup.comm, what);
+}

@@ -1,0 +1,219 @@
+/* Recorded graphs on several ranks: a round sends one message to each neighbour and phase, whatever
+ * it carries, and nothing else is sent. Run under mpirun. */
+
+#include "tests/negative/misuse.h"
+
+#include <stdint.h>
+
+enum { BLOCKS = 12, LENGTH = 16, MOST = 40 };
+
+static int start(const duite_call *call)
+{
+    for (size_t i = 0; i < LENGTH; i++)
+        duite_out(call, 0, double)[i] =
+            1.0 / (double)(1 + *(const int *)call->args * LENGTH + (int)i);
+    return 0;
+}
+
+/* to = mean of the neighbours; its square is added to a sum. The ends stay. */
+static int mean(const duite_call *call)
+{
+    const double *here = duite_in(call, 2, double), *left = duite_in(call, 3, double);
+    const double *right = duite_in(call, 4, double);
+    double *to = duite_out(call, 0, double);
+
+    for (size_t i = 0; i < LENGTH; i++) {
+        const double l = i ? here[i - 1] : left[0], r = i + 1 < LENGTH ? here[i + 1] : right[0];
+
+        to[i] = 0.5 * (l + r);
+        duite_out(call, 1, double)[0] += to[i] * to[i];
+    }
+    return 0;
+}
+
+/* scale = scale / 2 + sum; the sum begins anew, and the flag counts down. */
+static int judge(const duite_call *call)
+{
+    duite_out(call, 1, double)[0] =
+        0.5 * duite_in(call, 1, double)[0] + duite_in(call, 0, double)[0];
+    duite_out(call, 2, int64_t)[0] -= 1;
+    return 0;
+}
+
+static int scale(const duite_call *call)
+{
+    for (size_t i = 0; i < LENGTH; i++)
+        duite_out(call, 1, double)[i] *= 1 + 1e-3 * duite_in(call, 0, double)[0];
+    return 0;
+}
+
+static const duite_kernel START = {
+    .name = "start", .body = start, .access = {DUITE_W}, .args_size = sizeof(int)};
+static const duite_kernel MEAN = {
+    .name = "mean", .body = mean, .access = {DUITE_W, DUITE_CW, DUITE_R, DUITE_R, DUITE_R}};
+static const duite_kernel JUDGE = {
+    .name = "judge", .body = judge, .access = {DUITE_R, DUITE_RW, DUITE_RW}, .replicated = 1};
+static const duite_kernel SCALE = {.name = "scale", .body = scale, .access = {DUITE_R, DUITE_RW}};
+
+struct rod {
+    duite_object x[2][BLOCKS], first[2][BLOCKS], last[2][BLOCKS], sum, scale, flag;
+};
+
+/* There and back; the sum over the second half decides. */
+static int rounds(duite *rt, void *context)
+{
+    const struct rod *rod = context;
+
+    for (int way = 0; way < 2; way++) {
+        duite_set(rt, rod->sum, NULL);
+        for (int b = 0; b < BLOCKS; b++)
+            DUITE_FORK(rt, &MEAN, NULL, rod->x[!way][b], rod->sum, rod->x[way][b],
+                       rod->last[way][(b + BLOCKS - 1) % BLOCKS],
+                       rod->first[way][(b + 1) % BLOCKS]);
+    }
+    DUITE_FORK(rt, &JUDGE, NULL, rod->sum, rod->scale, rod->flag);
+    for (int b = 0; b < BLOCKS; b++)
+        DUITE_FORK(rt, &SCALE, NULL, rod->scale, rod->x[0][b]);
+    return 0;
+}
+
+static void make(duite *rt, struct rod *rod)
+{
+    const size_t left = 0, right = LENGTH - 1;
+
+    for (int way = 0; way < 2; way++)
+        for (int b = 0; b < BLOCKS; b++) {
+            duite_new(rt, DUITE_F64, LENGTH, &rod->x[way][b]);
+            if (way)
+                duite_follow(rt, rod->x[1][b], rod->x[0][b]);
+            else if (b)
+                duite_hint(rt, rod->x[0][b], 1, 1, &rod->x[0][b - 1], NULL);
+        }
+    duite_new(rt, DUITE_F64, 1, &rod->sum);
+    duite_new(rt, DUITE_F64, 1, &rod->scale);
+    duite_new(rt, DUITE_I64, 1, &rod->flag);
+    for (int way = 0; way < 2; way++)
+        for (int b = 0; b < BLOCKS; b++) {
+            duite_view(rt, rod->x[way][b], 1, &left, &rod->first[way][b]);
+            duite_view(rt, rod->x[way][b], 1, &right, &rod->last[way][b]);
+            DUITE_FORK(rt, &START, DUITE_ARGS(int, b), rod->x[way][b]);
+        }
+}
+
+static void unmake(duite *rt, struct rod *rod)
+{
+    for (int way = 0; way < 2; way++)
+        for (int b = 0; b < BLOCKS; b++) {
+            duite_free(rt, rod->first[way][b]);
+            duite_free(rt, rod->last[way][b]);
+            duite_free(rt, rod->x[way][b]);
+        }
+    duite_free(rt, rod->sum);
+    duite_free(rt, rod->scale);
+    duite_free(rt, rod->flag);
+}
+
+static uint64_t messages(duite *rt)
+{
+    duite_counters counters;
+
+    duite_wait(rt);
+    return duite_count_all(rt, &counters) ? 0 : counters.messages;
+}
+
+/* Pairs of ranks that hold neighbouring blocks, and whether they hold the same as many. */
+static unsigned neighbours(duite *rt, const struct rod *rod)
+{
+    const int n = duite_ranks(rt);
+    unsigned pairs = 0;
+
+    for (int p = 0; p < n; p++)
+        for (int q = 0; q < n; q++) {
+            int touch = 0;
+
+            for (int b = 0; b < BLOCKS; b++) {
+                const int here = duite_home(rt, rod->x[0][b]);
+                const int next = duite_home(rt, rod->x[0][(b + 1) % BLOCKS]);
+
+                touch |= (here == p && next == q) || (here == q && next == p);
+            }
+            pairs += p != q && touch;
+        }
+    return pairs;
+}
+
+/* What one round sends: the rims twice, and the contributions, to everybody, once; the rims of the
+ * second way are there when the contributions of the first are. */
+static void count(duite *rt, struct rod *rod, duite_graph graph)
+{
+    const unsigned n = (unsigned)duite_ranks(rt);
+    const uint64_t more = 2 * neighbours(rt, rod) + n * (n - 1);
+    const int64_t many = 1000;
+    uint64_t before, once, thrice;
+
+    duite_set(rt, rod->flag, &many);
+    duite_replay(rt, graph, 2); /* what the graph begins with has its place now */
+    before = messages(rt);
+    duite_replay(rt, graph, 1);
+    once = messages(rt);
+    duite_replay(rt, graph, 3);
+    thrice = messages(rt);
+    tap_case(once - before == more, "a round sends one message to each neighbour and phase");
+    tap_case(thrice - once == 3 * more, "and so do three");
+    before = messages(rt);
+    duite_replay_while(rt, graph, rod->flag, 5);
+    tap_case(messages(rt) - before == 5 * more, "a flag that all ranks compute costs none");
+}
+
+/* The same by forks. */
+static int agrees(duite *rt, struct rod *rod, duite_graph graph)
+{
+    double values[2][BLOCKS][LENGTH], sums[2][2];
+    const int64_t many = MOST;
+    int same = 1;
+
+    for (int way = 0; way < 2; way++) {
+        for (int b = 0; b < 2 * BLOCKS; b++)
+            DUITE_FORK(rt, &START, DUITE_ARGS(int, b % BLOCKS), rod->x[b / BLOCKS][b % BLOCKS]);
+        duite_set(rt, rod->scale, NULL);
+        duite_set(rt, rod->flag, &many);
+        if (way)
+            duite_replay_while(rt, graph, rod->flag, 2 * MOST);
+        for (int i = 0; i < MOST && !way; i++)
+            rounds(rt, rod);
+        for (int b = 0; b < BLOCKS; b++)
+            same &= !duite_get(rt, rod->x[0][b], values[way][b]);
+        same &=
+            !duite_get(rt, rod->sum, &sums[way][0]) && !duite_get(rt, rod->scale, &sums[way][1]);
+    }
+    for (int b = 0; b < BLOCKS; b++)
+        for (int i = 0; i < LENGTH; i++)
+            same &= values[0][b][i] == values[1][b][i];
+    uint64_t n = 0;
+
+    same &= !duite_graph_rounds(rt, graph, &n) && n == MOST;
+    return same && sums[0][0] == sums[1][0] && sums[0][1] == sums[1][1] && sums[0][1] > 0;
+}
+
+int main(void)
+{
+    const duite_kernel *const list[] = {&START, &MEAN, &JUDGE, &SCALE, NULL};
+    struct rod rod;
+    duite_graph graph;
+    duite *rt;
+
+    misuse_mpi();
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+
+    options.kernels = list;
+    if (duite_start(&rt, &options))
+        return 1;
+    make(rt, &rod);
+    tap_case(!duite_graph_new(rt, rounds, &rod, &graph), "record");
+    count(rt, &rod, graph);
+    tap_case(agrees(rt, &rod, graph), "replays leave what forks leave");
+    duite_graph_free(rt, graph);
+    unmake(rt, &rod);
+    tap_case(duite_stop(&rt) == DUITE_OK, "stop");
+    return tap_done();
+}

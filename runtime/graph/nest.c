@@ -298,13 +298,16 @@ void graph_drop(struct graph_scope *scope, struct data_object *object)
 
 void graph_left(struct graph *graph, struct graph_scope *scope, void *worker)
 {
-    for (struct graph_scope *parent; (parent = scope->parent); scope = parent) {
+    struct graph_scope *parent;
+    /* No look into the root: the main thread writes its line with every fork. */
+    while (scope != &graph->root && (parent = scope->parent)) {
         if (atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) != 1)
             return;
         struct graph_nest *nest = nest_of(scope);
         if (nest->moved)
             base_pool_give(nest->local, nest->room * sizeof *nest->local);
         base_pool_give(nest, nest->size);
+        scope = parent;
     }
     if (scope == &graph->root)
         graph->hooks.over(graph->hooks.context, worker, 1);

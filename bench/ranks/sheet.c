@@ -209,7 +209,6 @@ void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *sca
         solve_advance_copies(t->copies[i + 1] - t->copies[i], scalars->alpha, scalars->beta,
                              s->rim[from] + sheet_rim(s, t->slot[i]), t->copy + t->copies[i],
                              s->copy_r + copies + t->copies[i], s->copy_p + copies + t->copies[i]);
-    memset(q, 0, t->n * sizeof *q);
     solve_matvec_cut(&(struct solve_cut){t->n_cut, t->copy_end}, value + t->n_inner, p,
                      s->copy_p + copies, q);
     solve_matvec(&t->matrix, value, p, s->r + first, q, dots);

@@ -82,16 +82,17 @@ PHYS_INLINE void turn(double alpha, double beta, const phys_vec *q, phys_vec *r,
 }
 
 /* One row; its r * r is added to dot. */
-PHYS_INLINE void advance(size_t a, double alpha, double beta, const phys_vec *q, phys_vec *dv,
+PHYS_INLINE void advance(size_t a, double alpha, double beta, phys_vec *q, phys_vec *dv,
                          phys_vec *r, phys_vec *p, phys_vec *dot)
 {
     dv[a] += alpha * p[a];
     turn(alpha, beta, q + a, r + a, p + a);
+    q[a] = (phys_vec){0};
     *dot += r[a] * r[a];
 }
 
 PHYS_CLONES
-double solve_advance(size_t n, double alpha, double beta, const phys_vec *restrict q,
+double solve_advance(size_t n, double alpha, double beta, phys_vec *restrict q,
                      phys_vec *restrict dv, phys_vec *restrict r, phys_vec *restrict p)
 {
     phys_vec dot[4] = {{0}};

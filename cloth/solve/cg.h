@@ -61,9 +61,10 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
 void solve_start(size_t n, const double *free, const phys_vec *b, phys_vec *dv, phys_vec *r,
                  phys_vec *p, phys_vec *q);
 
-/* The first half of a pass: dv += alpha p, r -= alpha q, p = r + beta p. Returns r.r. */
-double solve_advance(size_t n, double alpha, double beta, const phys_vec *q, phys_vec *dv,
-                     phys_vec *r, phys_vec *p);
+/* The first half of a pass: dv += alpha p, r -= alpha q, p = r + beta p, and q = 0 for the second.
+ * Returns r.r. */
+double solve_advance(size_t n, double alpha, double beta, phys_vec *q, phys_vec *dv, phys_vec *r,
+                     phys_vec *p);
 
 /* The same for copies of another block's rows, to the same bits: r and p of n rows, row i has its q
  * in q[3 at[i]] and the two numbers behind it. */

@@ -62,7 +62,6 @@ static void multiply(const duite_call *call, const struct flow_table *t, double 
     const phys_vec *value = duite_in(call, A, phys_vec), *p = duite_in(call, P, phys_vec);
     phys_vec *q = duite_out(call, Q, phys_vec);
     const struct solve_cut cut = {t->n_cut, t->copy_end};
-    memset(q, 0, t->n * sizeof *q);
     solve_matvec_cut(&cut, value + t->n_inner, p, duite_in(call, COPIES, phys_vec) + t->n_copies,
                      q);
     solve_matvec(&t->matrix, value, p, duite_in(call, R, phys_vec), q, dots);
@@ -76,9 +75,9 @@ static int pass(const duite_call *call)
     double *dots = duite_out(call, SUMS, double);
     if (scalars->phase == SOLVE_DONE)
         return 0;
-    dots[SOLVE_RR] = solve_advance(t->n, scalars->alpha, scalars->beta, duite_in(call, Q, phys_vec),
-                                   duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
-                                   duite_out(call, P, phys_vec));
+    dots[SOLVE_RR] = solve_advance(t->n, scalars->alpha, scalars->beta,
+                                   duite_out(call, Q, phys_vec), duite_out(call, DV, phys_vec),
+                                   duite_out(call, R, phys_vec), duite_out(call, P, phys_vec));
     if (scalars->phase == SOLVE_LAST)
         return 0;
     advance_copies(call, t, scalars);

@@ -23,7 +23,8 @@ START_TEST(advance_at_every_size)
             sum += ((double)i - 2) * ((double)i - 2) + 1 + 1;
         ck_assert_double_eq(solve_advance(n, 2, 0.5, q, dv, r, p), sum);
         for (size_t i = 0; i < n; i++)
-            ck_assert(dv[i][2] == 6 && r[i][0] == (double)i - 2 && p[i][0] == (double)i - 1.5);
+            ck_assert(dv[i][2] == 6 && r[i][0] == (double)i - 2 && p[i][0] == (double)i - 1.5 &&
+                      q[i][1] == 0);
     }
 }
 END_TEST

@@ -88,7 +88,7 @@ static int begin(struct flow_state *state, struct sheet *sheet, uint32_t count)
     int code = flow_memory_take(state);
     if (!code) {
         flow_objects_make(state);
-        code = flow_far_make(state);
+        flow_far_make(state);
     }
     if (!code)
         code = flow_cg_record(state);

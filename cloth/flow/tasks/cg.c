@@ -26,6 +26,8 @@ static int fork_pass(struct flow_state *state, int from)
         for (uint32_t s = 0; s < t->n_slots; s++)
             state->refs[n++] = q[s];
         code = duite_fork(state->rt, &flow_pass, &args, n, state->refs);
+        if (!code)
+            code = flow_far_pack(state, args.block, to);
     }
     if (!code)
         code = DUITE_FORK(state->rt, &flow_scalars, NULL, state->sums[from], state->scalars[from],
@@ -52,6 +54,8 @@ static int fork_start(struct flow_state *state, struct flow_args args)
         const struct flow_objects *o = state->block + args.block;
         code = DUITE_FORK(state->rt, &flow_start, &args, o->f, o->dv, o->r, o->p, o->q, o->copies,
                           o->rim_q[0]);
+        if (!code)
+            code = flow_far_pack(state, args.block, 0);
     }
     return code;
 }

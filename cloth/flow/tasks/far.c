@@ -1,8 +1,9 @@
 /* A pass of a solve reads q of its block's neighbours: their rims as they are where the neighbour
- * lives on the same rank; else a view of them, one a block and rank that reads it, with the rows
- * that any block there needs, so that a message holds nothing else. Which it is depends on the
- * homes that the blocks have when a run begins and changes no result. */
-#include "cloth/flow/tasks/tasks.h"
+ * lives on the same rank; else a far rim, one for each block and rank that reads it, with the rows
+ * that any block there needs: so a message holds nothing else. A task of its own packs it, since
+ * the neighbours' passes still read its other half. Which it is depends on the homes that the
+ * blocks have when a run begins and changes no result. */
+#include "cloth/flow/tasks/bodies.h"
 
 #include "cloth/base/memory.h"
 
@@ -27,11 +28,13 @@ void flow_far_take(struct flow_state *state)
     }
     for (int i = 0; i < 2; i++)
         far->read[i] = cloth_alloc(slots, sizeof *far->read[i], trouble);
-    far->view = cloth_alloc(2 * slots, sizeof *far->view, trouble);
+    far->rim = cloth_alloc(slots, sizeof *far->rim, trouble);
+    far->first = cloth_alloc((size_t)tables->n_blocks + 1, sizeof *far->first, trouble);
     far->home = cloth_alloc(tables->n_blocks, sizeof *far->home, trouble);
     far->number = cloth_alloc(rim, sizeof *far->number, trouble);
-    far->element = cloth_alloc(3 * rim, sizeof *far->element, trouble);
     state->flow->at = cloth_alloc(copies, sizeof *state->flow->at, trouble);
+    state->flow->far_row = cloth_alloc(copies, sizeof *state->flow->far_row, trouble);
+    state->flow->far_rim = cloth_alloc(slots, sizeof *state->flow->far_rim, trouble);
 }
 
 void flow_far_free(struct flow_state *state)
@@ -39,13 +42,16 @@ void flow_far_free(struct flow_state *state)
     struct flow_far *far = &state->far;
     for (int i = 0; i < 2; i++)
         free(far->read[i]);
-    free(far->view);
+    free(far->rim);
+    free(far->first);
     free(far->home);
     free(far->number);
-    free(far->element);
     free(state->flow->at);
+    free(state->flow->far_row);
+    free(state->flow->far_rim);
     *far = (struct flow_far){0};
-    state->flow->at = NULL;
+    state->flow->at = state->flow->far_row = NULL;
+    state->flow->far_rim = NULL;
 }
 
 /* Neighbour slot s of block b, for who reads: the slot's place among all, its rows. */
@@ -70,9 +76,9 @@ static struct reader reader_of(struct flow_state *state, uint32_t b, uint32_t ne
                            .n = t->copies[s + 1] - t->copies[s]};
 }
 
-/* Numbers the rows of block b that blocks of this home read, and lists their numbers in the rim.
- * Returns how many of these there are. */
-static size_t number_rows(struct flow_state *state, uint32_t b, int home)
+/* Numbers the rows of block b that blocks of this home read, and lists them in `row`, which has
+ * room for them. Returns how many there are. */
+static uint32_t number_rows(struct flow_state *state, uint32_t b, int home, uint32_t *row)
 {
     const struct flow_table *t = state->flow->tables.block + b;
     struct flow_far *far = &state->far;
@@ -88,25 +94,25 @@ static size_t number_rows(struct flow_state *state, uint32_t b, int home)
     for (uint32_t i = 0; i < t->n_rim; i++) {
         if (!far->number[i])
             continue;
-        for (size_t c = 0; c < 3; c++)
-            far->element[3 * (size_t)n + c] = 3 * (size_t)i + c;
+        row[n] = t->rim[i];
         far->number[i] = n++;
     }
-    return 3 * (size_t)n;
+    return n;
 }
 
-/* The views of block b that blocks of this home read. */
-static int make_views(struct flow_state *state, uint32_t b, int home)
+/* The rim of block b that blocks of this home read. */
+static void make_rim(struct flow_state *state, uint32_t b, int home)
 {
     const struct flow_table *t = state->flow->tables.block + b;
     struct flow_far *far = &state->far;
-    const size_t n = number_rows(state, b, home);
-    duite_object view[2];
+    struct flow_far_rim *rim = state->flow->far_rim + far->n;
+    duite_object *object = far->rim[far->n++].object;
+    rim->row = state->flow->far_row + far->n_rows;
+    rim->n = number_rows(state, b, home, state->flow->far_row + far->n_rows);
+    far->n_rows += rim->n;
     for (int i = 0; i < 2; i++) {
-        const int code = duite_view(state->rt, state->block[b].rim_q[i], n, far->element, view + i);
-        if (code)
-            return code;
-        far->view[far->n_views++] = view[i];
+        duite_new(state->rt, DUITE_F64, 3 * (size_t)rim->n, object + i);
+        duite_follow(state->rt, object[i], state->block[b].x);
     }
     for (uint32_t s = 0; s < t->n_slots; s++) {
         if (far->home[t->slot[s]] != home)
@@ -114,10 +120,9 @@ static int make_views(struct flow_state *state, uint32_t b, int home)
         const struct reader reader = reader_of(state, t->slot[s], b);
         for (size_t i = 0; i < reader.n; i++)
             reader.at[i] = far->number[reader.row[i]];
-        far->read[0][reader.slot] = view[0];
-        far->read[1][reader.slot] = view[1];
+        far->read[0][reader.slot] = object[0];
+        far->read[1][reader.slot] = object[1];
     }
-    return DUITE_OK;
 }
 
 static void read_rims(struct flow_state *state, uint32_t b, uint32_t neighbour)
@@ -137,22 +142,44 @@ static bool is_first(const struct flow_far *far, const struct flow_table *t, uin
     return true;
 }
 
-int flow_far_make(struct flow_state *state)
+void flow_far_make(struct flow_state *state)
 {
     const struct flow_tables *tables = &state->flow->tables;
     struct flow_far *far = &state->far;
-    int code = DUITE_OK;
     for (uint32_t b = 0; b < tables->n_blocks; b++)
         far->home[b] = duite_home(state->rt, state->block[b].x);
     for (uint32_t b = 0; b < tables->n_blocks; b++) {
         const struct flow_table *t = tables->block + b;
-        for (uint32_t s = 0; s < t->n_slots && !code; s++) {
+        far->first[b] = far->n;
+        for (uint32_t s = 0; s < t->n_slots; s++) {
             const int home = far->home[t->slot[s]];
             if (home == far->home[b])
                 read_rims(state, b, t->slot[s]);
             else if (is_first(far, t, s))
-                code = make_views(state, b, home);
+                make_rim(state, b, home);
         }
     }
+    far->first[tables->n_blocks] = far->n;
+}
+
+int flow_far_pack(struct flow_state *state, uint32_t b, int to)
+{
+    const struct flow_far *far = &state->far;
+    int code = DUITE_OK;
+    for (uint32_t i = far->first[b]; i < far->first[b + 1] && !code; i++)
+        code = DUITE_FORK(state->rt, &flow_pack, &i, state->block[b].q, far->rim[i].object[to]);
     return code;
 }
+
+static int pack(const duite_call *call)
+{
+    const uint32_t *i = call->args;
+    const struct flow_far_rim *rim = flow_of(call)->far_rim + *i;
+    solve_pack(rim->n, rim->row, duite_in(call, 0, phys_vec), duite_out(call, 1, double));
+    return 0;
+}
+FLOW_TIMED(pack, FLOW_CG)
+const duite_kernel flow_pack = {.name = "cg_pack",
+                                .body = pack_timed,
+                                .access = {DUITE_R, DUITE_W},
+                                .args_size = sizeof(uint32_t)};

@@ -87,8 +87,10 @@ static int release(duite *rt, size_t n, const duite_object *object)
 int flow_objects_free(struct flow_state *state)
 {
     int code = state->solve.generation ? duite_graph_free(state->rt, state->solve) : DUITE_OK;
-    const int unviewed = release(state->rt, state->far.n_views, state->far.view);
-    code = code ? code : unviewed;
+    for (uint32_t i = 0; i < state->far.n; i++) {
+        const int failed = release(state->rt, 2, state->far.rim[i].object);
+        code = code ? code : failed;
+    }
     for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
         const struct flow_objects *o = state->block + b;
         const duite_object all[] = {o->x,     o->v,        o->f,        o->a,      o->dv,

@@ -31,6 +31,12 @@ struct flow_clock {
 /* Codes of bodies that fail. */
 enum { FLOW_DIVERGED = 1, FLOW_INDEFINITE, FLOW_NOT_WRITTEN, FLOW_NO_MEMORY, FLOW_NOT_CONVERGED };
 
+/* Rows of a block that blocks on one other rank read. */
+struct flow_far_rim {
+    uint32_t n;
+    const uint32_t *row; /* n, ascending */
+};
+
 struct flow {
     const struct model *model;
     uint32_t n_vertices, n_triangles;
@@ -44,6 +50,8 @@ struct flow {
     unsigned n_clocks;
     struct flow_clock *clock; /* a worker */
     uint32_t *at; /* of each copy of all blocks: its place in what a pass reads of the neighbour */
+    struct flow_far_rim *far_rim; /* of far.c */
+    uint32_t *far_row;
     struct cloth_error trouble; /* of this rank: why it cannot begin, why a frame was not written;
                                  * changed by the main thread when no task runs, and by `frame` */
     atomic_int stop;            /* set by the main thread, read by the task `status` */
@@ -83,7 +91,8 @@ extern const duite_kernel flow_matrix;   /* r x, w a; rims of x */
 extern const duite_kernel flow_begin;    /* w scalars */
 extern const duite_kernel flow_start;    /* r f, w dv, w r, w p, w q, w copies, w rim of q */
 extern const duite_kernel flow_pass;     /* r scalars, r a, rw dv, rw r, rw p, rw q, rw copies, rw
-                                            rim of q, cw sums; the other rims of q, or views of them */
+                                            rim of q, cw sums; the other rims of q, or far ones */
+extern const duite_kernel flow_pack;     /* r q, w far rim */
 extern const duite_kernel flow_scalars;  /* r sums, r scalars, w next scalars */
 extern const duite_kernel
     flow_velocity_dv; /* r f, r a, r dv, rw v, w rim of v, r scalars, cw status */
@@ -104,12 +113,15 @@ struct flow_objects {
 
 /* What passes read of their neighbours' rims of q (far.c). */
 struct flow_far {
-    duite_object *read[2]; /* a neighbour of each block, block after block: rim_q[0], rim_q[1] */
-    duite_object *view;    /* n_views that were made */
-    size_t n_views;
+    duite_object *read[2]; /* a neighbour of each block, block after block: of even passes, odd */
+    struct {
+        duite_object object[2];
+    } * rim;         /* n far rims, block after block; three numbers a row */
+    uint32_t *first; /* a block, and one more: its first one */
+    uint32_t n;
+    size_t n_rows;
     int *home;        /* a block */
-    uint32_t *number; /* room for the rows of any rim, */
-    size_t *element;  /* and for its numbers */
+    uint32_t *number; /* room for the rows of any rim */
 };
 
 /* A run as the main program sees it; the same on every rank. */
@@ -159,11 +171,13 @@ int flow_cg_record(struct flow_state *state);
 /* Forks the solve for dv; the step before is waited for when it has begun. */
 int flow_cg(struct flow_state *state, uint64_t step);
 
-/* What a solve reads of neighbours: memory, a part of flow_memory_take; which object it is, when
- * objects are made. */
+/* What a solve reads of neighbours: memory, a part of flow_memory_take; which objects these are,
+ * when the others are made (a failure is returned by the next get); forks of the tasks that pack
+ * the far rims of a block, for even passes or odd ones. */
 void flow_far_take(struct flow_state *state);
 void flow_far_free(struct flow_state *state);
-int flow_far_make(struct flow_state *state);
+void flow_far_make(struct flow_state *state);
+int flow_far_pack(struct flow_state *state, uint32_t block, int to);
 
 /* The step after which a frame is written. */
 uint64_t flow_frame_step(const struct model *model, uint64_t frame);

@@ -72,7 +72,7 @@ START_TEST(each_fails_once_in_prepare)
 END_TEST
 
 /* Allocations of a run of one thread before its first object; the last is made on rank 0 only. */
-enum { OF_A_RUN = 12 };
+enum { OF_A_RUN = 14 };
 
 static long next_run;
 

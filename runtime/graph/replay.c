@@ -131,6 +131,18 @@ static void end(struct graph *graph, void *worker, struct graph_plan *plan, uint
     graph_plan_release(plan);
 }
 
+/* What a message waits for is not queued behind other tasks: it runs here and now. (What it makes
+ * ready is a node that sends, and tasks.) */
+static void ready(struct graph *graph, void *worker, struct graph_task *task)
+{
+    if (!task->node->urgent) {
+        graph->hooks.ready(graph->hooks.context, worker, task);
+        return;
+    }
+    graph_node_run(graph, worker, task, NULL);
+    graph_node_finish(graph, worker, task);
+}
+
 void graph_replay_start(struct graph *graph, void *worker, struct graph_task *task)
 {
     struct graph_plan *plan = task->replay->plan;
@@ -138,7 +150,7 @@ void graph_replay_start(struct graph *graph, void *worker, struct graph_task *ta
     if (!n)
         end(graph, worker, plan, task->replay->rounds);
     for (size_t i = 0; i < n; i++)
-        graph->hooks.ready(graph->hooks.context, worker, plan->root[i]);
+        ready(graph, worker, plan->root[i]);
 }
 
 /* ---- Nodes ---- */
@@ -324,7 +336,7 @@ void graph_node_finish(struct graph *graph, void *worker, struct graph_task *tas
         /* The last one needs no atomic subtraction: nobody else has the counter then. */
         if (atomic_load_explicit(pending, memory_order_acquire) == 1 ||
             atomic_fetch_sub_explicit(pending, 1, memory_order_acq_rel) == 1)
-            graph->hooks.ready(graph->hooks.context, worker, *next);
+            ready(graph, worker, *next);
     }
     if (counts && atomic_fetch_sub_explicit(&plan->left, counts, memory_order_acq_rel) == counts)
         end(graph, worker, plan, plan->last + 1);

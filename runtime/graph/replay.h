@@ -40,6 +40,7 @@ struct graph_node {
     uint32_t first_use; /* its uses, one a parameter: task->n */
     uint32_t n_leaves;  /* parameters to be cleared: contributions */
     bool sink;          /* nothing of its round waits for it */
+    bool urgent;        /* no task of the program, and a message waits for it */
     uint64_t round;     /* the one it runs next */
 };
 

@@ -183,6 +183,9 @@ static void fill_next(struct graph_plan *plan, const struct graph_draft *draft)
         for (size_t i = 0; i < draft->n_edges; i++) {
             const struct graph_draft_edge *edge = &draft->edge[i];
             struct graph_node *node = graph_plan_task(plan, edge->from)->node;
+            bool sends = draft->node[edge->to].kind == GRAPH_NODE_SEND;
+            if (sends && !edge->cyclic)
+                node->urgent = draft->node[edge->from].kind != GRAPH_NODE;
             if (edge->cyclic != within)
                 node->next[node->n_next++] = graph_plan_task(plan, edge->to);
         }

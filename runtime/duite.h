@@ -370,6 +370,14 @@ int duite_follow(duite *rt, duite_object object, duite_object leader);
  * keeps this one; -1 for no such object. Collective. */
 int duite_home(duite *rt, duite_object object);
 
+/* 1 if this rank keeps the object or has a copy of it as the tasks forked so far leave it; 0 if
+ * not: then a fork does nothing on this rank but count, unless it touches another of the task's
+ * objects, or names this rank. It is to be made all the same, but a program may spare itself what
+ * the arguments take to compute, since the bytes at `args` are read on the rank that runs the task
+ * only (in a build function they are copied on all). 1 of what is no object. Settles homes, like
+ * duite_home. Collective as that is. */
+int duite_touches(duite *rt, duite_object object);
+
 /* ---- Tasks ---- */
 
 /* Forks a task on n objects, in the order of the kernel's modes; a task names an object once.

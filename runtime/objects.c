@@ -115,6 +115,24 @@ int duite_home(duite *rt, duite_object object)
     return found ? found->home : -1;
 }
 
+/* Whether something of the object is here. */
+static bool is_here(const duite *rt, const struct data_object *object)
+{
+    int rank = rt->graph.rank;
+    return object->home == rank || object->holder == rank || object->current || object->sum;
+}
+
+int duite_touches(duite *rt, duite_object object)
+{
+    if (program_enter_any(rt, "duite_touches") || program_settle(rt))
+        return 1;
+    struct data_table *table = &rt->graph.table;
+    const struct data_object *found = data_object_find(table, object);
+    if (!found || is_here(rt, found))
+        return 1;
+    return found->view && is_here(rt, &table->object[found->view->parent]);
+}
+
 int duite_free(duite *rt, duite_object object)
 {
     struct duite_call_private *body = inside_body(rt);

@@ -77,9 +77,25 @@ static int fork_task(duite *rt, const struct graph_how *how, const duite_kernel 
     return program_remember(rt, code);
 }
 
+/* Whether the task is none of this rank's business: then it is forked. Messages are looked after
+ * now and then all the same. */
+static bool pruned(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
+                   const duite_object *objects)
+{
+    enum { FORKS_A_TICK = 32 };
+    if (!rt || !rt->comm || rt->building || rt->graph.table.n_unsettled || rt->graph.broken ||
+        !work_may_fork(rt->pool) || !graph_prune(&rt->graph, kernel, args, n, objects))
+        return false;
+    if (rt->graph.root.forks % FORKS_A_TICK == 0)
+        work_tick(rt->pool);
+    return true;
+}
+
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects)
 {
+    if (pruned(rt, kernel, args, n, objects))
+        return DUITE_OK;
     struct duite_call_private *body = inside_body(rt);
     if (body)
         return inside_fork(body, NULL, kernel, args, n, objects);

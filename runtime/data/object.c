@@ -210,9 +210,3 @@ void data_object_add_copy(struct data_table *table, struct data_object *object, 
     object->copied = true;
     copies[rank / 64] |= UINT64_C(1) << (rank % 64);
 }
-
-void data_object_moved(struct data_object *object, int holder)
-{
-    object->holder = holder;
-    object->copied = false;
-}

@@ -7,25 +7,26 @@
  * it says about other ranks follows from the forks, which are the same everywhere, and is never
  * asked for. */
 struct data_object {
-    uint32_t generation; /* even: the slot is free */
+    /* What a fork of other ranks' tasks reads and writes (graph/prune.c) comes first. */
+    uint32_t generation;          /* even: the slot is free */
+    int home;                     /* -1: not decided yet */
+    int holder;                   /* the rank that has the current version for certain */
+    bool copied;                  /* some rank beside the holder has a copy: `copies` says which */
+    bool sized;                   /* its versions differ in size */
+    uint64_t number;              /* of the current version: writes so far */
+    struct data_version *current; /* this rank's copy of the current version, or NULL */
+    uint64_t leaves;              /* contributions forked since the last other access */
+    struct data_view *view;       /* it is a view (view.h); NULL: it is none */
+    uint64_t mark;                /* the last fork that named it: one task names an object once */
+    const duite_law *law;         /* of the contributions */
+    struct data_sum *sum;         /* those that concern this rank, or NULL */
     duite_type type;
-    bool sized;          /* its versions differ in size */
+    uint32_t n_views;    /* views of it that are alive */
     size_t count, bytes; /* of the zeros that it begins with */
     size_t most, room;   /* elements and bytes of the largest version */
-    int home;            /* -1: not decided yet */
     uint32_t block;      /* its place among the leaders with its home, in the order they were made;
                             followers share their leader's */
     uint32_t hint;       /* while home is -1: its place in `unsettled` */
-    int holder;          /* the rank that has the current version for certain */
-    uint64_t number;     /* of the current version: writes so far */
-    uint64_t mark;       /* the last fork that named it: one task names an object once */
-    struct data_version *current; /* this rank's copy of the current version, or NULL */
-    uint64_t leaves;              /* contributions forked since the last other access */
-    const duite_law *law;         /* of these */
-    struct data_sum *sum;         /* those that concern this rank, or NULL */
-    struct data_view *view;       /* it is a view (view.h); NULL: it is none */
-    uint32_t n_views;             /* views of it that are alive */
-    bool copied;                  /* some rank beside the holder has a copy: `copies` says which */
 };
 
 /* What mappings are told; empty once the homes are settled. */
@@ -84,7 +85,11 @@ void data_object_drop(struct data_table *table, duite_object name);
 bool data_object_has_copy(const struct data_table *table, const struct data_object *object,
                           int rank);
 void data_object_add_copy(struct data_table *table, struct data_object *object, int rank);
-void data_object_moved(struct data_object *object, int holder);
+static inline void data_object_moved(struct data_object *object, int holder)
+{
+    object->holder = holder;
+    object->copied = false;
+}
 
 /* A version of the object, as of data_version_new. */
 static inline struct data_version *data_object_version(const struct data_object *object)

@@ -328,8 +328,6 @@ static int fork_checked(struct graph_scope *scope, void *worker, const struct gr
     for (size_t i = 0; i < n; i++) {
         struct data_object *object = object_of(scope, sketch, i, objects[i]);
         duite_mode mode = data_mode_of(kernel, i);
-        if (!scope->depth)
-            graph_mix(graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         if (task)
             task->access[i].waiter.mode = mode;
         code = use(scope, worker, at, kernel, i, mode, object, task, &done);
@@ -343,6 +341,15 @@ static int fork_checked(struct graph_scope *scope, void *worker, const struct gr
     return DUITE_OK;
 }
 
+static void mix_fork(struct graph *graph, uint32_t kernel, int at, size_t n,
+                     const duite_object *objects)
+{
+    uint64_t hash = graph_fork_hash(kernel, at);
+    for (size_t i = 0; i < n; i++)
+        hash = graph_fork_hash_on(hash, objects[i]);
+    graph_mix(graph, hash);
+}
+
 int graph_fork(struct graph_scope *scope, void *worker, const struct graph_how *how,
                const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
 {
@@ -352,7 +359,7 @@ int graph_fork(struct graph_scope *scope, void *worker, const struct graph_how *
         return code;
     scope->forks++;
     if (!scope->depth)
-        graph_mix(scope->graph, (uint64_t)sketch.kernel << 32 | (uint32_t)how->at);
+        mix_fork(scope->graph, sketch.kernel, how->at, n, objects);
     return fork_checked(scope, worker, how, &sketch, args, n, objects);
 }
 

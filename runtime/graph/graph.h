@@ -200,7 +200,12 @@ struct graph {
         64) struct graph_scope root; /* the main program; its `forks` are the same on all ranks */
     uint64_t fingerprint;            /* of the main program's forks since the last wait */
     uint64_t tasks;                  /* of this rank that it forked, or that serve it */
-    uint64_t rename_most;            /* limit of `rename_bytes` */
+    struct graph_prune { /* the kernel of the last task that may be none of this rank's */
+        const duite_kernel *kernel;
+        uint32_t index, n, owner; /* in the list; objects, and which of them it runs for */
+        unsigned reads, writes;   /* a bit an object; no other use */
+    } prune;
+    uint64_t rename_most; /* limit of `rename_bytes` */
     struct data_table table;
     /* Seldom used. */
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
@@ -245,6 +250,12 @@ struct graph_how {
     int32_t priority;
     double cost; /* seconds; 0: not said */
 };
+
+/* Forks a task of the main program if it touches nothing of this rank, neither the task nor what it
+ * names: then there is only something to note. False: nothing was done, graph_fork is due. Main
+ * thread; collective with graph_fork on other ranks; the homes of all objects are settled. */
+bool graph_prune(struct graph *graph, const duite_kernel *kernel, const void *args, size_t n,
+                 const duite_object *objects);
 
 int graph_fork(struct graph_scope *scope, void *worker, const struct graph_how *how,
                const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects);

@@ -64,6 +64,17 @@ int graph_gather(struct graph_scope *scope, void *worker, struct data_object *ob
                  struct data_sum *sum, struct data_piece *leaf);
 void graph_run_gather(struct graph_task *task);
 
+/* What a fork adds to the fingerprint: begins with its kernel's index and the rank it names, and
+ * goes on with each object. */
+static inline uint64_t graph_fork_hash(uint32_t kernel, int at)
+{
+    return (uint64_t)kernel << 32 | (uint32_t)at;
+}
+static inline uint64_t graph_fork_hash_on(uint64_t hash, duite_object name)
+{
+    return hash * 0x9e3779b97f4a7c15u + ((uint64_t)name.generation << 32 | name.slot);
+}
+
 /* ---- Nesting ---- */
 
 static inline bool graph_postponed(duite_mode mode)

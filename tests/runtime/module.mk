@@ -42,6 +42,11 @@ tests_runtime_ranks_exit_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_exit.sh
 TESTS += tests/runtime/test_exit.sh
 
+check_PROGRAMS += tests/runtime/ranks_prune
+tests_runtime_ranks_prune_SOURCES = tests/runtime/ranks_prune.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_ranks_prune_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/runtime/test_prune.sh
+TESTS += tests/runtime/test_prune.sh
 check_PROGRAMS += tests/runtime/ranks_delegate
 tests_runtime_ranks_delegate_SOURCES = tests/runtime/ranks_delegate.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_ranks_delegate_LDADD = libduite_core.la

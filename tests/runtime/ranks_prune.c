@@ -1,0 +1,122 @@
+/* What a rank keeps of other ranks' tasks and objects: nothing of forks that touch nothing of it,
+ * copies until they are overwritten; and who says so (duite_touches). */
+
+#include "tests/negative/misuse.h"
+
+#include <malloc.h>
+
+enum { OBJECTS = 20, LARGE = 1 << 18, FORKS = 100000 };
+
+static int rank;
+
+static int touch_body(const duite_call *call)
+{
+    duite_out(call, 1, int32_t)[0] += duite_in(call, 0, int32_t)[0] + *(const int32_t *)call->args;
+    return 0;
+}
+static const duite_kernel TOUCH = {.name = "touch",
+                                   .body = touch_body,
+                                   .access = {DUITE_R, DUITE_RW},
+                                   .args_size = sizeof(int32_t)};
+
+static double megabytes(void)
+{
+    const struct mallinfo2 info = mallinfo2();
+
+    return 1e-6 * (double)(info.uordblks + info.hblkhd);
+}
+
+/* The objects live on one rank; another reads them; they are overwritten where they live. */
+static void copies(duite *rt, const duite_object *object, int home, int reader)
+{
+    for (int i = 0; i < OBJECTS; i++)
+        duite_fork_at(rt, home, &SET, &(int32_t){i}, 1, &object[i]);
+    duite_wait(rt);
+    const double before = megabytes();
+
+    for (int i = 0; i < OBJECTS; i++)
+        duite_fork_at(rt, reader, &MANY, NULL, 1, &object[i]);
+    duite_wait(rt);
+    const double with = megabytes();
+    const double all = 4e-6 * OBJECTS * LARGE;
+
+    tap_case(rank != reader || with - before > 0.9 * all, "who reads keeps copies");
+    tap_case(rank == home || duite_touches(rt, object[0]) == (rank == reader),
+             "and is touched by what names them");
+    for (int i = 0; i < OBJECTS; i++)
+        duite_fork_at(rt, home, &SET, &(int32_t){i + 1}, 1, &object[i]);
+    duite_wait(rt);
+    tap_case(rank != reader || megabytes() - before < 0.1 * all,
+             "which are dropped when the objects are overwritten");
+    tap_case(rank == home || duite_touches(rt, object[0]) == 0, "and then is not touched any more");
+    tap_case(rank != home || duite_touches(rt, object[0]) == 1, "the home always is");
+}
+
+/* Many forks, all of one rank's. */
+static void forks(duite *rt, const duite_object *small, int home)
+{
+    int32_t value = 0;
+
+    duite_wait(rt);
+    const double before = megabytes();
+    for (int i = 0; i < FORKS; i++)
+        DUITE_FORK(rt, &TOUCH, DUITE_ARGS(int32_t, 1), small[i % 3], small[3 + i % 2]);
+    tap_case(rank == home || megabytes() - before < 0.01, "they keep no memory on the others");
+    tap_case(!duite_get(rt, small[3], &value) && value == FORKS / 2, "and run where they should");
+    tap_case(duite_wait(rt) == DUITE_OK, "the ranks agree on what was forked");
+}
+
+/* What is wrong is found as everywhere else. */
+static void misuse(duite *rt, const duite_object *small)
+{
+    const duite_object twice[2] = {small[0], small[0]}, none[2] = {small[0], DUITE_NO_OBJECT};
+
+    tap_case(duite_fork(rt, &TOUCH, &(int32_t){0}, 2, twice) == DUITE_E_ACCESS, "one object twice");
+    tap_case(duite_fork(rt, &TOUCH, &(int32_t){0}, 2, none) == DUITE_E_OBJECT, "no object");
+    tap_case(duite_fork(rt, &TOUCH, &(int32_t){0}, 1, small) == DUITE_E_ACCESS, "too few");
+    tap_case(duite_fork(rt, &TOUCH, NULL, 2, small) == DUITE_E_ARGUMENT, "no arguments");
+    tap_case(duite_fork(rt, &UNLISTED, NULL, 1, small) == DUITE_E_KERNEL, "a kernel not listed");
+    tap_case(duite_wait(rt) == DUITE_E_ACCESS, "and told once more");
+    tap_case(duite_touches(rt, DUITE_NO_OBJECT) == 1, "nothing is everybody's business");
+    tap_case(duite_wait(rt) == DUITE_OK, "the ranks agree still");
+}
+
+/* Forks that differ where they touch nothing of one rank. */
+static void different(duite *rt, const duite_object *small, int home)
+{
+    DUITE_FORK(rt, &TOUCH, DUITE_ARGS(int32_t, 0), small[rank == home ? 0 : 1], small[2]);
+    tap_case(duite_wait(rt) == (duite_ranks(rt) > 1 ? DUITE_E_DIFFERENT : DUITE_OK),
+             "forks that differ are found");
+}
+
+int main(void)
+{
+    const duite_kernel *const list[] = {&SET, &MANY, &TOUCH, NULL};
+    duite_object large[OBJECTS], small[6];
+    duite *rt;
+
+    misuse_mpi();
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    options.kernels = list;
+    if (duite_start(&rt, &options))
+        return 1;
+    for (int i = 0; i < OBJECTS; i++) {
+        large[i] = misuse_new(rt, LARGE);
+        duite_follow(rt, large[i], large[0]);
+    }
+    for (int i = 0; i < 6; i++) {
+        small[i] = misuse_new(rt, 1);
+        duite_follow(rt, small[i], large[0]);
+    }
+    const int home = duite_home(rt, large[0]), n_ranks = duite_ranks(rt);
+
+    if (n_ranks > 1)
+        copies(rt, large, home, (home + 1) % n_ranks);
+    forks(rt, small, home);
+    misuse(rt, small);
+    different(rt, small, home);
+    const int code = duite_stop(&rt);
+    tap_case(code == DUITE_E_NOT_FREED || code == DUITE_E_DIFFERENT, "stop");
+    return tap_done();
+}

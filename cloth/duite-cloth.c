@@ -243,12 +243,13 @@ static const struct argp ARGP = {
     .options = OPTIONS,
     .parser = parse,
     .args_doc = "SCENE.yaml",
-    .doc = "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "
-           "result is the same, to the "
-           "last bit.\v"
-           "Exit codes: 0 done (or stopped by SIGUSR1 after a whole frame), 1 the run failed or "
-           "its files could not be written, 2 the input or the command line is wrong. Scene files "
-           "are described in docs/scene.md and by --keys."};
+    .doc =
+        "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "
+        "result is the same, to the "
+        "last bit.\v"
+        "Exit codes: 0 done (or stopped by SIGUSR1 after a whole frame), 1 the run failed or "
+        "its files could not be written, 2 the input or the command line is wrong, 3 another "
+        "rank was lost, or MPI failed. Scene files are described in docs/scene.md and by --keys."};
 
 /* Returns an exit code. */
 static int command_line(struct command *command, int argc, char **argv)
@@ -309,8 +310,11 @@ int main(int argc, char **argv)
     int code = agree(command_line(&command, argc, argv));
     if (code == SIMULATE_OK && !command.done)
         code = simulate(&command.run);
-    code = agree(finish_output(code));
+    code = finish_output(code);
     free_command(&command);
+    if (code == SIMULATE_LOST)
+        return code;
+    code = agree(code);
     MPI_Finalize();
     return code;
 }

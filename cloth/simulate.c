@@ -139,7 +139,16 @@ static int stop_wanted(void *context)
 
 static int runtime_fails(struct cloth_error *error, int code)
 {
-    return code ? cloth_fail(error, CLOTH_E_LIBRARY, "%s", duite_message()) : CLOTH_OK;
+    bool lost = code == DUITE_E_LOST || code == DUITE_E_MPI;
+    int ours = lost ? CLOTH_E_LOST : CLOTH_E_LIBRARY;
+    return code ? cloth_fail(error, ours, "%s", duite_message()) : CLOTH_OK;
+}
+
+/* Nobody is there to agree with on who prints. */
+static int say_lost(const struct run *run, const struct cloth_error *error)
+{
+    fprintf(stderr, "duite-cloth: rank %d ends: %s\n", run->rank, error->text);
+    return CLOTH_E_LOST;
 }
 
 static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
@@ -173,7 +182,7 @@ static int execute(struct run *run)
     }
     if (run->frames)
         output_close(&run->frames, &error);
-    return agree(run, &error);
+    return error.code == CLOTH_E_LOST ? say_lost(run, &error) : agree(run, &error);
 }
 
 static void say_stopped(const struct run *run)
@@ -224,7 +233,7 @@ int simulate(const struct simulate_options *options)
         failure = execute(&run);
         if (!failure)
             failure = conclude(&run);
-        code = failure ? SIMULATE_FAILED : SIMULATE_OK;
+        code = failure == CLOTH_E_LOST ? SIMULATE_LOST : failure ? SIMULATE_FAILED : SIMULATE_OK;
     }
     if (run.frames) {
         struct cloth_error ignored = {0};

@@ -22,16 +22,16 @@ struct simulate_options {
     bool quiet; /* neither progress nor summary */
 };
 
-/* Exit codes of the program. */
-enum { SIMULATE_OK = 0, SIMULATE_FAILED = 1, SIMULATE_BAD_INPUT = 2 };
+/* Exit codes of the program. After SIMULATE_LOST MPI may not be called any more. */
+enum { SIMULATE_OK = 0, SIMULATE_FAILED = 1, SIMULATE_BAD_INPUT = 2, SIMULATE_LOST = 3 };
 
 /* From now on SIGUSR1 asks a run to finish its frame and stop, and SIGXFSZ is an error of the
  * write, instead of ending the process. Local. */
 void simulate_catch_signals(void);
 
 /* Reads, runs, reports. Every input error is found before anything is written, and printed by one
- * rank. MPI is initialised by the caller. Returns the exit code, the same on all ranks. Collective
- * over MPI_COMM_WORLD. */
+ * rank. MPI is initialised by the caller. Returns the exit code, the same on all ranks but for
+ * SIMULATE_LOST, of which each rank tells by itself. Collective over MPI_COMM_WORLD. */
 int simulate(const struct simulate_options *options);
 
 #endif

@@ -21,6 +21,13 @@ static double ratio(double a, double b)
     return b > 0 ? a / b : NAN;
 }
 
+/* The share of the time in which messages were awaited that workers had tasks in. */
+static double hidden_fraction(const struct summary *summary)
+{
+    const duite_counters *counters = &summary->report->counters;
+    return 1 - ratio(counters->exposed, counters->awaited);
+}
+
 static double iterations_mean(const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
@@ -68,6 +75,13 @@ void summary_print(FILE *file, const struct summary *summary)
                 iterations_mean(summary), report->cg_iterations_max);
         fprintf(file, "  momentum lost    %.3e kg m/s at most in a step\n", report->momentum_lost);
     }
+    if (summary->ranks > 1)
+        fprintf(file,
+                "  messages         %" PRIu64
+                ", %.3f MB; %.0f %% of the wait for them hidden behind "
+                "tasks\n",
+                report->counters.messages, 1e-6 * (double)report->counters.bytes,
+                100 * hidden_fraction(summary));
     fprintf(file, "  largest stretch  %.6f times the length at rest\n", report->max_stretch);
     fprintf(file, "  state hash       %016" PRIx64 "\n", report->state_hash);
     if (summary->options->output)
@@ -148,7 +162,7 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_number(json, "busy_fraction", ratio(counters->busy, total));
     output_report_number(json, "idle_fraction", ratio(counters->idle, total));
     output_report_number(json, "overhead_ns_per_task", ratio(overhead, (double)counters->tasks));
-    output_report_null(json, "communication_hidden_fraction");
+    output_report_number(json, "communication_hidden_fraction", hidden_fraction(summary));
     output_report_null(json, "critical_path_seconds");
     output_report_null(json, "lower_bound_seconds");
     output_report_null(json, "steps_halved");

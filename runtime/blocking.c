@@ -203,14 +203,14 @@ int duite_count_all(duite *rt, duite_counters *counters)
         .sums = {(double)own.tasks, (double)own.placed, (double)own.stolen, (double)own.chained,
                  (double)own.messages, (double)own.bytes, own.busy, own.idle,
                  (double)atomic_load_explicit(&rt->graph.renamed, memory_order_relaxed),
-                 (double)own.delegated}};
+                 (double)own.delegated, own.awaited, own.exposed}};
     const double *sums = word.sums;
     code = enter_blocking(rt, "duite_count_all");
     word.forks = rt->graph.root.forks;
     word.fingerprint = rt->graph.fingerprint;
     work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
     if (rt->comm && !code)
-        code = comm_sum(rt->comm, &word, 10, between, rt->pool);
+        code = comm_sum(rt->comm, &word, 12, between, rt->pool);
     work_waits(rt->pool, NULL);
     work_idle_ends(rt->pool);
     if (code)
@@ -225,6 +225,8 @@ int duite_count_all(duite *rt, duite_counters *counters)
                                  .idle = sums[7],
                                  .renamed = (uint64_t)sums[8],
                                  .delegated = (uint64_t)sums[9],
+                                 .awaited = sums[10],
+                                 .exposed = sums[11],
                                  .graphs_recorded = rt->graphs_recorded};
     return code;
 }

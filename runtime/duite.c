@@ -16,6 +16,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include <xxhash.h>
 
 /* A number of the environment, or -1 if it is none. */
@@ -40,13 +41,14 @@ duite_options duite_options_default(void)
                            .balance = &balance_none,
                            .seed = 1,
                            .stuck_seconds = seconds_of(getenv("DUITE_STUCK_SECONDS"), 60),
+                           .lost_seconds = seconds_of(getenv("DUITE_LOST_SECONDS"), 8),
                            .spin_seconds = 100e-6,
                            .bind = 1};
 }
 
 /* ---- MPI ---- */
 
-static _Atomic int alive; /* runtimes that are not stopped */
+static _Atomic int alive; /* runtimes that are not stopped, or were cut off from other ranks */
 
 /* MPI cannot be initialised twice: what start initialised stays until the process ends, so that
  * start and stop may repeat. A process that ends without a stop leaves MPI as it is: workers still
@@ -118,6 +120,10 @@ static int check_rest(const duite_options *options)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: stuck_seconds (or DUITE_STUCK_SECONDS) is not a number "
                           "from 0 to 1e9");
+    if (!(options->lost_seconds >= 0 && options->lost_seconds <= 1e9))
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: lost_seconds (or DUITE_LOST_SECONDS) is not a number "
+                          "from 0 to 1e9");
     return DUITE_OK;
 }
 
@@ -138,9 +144,11 @@ static uint64_t hash_kernels(const struct graph *graph)
     return hash;
 }
 
-/* What must be the same on all ranks. */
+/* What must be the same on all ranks, and what they tell one another besides. */
 struct started {
     uint64_t kernels, laws, seed, scheduler, mapping, balance;
+    double lost_seconds; /* that of rank 0 counts */
+    char host[64];
 };
 
 static const char *difference(const struct started *a, const struct started *b)
@@ -183,6 +191,21 @@ static int agree_on_code(MPI_Comm mpi, int code)
                       duite_code_text(worst.code));
 }
 
+static struct started own_start(const duite *rt, const duite_options *options)
+{
+    struct started own = {
+        .seed = options->seed,
+        .kernels = hash_kernels(&rt->graph),
+        .laws = data_laws_hash(options->laws, 0),
+        .scheduler = XXH64(options->scheduler->name, strlen(options->scheduler->name), 0),
+        .mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0),
+        .balance = XXH64(options->balance->name, strlen(options->balance->name), 0),
+        .lost_seconds = options->lost_seconds};
+    if (gethostname(own.host, sizeof own.host - 1))
+        strcpy(own.host, "(without a name)");
+    return own;
+}
+
 /* All ranks succeed or all fail. */
 static int agree(duite *rt, const duite_options *options, int code)
 {
@@ -192,17 +215,13 @@ static int agree(duite *rt, const duite_options *options, int code)
         code = base_no_memory("the ranks");
     code = agree_on_code(rt->mpi, code);
     if (!code) {
-        struct started own = {
-            .seed = options->seed,
-            .kernels = hash_kernels(&rt->graph),
-            .laws = data_laws_hash(options->laws, 0),
-            .scheduler = XXH64(options->scheduler->name, strlen(options->scheduler->name), 0),
-            .mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0),
-            .balance = XXH64(options->balance->name, strlen(options->balance->name), 0)};
+        const struct started own = own_start(rt, options);
         code = MPI_Allgather(&own, sizeof own, MPI_BYTE, all, sizeof own, MPI_BYTE, rt->mpi)
                    ? base_error(DUITE_E_MPI, "MPI_Allgather failed")
                    : compare(all, (int)n, rt->graph.rank);
     }
+    if (!code)
+        comm_ring(rt->comm, all[0].lost_seconds, all[((size_t)rt->graph.rank + n - 1) % n].host);
     base_free(all);
     return code;
 }
@@ -285,6 +304,8 @@ void instance_give_up(duite *rt)
     if (rt->comm)
         comm_give_up(rt->comm, work_main(rt->pool));
     work_drain(rt->pool, nothing_left, rt);
+    if (rt->comm && comm_is_cut(rt->comm))
+        comm_part(rt->comm, work_main(rt->pool));
 }
 
 static void end(duite *rt)
@@ -293,13 +314,15 @@ static void end(duite *rt)
         instance_give_up(rt);
     work_stop(rt->pool);
     recorded_stop(rt); /* closes their channels */
-    if (comm_stop(rt->comm))
+    bool whole = comm_stop(rt->comm);
+    if (whole)
         MPI_Comm_free(&rt->mpi);
+    if (whole || !comm_is_cut(rt->comm)) /* else MPI would wait for the lost when it is finalised */
+        atomic_fetch_sub(&alive, 1);
     graph_stop(&rt->graph);
     check_stop(rt->check);
     base_free(rt);
     base_pool_leave();
-    atomic_fetch_sub(&alive, 1);
 }
 
 static int start_parts(duite *rt, MPI_Comm mpi, const duite_options *options)
@@ -373,6 +396,22 @@ int duite_stop(duite **out)
     end(rt);
     *out = NULL;
     return code;
+}
+
+int duite_abandon(duite **out)
+{
+    if (!out || !*out)
+        return base_error(DUITE_E_ARGUMENT, "duite_abandon: no runtime");
+    duite *rt = *out;
+    if (!work_may_fork(rt->pool))
+        return base_error(DUITE_E_STATE, "duite_abandon is for the main thread, outside of bodies");
+    if (!rt->comm || !comm_is_cut(rt->comm))
+        return base_error(
+            DUITE_E_STATE,
+            "duite_abandon: no rank is lost and MPI did not fail; duite_stop ends it");
+    end(rt);
+    *out = NULL;
+    return DUITE_OK;
 }
 
 /* ---- Who am I ---- */

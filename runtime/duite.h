@@ -21,7 +21,8 @@
  * work: a program may check only these. (Calls from a body or another thread, DUITE_E_STATE, are
  * not remembered.) On several ranks a call that runs out of memory on one of them, or a failure of
  * MPI, ends the work of all: every rank's next or present blocking call returns the code, and only
- * duite_stop is left. The library never exits or aborts. */
+ * duite_stop is left (duite_abandon if MPI failed or a rank is lost). The library never exits or
+ * aborts. */
 
 #include <mpi.h>
 #include <stddef.h>
@@ -52,7 +53,8 @@ enum {
     DUITE_E_BINDING = -13,  /* what is bound to an object of a recorded graph does not fit it */
     DUITE_E_SIZE = -14,  /* an object grows beyond its maximum, or changes a size that is fixed */
     DUITE_E_CHECK = -15, /* checking mode: a body does not keep to what its kernel declares */
-    DUITE_E_VIEW = -16 /* a view is used otherwise than under r, or cannot be, or is left behind */
+    DUITE_E_VIEW = -16, /* a view is used otherwise than under r, or cannot be, or is left behind */
+    DUITE_E_LOST = -17  /* a rank is lost: killed, or its host cut off */
 };
 
 /* The sentence of the last call of this thread that failed; never NULL. Valid until the next
@@ -230,8 +232,11 @@ typedef struct duite_options {
     double
         stuck_seconds; /* when nothing moves for so long, who waits for what is told, see below; 0:
                           never. Default 60, or what DUITE_STUCK_SECONDS in the environment says */
-    int check;         /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
-                          environment */
+    double lost_seconds; /* a rank that gives no sign of life for so long is lost, see below; 0:
+                            never. What rank 0 says counts for all. Default 8, or what
+                            DUITE_LOST_SECONDS in the environment says */
+    int check; /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
+                  environment */
 } duite_options;
 
 /* The defaults, as the fields say; reads the environment. Local. */
@@ -279,6 +284,14 @@ const char *const *duite_balancer_names(void);
  * which tasks wait for them, which for objects from which rank. A long body looks the same; nothing
  * is changed or ended. A further one is told once it lasts twice as long. */
 
+/* A lost rank: on several ranks a thread of each gives the next rank a sign of life sixteen times
+ * in options.lost_seconds, however busy its workers are. A rank that died, was cut off, or was
+ * stopped for so long, is lost. The time in which the one that listens was stopped itself does not
+ * count. Then every blocking call of all ranks that can still be reached returns DUITE_E_LOST, as
+ * soon as the bodies that run are over; duite_message() names the rank and its host. Only
+ * duite_abandon is left, and MPI may not be called any more: the program saves what it can and
+ * ends. (Open MPI may end the job first, with a message of its own.) */
+
 /* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. On several
  * ranks its workers call MPI at any time until duite_stop: a program that calls MPI meanwhile needs
  * MPI_THREAD_MULTIPLE. One runtime at a time in a process, unless it has MPI_THREAD_MULTIPLE.
@@ -290,6 +303,13 @@ int duite_start(duite **rt, const duite_options *options);
  * leaves it unfinalised, and mpirun ends the job). *rt becomes NULL whatever is returned. Returns
  * the error that a wait would, else DUITE_E_NOT_FREED if objects or graphs are left. Collective. */
 int duite_stop(duite **rt);
+
+/* Frees the runtime without the other ranks, after DUITE_E_LOST or DUITE_E_MPI (else:
+ * DUITE_E_STATE): begins no call of MPI that waits. What MPI may still read or write stays
+ * allocated, and MPI is not finalised when the process ends, even if duite_start initialised it;
+ * so mpirun ends the job. *rt becomes NULL. duite_stop, called in its place, does the same and
+ * returns the code. Local. */
+int duite_abandon(duite **rt);
 
 /* This rank, the number of ranks, the workers of this rank. Local. */
 int duite_rank(const duite *rt);
@@ -538,6 +558,9 @@ typedef struct duite_counters {
     uint64_t renamed;  /* tasks' parameters (w) that got fresh memory instead of waiting */
     uint64_t graphs_recorded; /* calls of build functions; the same on every rank, counted once */
     uint64_t delegated;       /* tasks that ran on another rank than duite_fork says */
+    double awaited; /* seconds in which a rank awaited messages, times its workers, over all ranks:
+                       from the fork of the task that needs one, or the get, until it is there */
+    double exposed; /* the part of it in which those workers had no task */
 } duite_counters;
 
 /* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.

@@ -309,6 +309,10 @@ int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
         return base_error(DUITE_E_ARGUMENT, "duite_graph_rounds: nowhere to put the number");
     work_until(rt->pool, &(struct work_why){"duite_graph_rounds", "the last replay", NULL}, is_over,
                found->record);
+    if (!graph_replay_over(found->record)) {
+        instance_give_up(rt);
+        return comm_broken(rt->comm);
+    }
     *rounds = graph_replay_rounds(found->record);
     return DUITE_OK;
 }

@@ -205,6 +205,8 @@ static int code_of_cloth(int code)
         return CLOTH_E_IO;
     if (code == FLOW_NO_MEMORY || code == DUITE_E_MEMORY)
         return CLOTH_E_MEMORY;
+    if (code == DUITE_E_LOST || code == DUITE_E_MPI)
+        return CLOTH_E_LOST;
     return code > 0 ? CLOTH_E_RUN : CLOTH_E_LIBRARY;
 }
 

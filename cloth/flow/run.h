@@ -62,7 +62,8 @@ int flow_prepare(struct flow **flow, const struct model *model, int ranks,
  * Collective, the same result on every rank. On failure `report` still says how many steps were
  * done and which frame was written last. Errors: CLOTH_E_RUN (diverged; a matrix that is not
  * positive definite; a solve that needs more than max_iterations), CLOTH_E_IO (a frame was not
- * written), CLOTH_E_MEMORY, CLOTH_E_LIBRARY. A flow may run again. */
+ * written), CLOTH_E_MEMORY, CLOTH_E_LIBRARY; CLOTH_E_LOST, which other ranks need not get: MPI may
+ * not be called any more. A flow may run again. */
 int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
              const struct flow_progress *progress, struct flow_report *report,
              struct cloth_error *error);

@@ -63,6 +63,8 @@ const char *duite_code_text(int code)
         return "size out of bounds";
     case DUITE_E_VIEW:
         return "a view can only be read";
+    case DUITE_E_LOST:
+        return "a rank is lost";
     case DUITE_E_BINDING:
         return "an object does not fit the one it is bound to";
     default:

@@ -23,6 +23,8 @@ void comm_arrivals_start(struct comm_arrivals *arrivals)
 {
     pthread_mutex_init(&arrivals->lock, NULL);
     arrivals->closed = false;
+    arrivals->gauge.awaited = 0;
+    atomic_init(&arrivals->gauge.clock, 0);
     arrivals->table = NULL;
 }
 
@@ -94,6 +96,7 @@ bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
     if (kept && packets) {
         arrival->target = target;
         arrival->wanted = packets;
+        comm_gauge_add(&arrivals->gauge, packets);
     }
     pthread_mutex_unlock(&arrivals->lock);
     return kept;
@@ -110,6 +113,7 @@ enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_pa
     if (arrival && arrival->wanted) {
         take = COMM_WANTED;
         *target = arrival->target;
+        comm_gauge_add(&arrivals->gauge, -1);
         if (--arrival->wanted == 0)
             drop(arrivals, arrival);
     } else if (arrival) {
@@ -119,6 +123,15 @@ enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_pa
     }
     pthread_mutex_unlock(&arrivals->lock);
     return take;
+}
+
+void comm_arrivals_also(struct comm_arrivals *arrivals, int messages)
+{
+    if (!messages)
+        return;
+    pthread_mutex_lock(&arrivals->lock);
+    comm_gauge_add(&arrivals->gauge, messages);
+    pthread_mutex_unlock(&arrivals->lock);
 }
 
 void comm_arrivals_look(struct comm_arrivals *arrivals,
@@ -145,6 +158,7 @@ bool comm_arrivals_close(struct comm_arrivals *arrivals, struct comm_target *tar
         if (found) {
             *target = arrival->target;
             arrival->wanted--;
+            comm_gauge_add(&arrivals->gauge, -1);
         }
         if (!arrival->wanted) {
             free_packets(arrival->packets);

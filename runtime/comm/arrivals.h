@@ -1,6 +1,7 @@
 #ifndef DUITE_COMM_ARRIVALS_H
 #define DUITE_COMM_ARRIVALS_H
 
+#include "runtime/comm/gauge.h"
 #include "runtime/data/sum.h"
 
 #include <pthread.h>
@@ -10,6 +11,7 @@
 struct comm_arrivals {
     pthread_mutex_t lock;
     bool closed;
+    struct comm_gauge gauge; /* of the packets that are expected and not there */
     struct comm_arrival
         *table; /* uthash by key: expected and not all there, or there and not expected yet */
 };
@@ -38,6 +40,9 @@ enum comm_take {
 /* A packet came. */
 enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_packet *packet,
                                   struct comm_target *target);
+
+/* So many messages more, or fewer, are awaited elsewhere: for the gauge. */
+void comm_arrivals_also(struct comm_arrivals *arrivals, int messages);
 
 /* Calls back with all that is awaited, and how many packets of it. Meanwhile nobody is given a
  * packet that is awaited here. */

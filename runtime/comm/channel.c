@@ -35,7 +35,7 @@ struct comm_group {
 bool comm_channels_start(struct comm *comm)
 {
     int *most = NULL, known = 0;
-    comm->channels.next_tag = 1; /* 0 is that of all other messages */
+    comm->channels.next_tag = COMM_CHANNELS;
     if (MPI_Comm_get_attr(comm->mpi, MPI_TAG_UB, &most, &known))
         return false;
     comm->channels.last_tag = known ? *most : 32767; /* what MPI guarantees */
@@ -98,7 +98,7 @@ static int take_tags(struct comm_channels *channels, int n)
     for (int wraps = 0; wraps < 2;) {
         const struct comm_group *taken = channels->open;
         if (first > channels->last_tag - n) {
-            first = 1;
+            first = COMM_CHANNELS;
             wraps++;
         }
         while (taken &&
@@ -324,6 +324,7 @@ static void receive(struct comm *comm, struct graph_task **over)
 struct graph_task *comm_channels_pass(struct comm *comm, struct graph_task *over)
 {
     struct comm_channels *channels = &comm->channels;
+    int before = channels->awaited.n;
     if (atomic_load_explicit(&channels->ready, memory_order_relaxed))
         start(comm, atomic_exchange_explicit(&channels->ready, NULL, memory_order_acquire), &over);
     if (channels->stalled) {
@@ -333,6 +334,7 @@ struct graph_task *comm_channels_pass(struct comm *comm, struct graph_task *over
     }
     if (channels->awaited.n)
         receive(comm, &over);
+    comm_arrivals_also(&comm->arrivals, channels->awaited.n - before);
     atomic_store_explicit(&channels->awaits, channels->awaited.n > 0, memory_order_relaxed);
     return over;
 }
@@ -341,6 +343,7 @@ void comm_channels_give_up(struct comm *comm)
 {
     struct comm_requests *awaited = &comm->channels.awaited;
     comm->channels.lost = true;
+    comm_arrivals_also(&comm->arrivals, -awaited->n);
     while (awaited->n) {
         struct side *side = awaited->what[--awaited->n];
         side->request[side->turn % 2] = awaited->request[awaited->n];

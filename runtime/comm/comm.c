@@ -3,6 +3,7 @@
  * been. */
 #include "runtime/comm/comm.h"
 
+#include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"
@@ -35,7 +36,7 @@ static int prepare(struct comm *comm)
         return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
     if (!comm_channels_start(comm))
         return base_error(DUITE_E_MPI, "MPI_Comm_get_attr failed");
-    return DUITE_OK;
+    return comm_pulse_start(comm);
 }
 
 int comm_start(struct comm **out, MPI_Comm mpi, struct graph *graph)
@@ -51,6 +52,12 @@ int comm_start(struct comm **out, MPI_Comm mpi, struct graph *graph)
     atomic_init(&comm->posts, NULL);
     comm_arrivals_start(&comm->arrivals);
     return prepare(comm);
+}
+
+void comm_ring(struct comm *comm, double seconds, const char *host)
+{
+    if (comm)
+        comm_pulse_open(comm, seconds, host);
 }
 
 void comm_open(struct comm *comm, bool asks)
@@ -79,6 +86,7 @@ bool comm_stop(struct comm *comm)
         comm_poll(comm, NULL);
         sched_yield();
     }
+    comm_pulse_stop(comm);
     if (comm_is_lost(comm)) /* MPI may still read and write here: all of it stays */
         return false;
     comm_catch_up(comm);
@@ -392,6 +400,18 @@ void comm_channel_ready(struct comm *comm, void *worker, struct graph_task *node
     comm_channel_post(comm, node);
     if (!passing)
         pass(comm, worker, false);
+}
+
+void comm_part(struct comm *comm, void *worker)
+{
+    const double moment = 0.1;
+    for (double since = base_seconds(); base_seconds() - since < moment; sched_yield())
+        comm_poll(comm, worker);
+}
+
+uint64_t comm_awaited_ticks(const struct comm *comm)
+{
+    return comm_gauge_ticks(&comm->arrivals.gauge);
 }
 
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)

@@ -18,6 +18,10 @@ struct comm;
  * memory; comm_stop is due all the same. */
 int comm_start(struct comm **comm, MPI_Comm mpi, struct graph *graph);
 
+/* Before comm_open, on all ranks alike: a rank of which nothing is heard for so many seconds (0:
+ * any time) is lost. host: of the rank before this one, in a ring. comm NULL is fine. */
+void comm_ring(struct comm *comm, double seconds, const char *host);
+
 /* From now on messages are sent and received; `asks`: ranks may ask others for tasks, the same on
  * all. Before, the lock keeps workers out of MPI, so that the main thread may call it while it
  * starts. All ranks come here or none. NULL is fine. */
@@ -140,11 +144,21 @@ void comm_broke_memory(struct comm *comm, const char *what);
 /* The code with the sentence set once communication is broken, else 0. */
 int comm_broken(struct comm *comm);
 
+/* It is broken because MPI failed or a rank was lost: MPI must not be relied on, nor finalised. */
+bool comm_is_cut(struct comm *comm);
+
+/* It is broken for that reason: polls for a moment, so that the farewells of this rank go out. Main
+ * thread. */
+void comm_part(struct comm *comm, void *worker);
+
 /* It is broken: whatever is expected is taken for lost. Main thread. */
 void comm_give_up(struct comm *comm, void *worker);
 
 /* SENDs that MPI itself will not finish any more, since it failed. */
 uint64_t comm_stuck(struct comm *comm);
+
+/* Ticks so far in which this rank awaited messages. Any thread. */
+uint64_t comm_awaited_ticks(const struct comm *comm);
 
 /* Messages and bytes sent by this rank so far. */
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes);

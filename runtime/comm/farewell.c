@@ -43,6 +43,11 @@ int comm_broken(struct comm *comm)
     return code ? base_error(code, "%s", comm->reason.sentence) : DUITE_OK;
 }
 
+bool comm_is_cut(struct comm *comm)
+{
+    return comm_is_lost(comm);
+}
+
 bool comm_farewells_start(struct comm_farewells *farewells, int n_ranks)
 {
     farewells->packet = data_packet_new(sizeof(struct comm_farewell), true);

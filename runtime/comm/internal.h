@@ -6,10 +6,14 @@
 #include "runtime/comm/channel.h"
 #include "runtime/comm/comm.h"
 #include "runtime/comm/farewell.h"
+#include "runtime/comm/pulse.h"
 #include "runtime/comm/question.h"
 #include "runtime/comm/requests.h"
 
 /* Shared by the files of this folder only. */
+
+/* Tags: of packets, of signs of life, and from the last one on of channels. */
+enum { COMM_PACKETS, COMM_SIGNS, COMM_CHANNELS };
 
 struct comm {
     MPI_Comm mpi;
@@ -25,6 +29,7 @@ struct comm {
     atomic_flag breaking;        /* taken by the one who breaks */
     struct comm_farewell reason; /* of `broken`, written before it is set */
     struct comm_farewells farewells;
+    struct comm_pulse pulse;
     struct comm_calls calls;
     bool may_ask;
     struct comm_asks asks;
@@ -46,10 +51,11 @@ static inline bool comm_is_broken(struct comm *comm)
     return atomic_load_explicit(&comm->broken, memory_order_acquire) != 0;
 }
 
-/* MPI itself failed, here or on another rank. */
+/* MPI itself failed, or a rank is lost: what is on its way may stay there. */
 static inline bool comm_is_lost(struct comm *comm)
 {
-    return atomic_load_explicit(&comm->broken, memory_order_acquire) == DUITE_E_MPI;
+    int code = atomic_load_explicit(&comm->broken, memory_order_acquire);
+    return code == DUITE_E_MPI || code == DUITE_E_LOST;
 }
 
 static inline bool comm_try_lock(struct comm *comm)

@@ -40,6 +40,27 @@ void work_ran_out(struct work_worker *worker)
         work_notify(pool);
 }
 
+void work_idles(struct work_worker *worker, uint64_t now)
+{
+    const struct comm *comm = worker->pool->setup.comm;
+    worker->idle_since = now;
+    worker->awaited_then = comm ? comm_awaited_ticks(comm) : 0;
+}
+
+void work_stir(struct work_worker *worker)
+{
+    const struct comm *comm = worker->pool->setup.comm;
+    if (worker->idle_since) {
+        uint64_t idle = base_ticks() - worker->idle_since;
+        work_bump(&worker->counts.idle, idle);
+        worker->within += idle;
+        if (comm)
+            work_bump(&worker->counts.exposed, comm_awaited_ticks(comm) - worker->awaited_then);
+    }
+    worker->idle_since = 0;
+    worker->pause = WORK_FIRST_PAUSE_SECONDS;
+}
+
 uint64_t work_unfinished(const struct work_pool *pool)
 {
     return pool->setup.graph->tasks - over(pool);
@@ -81,5 +102,10 @@ void work_count(struct work_pool *pool, duite_counters *counters)
             pool->tick * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
         counters->idle +=
             pool->tick * (double)atomic_load_explicit(&counts->idle, memory_order_relaxed);
+        counters->exposed +=
+            pool->tick * (double)atomic_load_explicit(&counts->exposed, memory_order_relaxed);
     }
+    if (pool->setup.comm)
+        counters->awaited =
+            pool->setup.threads * pool->tick * (double)comm_awaited_ticks(pool->setup.comm);
 }

@@ -111,7 +111,7 @@ static void moment(struct work_worker *worker, struct wait *wait)
     const struct work_pool *pool = worker->pool;
     uint64_t now = base_ticks();
     if (!worker->idle_since)
-        worker->idle_since = now;
+        work_idles(worker, now);
     uint64_t since = now - worker->idle_since;
     if (since < pool->spin_ticks) {
         work_pause_core();

@@ -21,7 +21,7 @@
 struct counts {
     _Atomic uint64_t over; /* tasks of all kinds */
     _Atomic uint64_t tasks, placed, stolen, chained, delegated;
-    _Atomic uint64_t busy, idle; /* in ticks */
+    _Atomic uint64_t busy, idle, exposed; /* ticks; the last: idle while messages were awaited */
 };
 
 struct work_worker {
@@ -40,6 +40,7 @@ struct work_worker {
     uint64_t gap;                    /* ticks between chained tasks, when last looked at */
     struct graph_task *next;         /* chained: to run directly after this one */
     uint64_t polled, idle_since;     /* when, in ticks; 0: busy */
+    uint64_t awaited_then;           /* comm_awaited_ticks when it began to idle */
     double pause;
     duite_call call;
     struct counts counts;
@@ -130,6 +131,8 @@ void work_starved(void *context, const char *what);
 void work_ran_out(struct work_worker *worker);
 /* Sends and receives; whether anything happened. */
 bool work_poll(struct work_worker *worker);
+/* Idling begins, now in ticks. */
+void work_idles(struct work_worker *worker, uint64_t now);
 /* Something happened: idling begins anew. */
 void work_stir(struct work_worker *worker);
 /* The worker has something to do again: it leaves the seat to one that sleeps. */

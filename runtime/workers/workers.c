@@ -219,17 +219,6 @@ static bool take_seat(struct work_worker *worker)
     return worker->polls;
 }
 
-void work_stir(struct work_worker *worker)
-{
-    if (worker->idle_since) {
-        uint64_t idle = base_ticks() - worker->idle_since;
-        work_bump(&worker->counts.idle, idle);
-        worker->within += idle;
-    }
-    worker->idle_since = 0;
-    worker->pause = WORK_FIRST_PAUSE_SECONDS;
-}
-
 void work_busy_again(struct work_worker *worker)
 {
     work_stir(worker);
@@ -246,7 +235,7 @@ static bool spin(struct work_worker *worker)
     const struct work_pool *pool = worker->pool;
     uint64_t now = base_ticks();
     if (!worker->idle_since) {
-        worker->idle_since = now;
+        work_idles(worker, now);
         work_ran_out(worker);
     }
     uint64_t since = now - worker->idle_since;

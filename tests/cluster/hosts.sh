@@ -54,8 +54,13 @@ outside() { # N RATE COMMAND...
 commands() {
     here="dir=$dir; process() { cat \"\$dir/\$1\" || exit 2; }"
     tool on 'host=$1; shift; exec nsenter --target "$(process "$host")" --net --uts "$@"'
-    # What mpirun takes for ssh: a host, and a line for its shell.
-    tool agent 'host=$1; shift; exec "$dir/bin/on" "$host" sh -c "$*"'
+    # What mpirun takes for ssh: a host, and a line for its shell. No status comes through a cable that is unplugged.
+    tool agent 'host=$1
+        shift
+        on "$host" sh -c "$*"
+        status=$?
+        while on "$host" ip -o link show e0 | grep -q NO-CARRIER; do sleep 1; done
+        exit $status'
     tool unplug 'exec nsenter --target 1 --net ip link set "p${1#h}" down'
     tool plug 'exec nsenter --target 1 --net ip link set "p${1#h}" up'
     tool traffic 'on "$1" cat /proc/net/dev | awk "\$1 == \"e0:\" { print \$2, \$3, \$10, \$11 }"'

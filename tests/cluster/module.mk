@@ -2,5 +2,10 @@
 check_PROGRAMS += tests/cluster/ranks_traffic
 tests_cluster_ranks_traffic_SOURCES = tests/cluster/ranks_traffic.c
 tests_cluster_ranks_traffic_LDADD = libduite_core.la
-dist_check_SCRIPTS += tests/cluster/hosts.sh tests/cluster/test_hosts.sh
-TESTS += tests/cluster/test_hosts.sh
+CLUSTER_TESTS = tests/cluster/test_hosts.sh tests/cluster/test_same.sh tests/cluster/test_counts.sh tests/cluster/test_faults.sh
+CLUSTER_LONG_TESTS = tests/cluster/test_same_long.sh tests/cluster/test_counts_long.sh tests/cluster/test_faults_long.sh \
+    tests/cluster/test_hidden.sh tests/cluster/test_document.sh
+dist_check_SCRIPTS += tests/cluster/hosts.sh $(CLUSTER_TESTS) $(CLUSTER_LONG_TESTS)
+EXTRA_DIST += tests/cluster/cluster.sh
+TESTS += $(CLUSTER_TESTS)
+LONG_TESTS += $(CLUSTER_LONG_TESTS)

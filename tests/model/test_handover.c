@@ -109,6 +109,9 @@ void comm_channels_give_up(struct comm *comm)
 #define MPI_Test(request, done, status)                        done_at_once(done)
 #define MPI_Type_contiguous(n, type, new_type)                 success(0)
 #define MPI_Type_commit(type)                                  success(0)
+#define comm_pulse_start(comm)                                 success(0)
+#define comm_pulse_open(...)                                   success(0, __VA_ARGS__)
+#define comm_pulse_stop(comm)                                  success(0)
 
 #include "runtime/comm/collective.c"
 #include "runtime/comm/comm.c"

@@ -20,8 +20,13 @@ tests_negative_ranks_memory_graphs_LDFLAGS = $(STARVE_WRAPS)
 tests_negative_ranks_system_SOURCES = tests/negative/ranks_system.c $(MISUSE)
 tests_negative_ranks_system_LDADD = libduite_core.la
 tests_negative_ranks_system_LDFLAGS = -Wl,--wrap=pthread_create
-dist_check_SCRIPTS += tests/negative/test_ranks.sh
-TESTS += tests/negative/test_ranks.sh
+check_PROGRAMS += tests/negative/ranks_lost
+tests_negative_ranks_lost_SOURCES = tests/negative/ranks_lost.c $(MISUSE)
+tests_negative_ranks_lost_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh
+TESTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh
+dist_check_SCRIPTS += tests/negative/test_lost_long.sh
+LONG_TESTS += tests/negative/test_lost_long.sh
 
 if HAVE_CHECK
 NEGATIVE_TESTS = tests/negative/test_arguments tests/negative/test_accesses tests/negative/test_start \

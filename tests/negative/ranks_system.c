@@ -37,7 +37,7 @@ static void threads_refused(void)
 
         tap_case(code == expected && !rt, "a thread is refused on the last rank");
         tap_case(strstr(duite_message(),
-                        rank == ranks - 1 ? "worker thread" : duite_code_text(DUITE_E_SYSTEM)) !=
+                        rank == ranks - 1 ? "cannot start" : duite_code_text(DUITE_E_SYSTEM)) !=
                      NULL,
                  "with a sentence on every rank");
     }

@@ -204,11 +204,12 @@ END_TEST
 
 START_TEST(words)
 {
-    static const int CODES[] = {
-        DUITE_OK,        DUITE_E_ARGUMENT, DUITE_E_MEMORY,    DUITE_E_OBJECT,
-        DUITE_E_KERNEL,  DUITE_E_ACCESS,   DUITE_E_MPI,       DUITE_E_DIFFERENT,
-        DUITE_E_STATE,   DUITE_E_SYSTEM,   DUITE_E_NOT_FREED, DUITE_E_LAW,
-        DUITE_E_BINDING, DUITE_E_SIZE,     DUITE_E_CHECK,     1};
+    static const int CODES[] = {DUITE_OK,        DUITE_E_ARGUMENT,  DUITE_E_MEMORY,
+                                DUITE_E_OBJECT,  DUITE_E_KERNEL,    DUITE_E_ACCESS,
+                                DUITE_E_MPI,     DUITE_E_DIFFERENT, DUITE_E_STATE,
+                                DUITE_E_SYSTEM,  DUITE_E_NOT_FREED, DUITE_E_LAW,
+                                DUITE_E_BINDING, DUITE_E_SIZE,      DUITE_E_CHECK,
+                                DUITE_E_VIEW,    DUITE_E_LOST,      1};
 
     ck_assert_ptr_nonnull(duite_message());
     for (size_t i = 0; i < sizeof CODES / sizeof *CODES; i++) {

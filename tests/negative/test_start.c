@@ -101,6 +101,9 @@ START_TEST(malformed_options)
     options.spin_seconds = __builtin_nan("");
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
     options = misuse_options(MPI_COMM_WORLD);
+    options.lost_seconds = -1;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
+    options.lost_seconds = 8;
     options.stuck_seconds = -1;
     ck_assert_int_eq(duite_start(&rt, &options), DUITE_E_ARGUMENT);
     options.stuck_seconds = __builtin_nan("");

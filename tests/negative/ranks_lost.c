@@ -1,0 +1,166 @@
+/* A rank that is lost: rank 1 stops for good (SIGSTOP) while the others are in, or come to, a call
+ * that blocks. Each rank that is left prints a line; then rank 0 ends the job by killing the
+ * stopped one. Also ranks that are not lost: all workers of one are inside bodies for long, and one
+ * rank is stopped for a while. */
+#include "tests/negative/misuse.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static int rank, ranks;
+
+static void nap(double seconds)
+{
+    struct timespec left = {(time_t)seconds, (long)(1e9 * (seconds - (double)(time_t)seconds))};
+    while (nanosleep(&left, &left))
+        ;
+}
+
+static int nap_body(const duite_call *call)
+{
+    nap(*(const double *)call->args);
+    duite_out(call, 0, int32_t)[0]++;
+    return 0;
+}
+
+/* Waits in vain for what its child reads. */
+static int ask_body(const duite_call *call)
+{
+    int32_t value;
+    duite_fork(call->rt, &COPY, NULL, 2,
+               (duite_object[]){call->param[0].object, call->param[1].object});
+    return duite_get(call->rt, call->param[1].object, &value) ? 5 : 6;
+}
+
+static const duite_kernel NAP = {
+    .name = "nap", .body = nap_body, .access = {DUITE_RW}, .args_size = sizeof(double)};
+static const duite_kernel ASK = {.name = "ask", .body = ask_body, .access = {DUITE_RP, DUITE_WP}};
+
+static duite *start(double lost_seconds, size_t window)
+{
+    static const duite_kernel *const LIST[] = {&NAP, &ASK, &SET, &COPY, &ADD, NULL};
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = NULL;
+    options.kernels = LIST;
+    options.lost_seconds = rank ? 1e9 : lost_seconds; /* what rank 0 says counts */
+    options.window = window;
+    if (duite_start(&rt, &options))
+        fprintf(stderr, "start: %s\n", duite_message());
+    return rt;
+}
+
+/* The tasks of rank 1 never run. */
+static int fork_all(duite *rt, const duite_object *object)
+{
+    int code = duite_fork_at(rt, 1, &SET, &(int32_t){7}, 1, &object[0]);
+    for (int i = 0; i < 20 && !code; i++)
+        code = duite_fork_at(rt, (i % 2) * (ranks - 1), &COPY, NULL, 2, object);
+    return code;
+}
+
+/* The code of the call that waits. */
+static int wait_for_it(duite **rt, const char *how, const duite_object *object)
+{
+    int32_t value;
+    duite_counters counters;
+    int code = fork_all(*rt, object);
+    if (code || !strcmp(how, "window"))
+        return code ? code : duite_fork(*rt, &ADD, NULL, 1, &object[0]);
+    if (!strcmp(how, "get"))
+        return duite_get(*rt, object[0], &value);
+    if (!strcmp(how, "count"))
+        return duite_count_all(*rt, &counters);
+    if (!strcmp(how, "stop"))
+        return duite_stop(rt);
+    if (!strcmp(how, "body"))
+        duite_fork_at(*rt, 0, &ASK, NULL, 2, (duite_object[]){object[0], object[2]});
+    return duite_wait(*rt);
+}
+
+/* All that is left to do, and that nothing else is. */
+static int leave(duite **rt, const duite_object *object)
+{
+    char before[1000];
+    int32_t value;
+    snprintf(before, sizeof before, "%s", duite_message());
+    if (!strstr(before, "rank 1 on host ") || !strstr(before, " is lost"))
+        return 0;
+    if (*rt &&
+        (duite_wait(*rt) != DUITE_E_LOST || duite_get(*rt, object[0], &value) != DUITE_E_LOST ||
+         duite_fork(*rt, &ADD, NULL, 1, &object[0]) != DUITE_E_LOST ||
+         strcmp(before, duite_message()) || duite_abandon(rt)))
+        return 0;
+    return !*rt && duite_abandon(rt) == DUITE_E_ARGUMENT;
+}
+
+static void one_lost(duite *rt, const char *how, const duite_object *object, const int *process)
+{
+    if (rank == 1) {
+        raise(SIGSTOP);
+        return;
+    }
+    const int code = wait_for_it(&rt, how, object);
+    char message[1000];
+    snprintf(message, sizeof message, "%s", duite_message());
+    const int right = code == DUITE_E_LOST && leave(&rt, object);
+    printf("rank %d %s: %s: code %d, %s\n", rank, right ? "is right" : "is wrong", how, code,
+           message);
+    fflush(stdout);
+    nap(0.3); /* the others end, too */
+    if (rank == 0)
+        kill(process[1], SIGKILL);
+    nap(30); /* until mpirun ends the job */
+}
+
+/* Signs of life come from a rank whose workers all nap, and from one that is continued after a
+ * while. */
+static int none_lost(duite *rt, const char *how, const duite_object *object, const int *process)
+{
+    const double length = 1.5;
+    if (!strcmp(how, "stopped") && rank == 0) {
+        kill(process[1], SIGSTOP);
+        nap(0.25);
+        kill(process[1], SIGCONT);
+    }
+    for (int i = 0; i < 2 && !strcmp(how, "bodies"); i++)
+        duite_fork_at(rt, 1, &NAP, &length, 1, &object[i]);
+    const int early = duite_abandon(&rt) != DUITE_E_STATE;
+    int32_t value = 0;
+    int code = duite_get(rt, object[0], &value);
+    if (!code)
+        code = duite_wait(rt);
+    if (code || early)
+        printf("rank %d is wrong: %s: code %d, %s\n", rank, how, code, duite_message());
+    for (int i = 0; i < 3; i++)
+        duite_free(rt, object[i]);
+    return duite_stop(&rt) || code || early;
+}
+
+/* ranks_lost get|wait|count|stop|window|body|bodies|stopped, on 3 ranks */
+int main(int argc, char **argv)
+{
+    const char *how = argc > 1 ? argv[1] : "";
+    int process[3], own = getpid();
+    duite_object object[3];
+    misuse_mpi();
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    if (ranks != 3)
+        return 2;
+    MPI_Allgather(&own, 1, MPI_INT, process, 1, MPI_INT, MPI_COMM_WORLD);
+    duite *rt = start(0.5, strcmp(how, "window") ? 0 : 2);
+    if (!rt)
+        return 2;
+    for (int i = 0; i < 3; i++)
+        object[i] = misuse_new(rt, 1);
+    if (duite_wait(rt))
+        return 2;
+    if (!strcmp(how, "bodies") || !strcmp(how, "stopped"))
+        return none_lost(rt, how, object, process);
+    one_lost(rt, how, object, process);
+    return 1;
+}

@@ -28,6 +28,7 @@ stencil_step_vs_twin <= 2
 record_us_per_task <= 1
 prune_ns_per_task <= 20
 memory_r4_vs_r1 <= 0.35
+delegate_speedup_r2 >= 1.7
 END
 }
 

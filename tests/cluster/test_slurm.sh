@@ -1,0 +1,58 @@
+#!/bin/sh
+# The commands of docs/cluster.md for Slurm, on two hosts with a Slurm of their own; a rank that is killed ends the step.
+. "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/cluster/cluster.sh"
+for tool in slurmctld slurmd munged srun; do
+    command -v $tool > /dev/null || skip_all "$tool is missing (packages slurm-wlm, munge)"
+done
+on_hosts 2
+
+slurm=$scratch/slurm
+daemons() { # munge's socket wants folders that all may enter
+    chmod 755 "$scratch" "$(dirname "$scratch")" && mkdir "$slurm" && cd "$slurm" && mkdir state munge tmp.h1 tmp.h2 spool.h1 spool.h2 || return
+    chmod 755 . munge
+    head -c 1024 /dev/urandom > key && chmod 400 key
+    cat > slurm.conf << END
+ClusterName=test
+SlurmctldHost=h1(10.77.0.1)
+SlurmUser=root
+AuthType=auth/munge
+CredType=cred/munge
+AuthInfo=socket=$slurm/munge/socket
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SlurmdParameters=config_overrides
+TmpFS=$slurm/tmp.%n
+StateSaveLocation=$slurm/state
+SlurmdSpoolDir=$slurm/spool.%n
+SlurmctldPidFile=$slurm/ctld.pid
+SlurmdPidFile=$slurm/d.%n.pid
+SlurmctldLogFile=$slurm/ctld.log
+SlurmdLogFile=$slurm/d.%n.log
+NodeName=h1 NodeAddr=10.77.0.1 CPUs=2
+NodeName=h2 NodeAddr=10.77.0.2 CPUs=2
+PartitionName=all Nodes=h1,h2 Default=YES State=UP
+END
+    munged --force --key-file="$slurm/key" --socket="$slurm/munge/socket" --pid-file="$slurm/munge/pid" \
+        --log-file="$slurm/munge/log" --seed-file="$slurm/munge/seed" && slurmctld -c && sleep 1 && slurmd -N h1 && on h2 slurmd -N h2 || return
+    for wait in $(seq 100); do
+        sinfo -h -o %T%D | grep -qx idle2 && return 0
+        sleep 0.1
+    done
+    sinfo
+    return 1
+}
+killed() {
+    (sleep 3 && kill -KILL "$(pids h2 duite-cloth)") &
+    timeout 20 srun -K -N 2 -n 2 --mpi=pmix "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --quiet
+}
+
+plan_later
+SLURM_CONF=$slurm/slurm.conf PATH=$(dirname "$DUITE_CLOTH"):$PATH
+export SLURM_CONF PATH
+ok "Slurm starts" daemons
+sed 's/nx: [0-9]*/nx: 40/; s/ny: [0-9]*/ny: 40/; s/^name: .*/&\ngrain: 200/' "$srcdir/cloth/scenes/sheet.yaml" > "$scratch/sheet.yaml"
+sed -n 's/^srun /srun /p' "$srcdir/docs/cluster.md" > "$scratch/commands"
+ok "there are commands" test -s "$scratch/commands"
+while IFS= read -r command; do ok "$command" limited sh -c "cd $scratch && $command"; done < "$scratch/commands"
+exits 143 "a rank is killed" killed

@@ -200,19 +200,19 @@ void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *sca
     const struct flow_table *t = all->block + block;
     const size_t first = t->first, copies = (size_t)(t->copy - all->copy);
     const phys_vec *value = s->value + (t->end - (const uint32_t(*)[2])all->end);
-    phys_vec *q = s->q + first, *p = s->p + first;
-    dots[SOLVE_RR] =
-        solve_advance(t->n, scalars->alpha, scalars->beta, q, s->dv + first, s->r + first, p);
+    const struct solve_cut cut = {t->n_cut, t->copy_end, t->n_rim, t->rim};
+    const struct solve_rows rows = {s->dv + first, s->r + first, s->p + first, s->q + first};
     if (scalars->phase == SOLVE_LAST)
+        dots[SOLVE_RR] = solve_finish(t->n, scalars->alpha, rows.q, rows.p, rows.dv, rows.r);
+    if (scalars->phase != SOLVE_ON)
         return;
     for (uint32_t i = 0; i < t->n_slots; i++)
         solve_advance_copies(t->copies[i + 1] - t->copies[i], scalars->alpha, scalars->beta,
                              s->rim[from] + sheet_rim(s, t->slot[i]), t->copy + t->copies[i],
                              s->copy_r + copies + t->copies[i], s->copy_p + copies + t->copies[i]);
-    solve_matvec_cut(&(struct solve_cut){t->n_cut, t->copy_end}, value + t->n_inner, p,
-                     s->copy_p + copies, q);
-    solve_matvec(&t->matrix, value, p, s->r + first, q, dots);
-    solve_pack(t->n_rim, t->rim, q, s->rim[1 - from] + sheet_rim(s, block));
+    solve_pass(&t->matrix, &cut, value, s->copy_p + copies, scalars->alpha, scalars->beta, &rows,
+               dots);
+    solve_pack(t->n_rim, t->rim, rows.q, s->rim[1 - from] + sheet_rim(s, block));
 }
 
 /* The runtime's tree over the sums of tasks first .. first + n - 1 (docs/design.md,

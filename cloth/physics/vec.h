@@ -28,6 +28,19 @@ PHYS_INLINE double phys_lanes(const phys_vec *a)
     return ((*a)[0] + (*a)[2]) + ((*a)[1] + (*a)[3]);
 }
 
+/* The same sum in each lane, to the same bits. */
+PHYS_INLINE void phys_lanes_each(const phys_vec *a, phys_vec *sum)
+{
+#if defined(__clang__)
+    const phys_vec pair = *a + __builtin_shufflevector(*a, *a, 2, 3, 0, 1);
+    *sum = pair + __builtin_shufflevector(pair, pair, 1, 0, 3, 2);
+#else
+    typedef int64_t order __attribute__((vector_size(32)));
+    const phys_vec pair = *a + __builtin_shuffle(*a, (order){2, 3, 0, 1});
+    *sum = pair + __builtin_shuffle(pair, (order){1, 0, 3, 2});
+#endif
+}
+
 PHYS_INLINE double phys_dot(const phys_vec *a, const phys_vec *b)
 {
     const phys_vec product = *a * *b;

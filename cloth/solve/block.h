@@ -18,23 +18,28 @@ struct solve_block {
     const double *diagonal; /* n: mass + h (drag), kg, > 0 */
     const double *free;     /* n: 1, or 0 for a particle that is held */
     const uint32_t *row;    /* n + 1: the inner springs of row a are row[a] .. row[a + 1] - 1 */
-    const uint32_t *column; /* row[n]: the higher end of each inner spring */
+    const uint32_t *column; /* row[n]: the higher end of each inner spring, ascending in a row */
 };
 
-/* Springs into other blocks: `own` the row here, `other` the row in an array of copies. */
+/* Springs into other blocks, whose values follow those of the inner ones: `own` the row here,
+ * `other` the row in an array of copies. The rim is the rows that they end at here. */
 struct solve_cut {
     size_t n;
     const uint32_t (*end)[2]; /* n: own, other */
+    size_t n_rim;
+    const uint32_t *rim; /* n_rim: ascending */
 };
 
-/* q = sum over the springs into other blocks; q is added to, and zeroed by the caller before. */
-void solve_matvec_cut(const struct solve_cut *cut, const phys_vec *value, const phys_vec *p,
-                      const phys_vec *p_other, phys_vec *q);
+/* The vectors of a block, n rows each. */
+struct solve_rows {
+    phys_vec *dv, *r, *p, *q;
+};
 
-/* Adds inner springs and the diagonal to q, which holds the cut springs' part, and filters: q = S A
- * p. value: row[n], of the inner springs. Writes the dots p.q, r.q and q.q (cloth/solve/cg.h). */
-void solve_matvec(const struct solve_block *block, const phys_vec *value, const phys_vec *p,
-                  const phys_vec *r, phys_vec *q, double dots[SOLVE_DOTS]);
+/* A pass over a block (cloth/solve/cg.h): all of it but the factors. p_other: p of the copies, as
+ * it is after the first half of this pass. */
+void solve_pass(const struct solve_block *block, const struct solve_cut *cut, const phys_vec *value,
+                const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
+                double dots[SOLVE_DOTS]);
 
 /* Adds the sum over the free rows of b - A dv to lost[3] (kg m/s), for a dv that is zero where
  * particles are held. The springs between free rows cancel in this sum, wherever their ends are;

@@ -1,5 +1,4 @@
-/* Sums run in four interleaved parts, rows ascending; copies of rows see the same operations on the
- * same numbers as the rows themselves, so that their bits stay equal. */
+/* The vectors of a solve and its factors. Rows are worked on one by one, ascending. */
 #include "cloth/solve/cg.h"
 
 #include <math.h>
@@ -73,40 +72,17 @@ void solve_start(size_t n, const double *restrict free, const phys_vec *restrict
     memset(p, 0, n * sizeof *p);
 }
 
-/* r and p of one row. */
-PHYS_INLINE void turn(double alpha, double beta, const phys_vec *q, phys_vec *r, phys_vec *p)
-{
-    const phys_vec left = *r - alpha * *q;
-    *r = left;
-    *p = left + beta * *p;
-}
-
-/* One row; its r * r is added to dot. */
-PHYS_INLINE void advance(size_t a, double alpha, double beta, phys_vec *q, phys_vec *dv,
-                         phys_vec *r, phys_vec *p, phys_vec *dot)
-{
-    dv[a] += alpha * p[a];
-    turn(alpha, beta, q + a, r + a, p + a);
-    q[a] = (phys_vec){0};
-    *dot += r[a] * r[a];
-}
-
 PHYS_CLONES
-double solve_advance(size_t n, double alpha, double beta, phys_vec *restrict q,
-                     phys_vec *restrict dv, phys_vec *restrict r, phys_vec *restrict p)
+double solve_finish(size_t n, double alpha, const phys_vec *restrict q, const phys_vec *restrict p,
+                    phys_vec *restrict dv, phys_vec *restrict r)
 {
-    phys_vec dot[4] = {{0}};
-    size_t a = 0;
-    for (; a + 4 <= n; a += 4) {
-        advance(a, alpha, beta, q, dv, r, p, dot);
-        advance(a + 1, alpha, beta, q, dv, r, p, dot + 1);
-        advance(a + 2, alpha, beta, q, dv, r, p, dot + 2);
-        advance(a + 3, alpha, beta, q, dv, r, p, dot + 3);
+    phys_vec dot = {0};
+    for (size_t a = 0; a < n; a++) {
+        dv[a] += alpha * p[a];
+        r[a] -= alpha * q[a];
+        dot += r[a] * r[a];
     }
-    for (; a < n; a++)
-        advance(a, alpha, beta, q, dv, r, p, dot + (a & 3));
-    const phys_vec all = (dot[0] + dot[2]) + (dot[1] + dot[3]);
-    return phys_lanes(&all);
+    return phys_lanes(&dot);
 }
 
 PHYS_CLONES
@@ -116,7 +92,7 @@ void solve_advance_copies(size_t n, double alpha, double beta, const double *res
     for (size_t i = 0; i < n; i++) {
         const double *row = q + 3 * (size_t)at[i];
         const phys_vec value = {row[0], row[1], row[2], 0};
-        turn(alpha, beta, &value, r + i, p + i);
+        solve_turn(alpha, beta, &value, r + i, p + i);
     }
 }
 

@@ -61,13 +61,21 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
 void solve_start(size_t n, const double *free, const phys_vec *b, phys_vec *dv, phys_vec *r,
                  phys_vec *p, phys_vec *q);
 
-/* The first half of a pass: dv += alpha p, r -= alpha q, p = r + beta p, and q = 0 for the second.
- * Returns r.r. */
-double solve_advance(size_t n, double alpha, double beta, phys_vec *q, phys_vec *dv, phys_vec *r,
-                     phys_vec *p);
+/* r and p of one row in the first half of a pass. Whoever has a row or a copy of it turns it here,
+ * so that all of them have the same bits. */
+PHYS_INLINE void solve_turn(double alpha, double beta, const phys_vec *q, phys_vec *r, phys_vec *p)
+{
+    const phys_vec left = *r - alpha * *q;
+    *r = left;
+    *p = left + beta * *p;
+}
 
-/* The same for copies of another block's rows, to the same bits: r and p of n rows, row i has its q
- * in q[3 at[i]] and the two numbers behind it. */
+/* What is left to do in the last pass (SOLVE_LAST): dv += alpha p, r -= alpha q. Returns r.r. */
+double solve_finish(size_t n, double alpha, const phys_vec *q, const phys_vec *p, phys_vec *dv,
+                    phys_vec *r);
+
+/* r and p of copies of another block's rows: n rows, row i has its q in q[3 at[i]] and the two
+ * numbers behind it. */
 void solve_advance_copies(size_t n, double alpha, double beta, const double *q, const uint32_t *at,
                           phys_vec *r, phys_vec *p);
 

@@ -57,31 +57,23 @@ static void advance_copies(const duite_call *call, const struct flow_table *t,
     }
 }
 
-static void multiply(const duite_call *call, const struct flow_table *t, double dots[SOLVE_DOTS])
-{
-    const phys_vec *value = duite_in(call, A, phys_vec), *p = duite_in(call, P, phys_vec);
-    phys_vec *q = duite_out(call, Q, phys_vec);
-    const struct solve_cut cut = {t->n_cut, t->copy_end};
-    solve_matvec_cut(&cut, value + t->n_inner, p, duite_in(call, COPIES, phys_vec) + t->n_copies,
-                     q);
-    solve_matvec(&t->matrix, value, p, duite_in(call, R, phys_vec), q, dots);
-    write_rim(t, q, duite_out(call, RIM, double));
-}
-
 static int pass(const duite_call *call)
 {
     const struct flow_table *t = flow_table_of(call);
     const struct solve_scalars *scalars = duite_in(call, 0, struct solve_scalars);
+    const struct solve_cut cut = {t->n_cut, t->copy_end, t->n_rim, t->rim};
+    const struct solve_rows rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
+                                    duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)};
     double *dots = duite_out(call, SUMS, double);
-    if (scalars->phase == SOLVE_DONE)
-        return 0;
-    dots[SOLVE_RR] = solve_advance(t->n, scalars->alpha, scalars->beta,
-                                   duite_out(call, Q, phys_vec), duite_out(call, DV, phys_vec),
-                                   duite_out(call, R, phys_vec), duite_out(call, P, phys_vec));
     if (scalars->phase == SOLVE_LAST)
+        dots[SOLVE_RR] = solve_finish(t->n, scalars->alpha, rows.q, rows.p, rows.dv, rows.r);
+    if (scalars->phase != SOLVE_ON)
         return 0;
     advance_copies(call, t, scalars);
-    multiply(call, t, dots);
+    solve_pass(&t->matrix, &cut, duite_in(call, A, phys_vec),
+               duite_in(call, COPIES, phys_vec) + t->n_copies, scalars->alpha, scalars->beta, &rows,
+               dots);
+    write_rim(t, rows.q, duite_out(call, RIM, double));
     return 0;
 }
 FLOW_TIMED(pass, FLOW_CG)

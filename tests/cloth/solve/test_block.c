@@ -1,4 +1,4 @@
-/* The matvec of two blocks against a dense matrix that is put together here from the same springs,
+/* The product of two blocks against a dense matrix that is put together here from the same springs,
  * and conjugate gradients by these kernels against elimination. */
 #include "cloth/solve/block.h"
 #include "tests/support/unit.h"
@@ -12,10 +12,10 @@
 enum { ROWS = 5, N = 2 * ROWS, DOFS = 3 * N };
 
 struct half {
-    uint32_t row[ROWS + 1], column[ROWS * ROWS], end[ROWS * ROWS][2], held[ROWS * N][2];
+    uint32_t row[ROWS + 1], column[ROWS * ROWS], end[ROWS * ROWS][2], rim[ROWS], held[ROWS * N][2];
     double diagonal[ROWS], free[ROWS];
     phys_vec value[2 * ROWS * ROWS];
-    uint32_t n_inner, n_cut;
+    uint32_t n_inner, n_cut, n_rim;
     struct solve_block block;
     struct solve_cut cut;
     struct solve_held hold;
@@ -87,7 +87,8 @@ static void build(void)
                 }
         }
         h->row[ROWS] = h->n_inner;
-        for (int a = 0; a < ROWS; a++)
+        for (int a = 0; a < ROWS; a++) {
+            const uint32_t before = h->n_cut;
             for (int b = 0; b < ROWS; b++)
                 if (joined(s * ROWS + a, (1 - s) * ROWS + b)) {
                     add_held(h, half + 1 - s, a, b, h->n_inner + h->n_cut);
@@ -95,26 +96,63 @@ static void build(void)
                     h->end[h->n_cut][0] = (uint32_t)a;
                     h->end[h->n_cut++][1] = (uint32_t)b;
                 }
+            if (h->n_cut > before)
+                h->rim[h->n_rim++] = (uint32_t)a;
+        }
         h->block = (struct solve_block){ROWS, h->diagonal, h->free, h->row, h->column};
-        h->cut = (struct solve_cut){h->n_cut, (const uint32_t(*)[2])h->end};
+        h->cut = (struct solve_cut){h->n_cut, (const uint32_t(*)[2])h->end, h->n_rim, h->rim};
         h->hold.at = (const uint32_t(*)[2])h->held;
     }
 }
 
-/* q = S A p over both halves; the dots, but for r . r, are added up. */
-static void matvec(const phys_vec *p, const phys_vec *r, phys_vec *q, double dots[SOLVE_DOTS])
+/* Vectors of both halves, and copies: of half s those of the rows of the other one. */
+struct vectors {
+    phys_vec dv[N], r[N], p[N], q[N], copy_r[N], copy_p[N];
+};
+
+/* A pass over both halves, each with its copies of the other; the dots are added up. */
+static void pass(struct vectors *x, double alpha, double beta, double dots[SOLVE_DOTS])
 {
-    dots[SOLVE_PQ] = dots[SOLVE_RQ] = dots[SOLVE_QQ] = 0;
-    memset(q, 0, N * sizeof *q);
+    static const uint32_t all[ROWS] = {0, 1, 2, 3, 4};
+    double packed[2][3 * ROWS];
+    memset(dots, 0, SOLVE_DOTS * sizeof *dots);
+    for (int s = 0; s < 2; s++)
+        solve_pack(ROWS, all, x->q + s * ROWS, packed[s]);
     for (int s = 0; s < 2; s++) {
         const struct half *h = half + s;
+        const int at = s * ROWS;
+        const struct solve_rows rows = {x->dv + at, x->r + at, x->p + at, x->q + at};
         double part[SOLVE_DOTS];
-        phys_vec *own = q + s * ROWS;
-        solve_matvec_cut(&h->cut, h->value + h->n_inner, p + s * ROWS, p + (1 - s) * ROWS, own);
-        solve_matvec(&h->block, h->value, p + s * ROWS, r + s * ROWS, own, part);
-        for (int i = SOLVE_PQ; i < SOLVE_DOTS; i++)
+        solve_advance_copies(ROWS, alpha, beta, packed[1 - s], all, x->copy_r + at, x->copy_p + at);
+        solve_pass(&h->block, &h->cut, h->value, x->copy_p + at, alpha, beta, &rows, part);
+        for (int i = 0; i < SOLVE_DOTS; i++)
             dots[i] += part[i];
     }
+    for (int i = 0; i < N; i++) {
+        ck_assert_int_eq(memcmp(x->copy_r + i, x->r + (i + ROWS) % N, sizeof *x->r), 0);
+        ck_assert_int_eq(memcmp(x->copy_p + i, x->p + (i + ROWS) % N, sizeof *x->p), 0);
+    }
+}
+
+static void copy_rows(struct vectors *x)
+{
+    for (int i = 0; i < N; i++) {
+        x->copy_r[i] = x->r[(i + ROWS) % N];
+        x->copy_p[i] = x->p[(i + ROWS) % N];
+    }
+}
+
+/* q = S A p and the dots, by a pass that leaves r and makes p of r and p - r. */
+static void matvec(const phys_vec *p, const phys_vec *r, phys_vec *q, double dots[SOLVE_DOTS])
+{
+    struct vectors x = {0};
+    for (int i = 0; i < N; i++) {
+        x.r[i] = r[i];
+        x.p[i] = p[i] - r[i];
+    }
+    copy_rows(&x);
+    pass(&x, 0, 1, dots);
+    memcpy(q, x.q, sizeof x.q);
 }
 
 static double is_free(int dof)
@@ -223,24 +261,24 @@ static void eliminate(const phys_vec *b, double *x)
 /* So many iterations of conjugate gradients from zero. Returns r . r. */
 static double iterate(const phys_vec *b, phys_vec *dv, uint32_t count)
 {
-    phys_vec r[N], p[N], q[N];
+    struct vectors x;
     double dots[SOLVE_DOTS] = {0};
     const struct solve_stop stop = {.count = true, .most = count};
     struct solve_scalars scalars = solve_scalars_start(0);
-    memset(dv, 0x55, N * sizeof *dv);
+    memset(&x, 0x55, sizeof x);
     for (int at = 0; at < N; at += ROWS)
-        solve_start(ROWS, half[at / ROWS].free, b + at, dv + at, r + at, p + at, q + at);
+        solve_start(ROWS, half[at / ROWS].free, b + at, x.dv + at, x.r + at, x.p + at, x.q + at);
+    copy_rows(&x);
     while (scalars.phase != SOLVE_DONE) {
         const struct solve_scalars now = scalars;
-        dots[SOLVE_RR] = 0;
-        for (int at = 0; at < N; at += ROWS)
-            dots[SOLVE_RR] +=
-                solve_advance(ROWS, now.alpha, now.beta, q + at, dv + at, r + at, p + at);
         if (now.phase == SOLVE_ON)
-            matvec(p, r, q, dots);
+            pass(&x, now.alpha, now.beta, dots);
+        else
+            dots[SOLVE_RR] = solve_finish(N, now.alpha, x.q, x.p, x.dv, x.r);
         ck_assert_int_eq(solve_scalars_next(&stop, dots, &now, &scalars), SOLVE_OK);
     }
     ck_assert_double_eq(scalars.iterations, count);
+    memcpy(dv, x.dv, sizeof x.dv);
     return scalars.square;
 }
 

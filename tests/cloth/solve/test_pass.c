@@ -1,0 +1,176 @@
+/* A pass over a block of several stretches against the same sums one after the other: springs that
+ * end near and far, rows without any, and rims of every kind. */
+#include "cloth/solve/block.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST = 300, DEGREE = 5, COPIES = 20 };
+
+struct whole {
+    size_t n;
+    uint32_t row[MOST + 1], column[DEGREE * MOST], end[MOST][2], rim[MOST];
+    double diagonal[MOST], free[MOST];
+    phys_vec value[(DEGREE + 1) * MOST], other[COPIES];
+    phys_vec dv[MOST], r[MOST], p[MOST], q[MOST];
+    struct solve_cut cut;
+};
+
+static struct whole whole;
+
+static double draw(void)
+{
+    return (double)(rand() % 20001 - 10000) / 10000;
+}
+
+static void draw_vector(phys_vec *v, double size)
+{
+    *v = (phys_vec){size * draw(), size * draw(), size * draw(), 0};
+}
+
+/* Springs of row a end up to `far` rows further on; every seventh row has none. */
+static uint32_t draw_springs(struct whole *w, uint32_t a, uint32_t far, uint32_t i)
+{
+    for (uint32_t b = a + 1; b < w->n && b <= a + far && a % 7 != 3; b++) {
+        if ((uint32_t)rand() % far >= 3 || i - w->row[a] == DEGREE)
+            continue;
+        w->value[i] = (phys_vec){draw(), draw(), draw(), 1 + draw()};
+        w->column[i++] = b;
+    }
+    return i;
+}
+
+/* rim: how many rows of a hundred have a spring into another block. */
+static void make(struct whole *w, size_t n, uint32_t far, int rim)
+{
+    memset(w, 0, sizeof *w);
+    w->n = n;
+    for (uint32_t a = 0; a < n; a++) {
+        w->row[a + 1] = draw_springs(w, a, far, w->row[a]);
+        w->diagonal[a] = 2 + draw();
+        w->free[a] = a % 31 != 30;
+        draw_vector(w->dv + a, 1);
+        draw_vector(w->r + a, w->free[a]);
+        draw_vector(w->p + a, w->free[a]);
+        draw_vector(w->q + a, w->free[a]);
+    }
+    for (int i = 0; i < COPIES; i++)
+        draw_vector(w->other + i, 1);
+    for (uint32_t a = 0; a < n; a++) {
+        if (rand() % 100 >= rim)
+            continue;
+        w->value[w->row[n] + w->cut.n] = (phys_vec){draw(), draw(), draw(), 1 + draw()};
+        w->end[w->cut.n][0] = a;
+        w->end[w->cut.n++][1] = (uint32_t)rand() % COPIES;
+        w->rim[w->cut.n_rim++] = a;
+    }
+    w->cut.end = (const uint32_t(*)[2])w->end;
+    w->cut.rim = w->rim;
+}
+
+static void add_spring(const struct whole *w, uint32_t i, uint32_t a, const phys_vec *other,
+                       double sum[MOST][3])
+{
+    double dot = 0;
+    for (int c = 0; c < 3; c++)
+        dot += w->value[i][c] * (w->p[a][c] - (*other)[c]);
+    for (int c = 0; c < 3; c++)
+        sum[a][c] += (w->value[i][3] * (w->p[a][c] - (*other)[c]) + w->value[i][c] * dot);
+}
+
+/* The pass in plain sums. */
+static void expect(struct whole *w, double alpha, double beta, double dots[SOLVE_DOTS])
+{
+    static double sum[MOST][3];
+    memset(sum, 0, sizeof sum);
+    for (uint32_t a = 0; a < w->n; a++) {
+        w->dv[a] += alpha * w->p[a];
+        w->r[a] -= alpha * w->q[a];
+        w->p[a] = w->r[a] + beta * w->p[a];
+    }
+    for (uint32_t a = 0; a < w->n; a++)
+        for (uint32_t i = w->row[a]; i < w->row[a + 1]; i++) {
+            add_spring(w, i, a, w->p + w->column[i], sum);
+            add_spring(w, i, w->column[i], w->p + a, sum);
+        }
+    for (uint32_t i = 0; i < w->cut.n; i++)
+        add_spring(w, w->row[w->n] + i, w->end[i][0], w->other + w->end[i][1], sum);
+    memset(dots, 0, SOLVE_DOTS * sizeof *dots);
+    for (uint32_t a = 0; a < w->n; a++)
+        for (int c = 0; c < 3; c++) {
+            const double q = w->free[a] * (sum[a][c] + w->diagonal[a] * w->p[a][c]);
+            w->q[a][c] = q;
+            dots[SOLVE_RR] += w->r[a][c] * w->r[a][c];
+            dots[SOLVE_PQ] += w->p[a][c] * q;
+            dots[SOLVE_RQ] += w->r[a][c] * q;
+            dots[SOLVE_QQ] += q * q;
+        }
+}
+
+static void compare(const char *what, const phys_vec *got, const phys_vec *wanted, size_t n)
+{
+    for (size_t a = 0; a < n; a++)
+        for (int c = 0; c < 4; c++)
+            ck_assert_msg(fabs(got[a][c] - wanted[a][c]) <= 1e-13 * (1 + fabs(wanted[a][c])),
+                          "%s of row %zu, lane %d: %.17g, not %.17g", what, a, c, got[a][c],
+                          wanted[a][c]);
+}
+
+static void check(size_t n, uint32_t far, int rim)
+{
+    static struct whole wanted;
+    double dots[SOLVE_DOTS], right[SOLVE_DOTS];
+    make(&whole, n, far, rim);
+    wanted = whole;
+    expect(&wanted, 0.3, 0.7, right);
+    const struct solve_block block = {n, whole.diagonal, whole.free, whole.row, whole.column};
+    const struct solve_rows rows = {whole.dv, whole.r, whole.p, whole.q};
+    solve_pass(&block, &whole.cut, whole.value, whole.other, 0.3, 0.7, &rows, dots);
+    compare("dv", whole.dv, wanted.dv, n);
+    compare("r", whole.r, wanted.r, n);
+    compare("p", whole.p, wanted.p, n);
+    compare("q", whole.q, wanted.q, n);
+    for (int i = 0; i < SOLVE_DOTS; i++)
+        ck_assert_double_eq_tol(dots[i], right[i], 1e-12 * (1 + right[SOLVE_QQ]));
+}
+
+START_TEST(pass_of_every_size)
+{
+    static const size_t n[] = {1, 2, 63, 64, 65, 127, 128, 129, 200, MOST};
+    srand(11);
+    for (size_t i = 0; i < sizeof n / sizeof *n; i++)
+        check(n[i], 20, 10);
+}
+END_TEST
+
+/* Springs that end beyond the next stretch, or nowhere but beside. */
+START_TEST(pass_of_every_reach)
+{
+    static const uint32_t far[] = {3, 30, 100, MOST};
+    srand(12);
+    for (size_t i = 0; i < sizeof far / sizeof *far; i++)
+        check(MOST, far[i], 10);
+}
+END_TEST
+
+START_TEST(pass_of_every_rim)
+{
+    static const int rim[] = {0, 1, 50, 100};
+    srand(13);
+    for (size_t i = 0; i < sizeof rim / sizeof *rim; i++)
+        check(MOST, 20, rim[i]);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("pass");
+    TCase *cases = tcase_create("pass");
+    tcase_add_test(cases, pass_of_every_size);
+    tcase_add_test(cases, pass_of_every_reach);
+    tcase_add_test(cases, pass_of_every_rim);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

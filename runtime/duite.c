@@ -388,7 +388,7 @@ int duite_stop(duite **out)
     duite *rt = *out;
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "duite_stop is for the main thread, outside of bodies");
-    if (rt->building)
+    if (rt->building || rt->mpi_held)
         return program_enter(rt, "duite_stop");
     int code = program_wait(rt, "duite_stop");
     if (!code)
@@ -409,6 +409,8 @@ int duite_abandon(duite **out)
         return base_error(
             DUITE_E_STATE,
             "duite_abandon: no rank is lost and MPI did not fail; duite_stop ends it");
+    if (rt->mpi_held)
+        duite_mpi_end(rt);
     end(rt);
     *out = NULL;
     return DUITE_OK;

@@ -44,8 +44,8 @@ enum {
         -5, /* number of objects or type does not fit the kernel; one object twice in a task */
     DUITE_E_MPI = -6, /* an MPI call failed, or MPI gives less thread support than SERIALIZED */
     DUITE_E_DIFFERENT = -7, /* the ranks run different programs: other kernels, forks or options */
-    DUITE_E_STATE =
-        -8, /* a call that is not allowed here: from a task's body, another thread or a build */
+    DUITE_E_STATE = -8, /* a call that is not allowed here: from a task's body, another thread or a
+                           build, or between duite_mpi_begin and duite_mpi_end */
     DUITE_E_NOT_FREED = -9, /* stop found objects or graphs that were not freed */
     DUITE_E_SYSTEM = -10,   /* threads, topology: the operating system refused */
     DUITE_E_RIGHT = -11,    /* a task gives a child more than it holds itself (see duite_mode) */
@@ -310,6 +310,16 @@ int duite_stop(duite **rt);
  * so mpirun ends the job. *rt becomes NULL. duite_stop, called in its place, does the same and
  * returns the code. Local. */
 int duite_abandon(duite **rt);
+
+/* MPI of the program's own (a solver, parallel files) is called between these two as long as the
+ * runtime is there, even when no task is left, since workers and signs of life call MPI at any time
+ * else; only under MPI_THREAD_MULTIPLE it needs no begin and end. Begin waits until nobody of this
+ * rank is inside MPI. Until the end tasks run on, but nothing is sent or received, and all other
+ * calls of the main program are refused and remembered (DUITE_E_STATE): a program waits first.
+ * Ranks that do not do so at the same time take one that stays longer than lost_seconds for lost.
+ * Errors: DUITE_E_STATE (begun twice, ended without begin). Local. */
+int duite_mpi_begin(duite *rt);
+int duite_mpi_end(duite *rt);
 
 /* This rank, the number of ranks, the workers of this rank. Local. */
 int duite_rank(const duite *rt);

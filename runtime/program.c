@@ -18,6 +18,10 @@ int program_enter_any(duite *rt, const char *call)
         return base_error(rt->graph.broken,
                           "%s: an earlier call failed beyond repair (%s); only duite_stop is left",
                           call, duite_code_text(rt->graph.broken));
+    if (rt->mpi_held)
+        return program_remember(
+            rt,
+            base_error(DUITE_E_STATE, "%s: not between duite_mpi_begin and duite_mpi_end", call));
     return rt->comm ? comm_broken(rt->comm) : DUITE_OK;
 }
 
@@ -48,6 +52,33 @@ int program_remember(duite *rt, int code)
 int program_settle(duite *rt)
 {
     return map_settle(&rt->graph.table, rt->mapping, rt->seed);
+}
+
+/* ---- MPI of the program's own ---- */
+
+int duite_mpi_begin(duite *rt)
+{
+    const int code = program_enter(rt, "duite_mpi_begin");
+    if (code)
+        return code;
+    if (rt->comm)
+        comm_hold(rt->comm);
+    rt->mpi_held = true;
+    return DUITE_OK;
+}
+
+int duite_mpi_end(duite *rt)
+{
+    if (!rt)
+        return base_error(DUITE_E_ARGUMENT, "duite_mpi_end: no runtime");
+    if (!work_may_fork(rt->pool))
+        return base_error(DUITE_E_STATE, "duite_mpi_end is for the main thread, outside of bodies");
+    if (!rt->mpi_held)
+        return base_error(DUITE_E_STATE, "duite_mpi_end: duite_mpi_begin was not called");
+    rt->mpi_held = false;
+    if (rt->comm)
+        comm_let_go(rt->comm);
+    return DUITE_OK;
 }
 
 /* ---- Tasks ---- */

@@ -321,11 +321,21 @@ int comm_expect(struct comm *comm, void *worker, struct data_key key, struct com
     return DUITE_OK;
 }
 
+void comm_hold(struct comm *comm)
+{
+    while (!comm_try_lock(comm))
+        sched_yield();
+}
+
+void comm_let_go(struct comm *comm)
+{
+    comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
+}
+
 void comm_give_up(struct comm *comm, void *worker)
 {
     struct comm_target target;
-    while (!comm_try_lock(comm))
-        sched_yield();
+    comm_hold(comm);
     comm_channels_give_up(comm);
     comm_unlock(comm);
     while (comm_arrivals_close(&comm->arrivals, &target)) {

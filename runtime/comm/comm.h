@@ -151,6 +151,11 @@ bool comm_is_cut(struct comm *comm);
  * thread. */
 void comm_part(struct comm *comm, void *worker);
 
+/* The caller alone calls MPI from the one to the other: nothing is sent or received. Main thread.
+ */
+void comm_hold(struct comm *comm);
+void comm_let_go(struct comm *comm);
+
 /* It is broken: whatever is expected is taken for lost. Main thread. */
 void comm_give_up(struct comm *comm, void *worker);
 

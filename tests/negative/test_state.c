@@ -114,6 +114,23 @@ START_TEST(from_another_thread)
 }
 END_TEST
 
+START_TEST(between_begin_and_end_of_mpi)
+{
+    struct attempt attempt;
+
+    start(&attempt, 2);
+    ck_assert_int_eq(duite_mpi_end(attempt.rt), DUITE_E_STATE);
+    ck_assert_int_eq(duite_mpi_begin(attempt.rt), DUITE_OK);
+    try_all(&attempt);
+    ck_assert_int_eq(duite_mpi_begin(attempt.rt), DUITE_E_STATE);
+    ck_assert_int_eq(duite_stop(&attempt.rt), DUITE_E_STATE);
+    ck_assert_ptr_nonnull(attempt.rt);
+    ck_assert_int_eq(duite_mpi_end(attempt.rt), DUITE_OK);
+    ck_assert_int_eq(duite_wait(attempt.rt), DUITE_E_STATE); /* told once */
+    finish(&attempt, NULL, 0);
+}
+END_TEST
+
 static void *stopping_thread(void *context)
 {
     struct attempt *attempt = context;
@@ -146,6 +163,7 @@ int main(void)
     tcase_add_loop_test(cases, from_a_body, 0, 3);
     tcase_add_test(cases, from_another_thread);
     tcase_add_test(cases, stop_from_another_thread);
+    tcase_add_test(cases, between_begin_and_end_of_mpi);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -1,28 +1,42 @@
 /* What workers count, above all how many tasks are over: each worker counts its own on its own
  * cache lines, and who wants to know adds them up. So a task costs no line that workers share.
  *
- * The main thread, which waits for a number of tasks to be over, may sleep. It says what it waits
- * for: all of them (`awaited`), or, while it is throttled, fewer (`wanted`). It is woken by a
+ * The main thread, which waits for tasks to be over, may sleep. It says how many it forked
+ * (`awaited`), and, while it is throttled, how many may be left (`wanted`). It is woken by a
  * worker that runs out of work and finds one of these reached; and by one that does so at the end
  * of a task, if it is throttled. */
 #include "runtime/workers/internal.h"
 
+#include <stdlib.h>
+
+/* Never more than there are: what is waited for beside the forked tasks is counted in `more` before
+ * it can be over, and here it is the ends that are looked at first. */
 static uint64_t over(const struct work_pool *pool)
 {
     uint64_t sum = 0;
     for (unsigned i = 0; i < pool->setup.threads; i++)
         sum += atomic_load_explicit(&pool->worker[i].counts.over, memory_order_acquire);
+    for (unsigned i = 0; i < pool->setup.threads; i++)
+        sum -= atomic_load_explicit(&pool->worker[i].counts.more, memory_order_acquire);
     return sum;
+}
+
+/* Whether the main thread waits, and for no more than is over. */
+static bool is_enough(const struct work_pool *pool)
+{
+    uint64_t awaited = atomic_load_explicit(&pool->awaited, memory_order_relaxed);
+    uint64_t wanted = atomic_load_explicit(&pool->wanted, memory_order_relaxed);
+    return awaited && awaited - over(pool) < (wanted ? wanted : 1);
 }
 
 void work_over(void *context, void *who, int tasks)
 {
     struct work_pool *pool = context;
     struct work_worker *worker = who;
-    uint64_t before = atomic_load_explicit(&worker->counts.over, memory_order_relaxed);
-    atomic_store_explicit(&worker->counts.over, before + (uint64_t)tasks, memory_order_release);
-    uint64_t wanted = atomic_load_explicit(&pool->wanted, memory_order_relaxed);
-    if (wanted && over(pool) >= wanted)
+    _Atomic uint64_t *count = tasks < 0 ? &worker->counts.more : &worker->counts.over;
+    uint64_t before = atomic_load_explicit(count, memory_order_relaxed);
+    atomic_store_explicit(count, before + (uint64_t)abs(tasks), memory_order_release);
+    if (atomic_load_explicit(&pool->wanted, memory_order_relaxed) && is_enough(pool))
         work_notify(pool);
 }
 
@@ -33,10 +47,7 @@ void work_ran_out(struct work_worker *worker)
         return;
     /* Against the main thread, which says what it waits for and then adds up. */
     atomic_thread_fence(memory_order_seq_cst);
-    uint64_t awaited = atomic_load_explicit(&pool->awaited, memory_order_relaxed);
-    uint64_t wanted = atomic_load_explicit(&pool->wanted, memory_order_relaxed);
-    uint64_t least = wanted ? wanted : awaited;
-    if ((least && over(pool) >= least) || graph_has_given_up(pool->setup.graph))
+    if (is_enough(pool) || graph_has_given_up(pool->setup.graph))
         work_notify(pool);
 }
 
@@ -69,7 +80,7 @@ uint64_t work_unfinished(const struct work_pool *pool)
 static bool is_reached(void *context)
 {
     const struct work_pool *pool = context;
-    return over(pool) >= atomic_load_explicit(&pool->wanted, memory_order_relaxed);
+    return work_unfinished(pool) < atomic_load_explicit(&pool->wanted, memory_order_relaxed);
 }
 
 void work_throttle(struct work_pool *pool, uint64_t most)
@@ -79,7 +90,7 @@ void work_throttle(struct work_pool *pool, uint64_t most)
         return;
     uint64_t left = work_unfinished(pool);
     if (left > most) {
-        atomic_store(&pool->wanted, graph->tasks - (most - most / 4));
+        atomic_store(&pool->wanted, most - most / 4 + 1);
         work_until(pool, &(struct work_why){"duite_fork", "room in its window", NULL}, is_reached,
                    pool);
         atomic_store(&pool->wanted, 0);

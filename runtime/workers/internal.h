@@ -19,7 +19,7 @@
 #define WORK_FIRST_PAUSE_SECONDS 2e-5
 
 struct counts {
-    _Atomic uint64_t over; /* tasks of all kinds */
+    _Atomic uint64_t over, more; /* tasks of all kinds; what is waited for beside the forked ones */
     _Atomic uint64_t tasks, placed, stolen, chained, delegated;
     _Atomic uint64_t busy, idle, exposed; /* ticks; the last: idle while messages were awaited */
 };
@@ -67,8 +67,8 @@ struct work_pool {
     _Alignas(64) _Atomic int seat;   /* taken by the idle worker that polls */
     /* Of the throttled main thread, see count.c. */
     uint64_t look;                        /* how many tasks it forks before it counts again */
-    _Alignas(64) _Atomic uint64_t wanted; /* tasks that are to be over, or 0 */
-    _Atomic uint64_t awaited;             /* of the main thread that waits: the same */
+    _Alignas(64) _Atomic uint64_t wanted; /* fewer unfinished tasks than that, or 0 */
+    _Atomic uint64_t awaited;             /* by the main thread that waits: all these, or 0 */
 };
 
 static inline void work_bump(_Atomic uint64_t *count, uint64_t by)

@@ -171,7 +171,8 @@ static uint64_t unfinished(const struct work_pool *pool)
 {
     uint64_t left = atomic_load_explicit(&pool->watch.waits.tasks, memory_order_relaxed);
     for (unsigned i = 0; i < pool->setup.threads; i++)
-        left -= atomic_load_explicit(&pool->worker[i].counts.over, memory_order_relaxed);
+        left -= atomic_load_explicit(&pool->worker[i].counts.over, memory_order_relaxed) -
+                atomic_load_explicit(&pool->worker[i].counts.more, memory_order_relaxed);
     return left;
 }
 

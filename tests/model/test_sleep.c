@@ -416,7 +416,7 @@ static const struct {
     {CASE("start, stop", start_stop), {"doze", "&pool->stop", EXPLORE_DROP}},
 #ifndef REAL_QUEUES /* there it takes too long */
     {SERVED("one task for another", leave_one), {"work_queue_put", "the put", EXPLORE_RELAX}},
-    {SERVED("one task waited for", wait_one), {"work_ran_out", "&pool->awaited", EXPLORE_DROP}},
+    {SERVED("one task waited for", wait_one), {"is_enough", "&pool->awaited", EXPLORE_DROP}},
     {SERVED("main polled, and leaves", idle_then_leave),
      {"work_busy_again", "&worker->pool->seat", EXPLORE_RELAX}},
     {SERVED("main polled, and leaves", idle_then_leave),

@@ -239,7 +239,8 @@ static struct data_version *version_read(const struct duite_call_private *body, 
     }
     const duite_param *param = &body->param[i];
     size_t bytes = param->count * data_type_size(param->type);
-    struct data_version *version = data_version_new(param->type, param->most, false);
+    struct data_version *version =
+        data_version_new(param->type, param->most, param->count != param->most);
     if (version)
         version->packet = data_packet_new(bytes, false);
     if (!version || !version->packet) {

@@ -120,16 +120,21 @@ static int owner(const struct spread *spread, const struct graph_draft_node *nod
     return first_read < 0 ? 0 : first_read;
 }
 
-static int rank_of(const struct spread *spread, const struct graph_draft_node *node)
+static int rank_of_task(const struct spread *spread, const struct graph_draft_node *node)
 {
     const struct graph_recorded_fork *fork = &spread->record->fork[node->fork];
+    if (spread->graph->kernels[fork->kernel]->replicated)
+        return SPREAD_MANY;
+    return fork->how.at != GRAPH_ANYWHERE ? fork->how.at : owner(spread, node);
+}
+
+static int rank_of(const struct spread *spread, const struct graph_draft_node *node)
+{
     const struct graph_node_use *use = &spread->round->use[node->first_use];
     uint32_t maker;
     switch (node->kind) {
     case GRAPH_NODE:
-        if (spread->graph->kernels[fork->kernel]->replicated)
-            return SPREAD_MANY;
-        return fork->how.at != GRAPH_ANYWHERE ? fork->how.at : owner(spread, node);
+        return rank_of_task(spread, node);
     case GRAPH_NODE_SUM: {
         const struct graph_recorded_object *object = &spread->record->object[use->place];
         size_t bytes = object->count * data_type_size(object->type);

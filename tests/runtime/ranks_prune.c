@@ -41,7 +41,7 @@ static void copies(duite *rt, const duite_object *object, int home, int reader)
     const double with = megabytes();
     const double all = 4e-6 * OBJECTS * LARGE;
 
-    tap_case(rank != reader || !before || with - before > 0.9 * all, "who reads keeps copies");
+    tap_case(rank != reader || before <= 0 || with - before > 0.9 * all, "who reads keeps copies");
     tap_case(rank == home || duite_touches(rt, object[0]) == (rank == reader),
              "and is touched by what names them");
     for (int i = 0; i < OBJECTS; i++)

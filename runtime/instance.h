@@ -19,7 +19,7 @@ struct duite {
     size_t window;
     unsigned threads;
     int oversubscribed;
-    bool mpi_held; /* by the program: between duite_mpi_begin and duite_mpi_end */
+    bool mpi_held;                   /* by the program: between duite_mpi_begin and duite_mpi_end */
     int remembered;                  /* code of a failed fork, new, ... */
     char sentence[1024];             /* of `remembered` */
     struct recorded_graph *recorded; /* by slot, from 1 on */

@@ -108,6 +108,9 @@ static int serve_ranks(const struct bench *bench)
 }
 
 const struct bench bench_ranks = {
-    "ranks",        "what a second rank or host costs and brings: CG, stencil, recording, memory, delegation",
-    CASES,          TARGETS,
-    TARGET_THREADS, serve_ranks};
+    "ranks",
+    "what a second rank or host costs and brings: CG, stencil, recording, memory, delegation",
+    CASES,
+    TARGETS,
+    TARGET_THREADS,
+    serve_ranks};

@@ -6,10 +6,10 @@
 
 enum cloth_code {
     CLOTH_OK = 0,
-    CLOTH_E_INPUT = 1,  /* a file, key, option or value that cannot be used: exit code 2 */
-    CLOTH_E_MEMORY = 2, /* an allocation failed */
-    CLOTH_E_IO = 3,     /* a file could not be opened, read or written */
-    CLOTH_E_RUN = 4,    /* the simulation failed: diverged, or a task failed */
+    CLOTH_E_INPUT = 1,   /* a file, key, option or value that cannot be used: exit code 2 */
+    CLOTH_E_MEMORY = 2,  /* an allocation failed */
+    CLOTH_E_IO = 3,      /* a file could not be opened, read or written */
+    CLOTH_E_RUN = 4,     /* the simulation failed: diverged, or a task failed */
     CLOTH_E_LIBRARY = 5, /* a library underneath (METIS, MPI, EGL, ...) failed */
     CLOTH_E_LOST = 6     /* a rank is lost, or MPI failed: there is nobody to agree with */
 };

@@ -212,8 +212,8 @@ static void fall_asleep(struct work_park *park, double seconds)
 #define work_park_announce announce
 #define work_park_sleep    fall_asleep
 #include "runtime/workers/count.c"
-#include "runtime/workers/main.c"
 #include "runtime/workers/hooks.c"
+#include "runtime/workers/main.c"
 #include "runtime/workers/workers.c"
 
 #ifndef REAL_QUEUES

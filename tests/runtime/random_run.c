@@ -1,7 +1,7 @@
 /* Runs a program on duite and compares. Nothing is decided by what the runtime answers, so that
  * every rank goes through the same calls whatever it finds; the first thing found is kept. */
 
-#include "tests/runtime/random_program.h"
+#include "tests/runtime/random_run.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
@@ -9,28 +9,7 @@
 
 enum { UNTOUCHED = 0xa5 };
 
-struct run_graph {
-    struct run *run;
-    duite_graph name;
-    int alive, rebound;
-    size_t first, again; /* as in random_interpret.c */
-};
-
-struct run {
-    const struct prog *prog;
-    const struct prog_answers *answers;
-    struct prog_report *report;
-    duite *rt;
-    int rank;
-    size_t at;
-    duite_object *object;    /* n_objects */
-    int *home;               /* n_objects: when last asked; -1 before */
-    struct run_graph *graph; /* n_graphs */
-    unsigned char *bytes;    /* for the largest object */
-    size_t largest;
-};
-
-__attribute__((format(printf, 2, 3))) static void found(struct run *run, const char *format, ...)
+void prog_found(struct run *run, const char *format, ...)
 {
     va_list list;
 
@@ -45,8 +24,8 @@ __attribute__((format(printf, 2, 3))) static void found(struct run *run, const c
 static void expect(struct run *run, const char *call, int code, int expected)
 {
     if (code != expected)
-        found(run, "%s returned %d (%s), expected %d", call, code, code ? duite_message() : "ok",
-              expected);
+        prog_found(run, "%s returned %d (%s), expected %d", call, code,
+                   code ? duite_message() : "ok", expected);
 }
 
 static void compare(struct run *run, unsigned number, const struct prog_expect *answer)
@@ -61,14 +40,14 @@ static void compare(struct run *run, unsigned number, const struct prog_expect *
             first = i;
     for (i *= size; i < run->largest; i++)
         if (run->bytes[i] != UNTOUCHED)
-            found(run, "object %u: byte %zu behind its %zu elements was written", number, i,
-                  answer->count);
+            prog_found(run, "object %u: byte %zu behind its %zu elements was written", number, i,
+                       answer->count);
     if (!different)
         return;
     prog_print_element(object->type, run->bytes, first, is, sizeof is);
     prog_print_element(object->type, answer->bytes, first, should, sizeof should);
-    found(run, "object %u: %zu of %zu elements differ, first [%zu]: %s, expected %s", number,
-          different, answer->count, first, is, should);
+    prog_found(run, "object %u: %zu of %zu elements differ, first [%zu]: %s, expected %s", number,
+               different, answer->count, first, is, should);
 }
 
 static void get(struct run *run, const struct prog_op *op, const struct prog_expect *answer)
@@ -93,7 +72,7 @@ static void get_count(struct run *run, const struct prog_op *op, const struct pr
     expect(run, "get_count", duite_get_count(run->rt, run->object[op->object], &count),
            answer->code);
     if (count != expected)
-        found(run, "object %u has %zu elements, expected %zu", op->object, count, expected);
+        prog_found(run, "object %u has %zu elements, expected %zu", op->object, count, expected);
 }
 
 /* Priorities differ between ranks, which is nobody's business. */
@@ -152,9 +131,9 @@ static void ask_home(struct run *run, unsigned number)
     const int home = duite_home(run->rt, run->object[number]);
 
     if (home < 0 || home >= run->prog->n_ranks)
-        found(run, "object %u has home %d", number, home);
+        prog_found(run, "object %u has home %d", number, home);
     if (run->home[number] >= 0 && run->home[number] != home)
-        found(run, "object %u moved from %d to %d", number, run->home[number], home);
+        prog_found(run, "object %u moved from %d to %d", number, run->home[number], home);
     run->home[number] = home;
 }
 
@@ -232,8 +211,8 @@ static void rounds(struct run *run, const struct run_graph *graph, uint64_t expe
 
     expect(run, "rounds", duite_graph_rounds(run->rt, graph->name, &n), DUITE_OK);
     if (n != expected)
-        found(run, "%llu rounds, expected %llu", (unsigned long long)n,
-              (unsigned long long)expected);
+        prog_found(run, "%llu rounds, expected %llu", (unsigned long long)n,
+                   (unsigned long long)expected);
 }
 
 static void graph_operation(struct run *run, const struct prog_op *op,
@@ -320,83 +299,6 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
     }
 }
 
-/* The rank on which a task must have run. */
-static int owner(const struct run *run, const struct prog_op *op)
-{
-    const duite_kernel *kernel = &run->prog->kernel[op->kernel];
-
-    if (op->rank >= 0)
-        return op->rank;
-    for (unsigned i = 0; i < op->n; i++)
-        if (prog_mode(kernel, i) == DUITE_W || prog_mode(kernel, i) == DUITE_RW)
-            return run->home[op->objects[i]];
-    for (unsigned i = 0; i < op->n; i++)
-        if (prog_mode(kernel, i) == DUITE_R)
-            return run->home[op->objects[i]];
-    return 0;
-}
-
-/* A task ran once where it should, or, if it may be moved (`all` is not NULL), once on all ranks
- * together. A replicated kernel's runs everywhere, or, in a graph, where its result is read. */
-static void check_place(struct run *run, const struct prog_op *op, int ran,
-                        const unsigned char *all)
-{
-    const int runs = run->answers->runs[op->number];
-    const int everywhere = run->prog->kernel[op->kernel].replicated;
-    const int should = everywhere || owner(run, op) == run->rank ? runs : 0;
-
-    if (all && !everywhere && op->rank < 0) {
-        if (all[op->number] != runs)
-            found(run, "task %u ran %d times, expected %d", op->number, all[op->number], runs);
-        return;
-    }
-    if (everywhere && op->kind == PROG_GRAPH_FORK ? ran > should : ran != should)
-        found(run, "task %u ran %d times here, expected %d", op->number, ran, should);
-}
-
-/* How often each task ran on all ranks, modulo 256; NULL without memory. */
-static unsigned char *count_runs(const struct run *run, const struct prog_context *context,
-                                 MPI_Comm comm)
-{
-    const size_t n = run->prog->n_forks + 1;
-    unsigned char *here = malloc(2 * n);
-
-    for (size_t i = 0; i < n && here; i++)
-        here[i] = atomic_load(&context->ran[i]);
-    if (here)
-        MPI_Allreduce(here, here + n, (int)n, MPI_UNSIGNED_CHAR, MPI_SUM, comm);
-    if (here)
-        memmove(here, here + n, n);
-    return here;
-}
-
-/* Followers live with their leaders, tasks where they should. */
-static void check_places(struct run *run, const struct prog_context *context,
-                         const struct prog_setup *setup)
-{
-    const int moves = strcmp(setup->balance, "none") != 0;
-    unsigned char *all = moves ? count_runs(run, context, setup->comm) : NULL;
-    int rebound = 0; /* then its tasks may run on several ranks */
-
-    for (size_t i = 0; i < run->prog->n_graphs; i++)
-        rebound |= run->graph[i].rebound;
-    for (size_t i = 0; i < run->prog->n_ops; i++) {
-        const struct prog_op *op = &run->prog->ops[i];
-
-        run->at = i;
-        if (op->kind == PROG_FOLLOW && run->home[op->object] != run->home[op->objects[0]])
-            found(run, "object %u does not live with %u", op->object, op->objects[0]);
-        if (op->kind == PROG_VIEW && run->home[op->object] != run->home[op->objects[0]])
-            found(run, "view %u does not live with %u", op->object, op->objects[0]);
-        if (op->kind != PROG_FORK && op->kind != PROG_GRAPH_FORK)
-            continue;
-        if (op->kind == PROG_GRAPH_FORK && run->prog->n_ranks > 1 && rebound)
-            continue;
-        check_place(run, op, atomic_load(&context->ran[op->number]), all);
-    }
-    free(all);
-}
-
 static void run_operations(struct run *run, const struct prog_setup *setup,
                            struct prog_context *context, volatile size_t *where)
 {
@@ -434,13 +336,13 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
 
     expect(run, "count_all", duite_count_all(run->rt, &counters), DUITE_OK);
     if (counters.graphs_recorded != run->answers->n_recorded)
-        found(run, "%llu graphs recorded, expected %llu",
-              (unsigned long long)counters.graphs_recorded,
-              (unsigned long long)run->answers->n_recorded);
+        prog_found(run, "%llu graphs recorded, expected %llu",
+                   (unsigned long long)counters.graphs_recorded,
+                   (unsigned long long)run->answers->n_recorded);
     expect(run, "stop", duite_stop(&run->rt), run->answers->stop);
     if (run->rt)
-        found(run, "stop left *rt");
-    check_places(run, context, setup);
+        prog_found(run, "stop left *rt");
+    prog_check_places(run, context, setup);
 }
 
 void prog_run(const struct prog *prog, const struct prog_answers *answers,
@@ -468,7 +370,7 @@ void prog_run(const struct prog *prog, const struct prog_answers *answers,
         memset(run.home, 0xff, (prog->n_objects + 1) * sizeof *run.home);
         run_operations(&run, setup, &context, where);
         if (context.wrong)
-            found(&run, "a body was called wrongly: random_bodies.c:%d", context.wrong);
+            prog_found(&run, "a body was called wrongly: random_bodies.c:%d", context.wrong);
     }
     free(run.object);
     free(run.home);

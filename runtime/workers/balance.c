@@ -252,7 +252,9 @@ static void ask(struct work_worker *worker)
     atomic_store_explicit(&balance->next, now + (uint64_t)(seconds / balance->tick),
                           memory_order_relaxed);
     atomic_store_explicit(&balance->attempt, attempt + 1, memory_order_relaxed);
-    work_poll(worker);
+    /* What came may have ended the last task: running out of work again tells the main thread. */
+    if (work_poll(worker))
+        work_stir(worker);
 }
 
 void work_beg(struct work_worker *worker, uint64_t idle)

@@ -19,7 +19,7 @@ commands > "$scratch/commands"
 ok "there are commands" test -s "$scratch/commands"
 while IFS= read -r command; do
     case $command in
-        srun*) skip "$command" "needs Slurm: test_slurm.sh" ;;
+        srun* | sbatch* | salloc*) skip "$command" "needs Slurm: test_slurm.sh" ;;
         tests/cluster/hosts.sh*) ok "$command" here "$command" ;;
         *) ok "$command" here "tests/cluster/hosts.sh 2 env $command" ;;
     esac

@@ -52,7 +52,9 @@ SLURM_CONF=$slurm/slurm.conf PATH=$(dirname "$DUITE_CLOTH"):$PATH
 export SLURM_CONF PATH
 ok "Slurm starts" daemons
 sed 's/nx: [0-9]*/nx: 40/; s/ny: [0-9]*/ny: 40/; s/^name: .*/&\ngrain: 200/' "$srcdir/cloth/scenes/sheet.yaml" > "$scratch/sheet.yaml"
-sed -n 's/^srun /srun /p' "$srcdir/docs/cluster.md" > "$scratch/commands"
+cp "$srcdir/docs/sheet.sbatch" "$scratch"
+grep -E '^(srun|sbatch|salloc) ' "$srcdir/docs/cluster.md" > "$scratch/commands"
 ok "there are commands" test -s "$scratch/commands"
 while IFS= read -r command; do ok "$command" limited sh -c "cd $scratch && $command"; done < "$scratch/commands"
+ok "the batch job ran on two ranks" test "$(report ranks "$scratch/sheet.json")" = 2
 exits 143 "a rank is killed" killed

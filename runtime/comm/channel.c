@@ -339,6 +339,17 @@ struct graph_task *comm_channels_pass(struct comm *comm, struct graph_task *over
     return over;
 }
 
+void comm_channels_look(struct comm *comm, const struct comm_looker *looker)
+{
+    const struct comm_requests *awaited = &comm->channels.awaited;
+    for (int i = 0; i < awaited->n; i++) {
+        const struct side *side = awaited->what[i];
+        looker->channel(looker->context, side->channel);
+    }
+    for (const struct graph_task *node = comm->channels.stalled; node; node = node->next)
+        looker->channel(looker->context, graph_channel_of(node));
+}
+
 void comm_channels_give_up(struct comm *comm)
 {
     struct comm_requests *awaited = &comm->channels.awaited;

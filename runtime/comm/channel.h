@@ -38,4 +38,8 @@ struct graph_task *comm_channels_pass(struct comm *comm, struct graph_task *over
 /* Under the lock: communication is broken, and nothing is awaited any more. */
 void comm_channels_give_up(struct comm *comm);
 
+/* Shows messages that have not come, and those that cannot be sent yet. Under the lock. */
+struct comm_looker;
+void comm_channels_look(struct comm *comm, const struct comm_looker *looker);
+
 #endif

@@ -65,6 +65,8 @@ struct comm_looker {
     void (*awaited)(void *context, const struct data_key *key, const struct comm_target *target,
                     uint32_t packets);
     void (*sending)(void *context, const struct graph_send *send);
+    /* Of a recorded graph: one that has not come; or, if it sends, that waits for its buffer. */
+    void (*channel)(void *context, const struct graph_channel *channel);
 };
 void comm_look(struct comm *comm, const struct comm_looker *looker);
 

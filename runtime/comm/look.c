@@ -18,5 +18,6 @@ void comm_look(struct comm *comm, const struct comm_looker *looker)
         if (task->kind == GRAPH_SEND)
             looker->sending(looker->context, task->send);
     }
+    comm_channels_look(comm, looker);
     comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
 }

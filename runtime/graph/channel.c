@@ -45,6 +45,20 @@ struct graph_channel *graph_channel_of(const struct graph_task *task)
     return task->node->channel;
 }
 
+const struct graph_task *graph_channel_waits(const struct graph_task *task, unsigned *more)
+{
+    const struct graph_node *node = task->node;
+    const struct graph_task *one = NULL;
+    *more = 0;
+    for (uint32_t i = node->n_cyclic; i < node->n_next; i++) {
+        if (node->next[i]->kernel == UINT32_MAX)
+            continue;
+        *more += one != NULL;
+        one = one ? one : node->next[i];
+    }
+    return one;
+}
+
 /* As graph_node_run begins: from now on the node counts for its next round. */
 static struct graph_plan *begin(struct graph_task *task)
 {

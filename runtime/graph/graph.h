@@ -162,6 +162,9 @@ void graph_channel_unpack(struct graph_task *node, const void *message);
 void graph_channel_lost(struct graph_task *node);
 /* Of a SEND or RECEIVE. */
 struct graph_channel *graph_channel_of(const struct graph_task *node);
+/* One of the program's tasks that wait in this round for a RECEIVE, or NULL, and how many more do.
+ * The replay must not go on meanwhile. */
+const struct graph_task *graph_channel_waits(const struct graph_task *node, unsigned *more);
 
 /* What lies above: handed over at start. `worker` is whoever calls, passed through untouched. */
 struct graph_hooks {

@@ -51,6 +51,13 @@ static struct words words_of(const struct page *page, const struct graph_task *t
     return words;
 }
 
+static void and_more(struct words *words, unsigned more)
+{
+    size_t length = strlen(words->text);
+    if (more)
+        snprintf(words->text + length, sizeof words->text - length, " (and %u more)", more);
+}
+
 /* ---- Bodies ---- */
 
 /* What a worker runs from now until the lock is let go; false if that cannot be known. */
@@ -74,9 +81,7 @@ static struct words crowd(const struct page *page, const struct data_waiter *wai
         more++;
     }
     struct words words = words_of(page, first);
-    size_t length = strlen(words.text);
-    if (more)
-        snprintf(words.text + length, sizeof words.text - length, " (and %u more)", more);
+    and_more(&words, more);
     return words;
 }
 
@@ -139,6 +144,26 @@ static void tell_sending(void *context, const struct graph_send *send)
          send->key.slot, send->key.generation, (unsigned long long)send->key.number, send->to);
 }
 
+static void tell_channel(void *context, const struct graph_channel *channel)
+{
+    struct page *page = context;
+    const struct graph *graph = page->pool->setup.graph;
+    if (channel->sends) {
+        line(page,
+             "a recorded graph's message to rank %d waits until that rank has taken an earlier one",
+             channel->peer);
+        return;
+    }
+    unsigned more;
+    const struct graph_task *task = graph_channel_waits(channel->node, &more);
+    struct words words = {"a task of duite"};
+    if (task)
+        snprintf(words.text, sizeof words.text, "kernel %.60s", graph->kernels[task->kernel]->name);
+    and_more(&words, more);
+    line(page, "%s of a recorded graph waits for a message that has not come from rank %d",
+         words.text, channel->peer);
+}
+
 /* A task that another rank runs; it stays away as long as it is looked at. */
 static void tell_away(void *context, const struct graph_task *task, int rank)
 {
@@ -179,8 +204,10 @@ static uint64_t unfinished(const struct work_pool *pool)
 void work_tell(struct work_pool *pool, double seconds)
 {
     struct page page = {.pool = pool};
-    const struct comm_looker looker = {
-        .context = &page, .awaited = tell_awaited, .sending = tell_sending};
+    const struct comm_looker looker = {.context = &page,
+                                       .awaited = tell_awaited,
+                                       .sending = tell_sending,
+                                       .channel = tell_channel};
     pthread_mutex_lock(&pool->watch.lock);
     tell_main(&page, seconds);
     tell_bodies(&page, hold_workers(pool));

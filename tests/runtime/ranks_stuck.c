@@ -55,32 +55,56 @@ static const duite_kernel NAP = {
 static const duite_kernel TAKE = {.name = "take", .body = take, .access = {DUITE_W, DUITE_R}};
 static const duite_kernel OVER = {.name = "over", .body = over, .access = {DUITE_W}};
 
+struct program {
+    duite_object object[4];
+    double nap;
+};
+
 /* Task 1 makes object 1 and reads 4; 2 and 3 read 1, on the last rank and the first; 4 overwrites
  * 4. */
+static int fork_all(duite *rt, void *context)
+{
+    const struct program *program = context;
+    const duite_object *object = program->object;
+    const int last = duite_ranks(rt) - 1;
+    int code = 0;
+
+    code |= duite_fork_at(rt, 0, &NAP, &program->nap, 2, (duite_object[]){object[0], object[3]});
+    code |= duite_fork_at(rt, last, &TAKE, NULL, 2, (duite_object[]){object[1], object[0]});
+    code |= duite_fork_at(rt, 0, &TAKE, NULL, 2, (duite_object[]){object[2], object[0]});
+    return code | duite_fork_at(rt, 0, &OVER, NULL, 1, &object[3]);
+}
+
+static int replay(duite *rt, struct program *program)
+{
+    duite_graph graph;
+    int code = duite_graph_new(rt, fork_all, program, &graph);
+
+    code |= duite_replay(rt, graph, 1);
+    code |= duite_wait(rt);
+    return code | duite_graph_free(rt, graph);
+}
+
 static int run(duite *rt, double length, const char *wait)
 {
-    const int last = duite_ranks(rt) - 1;
-    duite_object object[4];
+    struct program program = {.nap = length};
     int32_t value = 0;
     int code = 0;
 
     for (int i = 0; i < 4; i++)
-        code |= duite_new(rt, DUITE_I32, 1, &object[i]);
-    code |= duite_fork_at(rt, 0, &NAP, &length, 2, (duite_object[]){object[0], object[3]});
-    code |= duite_fork_at(rt, last, &TAKE, NULL, 2, (duite_object[]){object[1], object[0]});
-    code |= duite_fork_at(rt, 0, &TAKE, NULL, 2, (duite_object[]){object[2], object[0]});
-    code |= duite_fork_at(rt, 0, &OVER, NULL, 1, &object[3]);
+        code |= duite_new(rt, DUITE_I32, 1, &program.object[i]);
+    code |= strcmp(wait, "replay") ? fork_all(rt, &program) : replay(rt, &program);
     if (!strcmp(wait, "get"))
-        code |= duite_get(rt, object[1], &value) || value != 10;
+        code |= duite_get(rt, program.object[1], &value) || value != 10;
     else if (!strcmp(wait, "wait"))
         code |= duite_wait(rt);
     for (int i = 0; i < 4; i++)
-        code |= duite_free(rt, object[i]);
+        code |= duite_free(rt, program.object[i]);
     return code;
 }
 
-/* ranks_stuck THREADS WINDOW NAP HELD get|wait|stop: seconds that the first task naps, and that
- * messages are held up. */
+/* ranks_stuck THREADS WINDOW NAP HELD get|wait|stop|replay: seconds that the first task naps, and
+ * that messages are held up. */
 int main(int argc, char **argv)
 {
     static const duite_kernel *const KERNELS[] = {&NAP, &TAKE, &OVER, NULL};

@@ -3,7 +3,7 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-stuck=tests/runtime/ranks_stuck # THREADS WINDOW NAP HELD get|wait|stop
+stuck=tests/runtime/ranks_stuck # THREADS WINDOW NAP HELD get|wait|stop|replay
 nothing="and for [0-9.]* s no task of this rank began or ended and no message came"
 DUITE_STUCK_SECONDS=0.2
 export DUITE_STUCK_SECONDS
@@ -43,6 +43,10 @@ tells "1: no worker runs a task"
 tells "1: task 2 (kernel take) waits for object 1\.1, version 1, which has not come from rank 0"
 tells "0: duite_wait waits for the tasks of other ranks, $nothing"
 tells "0: unfinished tasks of this rank: 0"
+
+case_of "a body that naps in a replay" ranks 2 $stuck 2 0 2 0 replay
+tells "0: worker [01].* runs task [0-9]* (kernel nap)"
+tells "1: kernel take of a recorded graph waits for a message that has not come from rank 0"
 
 DUITE_STUCK_SECONDS=0
 case_of "nobody watches" ranks 2 $stuck 2 0 0.5 0 get

@@ -95,8 +95,7 @@ static int check(const struct command *command, struct argp_state *state)
             argp_error(state, "--only %s: %s has no such case; --list names them", command->only[i],
                        command->bench->name);
     if (!duite_scheduler_find(command->options.scheduler))
-        argp_error(state, "--scheduler %s: there is no scheduler of this name",
-                   command->options.scheduler);
+        argp_error(state, "--scheduler %s: %s", command->options.scheduler, duite_message());
     if (BENCH_DEBUG && !command->options.quick && !command->list)
         argp_error(state, "this is a build without optimisation or with a sanitizer: only --quick");
     return 0;

@@ -37,7 +37,10 @@ static const struct argp_option OPTIONS[] = {
      "given several times",
      2},
     {"threads", THREADS, "N", 0, "workers of each rank (default: its share of the cores)", 3},
-    {"scheduler", SCHEDULER, "NAME", 0, "which worker runs which task next (default: steal)", 3},
+    {"scheduler", SCHEDULER, "NAME", 0,
+     "which worker runs which task next (default: steal); this and the next two take ./FILE.so, "
+     "too",
+     3},
     {"mapping", MAPPING, "NAME", 0, "which rank keeps which block (default: metis)", 3},
     {"balance", BALANCE, "NAME", 0, "which tasks run on other ranks (default: none)", 3},
     {"seed", SEED, "N", 0, "of all that is random in the policies (default: 1)", 3},
@@ -68,52 +71,36 @@ static int whole_number(struct argp_state *state, const char *option, const char
     return EINVAL;
 }
 
-/* Joins the names of policies for a sentence. */
-static const char *join(const char *const *names, char *text, size_t size)
+/* Whether there is the policy that an option names. */
+static int chosen(struct argp_state *state, const char *option, const char *name,
+                  const void *policy)
 {
-    *text = 0;
-    for (size_t i = 0; names[i]; i++) {
-        size_t used = strlen(text);
-        snprintf(text + used, size - used, "%s%s", i ? ", " : "", names[i]);
-    }
-    return text;
+    if (policy)
+        return 0;
+    argp_failure(state, 0, 0, "--%s %s: %s", option, name, duite_message());
+    return EINVAL;
 }
 
 static int choose_scheduler(struct argp_state *state, struct simulate_options *run,
                             const char *name)
 {
-    char known[200];
     run->scheduler_name = name;
     run->scheduler = duite_scheduler_find(name);
-    if (run->scheduler)
-        return 0;
-    argp_failure(state, 0, 0, "--scheduler %s: there is no scheduler of this name; known are %s",
-                 name, join(duite_scheduler_names(), known, sizeof known));
-    return EINVAL;
+    return chosen(state, "scheduler", name, run->scheduler);
 }
 
 static int choose_mapping(struct argp_state *state, struct simulate_options *run, const char *name)
 {
-    char known[200];
     run->mapping_name = name;
     run->mapping = duite_mapping_find(name);
-    if (run->mapping)
-        return 0;
-    argp_failure(state, 0, 0, "--mapping %s: there is no mapping of this name; known are %s", name,
-                 join(duite_mapping_names(), known, sizeof known));
-    return EINVAL;
+    return chosen(state, "mapping", name, run->mapping);
 }
 
 static int choose_balance(struct argp_state *state, struct simulate_options *run, const char *name)
 {
-    char known[200];
     run->balance_name = name;
     run->balance = duite_balancer_find(name);
-    if (run->balance)
-        return 0;
-    argp_failure(state, 0, 0, "--balance %s: there is no balancer of this name; known are %s", name,
-                 join(duite_balancer_names(), known, sizeof known));
-    return EINVAL;
+    return chosen(state, "balance", name, run->balance);
 }
 
 static int add_set(struct command *command, const char *text, const char *option)

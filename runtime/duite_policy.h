@@ -125,6 +125,15 @@ typedef struct duite_balancer {
     int (*place)(void *state, const duite_leaf *leaf);
 } duite_balancer;
 
+/* ---- Policies of one's own ---- */
+
+/* A program may point its options at tables of its own. A shared library that defines one of these
+ * is loaded where a policy's name is asked for: ./mine.so, any name with a / in it
+ * (duite_scheduler_find and its like; duite-cloth --scheduler ./mine.so). */
+extern const duite_scheduler duite_own_scheduler;
+extern const duite_mapping duite_own_mapping;
+extern const duite_balancer duite_own_balancer;
+
 /* A random number and the next state (SplitMix64: Steele, Lea, Flood 2014). Any state is a good
  * seed. */
 static inline uint64_t duite_random(uint64_t *state)

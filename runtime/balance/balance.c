@@ -1,23 +1,20 @@
 /* The built-in balancers by name, the default first. */
 #include "runtime/balance/balance.h"
 
-#include <duite.h>
-#include <string.h>
+#include "runtime/base/policy.h"
 
-static const duite_balancer *const balancers[] = {&balance_none, &balance_delegate,
-                                                  &balance_scatter};
-enum { N_BALANCERS = sizeof balancers / sizeof balancers[0] };
+#include <duite.h>
+
+static const char *const names[] = {"none", "delegate", "scatter", NULL};
+static const void *const tables[] = {&balance_none, &balance_delegate, &balance_scatter};
 
 const duite_balancer *duite_balancer_find(const char *name)
 {
-    for (int i = 0; i < N_BALANCERS; i++)
-        if (name && !strcmp(balancers[i]->name, name))
-            return balancers[i];
-    return NULL;
+    static const struct base_policies all = {"balancer", "duite_own_balancer", names, tables};
+    return base_policy_find(&all, name);
 }
 
 const char *const *duite_balancer_names(void)
 {
-    static const char *const names[N_BALANCERS + 1] = {"none", "delegate", "scatter"};
     return names;
 }

@@ -6,7 +6,7 @@
 #include <duite_policy.h>
 
 /* The built-in mappings. */
-extern const duite_mapping map_metis, map_cyclic;
+extern const duite_mapping map_metis, map_block, map_cyclic, map_random;
 
 /* Notes a hint: the weight, and edges to n neighbours; or a leader. Homes that are settled stay.
  * Main thread, collective. Errors: objects, arguments, memory. */

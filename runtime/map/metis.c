@@ -1,6 +1,6 @@
 /* metis: equal weights, few bytes between ranks: METIS' recursive bisection of the hinted graph
  * (Karypis & Kumar, SIAM J. Sci. Comput. 20(1), 1998), with the seed of the run. Objects without
- * edges are dealt out in contiguous ranges of equal weight. */
+ * edges are dealt out by `block`. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
@@ -18,23 +18,6 @@ static void scale(size_t n, const double *from, idx_t *to)
     double factor = sum > 0 ? 1e8 / sum : 0;
     for (size_t i = 0; i < n; i++)
         to[i] = 1 + (idx_t)(from[i] * factor);
-}
-
-/* Contiguous ranges: object i goes where the middle of its weight falls; fewer objects than ranks
- * go round. */
-static void deal(const duite_object_graph *graph, int n_ranks, int *home)
-{
-    double sum = 0, before = 0;
-    for (size_t i = 0; i < graph->n; i++)
-        sum += graph->weight[i];
-    for (size_t i = 0; i < graph->n; i++) {
-        double middle = sum > 0 ? (before + 0.5 * graph->weight[i]) / sum : 0;
-        int rank = (int)(middle * n_ranks);
-        if (graph->n < (size_t)n_ranks)
-            rank = (int)((graph->before + i) % (uint64_t)n_ranks);
-        home[i] = rank < n_ranks ? rank : n_ranks - 1;
-        before += graph->weight[i];
-    }
 }
 
 static int partition(const duite_object_graph *graph, int n_ranks, uint64_t seed, idx_t *work,
@@ -65,10 +48,8 @@ static int partition(const duite_object_graph *graph, int n_ranks, uint64_t seed
 static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
 {
     size_t n = graph->n, edges = graph->start[n];
-    if (!edges || n <= (size_t)n_ranks) {
-        deal(graph, n_ranks, home);
-        return DUITE_OK;
-    }
+    if (!edges || n <= (size_t)n_ranks)
+        return map_block.map(graph, n_ranks, seed, home);
     if (edges > 0x3fffffff)
         return base_error(DUITE_E_ARGUMENT, "metis: %zu edges are too many", edges);
     idx_t *work = base_alloc((3 * n + 1 + 2 * edges) * sizeof *work);

@@ -1,21 +1,18 @@
 /* The built-in mappings by name, the default first. */
 #include "runtime/map/map.h"
 
-#include <string.h>
+#include "runtime/base/policy.h"
 
-static const duite_mapping *const mappings[] = {&map_metis, &map_cyclic};
-enum { N_MAPPINGS = sizeof mappings / sizeof mappings[0] };
+static const char *const names[] = {"metis", "block", "cyclic", "random", NULL};
+static const void *const tables[] = {&map_metis, &map_block, &map_cyclic, &map_random};
 
 const duite_mapping *duite_mapping_find(const char *name)
 {
-    for (int i = 0; i < N_MAPPINGS; i++)
-        if (name && !strcmp(mappings[i]->name, name))
-            return mappings[i];
-    return NULL;
+    static const struct base_policies all = {"mapping", "duite_own_mapping", names, tables};
+    return base_policy_find(&all, name);
 }
 
 const char *const *duite_mapping_names(void)
 {
-    static const char *const names[N_MAPPINGS + 1] = {"metis", "cyclic"};
     return names;
 }

@@ -1,24 +1,22 @@
 /* The built-in schedulers by name, the default first. */
 #include "runtime/sched/sched.h"
 
-#include <duite.h>
-#include <string.h>
+#include "runtime/base/policy.h"
 
-static const duite_scheduler *const schedulers[] = {&sched_steal,    &sched_fifo,   &sched_lifo,
-                                                    &sched_priority, &sched_static, &sched_shuffle};
-enum { N_SCHEDULERS = sizeof schedulers / sizeof schedulers[0] };
+#include <duite.h>
+
+static const char *const names[] = {"steal",    "owner",  "fifo",    "lifo",
+                                    "priority", "static", "shuffle", NULL};
+static const void *const tables[] = {&sched_steal,    &sched_owner,  &sched_fifo,   &sched_lifo,
+                                     &sched_priority, &sched_static, &sched_shuffle};
 
 const duite_scheduler *duite_scheduler_find(const char *name)
 {
-    for (int i = 0; i < N_SCHEDULERS; i++)
-        if (name && !strcmp(schedulers[i]->name, name))
-            return schedulers[i];
-    return NULL;
+    static const struct base_policies all = {"scheduler", "duite_own_scheduler", names, tables};
+    return base_policy_find(&all, name);
 }
 
 const char *const *duite_scheduler_names(void)
 {
-    static const char *const names[N_SCHEDULERS + 1] = {"steal",    "fifo",   "lifo",
-                                                        "priority", "static", "shuffle"};
     return names;
 }

@@ -26,16 +26,10 @@ static duite_end serve(void *state)
     return DUITE_NEWEST;
 }
 
-/* Once around all others, from a random one on. */
 static unsigned victim(void *state, unsigned attempt)
 {
     struct state *own = state;
-    unsigned others = own->n_workers - 1;
-    if (attempt >= others)
-        return DUITE_NO_QUEUE;
-    if (attempt == 0)
-        own->first = (unsigned)(duite_random(&own->random) % others);
-    return (own->worker + 1 + (own->first + attempt) % others) % own->n_workers;
+    return sched_random_victim(&own->random, own->worker, own->n_workers, attempt, &own->first);
 }
 
 static int chain(void *state, const duite_ready *task)

@@ -1,0 +1,16 @@
+#ifndef DUITE_BASE_POLICY_H
+#define DUITE_BASE_POLICY_H
+
+/* The policies of one kind: the built-in ones, in the same order in both lists. */
+struct base_policies {
+    const char *kind;         /* "scheduler" */
+    const char *symbol;       /* what a shared library calls its own */
+    const char *const *names; /* ended by NULL */
+    const void *const *tables;
+};
+
+/* The built-in policy of that name; or, if there is a / in it, that of the shared library in the
+ * file, which stays loaded. NULL, and a sentence for duite_message, if there is none. Local. */
+const void *base_policy_find(const struct base_policies *policies, const char *name);
+
+#endif

@@ -105,17 +105,28 @@ static int open_output(struct run *run, struct cloth_error *error)
     return code;
 }
 
+/* Rank 0 reads the scene and cuts it into blocks; the others are sent their blocks by the run. */
+static int read_and_cut(struct run *run, struct cloth_error *error)
+{
+    const struct simulate_options *options = run->options;
+    int code = scene_read(&run->model, options->scene, options->n_sets, options->sets, error);
+    if (!code)
+        code = flow_prepare(&run->flow, &run->model, run->ranks, error);
+    if (!code && options->report)
+        code = check_report(options, error);
+    return code;
+}
+
 /* All that can be wrong with the input, then the folder of frames. */
 static int prepare(struct run *run)
 {
     const struct simulate_options *options = run->options;
     struct cloth_error error = {0};
-    int code = scene_read(&run->model, options->scene, options->n_sets, options->sets, &error);
-    if (!code)
-        code = flow_prepare(&run->flow, &run->model, run->ranks, &error);
-    if (!code && run->rank == 0 && options->report)
-        code = check_report(options, &error);
-    code = agree(run, &error);
+    if (run->rank == 0)
+        read_and_cut(run, &error);
+    else
+        flow_join(&run->flow, &error);
+    const int code = agree(run, &error);
     if (code)
         return code;
     const char *warning;
@@ -126,9 +137,19 @@ static int prepare(struct run *run)
     return agree(run, &error);
 }
 
+/* The blocks have all they need of the meshes. */
+static void forget_meshes(void *context)
+{
+    struct run *run = context;
+    for (uint32_t i = 0; i < run->model.n_cloths; i++)
+        mesh_free(&run->model.cloths[i].mesh);
+}
+
 static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations)
 {
-    summary_progress_step(context, step, steps, cg_iterations);
+    struct run *run = context;
+    if (!run->options->quiet)
+        summary_progress_step(&run->progress, step, steps, cg_iterations);
 }
 
 static int stop_wanted(void *context)
@@ -154,8 +175,7 @@ static int say_lost(const struct run *run, const struct cloth_error *error)
 static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
 {
     const struct flow_output output = {run->frames, output_frame};
-    const struct flow_progress progress = {&run->progress, run->options->quiet ? NULL : show_step,
-                                           stop_wanted};
+    const struct flow_progress progress = {run, forget_meshes, show_step, stop_wanted};
     run->threads = duite_threads(rt);
     summary_progress_begin(&run->progress);
     flow_run(run->flow, rt, run->options->output ? &output : NULL, &progress, &run->report, error);
@@ -200,16 +220,17 @@ static int conclude(const struct run *run)
     struct cloth_error error = {0};
     struct rusage usage = {0};
     getrusage(RUSAGE_SELF, &usage);
-    uint64_t sums[2] = {run->threads, 1024 * (uint64_t)usage.ru_maxrss}; /* Linux counts KiB */
-    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+    uint64_t workers = run->threads, peak = 1024 * (uint64_t)usage.ru_maxrss; /* Linux counts KiB */
+    MPI_Allreduce(MPI_IN_PLACE, &workers, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, &peak, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
     if (run->rank == 0) {
         const struct summary summary = {.options = run->options,
                                         .model = &run->model,
                                         .report = &run->report,
                                         .ranks = run->ranks,
                                         .threads = run->threads,
-                                        .workers = sums[0],
-                                        .memory_bytes = sums[1]};
+                                        .workers = workers,
+                                        .memory_bytes = peak};
         if (run->report.stopped)
             say_stopped(run);
         if (run->options->report)

@@ -14,7 +14,7 @@ struct summary {
     int ranks;
     unsigned threads;      /* of rank 0 */
     uint64_t workers;      /* of all ranks together */
-    uint64_t memory_bytes; /* the largest resident sizes of all ranks, summed */
+    uint64_t memory_bytes; /* the largest resident size that any rank had */
 };
 
 /* A table for people. */

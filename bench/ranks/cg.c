@@ -69,7 +69,7 @@ static int check(struct flow_state *state, const struct sheet *sheet)
 /* Solves by so many iterations the system that the last step left. */
 static int solve(struct flow_state *state, struct sheet *sheet, uint32_t count, double *seconds)
 {
-    sheet->model.max_iterations = count;
+    sheet->model.max_iterations = state->flow->told.max_iterations = count;
     int code = duite_wait(state->rt);
     const double start = serve_seconds();
     if (!code)
@@ -84,14 +84,14 @@ static int solve(struct flow_state *state, struct sheet *sheet, uint32_t count, 
 static int begin(struct flow_state *state, struct sheet *sheet, uint32_t count)
 {
     double seconds;
-    sheet->model.max_iterations = 2;
-    int code = flow_memory_take(state);
+    struct flow_args args = {0};
+    int code = flow_run_begin(state);
+    for (; args.block < state->head.n_blocks && !code; args.block++)
+        code = DUITE_FORK(state->rt, &sheet_wave_kernel, &args, state->block[args.block].table);
     if (!code) {
-        flow_objects_make(state);
         flow_far_make(state);
-    }
-    if (!code)
         code = flow_cg_record(state);
+    }
     if (!code)
         code = flow_initialise(state);
     if (!code)
@@ -101,6 +101,7 @@ static int begin(struct flow_state *state, struct sheet *sheet, uint32_t count)
 
 static void end(struct flow_state *state)
 {
+    flow_parcels_free(state);
     flow_objects_free(state);
     duite_wait(state->rt);
     flow_memory_free(state);
@@ -143,6 +144,9 @@ static int run(struct ranks_session *session, struct serve_request *request, dou
     int code = sheet_ready(sheet, side, grain);
     if (!code)
         code = sheet_solve(sheet, count);
+    sheet->model.max_iterations = 2;
+    if (!code)
+        code = sheet_flow(sheet);
     if (!code)
         code = ranks_start_cloth(session, request, &rt);
     if (code)

@@ -38,21 +38,28 @@ static double peak(void)
     return 1024 * kilobytes;
 }
 
+static void forget_mesh(void *context)
+{
+    struct sheet *sheet = context;
+    mesh_free(&sheet->cloth.mesh);
+}
+
 static int run(struct ranks_session *session, struct serve_request *request)
 {
     struct sheet *sheet = &session->sheet;
     struct cloth_error error = {0};
     struct flow_report report;
+    const struct flow_progress progress = {.context = sheet, .dealt = forget_mesh};
     duite *rt = NULL;
     const uint32_t side = (uint32_t)serve_number(request, "side");
     sheet_model(sheet, side, (uint32_t)serve_number(request, "grain"));
-    int code = mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, &error);
-    if (!code)
-        code = flow_prepare(&sheet->flow, &sheet->model, 1, &error);
-    if (code)
+    if (sheet_own_rank() == 0 && mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, &error))
         return serve_fail("%s", error.text);
+    int code = sheet_flow(sheet);
+    if (code)
+        return code;
     code = ranks_start_cloth(session, request, &rt);
-    if (!code && flow_run(sheet->flow, rt, NULL, NULL, &report, &error))
+    if (!code && flow_run(sheet->flow, rt, NULL, &progress, &report, &error))
         code = serve_fail("%s", error.text);
     if (!code && report.cg_iterations_total != sheet->model.max_iterations)
         code = serve_fail("wrong answer: %g iterations", (double)report.cg_iterations_total);

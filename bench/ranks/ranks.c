@@ -43,6 +43,17 @@ bool ranks_on_hosts(void)
     return strstr(serve_kind(), "_hosts") != NULL;
 }
 
+/* Those of the cloth, and the one that waves the sheet. */
+static const duite_kernel *const *kernels(void)
+{
+    enum { MOST = 64 };
+    static const duite_kernel *all[MOST + 1] = {&sheet_wave_kernel};
+    const duite_kernel *const *cloth = flow_kernels();
+    for (size_t i = 0; cloth[i] && i + 1 < MOST; i++)
+        all[i + 1] = cloth[i];
+    return all;
+}
+
 int ranks_start_cloth(struct ranks_session *session, struct serve_request *request, duite **rt)
 {
     char scheduler[40];
@@ -51,7 +62,7 @@ int ranks_start_cloth(struct ranks_session *session, struct serve_request *reque
         return code;
     serve_word(request, "scheduler", scheduler, sizeof scheduler);
     duite_options options = duite_options_default();
-    options.kernels = flow_kernels();
+    options.kernels = kernels();
     options.context = session->sheet.flow;
     options.threads = (unsigned)serve_number(request, "threads");
     options.scheduler = duite_scheduler_find(scheduler);

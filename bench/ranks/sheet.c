@@ -10,7 +10,7 @@
 
 const struct flow_tables *sheet_tables(const struct sheet *sheet)
 {
-    return &sheet->flow->tables;
+    return &sheet->tables;
 }
 
 size_t sheet_row(const struct sheet *sheet, uint32_t block)
@@ -20,8 +20,7 @@ size_t sheet_row(const struct sheet *sheet, uint32_t block)
 
 size_t sheet_rim(const struct sheet *sheet, uint32_t block)
 {
-    const struct flow_tables *tables = sheet_tables(sheet);
-    return 3 * (size_t)(tables->block[block].rim - tables->rim);
+    return 3 * sheet->rim_start[block];
 }
 
 /* ---- Making ---- */
@@ -53,31 +52,78 @@ void sheet_model(struct sheet *sheet, uint32_t side, uint32_t grain)
                                   .grain = grain};
 }
 
-static void wave(struct flow_tables *t, uint32_t n)
+int sheet_own_rank(void)
 {
-    for (uint32_t i = 0; i < n; i++) {
-        const double x = t->position[i][0], z = t->position[i][2];
-        t->position[i][1] += 0.01 * sin(9 * x) * cos(7 * z);
-        t->velocity[i] = t->free[i] * (phys_vec){0.1 * sin(5 * z), 0.2 * cos(6 * x), 0.1 * x, 0};
+    const char *rank = getenv("OMPI_COMM_WORLD_RANK");
+    return rank ? atoi(rank) : 0;
+}
+
+int sheet_flow(struct sheet *sheet)
+{
+    struct cloth_error error = {0};
+    flow_free(sheet->flow);
+    sheet->flow = NULL;
+    const int code = sheet_own_rank() ? flow_join(&sheet->flow, &error)
+                                      : flow_prepare(&sheet->flow, &sheet->model, 1, &error);
+    return code ? serve_fail("%s", error.text) : 0;
+}
+
+void sheet_wave(const struct flow_table *t, void *image)
+{
+    const struct flow_image table = flow_table_image(t, image);
+    for (uint32_t i = 0; i < t->n; i++) {
+        const double x = table.position[i][0], z = table.position[i][2];
+        table.position[i][1] += 0.01 * sin(9 * x) * cos(7 * z);
+        table.velocity[i] =
+            table.free[i] * (phys_vec){0.1 * sin(5 * z), 0.2 * cos(6 * x), 0.1 * x, 0};
     }
 }
 
-static size_t n_copies(const struct flow_tables *t)
+static int wave(const duite_call *call)
 {
-    const struct flow_table *last = t->block + t->n_blocks - 1;
-    return (size_t)(last->copy - t->copy) + last->n_copies;
+    const struct flow *flow = call->context;
+    const struct flow_args *args = call->args;
+    sheet_wave(flow->tables.block + args->block, duite_out(call, 0, char));
+    return 0;
+}
+const duite_kernel sheet_wave_kernel = {.name = "sheet_wave",
+                                        .body = wave,
+                                        .access = {DUITE_RW},
+                                        .args_size = sizeof(struct flow_args)};
+
+static size_t n_rim(const struct sheet *s)
+{
+    return s->rim_start[s->tables.n_blocks];
 }
 
-static size_t n_rim(const struct flow_tables *t)
+/* The tables of all blocks, waved, and where the parts of each begin in the arrays of all. */
+static int make_tables(struct sheet *s, struct cloth_error *error)
 {
-    const struct flow_table *last = t->block + t->n_blocks - 1;
-    return (size_t)(last->rim - t->rim) + last->n_rim;
-}
-
-static size_t n_values(const struct flow_tables *t)
-{
-    const struct flow_table *last = t->block + t->n_blocks - 1;
-    return (size_t)(last->end - (const uint32_t(*)[2])t->end) + last->n_inner + last->n_cut;
+    const uint32_t n = s->source.blocks.n_blocks;
+    struct flow_tables *all = &s->tables;
+    *all = (struct flow_tables){.n_blocks = n,
+                                .block = calloc(n, sizeof *all->block),
+                                .slot = s->source.neighbours.slot,
+                                .copy = s->source.neighbours.copy};
+    s->image = calloc(n, sizeof *s->image);
+    s->rim_start = calloc((size_t)n + 1, sizeof *s->rim_start);
+    s->value_start = calloc((size_t)n + 1, sizeof *s->value_start);
+    if (!all->block || !s->image || !s->rim_start || !s->value_start)
+        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for tables");
+    const int code = flow_source_gather(&s->source, 0, n, error);
+    for (uint32_t b = 0; b < n && !code; b++) {
+        struct flow_table *t = all->block + b;
+        *t = s->source.shape[b];
+        s->rim_start[b + 1] = s->rim_start[b] + t->n_rim;
+        s->value_start[b + 1] = s->value_start[b] + t->n_inner + t->n_cut;
+        s->image[b] = aligned_alloc(64, flow_table_bytes(t));
+        if (!s->image[b])
+            return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for a table");
+        flow_source_table(&s->source, b, s->image[b]);
+        sheet_wave(t, s->image[b]);
+        flow_table_open(t, s->image[b]);
+    }
+    return code;
 }
 
 static phys_vec *vectors(size_t n)
@@ -90,17 +136,16 @@ static phys_vec *vectors(size_t n)
 
 static int allocate(struct sheet *s)
 {
-    const struct flow_tables *t = sheet_tables(s);
-    const size_t rows = s->flow->blocks.n_places;
+    const size_t rows = s->source.blocks.n_places, copies = s->source.neighbours.n_copies;
     phys_vec **array[] = {&s->b, &s->dv, &s->r, &s->p, &s->q, &s->answer};
     bool has = true;
     for (size_t i = 0; i < sizeof array / sizeof *array; i++)
         has = (*array[i] = vectors(rows)) && has;
-    has = (s->value = vectors(n_values(t))) && has;
-    has = (s->copy_r = vectors(n_copies(t))) && has;
-    has = (s->copy_p = vectors(n_copies(t))) && has;
+    has = (s->value = vectors(s->value_start[s->tables.n_blocks])) && has;
+    has = (s->copy_r = vectors(copies)) && has;
+    has = (s->copy_p = vectors(copies)) && has;
     for (int i = 0; i < 2; i++)
-        has = (s->rim[i] = calloc(3 * n_rim(t) + 1, sizeof(double))) && has;
+        has = (s->rim[i] = calloc(3 * n_rim(s) + 1, sizeof(double))) && has;
     return has ? 0 : serve_no_memory();
 }
 
@@ -111,6 +156,13 @@ void sheet_free(struct sheet *s)
         free(array[i]);
     free(s->rim[0]);
     free(s->rim[1]);
+    free(s->rim_start);
+    free(s->value_start);
+    for (uint32_t b = 0; s->image && b < s->tables.n_blocks; b++)
+        free(s->image[b]);
+    free(s->image);
+    free(s->tables.block);
+    flow_source_free(&s->source);
     flow_free(s->flow);
     mesh_free(&s->cloth.mesh);
     *s = (struct sheet){0};
@@ -124,12 +176,12 @@ static void make_block(struct sheet *s, const struct flow_table *t, const phys_v
     const struct flow_tables *all = sheet_tables(s);
     const double h = s->model.h;
     const phys_vec *x = t->position, *v = t->velocity;
-    phys_vec *b = s->b + t->first, *value = s->value + (t->end - (const uint32_t(*)[2])all->end);
+    phys_vec *b = s->b + t->first, *value = s->value + s->value_start[t - all->block];
     struct phys_springs springs = flow_table_inner(t);
     phys_outside(t->n, t->load, t->drag, v, b);
     phys_springs_force(&springs, x, v, b);
     for (uint32_t i = 0; i < t->n_slots; i++) {
-        const size_t at = (size_t)(all->block[t->slot[i]].rim - all->rim);
+        const size_t at = s->rim_start[t->slot[i]];
         springs = flow_table_cut(t, i);
         phys_springs_force_cut(&springs, x, v, rim_x + at, rim_v + at, b);
     }
@@ -139,7 +191,7 @@ static void make_block(struct sheet *s, const struct flow_table *t, const phys_v
     phys_springs_stiffness(&springs, h * h, x, v, b);
     phys_springs_matrix(&springs, h, x, x, value);
     for (uint32_t i = 0; i < t->n_slots; i++) {
-        const size_t at = (size_t)(all->block[t->slot[i]].rim - all->rim);
+        const size_t at = s->rim_start[t->slot[i]];
         springs = flow_table_cut(t, i);
         phys_springs_stiffness_cut(&springs, h * h, x, v, rim_x + at, rim_v + at, b);
         phys_springs_matrix(&springs, h, x, rim_x + at, value + t->n_inner + t->cut[i]);
@@ -149,12 +201,12 @@ static void make_block(struct sheet *s, const struct flow_table *t, const phys_v
 static int make_system(struct sheet *s)
 {
     const struct flow_tables *all = sheet_tables(s);
-    phys_vec *rim_x = vectors(n_rim(all)), *rim_v = vectors(n_rim(all));
+    phys_vec *rim_x = vectors(n_rim(s)), *rim_v = vectors(n_rim(s));
     for (uint32_t b = 0; b < all->n_blocks && rim_x && rim_v; b++) {
         const struct flow_table *t = all->block + b;
         for (uint32_t i = 0; i < t->n_rim; i++) {
-            rim_x[(t->rim - all->rim) + i] = t->position[t->rim[i]];
-            rim_v[(t->rim - all->rim) + i] = t->velocity[t->rim[i]];
+            rim_x[s->rim_start[b] + i] = t->position[t->rim[i]];
+            rim_v[s->rim_start[b] + i] = t->velocity[t->rim[i]];
         }
     }
     const bool has = rim_x && rim_v;
@@ -168,14 +220,13 @@ static int make_system(struct sheet *s)
 int sheet_ready(struct sheet *sheet, uint32_t side, uint32_t grain)
 {
     struct cloth_error error = {0};
-    if (sheet->flow && sheet->side == side && sheet->model.grain == grain)
+    if (sheet->answer && sheet->side == side && sheet->model.grain == grain)
         return 0;
     sheet_free(sheet);
     sheet_model(sheet, side, grain);
     if (mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, &error) ||
-        flow_prepare(&sheet->flow, &sheet->model, 1, &error))
+        flow_source_make(&sheet->source, &sheet->model, 1, &error) || make_tables(sheet, &error))
         return serve_fail("%s", error.text);
-    wave(&sheet->flow->tables, sheet->flow->blocks.n_places);
     const int code = allocate(sheet);
     return code ? code : make_system(sheet);
 }
@@ -199,7 +250,7 @@ void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *sca
     const struct flow_tables *all = sheet_tables(s);
     const struct flow_table *t = all->block + block;
     const size_t first = t->first, copies = (size_t)(t->copy - all->copy);
-    const phys_vec *value = s->value + (t->end - (const uint32_t(*)[2])all->end);
+    const phys_vec *value = s->value + s->value_start[block];
     const struct solve_cut cut = {t->n_cut, t->copy_end, t->n_rim, t->rim};
     const struct solve_rows rows = {s->dv + first, s->r + first, s->p + first, s->q + first};
     if (scalars->phase == SOLVE_LAST)
@@ -251,7 +302,7 @@ int sheet_solve(struct sheet *s, uint32_t count)
             code = serve_fail("the solve breaks down");
     }
     free(sum);
-    memcpy(s->answer, s->dv, s->flow->blocks.n_places * sizeof *s->dv);
+    memcpy(s->answer, s->dv, s->source.blocks.n_places * sizeof *s->dv);
     s->square = scalars.square;
     s->answered = count;
     return code;

@@ -12,8 +12,12 @@ struct sheet {
     struct model_material material;
     struct model_cloth cloth;
     struct model_pin pin[3];
-    struct flow *flow;
-    uint32_t side; /* vertices */
+    struct flow *flow;         /* of the run that is on */
+    uint32_t side;             /* vertices */
+    struct flow_source source; /* blocks, and what the tables point into; */
+    struct flow_tables tables; /* of all blocks, on every rank, with their images */
+    void **image;
+    size_t *rim_start, *value_start; /* a block */
     /* Block after block: rows by place, values by side of springs, r and then p of each copy, three
      * numbers a rim row. */
     phys_vec *b, *dv, *r, *p, *q, *value, *copy_r, *copy_p;
@@ -29,6 +33,14 @@ int sheet_ready(struct sheet *sheet, uint32_t side, uint32_t grain);
 /* A flow of it alone, as a run of the cloth begins: the model with two iterations and one step. */
 void sheet_model(struct sheet *sheet, uint32_t side, uint32_t grain);
 void sheet_free(struct sheet *sheet);
+/* Of this process, as mpirun says it: MPI may not have begun. */
+int sheet_own_rank(void);
+/* Makes sheet->flow for a run, which frees it: rank 0 cuts the model, the others join. 0, or what
+ * serve_fail returns. */
+int sheet_flow(struct sheet *sheet);
+/* Waves the start of a block in its table, and sets it moving; the same as a task: rw table. */
+void sheet_wave(const struct flow_table *table, void *image);
+extern const duite_kernel sheet_wave_kernel;
 
 const struct flow_tables *sheet_tables(const struct sheet *sheet);
 /* The first row of a block, and the first number of its rim. */

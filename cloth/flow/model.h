@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 /* What is to be simulated, as a scene file or a program says it: SI units, right-handed, +y up.
- * Everything is owned by the model and freed by model_free. Every rank holds the same model. */
+ * Everything is owned by the model and freed by model_free. Rank 0 alone holds one. */
 
 struct model_material {
     char *name;

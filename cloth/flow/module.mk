@@ -1,12 +1,15 @@
 libduite_cloth_la_SOURCES += \
     cloth/flow/model.c cloth/flow/model.h \
     cloth/flow/run.c cloth/flow/run.h \
-    cloth/flow/tables/copies.c \
+    cloth/flow/tables/neighbours.c \
     cloth/flow/tables/particles.c \
+    cloth/flow/tables/sides.c \
+    cloth/flow/tables/source.c cloth/flow/tables/source.h \
     cloth/flow/tables/springs.c \
     cloth/flow/tables/tables.c cloth/flow/tables/tables.h \
     cloth/flow/tasks/bodies.h \
     cloth/flow/tasks/cg.c \
+    cloth/flow/tasks/deal.c \
     cloth/flow/tasks/far.c \
     cloth/flow/tasks/finish.c \
     cloth/flow/tasks/frames.c \

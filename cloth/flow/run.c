@@ -1,8 +1,8 @@
-/* A flow is read-only for tasks but for what tasks.h names; a run leaves it as it found it, so that
- * it can be run again. Every decision of the main program follows from values that all ranks get
- * alike. */
+/* A flow is read-only for tasks but for what tasks.h names. Every decision of the main program
+ * follows from values that all ranks get alike. */
 #include "cloth/flow/run.h"
 
+#include "cloth/base/memory.h"
 #include "cloth/flow/tasks/tasks.h"
 
 #include <math.h>
@@ -20,37 +20,19 @@ double flow_now(void)
 
 const duite_kernel *const *flow_kernels(void)
 {
-    static const duite_kernel *const all[] = {&flow_ready,      &flow_initial,
-                                              &flow_force,      &flow_explicit,
-                                              &flow_implicit,   &flow_matrix,
-                                              &flow_begin,      &flow_pack,
-                                              &flow_start,      &flow_pass,
-                                              &flow_scalars,    &flow_velocity_dv,
-                                              &flow_velocity_a, &flow_position,
-                                              &flow_collide,    &flow_status,
-                                              &flow_frame,      &flow_stretch,
-                                              &flow_most,       &flow_seconds,
-                                              &flow_tell,       NULL};
+    static const duite_kernel *const all[] = {&flow_tell_head,  &flow_tell_shared, &flow_table_make,
+                                              &flow_table_keep, &flow_collect,     &flow_ready,
+                                              &flow_initial,    &flow_force,       &flow_explicit,
+                                              &flow_implicit,   &flow_matrix,      &flow_begin,
+                                              &flow_pack,       &flow_start,       &flow_pass,
+                                              &flow_scalars,    &flow_velocity_dv, &flow_velocity_a,
+                                              &flow_position,   &flow_collide,     &flow_status,
+                                              &flow_frame,      &flow_stretch,     &flow_most,
+                                              &flow_seconds,    &flow_tell,        NULL};
     return all;
 }
 
 /* ---- Preparing ---- */
-
-static int cut(struct flow *flow, const struct flow_particles *particles,
-               const struct flow_springs *springs, struct cloth_error *error)
-{
-    uint32_t(*pairs)[2] = malloc((springs->n + 1) * sizeof *pairs);
-    if (!pairs)
-        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %zu springs", springs->n);
-    for (size_t i = 0; i < springs->n; i++) {
-        pairs[i][0] = springs->spring[i].a;
-        pairs[i][1] = springs->spring[i].b;
-    }
-    const int code = mesh_blocks_cut(&flow->blocks, particles->n, particles->used, springs->n,
-                                     pairs[0], flow->model->grain, error);
-    free(pairs);
-    return code;
-}
 
 static void describe_odd(char *text, size_t size, const char *what, const struct flow_odd *odd,
                          const char *effect)
@@ -74,37 +56,54 @@ static void warn(struct flow *flow, const struct flow_particles *particles)
                  "they move nothing");
 }
 
-static int build(struct flow *flow, const struct flow_particles *particles,
-                 const struct flow_springs *springs, int ranks, struct cloth_error *error)
+/* Keeps where the vertices are that no block has. */
+static int keep_rest(struct flow *flow, const struct flow_particles *particles,
+                     struct cloth_error *error)
 {
-    int code = cut(flow, particles, springs, error);
-    if (!code && (uint32_t)ranks > flow->blocks.n_blocks)
-        code = cloth_fail(error, CLOTH_E_INPUT,
-                          "%d ranks are more than there are blocks (%u): %u vertices at a grain of "
-                          "%u; start fewer ranks or give a smaller grain",
-                          ranks, flow->blocks.n_blocks, flow->blocks.n_places, flow->model->grain);
-    if (!code)
-        code = flow_tables_make(&flow->tables, particles, springs, &flow->blocks, flow->model->h,
-                                error);
-    flow->n_vertices = particles->n;
-    warn(flow, particles);
-    flow->start = aligned_alloc(sizeof *flow->start, particles->n * sizeof *flow->start);
-    if (!code && !flow->start)
-        code = cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %u vertices", particles->n);
-    if (!code)
-        memcpy(flow->start, particles->position, particles->n * sizeof *flow->start);
-    return code;
+    struct flow_rest *rest = &flow->rest;
+    const struct model *model = flow->model;
+    rest->vertex = cloth_alloc(particles->unused.n, sizeof *rest->vertex, error);
+    rest->position = cloth_alloc(particles->unused.n, sizeof *rest->position, error);
+    if (!rest->vertex || !rest->position)
+        return CLOTH_E_MEMORY;
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const struct mesh *mesh = &model->cloths[c].mesh;
+        for (uint32_t v = 0; v < mesh->n_vertices; v++) {
+            if (particles->used[first + v])
+                continue;
+            rest->vertex[rest->n] = first + v;
+            memcpy(rest->position[rest->n++], mesh->position + 3 * (size_t)v,
+                   sizeof *rest->position);
+        }
+        first += mesh->n_vertices;
+    }
+    return CLOTH_OK;
+}
+
+static int build(struct flow *flow, int ranks, struct cloth_error *error)
+{
+    const int code = flow_source_make(&flow->source, flow->model, ranks, error);
+    if (code)
+        return code;
+    flow->n_vertices = flow->source.particles.n;
+    flow->partition_hash = flow->source.blocks.hash;
+    warn(flow, &flow->source.particles);
+    return keep_rest(flow, &flow->source.particles, error);
+}
+
+int flow_join(struct flow **flow, struct cloth_error *error)
+{
+    *flow = calloc(1, sizeof **flow);
+    return *flow ? CLOTH_OK : cloth_fail(error, CLOTH_E_MEMORY, "out of memory");
 }
 
 int flow_prepare(struct flow **flow, const struct model *model, int ranks,
                  struct cloth_error *error)
 {
-    struct flow_particles particles = {0};
-    struct flow_springs springs = {0};
-    int code = CLOTH_OK;
-    *flow = calloc(1, sizeof **flow);
-    if (!*flow)
-        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory");
+    int code = flow_join(flow, error);
+    if (code)
+        return code;
     (*flow)->model = model;
     (*flow)->n_steps = (uint64_t)(model->end / model->h + 0.5);
     for (uint32_t c = 0; c < model->n_cloths; c++)
@@ -114,13 +113,7 @@ int flow_prepare(struct flow **flow, const struct model *model, int ranks,
                           "end / h makes %g steps; at most 4294967294 are possible",
                           model->end / model->h);
     if (!code)
-        code = flow_particles_make(&particles, model, error);
-    if (!code)
-        code = flow_springs_make(&springs, model, error);
-    if (!code)
-        code = build(*flow, &particles, &springs, ranks, error);
-    flow_particles_free(&particles);
-    flow_springs_free(&springs);
+        code = build(*flow, ranks, error);
     if (code) {
         flow_free(*flow);
         *flow = NULL;
@@ -132,9 +125,12 @@ void flow_free(struct flow *flow)
 {
     if (!flow)
         return;
-    mesh_blocks_free(&flow->blocks);
-    flow_tables_free(&flow->tables);
-    free(flow->start);
+    flow_source_free(&flow->source);
+    free(flow->tables.block);
+    free(flow->shared);
+    free(flow->vertex);
+    free(flow->rest.vertex);
+    free(flow->rest.position);
     free(flow);
 }
 
@@ -153,7 +149,28 @@ const char *flow_warning(const struct flow *flow, size_t i)
 
 /* ---- Running ---- */
 
-static int run_begin(struct flow_state *state)
+static void describe(const struct flow_state *state)
+{
+    const struct flow *flow = state->flow;
+    *state->report = (struct flow_report){.vertices = flow->n_vertices,
+                                          .triangles = flow->n_triangles,
+                                          .blocks = state->head.n_blocks,
+                                          .grain = flow->model->grain,
+                                          .partition_hash = flow->partition_hash};
+}
+
+/* Objects, then tables, which go where the objects are. */
+static int make(struct flow_state *state)
+{
+    flow_objects_make(state);
+    flow_parcels_make(state);
+    int code = flow_deal(state);
+    if (!code)
+        code = duite_count_all(state->rt, &state->before);
+    return code;
+}
+
+int flow_run_begin(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     flow->trouble = (struct cloth_error){0};
@@ -161,16 +178,24 @@ static int run_begin(struct flow_state *state)
     flow->frames = 0;
     flow->hash = 0;
     atomic_store(&flow->stop, 0);
-    const int code = flow_memory_take(state);
+    int code = flow_share_head(state);
     if (code)
         return code;
-    for (size_t v = 0; flow->room && v < flow->n_vertices; v++)
-        for (size_t c = 0; c < 3; c++)
-            flow->room[3 * v + c] = flow->start[v][c];
-    state->begun = true;
-    flow_objects_make(state);
-    if (flow->model->integrator == MODEL_EXPLICIT_EULER)
-        return DUITE_OK;
+    describe(state);
+    code = flow_memory_take(state);
+    if (!code)
+        code = flow_share(state);
+    if (!code)
+        code = make(state);
+    for (uint32_t i = 0; flow->room && i < flow->rest.n; i++)
+        memcpy(flow->room + 3 * (size_t)flow->rest.vertex[i], flow->rest.position[i],
+               sizeof flow->rest.position[i]);
+    state->begun = !code;
+    return code;
+}
+
+static int record(struct flow_state *state)
+{
     flow_far_make(state);
     return flow_cg_record(state);
 }
@@ -179,7 +204,9 @@ static int run_begin(struct flow_state *state)
 static int run_steps(struct flow_state *state)
 {
     const uint64_t n = state->flow->n_steps;
-    int code = flow_initialise(state);
+    int code = state->flow->model->integrator == MODEL_IMPLICIT_EULER ? record(state) : DUITE_OK;
+    if (!code)
+        code = flow_initialise(state);
     if (!code)
         code = flow_frames(state, 0);
     uint64_t step = 0;
@@ -246,15 +273,6 @@ static int explain(struct flow_state *state, int code)
                       (unsigned long long)state->report->last_frame);
 }
 
-static void describe(const struct flow *flow, struct flow_report *report)
-{
-    *report = (struct flow_report){.vertices = flow->n_vertices,
-                                   .triangles = flow->n_triangles,
-                                   .blocks = flow->blocks.n_blocks,
-                                   .grain = flow->model->grain,
-                                   .partition_hash = flow->blocks.hash};
-}
-
 int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
              const struct flow_progress *progress, struct flow_report *report,
              struct cloth_error *error)
@@ -265,9 +283,9 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
                                .progress = progress,
                                .report = report,
                                .error = error};
-    describe(flow, report);
+    *report = (struct flow_report){0};
+    int code = flow_run_begin(&state);
     const double start = flow_now();
-    int code = run_begin(&state);
     if (!code)
         code = run_steps(&state);
     if (!code)
@@ -276,12 +294,13 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
     if (!code)
         code = flow_finish(&state);
     int failed = code ? explain(&state, code) : CLOTH_OK;
-    const int unfreed = flow_objects_free(&state);
-    if (!failed && unfreed)
+    const int parcels = flow_parcels_free(&state), objects = flow_objects_free(&state);
+    if (!failed && (parcels || objects))
         failed = cloth_fail(error, CLOTH_E_LIBRARY, "%s", duite_message());
     duite_wait(rt);
-    report->simulated_seconds = (double)report->steps * flow->model->h;
-    if (flow->model->integrator == MODEL_EXPLICIT_EULER)
+    if (flow->model)
+        report->simulated_seconds = (double)report->steps * flow->model->h;
+    if (flow->model && flow->model->integrator == MODEL_EXPLICIT_EULER)
         report->momentum_lost = NAN;
     flow_memory_free(&state);
     flow->output = NULL;

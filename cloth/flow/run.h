@@ -13,7 +13,7 @@
 struct flow_report {
     uint64_t vertices, triangles, blocks, grain, partition_hash;
     uint64_t steps, frames, cg_iterations_total, cg_iterations_max;
-    double simulated_seconds, wall_seconds;
+    double simulated_seconds, wall_seconds; /* wall: from the first step on */
     double seconds_force, seconds_acceleration, seconds_matrix, seconds_cg, seconds_velocity,
         seconds_position, seconds_collide,
         seconds_output;   /* in task bodies, over all workers and ranks */
@@ -40,6 +40,9 @@ struct flow_output {
  * next one is under way. cg_iterations: of this step. May be NULL. */
 struct flow_progress {
     void *context;
+    /* The meshes of the model are not read any more: all blocks have their tables. Called once,
+     * before the first step. May be NULL. */
+    void (*dealt)(void *context);
     void (*step)(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations);
     /* Nonzero asks the run to finish its frame and stop. Asked on rank 0 after each step. May be
      * NULL. */
@@ -49,26 +52,31 @@ struct flow_progress {
 /* Kernels to list at duite_start, ended by NULL, and the context for duite_options.context. */
 const duite_kernel *const *flow_kernels(void);
 
-struct flow; /* a model made ready: blocks, springs, objects */
+struct flow; /* a model made ready, or room for one */
 
-/* Cuts the model into blocks and prepares the tables that do not change. No runtime needed. Checks
- * what a scene alone cannot: pins inside the mesh, masses, lengths of springs, starts out of
- * bounds, more ranks than blocks; errors begin with the place that the model gives. The model must
- * outlive the flow. Local, the same result on every rank. */
+/* On rank 0 of the run: cuts the model into blocks and makes ready what the tables are made from.
+ * No runtime needed. Checks what a scene alone cannot: pins inside the mesh, masses, lengths of
+ * springs, starts out of bounds, more ranks than blocks; errors begin with the place that the model
+ * gives. The model must outlive the flow, its meshes until flow_progress.dealt is called. Local. */
 int flow_prepare(struct flow **flow, const struct model *model, int ranks,
                  struct cloth_error *error);
 
-/* Runs it to the end on a runtime that was started with flow_kernels() and `flow` as its context.
- * Collective, the same result on every rank. On failure `report` still says how many steps were
- * done and which frame was written last. Errors: CLOTH_E_RUN (diverged; a matrix that is not
- * positive definite; a solve that needs more than max_iterations), CLOTH_E_IO (a frame was not
- * written), CLOTH_E_MEMORY, CLOTH_E_LIBRARY; CLOTH_E_LOST, which other ranks need not get: MPI may
- * not be called any more. A flow may run again. */
+/* On the other ranks, which know no model: what they need rank 0 sends them in flow_run. Error:
+ * CLOTH_E_MEMORY. Local. */
+int flow_join(struct flow **flow, struct cloth_error *error);
+
+/* Runs it to the end on a runtime that was started with flow_kernels() and `flow` as its context;
+ * `output` is given on all ranks or on none. First the tables of the blocks go to the ranks that
+ * keep them: a flow runs once. Collective, the same result on every rank. On failure `report` still
+ * says how many steps were done and which frame was written last. Errors: CLOTH_E_RUN (diverged; a
+ * matrix that is not positive definite; a solve that needs more than max_iterations), CLOTH_E_IO (a
+ * frame was not written), CLOTH_E_MEMORY (of any rank), CLOTH_E_LIBRARY; CLOTH_E_LOST, which other
+ * ranks need not get: MPI may not be called any more. */
 int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
              const struct flow_progress *progress, struct flow_report *report,
              struct cloth_error *error);
 
-/* Vertices of all cloths together. Local. */
+/* Vertices of all cloths together; 0 where a flow only joined and has not run. Local. */
 uint64_t flow_vertices(const struct flow *flow);
 
 /* What is odd about the model but no error: sentence i, counted from 0, with its place; NULL: there

@@ -1,5 +1,5 @@
 /* Nodes are the used vertices by rising number; parts hold nodes, blocks are the parts in order.
- * Every step has one outcome, so that all ranks, which cut for themselves, get the same blocks. */
+ * Every step has one outcome, so that a scene has the same blocks wherever it is cut. */
 #include "cloth/mesh/blocks.h"
 
 #include "cloth/base/memory.h"
@@ -12,8 +12,7 @@
 
 struct cutter {
     struct cloth_error *error;
-    struct mesh_blocks
-        *blocks; /* until set_places: place[] is the node of a vertex, vertex[] its reverse */
+    struct mesh_blocks *blocks; /* until set_places: place[] is the node of a vertex */
     struct mesh_graph graph;
     struct mesh_order *order;
     uint32_t *part;  /* of each node */
@@ -38,29 +37,9 @@ static int number_nodes(struct cutter *cutter, uint32_t n_vertices, const unsign
         return CLOTH_E_MEMORY;
     for (uint32_t v = 0, node = 0; v < n_vertices; v++) {
         blocks->place[v] = used[v] ? node : MESH_NO_PLACE;
-        if (used[v])
-            blocks->vertex[node++] = v;
+        node += used[v] ? 1 : 0;
     }
     return CLOTH_OK;
-}
-
-static int build_graph(struct cutter *cutter, size_t n_pairs, const uint32_t *pairs)
-{
-    const struct mesh_blocks *blocks = cutter->blocks;
-    uint32_t *joined = cloth_alloc(n_pairs, 2 * sizeof *joined, cutter->error);
-    int code = joined ? CLOTH_OK : CLOTH_E_MEMORY;
-    for (size_t i = 0; i < 2 * n_pairs && !code; i++) {
-        uint32_t v = pairs[i];
-        joined[i] = v < blocks->n_vertices ? blocks->place[v] : MESH_NO_PLACE;
-        if (joined[i] == MESH_NO_PLACE)
-            code = cloth_fail(cutter->error, CLOTH_E_INPUT,
-                              "pair %zu joins vertex %u, which is not one of the used vertices",
-                              i / 2, v);
-    }
-    if (!code)
-        code = mesh_graph_build(&cutter->graph, blocks->n_places, n_pairs, joined, cutter->error);
-    free(joined);
-    return code;
 }
 
 /* Brings the nodes of each part together, by rising number; start[] says where. Whether all parts
@@ -135,10 +114,12 @@ static int cut(struct cutter *cutter)
 static void set_places(struct cutter *cutter)
 {
     struct mesh_blocks *blocks = cutter->blocks;
-    for (uint32_t i = 0; i < blocks->n_places; i++) /* part is not needed any more */
-        cutter->part[i] = blocks->vertex[cutter->nodes[i]];
+    uint32_t *vertex = cutter->part; /* of a node: parts are not needed any more */
+    for (uint32_t v = 0; v < blocks->n_vertices; v++)
+        if (blocks->place[v] != MESH_NO_PLACE)
+            vertex[blocks->place[v]] = v;
     for (uint32_t i = 0; i < blocks->n_places; i++) {
-        blocks->vertex[i] = cutter->part[i];
+        blocks->vertex[i] = vertex[cutter->nodes[i]];
         blocks->place[blocks->vertex[i]] = i;
     }
 }
@@ -167,8 +148,7 @@ static int set_hash(struct cutter *cutter)
 }
 
 int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsigned char *used,
-                    size_t n_pairs, const uint32_t *pairs, uint32_t grain,
-                    struct cloth_error *error)
+                    const struct mesh_pairs *pairs, uint32_t grain, struct cloth_error *error)
 {
     struct cutter cutter = {.error = error, .blocks = blocks};
     *blocks = (struct mesh_blocks){0};
@@ -176,9 +156,11 @@ int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsig
         return cloth_fail(error, CLOTH_E_INPUT, "a grain of 0 vertices; it must be at least 1");
     int code = number_nodes(&cutter, n_vertices, used, grain);
     if (!code)
-        code = build_graph(&cutter, n_pairs, pairs);
+        code = mesh_graph_build(&cutter.graph, blocks->n_places, n_vertices, blocks->place, pairs,
+                                error);
     if (!code)
         code = cut(&cutter);
+    mesh_graph_free(&cutter.graph);
     if (!code) {
         set_places(&cutter);
         code = set_hash(&cutter);
@@ -186,7 +168,6 @@ int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsig
     if (code)
         mesh_blocks_free(blocks);
     mesh_order_free(cutter.order);
-    mesh_graph_free(&cutter.graph);
     free(cutter.part);
     free(cutter.nodes);
     return code;

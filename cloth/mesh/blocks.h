@@ -24,16 +24,22 @@ struct mesh_blocks {
     uint64_t hash;    /* XXH64 of n_blocks, start and vertex as little-endian 32-bit numbers */
 };
 
-/* pairs: n_pairs x 2, the vertices that springs or elements join (any order, repeats allowed);
- * used: one byte a vertex. grain >= 1; the number of blocks is ceil(used vertices / grain), and no
+/* Who is joined to whom by springs or elements, told pair by pair: `each` calls visit(to, a, b) for
+ * every pair, the same pairs in the same order each time (any order, repeats allowed). So nobody
+ * has to store them. */
+struct mesh_pairs {
+    const void *context;
+    void (*each)(const void *context, void (*visit)(void *to, uint32_t a, uint32_t b), void *to);
+};
+
+/* used: one byte a vertex. grain >= 1; the number of blocks is ceil(used vertices / grain), and no
  * block is empty: where METIS leaves some empty, the largest others are split along their inner
  * order. Without any pairs, blocks are runs of vertices by number. Errors: CLOTH_E_INPUT (grain 0,
  * a pair with a vertex that is not used), CLOTH_E_LIBRARY (METIS failed), CLOTH_E_MEMORY. Local,
  * the same result everywhere. Not by two threads at once: METIS seeds and draws from the C
  * library's random numbers. */
 int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsigned char *used,
-                    size_t n_pairs, const uint32_t *pairs, uint32_t grain,
-                    struct cloth_error *error);
+                    const struct mesh_pairs *pairs, uint32_t grain, struct cloth_error *error);
 void mesh_blocks_free(struct mesh_blocks *blocks);
 
 #endif

@@ -17,7 +17,8 @@ static struct mesh_edge make_edge(const struct mesh *mesh, const struct mesh_sid
         uint32_t side = sides->order[i], t = side / 3;
         if (t >= mesh->n_triangles)
             break;
-        const uint32_t *corner = mesh->triangle + 3 * (size_t)t;
+        uint32_t corner[3];
+        mesh_corners(mesh, t, corner);
         edge.opposite[n++] = corner[(side % 3 + 2) % 3];
         edge.area += mesh_area(mesh->position, corner);
     }

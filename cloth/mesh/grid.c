@@ -1,5 +1,5 @@
 /* A grid's numbering is a promise that hashes rest on: row-major, u fastest, two triangles a cell
- * in cell order. */
+ * in cell order, so that only its positions need to be stored. */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/finish.h"
 #include "cloth/mesh/mesh.h"
@@ -25,22 +25,14 @@ static int check_size(double width, double height, uint32_t nx, uint32_t ny,
     return CLOTH_OK;
 }
 
-static int make_arrays(struct mesh *mesh, uint32_t nx, uint32_t ny, struct cloth_error *error)
+static int make(struct mesh *mesh, uint32_t nx, uint32_t ny, struct cloth_error *error)
 {
     mesh->grid_nx = nx;
     mesh->grid_ny = ny;
     mesh->n_vertices = nx * ny;
     mesh->n_faces = mesh->n_triangles = 2 * (nx - 1) * (ny - 1);
     mesh->position = cloth_alloc(mesh->n_vertices, 3 * sizeof(double), error);
-    mesh->uv = cloth_alloc(mesh->n_vertices, 2 * sizeof(double), error);
-    mesh->face_start = cloth_alloc((size_t)mesh->n_faces + 1, sizeof(uint32_t), error);
-    mesh->face_corner = cloth_alloc(mesh->n_faces, 3 * sizeof(uint32_t), error);
-    mesh->triangle = cloth_alloc(mesh->n_faces, 3 * sizeof(uint32_t), error);
-    mesh->lone_edge = cloth_alloc(0, sizeof(uint32_t), error);
-    return mesh->position && mesh->uv && mesh->face_start && mesh->face_corner && mesh->triangle &&
-                   mesh->lone_edge
-               ? CLOTH_OK
-               : CLOTH_E_MEMORY;
+    return mesh->position ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
 /* Of the i-th of n points that divide a length centred on 0: x(n - 1 - i) = -x(i) to the last bit.
@@ -50,36 +42,17 @@ static double centred(double length, uint32_t i, uint32_t n)
     return length * (2.0 * i - (n - 1.0)) / (2.0 * (n - 1.0));
 }
 
-static void place_vertices(struct mesh *mesh, double width, double height)
+static void place_vertices(struct mesh *mesh)
 {
     uint32_t nx = mesh->grid_nx, ny = mesh->grid_ny;
-    double *x = mesh->position, *uv = mesh->uv;
+    double *x = mesh->position;
     for (uint32_t j = 0; j < ny; j++) {
         for (uint32_t i = 0; i < nx; i++) {
-            *x++ = centred(width, i, nx);
+            *x++ = centred(mesh->grid_width, i, nx);
             *x++ = 0;
-            *x++ = centred(height, j, ny);
-            *uv++ = width * i / (nx - 1.0);
-            *uv++ = height * j / (ny - 1.0);
+            *x++ = centred(mesh->grid_height, j, ny);
         }
     }
-}
-
-/* Wound so that the normals are +y. */
-static void make_faces(struct mesh *mesh)
-{
-    uint32_t nx = mesh->grid_nx, *corner = mesh->face_corner;
-    for (uint32_t j = 0; j + 1 < mesh->grid_ny; j++) {
-        for (uint32_t i = 0; i + 1 < nx; i++) {
-            uint32_t v = j * nx + i;
-            uint32_t cell[6] = {v, v + nx, v + nx + 1, v, v + nx + 1, v + 1};
-            memcpy(corner, cell, sizeof cell);
-            corner += 6;
-        }
-    }
-    memcpy(mesh->triangle, mesh->face_corner, 3 * (size_t)mesh->n_faces * sizeof(uint32_t));
-    for (uint32_t f = 0; f <= mesh->n_faces; f++)
-        mesh->face_start[f] = 3 * f;
 }
 
 int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint32_t ny,
@@ -88,12 +61,55 @@ int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint3
     *mesh = (struct mesh){0};
     int code = check_size(width, height, nx, ny, error);
     if (!code)
-        code = make_arrays(mesh, nx, ny, error);
+        code = make(mesh, nx, ny, error);
     if (code) {
         mesh_free(mesh);
         return code;
     }
-    place_vertices(mesh, width, height);
-    make_faces(mesh);
+    mesh->grid_width = width;
+    mesh->grid_height = height;
+    place_vertices(mesh);
     return CLOTH_OK;
+}
+
+/* Wound so that the normals are +y. */
+static void grid_corners(const struct mesh *mesh, uint32_t t, uint32_t corner[3])
+{
+    const uint32_t nx = mesh->grid_nx, cell = t / 2;
+    const uint32_t v = cell / (nx - 1) * nx + cell % (nx - 1);
+    corner[0] = v;
+    corner[1] = t % 2 ? v + nx + 1 : v + nx;
+    corner[2] = t % 2 ? v + 1 : v + nx + 1;
+}
+
+void mesh_corners(const struct mesh *mesh, uint32_t t, uint32_t corner[3])
+{
+    if (mesh->grid_nx)
+        grid_corners(mesh, t, corner);
+    else
+        memcpy(corner, mesh->triangle + 3 * (size_t)t, 3 * sizeof *corner);
+}
+
+uint32_t mesh_face(const struct mesh *mesh, uint32_t f, uint32_t room[3], const uint32_t **corner)
+{
+    *corner = room;
+    if (mesh->grid_nx) {
+        grid_corners(mesh, f, room);
+        return 3;
+    }
+    *corner = mesh->face_corner + mesh->face_start[f];
+    return mesh->face_start[f + 1] - mesh->face_start[f];
+}
+
+int mesh_uv(const struct mesh *mesh, uint32_t v, double uv[2])
+{
+    const uint32_t nx = mesh->grid_nx, ny = mesh->grid_ny;
+    if (nx) {
+        uv[0] = mesh->grid_width * (v % nx) / (nx - 1.0);
+        uv[1] = mesh->grid_height * (v / nx) / (ny - 1.0);
+        return 1;
+    }
+    if (mesh->uv)
+        memcpy(uv, mesh->uv + 2 * (size_t)v, 2 * sizeof *uv);
+    return mesh->uv != NULL;
 }

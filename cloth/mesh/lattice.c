@@ -1,5 +1,5 @@
-/* Springs stand sorted by (a, b); of those that join the same vertices, stretch comes before bend.
- */
+/* Springs come sorted by (a, b); of those that join the same vertices, stretch comes before bend. A
+ * grid's do so by themselves. */
 #include "cloth/mesh/lattice.h"
 
 #include "cloth/base/memory.h"
@@ -9,11 +9,45 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Makes springs and hands each to `take`, which may fail. */
 struct builder {
     const struct mesh *mesh;
+    const struct mesh_moduli *moduli;
     struct cloth_error *error;
-    struct cloth_list springs;
+    int (*take)(struct builder *builder, const struct mesh_spring *spring);
+    uint32_t n;
+    struct cloth_list springs; /* of `append` */
+    void (*visit)(void *to, const struct mesh_spring *spring);
+    void *to;
 };
+
+static int count(struct builder *builder, const struct mesh_spring *spring)
+{
+    (void)spring;
+    if (builder->n == UINT32_MAX)
+        return cloth_fail(builder->error, CLOTH_E_INPUT,
+                          "the mesh has more than %u springs; use a coarser one", UINT32_MAX);
+    builder->n++;
+    return CLOTH_OK;
+}
+
+static int append(struct builder *builder, const struct mesh_spring *spring)
+{
+    const int code = count(builder, spring);
+    if (code)
+        return code;
+    struct mesh_spring *to = cloth_list_add(&builder->springs, sizeof *to, 1, builder->error);
+    if (!to)
+        return CLOTH_E_MEMORY;
+    *to = *spring;
+    return CLOTH_OK;
+}
+
+static int show(struct builder *builder, const struct mesh_spring *spring)
+{
+    builder->visit(builder->to, spring);
+    return CLOTH_OK;
+}
 
 static int check_length(const struct builder *builder, uint32_t a, uint32_t b, double length)
 {
@@ -41,23 +75,16 @@ static int add(struct builder *builder, uint32_t a, uint32_t b, enum mesh_spring
                           "the spring between vertices %u and %u (counted from 0) has a stiffness "
                           "of %g N/m; it must be finite",
                           a, b, stiffness);
-    if (builder->springs.n == UINT32_MAX)
-        return cloth_fail(builder->error, CLOTH_E_INPUT,
-                          "the mesh has more than %u springs; use a coarser one", UINT32_MAX);
-    struct mesh_spring *spring =
-        cloth_list_add(&builder->springs, sizeof *spring, 1, builder->error);
-    if (!spring)
-        return CLOTH_E_MEMORY;
-    *spring = (struct mesh_spring){a < b ? a : b, a < b ? b : a, stiffness, length, kind};
-    return CLOTH_OK;
+    const struct mesh_spring spring = {a < b ? a : b, a < b ? b : a, stiffness, length, kind};
+    return builder->take(builder, &spring);
 }
 
 enum { NO_AREA = -1 };
 
 /* The springs of a grid's vertex (i, j) to later vertices, nearest number first. */
-static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j,
-                           const struct mesh_moduli *moduli)
+static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j)
 {
+    const struct mesh_moduli *moduli = builder->moduli;
     uint32_t nx = builder->mesh->grid_nx, ny = builder->mesh->grid_ny, a = j * nx + i;
     double along = j == 0 || j == ny - 1 ? 0.5 : 1; /* half where the row is the border */
     double across = i == 0 || i == nx - 1 ? 0.5 : 1;
@@ -85,19 +112,19 @@ static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j,
     return CLOTH_OK;
 }
 
-static int add_grid(struct builder *builder, const struct mesh_moduli *moduli)
+static int add_grid(struct builder *builder)
 {
     int code = CLOTH_OK;
     for (uint32_t j = 0; j < builder->mesh->grid_ny && !code; j++)
         for (uint32_t i = 0; i < builder->mesh->grid_nx && !code; i++)
-            code = add_grid_vertex(builder, i, j, moduli);
+            code = add_grid_vertex(builder, i, j);
     return code;
 }
 
 /* All stretch springs, then all bend springs, each in edge order. */
-static int add_edges(struct builder *builder, const struct mesh_edges *edges,
-                     const struct mesh_moduli *moduli)
+static int add_edges(struct builder *builder, const struct mesh_edges *edges)
 {
+    const struct mesh_moduli *moduli = builder->moduli;
     int code = CLOTH_OK;
     for (uint32_t e = 0; e < edges->n && !code; e++) {
         const struct mesh_edge *edge = &edges->edge[e];
@@ -132,34 +159,47 @@ static int sort(struct mesh_lattice *lattice, const struct builder *builder)
         goto done;
     for (size_t s = 0; s < n; s++)
         lattice->spring[s] = spring[order[s]];
-    lattice->n = (uint32_t)n;
 done:
     free(pair);
     free(order);
     return code;
 }
 
+static int build_edges(struct mesh_lattice *lattice, struct builder *builder)
+{
+    struct mesh_edges edges = {0};
+    builder->take = append;
+    int code = mesh_edges_find(&edges, builder->mesh, builder->error);
+    if (!code)
+        code = add_edges(builder, &edges);
+    mesh_edges_free(&edges);
+    if (!code)
+        code = sort(lattice, builder);
+    free(builder->springs.items);
+    return code;
+}
+
 int mesh_lattice_build(struct mesh_lattice *lattice, const struct mesh *mesh,
                        const struct mesh_moduli *moduli, struct cloth_error *error)
 {
-    struct builder builder = {.mesh = mesh, .error = error};
-    struct mesh_edges edges = {0};
-    int code = CLOTH_OK;
-    *lattice = (struct mesh_lattice){0};
-    if (mesh->grid_nx) {
-        code = add_grid(&builder, moduli);
-    } else {
-        code = mesh_edges_find(&edges, mesh, error);
-        if (!code)
-            code = add_edges(&builder, &edges, moduli);
-    }
-    if (!code)
-        code = sort(lattice, &builder);
+    struct builder builder = {.mesh = mesh, .moduli = moduli, .error = error, .take = count};
+    *lattice = (struct mesh_lattice){.mesh = mesh, .moduli = *moduli};
+    const int code = mesh->grid_nx ? add_grid(&builder) : build_edges(lattice, &builder);
+    lattice->n = builder.n;
     if (code)
         mesh_lattice_free(lattice);
-    mesh_edges_free(&edges);
-    free(builder.springs.items);
     return code;
+}
+
+void mesh_lattice_each(const struct mesh_lattice *lattice,
+                       void (*visit)(void *to, const struct mesh_spring *spring), void *to)
+{
+    struct builder builder = {
+        .mesh = lattice->mesh, .moduli = &lattice->moduli, .take = show, .visit = visit, .to = to};
+    if (lattice->mesh && lattice->mesh->grid_nx)
+        add_grid(&builder); /* built once without a failure */
+    for (uint32_t s = 0; lattice->spring && s < lattice->n; s++)
+        visit(to, lattice->spring + s);
 }
 
 void mesh_lattice_free(struct mesh_lattice *lattice)

@@ -26,15 +26,22 @@ struct mesh_moduli {
     int both_diagonals;          /* grids only */
 };
 
+/* To be gone through in order, as often as wanted. The springs of a grid are made as they are
+ * visited, those of other meshes are stored. The mesh must outlive it. */
 struct mesh_lattice {
+    const struct mesh *mesh;
+    struct mesh_moduli moduli;
     uint32_t n;
-    struct mesh_spring *spring;
+    struct mesh_spring *spring; /* n; NULL: a grid */
 };
 
 /* Errors: CLOTH_E_INPUT for a spring whose length is zero or whose length or stiffness is not
  * finite (names its vertices), CLOTH_E_MEMORY. Local. */
 int mesh_lattice_build(struct mesh_lattice *lattice, const struct mesh *mesh,
                        const struct mesh_moduli *moduli, struct cloth_error *error);
+/* Calls visit(to, spring) for each spring. Local. */
+void mesh_lattice_each(const struct mesh_lattice *lattice,
+                       void (*visit)(void *to, const struct mesh_spring *spring), void *to);
 void mesh_lattice_free(struct mesh_lattice *lattice);
 
 #endif

@@ -51,16 +51,21 @@ void mesh_apply(struct mesh *mesh, const struct mesh_transform *transform)
 void mesh_used(const struct mesh *mesh, unsigned char *used)
 {
     memset(used, 0, mesh->n_vertices);
-    for (size_t i = 0; i < 3 * (size_t)mesh->n_triangles; i++)
-        used[mesh->triangle[i]] = 1;
+    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
+        uint32_t corner[3];
+        mesh_corners(mesh, t, corner);
+        for (size_t i = 0; i < 3; i++)
+            used[corner[i]] = 1;
+    }
     for (size_t i = 0; i < 2 * (size_t)mesh->n_lone_edges; i++)
         used[mesh->lone_edge[i]] = 1;
 }
 
 void mesh_add_mass(const struct mesh *mesh, double density, double *mass)
 {
-    for (size_t t = 0; t < mesh->n_triangles; t++) {
-        const uint32_t *corner = mesh->triangle + 3 * t;
+    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
+        uint32_t corner[3];
+        mesh_corners(mesh, t, corner);
         double third = mesh_area(mesh->position, corner) * density / 3;
         for (size_t i = 0; i < 3; i++)
             mass[corner[i]] += third;

@@ -7,8 +7,9 @@
 #include <stdint.h>
 
 /* A mesh as it was given: vertices, polygons in the input's order and numbering, their triangles,
- * and edges that were given without triangles (chains). All arrays belong to the mesh. Local
- * functions. */
+ * and edges that were given without triangles (chains). All arrays belong to the mesh. Of a grid
+ * only the positions are stored: faces, triangles and uv are asked for with mesh_face, mesh_corners
+ * and mesh_uv, which know every mesh. Local functions. */
 struct mesh {
     uint32_t n_vertices;
     double *position; /* n_vertices x 3, metres */
@@ -25,7 +26,8 @@ struct mesh {
     uint32_t n_lone_edges;
     uint32_t *lone_edge; /* n_lone_edges x 2: edges given without triangles */
 
-    uint32_t grid_nx, grid_ny; /* vertices in u and v of a grid; 0: not a grid */
+    uint32_t grid_nx, grid_ny;      /* vertices in u and v of a grid; 0: not a grid */
+    double grid_width, grid_height; /* m, before any transform */
 };
 
 /* A flat sheet in the x-z plane (y = 0, +y its normal's side), width along x (u), height along z
@@ -64,6 +66,15 @@ void mesh_apply(struct mesh *mesh, const struct mesh_transform *transform);
 
 /* One byte a vertex, 1 if a face or a lone edge uses it. used: n_vertices bytes of the caller. */
 void mesh_used(const struct mesh *mesh, unsigned char *used);
+
+/* The corners of triangle t. */
+void mesh_corners(const struct mesh *mesh, uint32_t t, uint32_t corner[3]);
+
+/* How many corners face f has; *corner: these, in the mesh or in `room`. */
+uint32_t mesh_face(const struct mesh *mesh, uint32_t f, uint32_t room[3], const uint32_t **corner);
+
+/* The uv of a vertex; 0 if the mesh has none. */
+int mesh_uv(const struct mesh *mesh, uint32_t v, double uv[2]);
 
 /* Frees what the mesh owns and clears it; a zeroed mesh is fine. */
 void mesh_free(struct mesh *mesh);

@@ -16,8 +16,7 @@ struct scene_set {
  * document. Mesh files are looked up relative to the scene's folder. Unknown keys and impossible
  * values are CLOTH_E_INPUT errors "file:line:column: what is wrong; what is allowed"; where the
  * value came by a set the error names the option instead. The model belongs to the caller
- * (model_free), also after an error. Local: every rank reads the same file, the same result and the
- * same error everywhere. */
+ * (model_free), also after an error. Local. */
 int scene_read(struct model *model, const char *path, size_t n_sets, const struct scene_set *sets,
                struct cloth_error *error);
 

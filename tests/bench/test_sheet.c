@@ -60,7 +60,7 @@ START_TEST(the_residual_is_what_is_left)
     ck_assert_uint_gt(tables->n_blocks, 8);
     for (uint32_t b = 0; b < tables->n_blocks; b++)
         sheet_start(s, b);
-    for (uint32_t i = 0; i < s->flow->blocks.n_places; i++)
+    for (uint32_t i = 0; i < s->source.blocks.n_places; i++)
         s->q[i] = -s->answer[i]; /* r = p = dv after the first pass */
     for (uint32_t b = 0; b < tables->n_blocks; b++) {
         const struct flow_table *t = tables->block + b;
@@ -71,10 +71,13 @@ START_TEST(the_residual_is_what_is_left)
         double dots[SOLVE_DOTS];
         sheet_pass(s, b, &scalars, 0, dots);
     }
-    for (uint32_t i = 0; i < s->flow->blocks.n_places; i++) {
-        const phys_vec b = tables->free[i] * s->b[i], left = b - s->q[i];
-        square += phys_dot(&left, &left);
-        start += phys_dot(&b, &b);
+    for (uint32_t k = 0; k < tables->n_blocks; k++) {
+        const struct flow_table *t = tables->block + k;
+        for (uint32_t i = 0; i < t->n; i++) {
+            const phys_vec b = t->free[i] * s->b[t->first + i], left = b - s->q[t->first + i];
+            square += phys_dot(&left, &left);
+            start += phys_dot(&b, &b);
+        }
     }
     ck_assert_double_eq_tol(square, s->square, 1e-9 * start);
     ck_assert_double_lt(square, 0.3 * start);

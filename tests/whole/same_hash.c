@@ -50,7 +50,9 @@ static uint64_t run(const struct model *model, const struct config *config, cons
     struct flow *flow;
     struct flow_report report = {0};
     duite *rt;
-    if (flow_prepare(&flow, model, config->ranks, error))
+    int rank;
+    MPI_Comm_rank(comm, &rank);
+    if (rank ? flow_join(&flow, error) : flow_prepare(&flow, model, config->ranks, error))
         return 0;
     duite_options options = options_of(config, flow, comm);
     options.balance = duite_balancer_find(balance);

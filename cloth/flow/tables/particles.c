@@ -1,7 +1,8 @@
 /* Particles carry what a vertex is on its own: mass, drag, load, whether a pin holds it. Vertices
  * that no face or edge uses stay where they are, at rest, and are never asked for a mass. */
-#include "cloth/flow/tables/tables.h"
+#include "cloth/flow/tables/source.h"
 
+#include "cloth/base/memory.h"
 #include "cloth/physics/particle.h"
 
 #include <stdlib.h>
@@ -25,11 +26,9 @@ static void note(struct flow_odd *odd, const struct model_cloth *cloth, uint32_t
         *odd = (struct flow_odd){1, vertex, cloth, place};
 }
 
-static int hold(struct flow_particles *p, uint32_t vertex)
+PHYS_INLINE void to_vector(const double *x, phys_vec *y)
 {
-    p->free[vertex] = 0;
-    p->velocity[vertex] = (phys_vec){0};
-    return CLOTH_OK;
+    *y = (phys_vec){x[0], x[1], x[2], 0};
 }
 
 static int pin_vertices(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
@@ -40,7 +39,7 @@ static int pin_vertices(struct flow_particles *p, uint32_t first, const struct m
             return outside(cloth, "a pin", pin->vertices[i], pin->place, error);
         if (!p->used[first + pin->vertices[i]] && p->free[first + pin->vertices[i]] != 0)
             note(&p->pinned, cloth, pin->vertices[i], pin->place);
-        hold(p, first + pin->vertices[i]);
+        p->free[first + pin->vertices[i]] = 0;
     }
     return CLOTH_OK;
 }
@@ -49,13 +48,16 @@ static int pin_vertices(struct flow_particles *p, uint32_t first, const struct m
 static int pin_nearest(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
                        const struct model_pin *pin, struct cloth_error *error)
 {
-    const phys_vec point = {pin->point[0], pin->point[1], pin->point[2], 0};
+    phys_vec point;
+    to_vector(pin->point, &point);
     uint32_t best = UINT32_MAX;
     double least = 0;
-    for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
-        const phys_vec d = p->position[v] - point;
+    for (uint32_t v = 0; v < cloth->mesh.n_vertices; v++) {
+        phys_vec d;
+        to_vector(cloth->mesh.position + 3 * (size_t)v, &d);
+        d -= point;
         const double distance = phys_dot(&d, &d);
-        if (p->used[v] && (best == UINT32_MAX || distance < least)) {
+        if (p->used[first + v] && (best == UINT32_MAX || distance < least)) {
             best = v;
             least = distance;
         }
@@ -63,22 +65,24 @@ static int pin_nearest(struct flow_particles *p, uint32_t first, const struct mo
     if (best == UINT32_MAX)
         return model_fail(pin->place, error,
                           "cloth '%.60s' has a pin but neither a face nor an edge", cloth->name);
-    return hold(p, best);
+    p->free[first + best] = 0;
+    return CLOTH_OK;
 }
 
 static int pin_box(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
                    const struct model_pin *pin, struct cloth_error *error)
 {
     uint32_t inside = 0;
-    for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
-        int in = p->used[v];
-        for (int c = 0; c < 3; c++) { /* any two opposite corners */
-            const double x = p->position[v][c], from = pin->box[0][c], to = pin->box[1][c];
+    for (uint32_t v = 0; v < cloth->mesh.n_vertices; v++) {
+        int in = p->used[first + v];
+        for (size_t c = 0; c < 3; c++) { /* any two opposite corners */
+            const double x = cloth->mesh.position[3 * (size_t)v + c], from = pin->box[0][c],
+                         to = pin->box[1][c];
             in = in && ((x >= from && x <= to) || (x <= from && x >= to));
         }
         if (!in)
             continue;
-        hold(p, v);
+        p->free[first + v] = 0;
         inside++;
     }
     if (!inside)
@@ -118,7 +122,8 @@ static int loads(struct flow_particles *p, uint32_t first, const struct model_cl
 {
     for (uint32_t i = 0; i < cloth->n_loads; i++) {
         const struct model_load *load = cloth->loads + i;
-        const phys_vec force = {load->force[0], load->force[1], load->force[2], 0};
+        phys_vec force;
+        to_vector(load->force, &force);
         for (uint32_t j = 0; j < load->n_vertices; j++) {
             if (load->vertices[j] >= cloth->mesh.n_vertices)
                 return outside(cloth, "a load", load->vertices[j], load->place, error);
@@ -130,12 +135,12 @@ static int loads(struct flow_particles *p, uint32_t first, const struct model_cl
     return CLOTH_OK;
 }
 
-/* Mass, drag and gravity of the vertices of one cloth. */
 static int masses(struct flow_particles *p, uint32_t first, const struct model *model,
                   const struct model_cloth *cloth, struct cloth_error *error)
 {
     const struct model_material *material = model->materials + cloth->material;
-    const phys_vec gravity = {model->gravity[0], model->gravity[1], model->gravity[2], 0};
+    phys_vec gravity;
+    to_vector(model->gravity, &gravity);
     if (!(cloth->mass_per_vertex > 0))
         mesh_add_mass(&cloth->mesh, material->density, p->mass + first);
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
@@ -152,26 +157,28 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
                               "vertex %u of cloth '%.60s' has no mass: its triangles have no area, "
                               "or it has edges only; give mass_per_vertex",
                               i, cloth->name);
-        p->drag[v] = material->damping_viscous + material->damping_mass * p->mass[v];
-        p->load[v] = p->mass[v] * gravity;
+        if (p->load)
+            p->load[v] = p->mass[v] * gravity;
     }
     return CLOTH_OK;
 }
 
 /* A start that a run would take for divergence. */
-static int check_start(const struct flow_particles *p, uint32_t first,
-                       const struct model_cloth *cloth, struct cloth_error *error)
+static int check_start(const struct model_cloth *cloth, struct cloth_error *error)
 {
-    const phys_vec *x = p->position + first;
-    const double *v = cloth->velocity;
-    const size_t bad = phys_diverged(cloth->mesh.n_vertices, FLOW_BOUND, x);
-    if (bad < cloth->mesh.n_vertices)
-        return model_fail(cloth->mesh_place, error,
-                          "vertex %zu of cloth '%.60s' starts at (%g, %g, %g) m, after the "
-                          "transform; less than %g m from the origin along each axis is expected",
-                          bad, cloth->name, x[bad][0], x[bad][1], x[bad][2], FLOW_BOUND);
-    const phys_vec velocity = {v[0], v[1], v[2], 0};
-    if (phys_diverged(1, FLOW_BOUND, &velocity) == 0)
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
+        phys_vec x;
+        to_vector(cloth->mesh.position + 3 * (size_t)i, &x);
+        if (phys_diverged(1, FLOW_BOUND, &x) == 0)
+            return model_fail(
+                cloth->mesh_place, error,
+                "vertex %u of cloth '%.60s' starts at (%g, %g, %g) m, after the "
+                "transform; less than %g m from the origin along each axis is expected",
+                i, cloth->name, x[0], x[1], x[2], FLOW_BOUND);
+    }
+    phys_vec v;
+    to_vector(cloth->velocity, &v);
+    if (phys_diverged(1, FLOW_BOUND, &v) == 0)
         return model_fail(cloth->velocity_place, error,
                           "cloth '%.60s' starts with the velocity (%g, %g, %g) m/s; less than %g "
                           "m/s along each axis is expected",
@@ -184,15 +191,11 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
 {
     mesh_used(&cloth->mesh, p->used + first);
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
-        const double *x = cloth->mesh.position + 3 * (size_t)i, *v = cloth->velocity;
-        p->position[first + i] = (phys_vec){x[0], x[1], x[2], 0};
         p->free[first + i] = 1;
-        if (p->used[first + i])
-            p->velocity[first + i] = (phys_vec){v[0], v[1], v[2], 0};
-        else
+        if (!p->used[first + i])
             note(&p->unused, cloth, i, cloth->mesh_place);
     }
-    int code = check_start(p, first, cloth, error);
+    int code = check_start(cloth, error);
     if (!code)
         code = masses(p, first, model, cloth, error);
     if (!code)
@@ -202,28 +205,19 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     return code;
 }
 
-static phys_vec *vectors(size_t n)
+static int allocate(struct flow_particles *p, uint32_t n, bool loaded, struct cloth_error *error)
 {
-    phys_vec *v = aligned_alloc(sizeof *v, (n + 1) * sizeof *v);
-    if (v)
-        memset(v, 0, (n + 1) * sizeof *v);
-    return v;
-}
-
-static int allocate(struct flow_particles *p, uint32_t n, struct cloth_error *error)
-{
-    const size_t some = (size_t)n + 1;
     p->n = n;
-    p->used = calloc(some, 1);
-    p->mass = calloc(some, sizeof *p->mass);
-    p->drag = calloc(some, sizeof *p->drag);
-    p->free = calloc(some, sizeof *p->free);
-    p->position = vectors(n);
-    p->velocity = vectors(n);
-    p->load = vectors(n);
-    if (!p->used || !p->mass || !p->drag || !p->free || !p->position || !p->velocity || !p->load)
-        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %u vertices", n);
-    return CLOTH_OK;
+    p->used = cloth_alloc(n, 1, error);
+    p->free = cloth_alloc(n, 1, error);
+    p->mass = cloth_alloc(n, sizeof *p->mass, error);
+    if (!p->used || !p->free || !p->mass)
+        return CLOTH_E_MEMORY;
+    if (!loaded)
+        return CLOTH_OK;
+    p->load = aligned_alloc(sizeof *p->load, ((size_t)n + 1) * sizeof *p->load);
+    return p->load ? CLOTH_OK
+                   : cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %u vertices", n);
 }
 
 int flow_particles_make(struct flow_particles *particles, const struct model *model,
@@ -231,12 +225,15 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
 {
     *particles = (struct flow_particles){0};
     size_t n = 0;
-    for (uint32_t c = 0; c < model->n_cloths; c++)
+    bool loaded = false;
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
         n += model->cloths[c].mesh.n_vertices;
+        loaded = loaded || model->cloths[c].n_loads;
+    }
     if (n >= UINT32_MAX)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%zu vertices are too many; at most 4294967294 are possible", n);
-    int code = allocate(particles, (uint32_t)n, error);
+    int code = allocate(particles, (uint32_t)n, loaded, error);
     uint32_t first = 0;
     for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
         code = cloth_particles(particles, first, model, model->cloths + c, error);
@@ -250,14 +247,28 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     return code;
 }
 
+void flow_particle_of(const struct flow_particles *particles, const struct model *model,
+                      const struct model_cloth *cloth, uint32_t first, uint32_t vertex,
+                      struct flow_particle *particle)
+{
+    const struct model_material *material = model->materials + cloth->material;
+    const bool moves = particles->free[vertex];
+    particle->mass = particles->mass[vertex];
+    particle->drag = material->damping_viscous + material->damping_mass * particle->mass;
+    particle->free = moves ? 1 : 0;
+    to_vector(cloth->mesh.position + 3 * (size_t)(vertex - first), &particle->position);
+    to_vector(moves ? cloth->velocity : (const double[3]){0}, &particle->velocity);
+    to_vector(model->gravity, &particle->load);
+    particle->load *= particle->mass;
+    if (particles->load)
+        particle->load = particles->load[vertex];
+}
+
 void flow_particles_free(struct flow_particles *particles)
 {
     free(particles->used);
-    free(particles->mass);
-    free(particles->drag);
     free(particles->free);
-    free(particles->position);
-    free(particles->velocity);
+    free(particles->mass);
     free(particles->load);
     *particles = (struct flow_particles){0};
 }

@@ -1,101 +1,73 @@
 #ifndef CLOTH_FLOW_TABLES_TABLES_H
 #define CLOTH_FLOW_TABLES_TABLES_H
 
-#include "cloth/flow/model.h"
-#include "cloth/mesh/blocks.h"
+#include "cloth/base/error.h"
 #include "cloth/physics/spring.h"
 #include "cloth/solve/block.h"
 
-#include <stdbool.h>
-
-/* What does not change during a run, for all blocks, on every rank. All cloths of a model together:
- * vertices are numbered cloth after cloth in the input's order, places block after block
- * (cloth/mesh/blocks.h). */
+/* What does not change during a run. Every rank knows the shapes of all blocks and who their
+ * neighbours are; the rest of a block is its table, a shared object beside the block's others,
+ * which tasks read where they run. All cloths of a model together: vertices are numbered cloth
+ * after cloth in the input's order, places block after block (cloth/mesh/blocks.h). */
 
 /* Positions and speeds of this size (m, m/s, along an axis) are no cloth's: a run does not start
  * with them, and a run that comes to them diverged. */
 #define FLOW_BOUND 1e6
 
-/* How many vertices are odd, and the first of them: in the numbering of its cloth's mesh. */
-struct flow_odd {
-    uint32_t n, vertex;
-    const struct model_cloth *cloth;
-    const char *place; /* of the mesh, pin or load that names it */
-};
-
-/* Particles by vertex, before the cut. Arrays of n. */
-struct flow_particles {
-    uint32_t n;
-    struct flow_odd unused, pinned, loaded; /* that no face or edge uses: all; pinned; loaded */
-    unsigned char *used;
-    double *mass, *drag, *free; /* kg; kg/s, viscous + mass damping; 1 or 0 where a pin holds */
-    phys_vec *position, *velocity, *load; /* m, m/s, N (gravity included) */
-};
-
-/* Errors: CLOTH_E_INPUT for pins and loads outside their mesh, boxes without a vertex, starts
- * beyond FLOW_BOUND and used vertices without mass; CLOTH_E_MEMORY. Local. */
-int flow_particles_make(struct flow_particles *particles, const struct model *model,
-                        struct cloth_error *error);
-void flow_particles_free(struct flow_particles *particles);
-
-/* Springs of all cloths, by vertex. */
-struct flow_spring {
-    uint32_t a, b;
-    double stiffness, damping, length;
-    unsigned char stretch; /* counts for the largest stretch */
-};
-struct flow_springs {
-    size_t n;
-    struct flow_spring *spring;
-};
-int flow_springs_make(struct flow_springs *springs, const struct model *model,
-                      struct cloth_error *error);
-void flow_springs_free(struct flow_springs *springs);
-
 /* One block. Its springs: first the inner ones, sorted by (lower row, higher row), then those cut
- * by its border, neighbour after neighbour. A cut spring is known to both blocks. Pointers lead
- * into arrays of struct flow_tables. */
+ * by its border, neighbour after neighbour. A cut spring is known to both blocks. */
 struct flow_table {
+    /* Its shape, known to every rank. */
     uint32_t n, first;        /* rows, place of row 0 */
     uint32_t n_inner, n_cut;  /* springs */
+    uint32_t n_rim;           /* rows that any neighbour needs */
+    uint32_t n_held;          /* springs from free rows here to held ends anywhere */
+    uint32_t lowest, highest; /* of its vertices */
     uint32_t n_slots;         /* neighbours */
-    const uint32_t *slot;     /* n_slots: their blocks, ascending */
+    uint32_t n_copies;        /* rows that the cut springs end at, neighbour after neighbour */
+    /* Not owned: */
+    const uint32_t *slot;   /* n_slots: blocks, ascending */
+    const uint32_t *copies; /* n_slots + 1: those of slot s are copies[s] .. */
+    const uint32_t *copy;   /* n_copies: places in the neighbour's rim, ascending in a slot */
+    /* The table itself, in an image that is not owned; NULL but where one is open. */
+    const uint32_t *vertex;   /* n: of the input */
     const uint32_t *cut;      /* n_slots + 1: the springs into slot s are n_inner + cut[s] .. */
-    uint32_t n_rim;           /* rows that any neighbour needs, */
     const uint32_t *rim;      /* n_rim: ascending */
     const uint32_t (*end)[2]; /* inner: rows; cut: row here, place in the neighbour's rim */
-    uint32_t n_copies;        /* rows that the cut springs end at, neighbour after neighbour */
-    const uint32_t *copies;   /* n_slots + 1: those of slot s are copies[s] .. */
-    const uint32_t *copy;     /* n_copies: places in the neighbour's rim */
     const uint32_t (*copy_end)[2]; /* cut springs: row here, number of the copy */
     const double *stiffness, *damping, *length;
-    const unsigned char *stretch;
+    const unsigned char *stretch; /* counts for the largest stretch */
     struct solve_block matrix;
-    struct solve_held held; /* springs from free rows here to held ends anywhere */
-    const double *mass, *drag, *free;
-    const phys_vec *load, *position, *velocity;
+    struct solve_held held;
+    const double *mass, *drag, *free; /* kg; kg/s, viscous + mass damping; 1 or 0 where held */
+    const phys_vec *load, *position, *velocity; /* N, gravity included; m, m/s, at the start */
 };
 
 struct flow_tables {
     uint32_t n_blocks;
-    struct flow_table *block;
-    /* Arrays that the blocks point into: by place, by spring and side, by rim row, by neighbour. */
-    double *mass, *drag, *free, *diagonal;
-    phys_vec *load, *position, *velocity;
-    uint32_t (*end)[2], (*held)[2], *row, *column, *rim, *slot, *cut;
-    uint32_t *copies, *copy, (*copy_end)[2];
-    double *stiffness, *damping, *length;
-    unsigned char *stretch;
+    struct flow_table *block;    /* shapes, unless somebody opens the tables; not owned */
+    const uint32_t *slot, *copy; /* of all blocks, block after block; not owned */
 };
 
-/* h: s. The tables own what they hold; the arguments may go. Error: CLOTH_E_MEMORY. Local. */
-int flow_tables_make(struct flow_tables *tables, const struct flow_particles *particles,
-                     const struct flow_springs *springs, const struct mesh_blocks *blocks, double h,
-                     struct cloth_error *error);
-void flow_tables_free(struct flow_tables *tables);
+/* The arrays of a table as they lie in its image, one piece of memory, for who makes it. */
+struct flow_image {
+    phys_vec *load, *position, *velocity;  /* n */
+    double *mass, *drag, *free, *diagonal; /* n */
+    double *stiffness, *damping, *length;  /* n_inner + n_cut */
+    uint32_t (*end)[2];                    /* n_inner + n_cut */
+    uint32_t (*copy_end)[2];               /* n_cut */
+    uint32_t (*held)[2];                   /* n_held */
+    uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_inner */, *rim, *cut /* n_slots + 1 */;
+    unsigned char *stretch; /* n_inner + n_cut */
+};
 
-/* The part of it that finds the copies, when all else is there. Error: CLOTH_E_MEMORY. */
-int flow_copies_make(struct flow_tables *tables, struct cloth_error *error);
+/* Bytes of an image, which its shape decides; and where its arrays are. image: aligned to 64 bytes.
+ */
+size_t flow_table_bytes(const struct flow_table *table);
+struct flow_image flow_table_image(const struct flow_table *table, void *image);
+
+/* Lets the arrays of a table that has its shape point into the image. */
+void flow_table_open(struct flow_table *table, const void *image);
 
 /* The inner springs of a block; those into neighbour slot s. */
 static inline struct phys_springs flow_table_springs(const struct flow_table *t, uint32_t from,

@@ -3,6 +3,8 @@
 
 #include "cloth/flow/tasks/tasks.h"
 
+#include <string.h>
+
 /* What the bodies of kernels have in common. Local functions. */
 
 static inline struct flow *flow_of(const duite_call *call)
@@ -15,9 +17,18 @@ static inline const struct flow_args *flow_args_of(const duite_call *call)
     return call->args;
 }
 
-static inline const struct flow_table *flow_table_of(const duite_call *call)
+/* The block of a task without its table. */
+static inline const struct flow_table *flow_shape_of(const duite_call *call)
 {
     return flow_of(call)->tables.block + flow_args_of(call)->block;
+}
+
+/* The block with its table, which is the first parameter. */
+static inline struct flow_table flow_table_of(const duite_call *call)
+{
+    struct flow_table table = *flow_shape_of(call);
+    flow_table_open(&table, call->param[0].data);
+    return table;
 }
 
 /* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are
@@ -28,6 +39,15 @@ static inline void flow_write_rim(const struct flow_table *table, const phys_vec
         rim[i] = y[table->rim[i]];
     if (!table->n_rim)
         rim[0] = (phys_vec){0};
+}
+
+/* A double as eight bytes, the lowest first. */
+static inline void flow_put_double(unsigned char *bytes, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    for (int i = 0; i < 8; i++)
+        bytes[i] = (unsigned char)(bits >> (8 * i));
 }
 
 /* Runs a body and adds its seconds to a part of the step, on this worker's line. */

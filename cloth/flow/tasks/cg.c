@@ -18,8 +18,8 @@ static int fork_pass(struct flow_state *state, int from)
         const struct flow_table *t = tables->block + args.block;
         const duite_object *q = state->far.read[from] + (t->slot - tables->slot);
         const duite_object own[] = {
-            state->scalars[from], o->a, o->dv, o->r, o->p, o->q, o->copies, o->rim_q[to],
-            state->sums[from]};
+            o->table,     state->scalars[from], o->a, o->dv, o->r, o->p, o->q, o->copies,
+            o->rim_q[to], state->sums[from]};
         size_t n = 0;
         for (; n < sizeof own / sizeof *own; n++)
             state->refs[n] = own[n];
@@ -52,8 +52,8 @@ static int fork_start(struct flow_state *state, struct flow_args args)
     int code = DUITE_FORK(state->rt, &flow_begin, &args, state->scalars[0]);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
-        code = DUITE_FORK(state->rt, &flow_start, &args, o->f, o->dv, o->r, o->p, o->q, o->copies,
-                          o->rim_q[0]);
+        code = DUITE_FORK(state->rt, &flow_start, &args, o->table, o->f, o->dv, o->r, o->p, o->q,
+                          o->copies, o->rim_q[0]);
         if (!code)
             code = flow_far_pack(state, args.block, 0);
     }

@@ -2,7 +2,7 @@
  * lives on the same rank; else a far rim, one for each block and rank that reads it, with the rows
  * that any block there needs: so a message holds nothing else. A task of its own packs it, since
  * the neighbours' passes still read its other half. Which it is depends on the homes that the
- * blocks have when a run begins and changes no result. */
+ * blocks have when a run begins and changes no result. All ranks know the rows of all far rims. */
 #include "cloth/flow/tasks/bodies.h"
 
 #include "cloth/base/memory.h"
@@ -10,27 +10,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t larger(size_t a, size_t b)
-{
-    return a > b ? a : b;
-}
-
 void flow_far_take(struct flow_state *state)
 {
-    const struct flow_tables *tables = &state->flow->tables;
+    const struct flow_head *head = &state->head;
     struct cloth_error *trouble = &state->flow->trouble;
     struct flow_far *far = &state->far;
-    size_t slots = 0, copies = 0, rim = 0;
-    for (uint32_t b = 0; b < tables->n_blocks; b++) {
-        slots += tables->block[b].n_slots;
-        copies += tables->block[b].n_copies;
-        rim = larger(rim, tables->block[b].n_rim);
-    }
+    const size_t slots = head->n_slots, copies = head->n_copies, rim = head->most_rim;
     for (int i = 0; i < 2; i++)
         far->read[i] = cloth_alloc(slots, sizeof *far->read[i], trouble);
     far->rim = cloth_alloc(slots, sizeof *far->rim, trouble);
-    far->first = cloth_alloc((size_t)tables->n_blocks + 1, sizeof *far->first, trouble);
-    far->home = cloth_alloc(tables->n_blocks, sizeof *far->home, trouble);
+    far->first = cloth_alloc((size_t)head->n_blocks + 1, sizeof *far->first, trouble);
+    far->home = cloth_alloc(head->n_blocks, sizeof *far->home, trouble);
     far->number = cloth_alloc(rim, sizeof *far->number, trouble);
     state->flow->at = cloth_alloc(copies, sizeof *state->flow->at, trouble);
     state->flow->far_row = cloth_alloc(copies, sizeof *state->flow->far_row, trouble);
@@ -76,8 +66,8 @@ static struct reader reader_of(struct flow_state *state, uint32_t b, uint32_t ne
                            .n = t->copies[s + 1] - t->copies[s]};
 }
 
-/* Numbers the rows of block b that blocks of this home read, and lists them in `row`, which has
- * room for them. Returns how many there are. */
+/* Numbers the rows of block b that blocks of this home read, and lists their places in its rim in
+ * `row`, which has room for them. Returns how many there are. */
 static uint32_t number_rows(struct flow_state *state, uint32_t b, int home, uint32_t *row)
 {
     const struct flow_table *t = state->flow->tables.block + b;
@@ -94,7 +84,7 @@ static uint32_t number_rows(struct flow_state *state, uint32_t b, int home, uint
     for (uint32_t i = 0; i < t->n_rim; i++) {
         if (!far->number[i])
             continue;
-        row[n] = t->rim[i];
+        row[n] = i;
         far->number[i] = n++;
     }
     return n;
@@ -167,7 +157,8 @@ int flow_far_pack(struct flow_state *state, uint32_t b, int to)
     const struct flow_far *far = &state->far;
     int code = DUITE_OK;
     for (uint32_t i = far->first[b]; i < far->first[b + 1] && !code; i++)
-        code = DUITE_FORK(state->rt, &flow_pack, &i, state->block[b].q, far->rim[i].object[to]);
+        code = DUITE_FORK(state->rt, &flow_pack, &i, state->block[b].rim_q[to],
+                          far->rim[i].object[to]);
     return code;
 }
 
@@ -175,7 +166,10 @@ static int pack(const duite_call *call)
 {
     const uint32_t *i = call->args;
     const struct flow_far_rim *rim = flow_of(call)->far_rim + *i;
-    solve_pack(rim->n, rim->row, duite_in(call, 0, phys_vec), duite_out(call, 1, double));
+    const double *from = duite_in(call, 0, double);
+    double *to = duite_out(call, 1, double);
+    for (uint32_t k = 0; k < rim->n; k++, to += 3)
+        memcpy(to, from + 3 * (size_t)rim->row[k], 3 * sizeof *to);
     return 0;
 }
 FLOW_TIMED(pack, FLOW_CG)

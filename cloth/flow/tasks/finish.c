@@ -1,10 +1,9 @@
 /* What a report needs of the whole state, gathered when the last step is done. The hash is made on
  * rank 0 and told to all. */
-#include "cloth/flow/tasks/tasks.h"
+#include "cloth/flow/tasks/bodies.h"
 
 #include <stddef.h>
 #include <string.h>
-#include <xxhash.h>
 
 static int largest_stretch(struct flow_state *state)
 {
@@ -48,50 +47,114 @@ static int sum_seconds(struct flow_state *state)
     return DUITE_OK;
 }
 
-/* A double as eight bytes, the lowest first. */
-static void put(unsigned char *bytes, double value)
+/* ---- The hash ----
+ *
+ * Positions, then velocities, of the vertices by number, a part of the vertices at a time. Blocks
+ * with vertices in the part send theirs, some blocks at a time. */
+
+enum { AT_ONCE = 32 };
+
+uint32_t flow_hash_part(const struct flow *flow)
 {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    for (int i = 0; i < 8; i++)
-        bytes[i] = (unsigned char)(bits >> (8 * i));
+    const uint32_t least = 1 << 16, part = flow->n_vertices / 16 + 1;
+    const uint32_t most = part > least ? part : least;
+    return most < flow->n_vertices ? most : flow->n_vertices;
 }
 
-/* Gathers a vector of all blocks on rank 0 into bytes, 24 a vertex of the input; bytes: NULL on the
- * other ranks. */
-static int gather(struct flow_state *state, size_t offset, unsigned char *bytes)
+/* Vertices of the input, from .. to - 1. */
+struct part {
+    uint32_t from, to;
+};
+
+/* On rank 0: copies the vertices of a block that are in the part. */
+static void place(const struct flow_state *state, uint32_t block, const struct part *part)
 {
     const struct flow *flow = state->flow;
-    for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
-        const struct flow_table *t = flow->tables.block + b;
-        const duite_object *object = (const void *)((const char *)(state->block + b) + offset);
-        const int code = duite_get_at(state->rt, *object, 0, state->rows);
-        if (code)
-            return code;
-        for (uint32_t i = 0; bytes && i < t->n; i++)
-            for (size_t c = 0; c < 3; c++)
-                put(bytes + 24 * (size_t)flow->blocks.vertex[t->first + i] + 8 * c,
-                    state->rows[4 * (size_t)i + c]);
+    const struct flow_table *t = flow->tables.block + block;
+    const unsigned char *packed = (const unsigned char *)state->rows;
+    for (uint32_t i = 0; i < t->n; i++) {
+        const uint32_t v = flow->vertex[t->first + i];
+        if (v >= part->from && v < part->to)
+            memcpy(state->bytes + FLOW_VERTEX_BYTES * (size_t)(v - part->from),
+                   packed + FLOW_VERTEX_BYTES * (size_t)i, FLOW_VERTEX_BYTES);
     }
-    return DUITE_OK;
 }
 
-/* No frame is written any more. Vertices that no face or edge uses are at their start, at rest. */
+/* Sends these blocks' vectors to rank 0, which has each in a parcel only for a moment. */
+static int collect(struct flow_state *state, uint32_t n, const uint32_t *block, size_t offset,
+                   const struct part *part)
+{
+    int code = DUITE_OK;
+    for (uint32_t k = 0; k < n && !code; k++) {
+        const struct flow_args args = {.block = block[k]};
+        const void *o = (const char *)(state->block + block[k]) + offset;
+        const duite_object vector = *(const duite_object *)o, parcel = state->parcel[block[k]];
+        code = DUITE_FORK(state->rt, &flow_collect, &args, vector, parcel);
+    }
+    for (uint32_t k = 0; k < n && !code; k++) {
+        code = duite_get_at(state->rt, state->parcel[block[k]], 0, state->rows);
+        if (!code && state->bytes)
+            place(state, block[k], part);
+        if (!code)
+            code = duite_set_sized(state->rt, state->parcel[block[k]], NULL, 0);
+    }
+    return code;
+}
+
+static int collect_part(struct flow_state *state, size_t offset, const struct part *part)
+{
+    const struct flow_tables *tables = &state->flow->tables;
+    uint32_t some[AT_ONCE], n = 0;
+    int code = DUITE_OK;
+    for (uint32_t b = 0; b < tables->n_blocks && !code; b++) {
+        if (tables->block[b].highest >= part->from && tables->block[b].lowest < part->to)
+            some[n++] = b;
+        if (n < AT_ONCE && b + 1 < tables->n_blocks)
+            continue;
+        code = collect(state, n, some, offset, part);
+        n = 0;
+    }
+    const int failed = duite_wait(state->rt); /* nobody runs ahead of rank 0 with its parcels */
+    return code ? code : failed;
+}
+
+/* Vertices that no face or edge uses are at their start, at rest. */
+static void place_rest(struct flow_state *state, bool at_rest, const struct part *part)
+{
+    const struct flow_rest *rest = &state->flow->rest;
+    for (uint32_t i = 0; i < rest->n; i++) {
+        const uint32_t v = rest->vertex[i];
+        unsigned char *to = state->bytes + FLOW_VERTEX_BYTES * (size_t)(v - part->from);
+        for (size_t c = 0; v >= part->from && v < part->to && c < 3; c++)
+            flow_put_double(to + 8 * c, at_rest ? 0 : rest->position[i][c]);
+    }
+}
+
+static int hash_vectors(struct flow_state *state, size_t offset, bool at_rest, XXH64_state_t *hash)
+{
+    const uint32_t n = state->flow->n_vertices, step = flow_hash_part(state->flow);
+    int code = DUITE_OK;
+    for (struct part part = {0}; part.from < n && !code; part.from = part.to) {
+        part.to = n - part.from > step ? part.from + step : n;
+        if (hash)
+            place_rest(state, at_rest, &part);
+        code = collect_part(state, offset, &part);
+        if (hash && !code)
+            XXH64_update(hash, state->bytes, FLOW_VERTEX_BYTES * (size_t)(part.to - part.from));
+    }
+    return code;
+}
+
 static int hash_state(struct flow_state *state)
 {
-    struct flow *flow = state->flow;
-    unsigned char *bytes = duite_rank(state->rt) == 0 ? (unsigned char *)flow->room : NULL;
-    const size_t half = 24 * (size_t)flow->n_vertices;
-    for (size_t v = 0; bytes && v < flow->n_vertices; v++)
-        for (size_t c = 0; c < 3; c++) {
-            put(bytes + 24 * v + 8 * c, flow->start[v][c]);
-            put(bytes + half + 24 * v + 8 * c, 0);
-        }
-    int code = gather(state, offsetof(struct flow_objects, x), bytes);
+    XXH64_state_t *hash = state->hash;
+    if (hash)
+        XXH64_reset(hash, 0);
+    int code = hash_vectors(state, offsetof(struct flow_objects, x), false, hash);
     if (!code)
-        code = gather(state, offsetof(struct flow_objects, v), bytes ? bytes + half : NULL);
-    if (!code && bytes)
-        flow->hash = XXH64(bytes, 2 * half, 0);
+        code = hash_vectors(state, offsetof(struct flow_objects, v), true, hash);
+    if (hash)
+        state->flow->hash = XXH64_digest(hash);
     return code;
 }
 
@@ -117,13 +180,32 @@ static int hash_all(struct flow_state *state)
 
 int flow_last_frame(struct flow_state *state)
 {
-    uint64_t told[FLOW_TELL];
-    const int code = tell(state, told);
+    uint64_t told[FLOW_TELL] = {[FLOW_TELL_FRAMES] = state->next_frame};
+    const int code = state->output ? tell(state, told) : DUITE_OK;
     if (code)
         return code;
     state->report->frames = told[FLOW_TELL_FRAMES];
     state->report->last_frame = told[FLOW_TELL_FRAMES] ? told[FLOW_TELL_FRAMES] - 1 : 0;
     return DUITE_OK;
+}
+
+/* What the run itself was, without its preparations. */
+static int count(struct flow_state *state)
+{
+    duite_counters *now = &state->report->counters;
+    const duite_counters *before = &state->before;
+    const int code = duite_count_all(state->rt, now);
+    now->tasks -= before->tasks;
+    now->placed -= before->placed;
+    now->stolen -= before->stolen;
+    now->chained -= before->chained;
+    now->messages -= before->messages;
+    now->bytes -= before->bytes;
+    now->busy -= before->busy;
+    now->idle -= before->idle;
+    now->renamed -= before->renamed;
+    now->graphs_recorded -= before->graphs_recorded;
+    return code;
 }
 
 int flow_finish(struct flow_state *state)
@@ -136,6 +218,6 @@ int flow_finish(struct flow_state *state)
     if (!code)
         code = flow_last_frame(state);
     if (!code)
-        code = duite_count_all(state->rt, &state->report->counters);
+        code = count(state);
     return code;
 }

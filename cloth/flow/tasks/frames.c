@@ -13,6 +13,10 @@ uint64_t flow_frame_step(const struct model *model, uint64_t frame)
 static int fork_frame(struct flow_state *state, uint64_t steps)
 {
     int64_t token;
+    if (!state->output) { /* only counted */
+        state->next_frame++;
+        return DUITE_OK;
+    }
     if (state->next_frame > 0) {
         const int code = duite_get(state->rt, state->token, &token);
         if (code)

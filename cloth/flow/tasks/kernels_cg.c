@@ -28,22 +28,22 @@ static void write_rim(const struct flow_table *t, const phys_vec *q, double *rim
 
 static int start(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
-    phys_vec *q = duite_out(call, 4, phys_vec);
-    solve_start(t->n, t->free, duite_in(call, 0, phys_vec), duite_out(call, 1, phys_vec),
-                duite_out(call, 2, phys_vec), duite_out(call, 3, phys_vec), q);
-    memset(duite_out(call, 5, phys_vec), 0, duite_count(call, 5) * sizeof(double));
-    write_rim(t, q, duite_out(call, 6, double));
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    phys_vec *q = duite_out(call, 5, phys_vec);
+    solve_start(t->n, t->free, duite_in(call, 1, phys_vec), duite_out(call, 2, phys_vec),
+                duite_out(call, 3, phys_vec), duite_out(call, 4, phys_vec), q);
+    memset(duite_out(call, 6, phys_vec), 0, duite_count(call, 6) * sizeof(double));
+    write_rim(t, q, duite_out(call, 7, double));
     return 0;
 }
 FLOW_TIMED(start, FLOW_CG)
 const duite_kernel flow_start = {
     .name = "cg_start",
     .body = start_timed,
-    .access = {DUITE_R, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W},
+    .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W},
     .args_size = sizeof(struct flow_args)};
 
-enum { A = 1, DV, R, P, Q, COPIES, RIM, SUMS, NEIGHBOURS }; /* parameters of a pass */
+enum { SCALARS = 1, A, DV, R, P, Q, COPIES, RIM, SUMS, NEIGHBOURS }; /* parameters of a pass */
 
 static void advance_copies(const duite_call *call, const struct flow_table *t,
                            const struct solve_scalars *scalars)
@@ -59,8 +59,8 @@ static void advance_copies(const duite_call *call, const struct flow_table *t,
 
 static int pass(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
-    const struct solve_scalars *scalars = duite_in(call, 0, struct solve_scalars);
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const struct solve_scalars *scalars = duite_in(call, SCALARS, struct solve_scalars);
     const struct solve_cut cut = {t->n_cut, t->copy_end, t->n_rim, t->rim};
     const struct solve_rows rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
                                     duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)};
@@ -79,8 +79,8 @@ static int pass(const duite_call *call)
 FLOW_TIMED(pass, FLOW_CG)
 const duite_kernel flow_pass = {.name = "cg_pass",
                                 .body = pass_timed,
-                                .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW,
-                                           DUITE_RW, DUITE_RW, DUITE_CW},
+                                .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW, DUITE_RW,
+                                           DUITE_RW, DUITE_RW, DUITE_RW, DUITE_CW},
                                 .rest = DUITE_R,
                                 .args_size = sizeof(struct flow_args)};
 

@@ -20,10 +20,9 @@ static int frame(const duite_call *call)
         const struct flow_table *t = flow->tables.block + b;
         for (uint32_t i = 0; i < t->n; i++)
             for (int c = 0; c < 3; c++)
-                flow->room[3 * (size_t)flow->blocks.vertex[t->first + i] + (size_t)c] = x[i][c];
+                flow->room[3 * (size_t)flow->vertex[t->first + i] + (size_t)c] = x[i][c];
     }
-    if (flow->output &&
-        flow->output->frame(flow->output->context, args->frame, args->step * flow->model->h,
+    if (flow->output->frame(flow->output->context, args->frame, args->step * flow->model->h,
                             flow->room, &flow->trouble))
         return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
     flow->frames = args->frame + 1;
@@ -37,24 +36,40 @@ const duite_kernel flow_frame = {.name = "frame",
                                  .args_size = sizeof(struct flow_args),
                                  .side_effects = 1};
 
+static int collect(const duite_call *call)
+{
+    const struct flow_table *t = flow_shape_of(call);
+    const phys_vec *y = duite_in(call, 0, phys_vec);
+    unsigned char *to = duite_out(call, 1, unsigned char);
+    const int code = duite_resize(call, 1, FLOW_VERTEX_BYTES * (size_t)t->n);
+    for (uint32_t i = 0; i < t->n && !code; i++)
+        for (int c = 0; c < 3; c++, to += 8)
+            flow_put_double(to, y[i][c]);
+    return code;
+}
+const duite_kernel flow_collect = {.name = "collect",
+                                   .body = collect,
+                                   .access = {DUITE_R, DUITE_W},
+                                   .args_size = sizeof(struct flow_args)};
+
 static int stretch(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
-    const phys_vec *x = duite_in(call, 0, phys_vec);
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *x = duite_in(call, 1, phys_vec);
     struct phys_springs springs = flow_table_inner(t);
     double most = phys_springs_stretch(&springs, t->stretch, x, x);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
         const double there = phys_springs_stretch(&springs, t->stretch + t->n_inner + t->cut[s], x,
-                                                  duite_in(call, 2 + s, phys_vec));
+                                                  duite_in(call, 3 + s, phys_vec));
         most = there > most ? there : most;
     }
-    *duite_out(call, 1, double) = most;
+    *duite_out(call, 2, double) = most;
     return 0;
 }
 const duite_kernel flow_stretch = {.name = "stretch",
                                    .body = stretch,
-                                   .access = {DUITE_R, DUITE_W},
+                                   .access = {DUITE_R, DUITE_R, DUITE_W},
                                    .rest = DUITE_R,
                                    .args_size = sizeof(struct flow_args)};
 

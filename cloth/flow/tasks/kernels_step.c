@@ -7,106 +7,105 @@
 #define ARGS sizeof(struct flow_args)
 
 /* Fails if a row diverged, naming it by the input's number. what: "position" or "velocity". */
-static int check(const duite_call *call, const phys_vec *y, const char *what)
+static int check(const duite_call *call, const struct flow_table *t, const phys_vec *y,
+                 const char *what)
 {
-    const struct flow_table *t = flow_table_of(call);
     const size_t bad = phys_diverged(t->n, FLOW_BOUND, y);
     if (bad == t->n)
         return 0;
     return duite_fail(call, FLOW_DIVERGED,
                       "step %u: the %s of vertex %u in block %u is (%g, %g, %g): the run diverged",
-                      flow_args_of(call)->step + 1, what,
-                      flow_of(call)->blocks.vertex[t->first + bad], flow_args_of(call)->block,
+                      flow_args_of(call)->step + 1, what, t->vertex[bad], flow_args_of(call)->block,
                       y[bad][0], y[bad][1], y[bad][2]);
 }
 
 static int initial(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
-    phys_vec *x = duite_out(call, 0, phys_vec), *v = duite_out(call, 1, phys_vec);
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    phys_vec *x = duite_out(call, 1, phys_vec), *v = duite_out(call, 2, phys_vec);
     for (uint32_t i = 0; i < t->n; i++) {
         x[i] = t->position[i];
         v[i] = t->velocity[i];
     }
-    flow_write_rim(t, x, duite_out(call, 2, phys_vec));
-    flow_write_rim(t, v, duite_out(call, 3, phys_vec));
+    flow_write_rim(t, x, duite_out(call, 3, phys_vec));
+    flow_write_rim(t, v, duite_out(call, 4, phys_vec));
     return 0;
 }
 const duite_kernel flow_initial = {.name = "initial",
                                    .body = initial,
-                                   .access = {DUITE_W, DUITE_W, DUITE_W, DUITE_W},
+                                   .access = {DUITE_R, DUITE_W, DUITE_W, DUITE_W, DUITE_W},
                                    .args_size = ARGS};
 
 static int force(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
-    const phys_vec *x = duite_in(call, 0, phys_vec), *v = duite_in(call, 1, phys_vec);
-    phys_vec *f = duite_out(call, 2, phys_vec);
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
+    phys_vec *f = duite_out(call, 3, phys_vec);
     phys_outside(t->n, t->load, t->drag, v, f);
     struct phys_springs springs = flow_table_inner(t);
     phys_springs_force(&springs, x, v, f);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
-        phys_springs_force_cut(&springs, x, v, duite_in(call, 3 + s, phys_vec),
-                               duite_in(call, 3 + t->n_slots + s, phys_vec), f);
+        phys_springs_force_cut(&springs, x, v, duite_in(call, 4 + s, phys_vec),
+                               duite_in(call, 4 + t->n_slots + s, phys_vec), f);
     }
     return 0;
 }
 FLOW_TIMED(force, FLOW_FORCE)
 const duite_kernel flow_force = {.name = "force",
                                  .body = force_timed,
-                                 .access = {DUITE_R, DUITE_R, DUITE_W},
+                                 .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W},
                                  .rest = DUITE_R,
                                  .args_size = ARGS};
 
 static int acceleration(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
-    phys_accelerate(t->n, t->mass, t->free, duite_out(call, 0, phys_vec));
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    phys_accelerate(t->n, t->mass, t->free, duite_out(call, 1, phys_vec));
     return 0;
 }
 FLOW_TIMED(acceleration, FLOW_ACCELERATION)
 const duite_kernel flow_explicit = {.name = "acceleration_explicit",
                                     .body = acceleration_timed,
-                                    .access = {DUITE_RW},
+                                    .access = {DUITE_R, DUITE_RW},
                                     .args_size = ARGS};
 
 /* f -> b = h (f - h K v), the right-hand side of the step (Baraff & Witkin 1998, equation 16). */
 static int right_side(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
+    const struct flow_table table = flow_table_of(call), *t = &table;
     const double h = flow_of(call)->model->h;
-    const phys_vec *x = duite_in(call, 0, phys_vec), *v = duite_in(call, 1, phys_vec);
-    phys_vec *f = duite_out(call, 2, phys_vec);
+    const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
+    phys_vec *f = duite_out(call, 3, phys_vec);
     for (uint32_t i = 0; i < t->n; i++)
         f[i] = h * f[i];
     struct phys_springs springs = flow_table_inner(t);
     phys_springs_stiffness(&springs, h * h, x, v, f);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
-        phys_springs_stiffness_cut(&springs, h * h, x, v, duite_in(call, 3 + s, phys_vec),
-                                   duite_in(call, 3 + t->n_slots + s, phys_vec), f);
+        phys_springs_stiffness_cut(&springs, h * h, x, v, duite_in(call, 4 + s, phys_vec),
+                                   duite_in(call, 4 + t->n_slots + s, phys_vec), f);
     }
     return 0;
 }
 FLOW_TIMED(right_side, FLOW_ACCELERATION)
 const duite_kernel flow_implicit = {.name = "acceleration_implicit",
                                     .body = right_side_timed,
-                                    .access = {DUITE_R, DUITE_R, DUITE_RW},
+                                    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW},
                                     .rest = DUITE_R,
                                     .args_size = ARGS};
 
 static int matrix(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
+    const struct flow_table table = flow_table_of(call), *t = &table;
     const double h = flow_of(call)->model->h;
-    const phys_vec *x = duite_in(call, 0, phys_vec);
-    phys_vec *value = duite_out(call, 1, phys_vec);
+    const phys_vec *x = duite_in(call, 1, phys_vec);
+    phys_vec *value = duite_out(call, 2, phys_vec);
     struct phys_springs springs = flow_table_inner(t);
     phys_springs_matrix(&springs, h, x, x, value);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
-        phys_springs_matrix(&springs, h, x, duite_in(call, 2 + s, phys_vec),
+        phys_springs_matrix(&springs, h, x, duite_in(call, 3 + s, phys_vec),
                             value + t->n_inner + t->cut[s]);
     }
     return 0;
@@ -114,7 +113,7 @@ static int matrix(const duite_call *call)
 FLOW_TIMED(matrix, FLOW_MATRIX)
 const duite_kernel flow_matrix = {.name = "matrix",
                                   .body = matrix_timed,
-                                  .access = {DUITE_R, DUITE_W},
+                                  .access = {DUITE_R, DUITE_R, DUITE_W},
                                   .rest = DUITE_R,
                                   .args_size = ARGS};
 
@@ -122,67 +121,67 @@ const duite_kernel flow_matrix = {.name = "matrix",
  * then this does not run. */
 static int velocity_dv(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
-    const phys_vec *dv = duite_in(call, 2, phys_vec);
-    phys_vec *v = duite_out(call, 3, phys_vec);
-    double *status = duite_out(call, 6, double);
-    solve_lost(&t->matrix, &t->held, duite_in(call, 1, phys_vec), duite_in(call, 0, phys_vec), dv,
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *dv = duite_in(call, 3, phys_vec);
+    phys_vec *v = duite_out(call, 4, phys_vec);
+    double *status = duite_out(call, 7, double);
+    solve_lost(&t->matrix, &t->held, duite_in(call, 2, phys_vec), duite_in(call, 1, phys_vec), dv,
                status + FLOW_LOST);
     if (flow_args_of(call)->block == 0)
-        status[FLOW_ITERATIONS] = duite_in(call, 5, struct solve_scalars)->iterations;
+        status[FLOW_ITERATIONS] = duite_in(call, 6, struct solve_scalars)->iterations;
     phys_advance(t->n, 1, dv, v);
-    flow_write_rim(t, v, duite_out(call, 4, phys_vec));
-    return check(call, v, "velocity");
+    flow_write_rim(t, v, duite_out(call, 5, phys_vec));
+    return check(call, t, v, "velocity");
 }
 FLOW_TIMED(velocity_dv, FLOW_VELOCITY)
 const duite_kernel flow_velocity_dv = {
     .name = "velocity_implicit",
     .body = velocity_dv_timed,
-    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_R, DUITE_CW},
+    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_R, DUITE_CW},
     .args_size = ARGS};
 
 /* v += h a. */
 static int velocity_a(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
-    phys_vec *v = duite_out(call, 1, phys_vec);
-    phys_advance(t->n, flow_of(call)->model->h, duite_in(call, 0, phys_vec), v);
-    flow_write_rim(t, v, duite_out(call, 2, phys_vec));
-    return check(call, v, "velocity");
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    phys_vec *v = duite_out(call, 2, phys_vec);
+    phys_advance(t->n, flow_of(call)->model->h, duite_in(call, 1, phys_vec), v);
+    flow_write_rim(t, v, duite_out(call, 3, phys_vec));
+    return check(call, t, v, "velocity");
 }
 FLOW_TIMED(velocity_a, FLOW_VELOCITY)
 const duite_kernel flow_velocity_a = {.name = "velocity_explicit",
                                       .body = velocity_a_timed,
-                                      .access = {DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
+                                      .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
                                       .args_size = ARGS};
 
 static int position(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
-    phys_vec *x = duite_out(call, 1, phys_vec);
-    phys_advance(t->n, flow_of(call)->model->h, duite_in(call, 0, phys_vec), x);
-    flow_write_rim(t, x, duite_out(call, 2, phys_vec));
-    return check(call, x, "position");
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    phys_vec *x = duite_out(call, 2, phys_vec);
+    phys_advance(t->n, flow_of(call)->model->h, duite_in(call, 1, phys_vec), x);
+    flow_write_rim(t, x, duite_out(call, 3, phys_vec));
+    return check(call, t, x, "position");
 }
 FLOW_TIMED(position, FLOW_POSITION)
 const duite_kernel flow_position = {.name = "position",
                                     .body = position_timed,
-                                    .access = {DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
+                                    .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
                                     .args_size = ARGS};
 
 static int collide(const duite_call *call)
 {
-    const struct flow_table *t = flow_table_of(call);
+    const struct flow_table table = flow_table_of(call), *t = &table;
     const struct model *model = flow_of(call)->model;
-    phys_vec *x = duite_out(call, 0, phys_vec), *v = duite_out(call, 1, phys_vec);
+    phys_vec *x = duite_out(call, 1, phys_vec), *v = duite_out(call, 2, phys_vec);
     for (uint32_t i = 0; i < model->n_planes; i++)
         phys_plane(t->n, model->planes[i].point, model->planes[i].normal, t->free, x, v);
-    flow_write_rim(t, x, duite_out(call, 2, phys_vec));
-    flow_write_rim(t, v, duite_out(call, 3, phys_vec));
-    return check(call, x, "position");
+    flow_write_rim(t, x, duite_out(call, 3, phys_vec));
+    flow_write_rim(t, v, duite_out(call, 4, phys_vec));
+    return check(call, t, x, "position");
 }
 FLOW_TIMED(collide, FLOW_COLLIDE)
 const duite_kernel flow_collide = {.name = "collide",
                                    .body = collide_timed,
-                                   .access = {DUITE_RW, DUITE_RW, DUITE_W, DUITE_W},
+                                   .access = {DUITE_R, DUITE_RW, DUITE_RW, DUITE_W, DUITE_W},
                                    .args_size = ARGS};

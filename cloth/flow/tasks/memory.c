@@ -12,28 +12,40 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
+/* What rank 0 gathers in: a frame, and a part of the state to be hashed. */
+static void take_room(struct flow_state *state)
+{
+    struct flow *flow = state->flow;
+    if (state->output)
+        flow->room = cloth_alloc(flow->n_vertices, 3 * sizeof *flow->room, &flow->trouble);
+    state->bytes = cloth_alloc(flow_hash_part(flow), FLOW_VERTEX_BYTES, &flow->trouble);
+    state->hash = XXH64_createState();
+    if (!state->hash)
+        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for a hash");
+}
+
 static void take(struct flow_state *state)
 {
     struct flow *flow = state->flow;
-    const struct flow_tables *tables = &flow->tables;
-    size_t rows = 0, slots = 0;
-    for (uint32_t b = 0; b < tables->n_blocks; b++) {
-        rows = larger(rows, tables->block[b].n);
-        slots = larger(slots, tables->block[b].n_slots);
-    }
-    const size_t refs = larger(tables->n_blocks, 2 * slots) + DUITE_MAX_ACCESS;
+    const struct flow_head *head = &state->head;
+    const size_t refs = larger(head->n_blocks, 2 * (size_t)head->most_slots) + DUITE_MAX_ACCESS;
     flow->n_clocks = duite_threads(state->rt);
     flow->clock = aligned_alloc(sizeof *flow->clock, flow->n_clocks * sizeof *flow->clock);
     if (flow->clock)
         memset(flow->clock, 0, flow->n_clocks * sizeof *flow->clock);
     else
         cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for %u clocks", flow->n_clocks);
-    state->block = cloth_alloc(tables->n_blocks, sizeof *state->block, &flow->trouble);
+    flow->shared = cloth_alloc(head->shared_bytes, 1, &flow->trouble);
+    flow->tables.block = cloth_alloc(head->n_blocks, sizeof *flow->tables.block, &flow->trouble);
+    flow->tables.n_blocks = head->n_blocks;
+    state->block = cloth_alloc(head->n_blocks, sizeof *state->block, &flow->trouble);
+    state->parcel = cloth_alloc(head->n_blocks, sizeof *state->parcel, &flow->trouble);
     state->refs = cloth_alloc(refs, sizeof *state->refs, &flow->trouble);
-    state->rows = cloth_alloc(larger(4 * rows, slots), sizeof *state->rows, &flow->trouble);
+    state->rows = cloth_alloc(larger(4 * (size_t)head->most_rows, head->most_slots),
+                              sizeof *state->rows, &flow->trouble);
     flow_far_take(state);
     if (duite_rank(state->rt) == 0)
-        flow->room = cloth_alloc(flow->n_vertices, 6 * sizeof *flow->room, &flow->trouble);
+        take_room(state);
 }
 
 static int ready(const duite_call *call)
@@ -67,12 +79,18 @@ void flow_memory_free(struct flow_state *state)
     free(flow->clock);
     free(flow->room);
     free(state->block);
+    free(state->parcel);
     free(state->refs);
     free(state->rows);
     flow_far_free(state);
+    free(state->bytes);
+    XXH64_freeState(state->hash);
     flow->clock = NULL;
     flow->room = NULL;
     state->block = NULL;
+    state->parcel = NULL;
+    state->bytes = NULL;
+    state->hash = NULL;
     state->refs = NULL;
     state->rows = NULL;
 }

@@ -33,6 +33,8 @@ static void make_block(duite *rt, const struct flow_table *t, struct flow_object
     for (int i = 0; i < 2; i++)
         make_numbers(rt, 3 * (size_t)t->n_rim, o->x, o->rim_q + i);
     make_numbers(rt, 1, o->x, &o->stretch);
+    duite_new(rt, DUITE_BYTE, flow_table_bytes(t), &o->table);
+    duite_follow(rt, o->table, o->x);
 }
 
 static void hint(struct flow_state *state, uint32_t b)
@@ -93,9 +95,9 @@ int flow_objects_free(struct flow_state *state)
     }
     for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
         const struct flow_objects *o = state->block + b;
-        const duite_object all[] = {o->x,     o->v,        o->f,        o->a,      o->dv,
-                                    o->r,     o->p,        o->q,        o->copies, o->rim_x,
-                                    o->rim_v, o->rim_q[0], o->rim_q[1], o->stretch};
+        const duite_object all[] = {o->x,     o->v,        o->f,        o->a,       o->dv,
+                                    o->r,     o->p,        o->q,        o->copies,  o->rim_x,
+                                    o->rim_v, o->rim_q[0], o->rim_q[1], o->stretch, o->table};
         const int failed = release(state->rt, sizeof all / sizeof *all, all);
         code = code ? code : failed;
     }
@@ -116,6 +118,7 @@ int flow_fork(struct flow_state *state, const duite_kernel *kernel, const struct
 {
     const struct flow_table *t = state->flow->tables.block + args->block;
     size_t count = 0;
+    state->refs[count++] = state->block[args->block].table;
     for (size_t i = 0; i < n; i++)
         state->refs[count++] = objects[i];
     for (uint32_t s = 0; offset != FLOW_NO_RIM && s < t->n_slots; s++)

@@ -2,9 +2,11 @@
 #define CLOTH_FLOW_TASKS_TASKS_H
 
 #include "cloth/flow/run.h"
+#include "cloth/flow/tables/source.h"
 #include "cloth/flow/tables/tables.h"
 
 #include <stdatomic.h>
+#include <xxhash.h>
 
 /* What the bodies of tasks share (struct flow, the runtime's context) and what the main program
  * keeps of a run (struct flow_state). Bodies see objects, arguments and the constant part of the
@@ -31,20 +33,32 @@ struct flow_clock {
 /* Codes of bodies that fail. */
 enum { FLOW_DIVERGED = 1, FLOW_INDEFINITE, FLOW_NOT_WRITTEN, FLOW_NO_MEMORY, FLOW_NOT_CONVERGED };
 
-/* Rows of a block that blocks on one other rank read. */
+/* Rows of a block's rim that blocks on one other rank read. */
 struct flow_far_rim {
     uint32_t n;
-    const uint32_t *row; /* n, ascending */
+    const uint32_t *row; /* n: places in the rim, ascending */
 };
 
+/* Vertices that no face or edge uses: n of them, ascending, with their places. */
+struct flow_rest {
+    uint32_t n, *vertex;
+    double (*position)[3];
+};
+
+/* On rank 0 as flow_prepare left it; elsewhere what rank 0 told. */
 struct flow {
-    const struct model *model;
+    const struct model *model; /* rank 0: the program's; else &told */
+    struct model told;         /* without names, materials, cloths */
     uint32_t n_vertices, n_triangles;
-    char warning[3][512]; /* of all vertices, pinned ones, loaded ones; empty: none */
-    phys_vec *start;      /* n_vertices: where the vertices start */
-    struct mesh_blocks blocks;
-    struct flow_tables tables;
-    uint64_t n_steps;
+    uint64_t n_steps, partition_hash;
+    struct flow_tables tables; /* shapes */
+    void *shared;              /* planes, slots and copies that the above point to */
+
+    /* Rank 0 only. */
+    char warning[3][512];      /* of all vertices, pinned ones, loaded ones; empty: none */
+    struct flow_source source; /* until the tables are dealt */
+    uint32_t *vertex;          /* by place; from then on */
+    struct flow_rest rest;
 
     /* Of the run that is on. */
     unsigned n_clocks;
@@ -58,7 +72,7 @@ struct flow {
     /* On rank 0: written by the tasks `frame`, one at a time, and by the main thread when no task
      * runs. */
     const struct flow_output *output;
-    double *room;    /* n_vertices x 6: positions of a frame, at the end the bytes to be hashed */
+    double *room;    /* n_vertices x 3: positions of a frame; NULL: there is no output */
     uint64_t frames; /* written */
     uint64_t hash;
 };
@@ -80,35 +94,51 @@ enum {
 /* Indices into what rank 0 tells, I64 x 2. */
 enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
 
-/* Kernels. Objects in order; "rims" are one of each neighbour, in slot order. Vectors are rows of
- * four doubles. */
-extern const duite_kernel flow_ready;    /* cw ready: fails if this rank cannot begin */
-extern const duite_kernel flow_initial;  /* w x, w v, w rim of x, w rim of v */
-extern const duite_kernel flow_force;    /* r x, r v, w f; rims of x, rims of v */
-extern const duite_kernel flow_explicit; /* rw f: acceleration */
-extern const duite_kernel flow_implicit; /* r x, r v, rw f: right-hand side; rims of x, rims of v */
-extern const duite_kernel flow_matrix;   /* r x, w a; rims of x */
-extern const duite_kernel flow_begin;    /* w scalars */
-extern const duite_kernel flow_start;    /* r f, w dv, w r, w p, w q, w copies, w rim of q */
-extern const duite_kernel flow_pass;     /* r scalars, r a, rw dv, rw r, rw p, rw q, rw copies, rw
-                                            rim of q, cw sums; the other rims of q, or far ones */
-extern const duite_kernel flow_pack;     /* r q, w far rim */
-extern const duite_kernel flow_scalars;  /* r sums, r scalars, w next scalars */
+/* What all ranks are told before anything else. */
+struct flow_head {
+    uint64_t n_steps, partition_hash;
+    uint64_t shared_bytes;                                         /* of what they are told next */
+    uint32_t n_vertices, n_triangles, n_blocks, n_slots, n_copies; /* of all blocks */
+    uint32_t most_rows, most_slots, most_rim;                      /* of any block */
+    struct model model; /* pointers mean nothing elsewhere */
+};
+
+/* Kernels. Objects in order; "table" (r) is that of the task's block, "rims" are one of each
+ * neighbour, in slot order. Vectors are rows of four doubles. */
+extern const duite_kernel flow_tell_head;   /* w head: on rank 0 */
+extern const duite_kernel flow_tell_shared; /* w shared: planes, shapes, neighbours; on rank 0 */
+extern const duite_kernel flow_table_make;  /* w table of a block: on rank 0 */
+extern const duite_kernel flow_table_keep;  /* rw table: where the block lives */
+extern const duite_kernel flow_collect;     /* r vector of a block, w it without its fourth lane */
+extern const duite_kernel flow_ready;       /* cw ready: fails if this rank cannot begin */
+extern const duite_kernel flow_initial;     /* table, w x, w v, w rim of x, w rim of v */
+extern const duite_kernel flow_force;       /* table, r x, r v, w f; rims of x, rims of v */
+extern const duite_kernel flow_explicit;    /* table, rw f: acceleration */
 extern const duite_kernel
-    flow_velocity_dv; /* r f, r a, r dv, rw v, w rim of v, r scalars, cw status */
-extern const duite_kernel flow_velocity_a; /* r f, rw v, w rim of v, cw status */
-extern const duite_kernel flow_position;   /* r v, rw x, w rim of x, cw status */
-extern const duite_kernel flow_collide;    /* rw x, rw v, w rim of x, w rim of v */
+    flow_implicit; /* table, r x, r v, rw f: right-hand side; rims of x, rims of v */
+extern const duite_kernel flow_matrix; /* table, r x, w a; rims of x */
+extern const duite_kernel flow_begin;  /* w scalars */
+extern const duite_kernel flow_start;  /* table, r f, w dv, w r, w p, w q, w copies, w rim of q */
+extern const duite_kernel flow_pass;   /* table, r scalars, r a, rw dv, rw r, rw p, rw q, rw copies,
+                                          rw   rim of q, cw sums; the other rims of q, or far ones */
+extern const duite_kernel flow_pack;   /* r rim of q, w far rim */
+extern const duite_kernel flow_scalars; /* r sums, r scalars, w next scalars */
+extern const duite_kernel
+    flow_velocity_dv; /* table, r f, r a, r dv, rw v, w rim of v, r scalars, cw status */
+extern const duite_kernel flow_velocity_a; /* table, r f, rw v, w rim of v, cw status */
+extern const duite_kernel flow_position;   /* table, r v, rw x, w rim of x, cw status */
+extern const duite_kernel flow_collide;    /* table, rw x, rw v, w rim of x, w rim of v */
 extern const duite_kernel flow_status;     /* cw status: on rank 0, whether a stop was asked for */
 extern const duite_kernel flow_frame;      /* rw token; x of all blocks: on rank 0 */
-extern const duite_kernel flow_stretch;    /* r x, w stretch; rims of x */
+extern const duite_kernel flow_stretch;    /* table, r x, w stretch; rims of x */
 extern const duite_kernel flow_most;       /* w stretch; stretch of all blocks */
 extern const duite_kernel flow_seconds;    /* cw seconds: of this rank */
 extern const duite_kernel flow_tell;       /* w told: what rank 0 knows */
 
-/* Shared objects of a block. copies: r of its copies, then p. rim_q: three numbers a row. */
+/* Shared objects of a block. copies: r of its copies, then p. rim_q: three numbers a row. table: an
+ * image (cloth/flow/tables/tables.h), never written once it is dealt. */
 struct flow_objects {
-    duite_object x, v, f, a, dv, r, p, q, copies, rim_x, rim_v, rim_q[2], stretch;
+    duite_object table, x, v, f, a, dv, r, p, q, copies, rim_x, rim_v, rim_q[2], stretch;
 };
 
 /* What passes read of their neighbours' rims of q (far.c). */
@@ -136,8 +166,13 @@ struct flow_state {
     struct flow_far far;
     duite_graph solve; /* a round of conjugate gradients */
     duite_object sums[2], scalars[2], status[2], token, most, seconds, told;
-    duite_object *refs; /* room for the objects of any task */
-    double *rows;       /* room for the rows of any block, or a number for each neighbour */
+    struct flow_head head;
+    duite_object *parcel;  /* a block: what travels to rank 0 on its own; empty in between */
+    duite_object *refs;    /* room for the objects of any task */
+    double *rows;          /* room for the rows of any block, or a number for each neighbour */
+    unsigned char *bytes;  /* rank 0: a part of the state, to be hashed, */
+    XXH64_state_t *hash;   /* and what was hashed so far */
+    duite_counters before; /* what was counted before the first step */
     uint64_t next_frame;
     bool begun;    /* all ranks have their memory, objects are made */
     bool stopping; /* a stop was agreed: ends after the next frame */
@@ -145,6 +180,24 @@ struct flow_state {
 
 /* Functions of the main program. Collective. They return 0 or what duite returned, which flow_run
  * turns into a sentence. */
+/* All of the below: the run is ready for its first task. To be ended as flow_run does. */
+int flow_run_begin(struct flow_state *state);
+/* Tells all ranks how much there is to be told. */
+int flow_share_head(struct flow_state *state);
+/* Tells them the shapes of all blocks; fills flow->tables. */
+int flow_share(struct flow_state *state);
+/* Parcels: objects beside their blocks. A failure is returned by the next get. */
+void flow_parcels_make(struct flow_state *state);
+int flow_parcels_free(struct flow_state *state);
+/* Brings the tables, made one by one on rank 0, to the ranks that keep their blocks. Objects are
+ * made. Rank 0 has freed its source then. */
+int flow_deal(struct flow_state *state);
+
+/* A position or velocity as it is hashed: little-endian doubles x y z. */
+enum { FLOW_VERTEX_BYTES = 24 };
+/* Vertices whose positions or velocities are hashed at once. */
+uint32_t flow_hash_part(const struct flow *flow);
+
 /* All memory that a run needs besides its objects, and whether all ranks have it: if one has not,
  * all return FLOW_NO_MEMORY and none has begun. To be freed in either case. */
 int flow_memory_take(struct flow_state *state);
@@ -153,8 +206,8 @@ void flow_memory_free(struct flow_state *state);
 void flow_objects_make(struct flow_state *state);
 int flow_objects_free(struct flow_state *state);
 
-/* Forks `kernel` on one block: first the objects given, then the neighbours' objects at `offset` in
- * struct flow_objects (and at `offset2`); FLOW_NO_RIM: none. */
+/* Forks `kernel` on one block: first its table, then the objects given, then the neighbours'
+ * objects at `offset` in struct flow_objects (and at `offset2`); FLOW_NO_RIM: none. */
 enum { FLOW_NO_RIM = -1 };
 int flow_fork(struct flow_state *state, const duite_kernel *kernel, const struct flow_args *args,
               size_t n, const duite_object *objects, long offset, long offset2);

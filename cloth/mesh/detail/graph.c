@@ -1,82 +1,122 @@
-/* Pairs are sorted once; filled in that order, every node's neighbours come out ascending. */
+/* Pairs are told twice: counted, then put behind their nodes. Springs come in order, so most rows
+ * are ascending as they are; the others are sorted. */
 #include "cloth/mesh/detail/graph.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/mesh/detail/sort.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* The pairs with the smaller node first, without those of a node with itself. Returns how many. */
-static size_t turn(uint32_t *to, size_t n, const uint32_t *pair)
+struct builder {
+    struct mesh_graph *graph;
+    uint32_t n_vertices;
+    const uint32_t *node;
+    uint64_t n, ends; /* pairs so far; ends that count */
+    uint64_t bad;     /* the first pair with a vertex that has no node, */
+    uint32_t vertex;  /* and that vertex */
+    bool failed;
+};
+
+static uint32_t node_of(const struct builder *builder, uint32_t vertex)
 {
-    size_t kept = 0;
-    for (size_t i = 0; i < n; i++) {
-        uint32_t a = pair[2 * i], b = pair[2 * i + 1];
-        if (a == b)
-            continue;
-        to[2 * kept] = a < b ? a : b;
-        to[2 * kept + 1] = a < b ? b : a;
-        kept++;
-    }
-    return kept;
+    return vertex < builder->n_vertices ? builder->node[vertex] : MESH_NO_PLACE;
 }
 
-/* Keeps the first of equal pairs in the order. Returns how many are left. */
-static size_t unique(uint32_t *order, size_t n, const uint32_t *pair)
+static void count(void *to, uint32_t a, uint32_t b)
 {
-    size_t kept = 0;
-    for (size_t i = 0; i < n; i++) {
-        const uint32_t *here = pair + 2 * (size_t)order[i];
-        const uint32_t *last = kept ? pair + 2 * (size_t)order[kept - 1] : NULL;
-        if (!last || here[0] != last[0] || here[1] != last[1])
-            order[kept++] = order[i];
+    struct builder *builder = to;
+    const uint32_t p = node_of(builder, a), q = node_of(builder, b);
+    if ((p == MESH_NO_PLACE || q == MESH_NO_PLACE) && !builder->failed) {
+        builder->failed = true;
+        builder->bad = builder->n;
+        builder->vertex = p == MESH_NO_PLACE ? a : b;
     }
-    return kept;
+    builder->n++;
+    if (builder->failed || p == q)
+        return;
+    builder->graph->start[p + 1]++;
+    builder->graph->start[q + 1]++;
+    builder->ends += 2;
 }
 
-static int fill(struct mesh_graph *graph, size_t n, const uint32_t *order, const uint32_t *pair,
-                struct cloth_error *error)
+/* While rows are filled, start[i] is where the next neighbour of node i goes. */
+static void put(void *to, uint32_t a, uint32_t b)
 {
-    graph->start = cloth_alloc((size_t)graph->n_nodes + 1, sizeof *graph->start, error);
-    graph->neighbour = cloth_alloc(2 * n, sizeof *graph->neighbour, error);
-    size_t *next = cloth_alloc((size_t)graph->n_nodes + 1, sizeof *next, error);
-    if (!graph->start || !graph->neighbour || !next) {
-        free(next);
+    const struct builder *builder = to;
+    const struct mesh_graph *graph = builder->graph;
+    const uint32_t p = builder->node[a], q = builder->node[b];
+    if (p == q)
+        return;
+    graph->neighbour[graph->start[p]++] = q;
+    graph->neighbour[graph->start[q]++] = p;
+}
+
+static int by_number(const void *left, const void *right)
+{
+    uint32_t a, b;
+    memcpy(&a, left, sizeof a);
+    memcpy(&b, right, sizeof b);
+    return (a > b) - (a < b);
+}
+
+/* Sorts each row, drops repeats and closes the gaps. */
+static void tidy(struct mesh_graph *graph)
+{
+    uint32_t *neighbour = graph->neighbour, kept = 0, from = 0;
+    for (uint32_t v = 0; v < graph->n_nodes; v++) {
+        const uint32_t to = graph->start[v + 1], first = kept;
+        bool ascending = true;
+        for (uint32_t i = from + 1; i < to && ascending; i++)
+            ascending = neighbour[i - 1] <= neighbour[i];
+        if (!ascending)
+            qsort(neighbour + from, to - from, sizeof *neighbour, by_number);
+        for (uint32_t i = from; i < to; i++)
+            if (kept == first || neighbour[kept - 1] != neighbour[i])
+                neighbour[kept++] = neighbour[i];
+        graph->start[v] = first;
+        from = to;
+    }
+    graph->start[graph->n_nodes] = kept;
+}
+
+static int fill(struct builder *builder, const struct mesh_pairs *pairs, struct cloth_error *error)
+{
+    struct mesh_graph *graph = builder->graph;
+    graph->neighbour = cloth_alloc(builder->ends, sizeof *graph->neighbour, error);
+    if (!graph->neighbour)
         return CLOTH_E_MEMORY;
-    }
-    for (size_t i = 0; i < n; i++)
-        for (size_t k = 0; k < 2; k++)
-            graph->start[pair[2 * (size_t)order[i] + k] + 1]++;
-    for (size_t v = 0; v < graph->n_nodes; v++)
-        next[v + 1] = graph->start[v + 1] += graph->start[v];
-    for (size_t i = 0; i < n; i++) {
-        const uint32_t *ends = pair + 2 * (size_t)order[i];
-        graph->neighbour[next[ends[0]]++] = ends[1];
-        graph->neighbour[next[ends[1]]++] = ends[0];
-    }
-    free(next);
+    for (uint32_t v = 0; v < graph->n_nodes; v++)
+        graph->start[v + 1] += graph->start[v];
+    pairs->each(pairs->context, put, builder);
+    for (uint32_t v = graph->n_nodes; v > 0; v--) /* each was moved on to the next one's */
+        graph->start[v] = graph->start[v - 1];
+    graph->start[0] = 0;
+    tidy(graph);
     return CLOTH_OK;
 }
 
-int mesh_graph_build(struct mesh_graph *graph, uint32_t n_nodes, size_t n_pairs,
-                     const uint32_t *pair, struct cloth_error *error)
+int mesh_graph_build(struct mesh_graph *graph, uint32_t n_nodes, uint32_t n_vertices,
+                     const uint32_t *node, const struct mesh_pairs *pairs,
+                     struct cloth_error *error)
 {
+    struct builder builder = {.graph = graph, .n_vertices = n_vertices, .node = node};
     *graph = (struct mesh_graph){.n_nodes = n_nodes};
-    if (n_pairs > UINT32_MAX)
-        return cloth_fail(error, CLOTH_E_INPUT, "%zu pairs of vertices are too many; at most %u",
-                          n_pairs, UINT32_MAX);
-    int code = CLOTH_E_MEMORY;
-    uint32_t *turned = cloth_alloc(n_pairs, 2 * sizeof *turned, error);
-    uint32_t *order = cloth_alloc(n_pairs, sizeof *order, error);
-    if (turned && order) {
-        size_t n = turn(turned, n_pairs, pair);
-        code = mesh_sort_pairs(order, n, turned, n_nodes, error);
-        if (!code)
-            code = fill(graph, unique(order, n, turned), order, turned, error);
-    }
-    free(turned);
-    free(order);
+    graph->start = cloth_alloc((size_t)n_nodes + 1, sizeof *graph->start, error);
+    if (!graph->start)
+        return CLOTH_E_MEMORY;
+    pairs->each(pairs->context, count, &builder);
+    int code = CLOTH_OK;
+    if (builder.failed)
+        code = cloth_fail(error, CLOTH_E_INPUT,
+                          "pair %llu joins vertex %u, which is not one of the used vertices",
+                          (unsigned long long)builder.bad, builder.vertex);
+    else if (builder.ends > UINT32_MAX)
+        code = cloth_fail(error, CLOTH_E_INPUT,
+                          "%llu pairs of vertices are too many; at most %u are possible",
+                          (unsigned long long)builder.n, UINT32_MAX / 2);
+    else
+        code = fill(&builder, pairs, error);
     if (code)
         mesh_graph_free(graph);
     return code;

@@ -1,23 +1,26 @@
 #ifndef CLOTH_MESH_DETAIL_GRAPH_H
 #define CLOTH_MESH_DETAIL_GRAPH_H
 
-#include "cloth/base/error.h"
+#include "cloth/mesh/blocks.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
 /* Who is joined to whom: the neighbours of node i are neighbour[start[i]] .. neighbour[start[i + 1]
- * - 1], ascending, each once, without i itself. Local. */
+ * - 1], ascending, each once, without i itself. Numbers of 32 bits, as METIS takes them: the graph
+ * of a large mesh is not copied for it. Local. */
 struct mesh_graph {
     uint32_t n_nodes;
-    size_t *start; /* n_nodes + 1 */
+    uint32_t *start; /* n_nodes + 1 */
     uint32_t *neighbour;
 };
 
-/* pair: n_pairs x 2 nodes below n_nodes in any order, repeats allowed. Errors: CLOTH_E_INPUT beyond
- * 2^32 - 1 pairs, CLOTH_E_MEMORY. */
-int mesh_graph_build(struct mesh_graph *graph, uint32_t n_nodes, size_t n_pairs,
-                     const uint32_t *pair, struct cloth_error *error);
+/* pairs: of vertices below n_vertices; node: of each vertex, below n_nodes or MESH_NO_PLACE. The
+ * pairs are gone through twice. Errors: CLOTH_E_INPUT for a pair with a vertex that has no node,
+ * and beyond 2^31 pairs; CLOTH_E_MEMORY. */
+int mesh_graph_build(struct mesh_graph *graph, uint32_t n_nodes, uint32_t n_vertices,
+                     const uint32_t *node, const struct mesh_pairs *pairs,
+                     struct cloth_error *error);
 void mesh_graph_free(struct mesh_graph *graph);
 
 /* Sorts lists of nodes for locality, part by part: reverse Cuthill-McKee. Within a part, components

@@ -23,7 +23,7 @@ struct mesh_order *mesh_order_new(const struct mesh_graph *graph, struct cloth_e
     struct mesh_order *order = cloth_alloc(1, sizeof *order, error);
     if (!order)
         return NULL;
-    size_t widest = 0;
+    uint32_t widest = 0;
     for (size_t v = 0; v < graph->n_nodes; v++)
         if (graph->start[v + 1] - graph->start[v] > widest)
             widest = graph->start[v + 1] - graph->start[v];
@@ -64,7 +64,7 @@ static uint32_t visit(struct mesh_order *order, uint32_t node, uint32_t n)
 {
     const struct mesh_graph *graph = order->graph;
     size_t fresh = 0;
-    for (size_t i = graph->start[node]; i < graph->start[node + 1]; i++) {
+    for (uint32_t i = graph->start[node]; i < graph->start[node + 1]; i++) {
         uint32_t other = graph->neighbour[i];
         if (order->part[other] != order->part[node] || order->seen[other] >= order->walk)
             continue;
@@ -117,7 +117,7 @@ static void find_degrees(struct mesh_order *order, uint32_t n, const uint32_t *n
     const struct mesh_graph *graph = order->graph;
     for (uint32_t i = 0; i < n; i++) {
         uint32_t node = nodes[i], degree = 0;
-        for (size_t k = graph->start[node]; k < graph->start[node + 1]; k++)
+        for (uint32_t k = graph->start[node]; k < graph->start[node + 1]; k++)
             degree += order->part[graph->neighbour[k]] == order->part[node];
         order->degree[node] = degree;
         order->seen[node] = 0;

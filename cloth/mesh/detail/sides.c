@@ -27,10 +27,11 @@ int mesh_sides_sort(struct mesh_sides *sides, const struct mesh *mesh, struct cl
         mesh_sides_free(sides);
         return CLOTH_E_MEMORY;
     }
-    for (size_t t = 0; t < mesh->n_triangles; t++) {
-        const uint32_t *corner = mesh->triangle + 3 * t;
+    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
+        uint32_t corner[3];
+        mesh_corners(mesh, t, corner);
         for (size_t s = 0; s < 3; s++)
-            set_pair(sides->pair + 2 * (3 * t + s), corner[s], corner[(s + 1) % 3]);
+            set_pair(sides->pair + 2 * (3 * (size_t)t + s), corner[s], corner[(s + 1) % 3]);
     }
     for (size_t e = 0; e < mesh->n_lone_edges; e++)
         set_pair(sides->pair + 2 * (of_triangles + e), mesh->lone_edge[2 * e],

@@ -23,17 +23,20 @@ static void put_vertices(FILE *file, const struct mesh *mesh)
         const double *x = mesh->position + 3 * v;
         fprintf(file, "v %.17g %.17g %.17g\n", x[0], x[1], x[2]);
     }
-    for (size_t v = 0; mesh->uv && v < mesh->n_vertices; v++)
-        fprintf(file, "vt %.17g %.17g\n", mesh->uv[2 * v], mesh->uv[2 * v + 1]);
+    double uv[2];
+    for (uint32_t v = 0; v < mesh->n_vertices && mesh_uv(mesh, v, uv); v++)
+        fprintf(file, "vt %.17g %.17g\n", uv[0], uv[1]);
 }
 
-static void put_faces(FILE *file, const struct mesh *mesh, struct start start)
+static void put_faces(FILE *file, const struct mesh *mesh, struct start start, int has_uv)
 {
-    for (size_t f = 0; f < mesh->n_faces; f++) {
+    for (uint32_t f = 0; f < mesh->n_faces; f++) {
+        uint32_t room[3];
+        const uint32_t *corner, n = mesh_face(mesh, f, room, &corner);
         fputc('f', file);
-        for (size_t c = mesh->face_start[f]; c < mesh->face_start[f + 1]; c++) {
-            uint64_t v = mesh->face_corner[c];
-            if (mesh->uv)
+        for (uint32_t c = 0; c < n; c++) {
+            const uint64_t v = corner[c];
+            if (has_uv)
                 fprintf(file, " %ju/%ju", (uintmax_t)(start.vertex + v), (uintmax_t)(start.uv + v));
             else
                 fprintf(file, " %ju", (uintmax_t)(start.vertex + v));
@@ -53,9 +56,11 @@ int output_fill_obj(FILE *file, const void *what)
         const struct mesh *mesh = setup->meshes[i];
         put_name(file, setup->names[i]);
         put_vertices(file, mesh);
-        put_faces(file, mesh, start);
+        double uv[2];
+        const int has_uv = mesh_uv(mesh, 0, uv);
+        put_faces(file, mesh, start, has_uv);
         start.vertex += mesh->n_vertices;
-        start.uv += mesh->uv ? mesh->n_vertices : 0;
+        start.uv += has_uv ? mesh->n_vertices : 0;
     }
     return ferror(file);
 }

@@ -137,6 +137,13 @@ static void begin_mpi(void)
         atexit(end_mpi);
 }
 
+/* The code and sentence of rank 0's preparation, on all ranks, as a program would tell them. */
+static void agree(struct record *r)
+{
+    MPI_Bcast(&r->code, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    MPI_Bcast(&r->error, sizeof r->error, MPI_BYTE, 0, MPI_COMM_WORLD);
+}
+
 /* What rank 0 alone was told, to all. */
 static void share(struct record *r)
 {
@@ -157,7 +164,7 @@ static void share(struct record *r)
 static void run_prepared(struct record *r, struct flow *flow)
 {
     const struct flow_output output = {r, keep_frame};
-    const struct flow_progress progress = {r, show_step, ask_stop};
+    const struct flow_progress progress = {r, NULL, show_step, ask_stop};
     duite_options options = duite_options_default();
     duite *rt = NULL;
     options.kernels = flow_kernels();
@@ -169,9 +176,8 @@ static void run_prepared(struct record *r, struct flow *flow)
     if (duite_start(&rt, &options))
         die(duite_message());
     r->vertices = flow_vertices(flow);
-    if (r->begin)
-        r->begin();
     r->code = flow_run(flow, rt, &output, &progress, &r->report, &r->error);
+    r->vertices = flow_vertices(flow);
     if (duite_stop(&rt))
         die(duite_message());
     share(r);
@@ -189,7 +195,8 @@ void record_run(struct record *r, const struct model *model)
     struct flow *flow = NULL;
     int rank, ranks;
     record_mpi(&rank, &ranks);
-    r->code = flow_prepare(&flow, model, ranks, &r->error);
+    r->code = rank ? flow_join(&flow, &r->error) : flow_prepare(&flow, model, ranks, &r->error);
+    agree(r);
     if (!r->code)
         run_prepared(r, flow);
     flow_free(flow);

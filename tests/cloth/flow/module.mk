@@ -7,7 +7,7 @@ check_PROGRAMS += tests/cloth/flow/test_memory
 tests_cloth_flow_test_memory_SOURCES = tests/cloth/flow/test_memory.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_memory_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_memory_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=malloc -Wl,--wrap=calloc \
-	-Wl,--wrap=realloc -Wl,--wrap=aligned_alloc
+	-Wl,--wrap=realloc -Wl,--wrap=aligned_alloc -Wl,--wrap=flow_memory_take -Wl,--wrap=flow_source_gather
 TESTS += tests/cloth/flow/test_memory
 tests_cloth_flow_test_motion_SOURCES = tests/cloth/flow/test_motion.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_motion_LDADD = $(CLOTH_TEST_LIBS)
@@ -15,3 +15,5 @@ tests_cloth_flow_test_run_SOURCES = tests/cloth/flow/test_run.c $(FLOW_TEST_MODE
 tests_cloth_flow_test_run_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/flow/test_failures tests/cloth/flow/test_motion tests/cloth/flow/test_run
 endif
+dist_check_SCRIPTS += tests/cloth/flow/test_ranks.sh
+TESTS += tests/cloth/flow/test_ranks.sh

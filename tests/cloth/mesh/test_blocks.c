@@ -38,10 +38,12 @@ static struct graph sheet(uint32_t nx, uint32_t ny, uint32_t more)
     struct mesh_lattice lattice;
     ck_assert_int_eq(mesh_lattice_build(&lattice, &mesh, &moduli, NULL), CLOTH_OK);
     struct graph graph = graph_new(mesh.n_vertices + more, lattice.n);
+    struct mesh_spring *spring = springs_of(&lattice);
     for (size_t s = 0; s < lattice.n; s++) {
-        graph.pairs[2 * s] = lattice.spring[s].a;
-        graph.pairs[2 * s + 1] = lattice.spring[s].b;
+        graph.pairs[2 * s] = spring[s].a;
+        graph.pairs[2 * s + 1] = spring[s].b;
     }
+    free(spring);
     mesh_lattice_free(&lattice);
     mesh_free(&mesh);
     return graph;
@@ -66,8 +68,8 @@ static struct mesh_blocks cut(const struct graph *graph, uint32_t grain, uint32_
 {
     struct cloth_error error = {0};
     struct mesh_blocks blocks;
-    int code = mesh_blocks_cut(&blocks, graph->n_vertices, graph->used, graph->n_pairs,
-                               graph->pairs, grain, &error);
+    int code = cut_list(&blocks, graph->n_vertices, graph->used, graph->n_pairs, graph->pairs,
+                        grain, &error);
     ck_assert_msg(code == CLOTH_OK, "%s", error.text);
     uint32_t n = 0, without = 0;
     for (uint32_t v = 0; v < graph->n_vertices; v++)
@@ -310,16 +312,16 @@ START_TEST(wrong_input)
     struct graph graph = sheet(3, 3, 0);
     struct mesh_blocks blocks;
     struct cloth_error error = {0};
-    ck_assert_int_eq(mesh_blocks_cut(&blocks, 9, graph.used, graph.n_pairs, graph.pairs, 0, &error),
+    ck_assert_int_eq(cut_list(&blocks, 9, graph.used, graph.n_pairs, graph.pairs, 0, &error),
                      CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "at least 1"));
     graph.used[4] = 0;
     error = (struct cloth_error){0};
-    ck_assert_int_eq(mesh_blocks_cut(&blocks, 9, graph.used, graph.n_pairs, graph.pairs, 3, &error),
+    ck_assert_int_eq(cut_list(&blocks, 9, graph.used, graph.n_pairs, graph.pairs, 3, &error),
                      CLOTH_E_INPUT);
     ck_assert_ptr_nonnull(strstr(error.text, "vertex 4"));
     graph.used[4] = 1;
-    ck_assert_int_eq(mesh_blocks_cut(&blocks, 8, graph.used, graph.n_pairs, graph.pairs, 3, NULL),
+    ck_assert_int_eq(cut_list(&blocks, 8, graph.used, graph.n_pairs, graph.pairs, 3, NULL),
                      CLOTH_E_INPUT);
     ck_assert(!blocks.start && !blocks.vertex && !blocks.place);
     graph_free(&graph);

@@ -13,7 +13,9 @@ START_TEST(numbering)
     ck_assert_uint_eq(mesh.grid_ny, 4);
     for (uint32_t j = 0; j < 4; j++) {
         for (uint32_t i = 0; i < 3; i++) {
-            const double *x = mesh.position + 3 * (j * 3 + i), *uv = mesh.uv + 2 * (j * 3 + i);
+            const double *x = mesh.position + 3 * (j * 3 + i);
+            double uv[2];
+            ck_assert_int_eq(mesh_uv(&mesh, j * 3 + i, uv), 1);
             ck_assert_double_eq(x[0], -1.0 + i);
             ck_assert_double_eq(x[1], 0);
             ck_assert_double_eq(x[2], -1.5 + j);
@@ -21,8 +23,16 @@ START_TEST(numbering)
             ck_assert_double_eq(uv[1], j);
         }
     }
-    const uint32_t first[6] = {0, 3, 4, 0, 4, 1}; /* the diagonal is 0-4 */
-    ck_assert_mem_eq(mesh.triangle, first, sizeof first);
+    const uint32_t expected[][3] = {{0, 3, 4},
+                                    {0, 4, 1},
+                                    {1, 4, 5},
+                                    {1, 5, 2},
+                                    {3, 6, 7}}; /* the diagonals are 0-4, 1-5, ... */
+    for (uint32_t t = 0; t < 5; t++) {
+        uint32_t corner[3];
+        mesh_corners(&mesh, t, corner);
+        ck_assert_mem_eq(corner, expected[t], sizeof corner);
+    }
     mesh_free(&mesh);
 }
 END_TEST
@@ -32,12 +42,15 @@ START_TEST(triangles)
     struct mesh mesh = grid(1, 1, 150, 150);
     ck_assert_uint_eq(mesh.n_triangles, 44402);
     ck_assert_uint_eq(mesh.n_faces, 44402);
-    ck_assert_uint_eq(mesh.face_start[44402], 3 * 44402);
-    ck_assert_mem_eq(mesh.triangle, mesh.face_corner, 3 * 44402 * sizeof(uint32_t));
-    for (size_t t = 0; t < mesh.n_triangles; t++) { /* y of (q - p) x (r - p) */
-        const double *p = mesh.position + 3 * mesh.triangle[3 * t];
-        const double *q = mesh.position + 3 * mesh.triangle[3 * t + 1];
-        const double *r = mesh.position + 3 * mesh.triangle[3 * t + 2];
+    for (uint32_t t = 0; t < mesh.n_triangles; t++) { /* y of (q - p) x (r - p) */
+        uint32_t corner[3], room[3];
+        const uint32_t *face;
+        mesh_corners(&mesh, t, corner);
+        ck_assert_uint_eq(mesh_face(&mesh, t, room, &face), 3);
+        ck_assert_mem_eq(face, corner, sizeof corner);
+        const double *p = mesh.position + 3 * corner[0];
+        const double *q = mesh.position + 3 * corner[1];
+        const double *r = mesh.position + 3 * corner[2];
         ck_assert_double_gt((q[2] - p[2]) * (r[0] - p[0]) - (q[0] - p[0]) * (r[2] - p[2]), 0);
     }
     mesh_free(&mesh);

@@ -76,7 +76,7 @@ static int all(struct cloth_error *error, const char *path)
         ck_assert(!sheet.position && !sheet.triangle);
     if (!code && TRY(mesh_inline(&copy, 4, mesh.position, 1, chain, 1, mesh.triangle, error)))
         ck_assert(!copy.position && !copy.triangle);
-    if (!code && TRY(mesh_blocks_cut(&blocks, 64, used, 3, chain, 1, error)))
+    if (!code && TRY(cut_list(&blocks, 64, used, 3, chain, 1, error)))
         ck_assert(!blocks.start && !blocks.vertex && !blocks.place);
     mesh_blocks_free(&blocks);
     mesh_free(&copy);

@@ -1,10 +1,12 @@
 #ifndef TESTS_CLOTH_MESH_TOOLS_H
 #define TESTS_CLOTH_MESH_TOOLS_H
 
-#include "cloth/mesh/mesh.h"
+#include "cloth/mesh/blocks.h"
+#include "cloth/mesh/lattice.h"
 #include "tests/support/unit.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -42,6 +44,45 @@ static inline struct mesh grid(double width, double height, uint32_t nx, uint32_
     struct mesh mesh;
     ck_assert_msg(mesh_grid(&mesh, width, height, nx, ny, &error) == CLOTH_OK, "%s", error.text);
     return mesh;
+}
+
+static inline void keep_spring(void *to, const struct mesh_spring *spring)
+{
+    struct mesh_spring **next = to;
+    *(*next)++ = *spring;
+}
+
+/* The springs of a lattice, lattice->n, to be freed by the caller. */
+static inline struct mesh_spring *springs_of(const struct mesh_lattice *lattice)
+{
+    struct mesh_spring *spring = malloc(((size_t)lattice->n + 1) * sizeof *spring), *next = spring;
+    mesh_lattice_each(lattice, keep_spring, &next);
+    ck_assert_int_eq(next - spring, lattice->n);
+    return spring;
+}
+
+/* Pairs of vertices, for mesh_blocks_cut. */
+struct pair_list {
+    size_t n;
+    const uint32_t *pair;
+};
+
+static inline void each_pair(const void *context, void (*visit)(void *to, uint32_t a, uint32_t b),
+                             void *to)
+{
+    const struct pair_list *list = context;
+    for (size_t i = 0; i < list->n; i++)
+        visit(to, list->pair[2 * i], list->pair[2 * i + 1]);
+}
+
+/* mesh_blocks_cut of n_pairs x 2 vertices. */
+static inline int cut_list(struct mesh_blocks *blocks, uint32_t n_vertices,
+                           const unsigned char *used, size_t n_pairs, const uint32_t *pair,
+                           uint32_t grain, struct cloth_error *error)
+{
+    const struct pair_list list = {n_pairs, pair};
+    const struct mesh_pairs pairs = {&list, each_pair};
+    return mesh_blocks_cut(blocks, n_vertices, used, &pairs, grain, error);
 }
 
 static inline int run_cases(const char *name, const TTest *const *tests, size_t n)

@@ -1,0 +1,150 @@
+/* A spring between two blocks makes each read the other's row: sorted by reader, block and row, and
+ * each once, these are the copies; the blocks among them are the slots. */
+#include "cloth/flow/tables/source.h"
+
+#include "cloth/base/memory.h"
+
+#include <stdlib.h>
+
+/* Block `reader` needs a place of block `other`. */
+struct need {
+    uint32_t reader, other, place;
+};
+
+struct finder {
+    struct flow_source *source;
+    uint32_t block; /* of the last spring's lower end: the next one's is often the same */
+    struct cloth_list needs;
+    struct cloth_error *error;
+    int code;
+};
+
+static void add_need(struct finder *finder, uint32_t reader, uint32_t other, uint32_t place)
+{
+    struct need *need = cloth_list_add(&finder->needs, sizeof *need, 1, finder->error);
+    finder->source->rim[place] = 1;
+    if (need)
+        *need = (struct need){reader, other, place};
+    else
+        finder->code = CLOTH_E_MEMORY;
+}
+
+static void find(void *to, const struct flow_spring *spring)
+{
+    struct finder *finder = to;
+    const struct flow_source *source = finder->source;
+    const uint32_t p = source->blocks.place[spring->a], q = source->blocks.place[spring->b];
+    const uint32_t bp = flow_source_block(&source->blocks, p, finder->block);
+    const uint32_t bq = flow_source_block(&source->blocks, q, bp);
+    struct flow_table *one = source->shape + bp, *two = source->shape + bq;
+    const bool free_p = source->particles.free[spring->a];
+    const bool free_q = source->particles.free[spring->b];
+    finder->block = bp;
+    if (free_p != free_q)
+        (free_p ? one : two)->n_held++;
+    if (bp == bq) {
+        one->n_inner++;
+        return;
+    }
+    one->n_cut++;
+    two->n_cut++;
+    if (finder->code)
+        return;
+    add_need(finder, bp, bq, q);
+    add_need(finder, bq, bp, p);
+}
+
+/* Numbers the rows that other blocks need, which are marked. */
+static void number_rim(const struct flow_source *source, struct flow_table *shape)
+{
+    uint32_t *rim = source->rim + shape->first;
+    for (uint32_t i = 0; i < shape->n; i++)
+        rim[i] = rim[i] ? shape->n_rim++ : MESH_NO_PLACE;
+}
+
+static int compare_u32(uint32_t a, uint32_t b)
+{
+    return (a > b) - (a < b);
+}
+
+static int compare_needs(const void *va, const void *vb)
+{
+    const struct need *a = va, *b = vb;
+    int order = compare_u32(a->reader, b->reader);
+    if (!order)
+        order = compare_u32(a->other, b->other);
+    return order ? order : compare_u32(a->place, b->place);
+}
+
+/* Of sorted needs: keeps each once, counts slots and copies. Returns how many are left. */
+static size_t count(struct flow_source *source, struct need *need, size_t n)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < n; i++) {
+        const struct need *last = kept ? need + kept - 1 : NULL;
+        if (last && compare_needs(last, need + i) == 0)
+            continue;
+        struct flow_table *shape = source->shape + need[i].reader;
+        if (!last || last->reader != need[i].reader || last->other != need[i].other)
+            shape->n_slots++;
+        shape->n_copies++;
+        need[kept++] = need[i];
+    }
+    return kept;
+}
+
+/* Fills the arrays, and lets the shapes point into them. */
+static void fill(struct flow_source *source, const struct need *need)
+{
+    uint32_t *slot = source->neighbours.slot, *copies = source->neighbours.copies;
+    uint32_t *copy = source->neighbours.copy;
+    for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
+        struct flow_table *shape = source->shape + b;
+        uint32_t s = 0;
+        shape->slot = slot;
+        shape->copies = copies;
+        shape->copy = copy;
+        for (uint32_t i = 0; i < shape->n_copies; i++) {
+            if (i == 0 || need[i].other != need[i - 1].other) {
+                copies[s] = i;
+                slot[s++] = need[i].other;
+            }
+            copy[i] = source->rim[need[i].place];
+        }
+        copies[s] = shape->n_copies;
+        slot += s;
+        copies += s + 1;
+        copy += shape->n_copies;
+        need += shape->n_copies;
+    }
+}
+
+static int make(struct flow_source *source, struct cloth_list *needs, struct cloth_error *error)
+{
+    struct flow_neighbours *all = &source->neighbours;
+    const uint32_t n_blocks = source->blocks.n_blocks;
+    if (needs->n)
+        qsort(needs->items, needs->n, sizeof(struct need), compare_needs);
+    all->n_copies = (uint32_t)count(source, needs->items, needs->n);
+    for (uint32_t b = 0; b < n_blocks; b++)
+        all->n_slots += source->shape[b].n_slots;
+    all->slot = cloth_alloc(all->n_slots, sizeof *all->slot, error);
+    all->copies = cloth_alloc((size_t)all->n_slots + n_blocks, sizeof *all->copies, error);
+    all->copy = cloth_alloc(all->n_copies, sizeof *all->copy, error);
+    if (!all->slot || !all->copies || !all->copy)
+        return CLOTH_E_MEMORY;
+    fill(source, needs->items);
+    return CLOTH_OK;
+}
+
+int flow_source_meet(struct flow_source *source, struct cloth_error *error)
+{
+    struct finder finder = {.source = source, .error = error};
+    flow_springs_each(&source->springs, find, &finder);
+    for (uint32_t b = 0; b < source->blocks.n_blocks; b++)
+        number_rim(source, source->shape + b);
+    if (!finder.code)
+        finder.code = make(source, &finder.needs, error);
+    free(finder.needs.items);
+    return finder.code;
+}

@@ -1,0 +1,220 @@
+/* A spring has one side where both ends lie in one block, and two where they do not. Sorting the
+ * sides of a block by neighbour and rows gives every array of its table as a contiguous part. */
+#include "cloth/flow/tables/source.h"
+
+#include "cloth/base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* One side of a spring, seen from the block that it is kept in. */
+struct flow_side {
+    uint32_t other;       /* the neighbour plus one, 0 for inner springs */
+    uint32_t here, there; /* places; inner: the lower is here */
+    uint32_t spring;      /* its number: springs that join the same rows keep their order */
+    double stiffness, damping, length;
+    unsigned char stretch;
+};
+
+static int compare_u32(uint32_t a, uint32_t b)
+{
+    return (a > b) - (a < b);
+}
+
+static int compare_sides(const void *va, const void *vb)
+{
+    const struct flow_side *a = va, *b = vb;
+    int order = compare_u32(a->other, b->other);
+    if (!order)
+        order = compare_u32(a->here, b->here);
+    if (!order)
+        order = compare_u32(a->there, b->there);
+    return order ? order : compare_u32(a->spring, b->spring);
+}
+
+/* The sides of the group: counted from the shapes, then put where their block's part goes on. */
+struct gatherer {
+    struct flow_source *source;
+    uint32_t first, end; /* places of the group */
+    uint32_t spring;
+    uint32_t block; /* of the last spring's lower end: the next one's is often the same */
+};
+
+static void put_side(struct gatherer *gatherer, uint32_t block, uint32_t other, uint32_t here,
+                     uint32_t there, const struct flow_spring *s)
+{
+    struct flow_source *source = gatherer->source;
+    source->side[source->start[block - source->from]++] = (struct flow_side){
+        other, here, there, gatherer->spring, s->stiffness, s->damping, s->length, s->stretch};
+}
+
+static void gather_spring(void *to, const struct flow_spring *s)
+{
+    struct gatherer *gatherer = to;
+    const struct mesh_blocks *blocks = &gatherer->source->blocks;
+    uint32_t p = blocks->place[s->a], q = blocks->place[s->b];
+    gatherer->spring++;
+    const bool own_p = p >= gatherer->first && p < gatherer->end;
+    const bool own_q = q >= gatherer->first && q < gatherer->end;
+    if (!own_p && !own_q)
+        return;
+    const uint32_t bp = flow_source_block(blocks, p, gatherer->block);
+    const uint32_t bq = flow_source_block(blocks, q, bp);
+    gatherer->block = bp;
+    if (bp == bq) {
+        put_side(gatherer, bp, 0, p < q ? p : q, p < q ? q : p, s);
+        return;
+    }
+    if (own_p)
+        put_side(gatherer, bp, bq + 1, p, q, s);
+    if (own_q)
+        put_side(gatherer, bq, bp + 1, q, p, s);
+}
+
+void flow_source_forget(struct flow_source *source)
+{
+    free(source->side);
+    free(source->start);
+    source->side = NULL;
+    source->start = NULL;
+}
+
+int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
+                       struct cloth_error *error)
+{
+    struct gatherer gatherer = {
+        .source = source, .first = source->blocks.start[from], .end = source->blocks.start[to]};
+    flow_source_forget(source);
+    source->start = cloth_alloc((size_t)(to - from) + 1, sizeof *source->start, error);
+    if (!source->start)
+        return CLOTH_E_MEMORY;
+    size_t n = 0;
+    for (uint32_t b = from; b < to; b++) {
+        source->start[b - from] = n;
+        n += (size_t)source->shape[b].n_inner + source->shape[b].n_cut;
+    }
+    source->side = cloth_alloc(n, sizeof *source->side, error);
+    if (!source->side)
+        return CLOTH_E_MEMORY;
+    source->from = from;
+    flow_springs_each(&source->springs, gather_spring, &gatherer);
+    for (uint32_t i = to - from; i > 0; i--) /* each was moved on to the next one's */
+        source->start[i] = source->start[i - 1];
+    source->start[0] = 0;
+    return CLOTH_OK;
+}
+
+/* The cloth of a vertex, and its first vertex, looked for from the last one found. */
+struct cloths {
+    uint32_t cloth, first;
+};
+
+static void find_cloth(struct cloths *at, const struct model *model, uint32_t vertex)
+{
+    if (vertex < at->first)
+        *at = (struct cloths){0};
+    while (vertex - at->first >= model->cloths[at->cloth].mesh.n_vertices)
+        at->first += model->cloths[at->cloth++].mesh.n_vertices;
+}
+
+/* What belongs to a vertex, and the rows that other blocks need. */
+static void fill_rows(const struct flow_source *source, const struct flow_table *t,
+                      const struct flow_image *image)
+{
+    const struct model *model = source->model;
+    struct cloths at = {0};
+    for (uint32_t i = 0; i < t->n; i++) {
+        const uint32_t v = source->blocks.vertex[t->first + i], rim = source->rim[t->first + i];
+        struct flow_particle p;
+        find_cloth(&at, model, v);
+        flow_particle_of(&source->particles, model, model->cloths + at.cloth, at.first, v, &p);
+        image->vertex[i] = v;
+        image->mass[i] = p.mass;
+        image->drag[i] = p.drag;
+        image->free[i] = p.free;
+        image->diagonal[i] = p.mass + model->h * p.drag;
+        image->load[i] = p.load;
+        image->position[i] = p.position;
+        image->velocity[i] = p.velocity;
+        if (rim != MESH_NO_PLACE)
+            image->rim[rim] = i;
+    }
+}
+
+/* The inner springs come first, in order: rows of the matrix. */
+static void fill_inner(const struct flow_table *t, const struct flow_side *side,
+                       const struct flow_image *image)
+{
+    uint32_t i = 0;
+    for (uint32_t a = 0; a < t->n; a++) {
+        image->row[a] = i;
+        for (; i < t->n_inner && side[i].here - t->first == a; i++)
+            image->column[i] = side[i].there - t->first;
+    }
+    image->row[t->n] = i;
+}
+
+/* Where a row of the rim of slot s is among the block's copies. */
+static uint32_t copy_of(const struct flow_table *t, uint32_t s, uint32_t row)
+{
+    uint32_t low = t->copies[s], high = t->copies[s + 1];
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (t->copy[middle] <= row)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The cut springs follow, neighbour after neighbour. */
+static void fill_cut(const struct flow_source *source, const struct flow_table *t,
+                     const struct flow_side *side, const struct flow_image *image)
+{
+    uint32_t slots = 0;
+    for (uint32_t i = 0; i < t->n_cut; i++) {
+        if (i == 0 || side[i].other != side[i - 1].other)
+            image->cut[slots++] = i;
+        image->copy_end[i][0] = side[i].here - t->first;
+        image->copy_end[i][1] = copy_of(t, slots - 1, source->rim[side[i].there]);
+    }
+    image->cut[slots] = t->n_cut;
+}
+
+static void fill_sides(const struct flow_source *source, const struct flow_table *t,
+                       const struct flow_side *side, const struct flow_image *image)
+{
+    const uint32_t *vertex = source->blocks.vertex;
+    uint32_t held = 0;
+    for (uint32_t i = 0; i < t->n_inner + t->n_cut; i++) {
+        const uint32_t here = side[i].here - t->first;
+        const uint32_t there =
+            side[i].other ? source->rim[side[i].there] : side[i].there - t->first;
+        const bool free_here = source->particles.free[vertex[side[i].here]];
+        const bool free_there = source->particles.free[vertex[side[i].there]];
+        image->end[i][0] = here;
+        image->end[i][1] = there;
+        image->stiffness[i] = side[i].stiffness;
+        image->damping[i] = side[i].damping;
+        image->length[i] = side[i].length;
+        image->stretch[i] = side[i].stretch;
+        if (free_here == free_there || (side[i].other && !free_here))
+            continue; /* neither end is held, or the free row is the neighbour's */
+        image->held[held][0] = free_here ? here : there;
+        image->held[held++][1] = i;
+    }
+}
+
+void flow_source_table(const struct flow_source *source, uint32_t block, void *image)
+{
+    const struct flow_table *t = source->shape + block;
+    struct flow_side *side = source->side + source->start[block - source->from];
+    const struct flow_image arrays = flow_table_image(t, image);
+    memset(image, 0, flow_table_bytes(t));
+    qsort(side, (size_t)t->n_inner + t->n_cut, sizeof *side, compare_sides);
+    fill_rows(source, t, &arrays);
+    fill_inner(t, side, &arrays);
+    fill_cut(source, t, side + t->n_inner, &arrays);
+    fill_sides(source, t, side, &arrays);
+}

@@ -1,0 +1,113 @@
+#ifndef CLOTH_FLOW_TABLES_SOURCE_H
+#define CLOTH_FLOW_TABLES_SOURCE_H
+
+#include "cloth/flow/model.h"
+#include "cloth/flow/tables/tables.h"
+#include "cloth/mesh/blocks.h"
+#include "cloth/mesh/lattice.h"
+
+#include <stdbool.h>
+
+/* What rank 0 makes the tables from. It never has all of them, nor all springs, at once: springs
+ * are gone through again for each group of blocks, and a table is made when it is wanted. */
+
+/* How many vertices are odd, and the first of them: in the numbering of its cloth's mesh. */
+struct flow_odd {
+    uint32_t n, vertex;
+    const struct model_cloth *cloth;
+    const char *place; /* of the mesh, pin or load that names it */
+};
+
+/* Particles by vertex. Arrays of n. */
+struct flow_particles {
+    uint32_t n;
+    struct flow_odd unused, pinned, loaded; /* that no face or edge uses: all; pinned; loaded */
+    unsigned char *used, *free;             /* free: 0 where a pin holds */
+    double *mass;                           /* kg */
+    phys_vec *load;                         /* N, gravity included; NULL: gravity alone */
+};
+
+/* Errors: CLOTH_E_INPUT for pins and loads outside their mesh, boxes without a vertex, starts
+ * beyond FLOW_BOUND and used vertices without mass; CLOTH_E_MEMORY. Local. */
+int flow_particles_make(struct flow_particles *particles, const struct model *model,
+                        struct cloth_error *error);
+void flow_particles_free(struct flow_particles *particles);
+
+/* One particle, a used vertex, of the cloth that it belongs to: `vertex` in the numbering of all
+ * cloths, `first` that of the cloth's first. */
+struct flow_particle {
+    double mass, drag, free; /* kg; kg/s, viscous + mass damping; 1 or 0 where a pin holds */
+    phys_vec position, velocity, load; /* m, m/s, N */
+};
+void flow_particle_of(const struct flow_particles *particles, const struct model *model,
+                      const struct model_cloth *cloth, uint32_t first, uint32_t vertex,
+                      struct flow_particle *particle);
+
+/* Springs of all cloths, by vertex, cloth after cloth in the order of their meshes. */
+struct flow_spring {
+    uint32_t a, b;
+    double stiffness, damping, length;
+    unsigned char stretch; /* counts for the largest stretch */
+};
+struct flow_springs {
+    const struct model *model;
+    struct mesh_lattice *lattice; /* a cloth */
+};
+/* Errors: CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */
+int flow_springs_make(struct flow_springs *springs, const struct model *model,
+                      struct cloth_error *error);
+void flow_springs_each(const struct flow_springs *springs,
+                       void (*visit)(void *to, const struct flow_spring *spring), void *to);
+void flow_springs_free(struct flow_springs *springs);
+
+/* Who reads what of whom: neighbours of all blocks, block after block, as every rank knows them. */
+struct flow_neighbours {
+    uint32_t n_slots, n_copies;
+    uint32_t *slot; /* n_slots: blocks, ascending in a block */
+    uint32_t
+        *copies;    /* n_slots + blocks: of a block, where each slot's copies begin, and the end */
+    uint32_t *copy; /* n_copies: places in the rim of the slot's block, ascending */
+};
+
+/* The sides of a block's springs, while its table is due. */
+struct flow_side;
+
+struct flow_source {
+    const struct model *model;
+    struct flow_particles particles;
+    struct flow_springs springs;
+    struct mesh_blocks blocks;
+    uint32_t *rim; /* by place: its number in the rim of its block */
+    struct flow_neighbours neighbours;
+    struct flow_table *shape; /* a block: shapes, which point into the neighbours */
+    uint32_t from;            /* the group of blocks whose sides are gathered begins there */
+    struct flow_side *side;   /* all of the group; NULL: none are gathered */
+    size_t *start;            /* a block of the group: where its sides begin */
+};
+
+/* Cuts the model into blocks and finds their shapes. The model must outlive it. Errors: as of the
+ * functions above; too many ranks for the blocks (CLOTH_E_INPUT); CLOTH_E_LIBRARY. Local. */
+int flow_source_make(struct flow_source *source, const struct model *model, int ranks,
+                     struct cloth_error *error);
+
+/* Gathers the sides of the springs of the blocks from .. to - 1, in place of those before. Error:
+ * CLOTH_E_MEMORY. Local. */
+int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
+                       struct cloth_error *error);
+
+void flow_source_forget(struct flow_source *source);
+
+/* Makes the table of a block of the group: writes every byte of the image. Of different blocks by
+ * several threads at once. Local. */
+void flow_source_table(const struct flow_source *source, uint32_t block, void *image);
+
+/* Finds the neighbours, and the numbers of rows in rims (source->rim), when blocks and springs are
+ * there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */
+int flow_source_meet(struct flow_source *source, struct cloth_error *error);
+
+/* The block of a place; looked for in block `guess` first. */
+uint32_t flow_source_block(const struct mesh_blocks *blocks, uint32_t place, uint32_t guess);
+
+void flow_source_free(struct flow_source *source);
+
+#endif

@@ -1,0 +1,11 @@
+#!/bin/sh
+# The tests of runs and of their failures once more, on two ranks: what one rank finds wrong, or has no memory for, all say.
+. "${srcdir:-.}/tests/support/tap.sh"
+for program in test_run test_failures test_memory; do
+    skip_unless "tests/cloth/flow/$program"
+done
+plan_later
+
+for program in test_run test_failures test_memory; do
+    ok "$program on 2 ranks" ranks 2 "tests/cloth/flow/$program"
+done

@@ -186,7 +186,7 @@ static int table_keep(const duite_call *call)
     return 0;
 }
 const duite_kernel flow_table_keep = {
-    .name = "table_keep", .body = table_keep, .access = {DUITE_RW}, .args_size = KEYS, .stays = 1};
+    .name = "table_keep", .body = table_keep, .access = {DUITE_RW}, .args_size = KEYS};
 
 void flow_parcels_make(struct flow_state *state)
 {

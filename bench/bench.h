@@ -10,6 +10,7 @@ struct bench_options {
     unsigned threads;      /* cores, for us and for every rival */
     const char *scheduler; /* ours */
     bool quick;            /* tiny sizes, to see that everything works */
+    const char *states;    /* of cg: the folder of its states; NULL: beside the program */
 };
 
 struct bench_case {
@@ -29,8 +30,12 @@ struct bench {
     unsigned target_threads;
     /* Serves the runs of these cases: called in the processes that duite-bench starts of itself. */
     int (*serve)(const struct bench *bench);
+    /* Before the first case, in the bench's own process: makes what all cases need, and says what
+     * it is. 1, said on stderr, if it cannot be made. NULL: nothing is needed. */
+    int (*prepare)(const struct bench_options *options,
+                   void (*say)(const char *key, const char *text));
 };
 
-extern const struct bench bench_tasks, bench_ranks;
+extern const struct bench bench_tasks, bench_ranks, bench_cg;
 
 #endif

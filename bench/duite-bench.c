@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench *const BENCHES[] = {&bench_tasks, &bench_ranks};
+static const struct bench *const BENCHES[] = {&bench_tasks, &bench_ranks, &bench_cg};
 enum { N_BENCHES = sizeof BENCHES / sizeof *BENCHES, MOST_ONLY = 32 };
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
@@ -26,7 +26,7 @@ enum { N_BENCHES = sizeof BENCHES / sizeof *BENCHES, MOST_ONLY = 32 };
 #define BENCH_DEBUG 0
 #endif
 
-enum { JSON = 256, LIST, ONLY, QUICK, REPEATS, SCHEDULER, SEED, THREADS };
+enum { JSON = 256, LIST, ONLY, QUICK, REPEATS, SCHEDULER, SEED, STATES, THREADS };
 
 static const struct argp_option OPTIONS[] = {
     {"json", JSON, "FILE", 0, "write the figures and the host as flat JSON, too", 1},
@@ -35,6 +35,10 @@ static const struct argp_option OPTIONS[] = {
     {"quick", QUICK, NULL, 0, "tiny sizes, to see that everything works; figures mean nothing", 2},
     {"repeats", REPEATS, "N", 0, "rounds that count (default: 16; quick: 2)", 3},
     {"seed", SEED, "N", 0, "of the order of the runs (default: 1)", 3},
+    {"states", STATES, "DIR", 0,
+     "of cg: the folder that keeps its states from run to run (default: states beside this "
+     "program)",
+     3},
     {"threads", THREADS, "N", 0, "cores for each subject (default: 2)", 3},
     {"scheduler", SCHEDULER, "NAME", 0, "ours (default: steal)", 3},
     {0}};
@@ -127,6 +131,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
         return 0;
     case SEED:
         return whole_number(state, "seed", text, 0, UINT64_MAX, &command->seed);
+    case STATES:
+        command->options.states = text;
+        return 0;
     case THREADS:
         number = 0;
         whole_number(state, "threads", text, 2, 64, &number);
@@ -229,6 +236,17 @@ static size_t rounds(const struct command *command, const struct bench_case *one
     return most && most < command->repeats ? most : command->repeats;
 }
 
+static void say(const char *key, const char *text)
+{
+    report_text(&report, key, text);
+}
+
+static int prepare(const struct command *command)
+{
+    const struct bench *bench = command->bench;
+    return bench->prepare ? bench->prepare(&command->options, say) : 0;
+}
+
 static int run(const struct command *command, struct measure *measure)
 {
     int failed = report_start(&report, command->json != NULL);
@@ -236,6 +254,7 @@ static int run(const struct command *command, struct measure *measure)
     unsigned verdicts[MEASURE_VERDICTS] = {0};
     if (!failed)
         describe(command);
+    failed = failed || prepare(command);
     for (const struct bench_case *const *one = command->bench->cases; *one && !failed; one++) {
         if (!chosen(command, *one))
             continue;

@@ -2,6 +2,7 @@
 # rivals are one source for two compilers, without the flags of the build, which may be another compiler's; no rival is
 # built with sanitizers.
 BENCH_RIVALS =
+BENCH_STATE = bench/cg/state.c bench/cg/state.h
 BENCH_SHARED = bench/problem.c bench/problem.h bench/serve.c bench/serve.h
 check_LTLIBRARIES += bench/libbench.la
 bench_libbench_la_SOURCES = bench/bench.h bench/measure.c bench/measure.h \
@@ -10,14 +11,17 @@ bench_libbench_la_SOURCES = bench/bench.h bench/measure.c bench/measure.h \
 	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/stencil.c \
 	bench/tasks/wake.c bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/memory.c bench/ranks/ranks.c \
 	bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/twin.c \
-	$(BENCH_SHARED)
+	bench/cg/bench.c bench/cg/cg.h bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c \
+	$(BENCH_STATE) $(BENCH_SHARED)
 bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \
-	-DBENCH_HOSTS='"$(abs_top_srcdir)/tests/cluster/hosts.sh"'
+	-DBENCH_HOSTS='"$(abs_top_srcdir)/tests/cluster/hosts.sh"' \
+	-DBENCH_STATES_SCENE='"$(abs_top_srcdir)/bench/cg/states.yaml"' \
+	-DBENCH_DRESS='"$(abs_top_srcdir)/../shared/data/meshes/dress-v17k-f34k.obj"'
 bench_libbench_la_LIBADD = libduite_cloth.la libduite_core.la
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = bench/libbench.la -lm
-EXTRA_DIST += bench/rivals/openmp.c
+EXTRA_DIST += bench/rivals/openmp.c bench/cg/states.yaml
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
 OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h
@@ -54,6 +58,28 @@ bench_rivals_mpi_SOURCES = bench/rivals/mpi.c $(BENCH_SHARED)
 bench_rivals_mpi_CFLAGS = $(RIVAL_CFLAGS)
 bench_rivals_mpi_LDFLAGS =
 bench_rivals_mpi_LDADD = $(MPI_LIBS)
+endif
+
+# What reads states; with the cloth's own kernels, but without sanitizers.
+RIVAL_STATE = $(BENCH_STATE) bench/serve.c bench/serve.h cloth/base/error.c cloth/base/error.h cloth/solve/system.c \
+	cloth/solve/system.h
+if HAVE_RIVAL_OPENMP
+check_PROGRAMS += bench/cg/twin
+BENCH_RIVALS += bench/cg/twin$(EXEEXT)
+bench_cg_twin_SOURCES = bench/cg/twin.c bench/cg/parts.c bench/cg/parts.h cloth/solve/block.c cloth/solve/block.h \
+	cloth/solve/cg.c cloth/solve/cg.h cloth/physics/vec.h $(RIVAL_STATE)
+bench_cg_twin_CFLAGS = $(RIVAL_CFLAGS) -ffp-contract=off $(OPENMP_CFLAGS)
+bench_cg_twin_LDFLAGS =
+bench_cg_twin_LDADD = -lm
+endif
+if HAVE_RIVAL_PETSC
+check_PROGRAMS += bench/rivals/petsc
+BENCH_RIVALS += bench/rivals/petsc$(EXEEXT)
+bench_rivals_petsc_SOURCES = bench/rivals/petsc.c bench/rivals/petsc_system.c bench/rivals/petsc_system.h $(RIVAL_STATE)
+bench_rivals_petsc_CPPFLAGS = $(AM_CPPFLAGS) $(PETSC_CFLAGS)
+bench_rivals_petsc_CFLAGS = $(RIVAL_CFLAGS)
+bench_rivals_petsc_LDFLAGS =
+bench_rivals_petsc_LDADD = $(PETSC_LIBS) $(MPI_LIBS) -lm
 endif
 
 bench: bench/duite-bench$(EXEEXT) $(BENCH_RIVALS)

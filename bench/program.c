@@ -39,6 +39,14 @@ static const struct program PROGRAMS[] = {
     {"libomp_passive", "rivals/libomp", RIVAL_LIBOMP_MISSING, NULL, false, PASSIVE},
     {"starpu", "rivals/starpu", RIVAL_STARPU_MISSING, NULL, false, {"STARPU_SILENT=1"}, {0}},
     {"mpi", "rivals/mpi", RIVAL_MPI_MISSING, NULL, false, TURNS, {0}},
+    {"openmp", "cg/twin", RIVAL_OPENMP_MISSING, NULL, false, ACTIVE},
+    {"petsc",
+     "rivals/petsc",
+     RIVAL_PETSC_MISSING,
+     NULL,
+     false,
+     {"OMPI_MCA_mpi_yield_when_idle=0", "OPENBLAS_NUM_THREADS=1"},
+     {0}},
 };
 
 const struct program *program_find(const char *kind)
@@ -59,6 +67,13 @@ static const char *path_of(const struct program *program)
     if (program->file && slash)
         snprintf(slash + 1, sizeof path - (size_t)(slash + 1 - path), "%s", program->file);
     return path;
+}
+
+size_t program_folder(char *folder, size_t size)
+{
+    static const struct program own = {.kind = "duite"};
+    const char *path = path_of(&own), *slash = strrchr(path, '/');
+    return (size_t)snprintf(folder, size, "%.*s", slash ? (int)(slash - path) : 0, path);
 }
 
 /* Why there are no hosts here, in the words of the script that makes them; or NULL. Asked once. */

@@ -2,6 +2,7 @@
 #define BENCH_PROGRAM_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* What can be measured: which file it is, how it is best set up, and what its absence is due to. */
 struct program {
@@ -17,6 +18,9 @@ struct program {
 
 /* NULL: there is none of this kind. */
 const struct program *program_find(const char *kind);
+
+/* The folder of duite-bench, without a slash at its end; its length, as snprintf counts. */
+size_t program_folder(char *folder, size_t size);
 
 /* Why it cannot be run, or NULL. */
 const char *program_missing(const struct program *program);

@@ -19,6 +19,7 @@ enum {
     OUTPUT,
     QUIET,
     REPORT,
+    SAVE_SYSTEM,
     SCHEDULER,
     SEED,
     SET,
@@ -29,6 +30,10 @@ enum {
 static const struct argp_option OPTIONS[] = {
     {"output", OUTPUT, "DIR", 0, "write frames into this folder, which is made", 1},
     {"report", REPORT, "FILE", 0, "write the figures of the run as flat JSON", 1},
+    {"save-system", SAVE_SYSTEM, "DIR", 0,
+     "write the linear system of the last step, in Matrix Market form, into this folder, which is "
+     "made",
+     1},
     {"quiet", QUIET, NULL, 0, "neither progress nor summary", 1},
     {"end", END, "SECONDS", 0, "simulated time, instead of the scene's time.end", 2},
     {"grain", GRAIN, "VERTICES", 0, "vertices a block, instead of the scene's grain", 2},
@@ -196,6 +201,8 @@ static error_t parse(int key, char *value, struct argp_state *state)
         return parse_name(state, "--output", value, &command->run.output);
     case REPORT:
         return parse_name(state, "--report", value, &command->run.report);
+    case SAVE_SYSTEM:
+        return parse_name(state, "--save-system", value, &command->run.save_system);
     case QUIET:
         command->run.quiet = true;
         return 0;

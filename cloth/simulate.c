@@ -72,6 +72,18 @@ static int check_report(const struct simulate_options *options, struct cloth_err
     return code ? cloth_fail(error, code, "--report %s: %s", options->report, inner.text) : code;
 }
 
+static int open_system(const struct run *run, struct cloth_error *error)
+{
+    const struct model *model = &run->model;
+    if (model->integrator == MODEL_EXPLICIT_EULER)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--save-system: the integrator explicit_euler solves no system");
+    if (model->end / model->h + 0.5 < 1)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--save-system: the scene ends before its first step");
+    return output_system_open(run->options->save_system, error);
+}
+
 static int open_output(struct run *run, struct cloth_error *error)
 {
     const struct model *model = &run->model;
@@ -132,7 +144,9 @@ static int prepare(struct run *run)
     const char *warning;
     for (size_t i = 0; run->rank == 0 && (warning = flow_warning(run->flow, i)); i++)
         fprintf(stderr, "duite-cloth: warning: %s\n", warning);
-    if (run->rank == 0 && options->output)
+    if (run->rank == 0 && options->save_system)
+        open_system(run, &error);
+    if (!error.code && run->rank == 0 && options->output)
         open_output(run, &error);
     return agree(run, &error);
 }
@@ -172,13 +186,29 @@ static int say_lost(const struct run *run, const struct cloth_error *error)
     return CLOTH_E_LOST;
 }
 
+static int save_system(void *context, const struct solve_system *system, struct cloth_error *error)
+{
+    const struct run *run = context;
+    return output_system(run->options->save_system, system, error);
+}
+
+static int write_frame(void *context, uint64_t frame, double time, const double *position,
+                       struct cloth_error *error)
+{
+    const struct run *run = context;
+    return output_frame(run->frames, frame, time, position, error);
+}
+
 static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
 {
-    const struct flow_output output = {run->frames, output_frame};
+    const struct simulate_options *options = run->options;
+    const struct flow_output output = {run, options->output ? write_frame : NULL,
+                                       options->save_system ? save_system : NULL};
     const struct flow_progress progress = {run, forget_meshes, show_step, stop_wanted};
     run->threads = duite_threads(rt);
     summary_progress_begin(&run->progress);
-    flow_run(run->flow, rt, run->options->output ? &output : NULL, &progress, &run->report, error);
+    flow_run(run->flow, rt, options->output || options->save_system ? &output : NULL, &progress,
+             &run->report, error);
     summary_progress_end(&run->progress);
 }
 

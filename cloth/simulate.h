@@ -13,6 +13,7 @@ struct simulate_options {
     size_t n_sets;     /* changes to it, in the order given */
     struct scene_set *sets;
     const char *output, *report;             /* folder of frames, JSON file; NULL: none */
+    const char *save_system;                 /* folder; NULL: none */
     const struct duite_scheduler *scheduler; /* never NULL */
     const struct duite_mapping *mapping;     /* never NULL */
     const struct duite_balancer *balance;    /* never NULL */

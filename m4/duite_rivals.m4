@@ -35,5 +35,11 @@ AC_DEFUN([DUITE_RIVALS], [
     DUITE_RIVAL([STARPU], [$duite_found], [libstarpu-dev], [StarPU])
     AS_IF([test -n "$MPIRUN"], [duite_found=yes], [duite_found=no])
     DUITE_RIVAL([MPI], [$duite_found], [mpirun (openmpi-bin)], [MPI])
+    AC_OPENMP
+    AS_IF([test "x$ac_cv_prog_c_openmp" = xunsupported || test "x$ac_cv_prog_c_openmp" = xunknown],
+        [duite_found=no], [duite_found=yes])
+    DUITE_RIVAL([OPENMP], [$duite_found], [a compiler with OpenMP], [a plain loop])
+    DUITE_PETSC
+    DUITE_RIVAL([PETSC], [$duite_found], [petsc-dev], [PETSc])
     AS_IF([test -z "$duite_rivals_missing"], [duite_rivals_say=yes],
         [duite_rivals_say="not all ($duite_rivals_missing)"])])

@@ -124,4 +124,5 @@ const struct bench bench_ranks = {
     CASES,
     TARGETS,
     TARGET_THREADS,
-    serve_ranks};
+    serve_ranks,
+    NULL};

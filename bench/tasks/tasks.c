@@ -229,7 +229,10 @@ static int serve_tasks(const struct bench *bench)
     return status;
 }
 
-const struct bench bench_tasks = {
-    "tasks",        "what a task costs: stencil, chain, independent, ...",
-    CASES,          TARGETS,
-    TARGET_THREADS, serve_tasks};
+const struct bench bench_tasks = {"tasks",
+                                  "what a task costs: stencil, chain, independent, ...",
+                                  CASES,
+                                  TARGETS,
+                                  TARGET_THREADS,
+                                  serve_tasks,
+                                  NULL};

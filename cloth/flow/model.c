@@ -18,6 +18,7 @@ static void free_cloth(struct model_cloth *cloth)
     free(cloth->pins);
     free(cloth->loads);
     free(cloth->name);
+    free(cloth->start);
     free(cloth->place);
     free(cloth->mesh_place);
     free(cloth->velocity_place);

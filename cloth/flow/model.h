@@ -41,23 +41,17 @@ struct model_load {
     char *place;
 };
 
-/* Time lost on purpose: the tasks of a block whose vertices lie in the box take `factor` times as
- * long; of one that does in part, accordingly. Results are the same. */
-struct model_cost {
-    uint32_t factor;  /* 0: as 1 */
-    double box[2][3]; /* lower and upper corner, after the transform; may be infinite */
-};
-
 struct model_cloth {
     char *name;
     struct mesh mesh; /* transformed: rest lengths and masses are those of this shape */
     uint32_t material;
     double mass_per_vertex; /* kg, replaces density * area where > 0 */
     double velocity[3];     /* at the start, m/s */
+    double *start;          /* n_vertices x 6: where they start (m) and how fast (m/s), the shape of
+                               the mesh notwithstanding; NULL: at the mesh, with `velocity` */
     uint32_t n_pins, n_loads;
     struct model_pin *pins;
     struct model_load *loads;
-    struct model_cost cost;
     char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
 };
 

@@ -19,4 +19,5 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/memory.c \
     cloth/flow/tasks/objects.c \
     cloth/flow/tasks/step.c \
+    cloth/flow/tasks/system.c \
     cloth/flow/tasks/tasks.h

@@ -18,31 +18,37 @@ double flow_now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-double flow_worked(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-void flow_work_on(double worked, double times)
-{
-    const double end = worked + times * (flow_worked() - worked);
-    while (flow_worked() < end)
-        continue;
-}
-
 const duite_kernel *const *flow_kernels(void)
 {
-    static const duite_kernel *const all[] = {&flow_tell_head,  &flow_tell_shared, &flow_table_make,
-                                              &flow_table_keep, &flow_collect,     &flow_ready,
-                                              &flow_initial,    &flow_force,       &flow_explicit,
-                                              &flow_implicit,   &flow_matrix,      &flow_begin,
-                                              &flow_pack,       &flow_start,       &flow_pass,
-                                              &flow_scalars,    &flow_velocity_dv, &flow_velocity_a,
-                                              &flow_position,   &flow_collide,     &flow_status,
-                                              &flow_frame,      &flow_stretch,     &flow_most,
-                                              &flow_seconds,    &flow_tell,        NULL};
+    static const duite_kernel *const all[] = {&flow_tell_head,
+                                              &flow_tell_shared,
+                                              &flow_table_make,
+                                              &flow_table_keep,
+                                              &flow_collect,
+                                              &flow_ready,
+                                              &flow_initial,
+                                              &flow_force,
+                                              &flow_explicit,
+                                              &flow_implicit,
+                                              &flow_matrix,
+                                              &flow_begin,
+                                              &flow_pack,
+                                              &flow_start,
+                                              &flow_pass,
+                                              &flow_scalars,
+                                              &flow_velocity_dv,
+                                              &flow_velocity_a,
+                                              &flow_position,
+                                              &flow_collide,
+                                              &flow_status,
+                                              &flow_frame,
+                                              &flow_stretch,
+                                              &flow_most,
+                                              &flow_seconds,
+                                              &flow_tell,
+                                              &flow_system_part,
+                                              &flow_system_save,
+                                              NULL};
     return all;
 }
 
@@ -235,6 +241,8 @@ static int run_steps(struct flow_state *state)
             break;
         }
     }
+    if (!code && step > 0 && state->output && state->output->system)
+        code = flow_system(state);
     if (!code && step > 0)
         code = flow_step_status(state, step - 1);
     return code;
@@ -279,7 +287,7 @@ static int explain(struct flow_state *state, int code)
     if (code < 0) /* the runtime itself failed: no more is asked of it */
         return cloth_fail(state->error, why.code, "%s", why.text);
     duite_wait(state->rt); /* its error is the one in hand */
-    if (!state->output)
+    if (!flow_shows(state))
         return cloth_fail(state->error, why.code, "%s", why.text);
     if (!state->begun || flow_last_frame(state) || !state->report->frames)
         return cloth_fail(state->error, why.code, "%.900s; no frame was written", why.text);

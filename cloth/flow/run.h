@@ -2,6 +2,7 @@
 #define CLOTH_FLOW_RUN_H
 
 #include "cloth/flow/model.h"
+#include "cloth/solve/system.h"
 
 #include <duite.h>
 #include <stdbool.h>
@@ -26,14 +27,18 @@ struct flow_report {
     duite_counters counters;
 };
 
-/* Where frames go: handed over by the program. Called on rank 0 only, in frame order, from one task
- * at a time. */
+/* Where frames and systems go: handed over by the program. Called on rank 0 only, from one task at
+ * a time. */
 struct flow_output {
     void *context;
+    /* Frames in their order; NULL: none are wanted. */
     /* position: vertices x 3 in the numbering of the input meshes, cloth after cloth. time in
      * seconds. Returns 0 or a code and fills error. */
     int (*frame)(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
+    /* The system of the last step and the state after it, once, of an implicit run that made a
+     * step. The arrays are lent. Returns 0 or a code and fills error. NULL: it is not wanted. */
+    int (*system)(void *context, const struct solve_system *system, struct cloth_error *error);
 };
 
 /* What a run says while it goes on; called by the main thread of rank 0 after each step, when the

@@ -3,6 +3,7 @@
 
 #include "cloth/base/error.h"
 #include "cloth/mesh/mesh.h"
+#include "cloth/solve/system.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -57,6 +58,16 @@ int output_cache_open(struct output_cache *cache, const char *folder, struct clo
 int output_cache_frame(struct output_cache *cache, uint64_t frame, double *position,
                        struct cloth_error *error);
 void output_cache_close(struct output_cache *cache);
+
+/* Makes the folder of a system before the run that it is of. Errors as of output_open. Local. */
+int output_system_open(const char *folder, struct cloth_error *error);
+
+/* Writes a system for other solvers, in Matrix Market form (Boisvert, Pozo & Remington 1996), into
+ * a folder that is there: matrix.mtx (S A S + I - S: symmetric, its lower triangle, one entry a
+ * place, column by column), and as arrays rhs.mtx (S b), solution.mtx (dv), mass.mtx (of each
+ * unknown; 0 where held). Unknown 3 i + c is component c of vertex i, both from 0. Files of these
+ * names are replaced. Errors as of output_open. Local. */
+int output_system(const char *folder, const struct solve_system *system, struct cloth_error *error);
 
 /* A flat JSON object, written whole or not at all (a temporary name, then renamed). Keys in the
  * order they are added; NaN and infinities become null. */

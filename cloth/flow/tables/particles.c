@@ -186,6 +186,21 @@ static int check_start(const struct model_cloth *cloth, struct cloth_error *erro
     return CLOTH_OK;
 }
 
+/* The same of a start of its own. */
+static int check_own_start(const struct model_cloth *cloth, struct cloth_error *error)
+{
+    for (size_t i = 0; cloth->start && i < 2 * (size_t)cloth->mesh.n_vertices; i++) {
+        phys_vec y;
+        to_vector(cloth->start + 3 * i, &y);
+        if (phys_diverged(1, FLOW_BOUND, &y) == 0)
+            return model_fail(cloth->place, error,
+                              "vertex %zu of cloth '%.60s' starts with a position or velocity that "
+                              "is no number, or not below %g along each axis",
+                              i / 2, cloth->name, FLOW_BOUND);
+    }
+    return CLOTH_OK;
+}
+
 static int cloth_particles(struct flow_particles *p, uint32_t first, const struct model *model,
                            const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -196,6 +211,8 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
             note(&p->unused, cloth, i, cloth->mesh_place);
     }
     int code = check_start(cloth, error);
+    if (!code)
+        code = check_own_start(cloth, error);
     if (!code)
         code = masses(p, first, model, cloth, error);
     if (!code)
@@ -258,6 +275,11 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
     particle->free = moves ? 1 : 0;
     to_vector(cloth->mesh.position + 3 * (size_t)(vertex - first), &particle->position);
     to_vector(moves ? cloth->velocity : (const double[3]){0}, &particle->velocity);
+    if (cloth->start) {
+        const double *start = cloth->start + 6 * (size_t)(vertex - first);
+        to_vector(start, &particle->position);
+        to_vector(moves ? start + 3 : (const double[3]){0}, &particle->velocity);
+    }
     to_vector(model->gravity, &particle->load);
     particle->load *= particle->mass;
     if (particles->load)

@@ -181,7 +181,7 @@ static int hash_all(struct flow_state *state)
 int flow_last_frame(struct flow_state *state)
 {
     uint64_t told[FLOW_TELL] = {[FLOW_TELL_FRAMES] = state->next_frame};
-    const int code = state->output ? tell(state, told) : DUITE_OK;
+    const int code = flow_shows(state) ? tell(state, told) : DUITE_OK;
     if (code)
         return code;
     state->report->frames = told[FLOW_TELL_FRAMES];

@@ -13,7 +13,7 @@ uint64_t flow_frame_step(const struct model *model, uint64_t frame)
 static int fork_frame(struct flow_state *state, uint64_t steps)
 {
     int64_t token;
-    if (!state->output) { /* only counted */
+    if (!flow_shows(state)) { /* only counted */
         state->next_frame++;
         return DUITE_OK;
     }

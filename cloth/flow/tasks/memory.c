@@ -16,7 +16,7 @@ static size_t larger(size_t a, size_t b)
 static void take_room(struct flow_state *state)
 {
     struct flow *flow = state->flow;
-    if (state->output)
+    if (flow_shows(state))
         flow->room = cloth_alloc(flow->n_vertices, 3 * sizeof *flow->room, &flow->trouble);
     state->bytes = cloth_alloc(flow_hash_part(flow), FLOW_VERTEX_BYTES, &flow->trouble);
     state->hash = XXH64_createState();
@@ -41,6 +41,7 @@ static void take(struct flow_state *state)
     state->block = cloth_alloc(head->n_blocks, sizeof *state->block, &flow->trouble);
     state->parcel = cloth_alloc(head->n_blocks, sizeof *state->parcel, &flow->trouble);
     state->refs = cloth_alloc(refs, sizeof *state->refs, &flow->trouble);
+    state->part = cloth_alloc(head->n_blocks, sizeof *state->part, &flow->trouble);
     state->rows = cloth_alloc(larger(4 * (size_t)head->most_rows, head->most_slots),
                               sizeof *state->rows, &flow->trouble);
     flow_far_take(state);
@@ -81,6 +82,7 @@ void flow_memory_free(struct flow_state *state)
     free(state->block);
     free(state->parcel);
     free(state->refs);
+    free(state->part);
     free(state->rows);
     flow_far_free(state);
     free(state->bytes);
@@ -92,5 +94,6 @@ void flow_memory_free(struct flow_state *state)
     state->bytes = NULL;
     state->hash = NULL;
     state->refs = NULL;
+    state->part = NULL;
     state->rows = NULL;
 }

@@ -125,15 +125,17 @@ extern const duite_kernel flow_pack;   /* r rim of q, w far rim */
 extern const duite_kernel flow_scalars; /* r sums, r scalars, w next scalars */
 extern const duite_kernel
     flow_velocity_dv; /* table, r f, r a, r dv, rw v, w rim of v, r scalars, cw status */
-extern const duite_kernel flow_velocity_a; /* table, r f, rw v, w rim of v, cw status */
-extern const duite_kernel flow_position;   /* table, r v, rw x, w rim of x, cw status */
-extern const duite_kernel flow_collide;    /* table, rw x, rw v, w rim of x, w rim of v */
-extern const duite_kernel flow_status;     /* cw status: on rank 0, whether a stop was asked for */
-extern const duite_kernel flow_frame;      /* rw token; x of all blocks: on rank 0 */
-extern const duite_kernel flow_stretch;    /* table, r x, w stretch; rims of x */
-extern const duite_kernel flow_most;       /* w stretch; stretch of all blocks */
-extern const duite_kernel flow_seconds;    /* cw seconds: of this rank */
-extern const duite_kernel flow_tell;       /* w told: what rank 0 knows */
+extern const duite_kernel flow_velocity_a;  /* table, r f, rw v, w rim of v, cw status */
+extern const duite_kernel flow_position;    /* table, r v, rw x, w rim of x, cw status */
+extern const duite_kernel flow_collide;     /* table, rw x, rw v, w rim of x, w rim of v */
+extern const duite_kernel flow_status;      /* cw status: on rank 0, whether a stop was asked for */
+extern const duite_kernel flow_frame;       /* rw token; x of all blocks: on rank 0 */
+extern const duite_kernel flow_stretch;     /* table, r x, w stretch; rims of x */
+extern const duite_kernel flow_most;        /* w stretch; stretch of all blocks */
+extern const duite_kernel flow_seconds;     /* cw seconds: of this rank */
+extern const duite_kernel flow_tell;        /* w told: what rank 0 knows */
+extern const duite_kernel flow_system_part; /* table, r f, r a, r dv, r x, r v, w part */
+extern const duite_kernel flow_system_save; /* rw token; parts of all blocks: on rank 0 */
 
 /* Shared objects of a block. copies: r of its copies, then p. rim_q: three numbers a row. table: an
  * image (cloth/flow/tables/tables.h), never written once it is dealt. */
@@ -168,6 +170,7 @@ struct flow_state {
     duite_object sums[2], scalars[2], status[2], token, most, seconds, told;
     struct flow_head head;
     duite_object *parcel;  /* a block: what travels to rank 0 on its own; empty in between */
+    duite_object *part;    /* a block: what it says of the system of a step */
     duite_object *refs;    /* room for the objects of any task */
     double *rows;          /* room for the rows of any block, or a number for each neighbour */
     unsigned char *bytes;  /* rank 0: a part of the state, to be hashed, */
@@ -177,6 +180,12 @@ struct flow_state {
     bool begun;    /* all ranks have their memory, objects are made */
     bool stopping; /* a stop was agreed: ends after the next frame */
 };
+
+/* Whether frames are wanted. */
+static inline bool flow_shows(const struct flow_state *state)
+{
+    return state->output && state->output->frame;
+}
 
 /* Functions of the main program. Collective. They return 0 or what duite returned, which flow_run
  * turns into a sentence. */
@@ -237,6 +246,9 @@ uint64_t flow_frame_step(const struct model *model, uint64_t frame);
 /* Forks the frames that are due after so many steps. */
 int flow_frames(struct flow_state *state, uint64_t steps);
 
+/* Forks what hands the system of the last step to the program. */
+int flow_system(struct flow_state *state);
+
 /* Fills the parts of the report that need the whole state, when no task runs. */
 int flow_finish(struct flow_state *state);
 /* The number of frames written, from rank 0 to all. */
@@ -244,8 +256,5 @@ int flow_last_frame(struct flow_state *state);
 
 /* Seconds since some start. Local. */
 double flow_now(void);
-/* Seconds that this thread has worked; works until those since `worked` are `times` as many. */
-double flow_worked(void);
-void flow_work_on(double worked, double times);
 
 #endif

@@ -1,0 +1,81 @@
+#ifndef BENCH_CG_CG_H
+#define BENCH_CG_CG_H
+
+#include "bench/bench.h"
+#include "bench/cg/state.h"
+#include "cloth/flow/tasks/tasks.h"
+
+/* Shared by the cases of the bench "cg". Each case is a file: its plan; what our process runs for
+ * all of them is in ours.c, making the states in make.c. */
+
+/* ---- States ---- */
+
+/* The names of all states; of those that stand for what simulations meet; ended by NULL. */
+const char *const *states_all(void);
+const char *const *states_met(void);
+/* Why a state cannot be made here, or NULL. */
+const char *states_missing(const char *name);
+
+/* What a state is made of, all owned by whom it is given to. */
+struct states_plan {
+    struct model model;  /* of the step that is the state's system; starts where its mesh is */
+    struct model motion; /* what runs before it, */
+    bool moves;          /* if anything does */
+    const char *moved;   /* states of the same motion have the same one */
+    uint32_t count;      /* iterations whose answer the state keeps */
+    bool solved;         /* it keeps the solution, too */
+};
+/* 0, or what serve_fail returns. */
+int states_plan_make(struct states_plan *plan, const char *name, bool quick);
+void states_plan_free(struct states_plan *plan);
+
+/* Waves the start of the model's cloth, sets it moving and shakes it a little, by a seed. */
+int states_wave(struct model *model);
+/* Lets the model's cloth start at x with v, n x 3 each. */
+int states_start(struct model *model, const double *x, const double *v);
+
+/* The run "make": makes a state that is not there, in full or quick. */
+extern const struct serve_run cg_make_runs[];
+
+/* ---- Ours ---- */
+
+struct cg_session {
+    struct state state;
+    struct states_plan plan;
+    duite *rt;
+    struct flow *flow;
+    struct flow_state run;
+    struct flow_report report;
+    char settings[200];   /* that it is ready for; empty: for none */
+    enum model_stop stop; /* the scene's, which is the default one */
+    double tolerance;
+    uint32_t most;
+    uint32_t needed; /* iterations to the error that was asked for last, */
+    double error;    /* of this state and solver; 0: none was */
+    double p95;      /* of the frames that ran last; 0: was told, or none ran */
+};
+
+/* Runs a model from its start to its end on a runtime of its own; `system` (its context: `context`)
+ * is given the last step's. 0, or what serve_fail returns. */
+int cg_run(const struct model *model, struct serve_request *request,
+           const struct flow_output *output, const struct flow_progress *progress);
+
+extern const struct serve_run cg_runs[];
+
+/* Ends what runs have left for the next one. 1 if the runtime did not stop well. Collective. */
+int cg_end(struct cg_session *session);
+
+/* Shapes of ours: so many ranks (0: without mpirun) of so many threads. */
+struct subject_shape cg_ours(unsigned ranks, unsigned threads);
+/* A series of ours: RUN state=STATE and more. */
+struct measure_series *cg_series(struct measure *measure, const struct bench_options *options,
+                                 struct subject_shape shape, const char *run, const char *state,
+                                 const char *more);
+/* The same of PETSc, on one rank and on as many as there are threads: the faster one counts. */
+struct measure_series *cg_petsc(struct measure *measure, const struct bench_options *options,
+                                const char *run, const char *state, const char *more);
+
+extern const struct bench_case cg_spring_150, cg_spring_400, cg_solve, cg_error, cg_step,
+    cg_realtime;
+
+#endif

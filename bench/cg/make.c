@@ -1,0 +1,151 @@
+/* Making a state: its motion, unless the last state had the same one; the system of one step as the
+ * cloth hands it over; the answers by plain loops. */
+#include "bench/cg/cg.h"
+
+#include "cloth/mesh/blocks.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+
+/* Of the motion that ran last. */
+static struct {
+    const char *name; /* NULL: none */
+    struct solve_system after;
+} moved;
+
+static int take(void *context, const struct solve_system *system, struct cloth_error *error)
+{
+    struct solve_system *copy = context;
+    solve_system_free(copy);
+    const int code = solve_system_make(copy, system->n, system->n_springs, error);
+    const size_t n = system->n;
+    if (code)
+        return code;
+    copy->h = system->h;
+    memcpy(copy->mass, system->mass, n * sizeof(double));
+    memcpy(copy->diagonal, system->diagonal, n * sizeof(double));
+    memcpy(copy->free, system->free, n * sizeof(double));
+    memcpy(copy->b, system->b, 3 * n * sizeof(double));
+    memcpy(copy->x, system->x, 3 * n * sizeof(double));
+    memcpy(copy->v, system->v, 3 * n * sizeof(double));
+    memcpy(copy->end, system->end, system->n_springs * sizeof *copy->end);
+    memcpy(copy->value, system->value, system->n_springs * sizeof *copy->value);
+    return CLOTH_OK;
+}
+
+/* The model of the step starts where its motion ends. */
+static int move(struct states_plan *plan, struct serve_request *request)
+{
+    const struct flow_output output = {&moved.after, NULL, take};
+    if (!plan->moves)
+        return states_wave(&plan->model);
+    if (!moved.name || strcmp(moved.name, plan->moved) != 0) {
+        moved.name = NULL;
+        int code = states_wave(&plan->motion);
+        if (!code)
+            code = cg_run(&plan->motion, request, &output, NULL);
+        if (code)
+            return code;
+        moved.name = plan->moved;
+    }
+    return states_start(&plan->model, moved.after.x, moved.after.v);
+}
+
+static void each_pair(const void *context, void (*visit)(void *to, uint32_t a, uint32_t b),
+                      void *to)
+{
+    const struct solve_system *s = context;
+    for (size_t i = 0; i < s->n_springs; i++)
+        visit(to, s->end[i][0], s->end[i][1]);
+}
+
+/* The vertices block after block, then those that no block has. */
+static int find_order(struct state *state, uint32_t grain)
+{
+    const struct solve_system *s = &state->system;
+    const struct mesh_pairs pairs = {s, each_pair};
+    struct mesh_blocks blocks = {0};
+    struct cloth_error error = {0};
+    unsigned char *used = calloc((size_t)s->n + 1, 1);
+    state->order = calloc((size_t)s->n + 1, sizeof *state->order);
+    for (uint32_t v = 0; used && v < s->n; v++)
+        used[v] = s->mass[v] > 0;
+    int code = used && state->order ? 0 : serve_no_memory();
+    if (!code && mesh_blocks_cut(&blocks, s->n, used, &pairs, grain, &error))
+        code = serve_fail("%s", error.text);
+    uint32_t next = 0;
+    for (; !code && next < blocks.n_places; next++)
+        state->order[next] = blocks.vertex[next];
+    for (uint32_t v = 0; !code && v < s->n; v++)
+        if (!used[v])
+            state->order[next++] = v;
+    mesh_blocks_free(&blocks);
+    free(used);
+    return code;
+}
+
+static uint64_t hash_of(const struct solve_system *s)
+{
+    const size_t n = s->n * sizeof(double);
+    const struct {
+        const void *at;
+        size_t bytes;
+    } part[] = {{&s->n, sizeof s->n},
+                {&s->h, sizeof s->h},
+                {s->mass, n},
+                {s->diagonal, n},
+                {s->free, n},
+                {s->b, 3 * n},
+                {s->end, s->n_springs * sizeof *s->end},
+                {s->value, s->n_springs * sizeof *s->value}};
+    uint64_t hash = 0;
+    for (size_t i = 0; i < sizeof part / sizeof *part; i++)
+        hash = XXH64(part[i].at, part[i].bytes, hash);
+    return hash;
+}
+
+/* x and v of the system become those that it was made at. */
+static int complete(struct state *state, const struct states_plan *plan)
+{
+    struct solve_system *s = &state->system;
+    const double *start = plan->model.cloths->start;
+    for (size_t v = 0; v < s->n; v++) {
+        memcpy(s->x + 3 * v, start + 6 * v, 3 * sizeof *start);
+        memcpy(s->v + 3 * v, start + 6 * v + 3, 3 * sizeof *start);
+    }
+    state->hash = hash_of(s);
+    state->count = plan->count;
+    state->after = calloc((size_t)s->n + 1, 3 * sizeof *state->after);
+    int code = state->after ? find_order(state, plan->model.grain) : serve_no_memory();
+    if (!code)
+        code = state_iterate(s, state->count, state->after);
+    if (!code && plan->solved)
+        code = state_solve(s, s->dv);
+    return code;
+}
+
+static int make(void *context, struct serve_request *request, double *value)
+{
+    struct state state = {0};
+    struct states_plan plan = {0};
+    (void)context;
+    serve_word(request, "state", state.name, sizeof state.name);
+    const struct flow_output output = {&state.system, NULL, take};
+    int code = states_plan_make(&plan, state.name, serve_number(request, "quick") != 0);
+    if (!code)
+        code = move(&plan, request);
+    if (!code)
+        code = cg_run(&plan.model, request, &output, NULL);
+    if (!code)
+        code = complete(&state, &plan);
+    if (!code)
+        code = state_write(&state);
+    *value = state.system.n;
+    state_free(&state);
+    states_plan_free(&plan);
+    return code;
+}
+
+const struct serve_run cg_make_runs[] = {{"make", make}, {0}};

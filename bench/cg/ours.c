@@ -1,0 +1,385 @@
+/* One runtime and one flow at a time, made for a state and kept while the same is asked for. A step
+ * from the state's positions and velocities makes its system, which is then solved again and again.
+ * A bench looks into the cloth's own folders, as a test does. */
+#include "bench/cg/cg.h"
+
+#include "bench/tasks/tasks.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Runtimes ---- */
+
+static int start_runtime(struct serve_request *request, struct flow *flow, duite **rt)
+{
+    char scheduler[40];
+    serve_word(request, "scheduler", scheduler, sizeof scheduler);
+    duite_options options = duite_options_default();
+    options.kernels = flow_kernels();
+    options.context = flow;
+    options.threads = (unsigned)serve_number(request, "threads");
+    options.scheduler = duite_scheduler_find(scheduler);
+    return tasks_code(duite_start(rt, &options));
+}
+
+/* Rank 0 cuts the model, the others join. */
+static int make_flow(const struct model *model, struct flow **flow)
+{
+    const char *rank = getenv("OMPI_COMM_WORLD_RANK"); /* MPI may not have begun */
+    struct cloth_error error = {0};
+    const int code =
+        rank && atoi(rank) > 0 ? flow_join(flow, &error) : flow_prepare(flow, model, 1, &error);
+    return code ? serve_fail("%s", error.text) : 0;
+}
+
+int cg_run(const struct model *model, struct serve_request *request,
+           const struct flow_output *output, const struct flow_progress *progress)
+{
+    struct cloth_error error = {0};
+    struct flow_report report;
+    struct flow *flow = NULL;
+    duite *rt = NULL;
+    int code = make_flow(model, &flow);
+    if (!code)
+        code = start_runtime(request, flow, &rt);
+    if (!code && flow_run(flow, rt, output, progress, &report, &error))
+        code = serve_fail("%s", error.text);
+    if (rt && duite_stop(&rt) && !code)
+        code = tasks_code(1);
+    flow_free(flow);
+    return code;
+}
+
+/* ---- A state made ready ---- */
+
+static int end(struct cg_session *s, int code)
+{
+    if (s->rt && *s->settings) {
+        flow_parcels_free(&s->run);
+        flow_objects_free(&s->run);
+        duite_wait(s->rt);
+        flow_memory_free(&s->run);
+    }
+    *s->settings = '\0';
+    if (s->rt && duite_stop(&s->rt) && !code)
+        code = tasks_code(1);
+    flow_free(s->flow);
+    s->flow = NULL;
+    states_plan_free(&s->plan);
+    s->error = 0;
+    return code;
+}
+
+/* The system: that of a step whose solve is cut short. */
+static int begin(struct cg_session *s)
+{
+    s->report = (struct flow_report){0};
+    s->run = (struct flow_state){.flow = s->flow, .rt = s->rt, .report = &s->report};
+    int code = flow_run_begin(&s->run);
+    if (code)
+        return tasks_code(code);
+    flow_far_make(&s->run);
+    code = flow_cg_record(&s->run);
+    if (!code)
+        code = flow_initialise(&s->run);
+    if (!code)
+        code = flow_step(&s->run, 0);
+    if (!code)
+        code = duite_wait(s->rt);
+    return tasks_code(code);
+}
+
+int cg_end(struct cg_session *s)
+{
+    const int code = end(s, 0);
+    state_free(&s->state);
+    return code;
+}
+
+/* Ranks other than 0 go by what they were told of the model. */
+static void stop_by(struct cg_session *s, enum model_stop stop, double tolerance, uint32_t most)
+{
+    struct model *model[] = {&s->plan.model, s->flow ? &s->flow->told : NULL};
+    for (int i = 0; i < 2 && model[i]; i++) {
+        model[i]->stop = stop;
+        model[i]->tolerance = tolerance;
+        model[i]->max_iterations = most;
+    }
+}
+
+static void stop_after(struct cg_session *s, uint32_t count)
+{
+    stop_by(s, MODEL_STOP_COUNT, s->tolerance, count);
+}
+
+static void stop_by_default(struct cg_session *s)
+{
+    stop_by(s, s->stop, s->tolerance, s->most);
+}
+
+static int ready(struct cg_session *s, struct serve_request *request)
+{
+    char settings[sizeof s->settings], scheduler[40];
+    const struct model *model = &s->plan.model;
+    const unsigned threads = (unsigned)serve_number(request, "threads");
+    const uint64_t quick = serve_number(request, "quick");
+    int code = state_ready(&s->state, request);
+    serve_word(request, "scheduler", scheduler, sizeof scheduler);
+    snprintf(settings, sizeof settings, "%s %u %s", s->state.name, threads, scheduler);
+    if (code || !strcmp(settings, s->settings))
+        return code;
+    code = end(s, code);
+    if (!code)
+        code = states_plan_make(&s->plan, s->state.name, quick != 0);
+    if (!code)
+        code = states_start(&s->plan.model, s->state.system.x, s->state.system.v);
+    s->stop = model->stop;
+    s->tolerance = model->tolerance;
+    s->most = model->max_iterations;
+    stop_after(s, 2);
+    if (!code)
+        code = make_flow(model, &s->flow);
+    if (!code)
+        code = start_runtime(request, s->flow, &s->rt);
+    if (!code)
+        code = begin(s);
+    if (!code)
+        snprintf(s->settings, sizeof s->settings, "%s", settings);
+    return code;
+}
+
+/* dv, in the numbering of the input: the state has the order of the blocks. */
+static int answer(struct cg_session *s, double *dv)
+{
+    const struct flow *flow = s->flow;
+    int code = 0;
+    for (uint32_t b = 0; b < flow->tables.n_blocks && !code; b++) {
+        const struct flow_table *t = flow->tables.block + b;
+        code = tasks_code(duite_get(s->rt, s->run.block[b].dv, s->run.rows));
+        for (uint32_t i = 0; i < t->n && !code; i++)
+            memcpy(dv + 3 * (size_t)s->state.order[t->first + i], s->run.rows + 4 * (size_t)i,
+                   3 * sizeof *dv);
+    }
+    return code;
+}
+
+static double *new_answer(const struct cg_session *s)
+{
+    double *dv = calloc((size_t)s->state.system.n + 1, 3 * sizeof *dv);
+    if (!dv)
+        serve_no_memory();
+    return dv;
+}
+
+/* One solve; how far it is from the solution. */
+static int error_of(struct cg_session *s, double *error)
+{
+    double *dv = new_answer(s);
+    int code = dv ? tasks_code(flow_cg(&s->run, 0)) : 1;
+    if (!code)
+        code = answer(s, dv);
+    if (!code)
+        *error = state_distance(&s->state, dv, s->state.system.dv);
+    free(dv);
+    return code;
+}
+
+static int time_solve(struct cg_session *s, double *seconds)
+{
+    int code = duite_wait(s->rt);
+    const double begin = serve_seconds();
+    if (!code)
+        code = flow_cg(&s->run, 0);
+    if (!code)
+        code = duite_wait(s->rt);
+    *seconds = serve_seconds() - begin;
+    return tasks_code(code);
+}
+
+/* ---- Runs ---- */
+
+/* Seconds of count= iterations, from b alone. */
+static int cg(void *context, struct serve_request *request, double *value)
+{
+    struct cg_session *s = context;
+    const uint32_t count = (uint32_t)serve_number(request, "count");
+    int code = ready(s, request);
+    stop_after(s, count / 10 + 1);
+    if (!code)
+        code = time_solve(s, value);
+    stop_after(s, count);
+    if (!code)
+        code = time_solve(s, value);
+    double *dv = code ? NULL : new_answer(s);
+    code = dv ? answer(s, dv) : 1;
+    if (!code)
+        code = state_check(&s->state, count, dv);
+    free(dv);
+    return code;
+}
+
+/* The least number of iterations after which the error is small enough. */
+static int find_needed(struct cg_session *s, double wanted)
+{
+    enum { MOST = 40000 };
+    double error = INFINITY;
+    uint32_t low = 0, high = 1;
+    int code = 0;
+    for (; !code && error > wanted && high < MOST; high *= 2) {
+        stop_after(s, high);
+        code = error_of(s, &error);
+        if (error > wanted)
+            low = high;
+        else
+            break;
+    }
+    while (!code && high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        stop_after(s, middle);
+        code = error_of(s, &error);
+        if (error > wanted)
+            low = middle;
+        else
+            high = middle;
+    }
+    s->needed = high;
+    s->error = wanted;
+    if (!code && high >= MOST)
+        code = serve_fail("%s does not come to an error of %g", s->state.name, wanted);
+    return code;
+}
+
+/* Seconds of a whole solve to an error (error=, millionths, in the mass norm). what=iterations: how
+ * many it took. */
+static int solve(void *context, struct serve_request *request, double *value)
+{
+    struct cg_session *s = context;
+    const double wanted = 1e-6 * (double)serve_number(request, "error");
+    char what[16];
+    double error = 0;
+    serve_word(request, "what", what, sizeof what);
+    int code = ready(s, request);
+    if (!code && (s->error < wanted || s->error > wanted))
+        code = find_needed(s, wanted);
+    stop_after(s, s->needed);
+    if (!code)
+        code = time_solve(s, value);
+    if (!code)
+        code = error_of(s, &error);
+    if (!code && error > wanted)
+        code = serve_fail("wrong answer: an error of %g", error);
+    if (!strcmp(what, "iterations"))
+        *value = s->needed;
+    return code;
+}
+
+/* The error that the default stop leaves. */
+static int error(void *context, struct serve_request *request, double *value)
+{
+    struct cg_session *s = context;
+    const int code = ready(s, request);
+    stop_by_default(s);
+    return code ? code : error_of(s, value);
+}
+
+/* Seconds of steps= whole steps from the state on, with the default solver. */
+static int step(void *context, struct serve_request *request, double *value)
+{
+    struct cg_session *s = context;
+    const uint64_t steps = serve_number(request, "steps");
+    double left = 0;
+    int code = ready(s, request);
+    stop_by_default(s);
+    if (!code)
+        code = tasks_code(flow_initialise(&s->run));
+    if (!code)
+        code = tasks_code(duite_wait(s->rt));
+    const double begin = serve_seconds();
+    for (uint64_t i = 0; i < steps && !code; i++)
+        code = tasks_code(flow_step(&s->run, i));
+    if (!code)
+        code = tasks_code(duite_wait(s->rt));
+    *value = serve_seconds() - begin;
+    if (!code)
+        code = tasks_code(flow_initialise(&s->run));
+    if (!code)
+        code = tasks_code(flow_step(&s->run, 0));
+    if (!code)
+        code = error_of(s, &left);
+    if (!code && !(left < 0.5))
+        code = serve_fail("wrong answer: the step's error is %g", left);
+    return code;
+}
+
+/* ---- Frames ---- */
+
+enum { MOST_STEPS = 4096 };
+struct clock {
+    double at[MOST_STEPS + 1];
+    uint64_t n;
+};
+
+static void note(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations)
+{
+    struct clock *clock = context;
+    (void)cg_iterations;
+    if (step <= MOST_STEPS && steps)
+        clock->at[clock->n = step] = serve_seconds();
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Frames of so many steps: the mean, and in *p95 what 95 % of them stay below. */
+static double frames(const struct clock *clock, uint64_t steps, double *p95)
+{
+    static double frame[MOST_STEPS];
+    const uint64_t n = clock->n / steps;
+    for (uint64_t i = 0; i < n; i++)
+        frame[i] = clock->at[(i + 1) * steps] - clock->at[i * steps];
+    qsort(frame, n, sizeof *frame, by_size);
+    *p95 = n ? frame[(n - 1) * 95 / 100] : NAN;
+    return n ? (clock->at[n * steps] - clock->at[0]) / (double)n : NAN;
+}
+
+/* Seconds a frame of a sheet that falls and comes to rest on the floor: h = 20 ms, two steps a
+ * frame. what=p95 tells of the run that what=mean made, or makes one. */
+static int realtime(void *context, struct serve_request *request, double *value)
+{
+    enum { STEPS_A_FRAME = 2 };
+    static struct clock clock;
+    static double mean;
+    struct cg_session *s = context;
+    struct states_plan plan = {0};
+    char what[16];
+    const bool quick = serve_number(request, "quick") != 0;
+    const struct flow_progress progress = {.context = &clock, .step = note};
+    serve_word(request, "what", what, sizeof what);
+    const bool tail = !strcmp(what, "p95");
+    double *known = tail ? &s->p95 : &mean;
+    int code = 0;
+    if (!(*known > 0)) {
+        code = end(s, 0);
+        if (!code)
+            code = states_plan_make(&plan, "crumpled_h20", quick);
+        plan.model.end = (quick ? 8 : 100) * plan.model.h;
+        if (!code)
+            code = states_wave(&plan.model);
+        clock = (struct clock){.at = {serve_seconds()}};
+        if (!code)
+            code = cg_run(&plan.model, request, NULL, &progress);
+        states_plan_free(&plan);
+        mean = frames(&clock, STEPS_A_FRAME, &s->p95);
+    }
+    *value = *known;
+    *known = 0;
+    return code;
+}
+
+const struct serve_run cg_runs[] = {{"cg", cg},     {"solve", solve},       {"error", error},
+                                    {"step", step}, {"realtime", realtime}, {0}};

@@ -1,0 +1,40 @@
+#ifndef CLOTH_SOLVE_SYSTEM_H
+#define CLOTH_SOLVE_SYSTEM_H
+
+#include "cloth/base/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The system of one implicit step in plain arrays, in the numbering of the input, for whoever wants
+ * to look at it, keep it or solve it otherwise: S A S dv = S b with S = diag(free) and
+ *
+ *     A = diagonal + the sum over the springs of (alpha I + w w') on the difference of their ends.
+ *
+ * Vertices that nothing uses have mass, diagonal and free of zero. */
+struct solve_system {
+    uint32_t n;                     /* vertices */
+    double h;                       /* s */
+    double *mass, *diagonal, *free; /* n: kg; kg, mass + h drag; 1, or 0 where held */
+    double *b, *dv;                 /* n x 3: kg m/s; m/s, as the step found it */
+    double *x, *v;                  /* n x 3: m, m/s after the step */
+    size_t n_springs;
+    uint32_t (*end)[2]; /* n_springs: lower vertex, higher; sorted by both */
+    double (*value)[4]; /* n_springs: w0 w1 w2 alpha (phys_springs_matrix) */
+};
+
+/* Zeroed arrays of these sizes. Error: CLOTH_E_MEMORY, and nothing is left to be freed. Local. */
+int solve_system_make(struct solve_system *system, uint32_t n, size_t n_springs,
+                      struct cloth_error *error);
+
+/* Puts the ends of each spring, and the springs, in order. Springs of equal ends keep theirs.
+ * Error: CLOTH_E_MEMORY. Local. */
+int solve_system_sort(struct solve_system *system, struct cloth_error *error);
+
+/* y = S A S p, n x 3 each. Local. */
+void solve_system_multiply(const struct solve_system *system, const double *p, double *y);
+
+/* Frees the arrays and clears the structure; a zeroed one is fine. */
+void solve_system_free(struct solve_system *system);
+
+#endif

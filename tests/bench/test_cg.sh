@@ -1,0 +1,66 @@
+#!/bin/sh
+# duite-bench cg makes its states and runs every case in tiny sizes, against every rival that was built, and checks the answers; each
+# metric has its line; states are kept, and are the same wherever they are made; a wrong answer is told.
+. "${srcdir:-.}/tests/support/tap.sh"
+bench=$PWD/bench/duite-bench
+skip_unless "$bench"
+plan_later
+
+bench_cg() { DUITE_TIMEOUT=200 limited "$bench" cg --states "$scratch/states" "$@"; }
+
+all_listed() {
+    bench_cg --quick --repeats 1 > "$scratch/lines" 2> "$scratch/said" || { cat "$scratch/said" && return 1; }
+    cat "$scratch/lines"
+    for metric in $(bench_cg --list | sed -n 's/^    \([a-z0-9_]*\) (.*/\1/p'); do
+        grep -Eq "^$metric: ([-0-9]|not built: )" "$scratch/lines" || { echo "no line of $metric" && return 1; }
+    done
+}
+
+targets_listed() {
+    bench_cg --list | sed -n 's/^    \([a-z0-9_]*\) ([a-z_]*), target /\1 /p' > "$scratch/targets"
+    diff - "$scratch/targets" << 'END'
+spring_150_vs_petsc <= 0.26
+spring_150_vs_twin <= 1.05
+spring_400_vs_petsc <= 0.155
+bandwidth_fraction_400 >= 0.9
+solve_vs_petsc_cg <= 0.067
+solve_vs_petsc_icc <= 0.2
+mass_norm_error <= 0.01
+step_speedup_t2 >= 1.85
+step_speedup_r2 >= 1.85
+realtime_ms_per_frame <= 40
+realtime_ms_per_frame_p95 <= 60
+END
+}
+
+hashes() { sed -n 's/^# \(state_.*\)/\1/p' "$1"; }
+kept() { # nothing is made anew; what is damaged is
+    : > "$scratch/states/quick/falling_h8.state"
+    bench_cg --quick --repeats 1 --only spring_150 --threads 3 > "$scratch/again" 2> "$scratch/said" || return 1
+    cat "$scratch/said"
+    test "$(grep -c 'making the state' "$scratch/said")" = 1 && grep -q 'making the state falling_h8$' "$scratch/said" &&
+        hashes "$scratch/lines" > "$scratch/first" && hashes "$scratch/again" | diff "$scratch/first" - &&
+        test "$(wc -l < "$scratch/first")" -ge 17
+}
+
+# A bench of its own with a PETSc that is wrong.
+refused() {
+    mkdir -p "$scratch/bench/rivals" && cp "$bench" "$scratch/bench" && cp tests/bench/liar "$scratch/bench/rivals/petsc" || return 99
+    LIAR=wrong DUITE_TIMEOUT=60 limited "$scratch/bench/duite-bench" cg --quick --repeats 1 --only spring_150 \
+        --states "$scratch/states" > "$scratch/said" 2>&1
+    status=$?
+    cat "$scratch/said"
+    test $status = 1 && grep -q "spring_150, petsc.*: wrong answer" "$scratch/said"
+}
+no_folder() {
+    status=0
+    bench_cg --quick --states "$scratch/lines/states" > "$scratch/said" 2>&1 || status=$?
+    cat "$scratch/said"
+    test $status = 1 && grep -q "cannot be written to" "$scratch/said"
+}
+
+ok "runs every case, and every metric listed has its line" all_listed
+ok "the metrics that have a target, and which" targets_listed
+ok "states are kept, and the same from three threads" kept
+ok "a wrong answer is an error" refused
+ok "a folder that cannot be" no_folder

@@ -1,0 +1,171 @@
+/* A system's files hold the matrix that the system's own product multiplies by, each entry once and
+ * in order, and its vectors under the filter. */
+#include "tests/cloth/output/sample.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { N = 7, ROWS = 3 * N };
+
+static struct sample sample;
+static struct solve_system system_;
+static double matrix[ROWS][ROWS];
+
+/* Vertex 2 is held, 6 unused; 1 and 4 are joined twice, 3 to the held one. */
+static void make(void)
+{
+    static const uint32_t end[][2] = {{4, 1}, {0, 1}, {1, 4}, {2, 3}, {5, 0}, {3, 1}, {2, 5}};
+    const size_t n = sizeof end / sizeof *end;
+    sample_make(&sample);
+    ck_assert_int_eq(solve_system_make(&system_, N, n, NULL), 0);
+    system_.h = 0.5;
+    for (uint32_t v = 0; v < N; v++) {
+        system_.free[v] = v != 2 && v != 6;
+        system_.mass[v] = v == 6 ? 0 : 1 + v;
+        system_.diagonal[v] = v == 6 ? 0 : 2 + v;
+        for (size_t c = 0; c < 3; c++) {
+            system_.b[3 * v + c] = 10 * v + (double)c;
+            system_.dv[3 * v + c] = v == 2 ? 0 : 0.1 * v - (double)c;
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        memcpy(system_.end[i], end[i], sizeof end[i]);
+        for (size_t k = 0; k < 4; k++)
+            system_.value[i][k] = 1 / (1 + (double)(3 * i + k));
+    }
+    ck_assert_int_eq(solve_system_sort(&system_, NULL), 0);
+}
+
+static void end(void)
+{
+    solve_system_free(&system_);
+    sample_free(&sample);
+}
+
+static FILE *open_file(const char *name, const char *banner)
+{
+    char path[120], line[200];
+    snprintf(path, sizeof path, "%s/%s.mtx", sample.folder, name);
+    FILE *file = fopen(path, "r");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_ptr_nonnull(fgets(line, sizeof line, file));
+    ck_assert_str_eq(line, banner);
+    ck_assert_ptr_nonnull(fgets(line, sizeof line, file));
+    ck_assert_int_eq(line[0], '%');
+    return file;
+}
+
+/* Entries come column by column, rows ascending, all in the lower triangle, none twice. */
+static void read_matrix(void)
+{
+    size_t rows, columns, entries, row, column, before = 0;
+    double value;
+    FILE *file = open_file("matrix", "%%MatrixMarket matrix coordinate real symmetric\n");
+    ck_assert_int_eq(fscanf(file, "%zu %zu %zu", &rows, &columns, &entries), 3);
+    ck_assert_uint_eq(rows, ROWS);
+    ck_assert_uint_eq(columns, ROWS);
+    for (size_t i = 0; i < entries; i++) {
+        ck_assert_int_eq(fscanf(file, "%zu %zu %lf", &row, &column, &value), 3);
+        ck_assert(row >= column && column >= 1 && row <= ROWS);
+        ck_assert_uint_gt(column * ROWS + row, before);
+        before = column * ROWS + row;
+        matrix[row - 1][column - 1] = matrix[column - 1][row - 1] = value;
+    }
+    ck_assert_int_eq(fscanf(file, "%zu", &rows), EOF);
+    fclose(file);
+}
+
+static void read_array(const char *name, double *value)
+{
+    size_t rows, columns;
+    FILE *file = open_file(name, "%%MatrixMarket matrix array real general\n");
+    ck_assert_int_eq(fscanf(file, "%zu %zu", &rows, &columns), 2);
+    ck_assert_uint_eq(rows, ROWS);
+    ck_assert_uint_eq(columns, 1);
+    for (size_t i = 0; i < ROWS; i++)
+        ck_assert_int_eq(fscanf(file, "%lf", value + i), 1);
+    ck_assert_int_eq(fscanf(file, "%zu", &rows), EOF);
+    fclose(file);
+}
+
+START_TEST(the_matrix_is_the_product)
+{
+    struct cloth_error error = {0};
+    double p[ROWS], y[ROWS];
+    ck_assert_msg(output_system(sample.folder, &system_, &error) == 0, "%s", error.text);
+    read_matrix();
+    for (size_t i = 0; i < ROWS; i++)
+        p[i] = 1 / (1 + (double)(i * i % 11));
+    solve_system_multiply(&system_, p, y);
+    for (size_t i = 0; i < ROWS; i++) {
+        double sum = 0;
+        for (size_t k = 0; k < ROWS; k++)
+            sum += matrix[i][k] * p[k];
+        ck_assert_double_eq_tol(sum, system_.free[i / 3] > 0 ? y[i] : p[i], 1e-14);
+    }
+}
+END_TEST
+
+START_TEST(vectors_are_filtered)
+{
+    struct cloth_error error = {0};
+    double value[ROWS];
+    ck_assert_int_eq(output_system(sample.folder, &system_, &error), 0);
+    read_array("rhs", value);
+    for (size_t i = 0; i < ROWS; i++)
+        ck_assert_double_eq(value[i], system_.free[i / 3] * system_.b[i]);
+    read_array("solution", value);
+    for (size_t i = 0; i < ROWS; i++)
+        ck_assert_double_eq(value[i], system_.free[i / 3] * system_.dv[i]);
+    read_array("mass", value);
+    for (size_t i = 0; i < ROWS; i++)
+        ck_assert_double_eq(value[i], system_.free[i / 3] * system_.mass[i / 3]);
+}
+END_TEST
+
+START_TEST(springs_are_in_order)
+{
+    for (size_t i = 0; i < system_.n_springs; i++) {
+        ck_assert_uint_lt(system_.end[i][0], system_.end[i][1]);
+        if (i == 0)
+            continue;
+        const uint32_t *a = system_.end[i - 1], *b = system_.end[i];
+        ck_assert(a[0] < b[0] || (a[0] == b[0] && a[1] <= b[1]));
+    }
+    /* the two of equal ends as they were given */
+    ck_assert_double_eq(system_.value[3][0], 1);
+    ck_assert_double_eq(system_.value[4][0], 1.0 / 7);
+}
+END_TEST
+
+START_TEST(what_cannot_be_written)
+{
+    struct cloth_error error = {0};
+    char path[120];
+    snprintf(path, sizeof path, "%s/file/under", sample.folder);
+    ck_assert_int_eq(output_system(path, &system_, &error), CLOTH_E_INPUT);
+    error = (struct cloth_error){0};
+    snprintf(path, sizeof path, "%s/rhs.mtx", sample.folder);
+    ck_assert_int_eq(mkdir(path, 0700), 0);
+    ck_assert_int_eq(output_system(sample.folder, &system_, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "rhs.mtx"));
+    ck_assert_int_eq(rmdir(path), 0);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("output/market");
+    TCase *one = tcase_create("files");
+    tcase_add_checked_fixture(one, make, end);
+    tcase_add_test(one, the_matrix_is_the_product);
+    tcase_add_test(one, vectors_are_filtered);
+    tcase_add_test(one, springs_are_in_order);
+    tcase_add_test(one, what_cannot_be_written);
+    suite_add_tcase(suite, one);
+    return unit_run(suite);
+}

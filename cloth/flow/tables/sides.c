@@ -104,29 +104,16 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
     return CLOTH_OK;
 }
 
-/* The cloth of a vertex, and its first vertex, looked for from the last one found. */
-struct cloths {
-    uint32_t cloth, first;
-};
-
-static void find_cloth(struct cloths *at, const struct model *model, uint32_t vertex)
-{
-    if (vertex < at->first)
-        *at = (struct cloths){0};
-    while (vertex - at->first >= model->cloths[at->cloth].mesh.n_vertices)
-        at->first += model->cloths[at->cloth++].mesh.n_vertices;
-}
-
 /* What belongs to a vertex, and the rows that other blocks need. */
 static void fill_rows(const struct flow_source *source, const struct flow_table *t,
                       const struct flow_image *image)
 {
     const struct model *model = source->model;
-    struct cloths at = {0};
+    struct flow_cloths at = {0};
     for (uint32_t i = 0; i < t->n; i++) {
         const uint32_t v = source->blocks.vertex[t->first + i], rim = source->rim[t->first + i];
         struct flow_particle p;
-        find_cloth(&at, model, v);
+        flow_source_cloth(&at, model, v);
         flow_particle_of(&source->particles, model, model->cloths + at.cloth, at.first, v, &p);
         image->vertex[i] = v;
         image->mass[i] = p.mass;

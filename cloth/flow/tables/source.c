@@ -20,6 +20,14 @@ uint32_t flow_source_block(const struct mesh_blocks *blocks, uint32_t place, uin
     return low;
 }
 
+void flow_source_cloth(struct flow_cloths *at, const struct model *model, uint32_t vertex)
+{
+    if (vertex < at->first)
+        *at = (struct flow_cloths){0};
+    while (vertex - at->first >= model->cloths[at->cloth].mesh.n_vertices)
+        at->first += model->cloths[at->cloth++].mesh.n_vertices;
+}
+
 /* ---- Cutting ---- */
 
 struct pair_visitor {
@@ -67,6 +75,27 @@ static void find_range(const struct mesh_blocks *blocks, struct flow_table *shap
     }
 }
 
+/* What a vertex adds to the cost of its block: 0 where nobody asked for any. */
+static double extra(const struct model *model, struct flow_cloths *at, uint32_t vertex)
+{
+    flow_source_cloth(at, model, vertex);
+    const struct model_cloth *cloth = model->cloths + at->cloth;
+    const double *x = cloth->mesh.position + 3 * (size_t)(vertex - at->first);
+    bool in = cloth->cost.factor > 1;
+    for (int i = 0; i < 3; i++)
+        in = in && x[i] >= cloth->cost.box[0][i] && x[i] <= cloth->cost.box[1][i];
+    return in ? cloth->cost.factor - 1.0 : 0;
+}
+
+static void find_cost(const struct flow_source *source, struct flow_table *shape)
+{
+    struct flow_cloths at = {0};
+    double sum = 0;
+    for (uint32_t i = 0; i < shape->n; i++)
+        sum += extra(source->model, &at, source->blocks.vertex[shape->first + i]);
+    shape->cost = (float)(1 + sum / shape->n);
+}
+
 static int find_shapes(struct flow_source *source, struct cloth_error *error)
 {
     const struct mesh_blocks *blocks = &source->blocks;
@@ -79,6 +108,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         shape->first = blocks->start[b];
         shape->n = blocks->start[b + 1] - blocks->start[b];
         find_range(blocks, shape);
+        find_cost(source, shape);
     }
     return flow_source_meet(source, error);
 }

@@ -105,6 +105,12 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *i
  * there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */
 int flow_source_meet(struct flow_source *source, struct cloth_error *error);
 
+/* The cloth of a vertex, and its first vertex; looked for from the last one found. */
+struct flow_cloths {
+    uint32_t cloth, first;
+};
+void flow_source_cloth(struct flow_cloths *at, const struct model *model, uint32_t vertex);
+
 /* The block of a place; looked for in block `guess` first. */
 uint32_t flow_source_block(const struct mesh_blocks *blocks, uint32_t place, uint32_t guess);
 

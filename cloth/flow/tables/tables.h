@@ -25,6 +25,7 @@ struct flow_table {
     uint32_t lowest, highest; /* of its vertices */
     uint32_t n_slots;         /* neighbours */
     uint32_t n_copies;        /* rows that the cut springs end at, neighbour after neighbour */
+    float cost;               /* its tasks take so many times as long as they need, at least 1 */
     /* Not owned: */
     const uint32_t *slot;   /* n_slots: blocks, ascending */
     const uint32_t *copies; /* n_slots + 1: those of slot s are copies[s] .. */

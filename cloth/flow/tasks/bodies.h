@@ -50,20 +50,29 @@ static inline void flow_put_double(unsigned char *bytes, double value)
         bytes[i] = (unsigned char)(bits >> (8 * i));
 }
 
-/* Runs a body and adds its seconds to a part of the step, on this worker's line. */
-static inline int flow_timed(const duite_call *call, duite_body *body, enum flow_part part)
+/* Runs a body `cost` times as long as it needs, and adds its seconds to a part of the step, on this
+ * worker's line. */
+static inline int flow_timed(const duite_call *call, duite_body *body, enum flow_part part,
+                             double cost)
 {
-    const double start = flow_now();
+    const double start = flow_now(), worked = cost > 1 ? flow_worked() : 0;
     const int code = body(call);
+    if (cost > 1)
+        flow_work_on(worked, cost);
     flow_of(call)->clock[call->worker].seconds[part] += flow_now() - start;
     return code;
 }
 
-/* Defines NAME_timed, the body that a kernel lists. */
+/* Defines NAME_timed, the body that a kernel lists; of a block, which may have a cost, or not. */
 #define FLOW_TIMED(name, part)                                                                     \
     static int name##_timed(const duite_call *call)                                                \
     {                                                                                              \
-        return flow_timed(call, name, part);                                                       \
+        return flow_timed(call, name, part, flow_shape_of(call)->cost);                            \
+    }
+#define FLOW_TIMED_PLAIN(name, part)                                                               \
+    static int name##_timed(const duite_call *call)                                                \
+    {                                                                                              \
+        return flow_timed(call, name, part, 1);                                                    \
     }
 
 #endif

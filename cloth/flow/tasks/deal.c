@@ -16,6 +16,7 @@ enum {
 /* What is told of a block; the neighbours of all blocks follow. */
 struct shape {
     uint32_t n, n_inner, n_cut, n_rim, n_held, lowest, highest, n_slots, n_copies;
+    float cost;
 };
 
 /* ---- Telling ---- */
@@ -76,7 +77,8 @@ static int tell_shared(const duite_call *call)
                                     .lowest = t->lowest,
                                     .highest = t->highest,
                                     .n_slots = t->n_slots,
-                                    .n_copies = t->n_copies};
+                                    .n_copies = t->n_copies,
+                                    .cost = t->cost};
         to = put(to, &shape, sizeof shape);
     }
     const struct flow_neighbours *all = &source->neighbours;
@@ -147,6 +149,7 @@ static void unpack(struct flow_state *state)
                                                .highest = shape->highest,
                                                .n_slots = shape->n_slots,
                                                .n_copies = shape->n_copies,
+                                               .cost = shape->cost,
                                                .slot = slot,
                                                .copies = copies,
                                                .copy = copy};
@@ -186,7 +189,7 @@ static int table_keep(const duite_call *call)
     return 0;
 }
 const duite_kernel flow_table_keep = {
-    .name = "table_keep", .body = table_keep, .access = {DUITE_RW}, .args_size = KEYS, .stays = 1};
+    .name = "table_keep", .body = table_keep, .access = {DUITE_RW}, .args_size = KEYS};
 
 void flow_parcels_make(struct flow_state *state)
 {

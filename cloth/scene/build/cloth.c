@@ -4,6 +4,7 @@
 #include "cloth/scene/schema/rules.h"
 #include "cloth/scene/yaml/scalar.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,15 +31,15 @@ static int build_vertices(uint32_t **vertices, uint32_t *n_vertices, const struc
     return CLOTH_OK;
 }
 
-static bool in_box(const double *x, const struct model_pin *pin)
+static bool in_box(const double *x, double (*box)[3])
 {
     bool in = true;
     for (int i = 0; i < 3; i++)
-        in = in && x[i] >= pin->box[0][i] && x[i] <= pin->box[1][i];
+        in = in && x[i] >= box[0][i] && x[i] <= box[1][i];
     return in;
 }
 
-static int build_box(struct model_pin *pin, const struct scene_tree *tree, int node,
+static int build_box(double (*box)[3], const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error)
 {
     double corner[2][3];
@@ -46,11 +47,11 @@ static int build_box(struct model_pin *pin, const struct scene_tree *tree, int n
         scene_tree_vector(tree, scene_tree_item(tree, node, i), 3, corner[i]);
     for (int i = 0; i < 3; i++) {
         int low = corner[0][i] > corner[1][i];
-        pin->box[0][i] = corner[low][i];
-        pin->box[1][i] = corner[!low][i];
+        box[0][i] = corner[low][i];
+        box[1][i] = corner[!low][i];
     }
     for (size_t v = 0; v < cloth->mesh.n_vertices; v++)
-        if (in_box(cloth->mesh.position + 3 * v, pin))
+        if (in_box(cloth->mesh.position + 3 * v, box))
             return CLOTH_OK;
     return scene_tree_fail(tree, node, error,
                            "the box holds no vertex of cloth '%.60s'; it is meant for positions "
@@ -76,7 +77,7 @@ static int build_pin(struct model_pin *pin, const struct scene_tree *tree, int n
         return CLOTH_OK;
     }
     pin->kind = MODEL_PIN_BOX;
-    return build_box(pin, tree, kind.value, cloth, error);
+    return build_box(pin->box, tree, kind.value, cloth, error);
 }
 
 static int build_pins(struct model_cloth *cloth, const struct scene_tree *tree, int node,
@@ -134,6 +135,20 @@ static int build_loads(struct model_cloth *cloth, const struct scene_tree *tree,
                           i + 1, error);
     free(seen);
     return code;
+}
+
+static int build_cost(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                      struct cloth_error *error)
+{
+    int cost = scene_tree_get(tree, node, "cost");
+    if (!cost)
+        return CLOTH_OK;
+    int box = scene_tree_get(tree, cost, "box");
+    const struct model_cost everywhere = {
+        scene_tree_integer(tree, cost, "factor"),
+        {{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}}};
+    cloth->cost = everywhere;
+    return box ? build_box(cloth->cost.box, tree, box, cloth, error) : CLOTH_OK;
 }
 
 static int no_material(const char *name, const struct model *model, const struct scene_tree *tree,
@@ -205,6 +220,8 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
         code = scene_build_mesh(&cloth->mesh, tree, node, error);
     if (!code)
         code = build_pins(cloth, tree, node, error);
+    if (!code)
+        code = build_cost(cloth, tree, node, error);
     return code ? code : build_loads(cloth, tree, node, error);
 }
 

@@ -60,6 +60,13 @@ static const struct scene_rule load_keys[] = {
     {0}};
 static const struct scene_rule load = {.type = SCENE_MAP, .inside = load_keys};
 
+static const struct scene_rule cost_keys[] = {
+    {"factor", SCENE_INTEGER, .required = true, .least = 1, .most = 1000,
+     .about = "tasks of these blocks take so many times as long"},
+    {"box", SCENE_LIST, "m", .length = 2, .inside = &point,
+     .about = "the vertices between two corners; else all"},
+    {0}};
+
 static const struct scene_rule cloth_keys[] = {
     {"name", SCENE_TEXT, .about = "unique; else cloth1, cloth2, ..."},
     {"mesh", SCENE_ONE_OF, .required = true, .inside = mesh_kinds, .about = "its shape at rest"},
@@ -72,6 +79,7 @@ static const struct scene_rule cloth_keys[] = {
      .about = "at the start"},
     {"pins", SCENE_LIST, .fallback = "[]", .inside = &pin, .about = "vertices held where they start"},
     {"loads", SCENE_LIST, .fallback = "[]", .inside = &load, .about = "forces on vertices"},
+    {"cost", SCENE_MAP, .inside = cost_keys, .about = "time lost on purpose, to try balancers"},
     {0}};
 static const struct scene_rule cloth = {.type = SCENE_MAP, .inside = cloth_keys};
 

@@ -73,6 +73,14 @@ void summary_print(FILE *file, const struct summary *summary)
     if (model->integrator == MODEL_IMPLICIT_EULER) {
         fprintf(file, "  CG iterations    %.2f a step on average, %" PRIu64 " at most\n",
                 iterations_mean(summary), report->cg_iterations_max);
+        fprintf(file,
+                "  error of dv      %.3e of it at most in a step, in the mass norm (estimate)\n",
+                report->mass_norm_error);
+        if (report->factors_shifted)
+            fprintf(file,
+                    "  IC(0)            made with a shift %" PRIu64
+                    " times, of blocks times steps\n",
+                    report->factors_shifted);
         fprintf(file, "  momentum lost    %.3e kg m/s at most in a step\n", report->momentum_lost);
     }
     if (summary->ranks > 1)
@@ -141,8 +149,9 @@ static void add_solver(struct output_report *json, const struct summary *summary
         output_report_integer(json, "cg_iterations_max", report->cg_iterations_max);
     else
         output_report_null(json, "cg_iterations_max");
-    output_report_null(json, "mass_norm_error");
+    output_report_number(json, "mass_norm_error", report->mass_norm_error);
     output_report_number(json, "momentum_lost", report->momentum_lost);
+    output_report_integer(json, "factors_shifted", report->factors_shifted);
 }
 
 static void add_runtime(struct output_report *json, const struct summary *summary)

@@ -68,7 +68,19 @@ struct model_plane {
 };
 
 enum model_integrator { MODEL_EXPLICIT_EULER, MODEL_IMPLICIT_EULER };
-enum model_stop { MODEL_STOP_RELATIVE, MODEL_STOP_ABSOLUTE, MODEL_STOP_COUNT };
+enum model_stop {
+    MODEL_STOP_RELATIVE,
+    MODEL_STOP_ABSOLUTE,
+    MODEL_STOP_COUNT,
+    MODEL_STOP_MASS_NORM
+};
+enum model_preconditioner {
+    MODEL_PLAIN,     /* none */
+    MODEL_JACOBI,    /* inverses of the 3 x 3 blocks on the diagonal */
+    MODEL_IC0,       /* incomplete Cholesky of each block */
+    MODEL_COARSE,    /* Jacobi and a coarse space, affine on each block */
+    MODEL_IC0_COARSE /* IC(0) and that coarse space */
+};
 
 struct model {
     char *name; /* of the scene */
@@ -84,9 +96,10 @@ struct model {
     enum model_integrator integrator;
 
     enum model_stop stop; /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s);
-                             count: no test */
+                             count: no test; mass_norm: the error of dv <= tolerance |dv| */
     double tolerance;
     uint32_t max_iterations; /* count: exactly so many */
+    enum model_preconditioner preconditioner;
 
     uint32_t grain; /* vertices a block */
 };

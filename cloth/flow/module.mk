@@ -16,8 +16,10 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/kernels_cg.c \
     cloth/flow/tasks/kernels_report.c \
     cloth/flow/tasks/kernels_step.c \
+    cloth/flow/tasks/kernels_turned.c \
     cloth/flow/tasks/memory.c \
     cloth/flow/tasks/objects.c \
     cloth/flow/tasks/step.c \
     cloth/flow/tasks/system.c \
-    cloth/flow/tasks/tasks.h
+    cloth/flow/tasks/tasks.h \
+    cloth/flow/tasks/turned.c

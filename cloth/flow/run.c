@@ -34,35 +34,17 @@ void flow_work_on(double worked, double times)
 
 const duite_kernel *const *flow_kernels(void)
 {
-    static const duite_kernel *const all[] = {&flow_tell_head,
-                                              &flow_tell_shared,
-                                              &flow_table_make,
-                                              &flow_table_keep,
-                                              &flow_collect,
-                                              &flow_ready,
-                                              &flow_initial,
-                                              &flow_force,
-                                              &flow_explicit,
-                                              &flow_implicit,
-                                              &flow_matrix,
-                                              &flow_begin,
-                                              &flow_pack,
-                                              &flow_start,
-                                              &flow_pass,
-                                              &flow_scalars,
-                                              &flow_velocity_dv,
-                                              &flow_velocity_a,
-                                              &flow_position,
-                                              &flow_collide,
-                                              &flow_status,
-                                              &flow_frame,
-                                              &flow_stretch,
-                                              &flow_most,
-                                              &flow_seconds,
-                                              &flow_tell,
-                                              &flow_system_part,
-                                              &flow_system_save,
-                                              NULL};
+    static const duite_kernel *const all[] = {
+        /* Without a preconditioner */
+        &flow_tell_head, &flow_tell_shared, &flow_table_make, &flow_table_keep, &flow_collect,
+        &flow_ready, &flow_initial, &flow_force, &flow_explicit, &flow_implicit, &flow_matrix,
+        &flow_begin, &flow_pack, &flow_start, &flow_pass, &flow_scalars, &flow_velocity_dv,
+        &flow_velocity_a, &flow_position, &flow_collide, &flow_status, &flow_frame, &flow_stretch,
+        &flow_most, &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
+        /* With one */
+        &flow_basis, &flow_basis_copies, &flow_couple, &flow_factor_coarse, &flow_factor,
+        &flow_start_turned, &flow_begin_coarse, &flow_pass_turned, &flow_scalars_turned,
+        &flow_scalars_coarse, NULL};
     return all;
 }
 
@@ -123,6 +105,7 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     flow->n_vertices = flow->source.particles.n;
     flow->partition_hash = flow->source.blocks.hash;
     warn(flow, &flow->source.particles);
+    flow_turned_choose(flow, flow->source.blocks.n_blocks);
     return keep_rest(flow, &flow->source.particles, error);
 }
 
@@ -219,6 +202,8 @@ int flow_run_begin(struct flow_state *state)
     code = flow_memory_take(state);
     if (!code)
         code = flow_share(state);
+    if (!code)
+        code = flow_turned_prepare(state);
     if (!code)
         code = make(state);
     for (uint32_t i = 0; flow->room && i < flow->rest.n; i++)
@@ -337,7 +322,7 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
     if (flow->model)
         report->simulated_seconds = (double)report->steps * flow->model->h;
     if (flow->model && flow->model->integrator == MODEL_EXPLICIT_EULER)
-        report->momentum_lost = NAN;
+        report->momentum_lost = report->mass_norm_error = NAN;
     flow_memory_free(&state);
     flow->output = NULL;
     return failed;

@@ -20,7 +20,12 @@ struct flow_report {
         seconds_output;   /* in task bodies, over all workers and ranks */
     double momentum_lost; /* largest |sum of b - A dv over the vertices not held| of a step, kg m/s,
                            * of the dv that the step used; NaN for an explicit run */
-    double max_stretch;   /* largest length / rest length of any stretch spring at the end */
+    double
+        mass_norm_error; /* largest error of a step's dv, as conjugate gradients estimate it in the
+                          * norm of A, against dv in the mass norm; NaN for an explicit run */
+    uint64_t
+        factors_shifted; /* blocks times steps whose IC(0) needed a shift, or gave way to SSOR */
+    double max_stretch;  /* largest length / rest length of any stretch spring at the end */
     uint64_t state_hash;
     uint64_t last_frame; /* the last frame written */
     bool stopped;        /* a stop was requested before the end */

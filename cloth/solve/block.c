@@ -32,19 +32,29 @@ PHYS_INLINE void fetch(const phys_vec *from, size_t rows, int to_write)
         __builtin_prefetch((const void *)address, 0);
 }
 
-/* The first half of a pass for rows from .. to - 1; leaves q zero. Adds r * r to dot. */
+/* The first half of a pass for rows from .. to - 1; leaves q zero. Adds r * r to sum, and r * z if
+ * there is a z. */
 PHYS_INLINE void begin_rows(size_t from, size_t to, double alpha, double beta,
-                            const struct solve_rows *rows, phys_vec *dot)
+                            const struct solve_rows *rows, const struct solve_turned *turned,
+                            phys_vec sum[SOLVE_DOTS])
 {
     phys_vec *restrict dv = rows->dv, *restrict r = rows->r;
-    phys_vec *restrict p = rows->p, *restrict q = rows->q, sum = *dot;
+    phys_vec *restrict p = rows->p, *restrict q = rows->q;
+    phys_vec square = sum[SOLVE_RR], product = sum[SOLVE_RZ];
     for (size_t a = from; a < to; a++) {
         dv[a] += alpha * p[a];
-        solve_turn(alpha, beta, q + a, r + a, p + a);
-        sum += r[a] * r[a];
+        if (turned) {
+            r[a] -= alpha * q[a];
+            solve_turn(alpha, beta, turned->s + a, turned->z + a, p + a);
+            product += r[a] * turned->z[a];
+        } else {
+            solve_turn(alpha, beta, q + a, r + a, p + a);
+        }
+        square += r[a] * r[a];
         q[a] = (phys_vec){0};
     }
-    *dot = sum;
+    sum[SOLVE_RR] = square;
+    sum[SOLVE_RZ] = product;
 }
 
 /* How many rows have begun when those that the springs of rows from .. to - 1 end at have. */
@@ -78,24 +88,27 @@ PHYS_INLINE void row(size_t n, const phys_vec *restrict value, const uint32_t *c
 }
 
 /* q = S A p of row a, of which total is the sum over the springs. Adds p * q, r * q, q * q to the
- * sums. */
+ * sums; with a preconditioner p * q and z * q. */
 PHYS_INLINE void end_row(const struct solve_block *block, size_t a, const phys_vec *total,
-                         const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
+                         const struct solve_rows *rows, const struct solve_turned *turned,
+                         phys_vec sum[SOLVE_DOTS])
 {
     const phys_vec three = {1, 1, 1, 0};
     const phys_vec p = rows->p[a];
     const phys_vec q = (*total + block->diagonal[a] * p) * (block->free[a] * three);
     rows->q[a] = q;
     sum[SOLVE_PQ] += p * q;
-    sum[SOLVE_RQ] += rows->r[a] * q;
-    sum[SOLVE_QQ] += q * q;
+    sum[SOLVE_RQ] += (turned ? turned->z : rows->r)[a] * q;
+    if (!turned)
+        sum[SOLVE_QQ] += q * q;
 }
 
 /* The inner springs of rows from .. to - 1. Ends the rows but those of the rim, of which *met were
  * met before. */
 PHYS_INLINE void multiply(const struct solve_block *block, const struct solve_cut *cut, size_t *met,
                           size_t from, size_t to, const phys_vec *value,
-                          const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
+                          const struct solve_rows *rows, const struct solve_turned *turned,
+                          phys_vec sum[SOLVE_DOTS])
 {
     size_t i = block->row[from], rim = *met < cut->n_rim ? cut->rim[*met] : block->n;
     for (size_t a = from; a < to; a++) {
@@ -110,7 +123,7 @@ PHYS_INLINE void multiply(const struct solve_block *block, const struct solve_cu
         row(n, value + i, block->column + i, a, rows->p, rows->q, &total);
         i += n;
         if (a != rim) {
-            end_row(block, a, &total, rows, sum);
+            end_row(block, a, &total, rows, turned, sum);
             continue;
         }
         rows->q[a] = total;
@@ -121,7 +134,8 @@ PHYS_INLINE void multiply(const struct solve_block *block, const struct solve_cu
 /* The springs into other blocks, and the rows that waited for them. */
 PHYS_INLINE void end_rim(const struct solve_block *block, const struct solve_cut *cut,
                          const phys_vec *value, const phys_vec *p_other,
-                         const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
+                         const struct solve_rows *rows, const struct solve_turned *turned,
+                         phys_vec sum[SOLVE_DOTS])
 {
     for (size_t i = 0; i < cut->n; i++) {
         const uint32_t a = cut->end[i][0];
@@ -132,8 +146,32 @@ PHYS_INLINE void end_rim(const struct solve_block *block, const struct solve_cut
     }
     for (size_t i = 0; i < cut->n_rim; i++) {
         const phys_vec total = rows->q[cut->rim[i]];
-        end_row(block, cut->rim[i], &total, rows, sum);
+        end_row(block, cut->rim[i], &total, rows, turned, sum);
     }
+}
+
+/* turned is NULL or not where this is inlined: two passes are made of it, neither with a look at it
+ * in a loop. */
+PHYS_INLINE void pass(const struct solve_block *block, const struct solve_cut *cut,
+                      const phys_vec *value, const phys_vec *p_other, double alpha, double beta,
+                      const struct solve_rows *rows, const struct solve_turned *turned,
+                      double dots[SOLVE_DOTS])
+{
+    phys_vec sum[SOLVE_DOTS] = {{0}}; /* no loop over it: it lives in registers */
+    size_t met = 0, begun = 0;
+    for (size_t from = 0; from < block->n; from += STRETCH) {
+        const size_t to = block->n - from > STRETCH ? from + STRETCH : block->n;
+        const size_t next = reach(block, from, to, begun);
+        begin_rows(begun, next, alpha, beta, rows, turned, sum);
+        begun = next;
+        multiply(block, cut, &met, from, to, value, rows, turned, sum);
+    }
+    end_rim(block, cut, value + block->row[block->n], p_other, rows, turned, sum);
+    dots[SOLVE_RR] = phys_lanes(sum + SOLVE_RR);
+    dots[SOLVE_PQ] = phys_lanes(sum + SOLVE_PQ);
+    dots[SOLVE_RQ] = phys_lanes(sum + SOLVE_RQ);
+    dots[SOLVE_QQ] = phys_lanes(sum + SOLVE_QQ);
+    dots[SOLVE_RZ] = turned ? phys_lanes(sum + SOLVE_RZ) : dots[SOLVE_RR];
 }
 
 PHYS_CLONES
@@ -141,20 +179,17 @@ void solve_pass(const struct solve_block *block, const struct solve_cut *cut, co
                 const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
                 double dots[SOLVE_DOTS])
 {
-    phys_vec sum[SOLVE_DOTS] = {{0}}; /* no loop over it: it lives in registers */
-    size_t met = 0, begun = 0;
-    for (size_t from = 0; from < block->n; from += STRETCH) {
-        const size_t to = block->n - from > STRETCH ? from + STRETCH : block->n;
-        const size_t next = reach(block, from, to, begun);
-        begin_rows(begun, next, alpha, beta, rows, sum + SOLVE_RR);
-        begun = next;
-        multiply(block, cut, &met, from, to, value, rows, sum);
-    }
-    end_rim(block, cut, value + block->row[block->n], p_other, rows, sum);
-    dots[SOLVE_RR] = phys_lanes(sum + SOLVE_RR);
-    dots[SOLVE_PQ] = phys_lanes(sum + SOLVE_PQ);
-    dots[SOLVE_RQ] = phys_lanes(sum + SOLVE_RQ);
-    dots[SOLVE_QQ] = phys_lanes(sum + SOLVE_QQ);
+    pass(block, cut, value, p_other, alpha, beta, rows, NULL, dots);
+}
+
+PHYS_CLONES
+void solve_pass_turned(const struct solve_block *block, const struct solve_cut *cut,
+                       const phys_vec *value, const phys_vec *p_other, double alpha, double beta,
+                       const struct solve_rows *rows, const struct solve_turned *turned,
+                       double dots[SOLVE_DOTS])
+{
+    const struct solve_turned here = *turned;
+    pass(block, cut, value, p_other, alpha, beta, rows, &here, dots);
 }
 
 void solve_lost(const struct solve_block *block, const struct solve_held *held,

@@ -41,6 +41,18 @@ void solve_pass(const struct solve_block *block, const struct solve_cut *cut, co
                 const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
                 double dots[SOLVE_DOTS]);
 
+/* The same with a preconditioner (cloth/solve/precondition.h), which turns residuals: z = M^-1 r, s
+ * = M^-1 q, n rows each. The first half is dv += alpha p, r -= alpha q, z -= alpha s, p = z + beta
+ * p; r.q is z.q; q.q, which is q.s, is left to who makes s of the new q. */
+struct solve_turned {
+    phys_vec *z;
+    const phys_vec *s;
+};
+void solve_pass_turned(const struct solve_block *block, const struct solve_cut *cut,
+                       const phys_vec *value, const phys_vec *p_other, double alpha, double beta,
+                       const struct solve_rows *rows, const struct solve_turned *turned,
+                       double dots[SOLVE_DOTS]);
+
 /* Adds the sum over the free rows of b - A dv to lost[3] (kg m/s), for a dv that is zero where
  * particles are held. The springs between free rows cancel in this sum, wherever their ends are;
  * those to held ends remain. They are given by their free row and their place in `value`. */

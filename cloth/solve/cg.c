@@ -6,8 +6,12 @@
 
 struct solve_scalars solve_scalars_start(double step)
 {
-    return (struct solve_scalars){.phase = SOLVE_ON, .alpha = 1, .step = step};
+    return (struct solve_scalars){.phase = SOLVE_ON, .alpha = 1, .step = step, .stride = 1};
 }
+
+/* A residual is rubbish when its square is less than this part of the first one: what is left is
+ * rounding, of which r.z may be anything. */
+#define RUBBISH 1e-26
 
 /* What is not a number is not small: then p.q is none either. The square of a small tolerance may
  * be zero: then nothing is small enough. */
@@ -22,19 +26,66 @@ static double wanted(const struct solve_stop *stop, double square)
     return stop->relative ? tolerance * square : tolerance;
 }
 
+/* Iterations that an error is told of at least afterwards, and their share of all. */
+enum { WINDOW = 5, SHARE = 6 };
+
+/* Terms that do not fall tell nothing. */
+#define FALLING 0.9
+
+double solve_scalars_error(const struct solve_scalars *scalars, double bound)
+{
+    const int stride = (int)scalars->stride, now = (int)(scalars->iterations / scalars->stride);
+    const int share = now / SHARE, least = (WINDOW + stride - 1) / stride;
+    const int window = share > least ? share : least;
+    if (now < 2 * window)
+        return bound;
+    const double middle = scalars->past[now - window];
+    const double known = scalars->energy - middle;
+    const double before = middle - scalars->past[now - 2 * window];
+    if (!(known <= FALLING * before))
+        return bound;
+    const double error = known / (1 - known / before);
+    return error < bound ? error : bound;
+}
+
+/* Adds a term to the energy. The past keeps every stride-th sum. */
+static void remember(double term, struct solve_scalars *after)
+{
+    after->energy += term;
+    if (after->iterations == SOLVE_PAST * after->stride) {
+        for (int i = 0; i < SOLVE_PAST / 2; i++)
+            after->past[i] = after->past[2 * i];
+        after->stride *= 2;
+    }
+    const int at = (int)(after->iterations / after->stride);
+    if (at * after->stride == after->iterations)
+        after->past[at] = after->energy;
+}
+
+/* Whether dv is good enough. */
+static bool reached(const struct solve_stop *stop, const struct solve_scalars *now)
+{
+    if (stop->count)
+        return false;
+    if (!stop->mass_norm || now->square < SOLVE_NOTHING)
+        return small_enough(now->square, stop->mass_norm ? 0 : now->wanted);
+    return isfinite(now->square) &&
+           solve_scalars_error(now, now->bound) <= stop->tolerance * stop->tolerance * now->size;
+}
+
 /* alpha and beta of the next pass. Where r is nothing, nothing is left to do. */
 static int next_factors(const double dots[SOLVE_DOTS], struct solve_scalars *after)
 {
-    const double square = dots[SOLVE_RR], curvature = dots[SOLVE_PQ];
+    const double product = dots[SOLVE_RZ], curvature = dots[SOLVE_PQ];
     after->alpha = after->beta = 0;
-    if (square < SOLVE_NOTHING)
+    if (dots[SOLVE_RR] < SOLVE_NOTHING)
         return SOLVE_OK;
-    if (!(curvature > 0))
-        return SOLVE_BREAKDOWN;
-    const double alpha = square / curvature;
-    const double next = square - 2 * alpha * dots[SOLVE_RQ] + alpha * alpha * dots[SOLVE_QQ];
+    if (!(curvature > 0) || !(product > 0))
+        return dots[SOLVE_RR] <= RUBBISH * after->first ? SOLVE_OK : SOLVE_BREAKDOWN;
+    const double alpha = product / curvature;
+    const double next = product - 2 * alpha * dots[SOLVE_RQ] + alpha * alpha * dots[SOLVE_QQ];
     after->alpha = alpha;
-    after->beta = next > 0 ? next / square : 0; /* what rounding leaves of nothing may be < 0 */
+    after->beta = next > 0 ? next / product : 0; /* what rounding leaves of nothing may be < 0 */
     return SOLVE_OK;
 }
 
@@ -46,18 +97,36 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
         return SOLVE_OK;
     after->square = dots[SOLVE_RR];
     after->curvature = dots[SOLVE_PQ];
+    after->size = dots[SOLVE_SIZE];
+    after->bound = dots[SOLVE_BOUND];
     after->phase = SOLVE_DONE;
     if (before->phase == SOLVE_LAST)
         return SOLVE_OK;
-    if (before->iterations == 0)
+    if (before->iterations == 0) {
+        after->first = after->square;
         after->wanted = wanted(stop, after->square);
-    if (!stop->count && small_enough(after->square, after->wanted))
+    }
+    if (reached(stop, after))
         return SOLVE_OK;
     if (before->iterations == stop->most)
         return stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED;
     after->iterations = before->iterations + 1;
     after->phase = stop->count && after->iterations == stop->most ? SOLVE_LAST : SOLVE_ON;
-    return next_factors(dots, after);
+    const int code = next_factors(dots, after);
+    remember(after->alpha * dots[SOLVE_RZ], after);
+    return code;
+}
+
+PHYS_CLONES
+struct solve_norms solve_norms(size_t n, const double *restrict diagonal,
+                               const phys_vec *restrict dv, const phys_vec *restrict r)
+{
+    phys_vec size = {0}, bound = {0};
+    for (size_t a = 0; a < n; a++) {
+        size += diagonal[a] * (dv[a] * dv[a]);
+        bound += (r[a] * r[a]) / diagonal[a];
+    }
+    return (struct solve_norms){phys_lanes(&size), phys_lanes(&bound)};
 }
 
 PHYS_CLONES

@@ -18,8 +18,17 @@
  * (Meurant 1987), so the residual is as good as that of the two-reduction form. What other ranks
  * need of a pass, rows of q and dots, is known at one time. */
 
-/* What a pass sums. */
-enum { SOLVE_RR, SOLVE_PQ, SOLVE_RQ, SOLVE_QQ, SOLVE_DOTS };
+/* With a preconditioner M, symmetric and positive definite, the vectors z = M^-1 r and s = M^-1 q
+ * are kept beside r and q:
+ *
+ *     dv += alpha p,  r -= alpha q,  z -= alpha s,  p = z + beta p,  q = S A p,  s = M^-1 q
+ *
+ * and alpha = r.z / p.q, beta = (r.z - 2 alpha z.q + alpha^2 q.s) / r.z: one reduction again, which
+ * may carry what a coarse part of M^-1 needs of q. Without one z is r and s is q. */
+
+/* What a pass sums. RQ is z.q, QQ is q.s; SIZE and BOUND are those of solve_norms, which only a
+ * stop in the mass norm needs. */
+enum { SOLVE_RR, SOLVE_PQ, SOLVE_RQ, SOLVE_QQ, SOLVE_RZ, SOLVE_SIZE, SOLVE_BOUND, SOLVE_DOTS };
 
 /* A residual with r.r below this ((kg m/s)^2) is zero: p.Ap is about r.r times a mass, and would
  * underflow before r.r does. */
@@ -27,22 +36,39 @@ enum { SOLVE_RR, SOLVE_PQ, SOLVE_RQ, SOLVE_QQ, SOLVE_DOTS };
 
 /* When to stop. */
 struct solve_stop {
-    bool count;    /* after exactly `most` iterations, without a look at the residual */
-    bool relative; /* tolerance is against |S b|, else absolute (kg m/s) */
+    bool count;     /* after exactly `most` iterations, without a look at the residual */
+    bool relative;  /* tolerance is against |S b|, else absolute (kg m/s) */
+    bool mass_norm; /* tolerance is of the error against dv, both in the mass norm */
     double tolerance;
     uint32_t most; /* a solve that needs more iterations has failed */
 };
 
+/* The error of dv, and when it is small. The mass norm is |y|^2 = y.D y, D the diagonal that A has
+ * besides springs: masses, kg, with h times the drag. A - D is positive semidefinite. So the error
+ * is at most r.D^-1 r, which is far too much unless r is nearly nothing; and it is at most its norm
+ * in A, which after k iterations is the sum over all j >= k of alpha_j r_j.z_j (Hestenes & Stiefel
+ * 1952, theorem 6:1). What is known of this sum when there were m more iterations is S; it is
+ * trusted as far as terms fall: with P, the m terms before, the whole is taken for the geometric
+ * series S / (1 - S / P), if S is at most 0.9 P. m is a sixth of all iterations, at least 5, since
+ * where conjugate gradients stagnate a fixed delay (Strakos & Tichy 2002) is deceived. So what is
+ * estimated is the error of m iterations ago; dv has a smaller one. */
+
 /* What the next pass does. Numbers are doubles: the structure is a shared object. */
 enum { SOLVE_DONE, SOLVE_LAST /* dv and r only */, SOLVE_ON };
+enum { SOLVE_PAST = 64 };
 struct solve_scalars {
     double phase; /* first: not zero while there is something to do */
     double alpha, beta;
-    double iterations; /* that dv has had after the next pass; at the end: those of the solve */
-    double wanted;     /* (kg m/s)^2: r.r at which to stop */
-    double square;     /* r.r of the last pass */
-    double curvature;  /* p.q of the last pass */
-    double step;       /* the caller's */
+    double iterations;  /* that dv has had after the next pass; at the end: those of the solve */
+    double wanted;      /* (kg m/s)^2: r.r at which to stop */
+    double square;      /* r.r of the last pass */
+    double curvature;   /* p.q of the last pass */
+    double step;        /* the caller's */
+    double first;       /* r.r of the first pass */
+    double size, bound; /* dv.D dv, r.D^-1 r of the last pass */
+    double energy;      /* sum of alpha r.z over all iterations, (kg m^2/s^2) */
+    double stride;      /* past[i] is what it was after i stride iterations, i > 0 */
+    double past[SOLVE_PAST];
 };
 enum { SOLVE_SCALARS = sizeof(struct solve_scalars) / sizeof(double) };
 
@@ -55,6 +81,16 @@ struct solve_scalars solve_scalars_start(double step);
 enum { SOLVE_OK, SOLVE_BREAKDOWN, SOLVE_NOT_CONVERGED };
 int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                        const struct solve_scalars *before, struct solve_scalars *after);
+
+/* An upper estimate of the square of the error of dv in the mass norm; bound: r.D^-1 r. */
+double solve_scalars_error(const struct solve_scalars *scalars, double bound);
+
+/* dv.D dv and r.D^-1 r of n rows; r is zero in held ones. */
+struct solve_norms {
+    double size, bound;
+};
+struct solve_norms solve_norms(size_t n, const double *diagonal, const phys_vec *dv,
+                               const phys_vec *r);
 
 /* Vectors of a block before the first pass, n rows: dv = r = p = 0, q = - S b. With alpha = 1 and
  * beta = 0 the first pass makes r = p = S b of them. */

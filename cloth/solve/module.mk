@@ -1,4 +1,6 @@
 libduite_cloth_la_SOURCES += \
     cloth/solve/block.c cloth/solve/block.h \
     cloth/solve/cg.c cloth/solve/cg.h \
+    cloth/solve/coarse.c cloth/solve/coarse.h cloth/solve/couple.c \
+    cloth/solve/local.c cloth/solve/local.h cloth/solve/matrix3.h \
     cloth/solve/system.c cloth/solve/system.h

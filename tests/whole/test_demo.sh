@@ -21,7 +21,6 @@ export DUITE_TIMEOUT
 ok "make demo" limited "${MAKE:-make}" demo
 ok "it ran to the end" report steps 480
 ok "on two ranks" report ranks 2
-ok "with as many iterations as the scene says" \
-    awk -F': ' '/"cg_iterations_mean"/ { n = $2 + 0 } END { exit !(n >= 550 && n <= 750) }' demo/report.json
+ok "with few iterations" awk -F': ' '/"cg_iterations_mean"/ { n = $2 + 0 } END { exit !(n >= 5 && n <= 120) }' demo/report.json
 ok "thirteen frames" test "$(tail -n 1 demo/frames/frames.csv | cut -d , -f 1)" = 12
 if test -x "$DUITE_VIEW"; then ok "three pictures" pictures; else skip "three pictures" "no viewer"; fi

@@ -5,6 +5,7 @@ skip_unless tests/cloth/flow/test_motion
 skip_unless tests/cloth/flow/test_run
 skip_unless tests/cloth/flow/test_failures
 skip_unless tests/cloth/flow/test_memory
+skip_unless tests/cloth/flow/test_solvers
 plan_later
 
 export CK_RUN_CASE
@@ -16,3 +17,5 @@ CK_RUN_CASE=failures
 ok "failures on 2 ranks" ranks 2 tests/cloth/flow/test_failures
 CK_RUN_CASE=memory
 ok "out of memory on one of 2 ranks" ranks 2 tests/cloth/flow/test_memory
+CK_RUN_CASE=solvers
+ok "preconditioners on 2 ranks" ranks 2 tests/cloth/flow/test_solvers

@@ -50,6 +50,17 @@ static inline void flow_put_double(unsigned char *bytes, double value)
         bytes[i] = (unsigned char)(bits >> (8 * i));
 }
 
+/* Adds what a stop in the mass norm asks for to the dots of a pass. */
+static inline void flow_add_norms(const duite_call *call, const struct solve_block *block,
+                                  const struct solve_rows *rows, double dots[SOLVE_DOTS])
+{
+    if (flow_of(call)->model->stop != MODEL_STOP_MASS_NORM)
+        return;
+    const struct solve_norms norms = solve_norms(block->n, block->diagonal, rows->dv, rows->r);
+    dots[SOLVE_SIZE] = norms.size;
+    dots[SOLVE_BOUND] = norms.bound;
+}
+
 /* Runs a body `cost` times as long as it needs, and adds its seconds to a part of the step, on this
  * worker's line. */
 static inline int flow_timed(const duite_call *call, duite_body *body, enum flow_part part,

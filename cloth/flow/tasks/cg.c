@@ -38,8 +38,12 @@ static int fork_pass(struct flow_state *state, int from)
 static int build(duite *rt, void *context)
 {
     (void)rt;
-    const int code = fork_pass(context, 0);
-    return code ? code : fork_pass(context, 1);
+    struct flow_state *state = context;
+    const bool turned = flow_is_turned(state->flow);
+    int code = DUITE_OK;
+    for (int from = 0; from < 2 && !code; from++)
+        code = turned ? flow_turned_pass(state, from) : fork_pass(state, from);
+    return code;
 }
 
 int flow_cg_record(struct flow_state *state)
@@ -62,7 +66,9 @@ static int fork_start(struct flow_state *state, struct flow_args args)
 
 int flow_cg(struct flow_state *state, uint64_t step)
 {
-    int code = fork_start(state, (struct flow_args){.step = (uint32_t)step});
+    int code = flow_is_turned(state->flow)
+                   ? flow_turned_start(state, step)
+                   : fork_start(state, (struct flow_args){.step = (uint32_t)step});
     if (!code && step > 0)
         code = flow_step_status(state, step - 1);
     /* One pass more than there are iterations. */

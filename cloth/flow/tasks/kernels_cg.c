@@ -73,6 +73,7 @@ static int pass(const duite_call *call)
     solve_pass(&t->matrix, &cut, duite_in(call, A, phys_vec),
                duite_in(call, COPIES, phys_vec) + t->n_copies, scalars->alpha, scalars->beta, &rows,
                dots);
+    flow_add_norms(call, &t->matrix, &rows, dots);
     write_rim(t, rows.q, duite_out(call, RIM, double));
     return 0;
 }
@@ -88,29 +89,48 @@ static struct solve_stop stop_of(const struct model *model)
 {
     return (struct solve_stop){.count = model->stop == MODEL_STOP_COUNT,
                                .relative = model->stop == MODEL_STOP_RELATIVE,
+                               .mass_norm = model->stop == MODEL_STOP_MASS_NORM,
                                .tolerance = model->tolerance,
                                .most = model->max_iterations};
 }
 
+static int not_converged(const duite_call *call, const struct solve_scalars *now)
+{
+    if (flow_of(call)->model->stop == MODEL_STOP_MASS_NORM)
+        return duite_fail(call, FLOW_NOT_CONVERGED,
+                          "step %.0f: conjugate gradients stopped at an error of %g of dv after "
+                          "%.0f iterations, %g was asked for; allow more iterations, a larger "
+                          "tolerance or a smaller h",
+                          now->step + 1, sqrt(solve_scalars_error(now, now->bound) / now->size),
+                          now->iterations, flow_of(call)->model->tolerance);
+    return duite_fail(call, FLOW_NOT_CONVERGED,
+                      "step %.0f: conjugate gradients stopped at a residual of %g after %.0f "
+                      "iterations, %g was asked for; allow more iterations, a larger tolerance "
+                      "or a smaller h",
+                      now->step + 1, sqrt(now->square), now->iterations, sqrt(now->wanted));
+}
+
 /* Of what is the same on every rank, the model too. */
-static int scalars(const duite_call *call)
+int flow_next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
+                      const struct solve_scalars *before, struct solve_scalars *after)
 {
     const struct solve_stop stop = stop_of(flow_of(call)->model);
-    struct solve_scalars *next = duite_out(call, 2, struct solve_scalars);
-    const int outcome = solve_scalars_next(&stop, duite_in(call, 0, double),
-                                           duite_in(call, 1, struct solve_scalars), next);
+    const int outcome = solve_scalars_next(&stop, dots, before, after);
+    if (outcome == SOLVE_NOT_CONVERGED)
+        return not_converged(call, after);
     if (outcome == SOLVE_BREAKDOWN)
         return duite_fail(call, FLOW_INDEFINITE,
                           "step %.0f: conjugate gradients broke down (p.Ap = %g, r.r = %g): the "
                           "matrix is not positive definite, or forces are beyond all measure",
-                          next->step + 1, next->curvature, next->square);
-    if (outcome == SOLVE_NOT_CONVERGED)
-        return duite_fail(call, FLOW_NOT_CONVERGED,
-                          "step %.0f: conjugate gradients stopped at a residual of %g after %.0f "
-                          "iterations, %g was asked for; allow more iterations, a larger tolerance "
-                          "or a smaller h",
-                          next->step + 1, sqrt(next->square), next->iterations, sqrt(next->wanted));
+                          after->step + 1, after->curvature, after->square);
     return 0;
+}
+
+static int scalars(const duite_call *call)
+{
+    return flow_next_scalars(call, duite_in(call, 0, double),
+                             duite_in(call, 1, struct solve_scalars),
+                             duite_out(call, 2, struct solve_scalars));
 }
 const duite_kernel flow_scalars = {
     .name = "cg_scalars", .body = scalars, .access = {DUITE_R, DUITE_R, DUITE_W}, .replicated = 1};

@@ -4,6 +4,8 @@
 
 #include "cloth/physics/particle.h"
 
+#include <math.h>
+
 #define ARGS sizeof(struct flow_args)
 
 /* Fails if a row diverged, naming it by the input's number. what: "position" or "velocity". */
@@ -123,21 +125,28 @@ static int velocity_dv(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     const phys_vec *dv = duite_in(call, 3, phys_vec);
-    phys_vec *v = duite_out(call, 4, phys_vec);
-    double *status = duite_out(call, 7, double);
+    phys_vec *v = duite_out(call, 5, phys_vec);
+    double *status = duite_out(call, 8, double);
     solve_lost(&t->matrix, &t->held, duite_in(call, 2, phys_vec), duite_in(call, 1, phys_vec), dv,
                status + FLOW_LOST);
-    if (flow_args_of(call)->block == 0)
-        status[FLOW_ITERATIONS] = duite_in(call, 6, struct solve_scalars)->iterations;
+    const struct solve_norms norms =
+        solve_norms(t->n, t->matrix.diagonal, dv, duite_in(call, 4, phys_vec));
+    status[FLOW_SIZE] = norms.size;
+    status[FLOW_RESIDUAL] = norms.bound;
+    if (flow_args_of(call)->block == 0) {
+        const struct solve_scalars *scalars = duite_in(call, 7, struct solve_scalars);
+        status[FLOW_ITERATIONS] = scalars->iterations;
+        status[FLOW_ERROR] = solve_scalars_error(scalars, INFINITY);
+    }
     phys_advance(t->n, 1, dv, v);
-    flow_write_rim(t, v, duite_out(call, 5, phys_vec));
+    flow_write_rim(t, v, duite_out(call, 6, phys_vec));
     return check(call, t, v, "velocity");
 }
 FLOW_TIMED(velocity_dv, FLOW_VELOCITY)
 const duite_kernel flow_velocity_dv = {
     .name = "velocity_implicit",
     .body = velocity_dv_timed,
-    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_R, DUITE_CW},
+    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_R, DUITE_CW},
     .args_size = ARGS};
 
 /* v += h a. */

@@ -59,12 +59,11 @@ static int ready(const duite_call *call)
 const duite_kernel flow_ready = {
     .name = "ready", .body = ready, .access = {DUITE_CW}, .args_size = sizeof(struct flow_args)};
 
-int flow_memory_take(struct flow_state *state)
+int flow_memory_agree(struct flow_state *state)
 {
     const struct flow_args args = {0};
     duite_object all;
     int32_t nothing;
-    take(state);
     int code = duite_new(state->rt, DUITE_I32, 1, &all);
     for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
         code = duite_fork_at(state->rt, rank, &flow_ready, &args, 1, &all);
@@ -74,9 +73,16 @@ int flow_memory_take(struct flow_state *state)
     return code ? code : freed;
 }
 
+int flow_memory_take(struct flow_state *state)
+{
+    take(state);
+    return flow_memory_agree(state);
+}
+
 void flow_memory_free(struct flow_state *state)
 {
     struct flow *flow = state->flow;
+    flow_turned_free(flow);
     free(flow->clock);
     free(flow->room);
     free(state->block);

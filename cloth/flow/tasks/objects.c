@@ -69,6 +69,7 @@ void flow_objects_make(struct flow_state *state)
         make_shared(state, DUITE_F64, SOLVE_SCALARS, state->scalars + i);
         make_shared(state, DUITE_F64, FLOW_STATUS, state->status + i);
     }
+    flow_turned_make(state);
     make_shared(state, DUITE_I64, 1, &state->token);
     make_shared(state, DUITE_F64, 1, &state->most);
     make_shared(state, DUITE_F64, FLOW_PARTS, &state->seconds);
@@ -95,15 +96,18 @@ int flow_objects_free(struct flow_state *state)
     }
     for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
         const struct flow_objects *o = state->block + b;
-        const duite_object all[] = {o->x,     o->v,        o->f,        o->a,       o->dv,
-                                    o->r,     o->p,        o->q,        o->copies,  o->rim_x,
-                                    o->rim_v, o->rim_q[0], o->rim_q[1], o->stretch, o->table};
+        const duite_object all[] = {
+            o->x,        o->v,      o->f,      o->a,     o->dv,       o->r,         o->p,
+            o->q,        o->copies, o->rim_x,  o->rim_v, o->rim_q[0], o->rim_q[1],  o->stretch,
+            o->z,        o->s,      o->factor, o->part,  o->basis,    o->rim_basis, o->basis_copies,
+            o->coupling, o->table};
         const int failed = release(state->rt, sizeof all / sizeof *all, all);
         code = code ? code : failed;
     }
     const duite_object all[] = {
-        state->sums[0],   state->sums[1], state->scalars[0], state->scalars[1], state->status[0],
-        state->status[1], state->token,   state->most,       state->seconds,    state->told};
+        state->sums[0],   state->sums[1],   state->scalars[0], state->scalars[1], state->status[0],
+        state->status[1], state->token,     state->most,       state->seconds,    state->told,
+        state->coarse,    state->motion[0], state->motion[1]};
     const int failed = release(state->rt, sizeof all / sizeof *all, all);
     return code ? code : failed;
 }

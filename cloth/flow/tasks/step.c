@@ -42,8 +42,9 @@ static int fork_all(struct flow_state *state, const duite_kernel *kernel, uint64
 
 int flow_initialise(struct flow_state *state)
 {
-    return fork_all(state, &flow_initial, 0, OBJECTS(AT(x), AT(v), AT(rim_x), AT(rim_v)), NOTHING,
-                    FLOW_NO_RIM, FLOW_NO_RIM);
+    const int code = fork_all(state, &flow_initial, 0, OBJECTS(AT(x), AT(v), AT(rim_x), AT(rim_v)),
+                              NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+    return code ? code : flow_turned_initialise(state);
 }
 
 static int step_explicit(struct flow_state *state, uint64_t step)
@@ -72,7 +73,7 @@ static int step_implicit(struct flow_state *state, uint64_t step)
         code = flow_cg(state, step);
     if (!code)
         code = fork_all(state, &flow_velocity_dv, step,
-                        OBJECTS(AT(f), AT(a), AT(dv), AT(v), AT(rim_v)), SCALARS_AND_STATUS,
+                        OBJECTS(AT(f), AT(a), AT(dv), AT(r), AT(v), AT(rim_v)), SCALARS_AND_STATUS,
                         FLOW_NO_RIM, FLOW_NO_RIM);
     if (!code)
         code = fork_all(state, &flow_position, step, OBJECTS(AT(v), AT(x), AT(rim_x)), STATUS,
@@ -128,6 +129,10 @@ int flow_step_status(struct flow_state *state, uint64_t step)
         report->cg_iterations_max = iterations;
     if (momentum > report->momentum_lost)
         report->momentum_lost = momentum;
+    const double error = sqrt(fmin(status[FLOW_ERROR], status[FLOW_RESIDUAL]) / status[FLOW_SIZE]);
+    if (status[FLOW_SIZE] > 0 && error > report->mass_norm_error)
+        report->mass_norm_error = error;
+    report->factors_shifted += (uint64_t)status[FLOW_SHIFTED];
     state->stopping = state->stopping || status[FLOW_STOP] > 0;
     tell_progress(state, step, iterations);
     return DUITE_OK;

@@ -4,8 +4,12 @@
 #include "cloth/flow/run.h"
 #include "cloth/flow/tables/source.h"
 #include "cloth/flow/tables/tables.h"
+#include "cloth/solve/coarse.h"
+#include "cloth/solve/local.h"
 
 #include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <xxhash.h>
 
 /* What the bodies of tasks share (struct flow, the runtime's context) and what the main program
@@ -55,7 +59,7 @@ struct flow {
     void *shared;              /* planes, slots and copies that the above point to */
 
     /* Rank 0 only. */
-    char warning[3][512];      /* of all vertices, pinned ones, loaded ones; empty: none */
+    char warning[4][512]; /* of all vertices, pinned ones, loaded ones, the solver; empty: none */
     struct flow_source source; /* until the tables are dealt */
     uint32_t *vertex;          /* by place; from then on */
     struct flow_rest rest;
@@ -66,9 +70,12 @@ struct flow {
     uint32_t *at; /* of each copy of all blocks: its place in what a pass reads of the neighbour */
     struct flow_far_rim *far_rim; /* of far.c */
     uint32_t *far_row;
-    struct cloth_error trouble; /* of this rank: why it cannot begin, why a frame was not written;
-                                 * changed by the main thread when no task runs, and by `frame` */
-    atomic_int stop;            /* set by the main thread, read by the task `status` */
+    enum model_preconditioner preconditioner;
+    struct solve_pattern pattern; /* of the coarse factor, if there is one */
+    uint32_t *first_slot;         /* then: n_blocks + 1, of each block's neighbours among all */
+    struct cloth_error trouble;   /* of this rank: why it cannot begin, why a frame was not written;
+                                   * changed by the main thread when no task runs, and by `frame` */
+    atomic_int stop;              /* set by the main thread, read by the task `status` */
     /* On rank 0: written by the tasks `frame`, one at a time, and by the main thread when no task
      * runs. */
     const struct flow_output *output;
@@ -84,13 +91,19 @@ struct flow_args {
     uint64_t frame;
 };
 
-/* Indices into the status of a step, F64 x 8, zero before the step and summed by its tasks. */
+/* Indices into the status of a step, F64, zero before the step and summed by its tasks. */
 enum {
     FLOW_LOST = 0, /* three: sum of b - A dv over free rows */
     FLOW_STOP = 3,
     FLOW_ITERATIONS,
-    FLOW_STATUS = 8
+    FLOW_ERROR,    /* square of the error of dv by the terms of the solve (cloth/solve/cg.h), */
+    FLOW_SIZE,     /* dv.D dv and */
+    FLOW_RESIDUAL, /* r.D^-1 r, D the masses */
+    FLOW_SHIFTED,  /* factors of blocks that were made with a shift or are of SSOR */
+    FLOW_STATUS
 };
+/* What a preconditioned pass leaves of its block: the dots, then the coarse right side. */
+enum { FLOW_PART_COARSE = SOLVE_DOTS, FLOW_PART = FLOW_PART_COARSE + SOLVE_COARSE };
 /* Indices into what rank 0 tells, I64 x 2. */
 enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
 
@@ -123,8 +136,25 @@ extern const duite_kernel flow_pass;   /* table, r scalars, r a, rw dv, rw r, rw
                                           rw   rim of q, cw sums; the other rims of q, or far ones */
 extern const duite_kernel flow_pack;   /* r rim of q, w far rim */
 extern const duite_kernel flow_scalars; /* r sums, r scalars, w next scalars */
+/* The same with a preconditioner (turned.c, kernels_turned.c); s takes the place of q. "coarse":
+ * only with a coarse part. */
+extern const duite_kernel flow_basis;        /* table, w basis, w rim of it */
+extern const duite_kernel flow_basis_copies; /* table, w basis of the copies; rims of basis */
+extern const duite_kernel flow_couple; /* table, r a, r basis, r that of the copies, w coupling */
+extern const duite_kernel flow_factor_coarse; /* w coarse factor; coupling of all blocks */
+extern const duite_kernel flow_factor;        /* table, r a, w factor, cw status */
+extern const duite_kernel flow_start_turned; /* table, r f, r factor, w dv, w r, w p, w q, w z, w s,
+                                                w copies, w rim of s, w part; coarse: basis */
+extern const duite_kernel flow_begin_coarse; /* w scalars, w motion, r coarse factor; all parts */
 extern const duite_kernel
-    flow_velocity_dv; /* table, r f, r a, r dv, rw v, w rim of v, r scalars, cw status */
+    flow_pass_turned; /* table, r scalars, r a, rw dv, rw r, rw p, rw q, rw z, rw s, rw copies, rw
+                         rim of s, rw part, r factor; the other rims of s, or far ones; coarse:
+                         basis, that of the copies, motion */
+extern const duite_kernel flow_scalars_turned; /* w next scalars, r scalars; all parts */
+extern const duite_kernel flow_scalars_coarse; /* w next scalars, w next motion, r scalars, r coarse
+                                                  factor; all parts */
+extern const duite_kernel
+    flow_velocity_dv; /* table, r f, r a, r dv, r r, rw v, w rim of v, r scalars, cw status */
 extern const duite_kernel flow_velocity_a;  /* table, r f, rw v, w rim of v, cw status */
 extern const duite_kernel flow_position;    /* table, r v, rw x, w rim of x, cw status */
 extern const duite_kernel flow_collide;     /* table, rw x, rw v, w rim of x, w rim of v */
@@ -141,6 +171,9 @@ extern const duite_kernel flow_system_save; /* rw token; parts of all blocks: on
  * image (cloth/flow/tables/tables.h), never written once it is dealt. */
 struct flow_objects {
     duite_object table, x, v, f, a, dv, r, p, q, copies, rim_x, rim_v, rim_q[2], stretch;
+    /* With a preconditioner; copies has z for r, rim_q s for q. */
+    duite_object z, s, factor, part;
+    duite_object basis, rim_basis, basis_copies, coupling; /* with a coarse part */
 };
 
 /* What passes read of their neighbours' rims of q (far.c). */
@@ -168,6 +201,7 @@ struct flow_state {
     struct flow_far far;
     duite_graph solve; /* a round of conjugate gradients */
     duite_object sums[2], scalars[2], status[2], token, most, seconds, told;
+    duite_object coarse, motion[2]; /* with a coarse part: its factor and its part of s */
     struct flow_head head;
     duite_object *parcel;  /* a block: what travels to rank 0 on its own; empty in between */
     duite_object *part;    /* a block: what it says of the system of a step */
@@ -210,14 +244,57 @@ uint32_t flow_hash_part(const struct flow *flow);
 /* All memory that a run needs besides its objects, and whether all ranks have it: if one has not,
  * all return FLOW_NO_MEMORY and none has begun. To be freed in either case. */
 int flow_memory_take(struct flow_state *state);
+int flow_memory_agree(struct flow_state *state); /* the same for what was taken since */
 void flow_memory_free(struct flow_state *state);
 /* A failure is returned by the next get. */
 void flow_objects_make(struct flow_state *state);
 int flow_objects_free(struct flow_state *state);
 
+/* What a run's preconditioner is made of. An explicit run has none. */
+static inline bool flow_is_turned(const struct flow *flow)
+{
+    return flow->preconditioner != MODEL_PLAIN;
+}
+static inline bool flow_is_coarse(const struct flow *flow)
+{
+    return flow->preconditioner == MODEL_COARSE || flow->preconditioner == MODEL_IC0_COARSE;
+}
+static inline enum solve_local flow_local(const struct flow *flow)
+{
+    return flow->preconditioner == MODEL_IC0 || flow->preconditioner == MODEL_IC0_COARSE
+               ? SOLVE_IC0
+               : SOLVE_JACOBI;
+}
+
+/* Numbers of a motion: a vector of the coarse space. */
+static inline size_t flow_motion_doubles(const struct flow *flow)
+{
+    return SOLVE_COARSE_STRIDE * (size_t)flow->pattern.n;
+}
+
+/* Decides on the preconditioner of a run: the model's, but no coarse part of more than
+ * SOLVE_MOST_BLOCKS blocks. Local. */
+void flow_turned_choose(struct flow *flow, uint32_t n_blocks);
+/* That once more on all ranks, and the pattern of the coarse factor, if there is one. */
+int flow_turned_prepare(struct flow_state *state);
+/* Local. */
+void flow_turned_free(struct flow *flow);
+/* Objects of a preconditioner. A failure is returned by the next get. */
+void flow_turned_make(struct flow_state *state);
+/* Forks of a preconditioned solve: once a run; in each step before the solve; pass `from` (0, 1) of
+ * a recorded round. */
+int flow_turned_initialise(struct flow_state *state);
+int flow_turned_start(struct flow_state *state, uint64_t step);
+int flow_turned_pass(struct flow_state *state, int from);
+
+/* In a body: what solve_scalars_next makes of these dots under the model's stop, or its failure. */
+int flow_next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
+                      const struct solve_scalars *before, struct solve_scalars *after);
+
 /* Forks `kernel` on one block: first its table, then the objects given, then the neighbours'
  * objects at `offset` in struct flow_objects (and at `offset2`); FLOW_NO_RIM: none. */
 enum { FLOW_NO_RIM = -1 };
+#define FLOW_RIM(name) (long)offsetof(struct flow_objects, name)
 int flow_fork(struct flow_state *state, const duite_kernel *kernel, const struct flow_args *args,
               size_t n, const duite_object *objects, long offset, long offset2);
 

@@ -150,11 +150,26 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
     return CLOTH_OK;
 }
 
+static enum model_preconditioner preconditioner_of(const char *word)
+{
+    static const char *const words[] = {[MODEL_PLAIN] = "none",
+                                        [MODEL_JACOBI] = "jacobi",
+                                        [MODEL_IC0] = "ic0",
+                                        [MODEL_COARSE] = "coarse",
+                                        [MODEL_IC0_COARSE] = "ic0_coarse"};
+    int found = MODEL_PLAIN;
+    for (int i = 0; i < (int)(sizeof words / sizeof *words); i++)
+        if (!strcmp(words[i], word))
+            found = i;
+    return (enum model_preconditioner)found;
+}
+
 static void build_solver(struct model *model, const struct scene_tree *tree)
 {
     int solver = scene_tree_get(tree, 1, "solver"), stop = scene_tree_get(tree, solver, "stop");
     bool explicit = !strcmp(scene_tree_text(tree, 1, "integrator"), "explicit_euler");
     model->integrator = explicit ? MODEL_EXPLICIT_EULER : MODEL_IMPLICIT_EULER;
+    model->preconditioner = preconditioner_of(scene_tree_text(tree, solver, "preconditioner"));
     model->max_iterations = scene_tree_integer(tree, solver, "max_iterations");
     if (scene_tree_get(tree, stop, "count")) {
         model->stop = MODEL_STOP_COUNT;
@@ -162,6 +177,9 @@ static void build_solver(struct model *model, const struct scene_tree *tree)
     } else if (scene_tree_get(tree, stop, "absolute")) {
         model->stop = MODEL_STOP_ABSOLUTE;
         model->tolerance = scene_tree_number(tree, stop, "absolute");
+    } else if (scene_tree_get(tree, stop, "mass_norm")) {
+        model->stop = MODEL_STOP_MASS_NORM;
+        model->tolerance = scene_tree_number(tree, stop, "mass_norm");
     } else {
         model->stop = MODEL_STOP_RELATIVE;
         model->tolerance = scene_tree_number(tree, stop, "relative");

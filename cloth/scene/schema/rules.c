@@ -128,11 +128,16 @@ static const struct scene_rule time_keys[] = {
 static const struct scene_rule stop_kinds[] = {
     {"relative", SCENE_NUMBER, .range = SCENE_FRACTION, .about = "residual against the right side"},
     {"absolute", SCENE_NUMBER, "kg m/s", .range = SCENE_POSITIVE, .about = "residual"},
+    {"mass_norm", SCENE_NUMBER, .range = SCENE_FRACTION,
+     .about = "error of the change of velocity against it, by mass"},
     {"count", SCENE_INTEGER, .least = 1, .about = "so many iterations, no test"},
     {0}};
+static const char *const preconditioners[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse", NULL};
 static const struct scene_rule solver_keys[] = {
-    {"stop", SCENE_ONE_OF, .fallback = "{relative: 0.001}", .inside = stop_kinds,
+    {"stop", SCENE_ONE_OF, .fallback = "{mass_norm: 0.01}", .inside = stop_kinds,
      .about = "when conjugate gradients end"},
+    {"preconditioner", SCENE_CHOICE, .fallback = "ic0_coarse", .words = preconditioners,
+     .about = "of conjugate gradients"},
     {"max_iterations", SCENE_INTEGER, .fallback = "10000", .least = 1,
      .about = "a solve that needs more fails"},
     {0}};

@@ -13,6 +13,10 @@ tests_cloth_flow_test_motion_SOURCES = tests/cloth/flow/test_motion.c $(FLOW_TES
 tests_cloth_flow_test_motion_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_run_SOURCES = tests/cloth/flow/test_run.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_run_LDADD = $(CLOTH_TEST_LIBS)
+check_PROGRAMS += tests/cloth/flow/test_solvers
+tests_cloth_flow_test_solvers_SOURCES = tests/cloth/flow/test_solvers.c $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_solvers_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/flow/test_solvers
 TESTS += tests/cloth/flow/test_failures tests/cloth/flow/test_motion tests/cloth/flow/test_run
 endif
 dist_check_SCRIPTS += tests/cloth/flow/test_ranks.sh

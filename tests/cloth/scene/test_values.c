@@ -3,6 +3,7 @@
 #include "tests/support/unit.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,8 +54,9 @@ START_TEST(world_and_time)
     ck_assert_double_eq(model.end, 0.1);
     ck_assert_double_eq(model.fps, 25);
     ck_assert_int_eq(model.integrator, MODEL_IMPLICIT_EULER);
-    ck_assert_int_eq(model.stop, MODEL_STOP_RELATIVE);
-    ck_assert_double_eq(model.tolerance, 0.001);
+    ck_assert_int_eq(model.stop, MODEL_STOP_MASS_NORM);
+    ck_assert_double_eq(model.tolerance, 0.01);
+    ck_assert_int_eq(model.preconditioner, MODEL_IC0_COARSE);
     ck_assert_uint_eq(model.max_iterations, 10000);
     ck_assert_uint_eq(model.grain, 1000);
     ck_assert_uint_eq(model.n_planes, 1);
@@ -200,6 +202,18 @@ START_TEST(sets_change_values)
     model_free(&model);
     model = read_set("obstacles[0].plane={point: [0, 0, 0], normal: [1, 0, 0]}");
     same_vector(model.planes[0].normal, 1, 0, 0);
+    model_free(&model);
+    static const char *const kinds[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse"};
+    for (int i = 0; i < 5; i++) {
+        char set[64];
+        snprintf(set, sizeof set, "solver.preconditioner=%s", kinds[i]);
+        model = read_set(set);
+        ck_assert_int_eq(model.preconditioner, (enum model_preconditioner)i);
+        model_free(&model);
+    }
+    model = read_set("solver.stop={relative: 0.25}");
+    ck_assert_int_eq(model.stop, MODEL_STOP_RELATIVE);
+    ck_assert_double_eq(model.tolerance, 0.25);
     model_free(&model);
     model = read_set("solver.stop={count: 10}");
     ck_assert_int_eq(model.stop, MODEL_STOP_COUNT);

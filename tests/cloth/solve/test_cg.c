@@ -83,6 +83,7 @@ static int pass(struct run *run, const struct solve_stop *stop, double sign)
     const struct solve_scalars now = run->scalars;
     double dots[SOLVE_DOTS] = {0};
     dots[SOLVE_RR] = solve_finish(N, now.alpha, run->q, run->p, run->dv, run->r);
+    dots[SOLVE_RZ] = dots[SOLVE_RR];
     for (int i = 0; i < N; i++) {
         run->p[i] = run->r[i] + now.beta * run->p[i];
         run->q[i] = sign * entry(i) * run->p[i];

@@ -107,6 +107,7 @@ static void expect(struct whole *w, double alpha, double beta, double dots[SOLVE
             dots[SOLVE_RQ] += w->r[a][c] * q;
             dots[SOLVE_QQ] += q * q;
         }
+    dots[SOLVE_RZ] = dots[SOLVE_RR];
 }
 
 static void compare(const char *what, const phys_vec *got, const phys_vec *wanted, size_t n)
@@ -121,7 +122,7 @@ static void compare(const char *what, const phys_vec *got, const phys_vec *wante
 static void check(size_t n, uint32_t far, int rim)
 {
     static struct whole wanted;
-    double dots[SOLVE_DOTS], right[SOLVE_DOTS];
+    double dots[SOLVE_DOTS] = {0}, right[SOLVE_DOTS];
     make(&whole, n, far, rim);
     wanted = whole;
     expect(&wanted, 0.3, 0.7, right);

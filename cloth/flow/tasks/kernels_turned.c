@@ -1,0 +1,318 @@
+/* Conjugate gradients with a preconditioner (cloth/solve/cg.h, local.h, coarse.h), a body a block
+ * and pass. It is like the plain one with z in place of r and s in place of q: neighbours read the
+ * rim of s. What a pass sums it leaves in its block's part, with the coarse right side P' q behind
+ * it; the task of the scalars adds up parts in the order of blocks and solves the coarse system, so
+ * that a pass finds P's part of s in `motion` and adds it to its own rows and to its copies alike.
+ */
+#include "cloth/flow/tasks/bodies.h"
+
+#include "cloth/solve/local.h"
+
+#include <string.h>
+
+#define ARGS sizeof(struct flow_args)
+
+static bool is_coarse(const duite_call *call)
+{
+    return flow_is_coarse(flow_of(call));
+}
+
+static enum solve_local local_of(const duite_call *call)
+{
+    return flow_local(flow_of(call));
+}
+
+static struct solve_cut cut_of(const struct flow_table *t)
+{
+    return (struct solve_cut){t->n_cut, t->copy_end, t->n_rim, t->rim};
+}
+
+/* ---- What does not change during a run ---- */
+
+static int basis(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    phys_vec *rows = duite_out(call, 1, phys_vec);
+    solve_basis(t->n, t->free, t->position, rows);
+    flow_write_rim(t, rows, duite_out(call, 2, phys_vec));
+    return 0;
+}
+const duite_kernel flow_basis = {
+    .name = "basis", .body = basis, .access = {DUITE_R, DUITE_W, DUITE_W}, .args_size = ARGS};
+
+static int basis_copies(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    phys_vec *copy = duite_out(call, 1, phys_vec);
+    copy[0] = (phys_vec){0};
+    for (uint32_t s = 0; s < t->n_slots; s++) {
+        const phys_vec *rim = duite_in(call, 2 + s, phys_vec);
+        for (uint32_t i = t->copies[s]; i < t->copies[s + 1]; i++)
+            copy[i] = rim[t->copy[i]];
+    }
+    return 0;
+}
+const duite_kernel flow_basis_copies = {.name = "basis_copies",
+                                        .body = basis_copies,
+                                        .access = {DUITE_R, DUITE_W},
+                                        .rest = DUITE_R,
+                                        .args_size = ARGS};
+
+/* ---- Of each step's matrix ---- */
+
+static int couple(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *value = duite_in(call, 1, phys_vec), *rows = duite_in(call, 2, phys_vec);
+    const phys_vec *copies = duite_in(call, 3, phys_vec);
+    double *own = duite_out(call, 4, double), *later = own + SOLVE_COUPLING;
+    double earlier[SOLVE_COUPLING];
+    solve_couple(&t->matrix, value, rows, own);
+    for (uint32_t s = 0; s < t->n_slots; s++) {
+        const uint32_t from = t->cut[s];
+        const bool is_later = t->slot[s] > flow_args_of(call)->block;
+        solve_couple_cut(t->cut[s + 1] - from, t->copy_end + from, value + t->n_inner + from, rows,
+                         copies, own, is_later ? later : earlier);
+        later += is_later ? SOLVE_COUPLING : 0;
+    }
+    return 0;
+}
+FLOW_TIMED(couple, FLOW_CG)
+const duite_kernel flow_couple = {.name = "couple",
+                                  .body = couple_timed,
+                                  .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_W},
+                                  .args_size = ARGS};
+
+static int factor_coarse(const duite_call *call)
+{
+    const struct flow *flow = flow_of(call);
+    double *factor = duite_out(call, 0, double);
+    solve_coarse_clear(&flow->pattern, factor);
+    for (uint32_t b = 0; b < flow->pattern.n; b++)
+        solve_coarse_fill(&flow->pattern, flow->first_slot, flow->tables.slot, b,
+                          duite_in(call, 1 + b, double), factor);
+    solve_coarse_factor(&flow->pattern, factor);
+    return 0;
+}
+FLOW_TIMED_PLAIN(factor_coarse, FLOW_CG)
+const duite_kernel flow_factor_coarse = {.name = "factor_coarse",
+                                         .body = factor_coarse_timed,
+                                         .access = {DUITE_W},
+                                         .rest = DUITE_R,
+                                         .args_size = ARGS,
+                                         .replicated = 1};
+
+static int factor(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const struct solve_cut cut = cut_of(t);
+    const int tried = solve_local_factor(&t->matrix, &cut, duite_in(call, 1, phys_vec),
+                                         local_of(call), duite_out(call, 2, double));
+    duite_out(call, 3, double)[FLOW_SHIFTED] = tried > 0;
+    return 0;
+}
+FLOW_TIMED(factor, FLOW_CG)
+const duite_kernel flow_factor = {.name = "factor",
+                                  .body = factor_timed,
+                                  .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_CW},
+                                  .args_size = ARGS};
+
+/* ---- The solve ---- */
+
+/* Three numbers a row; one, which nobody reads, if there are no rows. */
+static void write_rim(const struct flow_table *t, const phys_vec *s, double *rim)
+{
+    solve_pack(t->n_rim, t->rim, s, rim);
+    if (!t->n_rim)
+        rim[0] = 0;
+}
+
+/* s = M^-1 q but for the coarse part, of which the part has the right side. */
+static void turn(const duite_call *call, const struct flow_table *t, const double *factor,
+                 const phys_vec *rows, const phys_vec *q, phys_vec *s, double *part)
+{
+    part[SOLVE_QQ] = solve_local_apply(&t->matrix, local_of(call), factor, q, s);
+    if (rows)
+        solve_restrict(t->n, rows, q, part + FLOW_PART_COARSE);
+}
+
+static int start(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    phys_vec *q = duite_out(call, 6, phys_vec), *z = duite_out(call, 7, phys_vec);
+    phys_vec *s = duite_out(call, 8, phys_vec);
+    double *part = duite_out(call, 11, double);
+    solve_start(t->n, t->free, duite_in(call, 1, phys_vec), duite_out(call, 3, phys_vec),
+                duite_out(call, 4, phys_vec), duite_out(call, 5, phys_vec), q);
+    memset(z, 0, t->n * sizeof *z);
+    memset(duite_out(call, 9, phys_vec), 0, duite_count(call, 9) * sizeof(double));
+    memset(part, 0, FLOW_PART * sizeof *part);
+    turn(call, t, duite_in(call, 2, double), is_coarse(call) ? duite_in(call, 12, phys_vec) : NULL,
+         q, s, part);
+    write_rim(t, s, duite_out(call, 10, double));
+    return 0;
+}
+FLOW_TIMED(start, FLOW_CG)
+const duite_kernel flow_start_turned = {.name = "cg_start_turned",
+                                        .body = start_timed,
+                                        .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W, DUITE_W,
+                                                   DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W,
+                                                   DUITE_W, DUITE_W},
+                                        .rest = DUITE_R,
+                                        .args_size = ARGS};
+
+/* Parameters of a pass; behind the neighbours, with a coarse part, basis, that of the copies, and
+ * motion. */
+enum { SCALARS = 1, A, DV, R, P, Q, Z, S, COPIES, RIM, PART, FACTOR, NEIGHBOURS };
+enum { BASIS, BASIS_COPIES, MOTION };
+
+static const void *coarse_in(const duite_call *call, const struct flow_table *t, uint32_t which)
+{
+    return duite_in(call, NEIGHBOURS + t->n_slots + which, double);
+}
+
+static void advance_copies(const duite_call *call, const struct flow_table *t,
+                           const struct solve_scalars *scalars)
+{
+    const struct flow *flow = flow_of(call);
+    const double alpha = scalars->alpha, beta = scalars->beta;
+    phys_vec *z = duite_out(call, COPIES, phys_vec), *p = z + t->n_copies;
+    const uint32_t *at = flow->at + (t->copy - flow->tables.copy);
+    for (uint32_t s = 0; s < t->n_slots; s++) {
+        const uint32_t from = t->copies[s], n = t->copies[s + 1] - from;
+        const double *rim = duite_in(call, NEIGHBOURS + s, double);
+        if (!is_coarse(call)) {
+            solve_advance_copies(n, alpha, beta, rim, at + from, z + from, p + from);
+            continue;
+        }
+        const phys_vec *rows = coarse_in(call, t, BASIS_COPIES);
+        const double *motion = coarse_in(call, t, MOTION);
+        solve_advance_copies_coarse(n, alpha, beta, rim, at + from, rows + from,
+                                    motion + solve_coarse_at(&flow->pattern, t->slot[s]), z + from,
+                                    p + from);
+    }
+}
+
+static void advance(const duite_call *call, const struct flow_table *t,
+                    const struct solve_scalars *scalars, const struct solve_rows *rows)
+{
+    const struct flow *flow = flow_of(call);
+    const struct solve_cut cut = cut_of(t);
+    const phys_vec *span = is_coarse(call) ? coarse_in(call, t, BASIS) : NULL;
+    phys_vec *s = duite_out(call, S, phys_vec);
+    double *part = duite_out(call, PART, double);
+    const struct solve_turned turned = {duite_out(call, Z, phys_vec), s};
+    if (span)
+        solve_prolong(t->n, span,
+                      (const double *)coarse_in(call, t, MOTION) +
+                          solve_coarse_at(&flow->pattern, flow_args_of(call)->block),
+                      s);
+    advance_copies(call, t, scalars);
+    solve_pass_turned(&t->matrix, &cut, duite_in(call, A, phys_vec),
+                      duite_in(call, COPIES, phys_vec) + t->n_copies, scalars->alpha, scalars->beta,
+                      rows, &turned, part);
+    turn(call, t, duite_in(call, FACTOR, double), span, rows->q, s, part);
+    flow_add_norms(call, &t->matrix, rows, part);
+    write_rim(t, s, duite_out(call, RIM, double));
+}
+
+static int pass(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const struct solve_scalars *scalars = duite_in(call, SCALARS, struct solve_scalars);
+    const struct solve_rows rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
+                                    duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)};
+    if (scalars->phase == SOLVE_LAST)
+        duite_out(call, PART, double)[SOLVE_RR] =
+            solve_finish(t->n, scalars->alpha, rows.q, rows.p, rows.dv, rows.r);
+    if (scalars->phase == SOLVE_ON)
+        advance(call, t, scalars, &rows);
+    return 0;
+}
+FLOW_TIMED(pass, FLOW_CG)
+const duite_kernel flow_pass_turned = {.name = "cg_pass_turned",
+                                       .body = pass_timed,
+                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW,
+                                                  DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW,
+                                                  DUITE_RW, DUITE_RW, DUITE_R},
+                                       .rest = DUITE_R,
+                                       .args_size = ARGS};
+
+/* ---- Scalars, on every rank ---- */
+
+/* Solves for the coarse part of s, of the parts that begin at parameter `from`. Returns its share
+ * in q.s, of a q that these right sides are of. */
+static double solve_motion(const duite_call *call, const double *factor, size_t from,
+                           double *motion)
+{
+    const struct flow *flow = flow_of(call);
+    double sum = 0;
+    memset(motion, 0, flow_motion_doubles(flow) * sizeof *motion);
+    for (uint32_t b = 0; b < flow->pattern.n; b++)
+        memcpy(motion + solve_coarse_at(&flow->pattern, b),
+               duite_in(call, from + b, double) + FLOW_PART_COARSE, SOLVE_COARSE * sizeof *motion);
+    solve_coarse_solve(&flow->pattern, factor, motion);
+    for (uint32_t b = 0; b < flow->pattern.n; b++) {
+        const double *right = duite_in(call, from + b, double) + FLOW_PART_COARSE;
+        const double *x = motion + solve_coarse_at(&flow->pattern, b);
+        for (int i = 0; i < SOLVE_COARSE; i++)
+            sum += right[i] * x[i];
+    }
+    return sum;
+}
+
+static void sum_parts(const duite_call *call, size_t from, double dots[SOLVE_DOTS])
+{
+    for (uint32_t b = 0; b < flow_of(call)->tables.n_blocks; b++) {
+        const double *part = duite_in(call, from + b, double);
+        for (int i = 0; i < SOLVE_DOTS; i++)
+            dots[i] += part[i];
+    }
+}
+
+static int scalars_turned(const duite_call *call)
+{
+    double dots[SOLVE_DOTS] = {0};
+    sum_parts(call, 2, dots);
+    return flow_next_scalars(call, dots, duite_in(call, 1, struct solve_scalars),
+                             duite_out(call, 0, struct solve_scalars));
+}
+const duite_kernel flow_scalars_turned = {.name = "cg_scalars_turned",
+                                          .body = scalars_turned,
+                                          .access = {DUITE_W, DUITE_R},
+                                          .rest = DUITE_R,
+                                          .args_size = ARGS,
+                                          .replicated = 1};
+
+static int scalars_coarse(const duite_call *call)
+{
+    const struct solve_scalars *before = duite_in(call, 2, struct solve_scalars);
+    double dots[SOLVE_DOTS] = {0}, *motion = duite_out(call, 1, double);
+    sum_parts(call, 4, dots);
+    if (before->phase == SOLVE_ON)
+        dots[SOLVE_QQ] += solve_motion(call, duite_in(call, 3, double), 4, motion);
+    else
+        memset(motion, 0, flow_motion_doubles(flow_of(call)) * sizeof *motion);
+    return flow_next_scalars(call, dots, before, duite_out(call, 0, struct solve_scalars));
+}
+FLOW_TIMED_PLAIN(scalars_coarse, FLOW_CG)
+const duite_kernel flow_scalars_coarse = {.name = "cg_scalars_coarse",
+                                          .body = scalars_coarse_timed,
+                                          .access = {DUITE_W, DUITE_W, DUITE_R, DUITE_R},
+                                          .rest = DUITE_R,
+                                          .args_size = ARGS,
+                                          .replicated = 1};
+
+static int begin_coarse(const duite_call *call)
+{
+    *duite_out(call, 0, struct solve_scalars) = solve_scalars_start(flow_args_of(call)->step);
+    solve_motion(call, duite_in(call, 2, double), 3, duite_out(call, 1, double));
+    return 0;
+}
+FLOW_TIMED_PLAIN(begin_coarse, FLOW_CG)
+const duite_kernel flow_begin_coarse = {.name = "cg_begin_coarse",
+                                        .body = begin_coarse_timed,
+                                        .access = {DUITE_W, DUITE_W, DUITE_R},
+                                        .rest = DUITE_R,
+                                        .args_size = ARGS,
+                                        .replicated = 1};

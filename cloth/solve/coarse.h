@@ -1,0 +1,83 @@
+#ifndef CLOTH_SOLVE_COARSE_H
+#define CLOTH_SOLVE_COARSE_H
+
+#include "cloth/base/error.h"
+#include "cloth/solve/block.h"
+
+/* The coarse part of a two-level preconditioner, P C^-1 P' (Nicolaides 1987): P has nine columns a
+ * block, a uniform motion and motions that grow along u and v, two axes of the block as it was at
+ * rest; zero in held rows, so that P' is of the filtered system and so is C = P' A P. What a block
+ * adds to C are its diagonal 9 x 9 block and one for each later neighbour. C is kept in 9 x 9
+ * blocks on its sparse pattern, factorised in an order of least degree. Columns that add nothing (a
+ * block that is held, two vertices, vertices on a line) are dropped, so that the sum with another
+ * preconditioner stays positive definite. Pure functions but for solve_pattern. */
+enum { SOLVE_COARSE = 9, SOLVE_COUPLING = SOLVE_COARSE * SOLVE_COARSE };
+
+/* Row a of P: 1 u v 0 for each of x, y and z; zero where the row is held. */
+void solve_basis(size_t n, const double *free, const phys_vec *position, phys_vec *basis);
+
+/* The diagonal block that inner springs and the diagonal make, row by row, own[3 k + c][3 l + d]:
+ * function k along axis c. */
+void solve_couple(const struct solve_block *block, const phys_vec *value, const phys_vec *basis,
+                  double own[SOLVE_COUPLING]);
+
+/* Adds springs into one other block to `own`, and sets beside, this block's rows by the other's
+ * columns. end: own row, row in other_basis. */
+void solve_couple_cut(size_t n, const uint32_t (*end)[2], const phys_vec *value,
+                      const phys_vec *basis, const phys_vec *other_basis,
+                      double own[SOLVE_COUPLING], double beside[SOLVE_COUPLING]);
+
+/* P' y of a block; y += P x of a block. */
+void solve_restrict(size_t n, const phys_vec *basis, const phys_vec *y, double x[SOLVE_COARSE]);
+void solve_prolong(size_t n, const phys_vec *basis, const double x[SOLVE_COARSE], phys_vec *y);
+
+/* solve_advance_copies (cloth/solve/cg.h) for s that lacks P x still: of copies of rows of one
+ * other block, whose x is given, to the bits that solve_prolong leaves there. */
+void solve_advance_copies_coarse(size_t n, double alpha, double beta, const double *s,
+                                 const uint32_t *at, const phys_vec *basis,
+                                 const double x[SOLVE_COARSE], phys_vec *z, phys_vec *p);
+
+/* The pattern of the factor. Memory is its own. */
+struct solve_pattern {
+    uint32_t n;
+    uint32_t *block; /* n: in the order of elimination */
+    uint32_t *place; /* n: of each block in that order */
+    uint32_t *first; /* n + 1: the entries of column k are first[k] .., its diagonal block not among
+                      * them */
+    uint32_t *row;   /* places, ascending in a column */
+};
+
+/* Blocks that more would make are too many for one factor. */
+enum { SOLVE_MOST_BLOCKS = 4096 };
+
+/* From the neighbours of each block: those of block b are slot[first[b]] .. slot[first[b + 1] - 1].
+ * At most SOLVE_MOST_BLOCKS. Error: CLOTH_E_MEMORY. Local. */
+int solve_pattern_make(struct solve_pattern *pattern, uint32_t n, const uint32_t *first,
+                       const uint32_t *slot, struct cloth_error *error);
+void solve_pattern_free(struct solve_pattern *pattern);
+
+/* Doubles of a factor, aligned to 32 bytes. */
+size_t solve_coarse_doubles(const struct solve_pattern *pattern);
+
+/* Puts into the factor what block b adds: its diagonal block, then those beside it, one for each
+ * neighbour with a higher number, ascending (first and slot as above). The factor is cleared once
+ * before all blocks. */
+void solve_coarse_clear(const struct solve_pattern *pattern, double *factor);
+void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *first,
+                       const uint32_t *slot, uint32_t b, const double *coupling, double *factor);
+
+/* Factorises what was filled in. Returns how many columns were dropped. */
+uint32_t solve_coarse_factor(const struct solve_pattern *pattern, double *factor);
+
+/* A vector of the coarse space, aligned to 32 bytes: SOLVE_COARSE_STRIDE doubles a block, nine of
+ * them its own and three zero, in the order of elimination. */
+enum { SOLVE_COARSE_STRIDE = 12 };
+static inline size_t solve_coarse_at(const struct solve_pattern *pattern, uint32_t b)
+{
+    return SOLVE_COARSE_STRIDE * (size_t)pattern->place[b];
+}
+
+/* x = C^-1 x. */
+void solve_coarse_solve(const struct solve_pattern *pattern, const double *factor, double *x);
+
+#endif

@@ -1,0 +1,218 @@
+/* What one block adds to the coarse matrix. A spring of K = alpha I + w w' between a and b adds
+ * (phi_a - phi_b)(phi_a - phi_b)' times K, phi the rows of P; the sums go over symmetric 3 x 3
+ * blocks, six for one block, nine for two. */
+#include "cloth/solve/coarse.h"
+#include "cloth/solve/matrix3.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- The basis ---- */
+
+/* One turn of Jacobi's method for eigenvalues: makes entry (i, j) of the symmetric m zero. */
+static void turn(double m[3][3], double axes[3][3], int i, int j)
+{
+    if (fabs(m[i][j]) <= 1e-300)
+        return;
+    const double theta = (m[j][j] - m[i][i]) / (2 * m[i][j]);
+    const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+    const double c = 1 / sqrt(t * t + 1), s = t * c;
+    for (int k = 0; k < 3; k++) {
+        const double a = m[k][i], b = m[k][j];
+        m[k][i] = c * a - s * b;
+        m[k][j] = s * a + c * b;
+    }
+    for (int k = 0; k < 3; k++) {
+        const double a = m[i][k], b = m[j][k];
+        m[i][k] = c * a - s * b;
+        m[j][k] = s * a + c * b;
+    }
+    for (int k = 0; k < 3; k++) {
+        const double a = axes[i][k], b = axes[j][k];
+        axes[i][k] = c * a - s * b;
+        axes[j][k] = s * a + c * b;
+    }
+}
+
+/* The two axes of a cloud of points in which it is largest, each divided by its extent; zero if
+ * there is none. */
+static void axes_of(size_t n, const phys_vec *position, const phys_vec *centre, phys_vec axis[2])
+{
+    double m[3][3] = {{0}}, axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (size_t a = 0; a < n; a++) {
+        const phys_vec d = position[a] - *centre;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                m[i][j] += d[i] * d[j] / (double)n;
+    }
+    for (int sweep = 0; sweep < 12; sweep++) {
+        turn(m, axes, 0, 1);
+        turn(m, axes, 0, 2);
+        turn(m, axes, 1, 2);
+    }
+    int order[3] = {0, 1, 2};
+    for (int i = 0; i < 2; i++)
+        for (int j = i + 1; j < 3; j++)
+            if (m[order[j]][order[j]] > m[order[i]][order[i]]) {
+                const int other = order[i];
+                order[i] = order[j];
+                order[j] = other;
+            }
+    const double largest = m[order[0]][order[0]];
+    for (int i = 0; i < 2; i++) {
+        const double *e = axes[order[i]], square = m[order[i]][order[i]];
+        const double scale = square > 1e-12 * largest ? 1 / sqrt(square) : 0;
+        axis[i] = (phys_vec){scale * e[0], scale * e[1], scale * e[2], 0};
+    }
+}
+
+void solve_basis(size_t n, const double *free, const phys_vec *position, phys_vec *basis)
+{
+    phys_vec centre = {0}, axis[2];
+    for (size_t a = 0; a < n; a++)
+        centre += position[a] / (double)n;
+    axes_of(n, position, &centre, axis);
+    for (size_t a = 0; a < n; a++) {
+        const phys_vec d = position[a] - centre;
+        basis[a] = free[a] * (phys_vec){1, phys_dot(&d, axis), phys_dot(&d, axis + 1), 0};
+    }
+}
+
+/* ---- The matrix ---- */
+
+/* to += factor m. */
+PHYS_INLINE void add(struct solve_symmetric *to, double factor, const struct solve_symmetric *m)
+{
+    to->diagonal += factor * m->diagonal;
+    to->beside += factor * m->beside;
+}
+
+/* Adds phi phi' times m: of functions 00 01 02 11 12 22. */
+PHYS_INLINE void add_square(struct solve_symmetric sum[6], const phys_vec *phi,
+                            const struct solve_symmetric *m)
+{
+    const double one = (*phi)[0], u = (*phi)[1], v = (*phi)[2];
+    add(sum + 0, one * one, m);
+    add(sum + 1, one * u, m);
+    add(sum + 2, one * v, m);
+    add(sum + 3, u * u, m);
+    add(sum + 4, u * v, m);
+    add(sum + 5, v * v, m);
+}
+
+/* Adds `sign` times a 3 x 3 block to that of functions k and l. */
+static void put(const struct solve_symmetric *m, double sign, int k, int l, double *matrix)
+{
+    static const int pair[3][3] = {{0, 0, 2}, {0, 0, 1}, {2, 1, 0}};
+    for (int c = 0; c < 3; c++)
+        for (int d = 0; d < 3; d++)
+            matrix[SOLVE_COARSE * (3 * k + c) + 3 * l + d] +=
+                sign * (c == d ? m->diagonal[c] : m->beside[pair[c][d]]);
+}
+
+static void put_squares(const struct solve_symmetric sum[6], double *matrix)
+{
+    int i = 0;
+    for (int k = 0; k < 3; k++)
+        for (int l = k; l < 3; l++, i++) {
+            put(sum + i, 1, k, l, matrix);
+            if (l > k)
+                put(sum + i, 1, l, k, matrix);
+        }
+}
+
+PHYS_CLONES
+void solve_couple(const struct solve_block *block, const phys_vec *value, const phys_vec *basis,
+                  double own[SOLVE_COUPLING])
+{
+    const phys_vec three = {1, 1, 1, 0};
+    struct solve_symmetric sum[6] = {{{0}, {0}}};
+    for (size_t a = 0; a < block->n; a++) {
+        const double d = block->diagonal[a];
+        struct solve_symmetric mass = {{0}, {0}};
+        mass.diagonal += d * three;
+        add_square(sum, basis + a, &mass);
+        for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
+            const phys_vec phi = basis[a] - basis[block->column[i]];
+            struct solve_symmetric m = {{0}, {0}};
+            solve_spring(value + i, &m);
+            add_square(sum, &phi, &m);
+        }
+    }
+    memset(own, 0, SOLVE_COUPLING * sizeof *own);
+    put_squares(sum, own);
+}
+
+PHYS_CLONES
+void solve_couple_cut(size_t n, const uint32_t (*end)[2], const phys_vec *value,
+                      const phys_vec *basis, const phys_vec *other_basis,
+                      double own[SOLVE_COUPLING], double beside[SOLVE_COUPLING])
+{
+    struct solve_symmetric square[6] = {{{0}, {0}}}, sum[9] = {{{0}, {0}}};
+    for (size_t i = 0; i < n; i++) {
+        const phys_vec phi = basis[end[i][0]], other = other_basis[end[i][1]];
+        struct solve_symmetric m = {{0}, {0}};
+        solve_spring(value + i, &m);
+        add_square(square, &phi, &m);
+        for (int k = 0; k < 3; k++)
+            for (int l = 0; l < 3; l++)
+                add(sum + 3 * k + l, phi[k] * other[l], &m);
+    }
+    put_squares(square, own);
+    memset(beside, 0, SOLVE_COUPLING * sizeof *beside);
+    for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++)
+            put(sum + 3 * k + l, -1, k, l, beside);
+}
+
+/* ---- Between the levels ---- */
+
+PHYS_CLONES
+void solve_restrict(size_t n, const phys_vec *basis, const phys_vec *y, double x[SOLVE_COARSE])
+{
+    phys_vec sum[3] = {{0}};
+    for (size_t a = 0; a < n; a++) {
+        sum[0] += basis[a][0] * y[a];
+        sum[1] += basis[a][1] * y[a];
+        sum[2] += basis[a][2] * y[a];
+    }
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+            x[3 * k + c] = sum[k][c];
+}
+
+/* y += P x of one row, wherever a row or its copy is. */
+PHYS_INLINE void lift(const phys_vec *basis, const phys_vec x[3], phys_vec *y)
+{
+    *y += (*basis)[0] * x[0] + (*basis)[1] * x[1] + (*basis)[2] * x[2];
+}
+
+PHYS_INLINE void motions(const double x[SOLVE_COARSE], phys_vec motion[3])
+{
+    for (int k = 0; k < 3; k++)
+        motion[k] = (phys_vec){x[3 * k], x[3 * k + 1], x[3 * k + 2], 0};
+}
+
+PHYS_CLONES
+void solve_prolong(size_t n, const phys_vec *basis, const double x[SOLVE_COARSE], phys_vec *y)
+{
+    phys_vec motion[3];
+    motions(x, motion);
+    for (size_t a = 0; a < n; a++)
+        lift(basis + a, motion, y + a);
+}
+
+PHYS_CLONES
+void solve_advance_copies_coarse(size_t n, double alpha, double beta, const double *s,
+                                 const uint32_t *at, const phys_vec *basis,
+                                 const double x[SOLVE_COARSE], phys_vec *z, phys_vec *p)
+{
+    phys_vec motion[3];
+    motions(x, motion);
+    for (size_t i = 0; i < n; i++) {
+        const double *row = s + 3 * (size_t)at[i];
+        phys_vec value = {row[0], row[1], row[2], 0};
+        lift(basis + i, motion, &value);
+        solve_turn(alpha, beta, &value, z + i, p + i);
+    }
+}

@@ -1,0 +1,277 @@
+/* A factor is, for each row, the inverse of a 3 x 3 block (struct solve_symmetric), and behind them
+ * for IC(0), for each inner spring, the three columns of its block of T. These are kept in float:
+ * the same rounded T stands on both sides of E, so M is exactly symmetric and as definite as E, and
+ * E is made of the rounded T. */
+#include "cloth/solve/local.h"
+#include "cloth/solve/matrix3.h"
+
+#include <stdbool.h>
+
+/* A pivot below this part of its row's diagonal is rounding. */
+#define LEAST 1e-9
+
+/* Those of B are not below its masses; what IC(0) leaves so far below is as good as nothing. */
+#define LEAST_OF_MASS 1e-3
+
+typedef float narrow __attribute__((vector_size(16)));
+struct entry {
+    narrow c[3];
+};
+
+struct factor {
+    struct solve_symmetric *inverse; /* n */
+    struct entry *t;                 /* row[n] */
+};
+
+static struct factor factor_of(const struct solve_block *block, double *memory)
+{
+    struct solve_symmetric *inverse = (struct solve_symmetric *)(void *)memory;
+    return (struct factor){inverse, (struct entry *)(void *)(inverse + block->n)};
+}
+
+size_t solve_local_doubles(size_t n, size_t springs, enum solve_local kind)
+{
+    const size_t entries = kind == SOLVE_IC0 ? springs : 0;
+    return (n * sizeof(struct solve_symmetric) + entries * sizeof(struct entry)) / sizeof(double);
+}
+
+PHYS_INLINE void add(struct solve_symmetric *to, const struct solve_symmetric *m)
+{
+    to->diagonal += m->diagonal;
+    to->beside += m->beside;
+}
+
+/* The blocks on the diagonal of B. */
+PHYS_INLINE void gather(const struct solve_block *block, const struct solve_cut *cut,
+                        const phys_vec *value, struct solve_symmetric *sum)
+{
+    struct solve_symmetric m = {{0}, {0}};
+    for (size_t a = 0; a < block->n; a++) {
+        const double d = block->diagonal[a];
+        sum[a] = (struct solve_symmetric){{d, d, d, 0}, {0}};
+    }
+    for (size_t a = 0; a < block->n; a++)
+        for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
+            solve_spring(value + i, &m);
+            add(sum + a, &m);
+            add(sum + block->column[i], &m);
+        }
+    for (size_t i = 0; i < cut->n; i++) {
+        solve_spring(value + block->row[block->n] + i, &m);
+        add(sum + cut->end[i][0], &m);
+    }
+    for (size_t a = 0; a < block->n; a++)
+        if (block->free[a] == 0)
+            sum[a] = (struct solve_symmetric){{1, 1, 1, 0}, {0}};
+}
+
+/* A row's block may be singular in what rounding leaves of a stiff spring: then a larger diagonal
+ * is taken, which is not. */
+PHYS_INLINE void invert_surely(struct solve_symmetric *m)
+{
+    const phys_vec whole = m->diagonal;
+    struct solve_symmetric inverse;
+    for (double more = 0; !solve_invert(m, &whole, LEAST, &inverse); more = 2 * more + 1e-6) {
+        m->diagonal = (1 + more) * whole;
+        if (more > 1) { /* not a number: conjugate gradients will say so */
+            inverse = *m;
+            break;
+        }
+    }
+    *m = inverse;
+}
+
+PHYS_INLINE void widen(const struct entry *entry, struct solve_columns *m)
+{
+    for (int i = 0; i < 3; i++)
+        m->c[i] = __builtin_convertvector(entry->c[i], phys_vec);
+}
+
+PHYS_INLINE void narrow_to(const struct solve_columns *m, struct entry *entry)
+{
+    for (int i = 0; i < 3; i++)
+        entry->c[i] = __builtin_convertvector(m->c[i], narrow);
+}
+
+/* The inner springs of B: zero where an end is held. */
+PHYS_INLINE void spread(const struct solve_block *block, const phys_vec *value, struct entry *t)
+{
+    for (size_t a = 0; a < block->n; a++)
+        for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
+            struct solve_symmetric m = {{0}, {0}};
+            struct solve_columns columns = {{{0}}};
+            solve_spring(value + i, &m);
+            solve_columns_of(&m, &columns);
+            const double sign = -block->free[a] * block->free[block->column[i]];
+            for (int k = 0; k < 3; k++)
+                columns.c[k] *= sign;
+            narrow_to(&columns, t + i);
+        }
+}
+
+/* t = inverse t. */
+PHYS_INLINE void scale(const struct solve_symmetric *inverse, struct entry *t)
+{
+    struct solve_columns m, product;
+    widen(t, &m);
+    for (int k = 0; k < 3; k++)
+        solve_times(inverse, m.c + k, product.c + k);
+    narrow_to(&product, t);
+}
+
+/* b -= t' w, where that is symmetric. */
+PHYS_INLINE void reduce_diagonal(const struct solve_columns *t, const struct solve_columns *w,
+                                 struct solve_symmetric *b)
+{
+    struct solve_columns m;
+    for (int k = 0; k < 3; k++)
+        solve_columns_turned(t, w->c + k, m.c + k);
+    b->diagonal -= (phys_vec){m.c[0][0], m.c[1][1], m.c[2][2], 0};
+    b->beside -= (phys_vec){m.c[1][0], m.c[2][1], m.c[2][0], 0};
+}
+
+/* The entry of (b, c) -= t' w, if it is in the pattern. */
+PHYS_INLINE void reduce_beside(const struct solve_block *block, uint32_t b, uint32_t c,
+                               const struct solve_columns *w, const struct entry *t,
+                               struct entry *all)
+{
+    uint32_t i = block->row[b];
+    while (i < block->row[b + 1] && block->column[i] < c)
+        i++;
+    if (i == block->row[b + 1] || block->column[i] != c)
+        return;
+    struct solve_columns left, m, product;
+    widen(t, &left);
+    widen(all + i, &m);
+    for (int k = 0; k < 3; k++) {
+        solve_columns_turned(&left, w->c + k, product.c + k);
+        m.c[k] -= product.c[k];
+    }
+    narrow_to(&m, all + i);
+}
+
+/* Takes row a out of the rows behind it. pivot: its block of E. */
+PHYS_INLINE void eliminate(const struct solve_block *block, size_t a,
+                           const struct solve_symmetric *pivot, struct factor *f)
+{
+    const uint32_t from = block->row[a], to = block->row[a + 1];
+    for (uint32_t i = from; i < to; i++)
+        scale(f->inverse + a, f->t + i);
+    for (uint32_t i = from; i < to; i++) {
+        struct solve_columns t, w;
+        widen(f->t + i, &t);
+        for (int k = 0; k < 3; k++)
+            solve_times(pivot, t.c + k, w.c + k);
+        reduce_diagonal(&t, &w, f->inverse + block->column[i]);
+        for (uint32_t j = from; j < i; j++)
+            reduce_beside(block, block->column[j], block->column[i], &w, f->t + j, f->t);
+    }
+}
+
+/* IC(0) with the diagonal entries of B times 1 + shift. Returns false if a pivot fails. */
+PHYS_INLINE bool factorise(const struct solve_block *block, const struct solve_cut *cut,
+                           const phys_vec *value, double shift, struct factor *f)
+{
+    gather(block, cut, value, f->inverse);
+    spread(block, value, f->t);
+    for (size_t a = 0; a < block->n; a++)
+        f->inverse[a].diagonal *= 1 + shift;
+    for (size_t a = 0; a < block->n; a++) {
+        const struct solve_symmetric pivot = f->inverse[a];
+        const double d = (1 + shift) * block->diagonal[a];
+        const phys_vec whole = {d, d, d, 0};
+        if (!solve_invert(&pivot, &whole, LEAST_OF_MASS, f->inverse + a))
+            return false;
+        eliminate(block, a, &pivot, f);
+    }
+    return true;
+}
+
+/* (I + T') E (I + T) with E the diagonal of B, T = E^-1 (its upper part). */
+PHYS_INLINE void over_relax(const struct solve_block *block, const struct solve_cut *cut,
+                            const phys_vec *value, struct factor *f)
+{
+    gather(block, cut, value, f->inverse);
+    spread(block, value, f->t);
+    for (size_t a = 0; a < block->n; a++) {
+        invert_surely(f->inverse + a);
+        for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++)
+            scale(f->inverse + a, f->t + i);
+    }
+}
+
+PHYS_CLONES
+int solve_local_factor(const struct solve_block *block, const struct solve_cut *cut,
+                       const phys_vec *value, enum solve_local kind, double *factor)
+{
+    static const double shift[SOLVE_SSOR] = {0, 0.01, 0.05, 0.2, 1};
+    struct factor f = factor_of(block, factor);
+    if (kind == SOLVE_JACOBI) {
+        gather(block, cut, value, f.inverse);
+        for (size_t a = 0; a < block->n; a++)
+            invert_surely(f.inverse + a);
+        return 0;
+    }
+    for (int i = 0; i < SOLVE_SSOR; i++)
+        if (factorise(block, cut, value, shift[i], &f))
+            return i;
+    over_relax(block, cut, value, &f);
+    return SOLVE_SSOR;
+}
+
+/* s = (I + T')^-1 q, then E^-1 of it; a row is final when all before it are. */
+PHYS_INLINE void forward(const struct solve_block *block, const struct factor *f, phys_vec *s)
+{
+    for (size_t a = 0; a < block->n; a++) {
+        const phys_vec own = s[a];
+        for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
+            struct solve_columns t;
+            phys_vec y;
+            widen(f->t + i, &t);
+            solve_columns_turned(&t, &own, &y);
+            s[block->column[i]] -= y;
+        }
+        solve_times(f->inverse + a, &own, s + a);
+    }
+}
+
+/* s = (I + T)^-1 s. Returns q.s. */
+PHYS_INLINE double backward(const struct solve_block *block, const struct factor *f,
+                            const phys_vec *q, phys_vec *s)
+{
+    phys_vec dot = {0};
+    for (size_t a = block->n; a-- > 0;) {
+        phys_vec sum = s[a];
+        for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
+            struct solve_columns t;
+            phys_vec y;
+            widen(f->t + i, &t);
+            solve_columns_times(&t, s + block->column[i], &y);
+            sum -= y;
+        }
+        s[a] = sum;
+        dot += q[a] * sum;
+    }
+    return phys_lanes(&dot);
+}
+
+PHYS_CLONES
+double solve_local_apply(const struct solve_block *block, enum solve_local kind,
+                         const double *factor, const phys_vec *q, phys_vec *s)
+{
+    const struct solve_symmetric *inverse = (const struct solve_symmetric *)(const void *)factor;
+    const struct factor f = {(struct solve_symmetric *)(uintptr_t)inverse,
+                             (struct entry *)(uintptr_t)(inverse + block->n)};
+    if (kind == SOLVE_IC0) {
+        for (size_t a = 0; a < block->n; a++)
+            s[a] = q[a];
+        forward(block, &f, s);
+        return backward(block, &f, q, s);
+    }
+    phys_vec dot = {0};
+    for (size_t a = 0; a < block->n; a++) {
+        solve_times(f.inverse + a, q + a, s + a);
+        dot += q[a] * s[a];
+    }
+    return phys_lanes(&dot);
+}

@@ -1,0 +1,239 @@
+/* Runs with every preconditioner and stop: the same motion as without, few iterations, errors kept;
+ * and cloths that leave a preconditioner nothing to hold on to: blocks that are held or have no
+ * free vertex, one block, several pieces, chains, springs in compression. */
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+static const enum model_preconditioner kinds[] = {MODEL_JACOBI, MODEL_IC0, MODEL_COARSE,
+                                                  MODEL_IC0_COARSE};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* Stiff enough to be worth a preconditioner, and pulled at. */
+static void setup_stiff(struct setup *setup, uint32_t n)
+{
+    setup_sheet(setup, n);
+    setup->material.stretch = 5000;
+    setup->material.shear = 2500;
+    setup->cloth.velocity[0] = 2;
+    setup_pin(setup, 2, (const uint32_t[]){0, n - 1});
+}
+
+static double farthest(const struct record *a, const struct record *b)
+{
+    double most = 0;
+    ck_assert_uint_eq(a->frames, b->frames);
+    ck_assert_uint_eq(a->vertices, b->vertices);
+    for (size_t i = 0; i < 3 * a->frames * a->vertices; i++)
+        most = fmax(most, fabs(a->position[i] - b->position[i]));
+    return most;
+}
+
+/* Runs the model without a preconditioner and with each: the same within 1e-6 m. Returns the
+ * iterations of plain conjugate gradients. */
+static uint64_t compare(struct setup *setup, uint64_t iterations[KINDS])
+{
+    struct record plain = {0};
+    setup->model.tolerance = 1e-10;
+    setup->model.preconditioner = MODEL_PLAIN;
+    record_run(&plain, &setup->model);
+    ck_assert_msg(plain.code == 0, "%s", plain.error.text);
+    const uint64_t alone = plain.report.cg_iterations_total;
+    for (int i = 0; i < KINDS; i++) {
+        struct record record = {.threads = 1 + (unsigned)i % 2};
+        setup->model.preconditioner = kinds[i];
+        record_run(&record, &setup->model);
+        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        ck_assert_double_le(farthest(&plain, &record), 1e-6);
+        iterations[i] = record.report.cg_iterations_total;
+        record_free(&record);
+    }
+    record_free(&plain);
+    setup_free(setup);
+    return alone;
+}
+
+static void check(struct setup *setup)
+{
+    uint64_t iterations[KINDS];
+    compare(setup, iterations);
+}
+
+START_TEST(a_sheet_moves_alike)
+{
+    struct setup setup;
+    uint64_t iterations[KINDS];
+    setup_stiff(&setup, 20);
+    setup.model.grain = 30;
+    const uint64_t alone = compare(&setup, iterations);
+    ck_assert_uint_lt(iterations[0], alone);
+    ck_assert_uint_lt(iterations[1], iterations[0]);
+    ck_assert_uint_lt(iterations[3], iterations[2]);
+    ck_assert_uint_lt(3 * iterations[3], alone);
+}
+END_TEST
+
+START_TEST(one_block)
+{
+    struct setup setup;
+    int rank, ranks;
+    record_mpi(&rank, &ranks);
+    if (ranks > 1) /* more than there are blocks */
+        return;
+    setup_sheet(&setup, 10);
+    setup.model.grain = 1000;
+    check(&setup);
+}
+END_TEST
+
+/* Blocks of four vertices, of which some have no vertex that is free. */
+START_TEST(held_blocks)
+{
+    struct setup setup;
+    uint32_t held[40];
+    setup_sheet(&setup, 10);
+    setup.model.grain = 4;
+    for (uint32_t i = 0; i < 40; i++)
+        held[i] = i;
+    setup.pin = (struct model_pin){.kind = MODEL_PIN_VERTICES, .n_vertices = 40, .vertices = held};
+    setup.cloth.pins = &setup.pin;
+    setup.cloth.n_pins = 1;
+    check(&setup);
+}
+END_TEST
+
+/* Nothing is free at all. */
+START_TEST(all_held)
+{
+    struct setup setup;
+    uint32_t held[16];
+    setup_sheet(&setup, 4);
+    setup.model.grain = 4;
+    for (uint32_t i = 0; i < 16; i++)
+        held[i] = i;
+    setup.pin = (struct model_pin){.kind = MODEL_PIN_VERTICES, .n_vertices = 16, .vertices = held};
+    setup.cloth.pins = &setup.pin;
+    setup.cloth.n_pins = 1;
+    check(&setup);
+}
+END_TEST
+
+START_TEST(a_chain)
+{
+    struct setup setup;
+    setup_weight(&setup);
+    check(&setup);
+}
+END_TEST
+
+/* Two sheets that nothing joins, each cut into blocks. */
+START_TEST(several_pieces)
+{
+    struct setup setup;
+    struct model_cloth cloths[2];
+    struct cloth_error error = {0};
+    setup_sheet(&setup, 8);
+    cloths[0] = cloths[1] = setup.cloth;
+    ck_assert_int_eq(mesh_grid(&cloths[1].mesh, 1, 2, 6, 9, &error), 0);
+    cloths[1].velocity[0] = 3;
+    setup.model.cloths = cloths;
+    setup.model.n_cloths = 2;
+    uint64_t iterations[KINDS];
+    compare(&setup, iterations);
+    mesh_free(&cloths[1].mesh);
+}
+END_TEST
+
+/* A sheet that is thrown into itself: springs in compression everywhere, stiff ones. */
+START_TEST(compressed_springs)
+{
+    struct setup setup;
+    setup_sheet(&setup, 12);
+    setup.material.stretch = 1e5;
+    setup.model.h = 0.01;
+    setup.model.end = 0.05;
+    setup_pin(&setup, 2, (const uint32_t[]){0, 11});
+    setup_load(&setup, 140, 0, -1, -20);
+    check(&setup);
+}
+END_TEST
+
+/* Whether the largest error of the run was told and kept. */
+START_TEST(stop_in_the_mass_norm)
+{
+    struct setup setup;
+    for (int i = -1; i < KINDS; i++) {
+        struct record loose = {0}, tight = {0};
+        setup_stiff(&setup, 20);
+        setup.model.preconditioner = i < 0 ? MODEL_PLAIN : kinds[i];
+        setup.model.stop = MODEL_STOP_MASS_NORM;
+        setup.model.tolerance = 0.01;
+        record_run(&loose, &setup.model);
+        setup.model.tolerance = 1e-9;
+        record_run(&tight, &setup.model);
+        ck_assert_msg(loose.code == 0, "%s", loose.error.text);
+        ck_assert_msg(tight.code == 0, "%s", tight.error.text);
+        ck_assert_double_le(loose.report.mass_norm_error, 0.01);
+        ck_assert_double_gt(loose.report.mass_norm_error, 1e-9);
+        ck_assert_double_le(tight.report.mass_norm_error, 1e-9);
+        ck_assert_uint_lt(loose.report.cg_iterations_total, tight.report.cg_iterations_total);
+        record_free(&loose);
+        record_free(&tight);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
+START_TEST(too_few_iterations)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_stiff(&setup, 20);
+    setup.model.preconditioner = MODEL_IC0_COARSE;
+    setup.model.stop = MODEL_STOP_MASS_NORM;
+    setup.model.tolerance = 1e-9;
+    setup.model.max_iterations = 3;
+    record_run(&record, &setup.model);
+    ck_assert_int_eq(record.code, CLOTH_E_RUN);
+    ck_assert_ptr_nonnull(strstr(record.error.text, "step 1: conjugate gradients stopped at"));
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+/* Exactly so many iterations, under a preconditioner too. */
+START_TEST(count)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 10);
+    setup.model.preconditioner = MODEL_IC0_COARSE;
+    setup.model.stop = MODEL_STOP_COUNT;
+    setup.model.max_iterations = 7;
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    ck_assert_uint_eq(record.report.cg_iterations_total, 70);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("solvers");
+    TCase *cases = tcase_create("solvers");
+    tcase_add_test(cases, a_sheet_moves_alike);
+    tcase_add_test(cases, one_block);
+    tcase_add_test(cases, held_blocks);
+    tcase_add_test(cases, all_held);
+    tcase_add_test(cases, a_chain);
+    tcase_add_test(cases, several_pieces);
+    tcase_add_test(cases, compressed_springs);
+    tcase_add_test(cases, stop_in_the_mass_norm);
+    tcase_add_test(cases, too_few_iterations);
+    tcase_add_test(cases, count);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

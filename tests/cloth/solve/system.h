@@ -1,0 +1,48 @@
+#ifndef TESTS_CLOTH_SOLVE_SYSTEM_H
+#define TESTS_CLOTH_SOLVE_SYSTEM_H
+
+#include "cloth/solve/block.h"
+
+#include <stdbool.h>
+
+/* A small spring system, whole as a dense matrix and cut into strips of rows as blocks see it. */
+enum { SYSTEM_ROWS = 64, SYSTEM_SPRINGS = 256, SYSTEM_BLOCKS = 8 };
+
+struct system_block {
+    struct solve_block matrix;
+    struct solve_cut cut; /* end: own row, number of the copy */
+    uint32_t first;       /* row 0 in the whole */
+    double diagonal[SYSTEM_ROWS], free[SYSTEM_ROWS];
+    uint32_t row[SYSTEM_ROWS + 1], column[SYSTEM_SPRINGS], end[SYSTEM_SPRINGS][2];
+    uint32_t rim[SYSTEM_ROWS];
+    uint32_t n_copies, copy[SYSTEM_SPRINGS]; /* rows in the whole, ascending */
+    phys_vec value[SYSTEM_SPRINGS], position[SYSTEM_ROWS];
+};
+
+struct system {
+    uint32_t n, n_springs, n_blocks;
+    uint32_t end[SYSTEM_SPRINGS][2]; /* the lower row first, in order */
+    phys_vec value[SYSTEM_SPRINGS], position[SYSTEM_ROWS];
+    double diagonal[SYSTEM_ROWS], free[SYSTEM_ROWS];
+    struct system_block block[SYSTEM_BLOCKS];
+    double dense[3 * SYSTEM_ROWS][3 * SYSTEM_ROWS]; /* S A S + I - S */
+};
+
+/* Vertices in a line, each joined to the next; a sheet of nx x ny with one diagonal a cell.
+ * Positions are drawn about the regular ones, stiffness is that of a step. */
+void system_chain(struct system *system, uint32_t n, double stiffness);
+void system_sheet(struct system *system, uint32_t nx, uint32_t ny, double stiffness);
+
+/* Cuts it into strips of about the same size and makes the dense matrix, when free and diagonal are
+ * as they shall be. */
+void system_cut(struct system *system, uint32_t n_blocks);
+
+/* Between -1 and 1. */
+double system_draw(void);
+void system_draw_rows(const struct system *system, phys_vec *y); /* zero in held rows */
+/* y = A x; x = A^-1 y by Gauss' elimination. */
+void system_multiply(const struct system *system, const phys_vec *x, phys_vec *y);
+void system_solve(const struct system *system, const phys_vec *y, phys_vec *x);
+double system_dot(const struct system *system, const phys_vec *x, const phys_vec *y);
+
+#endif

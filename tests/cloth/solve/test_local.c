@@ -1,0 +1,224 @@
+/* Preconditioners of a block against its dense matrix: exact where there is no fill, symmetric and
+ * positive definite on every system, held rows left alone, and what happens when pivots fail. */
+#include "cloth/solve/local.h"
+#include "tests/cloth/solve/system.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static struct system sys;
+static _Alignas(32) double factor[8 * SYSTEM_ROWS + 6 * SYSTEM_SPRINGS];
+
+static int make(enum solve_local kind)
+{
+    const struct system_block *b = sys.block;
+    ck_assert_uint_le(solve_local_doubles(sys.n, sys.n_springs, kind),
+                      sizeof factor / sizeof *factor);
+    return solve_local_factor(&b->matrix, &b->cut, b->value, kind, factor);
+}
+
+static void apply(enum solve_local kind, const phys_vec *q, phys_vec *s)
+{
+    const double product = solve_local_apply(&sys.block[0].matrix, kind, factor, q, s);
+    ck_assert_double_eq_tol(product, system_dot(&sys, q, s), 1e-12 * (1 + fabs(product)));
+}
+
+/* M^-1 A x = x to `tolerance` of the largest x. */
+static void check_exact(enum solve_local kind, double tolerance)
+{
+    phys_vec x[SYSTEM_ROWS], y[SYSTEM_ROWS], s[SYSTEM_ROWS];
+    ck_assert_int_eq(make(kind), 0);
+    system_draw_rows(&sys, x);
+    system_multiply(&sys, x, y);
+    apply(kind, y, s);
+    for (uint32_t a = 0; a < sys.n; a++)
+        for (int c = 0; c < 3; c++)
+            ck_assert_double_eq_tol(s[a][c], x[a][c], tolerance);
+}
+
+/* A chain has no fill, with held rows anywhere. */
+START_TEST(ic0_of_a_chain_is_exact)
+{
+    srand(1);
+    for (uint32_t held = 0; held < 4; held++) {
+        system_chain(&sys, 40, 30);
+        for (uint32_t i = 0; i < held; i++)
+            sys.free[13 * i] = 0;
+        system_cut(&sys, 1);
+        check_exact(SOLVE_IC0, 2e-5); /* T is in float */
+    }
+}
+END_TEST
+
+/* So has a triangle, all of whose rows meet each other. */
+START_TEST(ic0_of_a_triangle_is_exact)
+{
+    srand(2);
+    system_sheet(&sys, 2, 2, 10);
+    sys.n = 3;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < sys.n_springs; i++)
+        if (sys.end[i][1] < 3) {
+            sys.end[kept][0] = sys.end[i][0];
+            sys.end[kept][1] = sys.end[i][1];
+            sys.value[kept++] = sys.value[i];
+        }
+    sys.value[kept] = (phys_vec){2, -1, 0.5, 3};
+    sys.end[kept][0] = 1;
+    sys.end[kept++][1] = 2;
+    sys.n_springs = kept;
+    system_cut(&sys, 1);
+    check_exact(SOLVE_IC0, 1e-5);
+}
+END_TEST
+
+START_TEST(jacobi_inverts_the_diagonal)
+{
+    srand(3);
+    system_sheet(&sys, 6, 5, 20);
+    sys.free[7] = sys.free[29] = 0;
+    system_cut(&sys, 1);
+    for (uint32_t i = 0; i < 3 * sys.n; i++) /* what is not on it */
+        for (uint32_t j = 0; j < 3 * sys.n; j++)
+            if (i / 3 != j / 3)
+                sys.dense[i][j] = 0;
+    check_exact(SOLVE_JACOBI, 1e-12);
+}
+END_TEST
+
+/* Springs into other blocks belong to the diagonal: block 0 of two is the dense matrix of its rows.
+ */
+START_TEST(cut_springs_are_on_the_diagonal)
+{
+    srand(4);
+    system_chain(&sys, 30, 50);
+    system_cut(&sys, 2);
+    sys.n = 15;
+    check_exact(SOLVE_IC0, 2e-5);
+    system_chain(&sys, 30, 50);
+    system_cut(&sys, 2);
+    sys.n = 15;
+    for (uint32_t i = 0; i < 3 * sys.n; i++)
+        for (uint32_t j = 0; j < 3 * sys.n; j++)
+            if (i / 3 != j / 3)
+                sys.dense[i][j] = 0;
+    check_exact(SOLVE_JACOBI, 1e-12);
+}
+END_TEST
+
+static void check_symmetric(enum solve_local kind)
+{
+    phys_vec x[SYSTEM_ROWS], y[SYSTEM_ROWS], mx[SYSTEM_ROWS], my[SYSTEM_ROWS];
+    for (int k = 0; k < 20; k++) {
+        system_draw_rows(&sys, x);
+        system_draw_rows(&sys, y);
+        apply(kind, x, mx);
+        apply(kind, y, my);
+        const double left = system_dot(&sys, x, my), right = system_dot(&sys, y, mx);
+        const double size = system_dot(&sys, x, mx) + system_dot(&sys, y, my);
+        ck_assert_double_eq_tol(left, right, 1e-13 * size);
+        ck_assert_double_gt(system_dot(&sys, x, mx), 0);
+        for (uint32_t a = 0; a < sys.n; a++)
+            ck_assert(sys.free[a] > 0 || (mx[a][0] == 0 && mx[a][1] == 0 && mx[a][2] == 0));
+    }
+}
+
+START_TEST(symmetric_and_positive)
+{
+    srand(5);
+    for (int k = 0; k < 12; k++) {
+        system_sheet(&sys, 8, 8, pow(10, k - 3));
+        for (uint32_t a = 0; a < sys.n; a++)
+            sys.free[a] = rand() % 7 != 0;
+        system_cut(&sys, 1);
+        make(SOLVE_JACOBI);
+        check_symmetric(SOLVE_JACOBI);
+        make(SOLVE_IC0);
+        check_symmetric(SOLVE_IC0);
+    }
+}
+END_TEST
+
+START_TEST(all_rows_held)
+{
+    phys_vec q[SYSTEM_ROWS] = {{0}}, s[SYSTEM_ROWS];
+    srand(6);
+    system_sheet(&sys, 5, 5, 10);
+    for (uint32_t a = 0; a < sys.n; a++)
+        sys.free[a] = 0;
+    system_cut(&sys, 1);
+    ck_assert_int_eq(make(SOLVE_IC0), 0);
+    apply(SOLVE_IC0, q, s);
+    for (uint32_t a = 0; a < sys.n; a++)
+        ck_assert(s[a][0] == 0 && s[a][1] == 0 && s[a][2] == 0);
+}
+END_TEST
+
+/* Springs that only resist along themselves, hardly any mass: pivots of IC(0) fail. What it falls
+ * back to is still symmetric and positive. */
+START_TEST(pivots_that_fail)
+{
+    int tried[SOLVE_SSOR + 1] = {0};
+    srand(7);
+    for (int k = 0; k < 200; k++) {
+        system_sheet(&sys, 7, 7, 1);
+        for (uint32_t i = 0; i < sys.n_springs; i++)
+            sys.value[i] = (phys_vec){system_draw(), system_draw(), system_draw(), 0};
+        for (uint32_t a = 0; a < sys.n; a++)
+            sys.diagonal[a] = k % 2 ? 1e-3 : 10;
+        system_cut(&sys, 1);
+        tried[make(SOLVE_IC0)]++;
+        check_symmetric(SOLVE_IC0);
+    }
+    ck_assert_int_gt(tried[0], 0);
+    ck_assert_int_gt(tried[1] + tried[2] + tried[3] + tried[4], 0);
+}
+END_TEST
+
+/* The factor of SSOR is the last resort, and ends for what is no number too. */
+START_TEST(not_a_number)
+{
+    srand(8);
+    system_sheet(&sys, 4, 4, 1);
+    sys.value[3][0] = NAN;
+    system_cut(&sys, 1);
+    ck_assert_int_eq(make(SOLVE_IC0), SOLVE_SSOR);
+}
+END_TEST
+
+/* Stiff beside soft: what rounding leaves of a row's own block may be singular. */
+START_TEST(stiff_beside_soft)
+{
+    srand(9);
+    system_sheet(&sys, 6, 6, 1e12);
+    for (uint32_t i = 0; i < sys.n_springs; i += 2)
+        sys.value[i] *= 1e-6;
+    for (uint32_t i = 0; i < sys.n_springs; i++)
+        sys.value[i][3] = 0;
+    for (uint32_t a = 0; a < sys.n; a++)
+        sys.diagonal[a] = 1e-3;
+    system_cut(&sys, 1);
+    make(SOLVE_JACOBI);
+    check_symmetric(SOLVE_JACOBI);
+    make(SOLVE_IC0);
+    check_symmetric(SOLVE_IC0);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("local");
+    TCase *cases = tcase_create("local");
+    tcase_add_test(cases, ic0_of_a_chain_is_exact);
+    tcase_add_test(cases, ic0_of_a_triangle_is_exact);
+    tcase_add_test(cases, jacobi_inverts_the_diagonal);
+    tcase_add_test(cases, cut_springs_are_on_the_diagonal);
+    tcase_add_test(cases, symmetric_and_positive);
+    tcase_add_test(cases, all_rows_held);
+    tcase_add_test(cases, pivots_that_fail);
+    tcase_add_test(cases, not_a_number);
+    tcase_add_test(cases, stiff_beside_soft);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -9,20 +9,13 @@
 
 void *base_alloc(size_t size)
 {
+    static const size_t PAGE = (size_t)2 << 20;
     if (size > SIZE_MAX - BASE_LINE)
         return NULL;
     size_t lines = (size + BASE_LINE - 1) / BASE_LINE;
-    return aligned_alloc(BASE_LINE, (lines ? lines : 1) * BASE_LINE);
-}
-
-void *base_alloc_large(size_t size)
-{
-    static const size_t PAGE = (size_t)2 << 20;
-    if (size < PAGE || size % PAGE)
-        return base_alloc(size);
-    void *memory = aligned_alloc(PAGE, size);
-    if (memory)
-        madvise(memory, size, MADV_HUGEPAGE); /* advice: without it the pages are small */
+    void *memory = aligned_alloc(size < PAGE ? BASE_LINE : PAGE, (lines ? lines : 1) * BASE_LINE);
+    if (memory && size >= PAGE) /* advice: without it the pages are small */
+        madvise(memory, size / PAGE * PAGE, MADV_HUGEPAGE);
     return memory;
 }
 

@@ -6,11 +6,8 @@
 enum { BASE_LINE = 64 }; /* bytes of a cache line: the alignment of everything allocated here */
 
 /* size bytes, aligned to a cache line; NULL if there are none. Freed by base_free from any thread.
- */
+ * From 2 MiB on in large pages, where the system has them. */
 void *base_alloc(size_t size);
-/* The same for memory that is kept long and used densely: from 2 MiB on in large pages, where the
- * system has them. */
-void *base_alloc_large(size_t size);
 /* As base_alloc, all zero. */
 void *base_alloc_zero(size_t size);
 void base_free(void *memory);

@@ -100,7 +100,7 @@ static bool take_region(void)
         region_end = left->end;
         return true;
     }
-    struct chunk *chunk = base_alloc_large(bytes);
+    struct chunk *chunk = base_alloc(bytes);
     if (!chunk)
         return false;
     acquire();

@@ -71,7 +71,8 @@ struct subject_shape cg_ours(unsigned ranks, unsigned threads);
 struct measure_series *cg_series(struct measure *measure, const struct bench_options *options,
                                  struct subject_shape shape, const char *run, const char *state,
                                  const char *more);
-/* The same of PETSc, on one rank and on as many as there are threads: the faster one counts. */
+/* The same of PETSc, on one rank and on as many as there are threads: the faster one counts. Tiny
+ * solves on one rank only: messages between ranks that lack cores take forever. */
 struct measure_series *cg_petsc(struct measure *measure, const struct bench_options *options,
                                 const char *run, const char *state, const char *more);
 

@@ -33,6 +33,8 @@ static int ready(struct twin *twin, struct serve_request *request)
 
 /* ---- Solving ---- */
 
+static const double ONE = 1;
+
 struct solve {
     const struct twin *twin;
     double (*dots[2])[SOLVE_DOTS]; /* of each part, of even and odd passes */
@@ -41,6 +43,9 @@ struct solve {
 
 static void start(const struct part *part)
 {
+    const size_t n = part->matrix.row[part->matrix.n] + part->cut.n;
+    for (size_t i = 0; i < n; i++) /* as a step writes its matrix before it solves */
+        part->value[i] *= *(const volatile double *)&ONE;
     const struct solve_rows *y = &part->rows;
     solve_start(part->matrix.n, part->matrix.free, part->b, y->dv, y->r, y->p, y->q);
     memset(part->copy_r, 0, part->n_copies * sizeof *part->copy_r);

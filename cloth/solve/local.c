@@ -1,7 +1,7 @@
 /* A factor is, for each row, the inverse of a 3 x 3 block (struct solve_symmetric), and behind them
- * for IC(0), for each inner spring, the three columns of its block of T. These are kept in float:
- * the same rounded T stands on both sides of E, so M is exactly symmetric and as definite as E, and
- * E is made of the rounded T. */
+ * for IC(0), for each inner spring, its block of T. The same T stands on both sides of E, so M is
+ * exactly symmetric and as definite as E. T in float takes half the bytes and is slower: what is
+ * converted is in the cache of the core anyway. */
 #include "cloth/solve/local.h"
 #include "cloth/solve/matrix3.h"
 
@@ -13,26 +13,22 @@
 /* Those of B are not below its masses; what IC(0) leaves so far below is as good as nothing. */
 #define LEAST_OF_MASS 1e-3
 
-typedef float narrow __attribute__((vector_size(16)));
-struct entry {
-    narrow c[3];
-};
-
 struct factor {
     struct solve_symmetric *inverse; /* n */
-    struct entry *t;                 /* row[n] */
+    struct solve_columns *t;         /* row[n] */
 };
 
 static struct factor factor_of(const struct solve_block *block, double *memory)
 {
     struct solve_symmetric *inverse = (struct solve_symmetric *)(void *)memory;
-    return (struct factor){inverse, (struct entry *)(void *)(inverse + block->n)};
+    return (struct factor){inverse, (struct solve_columns *)(void *)(inverse + block->n)};
 }
 
 size_t solve_local_doubles(size_t n, size_t springs, enum solve_local kind)
 {
     const size_t entries = kind == SOLVE_IC0 ? springs : 0;
-    return (n * sizeof(struct solve_symmetric) + entries * sizeof(struct entry)) / sizeof(double);
+    return (n * sizeof(struct solve_symmetric) + entries * sizeof(struct solve_columns)) /
+           sizeof(double);
 }
 
 PHYS_INLINE void add(struct solve_symmetric *to, const struct solve_symmetric *m)
@@ -81,42 +77,28 @@ PHYS_INLINE void invert_surely(struct solve_symmetric *m)
     *m = inverse;
 }
 
-PHYS_INLINE void widen(const struct entry *entry, struct solve_columns *m)
-{
-    for (int i = 0; i < 3; i++)
-        m->c[i] = __builtin_convertvector(entry->c[i], phys_vec);
-}
-
-PHYS_INLINE void narrow_to(const struct solve_columns *m, struct entry *entry)
-{
-    for (int i = 0; i < 3; i++)
-        entry->c[i] = __builtin_convertvector(m->c[i], narrow);
-}
-
 /* The inner springs of B: zero where an end is held. */
-PHYS_INLINE void spread(const struct solve_block *block, const phys_vec *value, struct entry *t)
+PHYS_INLINE void spread(const struct solve_block *block, const phys_vec *value,
+                        struct solve_columns *t)
 {
     for (size_t a = 0; a < block->n; a++)
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
             struct solve_symmetric m = {{0}, {0}};
-            struct solve_columns columns = {{{0}}};
             solve_spring(value + i, &m);
-            solve_columns_of(&m, &columns);
+            solve_columns_of(&m, t + i);
             const double sign = -block->free[a] * block->free[block->column[i]];
             for (int k = 0; k < 3; k++)
-                columns.c[k] *= sign;
-            narrow_to(&columns, t + i);
+                t[i].c[k] *= sign;
         }
 }
 
 /* t = inverse t. */
-PHYS_INLINE void scale(const struct solve_symmetric *inverse, struct entry *t)
+PHYS_INLINE void scale(const struct solve_symmetric *inverse, struct solve_columns *t)
 {
-    struct solve_columns m, product;
-    widen(t, &m);
-    for (int k = 0; k < 3; k++)
-        solve_times(inverse, m.c + k, product.c + k);
-    narrow_to(&product, t);
+    for (int k = 0; k < 3; k++) {
+        const phys_vec column = t->c[k];
+        solve_times(inverse, &column, t->c + k);
+    }
 }
 
 /* b -= t' w, where that is symmetric. */
@@ -132,22 +114,19 @@ PHYS_INLINE void reduce_diagonal(const struct solve_columns *t, const struct sol
 
 /* The entry of (b, c) -= t' w, if it is in the pattern. */
 PHYS_INLINE void reduce_beside(const struct solve_block *block, uint32_t b, uint32_t c,
-                               const struct solve_columns *w, const struct entry *t,
-                               struct entry *all)
+                               const struct solve_columns *w, const struct solve_columns *t,
+                               struct solve_columns *all)
 {
     uint32_t i = block->row[b];
     while (i < block->row[b + 1] && block->column[i] < c)
         i++;
     if (i == block->row[b + 1] || block->column[i] != c)
         return;
-    struct solve_columns left, m, product;
-    widen(t, &left);
-    widen(all + i, &m);
     for (int k = 0; k < 3; k++) {
-        solve_columns_turned(&left, w->c + k, product.c + k);
-        m.c[k] -= product.c[k];
+        phys_vec product;
+        solve_columns_turned(t, w->c + k, &product);
+        all[i].c[k] -= product;
     }
-    narrow_to(&m, all + i);
 }
 
 /* Takes row a out of the rows behind it. pivot: its block of E. */
@@ -158,11 +137,10 @@ PHYS_INLINE void eliminate(const struct solve_block *block, size_t a,
     for (uint32_t i = from; i < to; i++)
         scale(f->inverse + a, f->t + i);
     for (uint32_t i = from; i < to; i++) {
-        struct solve_columns t, w;
-        widen(f->t + i, &t);
+        struct solve_columns w;
         for (int k = 0; k < 3; k++)
-            solve_times(pivot, t.c + k, w.c + k);
-        reduce_diagonal(&t, &w, f->inverse + block->column[i]);
+            solve_times(pivot, f->t[i].c + k, w.c + k);
+        reduce_diagonal(f->t + i, &w, f->inverse + block->column[i]);
         for (uint32_t j = from; j < i; j++)
             reduce_beside(block, block->column[j], block->column[i], &w, f->t + j, f->t);
     }
@@ -225,10 +203,8 @@ PHYS_INLINE void forward(const struct solve_block *block, const struct factor *f
     for (size_t a = 0; a < block->n; a++) {
         const phys_vec own = s[a];
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
-            struct solve_columns t;
             phys_vec y;
-            widen(f->t + i, &t);
-            solve_columns_turned(&t, &own, &y);
+            solve_columns_turned(f->t + i, &own, &y);
             s[block->column[i]] -= y;
         }
         solve_times(f->inverse + a, &own, s + a);
@@ -242,11 +218,9 @@ PHYS_INLINE double backward(const struct solve_block *block, const struct factor
     phys_vec dot = {0};
     for (size_t a = block->n; a-- > 0;) {
         phys_vec sum = s[a];
-        for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
-            struct solve_columns t;
+        for (uint32_t i = block->row[a + 1]; i-- > block->row[a];) { /* the latest last */
             phys_vec y;
-            widen(f->t + i, &t);
-            solve_columns_times(&t, s + block->column[i], &y);
+            solve_columns_times(f->t + i, s + block->column[i], &y);
             sum -= y;
         }
         s[a] = sum;
@@ -261,7 +235,7 @@ double solve_local_apply(const struct solve_block *block, enum solve_local kind,
 {
     const struct solve_symmetric *inverse = (const struct solve_symmetric *)(const void *)factor;
     const struct factor f = {(struct solve_symmetric *)(uintptr_t)inverse,
-                             (struct entry *)(uintptr_t)(inverse + block->n)};
+                             (struct solve_columns *)(uintptr_t)(inverse + block->n)};
     if (kind == SOLVE_IC0) {
         for (size_t a = 0; a < block->n; a++)
             s[a] = q[a];

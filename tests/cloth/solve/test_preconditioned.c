@@ -14,7 +14,7 @@ enum kind { NONE, JACOBI, IC0, COARSE, IC0_COARSE, KINDS };
 
 static struct system sys;
 static struct two_level level;
-static _Alignas(32) double factor[SYSTEM_BLOCKS][8 * SYSTEM_ROWS + 6 * SYSTEM_SPRINGS];
+static _Alignas(32) double factor[SYSTEM_BLOCKS][8 * SYSTEM_ROWS + 12 * SYSTEM_SPRINGS];
 
 struct run {
     phys_vec dv[SYSTEM_ROWS], r[SYSTEM_ROWS], p[SYSTEM_ROWS], q[SYSTEM_ROWS];
@@ -150,10 +150,10 @@ START_TEST(every_preconditioner_solves)
 }
 END_TEST
 
-/* A chain in one block: IC(0) is exact but for the rounding of T. */
+/* A chain in one block: IC(0) is exact. */
 START_TEST(a_chain_at_once)
 {
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-5, .most = 2};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-12, .most = 1};
     phys_vec b[SYSTEM_ROWS];
     static struct run run;
     srand(2);
@@ -162,7 +162,6 @@ START_TEST(a_chain_at_once)
     system_cut(&sys, 1);
     system_draw_rows(&sys, b);
     ck_assert_int_eq(solve(&run, IC0, b, &stop), SOLVE_OK);
-    ck_assert_double_le(run.scalars.iterations, 1);
 }
 END_TEST
 

@@ -119,15 +119,17 @@ static void stop_by_default(struct cg_session *s)
     stop_by(s, s->stop, s->tolerance, s->most);
 }
 
+/* solver=plain or jacobi: that preconditioner; without the word the default one. */
 static int ready(struct cg_session *s, struct serve_request *request)
 {
-    char settings[sizeof s->settings], scheduler[40];
+    char settings[sizeof s->settings], scheduler[40], solver[16];
     const struct model *model = &s->plan.model;
     const unsigned threads = (unsigned)serve_number(request, "threads");
     const uint64_t quick = serve_number(request, "quick");
     int code = state_ready(&s->state, request);
     serve_word(request, "scheduler", scheduler, sizeof scheduler);
-    snprintf(settings, sizeof settings, "%s %u %s", s->state.name, threads, scheduler);
+    serve_word(request, "solver", solver, sizeof solver);
+    snprintf(settings, sizeof settings, "%s %u %s %s", s->state.name, threads, scheduler, solver);
     if (code || !strcmp(settings, s->settings))
         return code;
     code = end(s, code);
@@ -135,6 +137,10 @@ static int ready(struct cg_session *s, struct serve_request *request)
         code = states_plan_make(&s->plan, s->state.name, quick != 0);
     if (!code)
         code = states_start(&s->plan.model, s->state.system.x, s->state.system.v);
+    if (!strcmp(solver, "plain"))
+        s->plan.model.preconditioner = MODEL_PLAIN;
+    if (!strcmp(solver, "jacobi"))
+        s->plan.model.preconditioner = MODEL_JACOBI;
     s->stop = model->stop;
     s->tolerance = model->tolerance;
     s->most = model->max_iterations;

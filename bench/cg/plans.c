@@ -52,8 +52,10 @@ plan_spring(struct measure *measure, const struct bench_options *options, int si
     const double us = 1e6 / count;
     snprintf(state, sizeof state, "sheet_%d", side);
     snprintf(more, sizeof more, " count=%d", count);
+    char plain[60];
+    snprintf(plain, sizeof plain, "%s solver=plain", more);
     const struct measure_series *ours =
-        cg_series(measure, options, cg_ours(0, options->threads), "cg", state, more);
+        cg_series(measure, options, cg_ours(0, options->threads), "cg", state, plain);
     const struct measure_series *petsc = cg_petsc(measure, options, "cg", state, more);
     const struct measure_series *loop = twin(measure, options, state, more);
     measure_value(measure, ours, us, "us", "spring_%d_us", side);
@@ -121,6 +123,67 @@ static void plan_solve(struct measure *measure, const struct bench_options *opti
 const struct bench_case cg_solve = {
     "solve", "the whole solve of sheet_150 to an error of 1 % in the mass norm, with set-up",
     plan_solve, NULL, 8};
+
+/* ---- The default preconditioner ---- */
+
+static double geometric(const struct measure_metric *metric, size_t round)
+{
+    double sum = 0;
+    for (size_t i = 0; i < metric->n; i++)
+        sum += log(metric->of[i].sample[round] / metric->against[i].sample[round]);
+    return exp(sum / (double)metric->n);
+}
+
+static double worst(const struct measure_metric *metric, size_t round)
+{
+    double most = 0;
+    for (size_t i = 0; i < metric->n; i++)
+        most = fmax(most, metric->of[i].sample[round] / metric->against[i].sample[round]);
+    return most;
+}
+
+/* Solves of all states to the error; the first of the series. */
+static const struct measure_series *
+plan_all(struct measure *measure, const struct bench_options *options, const char *more, size_t *n)
+{
+    const struct measure_series *first = NULL;
+    *n = 0;
+    for (const char *const *name = states_met(); *name; name++) {
+        if (states_missing(*name))
+            continue;
+        const struct measure_series *one =
+            cg_series(measure, options, cg_ours(0, options->threads), "solve", *name, more);
+        first = first ? first : one;
+        ++*n;
+    }
+    return first;
+}
+
+static void plan_jacobi(struct measure *measure, const struct bench_options *options)
+{
+    static const char *const what[] = {" what=iterations", ""};
+    static const char *const name[] = {"iterations", "solve_time"};
+    for (int i = 0; i < 2; i++) {
+        char more[80];
+        size_t n;
+        snprintf(more, sizeof more, " error=%d%s", ERROR, what[i]);
+        const struct measure_series *ours = plan_all(measure, options, more, &n);
+        snprintf(more, sizeof more, " error=%d solver=jacobi%s", ERROR, what[i]);
+        const struct measure_series *jacobi = plan_all(measure, options, more, &n);
+        struct measure_metric *metric[] = {
+            measure_metric(measure, "x", geometric, "%s_vs_jacobi_geo", name[i]),
+            measure_metric(measure, "x", worst, "%s_vs_jacobi_worst", name[i])};
+        for (int k = 0; k < 2; k++) {
+            metric[k]->of = ours;
+            metric[k]->against = jacobi;
+            metric[k]->n = n;
+        }
+    }
+}
+
+const struct bench_case cg_jacobi = {
+    "jacobi", "the default preconditioner against 3x3 block Jacobi, all states to an error of 1 %",
+    plan_jacobi, NULL, 2};
 
 /* ---- The default stop ---- */
 

@@ -47,7 +47,7 @@ static const struct argp_option OPTIONS[] = {
      "too",
      3},
     {"mapping", MAPPING, "NAME", 0, "which rank keeps which block (default: metis)", 3},
-    {"balance", BALANCE, "NAME", 0, "which tasks run on other ranks (default: none)", 3},
+    {"balance", BALANCE, "NAME", 0, "which tasks or blocks go to other ranks (default: none)", 3},
     {"seed", SEED, "N", 0, "of all that is random in the policies (default: 1)", 3},
     {"keys", KEYS, NULL, 0, "list the keys of scene files, with units, ranges and defaults", 4},
     {"help", '?', NULL, 0, "this text", 4},

@@ -167,7 +167,7 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_integer(json, "messages", counters->messages);
     output_report_integer(json, "bytes_moved", counters->bytes);
     output_report_integer(json, "delegated_tasks", counters->delegated);
-    output_report_null(json, "migrated_objects");
+    output_report_integer(json, "migrated_objects", counters->migrated);
     output_report_number(json, "busy_fraction", ratio(counters->busy, total));
     output_report_number(json, "idle_fraction", ratio(counters->idle, total));
     output_report_number(json, "overhead_ns_per_task", ratio(overhead, (double)counters->tasks));

@@ -35,16 +35,24 @@ static struct comm_word own_word(const struct graph *graph)
     return own;
 }
 
-static int agree(duite *rt, const struct work_why *why, struct comm_word **words)
+int program_agree(duite *rt, const struct work_why *why, struct comm_word *own,
+                  struct comm_word **words)
 {
-    const struct comm_word own = own_word(&rt->graph);
+    own->forks = rt->graph.root.forks;
+    own->fingerprint = rt->graph.fingerprint;
     work_waits(rt->pool, why);
-    int code = comm_agree(rt->comm, &own, words, between, rt->pool);
+    int code = comm_agree(rt->comm, own, words, between, rt->pool);
     work_waits(rt->pool, NULL);
     work_idle_ends(rt->pool);
     if (code)
         instance_give_up(rt);
     return code;
+}
+
+static int agree(duite *rt, const struct work_why *why, struct comm_word **words)
+{
+    struct comm_word own = own_word(&rt->graph);
+    return program_agree(rt, why, &own, words);
 }
 
 /* This rank makes a call that blocks, as all do. */
@@ -150,6 +158,20 @@ static const struct data_failure *first_failure(const struct comm_word *words, i
     return first ? &first->failure : NULL;
 }
 
+int program_meet(duite *rt, const char *call)
+{
+    struct comm_word *words;
+    work_tick(rt->pool);
+    /* Before anything is waited for: did all ranks fork the same? */
+    int code = enter_blocking(rt, "duite_wait");
+    if (rt->comm && !code)
+        code = agree(rt, &(struct work_why){call, "the other ranks to come to it", NULL}, &words);
+    if (!code)
+        work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, drained,
+                   rt->pool);
+    return code;
+}
+
 int program_wait(duite *rt, const char *call)
 {
     struct duite_call_private *body = inside_body(rt);
@@ -159,17 +181,10 @@ int program_wait(duite *rt, const char *call)
     if (code)
         return code;
     struct graph *graph = &rt->graph;
-    struct comm_word own, *words = &own;
-    work_tick(rt->pool);
-    /* Before anything is waited for: did all ranks fork the same? */
-    code = enter_blocking(rt, "duite_wait");
-    if (rt->comm && !code)
-        code = agree(rt, &(struct work_why){call, "the other ranks to come to it", NULL}, &words);
+    code = program_meet(rt, call);
     if (code)
         return code;
-    work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, drained,
-               rt->pool);
-    own = own_word(graph);
+    struct comm_word own = own_word(graph), *words = &own;
     if (rt->comm &&
         (code = agree(rt, &(struct work_why){call, "the tasks of other ranks", NULL}, &words)))
         return code;
@@ -227,6 +242,7 @@ int duite_count_all(duite *rt, duite_counters *counters)
                                  .delegated = (uint64_t)sums[9],
                                  .awaited = sums[10],
                                  .exposed = sums[11],
-                                 .graphs_recorded = rt->graphs_recorded};
+                                 .graphs_recorded = rt->graphs_recorded,
+                                 .migrated = rt->migration.objects};
     return code;
 }

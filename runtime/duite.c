@@ -232,6 +232,8 @@ static int start_graph(duite *rt, const duite_options *options)
     if (MPI_Comm_rank(rt->mpi, &rank) || MPI_Comm_size(rt->mpi, &n))
         return base_error(DUITE_E_MPI, "MPI_Comm_rank failed");
     rt->mapping = options->mapping;
+    rt->balance = options->balance;
+    rt->migration.due = 1;
     rt->seed = options->seed;
     rt->window = options->window;
     static const duite_kernel *const none[] = {NULL};
@@ -359,7 +361,8 @@ int duite_start(duite **out, const duite_options *options)
     if (code) {
         end(rt);
     } else {
-        bool moves = options->balance->victim || options->balance->place;
+        bool moves =
+            options->balance->victim || options->balance->place || options->balance->migrate;
         if (rt->comm && moves)
             comm_measure(rt->comm);
         comm_open(rt->comm, options->balance->victim != NULL);

@@ -190,8 +190,9 @@ typedef struct duite_kernel {
     size_t args_size; /* bytes of arguments, copied at the fork; no pointers inside */
     int side_effects; /* 1: does more than write its parameters (files): checking mode runs it once
                        */
-    int stays; /* 1: its tasks run where duite_fork says, on no other rank: for bodies that need
-                  what only that rank's context has */
+    int stays; /* 1: its tasks run where duite_fork says, on no other rank, and an object that one
+                  of them ran for keeps its home: for bodies that need what only that rank's
+                  context has */
     const duite_law
         *law[DUITE_MAX_ACCESS]; /* of the parameters with DUITE_CW or CWP; NULL: duite_sum */
     const duite_law *rest_law;  /* if rest is DUITE_CW or CWP; NULL: duite_sum */
@@ -259,6 +260,16 @@ const char *const *duite_balancer_names(void);
  * `stays`; in recorded graphs, those of rounds that are forked. Such a body runs wherever there is
  * time: what it finds by its context must serve there, too. Results and failures are the same; a
  * failure names the rank on which the body ran. `scatter` sends leaves anywhere, for tests. */
+
+/* Migration: with the balancer `migrate` objects get other homes when the bodies of one rank's
+ * tasks take longer than those of the others. A leader moves with all that follow it, and with all
+ * its tasks, since these run where their objects live. Homes change at the beginning of a replay,
+ * and only there: of the second one (duite_replay and duite_replay_while, of any graph), and then
+ * ever less often while nothing moves. Such a replay waits, like duite_wait, for all tasks forked
+ * so far, on all ranks. Recorded graphs stay as they are; what a rank has of objects that leave is
+ * freed. Objects keep their home if a task of a kernel that says `stays` ran for them; tasks whose
+ * fork named a rank run there whatever moves. Results are the same. `wander` moves objects, and
+ * leaves, anywhere at any replay, for tests. */
 
 /* Renaming: a task that overwrites an object (w) which earlier tasks still read, write or send is
  * given fresh memory and does not wait for them, as long as all such memory of a rank, headers
@@ -398,7 +409,8 @@ int duite_hint(duite *rt, duite_object object, double weight, size_t n,
 int duite_follow(duite *rt, duite_object object, duite_object leader);
 
 /* Settles the homes of all objects made so far, as a fork does, and returns the rank that
- * keeps this one; -1 for no such object. Collective. */
+ * keeps this one; -1 for no such object. The answer holds until the next replay if options.balance
+ * moves objects, else until the object is freed. Collective. */
 int duite_home(duite *rt, duite_object object);
 
 /* 1 if this rank keeps the object or has a copy of it as the tasks forked so far leave it; 0 if
@@ -572,6 +584,7 @@ typedef struct duite_counters {
     double awaited; /* seconds in which a rank awaited messages, times its workers, over all ranks:
                        from the fork of the task that needs one, or the get, until it is there */
     double exposed; /* the part of it in which those workers had no task */
+    uint64_t migrated; /* objects that got another home; the same on every rank, counted once */
 } duite_counters;
 
 /* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.

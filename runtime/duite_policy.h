@@ -82,7 +82,7 @@ typedef struct duite_mapping {
     int (*map)(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
 } duite_mapping;
 
-/* ---- Balancers: which ready tasks run on another rank ---- */
+/* ---- Balancers: which ready tasks run on another rank, and which objects move there ---- */
 
 /* A ready task that may run on any rank: a leaf (no parameter of its kernel is postponed) of the
  * main program's or of a tree of tasks, whose fork named no rank and whose kernel neither stays
@@ -106,6 +106,26 @@ typedef struct duite_asked {
 
 #define DUITE_NO_RANK (-1)
 
+/* Blocks: objects that live together, a leader and those that follow it (duite_follow); and what
+ * was measured since the last time that the balancer was asked to move them. */
+typedef struct duite_blocks {
+    /* n blocks, in the order in which they were made. weight: seconds in the bodies of tasks that
+     * ran for the block, with their children; edge_weight: bytes that recorded tasks which run for
+     * one block read of the other, in all rounds since then. */
+    duite_object_graph graph;
+    const size_t *bytes;        /* n: of all its objects, which move with it */
+    const unsigned char *stays; /* n: 1: it must keep its home, see duite_kernel.stays */
+    int n_ranks;
+    const double *other;     /* a rank: seconds in all other bodies */
+    const unsigned *workers; /* a rank */
+    double byte_seconds;     /* a byte to another rank, after a measurement at start */
+    double seconds;          /* since the last time */
+    double look_seconds;     /* that deciding and moving took then, all ranks waiting; 0 at first */
+    uint64_t replays, since; /* since start; since the last time */
+    const duite_mapping *mapping; /* the program's */
+    uint64_t seed;
+} duite_blocks;
+
 typedef struct duite_balancer {
     const char *name;
     const char *summary;
@@ -123,6 +143,12 @@ typedef struct duite_balancer {
     int (*give)(void *state, const duite_asked *asked, const duite_leaf *leaf);
     /* The rank on which a leaf that just became ready runs, asked for or not; the own one: here. */
     int (*place)(void *state, const duite_leaf *leaf);
+    /* Moves blocks: home[n] has their homes, and those that are changed move, with all their
+     * objects, before the replay that is about to begin. Returns at the beginning of how manieth
+     * replay from this one on it is asked again (1: of the next); 0: never. It is asked for the
+     * first time at the second replay of the program, when all tasks forked before it are over on
+     * all ranks; on rank 0 only, with the state of worker 0, and need not be deterministic. */
+    uint64_t (*migrate)(void *state, const duite_blocks *blocks, int *home);
 } duite_balancer;
 
 /* ---- Policies of one's own ---- */

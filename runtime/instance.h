@@ -15,6 +15,7 @@ struct duite {
     struct check *check; /* NULL: not in checking mode */
     struct work_pool *pool;
     const duite_mapping *mapping;
+    const duite_balancer *balance;
     uint64_t seed;
     size_t window;
     unsigned threads;
@@ -26,6 +27,13 @@ struct duite {
     size_t n_recorded, recorded_capacity;
     struct graph_record *building; /* the one that build forks into, or NULL */
     uint64_t graphs_recorded;
+    struct instance_migration {
+        uint64_t replays, due; /* so far; the number of those before the next look at the homes */
+        uint64_t looked;       /* replays before the last look; */
+        double since;          /* when it was over, on the clock of this rank; */
+        double took;           /* seconds */
+        uint64_t objects;      /* that moved so far; the same on all ranks */
+    } migration;
 };
 
 /* True once nothing but stop is left: memory ran out in a fork, the ranks differ, a message was
@@ -49,11 +57,25 @@ int program_remember(duite *rt, int code);
 int program_settle(duite *rt);
 /* Works while more tasks than the window allows are unfinished. Called after forks. */
 void program_throttle(duite *rt);
+/* Waits until all ranks made this call, found that they forked the same, and have no task left that
+ * was forked before it. */
+int program_meet(duite *rt, const char *call);
+/* Exchanges words: own, whose head is filled in; *words, one a rank. There are several ranks. */
+int program_agree(duite *rt, const struct work_why *why, struct comm_word *own,
+                  struct comm_word **words);
+/* A replay begins: if it is time, blocks of objects move where the balancer wants them. */
+int program_migrate(duite *rt);
 /* duite_wait, under the name of who calls it. */
 int program_wait(duite *rt, const char *call);
 /* Copies to the values, or tells the count, whichever is wanted here. */
 int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
                 const char *call);
+
+/* Adds what all graphs carried since the last time between blocks, each as often as its rounds ran:
+ * visit is called with the record and the number of rounds. No replay is on its way. Errors: its
+ * own. */
+int recorded_each(duite *rt, int (*visit)(void *context, const struct graph_record *, double),
+                  void *context);
 
 /* Keeps the first error of a call inside build. Returns code. */
 int recorded_failed(duite *rt, int code);

@@ -14,6 +14,7 @@ struct recorded_graph {
     void *context;
     struct graph_record *record; /* NULL: the slot is free */
     uint32_t generation;
+    uint64_t replays; /* since recorded_each was called last */
 };
 
 int recorded_failed(duite *rt, int code)
@@ -68,6 +69,7 @@ static uint32_t take_slot(duite *rt)
     if (slot == rt->n_recorded)
         rt->recorded[rt->n_recorded++].generation = 0;
     rt->recorded[slot].record = record;
+    rt->recorded[slot].replays = 0;
     rt->recorded[slot].generation++;
     return (uint32_t)slot + 1;
 }
@@ -180,7 +182,22 @@ static int check_rounds(const struct graph_record *record, uint64_t rounds)
                       (unsigned long long)rounds, record->n_forks, GRAPH_MOST_TASKS_BITS);
 }
 
-/* The graph fits what it is bound to. */
+int recorded_each(duite *rt, int (*visit)(void *context, const struct graph_record *, double),
+                  void *context)
+{
+    int code = DUITE_OK;
+    for (size_t i = 0; i < rt->n_recorded && !code; i++) {
+        struct recorded_graph *graph = &rt->recorded[i];
+        const double replays = (double)graph->replays;
+        graph->replays = 0;
+        if (replays > 0 && graph->record && graph_record_fits(graph->record))
+            code =
+                visit(context, graph->record, replays * (double)graph_replay_rounds(graph->record));
+    }
+    return code;
+}
+
+/* The graph fits what it is bound to, and its objects live where they are to. */
 static int prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds)
 {
     int code = program_settle(rt);
@@ -188,7 +205,12 @@ static int prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds)
         code = record(rt, slot);
     if (!code)
         code = graph_record_distinct(slot->record);
-    return code ? code : check_rounds(slot->record, rounds);
+    if (!code)
+        code = check_rounds(slot->record, rounds);
+    if (!code)
+        code = program_migrate(rt);
+    slot->replays += !code;
+    return code;
 }
 
 static int fork_rounds(duite *rt, struct graph_record *record, uint64_t rounds)

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct bench_case *const CASES[] = {&ranks_cg,     &ranks_stencil,  &ranks_forks,
-                                                 &ranks_memory, &ranks_delegate, NULL};
+static const struct bench_case *const CASES[] = {
+    &ranks_cg, &ranks_stencil, &ranks_forks, &ranks_memory, &ranks_delegate, &ranks_migrate, NULL};
 
 /* For two ranks, or hosts, and the full sizes. */
 static const struct measure_target TARGETS[] = {
@@ -15,7 +15,8 @@ static const struct measure_target TARGETS[] = {
     {"cg_bytes_vs_twin", 1.03, false},  {"cg_messages_vs_twin", 1, false},
     {"stencil_step_vs_twin", 2, false}, {"record_us_per_task", 1, false},
     {"prune_ns_per_task", 20, false},   {"delegate_speedup_r2", 1.7, true},
-    {"memory_r4_vs_r1", 0.35, false},   {0}};
+    {"memory_r4_vs_r1", 0.35, false},   {"migrate_vs_balanced", 1.15, false},
+    {"migrate_steps", 20, false},       {0}};
 enum { TARGET_THREADS = 2 };
 
 struct subject_shape ranks_ours(unsigned ranks, unsigned threads)
@@ -118,11 +119,11 @@ static int serve_ranks(const struct bench *bench)
     return strncmp(serve_kind(), "twin", 4) ? serve_ours(bench) : serve_twin(bench);
 }
 
-const struct bench bench_ranks = {
-    "ranks",
-    "what a second rank or host costs and brings: CG, stencil, recording, memory, delegation",
-    CASES,
-    TARGETS,
-    TARGET_THREADS,
-    serve_ranks,
-    NULL};
+const struct bench bench_ranks = {"ranks",
+                                  "what a second rank or host costs and brings: CG, stencil, "
+                                  "recording, memory, delegation, migration",
+                                  CASES,
+                                  TARGETS,
+                                  TARGET_THREADS,
+                                  serve_ranks,
+                                  NULL};

@@ -5,8 +5,9 @@
 
 #include <duite.h>
 
-static const char *const names[] = {"none", "delegate", "scatter", NULL};
-static const void *const tables[] = {&balance_none, &balance_delegate, &balance_scatter};
+static const char *const names[] = {"none", "delegate", "migrate", "scatter", "wander", NULL};
+static const void *const tables[] = {&balance_none, &balance_delegate, &balance_migrate,
+                                     &balance_scatter, &balance_wander};
 
 const duite_balancer *duite_balancer_find(const char *name)
 {

@@ -4,6 +4,7 @@
 #include <duite_policy.h>
 
 /* The built-in balancers. */
-extern const duite_balancer balance_none, balance_delegate, balance_scatter;
+extern const duite_balancer balance_none, balance_delegate, balance_migrate, balance_scatter,
+    balance_wander;
 
 #endif

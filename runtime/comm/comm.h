@@ -108,7 +108,7 @@ bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint);
  * communication breaks. Main thread. */
 void comm_waits(struct comm *comm, bool waits);
 
-enum { COMM_MOST_SUMS = 16 };
+enum { COMM_MOST_SUMS = sizeof(struct data_failure) / sizeof(double) };
 
 /* What the ranks tell one another when they wait for all: each its own, `all` one a rank. */
 struct comm_word {

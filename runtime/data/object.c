@@ -202,6 +202,14 @@ bool data_object_has_copy(const struct data_table *table, const struct data_obje
     return copies_of(table, object)[rank / 64] >> (rank % 64) & 1;
 }
 
+void data_object_hand_on(const struct data_table *table, struct data_object *object, int to)
+{
+    int from = object->holder;
+    if (object->copied)
+        copies_of(table, object)[from / 64] &= ~(UINT64_C(1) << (from % 64));
+    object->holder = to;
+}
+
 void data_object_add_copy(struct data_table *table, struct data_object *object, int rank)
 {
     uint64_t *copies = copies_of(table, object);

@@ -13,6 +13,7 @@ struct data_object {
     int holder;                   /* the rank that has the current version for certain */
     bool copied;                  /* some rank beside the holder has a copy: `copies` says which */
     bool sized;                   /* its versions differ in size */
+    bool stays;                   /* tasks that must stay run for it: its home does not change */
     uint64_t number;              /* of the current version: writes so far */
     struct data_version *current; /* this rank's copy of the current version, or NULL */
     uint64_t leaves;              /* contributions forked since the last other access */
@@ -90,6 +91,9 @@ static inline void data_object_moved(struct data_object *object, int holder)
     object->holder = holder;
     object->copied = false;
 }
+
+/* The holder hands its copy on to rank `to`, which has one, and keeps none. */
+void data_object_hand_on(const struct data_table *table, struct data_object *object, int to);
 
 /* A version of the object, as of data_version_new. */
 static inline struct data_version *data_object_version(const struct data_object *object)

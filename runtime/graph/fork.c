@@ -303,6 +303,18 @@ static int gather_views(struct graph_scope *scope, void *worker, const struct sk
     return code;
 }
 
+/* The task runs for the object; `follows`: where that one's home is. */
+static void give_block(struct graph_task *task, struct data_object *own, bool follows)
+{
+    task->block = own->block;
+    task->placed = follows;
+    own->stays |= follows && task->scope->graph->kernels[task->kernel]->stays;
+    if (task->inner) {
+        task->inner->block = task->block;
+        task->inner->placed = task->placed;
+    }
+}
+
 /* Checked: nothing but memory can be missing. */
 static int fork_checked(struct graph_scope *scope, void *worker, const struct graph_how *how,
                         const struct sketch *sketch, const void *args, size_t n,
@@ -310,9 +322,9 @@ static int fork_checked(struct graph_scope *scope, void *worker, const struct gr
 {
     struct graph *graph = scope->graph;
     const duite_kernel *kernel = graph->kernels[sketch->kernel];
-    const struct data_object *own =
-        sketch->owner == NOBODY ? NULL
-                                : object_of(scope, sketch, sketch->owner, objects[sketch->owner]);
+    struct data_object *own = sketch->owner == NOBODY
+                                  ? NULL
+                                  : object_of(scope, sketch, sketch->owner, objects[sketch->owner]);
     int code = sketch->views ? gather_views(scope, worker, sketch, n, objects) : DUITE_OK;
     if (code)
         return code;
@@ -324,7 +336,7 @@ static int fork_checked(struct graph_scope *scope, void *worker, const struct gr
     if (at == graph->rank && !(task = body_task(scope, worker, how, sketch->kernel, args, n)))
         return DUITE_E_MEMORY;
     if (task && own)
-        task->block = own->block;
+        give_block(task, own, how->at == GRAPH_ANYWHERE && !kernel->replicated);
     for (size_t i = 0; i < n; i++) {
         struct data_object *object = object_of(scope, sketch, i, objects[i]);
         duite_mode mode = data_mode_of(kernel, i);

@@ -21,6 +21,7 @@ enum graph_kind {
     GRAPH_SEND,    /* sends a version or pieces to another rank */
     GRAPH_VIEW,    /* writes a view's elements from its object */
     GRAPH_COPY,    /* duite_get: copies a version to the main program */
+    GRAPH_MOVE,    /* an object that moves here has come: nothing is left to do */
     GRAPH_VOID,   /* memory ran out while it was forked: does not run, and poisons what it writes */
     GRAPH_AWAY,   /* a BODY that runs on another rank */
     GRAPH_GUEST,  /* a task of another rank that runs here */
@@ -80,7 +81,8 @@ struct graph_task {
     float cost;      /* seconds; 0: not said */
     uint32_t grains; /* of all of it, GRAPH_GRAIN bytes each */
     enum graph_kind kind : 16;
-    unsigned pinned : 16; /* its fork named a rank: no other one runs it */
+    unsigned pinned : 1; /* its fork named a rank: no other one runs it */
+    unsigned placed : 1; /* by the home of an object, whose block it has: it moves with that */
     struct graph_access access[];
 };
 
@@ -128,10 +130,12 @@ struct graph_scope {
                                     program: see graph_hooks.over */
     uint64_t forks;              /* so far; inside a task waits count, too */
     const struct data_failure *failure; /* first in reference order since the last wait; `lock` */
-    uint64_t number;                    /* of its task */
-    uint64_t segment;                   /* `forks` at the last wait of the body */
-    uint32_t depth;                     /* 0: the main program */
-    bool outward;                       /* its children may wait for tasks outside of it */
+    uint64_t number;                    /* of its task; as are: */
+    uint32_t block;
+    bool placed;
+    uint64_t segment; /* `forks` at the last wait of the body */
+    uint32_t depth;   /* 0: the main program */
+    bool outward;     /* its children may wait for tasks outside of it */
 };
 
 /* A recorded graph's message of one round to or from another rank: fixed in size and order, so that
@@ -364,6 +368,20 @@ static inline bool graph_is_channel(const struct graph_task *task)
     return task->kind >= GRAPH_NODE_SEND;
 }
 
+/* Whether a task of the main program, or the one that this descends from, runs where it does for an
+ * object's home; then that one's block. */
+static inline bool graph_follows(const struct graph_task *task, uint32_t *block)
+{
+    const struct graph_scope *scope = task->scope;
+    *block = task->block;
+    if (!scope->depth)
+        return task->placed;
+    while (scope->depth > 1)
+        scope = scope->parent;
+    *block = scope->block;
+    return scope->placed;
+}
+
 /* Whether the task calls a body of the program. */
 static inline bool graph_has_body(const struct graph_task *task)
 {
@@ -386,6 +404,12 @@ void graph_pieces_lost(struct graph *graph, void *worker, struct data_sum *sum);
 /* The bytes of a ready SEND, under its key: the version itself, or send->packet, which the caller
  * frees once it is sent. NULL without memory. */
 struct data_packet *graph_send_packet(struct graph_task *send);
+
+/* The object gets another home, and the value that the forks so far leave goes there, if it is
+ * where it was made or last written by a task of its old home, which frees it: nobody else would.
+ * What is being contributed to stays until it is overwritten. No task is left on any rank. Main
+ * thread, collective. Errors: memory. */
+int graph_move(struct graph *graph, void *worker, struct data_object *object, int home);
 
 /* The version that the forks so far leave. Main thread; the object exists. */
 struct data_key graph_version_of(const struct graph *graph, duite_object object);

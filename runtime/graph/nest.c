@@ -113,6 +113,8 @@ struct graph_scope *graph_scope_new(const struct graph_task *task, size_t n)
                                           .parent = task->scope,
                                           .top = task->scope->top,
                                           .number = task->number,
+                                          .block = task->block,
+                                          .placed = task->placed,
                                           .depth = task->scope->depth + 1},
                                 .room = (uint32_t)(n + SPARE),
                                 .size = size,

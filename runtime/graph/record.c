@@ -138,6 +138,35 @@ duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_rec
                : graph_immediate(data_mode_of(graph->kernels[fork->kernel], k));
 }
 
+uint32_t graph_recorded_owner(const struct graph_record *record,
+                              const struct graph_recorded_fork *fork)
+{
+    uint32_t first_read = GRAPH_NOBODY;
+    if (fork->how.at != GRAPH_ANYWHERE || fork->kernel == GRAPH_SETS ||
+        record->graph->kernels[fork->kernel]->replicated)
+        return GRAPH_NOBODY;
+    for (uint32_t k = 0; k < fork->n; k++) {
+        duite_mode mode = graph_recorded_mode(record->graph, fork, k);
+        uint32_t object = record->use[fork->first + k];
+        if (mode == DUITE_W || mode == DUITE_RW)
+            return object;
+        if (mode == DUITE_R && first_read == GRAPH_NOBODY)
+            first_read = object;
+    }
+    return first_read;
+}
+
+/* The object that it runs for keeps its home, and so does whatever is bound to it. */
+static void stay(struct graph_record *record, const struct graph_recorded_fork *fork)
+{
+    uint32_t owner = graph_recorded_owner(record, fork);
+    if (owner == GRAPH_NOBODY)
+        return;
+    struct graph_recorded_object *object = &record->object[owner];
+    object->stays = true;
+    record->graph->table.object[object->bound.slot].stays = true;
+}
+
 /* The bytes of the arguments are still to be written. */
 static struct graph_recorded_fork *append(struct graph_record *record, uint32_t kernel,
                                           const struct graph_how *how, size_t n,
@@ -183,6 +212,8 @@ int graph_record_fork(struct graph_record *record, const struct graph_how *how,
         return DUITE_E_MEMORY;
     if (kernel->args_size)
         memcpy(record->args + fork->args, args, kernel->args_size);
+    if (kernel->stays)
+        stay(record, fork);
     record->call[record->n_calls++] = record->n_forks - 1;
     return DUITE_OK;
 }
@@ -275,6 +306,7 @@ int graph_record_bind(struct graph_record *record, duite_object recorded, duite_
     graph_mix(record->graph, (uint64_t)recorded.slot << 32 | recorded.generation);
     graph_mix(record->graph, (uint64_t)name.slot << 32 | name.generation);
     object->bound = name;
+    record->graph->table.object[name.slot].stays |= object->stays;
     record->rebound = true;
     return DUITE_OK;
 }

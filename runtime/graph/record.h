@@ -13,6 +13,8 @@
 
 #define GRAPH_SETS UINT32_MAX /* in place of a kernel: a duite_set */
 
+struct graph_record;
+
 struct graph_recorded_fork {
     uint32_t kernel; /* index in the list given at start */
     uint32_t n;
@@ -34,10 +36,18 @@ struct graph_recorded_object {
     bool reads_old;     /* the first access is not a w */
     bool leads, trails; /* contributions before any other access in a round, and after all others */
     bool named;         /* by a fork or set; else by its views only, and cannot be bound */
+    bool stays;         /* tasks that must stay run for it */
     uint32_t parent;    /* of a view: the place of its object in `object`, plus 1; else 0 */
 };
 
 struct graph_plan;
+
+#define GRAPH_NOBODY UINT32_MAX
+
+/* The owner rule: the place in record->object that a fork runs for; GRAPH_NOBODY: for none, or
+ * where it says, or everywhere. */
+uint32_t graph_recorded_owner(const struct graph_record *record,
+                              const struct graph_recorded_fork *fork);
 
 /* The mode in which a fork, with its descendants, uses its k-th object. */
 duite_mode graph_recorded_mode(const struct graph *graph, const struct graph_recorded_fork *fork,

@@ -112,9 +112,9 @@ static struct data_view *hold_view(const struct graph_plan *plan, const struct g
     return data_view_hold(record->graph->table.object[record->object[view].recorded.slot].view);
 }
 
-/* What a task or a set is given. */
+/* What a task or a set is given; at_home: it runs for an object. */
 static void fill_call(struct graph_plan *plan, const struct graph_record *record,
-                      const struct graph_draft_node *from, struct graph_task *task)
+                      const struct graph_draft_node *from, struct graph_task *task, bool at_home)
 {
     struct graph_node *node = task->node;
     const struct graph_recorded_fork *fork = &record->fork[from->fork];
@@ -123,6 +123,7 @@ static void fill_call(struct graph_plan *plan, const struct graph_record *record
         return;
     const duite_kernel *kernel = record->graph->kernels[fork->kernel];
     task->kernel = fork->kernel;
+    task->placed = at_home && !kernel->replicated && fork->how.at == GRAPH_ANYWHERE;
     task->priority = fork->how.priority;
     task->cost = (float)fork->how.cost;
     node->args = kernel->args_size ? plan->args + fork->args : NULL;
@@ -167,7 +168,7 @@ static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, 
             (struct graph_tree){from->law, plan->merge + from->first_merge, from->n_merges};
     }
     if (from->kind == GRAPH_NODE || from->kind == GRAPH_NODE_SET)
-        fill_call(plan, record, from, task);
+        fill_call(plan, record, from, task, plan->owner[i] != GRAPH_NO_PLACE);
 }
 /* Successors in one row, those of the next round before those of the same. */
 static void fill_next(struct graph_plan *plan, const struct graph_draft *draft)

@@ -280,6 +280,8 @@ bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const
     case GRAPH_COPY:
         run_copy(graph, task);
         break;
+    case GRAPH_MOVE:
+        break;
     case GRAPH_REPLAY:
         graph_replay_run(task);
         break;

@@ -8,6 +8,7 @@
 #include "runtime/base/memory.h"
 #include "runtime/graph/away.h"
 #include "runtime/workers/internal.h"
+#include "runtime/workers/spent.h"
 
 #include <string.h>
 
@@ -28,6 +29,7 @@ struct work_balance {
     uint64_t first_ask, serve_ticks;
     _Atomic uint64_t *cost; /* ticks, a row of kernels for each worker; 0: none ran */
     size_t row;
+    struct work_spent *spent;      /* one a worker, if homes may change; else NULL */
     _Atomic uint64_t next, served; /* ticks: when to ask, when it was given last */
     _Atomic unsigned attempt;
     _Atomic int giver;
@@ -39,7 +41,8 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     const struct graph *graph = pool->setup.graph;
     unsigned n = pool->setup.threads;
     *out = NULL;
-    if (!balancer || graph->n_ranks == 1 || !(balancer->victim || balancer->place))
+    if (!balancer || graph->n_ranks == 1 ||
+        !(balancer->victim || balancer->place || balancer->migrate))
         return DUITE_OK;
     struct work_balance *balance = *out = base_alloc_zero(sizeof *balance);
     if (!balance)
@@ -53,7 +56,9 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     balance->row = (graph->n_kernels / 8 + 2) * 8;
     balance->states = base_alloc_zero(n * balance->stride);
     balance->cost = base_alloc_zero(n * balance->row * sizeof *balance->cost);
-    if (!balance->states || !balance->cost)
+    if (balancer->migrate)
+        balance->spent = base_alloc_zero(n * sizeof *balance->spent);
+    if (!balance->states || !balance->cost || (balancer->migrate && !balance->spent))
         return base_no_memory("the balancer");
     for (unsigned i = 0; i < n && balancer->start; i++)
         balancer->start(balance->states + i * balance->stride, graph->rank, graph->n_ranks, i,
@@ -61,10 +66,14 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     return DUITE_OK;
 }
 
-void work_balance_stop(struct work_balance *balance)
+void work_balance_stop(struct work_pool *pool)
 {
+    struct work_balance *balance = pool->balance;
     if (!balance)
         return;
+    for (unsigned i = 0; i < pool->setup.threads && balance->spent; i++)
+        work_spent_free(&balance->spent[i]);
+    base_free(balance->spent);
     base_free(balance->states);
     base_free(balance->cost);
     base_free(balance);
@@ -78,13 +87,48 @@ static void *state_of(const struct work_worker *worker)
 
 /* ---- What a task costs ---- */
 
-void work_learn(struct work_worker *worker, uint32_t kernel, uint64_t ticks)
+static void learn_block(struct work_spent *spent, const struct graph_task *task, uint64_t ticks)
+{
+    uint32_t block;
+    if (graph_follows(task, &block))
+        work_spend(spent, block, ticks);
+    else
+        work_spend_else(spent, ticks);
+}
+
+void work_learn(struct work_worker *worker, const struct graph_task *task, uint64_t ticks)
 {
     const struct work_balance *balance = worker->pool->balance;
-    _Atomic uint64_t *cost = &balance->cost[worker->index * balance->row + kernel];
+    _Atomic uint64_t *cost = &balance->cost[worker->index * balance->row + task->kernel];
+    if (balance->spent)
+        learn_block(&balance->spent[worker->index], task, ticks);
     uint64_t before = atomic_load_explicit(cost, memory_order_relaxed);
     uint64_t now = before ? before - (before >> MEMORY_SHIFT) + (ticks >> MEMORY_SHIFT) : ticks;
     atomic_store_explicit(cost, now ? now : 1, memory_order_relaxed);
+}
+
+double work_block_seconds(struct work_pool *pool, uint32_t block)
+{
+    const struct work_balance *balance = pool->balance;
+    uint64_t ticks = 0;
+    for (unsigned i = 0; i < pool->setup.threads; i++)
+        ticks += work_spent_take(&balance->spent[i], block);
+    return balance->tick * (double)ticks;
+}
+
+double work_other_seconds(struct work_pool *pool)
+{
+    const struct work_balance *balance = pool->balance;
+    uint64_t ticks = 0;
+    for (unsigned i = 0; i < pool->setup.threads; i++)
+        ticks += work_spent_take_else(&balance->spent[i]);
+    return balance->tick * (double)ticks;
+}
+
+uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home)
+{
+    const struct work_balance *balance = pool->balance;
+    return balance->balancer->migrate(balance->states, blocks, home);
 }
 
 /* The mean of the workers that know; 0: none does. */

@@ -14,7 +14,7 @@ struct work_worker;
 
 /* The pool has its setup and its workers. *balance NULL: nothing moves. Errors: memory. */
 int work_balance_start(struct work_balance **balance, struct work_pool *pool);
-void work_balance_stop(struct work_balance *balance); /* NULL is fine */
+void work_balance_stop(struct work_pool *pool); /* it may have none */
 
 /* A task became ready: true if it was sent to another rank. */
 bool work_placed_away(struct work_worker *worker, struct graph_task *task);
@@ -26,8 +26,8 @@ void work_guest_came(struct work_balance *balance, const struct graph_task *gues
  * ask for more. Whether that took time. */
 bool work_begins(struct work_worker *worker, const struct graph_task *task);
 
-/* The body of a kernel took so many ticks. */
-void work_learn(struct work_worker *worker, uint32_t kernel, uint64_t ticks);
+/* The body of a task took so many ticks. */
+void work_learn(struct work_worker *worker, const struct graph_task *task, uint64_t ticks);
 
 /* Between tasks: gives to those who ask. */
 void work_serve(struct work_worker *worker);

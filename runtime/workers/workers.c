@@ -24,19 +24,14 @@ enum { LONGEST_CHAIN = 64, CLOCKED = 16 };
 
 static duite_ready describe(const struct graph *graph, const struct graph_task *task)
 {
-    static const char *const own[] = {[GRAPH_COMBINE] = "duite_sum",
-                                      [GRAPH_PIECES] = "duite_sum",
-                                      [GRAPH_GATHER] = "duite_sum",
-                                      [GRAPH_VIEW] = "duite_view",
-                                      [GRAPH_COPY] = "duite_get",
-                                      [GRAPH_VOID] = "duite_fork",
-                                      [GRAPH_REPLAY] = "duite_replay",
-                                      [GRAPH_NODE_SET] = "duite_set",
-                                      [GRAPH_NODE_SUM] = "duite_sum",
-                                      [GRAPH_NODE_PARTIAL] = "duite_sum",
-                                      [GRAPH_NODE_COPY] = "duite_replay",
-                                      [GRAPH_NODE_VIEW] = "duite_view",
-                                      [GRAPH_NODE_FLAG] = "duite_replay_while"};
+    static const char *const own[] = {
+        [GRAPH_COMBINE] = "duite_sum",      [GRAPH_PIECES] = "duite_sum",
+        [GRAPH_GATHER] = "duite_sum",       [GRAPH_VIEW] = "duite_view",
+        [GRAPH_COPY] = "duite_get",         [GRAPH_MOVE] = "duite_replay",
+        [GRAPH_VOID] = "duite_fork",        [GRAPH_REPLAY] = "duite_replay",
+        [GRAPH_NODE_SET] = "duite_set",     [GRAPH_NODE_SUM] = "duite_sum",
+        [GRAPH_NODE_PARTIAL] = "duite_sum", [GRAPH_NODE_COPY] = "duite_replay",
+        [GRAPH_NODE_VIEW] = "duite_view",   [GRAPH_NODE_FLAG] = "duite_replay_while"};
     const char *name = graph_has_body(task) ? graph->kernels[task->kernel]->name : own[task->kind];
     return (duite_ready){.kernel = name,
                          .number = task->number,
@@ -184,7 +179,7 @@ void work_run(struct work_worker *worker, struct graph_task *task)
         work_bump(&worker->counts.tasks, body);
         work_bump(&worker->counts.busy, body ? own : 0);
         if (pool->balance && body)
-            work_learn(worker, task->kernel, own);
+            work_learn(worker, task, own);
         worker->finishing = true;
         worker->may_chain = may_chain(worker, length);
         if (graph_to_send(task))
@@ -406,7 +401,7 @@ void work_stop(struct work_pool *pool)
             work_park_stop(&pool->worker[i].park);
     }
     work_queue_stop(&pool->shared);
-    work_balance_stop(pool->balance);
+    work_balance_stop(pool);
     base_free(pool->worker);
     base_free(pool->states);
     base_free(pool);

@@ -79,6 +79,13 @@ void work_throttle(struct work_pool *pool, uint64_t most);
 /* Counts of all workers of this rank. Exact when no task is left. */
 void work_count(struct work_pool *pool, duite_counters *counters);
 
+/* Of a balancer that moves homes, on several ranks: seconds since the last time in bodies of tasks
+ * that run for a block of this rank, and in all others; and the balancer's answer, see
+ * duite_balancer.migrate. Main thread. */
+double work_block_seconds(struct work_pool *pool, uint32_t block);
+double work_other_seconds(struct work_pool *pool);
+uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home);
+
 /* True if the calling thread is the main thread and not inside a body. */
 bool work_may_fork(struct work_pool *pool);
 

@@ -9,13 +9,13 @@ sheet() { # NAME [ARGUMENT of mpirun...]: its hash is to be that of the first on
     name=$1
     shift
     limited "${MPIRUN:-mpirun}" "$@" "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --quiet --threads 2 --end "$end" \
-        --set 'cloths[0].mesh.grid.nx=60' --set 'cloths[0].mesh.grid.ny=60' --grain 200 --report "$scratch/$name.json" &&
+        --balance "${balance:-none}" --set 'cloths[0].mesh.grid.nx=60' --set 'cloths[0].mesh.grid.ny=60' --grain 200 --report "$scratch/$name.json" &&
         report state_hash "$scratch/$name.json" > "$scratch/$name" && test "$(wc -c < "$scratch/$name")" = 17 &&
         cmp "$scratch/$name" "$scratch/one" && report ranks "$scratch/$name.json" | grep -x $ranks
 }
 
 plan_later
-end=0.001 programs=100
+end=0.003 programs=100
 if test "${DUITE_LONG:-}" = 1; then end=0.02 programs=5000; fi
 if quick; then programs=20; fi
 ranks=1
@@ -24,9 +24,14 @@ ranks=2
 ok "on two hosts" sheet two -n 2 --host h1,h2
 ranks=4
 ok "on four hosts" sheet four -n 4
+balance=wander
+ok "on four hosts, blocks and tasks on any" sheet any -n 4
+balance=
 ranks=6
 if test "${DUITE_LONG:-}" = 1; then ok "on four hosts, several ranks each" sheet six -n 6; fi
 ok "random programs" limited "${MPIRUN:-mpirun}" -n 4 tests/runtime/random_programs --base 300000 --programs $programs
+ok "random programs whose objects move" limited "${MPIRUN:-mpirun}" -n 4 tests/runtime/random_programs --base 400000 --programs $programs \
+    --balance wander
 if test "${DUITE_LONG:-}" = 1; then
     ok "random programs, nested" limited "${MPIRUN:-mpirun}" -n 4 tests/runtime/nested_programs --seed 300000 --programs $programs
 fi

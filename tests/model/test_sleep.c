@@ -196,11 +196,11 @@ static void fall_asleep(struct work_park *park, double seconds)
 /* Nobody watches for a standstill here, and nothing moves between ranks. */
 #include "runtime/workers/internal.h"
 #define work_balance_start(balance, pool) nothing()
-#define work_balance_stop(balance)        nothing()
+#define work_balance_stop(pool)           nothing()
 #define work_guest_came(balance, guest)   ((void)(guest))
 #define work_placed_away(worker, task)    ((void)(worker), false)
 #define work_begins(worker, task)         ((void)(task), false)
-#define work_learn(worker, kernel, ticks) ((void)(kernel))
+#define work_learn(worker, task, ticks)   ((void)(task))
 #define work_serve(worker)                ((void)(worker))
 #define work_beg(worker, idle)            ((void)(idle))
 #define work_watch_start(pool, seconds)   nothing()

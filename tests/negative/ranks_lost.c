@@ -40,14 +40,16 @@ static const duite_kernel NAP = {
     .name = "nap", .body = nap_body, .access = {DUITE_RW}, .args_size = sizeof(double)};
 static const duite_kernel ASK = {.name = "ask", .body = ask_body, .access = {DUITE_RP, DUITE_WP}};
 
-static duite *start(double lost_seconds, size_t window)
+static duite *start(const char *how)
 {
     static const duite_kernel *const LIST[] = {&NAP, &ASK, &SET, &COPY, &ADD, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = NULL;
     options.kernels = LIST;
-    options.lost_seconds = rank ? 1e9 : lost_seconds; /* what rank 0 says counts */
-    options.window = window;
+    options.lost_seconds = rank ? 1e9 : 0.5; /* what rank 0 says counts */
+    options.window = strcmp(how, "window") ? 0 : 2;
+    if (!strcmp(how, "replay")) /* which waits for all ranks, to move objects */
+        options.balance = duite_balancer_find("migrate");
     if (duite_start(&rt, &options))
         fprintf(stderr, "start: %s\n", duite_message());
     return rt;
@@ -62,6 +64,23 @@ static int fork_all(duite *rt, const duite_object *object)
     return code;
 }
 
+static int build_nothing(duite *rt, void *context)
+{
+    (void)rt;
+    (void)context;
+    return 0;
+}
+
+/* The second replay waits. */
+static int replay_twice(duite *rt)
+{
+    duite_graph graph;
+    int code = duite_graph_new(rt, build_nothing, NULL, &graph);
+    for (int i = 0; i < 2 && !code; i++)
+        code = duite_replay(rt, graph, 1);
+    return code;
+}
+
 /* The code of the call that waits. */
 static int wait_for_it(duite **rt, const char *how, const duite_object *object)
 {
@@ -70,6 +89,8 @@ static int wait_for_it(duite **rt, const char *how, const duite_object *object)
     int code = fork_all(*rt, object);
     if (code || !strcmp(how, "window"))
         return code ? code : duite_fork(*rt, &ADD, NULL, 1, &object[0]);
+    if (!strcmp(how, "replay"))
+        return replay_twice(*rt);
     if (!strcmp(how, "get"))
         return duite_get(*rt, object[0], &value);
     if (!strcmp(how, "count"))
@@ -140,7 +161,7 @@ static int none_lost(duite *rt, const char *how, const duite_object *object, con
     return duite_stop(&rt) || code || early;
 }
 
-/* ranks_lost get|wait|count|stop|window|body|bodies|stopped, on 3 ranks */
+/* ranks_lost get|wait|replay|count|stop|window|body|bodies|stopped, on 3 ranks */
 int main(int argc, char **argv)
 {
     const char *how = argc > 1 ? argv[1] : "";
@@ -152,7 +173,7 @@ int main(int argc, char **argv)
     if (ranks != 3)
         return 2;
     MPI_Allgather(&own, 1, MPI_INT, process, 1, MPI_INT, MPI_COMM_WORLD);
-    duite *rt = start(0.5, strcmp(how, "window") ? 0 : 2);
+    duite *rt = start(how);
     if (!rt)
         return 2;
     for (int i = 0; i < 3; i++)

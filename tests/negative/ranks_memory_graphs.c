@@ -1,5 +1,5 @@
 /* Out of memory at every allocation in turn while graphs are recorded, changed and replayed, with
- * objects that change size and a law of the program: on one rank from a plan, on several forked. */
+ * objects that change size and a law of the program; with a balancer that moves objects, too. */
 
 #include "tests/negative/misuse.h"
 #include "tests/negative/starve.h"
@@ -10,6 +10,7 @@
 enum { COUNT = 20, ROUNDS = 4, SUM = 0 + 3 * ((1 + 3 * 1) + 3 * 1) };
 
 static int ranks;
+static const char *balance = "none";
 
 /* value[i] = 10 value[i] + the argument. */
 static int digit(const duite_call *call)
@@ -143,6 +144,7 @@ static int run(void)
 
     options.kernels = KERNELS;
     options.laws = LAWS;
+    options.balance = duite_balancer_find(balance);
     if (duite_start(&rt, &options))
         return rt == NULL;
     if (!make(rt, &o)) {
@@ -158,8 +160,11 @@ static int run(void)
     return right && !rt;
 }
 
-int main(void)
+/* ranks_memory_graphs [BALANCER] */
+int main(int argc, char **argv)
 {
+    if (argc > 1)
+        balance = argv[1];
     misuse_mpi();
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     starve("graphs", run);

@@ -9,6 +9,7 @@ ok "the system refuses on 1 rank" ranks 1 tests/negative/ranks_system
 for n in 2 3; do
     ok "out of memory on $n ranks" ranks $n tests/negative/ranks_memory
     ok "out of memory on $n ranks with graphs" ranks $n tests/negative/ranks_memory_graphs
+    ok "out of memory on $n ranks while objects move" ranks $n tests/negative/ranks_memory_graphs wander
     ok "the system refuses on one of $n ranks" ranks $n tests/negative/ranks_system
     ok "failures on $n ranks" ranks $n tests/negative/ranks_failures
     ok "different programs on $n ranks" ranks $n tests/negative/ranks_different

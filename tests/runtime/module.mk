@@ -59,6 +59,15 @@ tests_runtime_ranks_delegate_SOURCES = tests/runtime/ranks_delegate.c tests/nega
 tests_runtime_ranks_delegate_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_delegate.sh
 TESTS += tests/runtime/test_delegate.sh
+MOVING = tests/runtime/moving.c tests/runtime/moving.h tests/negative/misuse.c tests/negative/misuse.h
+check_PROGRAMS += tests/runtime/ranks_migrate tests/runtime/ranks_migrate_values
+tests_runtime_ranks_migrate_SOURCES = tests/runtime/ranks_migrate.c $(MOVING)
+tests_runtime_ranks_migrate_LDADD = libduite_core.la
+tests_runtime_ranks_migrate_values_SOURCES = tests/runtime/ranks_migrate_values.c $(MOVING)
+tests_runtime_ranks_migrate_values_LDADD = libduite_core.la
+dist_check_SCRIPTS += tests/runtime/test_migrate.sh tests/runtime/test_migrate_long.sh
+TESTS += tests/runtime/test_migrate.sh
+LONG_TESTS += tests/runtime/test_migrate_long.sh
 
 if HAVE_CHECK
 AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_rename
@@ -68,7 +77,7 @@ tests_runtime_test_rename_SOURCES = tests/runtime/test_rename.c tests/negative/m
 tests_runtime_test_rename_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
-RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_sched tests/runtime/test_check \
+RUNTIME_TESTS = tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched tests/runtime/test_check \
     tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
@@ -82,6 +91,8 @@ tests_runtime_test_laws_SOURCES = tests/runtime/test_laws.c tests/negative/misus
 tests_runtime_test_laws_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_settle_SOURCES = tests/runtime/test_settle.c
 tests_runtime_test_settle_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_balance_SOURCES = tests/runtime/test_balance.c
+tests_runtime_test_balance_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_sched_SOURCES = tests/runtime/test_sched.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_sched_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_SOURCES = tests/runtime/test_graphs.c

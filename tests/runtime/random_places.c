@@ -55,6 +55,14 @@ static unsigned char *count_runs(const struct run *run, const struct prog_contex
     return here;
 }
 
+/* Whether two objects that live together have other homes, as far as that is known. */
+static int are_apart(const struct run *run, const struct prog_op *op)
+{
+    const int home = run->home[op->object], other = run->home[op->objects[0]];
+
+    return home != other && !(run->moves && (home < 0 || other < 0));
+}
+
 void prog_check_places(struct run *run, const struct prog_context *context,
                        const struct prog_setup *setup)
 {
@@ -68,9 +76,9 @@ void prog_check_places(struct run *run, const struct prog_context *context,
         const struct prog_op *op = &run->prog->ops[i];
 
         run->at = i;
-        if (op->kind == PROG_FOLLOW && run->home[op->object] != run->home[op->objects[0]])
+        if (op->kind == PROG_FOLLOW && are_apart(run, op))
             prog_found(run, "object %u does not live with %u", op->object, op->objects[0]);
-        if (op->kind == PROG_VIEW && run->home[op->object] != run->home[op->objects[0]])
+        if (op->kind == PROG_VIEW && are_apart(run, op))
             prog_found(run, "view %u does not live with %u", op->object, op->objects[0]);
         if (op->kind != PROG_FORK && op->kind != PROG_GRAPH_FORK)
             continue;

@@ -130,6 +130,8 @@ static void ask_home(struct run *run, unsigned number)
 {
     const int home = duite_home(run->rt, run->object[number]);
 
+    if (run->moves)
+        return;
     if (home < 0 || home >= run->prog->n_ranks)
         prog_found(run, "object %u has home %d", number, home);
     if (run->home[number] >= 0 && run->home[number] != home)
@@ -318,6 +320,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     options.bind = 0;
     options.window = setup->window;
     options.rename_bytes = setup->rename;
+    run->moves = options.balance->migrate != NULL;
     const int code = duite_start(&run->rt, &options);
 
     expect(run, "start", code, DUITE_OK);
@@ -330,7 +333,9 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
         operation(run, &prog->ops[run->at], &run->answers->op[run->at]);
     }
     for (unsigned i = 0; i < prog->n_objects; i++)
-        if (run->home[i] < 0)
+        if (run->moves)
+            run->home[i] = duite_home(run->rt, run->object[i]);
+        else if (run->home[i] < 0)
             ask_home(run, i);
     duite_counters counters = {0};
 

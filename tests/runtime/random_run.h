@@ -20,7 +20,8 @@ struct run {
     int rank;
     size_t at;
     duite_object *object;    /* n_objects */
-    int *home;               /* n_objects: when last asked; -1 before */
+    int *home;               /* n_objects: when last asked; -1 before, and of what is freed if... */
+    int moves;               /* ... homes change: then they are asked for at the end only */
     struct run_graph *graph; /* n_graphs */
     unsigned char *bytes;    /* for the largest object */
     size_t largest;

@@ -115,7 +115,10 @@ ok "the same on 2 ranks with 2 threads, cyclic, shuffled" again ranks 2 "$DUITE_
 ok "the report names them" eval 'is ranks 2 && is threads 2 && is scheduler shuffle && is mapping cyclic'
 ok "the same on 2 ranks with tasks that run on either" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 1 --balance scatter
 ok "the report counts these" eval 'is balance scatter && test "$(value delegated_tasks)" -gt 0'
+ok "the same on 2 ranks with blocks that move" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 1 --balance wander
+ok "the report counts them" eval 'is balance wander && test "$(value migrated_objects)" -gt 0'
 ok "the same with tasks for who is idle" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 1 --balance delegate
+ok "the same with blocks for who has less to do" again ranks 2 "$DUITE_CLOTH" scene.yaml --threads 1 --balance migrate
 checked() { # the kernels keep to their declarations
     run scene.yaml --end 0.004 --report report.json --quiet || return 1
     plain=$(value state_hash)

@@ -1,0 +1,114 @@
+/* migrate: blocks get other homes when a rank's tasks take longer than those of the others. What is
+ * measured is never quite even, so small differences move nothing, and differences that come back
+ * after a move, so that they were none of the blocks', move ever less. */
+#include "runtime/balance/balance.h"
+#include "runtime/balance/refine.h"
+#include "runtime/base/memory.h"
+
+#include <string.h>
+
+#define LEAST_SLACK                                                                                \
+    0.05 /* a rank may have so much more than the mean; it grows if moves are in vain */
+#define MOST_SLACK 0.4
+#define LEAST_LOAD 1e-3 /* seconds a worker: what is less says nothing yet */
+#define LOOK_SHARE 0.01 /* of the time may go into looking */
+#define ANEW       0.95 /* of what a few moves come to: then a new map, which moves many, is better */
+
+enum { LONGEST = 32, MOST_REPLAYS = 1 << 20 };
+
+struct state {
+    double slack, before; /* before: the measured excess at the last move, or 0 */
+    uint64_t interval;
+};
+
+static void start(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed)
+{
+    (void)rank;
+    (void)n_ranks;
+    (void)worker;
+    (void)seed;
+    *(struct state *)state = (struct state){.slack = LEAST_SLACK, .interval = 1};
+}
+
+/* What the homes cost over the time to come. */
+static double total(const struct balance_bill *bill, double periods)
+{
+    return (bill->most + bill->cut) * periods + bill->move;
+}
+
+/* The better ones of refined and new homes, if they are better than the present ones. The program
+ * is expected to go on for as long as it has run. Returns whether `home` was changed. */
+static bool improve(const duite_blocks *blocks, const struct balance_bill *now, double periods,
+                    int *home)
+{
+    size_t n = blocks->graph.n;
+    struct balance_bill refined, anew;
+    int *tried = base_alloc(2 * n * sizeof *tried + 1), *other = tried + n;
+    bool fine = tried != NULL, changed = false;
+    if (fine) {
+        memcpy(tried, home, n * sizeof *tried);
+        memcpy(other, home, n * sizeof *other);
+    }
+    fine = fine && balance_refine(blocks, periods, tried) &&
+           balance_bill(blocks, home, tried, &refined);
+    if (fine && balance_anew(blocks, periods, other) && balance_bill(blocks, home, other, &anew) &&
+        total(&anew, periods) < ANEW * total(&refined, periods)) {
+        memcpy(tried, other, n * sizeof *tried);
+        refined = anew;
+    }
+    if (fine && total(&refined, periods) < total(now, periods)) {
+        changed = memcmp(home, tried, n * sizeof *home) != 0;
+        memcpy(home, tried, n * sizeof *home);
+    }
+    base_free(tried);
+    return changed;
+}
+
+/* Differences that a move left as they were are noise. */
+static void learn(struct state *own, double excess)
+{
+    if (own->before > 0 && excess > 0.75 * own->before)
+        own->slack = own->slack < MOST_SLACK / 2 ? 2 * own->slack : MOST_SLACK;
+    else if (own->slack > LEAST_SLACK && excess < own->slack / 2)
+        own->slack /= 2;
+    own->before = 0;
+}
+
+/* Not more often than the looks are worth. */
+static uint64_t next_look(const struct state *own, const duite_blocks *blocks)
+{
+    double replay = blocks->seconds / (double)blocks->since;
+    double least = replay > 0 ? blocks->look_seconds / (LOOK_SHARE * replay) : 1;
+    if (least > MOST_REPLAYS)
+        return MOST_REPLAYS;
+    return (uint64_t)least > own->interval ? (uint64_t)least : own->interval;
+}
+
+static uint64_t migrate(void *state, const duite_blocks *blocks, int *home)
+{
+    struct state *own = state;
+    struct balance_bill now;
+    if (blocks->replays < 2) /* the first replay is that of cold caches */
+        return 1;
+    double periods = (double)blocks->replays / (double)blocks->since;
+    bool moved = false;
+    if (balance_bill(blocks, home, home, &now) && now.even > LEAST_LOAD) {
+        double excess = now.most / now.even - 1;
+        learn(own, excess);
+        moved = excess > own->slack && improve(blocks, &now, periods, home);
+        own->before = moved ? excess : 0;
+    }
+    if (moved)
+        own->interval = 1;
+    else if (own->interval < LONGEST)
+        own->interval *= 2;
+    return next_look(own, blocks);
+}
+
+const duite_balancer balance_migrate = {
+    .name = "migrate",
+    .summary = "blocks of objects move from ranks whose tasks take longer",
+    .state_size = sizeof(struct state),
+    .start = start,
+    .migrate = migrate,
+};

@@ -1,0 +1,45 @@
+/* wander: an adversary for tests. At random replays random blocks move to random ranks, and leaf
+ * tasks run on any rank, whatever they cost and whoever has time. */
+#include "runtime/balance/balance.h"
+
+struct state {
+    uint64_t random;
+    int n_ranks;
+};
+
+static void start(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed)
+{
+    *(struct state *)state = (struct state){
+        .random = (seed * 1000033 + (uint64_t)rank) * 4099 + worker, .n_ranks = n_ranks};
+}
+
+static int random_rank(struct state *own)
+{
+    return (int)(duite_random(&own->random) % (uint64_t)own->n_ranks);
+}
+
+static int place(void *state, const duite_leaf *leaf)
+{
+    (void)leaf;
+    return random_rank(state);
+}
+
+/* None, some, or all of them; mostly at the next replay again. */
+static uint64_t migrate(void *state, const duite_blocks *blocks, int *home)
+{
+    struct state *own = state;
+    uint64_t of_four = duite_random(&own->random) % 5;
+    for (size_t i = 0; i < blocks->graph.n; i++)
+        if (!blocks->stays[i] && duite_random(&own->random) % 4 < of_four)
+            home[i] = random_rank(own);
+    return 1 + duite_random(&own->random) % 5 / 3;
+}
+
+const duite_balancer balance_wander = {
+    .name = "wander",
+    .summary = "blocks of objects and leaf tasks on random ranks from the seed, for tests",
+    .state_size = sizeof(struct state),
+    .start = start,
+    .place = place,
+    .migrate = migrate,
+};

@@ -57,8 +57,8 @@ static int make_solver(const struct system *s, const char *kind, KSP *ksp)
 }
 
 /* So many iterations, no norm but what the method needs. With set-up. The matrix has just been
- * written, as in a simulation, where each step has its own: one that was only read for a while is
- * no longer in the caches, does not get there by being read, and takes three times the time. */
+ * written, as in a simulation, where each step has its own: after a pause in which it was not,
+ * PETSc takes three times the time for as long as it is only read. */
 static int iterate(const struct system *s, const char *pc, PetscInt count, double *seconds)
 {
     KSP ksp;

@@ -1,4 +1,4 @@
-/* Runs random programs on groups of 1 to 4 of the ranks of one job, each group on its own. A
+/* Runs random programs on groups of the ranks of one job, each group on its own. A
  * program is its seed and the number of ranks; threads, scheduler, mapping and balancer follow from
  * the seed too unless they are given. */
 
@@ -221,10 +221,10 @@ static void run_group(const struct settings *settings, unsigned group, unsigned 
     done[1] += member == 0 ? wrong : 0;
 }
 
-/* Four ranks are cut into groups; fewer are one group. */
+/* Four ranks are cut into groups; fewer or more are one group. */
 static void run_many(const struct settings *settings, int rank, int size, unsigned long *done)
 {
-    if (size < 4) {
+    if (size != 4) {
         run_group(settings, 0, settings->programs, MPI_COMM_WORLD, done);
         return;
     }
@@ -304,10 +304,10 @@ int main(int argc, char **argv)
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
     if (read_options(argc, argv, &settings) || settings.ranks > size || settings.ranks < 1 ||
-        (!settings.one && size > 4)) {
+        (!settings.one && size > 8)) {
         fprintf(
             stderr,
-            "%s: --base SEED --programs N, on 1 to 4 ranks; or --seed SEED --ranks R [--threads T] "
+            "%s: --base SEED --programs N, on 1 to 8 ranks; or --seed SEED --ranks R [--threads T] "
             "[--scheduler S] [--mapping M] [--balance B] [--window W] [--rename BYTES] [--repeat "
             "N] [--verbose], "
             "on R ranks or "

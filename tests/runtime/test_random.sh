@@ -1,5 +1,6 @@
 #!/bin/sh
-# Random programs on groups of 1 to 4 ranks with 1 to 4 threads, every scheduler and mapping, against the interpreter.
+# Random programs on groups of 1 to 4 ranks with 1 to 4 threads, every scheduler, mapping and balancer, against the
+# interpreter; some on 5 and 8 ranks.
 # A program that goes wrong is printed with the options that run it again.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
@@ -7,3 +8,6 @@ plan_later
 programs=10000
 if quick; then programs=500; fi
 ok "$programs random programs" ranks 4 tests/runtime/random_programs --base 1 --programs $programs
+for n in 5 8; do
+    ok "$((programs / 100)) on $n ranks" ranks $n tests/runtime/random_programs --base 80${n}000 --programs $((programs / 100))
+done

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <xxhash.h>
 
 struct run {
     const struct simulate_options *options;
@@ -117,6 +118,26 @@ static int open_output(struct run *run, struct cloth_error *error)
     return code;
 }
 
+/* Rank 0 alone reads the scene, so it is compared what the ranks were asked to read. Collective;
+ * the same on all ranks. */
+static int check_same(const struct run *run, struct cloth_error *error)
+{
+    const struct simulate_options *options = run->options;
+    uint64_t asked = XXH64(options->scene, strlen(options->scene), 0), first;
+    for (size_t i = 0; i < options->n_sets; i++)
+        asked = XXH64(options->sets[i].text, strlen(options->sets[i].text), asked);
+    first = asked;
+    MPI_Bcast(&first, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+    int other = asked == first ? run->ranks : run->rank;
+    MPI_Allreduce(MPI_IN_PLACE, &other, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    if (other == run->ranks)
+        return CLOTH_OK;
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "ranks 0 and %d were started with different scenes, or different values for "
+                      "them (--set and the like): give all ranks the same",
+                      other);
+}
+
 /* Rank 0 reads the scene and cuts it into blocks; the others are sent their blocks by the run. */
 static int read_and_cut(struct run *run, struct cloth_error *error)
 {
@@ -134,6 +155,8 @@ static int prepare(struct run *run)
 {
     const struct simulate_options *options = run->options;
     struct cloth_error error = {0};
+    if (check_same(run, &error))
+        return agree(run, &error);
     if (run->rank == 0)
         read_and_cut(run, &error);
     else

@@ -78,7 +78,7 @@ different() { # scenes on the two ranks
     done
     shift
     limited "${MPIRUN:-mpirun}" "$@" > "$scratch/log" 2>&1
-    test $? = 1 && says "ranks 0 and 1 "
+    test $? = 2 && says "ranks 0 and 1 were started with different scenes"
 }
 
 # What follows a fault: nobody is left, files are whole.

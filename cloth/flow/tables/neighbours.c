@@ -98,6 +98,7 @@ static void fill(struct flow_source *source, const struct need *need)
 {
     uint32_t *slot = source->neighbours.slot, *copies = source->neighbours.copies;
     uint32_t *copy = source->neighbours.copy;
+    size_t first = 0; /* of the block's needs; there may be none at all */
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         struct flow_table *shape = source->shape + b;
         uint32_t s = 0;
@@ -105,17 +106,18 @@ static void fill(struct flow_source *source, const struct need *need)
         shape->copies = copies;
         shape->copy = copy;
         for (uint32_t i = 0; i < shape->n_copies; i++) {
-            if (i == 0 || need[i].other != need[i - 1].other) {
+            const struct need *one = &need[first + i];
+            if (i == 0 || one->other != one[-1].other) {
                 copies[s] = i;
-                slot[s++] = need[i].other;
+                slot[s++] = one->other;
             }
-            copy[i] = source->rim[need[i].place];
+            copy[i] = source->rim[one->place];
         }
         copies[s] = shape->n_copies;
         slot += s;
         copies += s + 1;
         copy += shape->n_copies;
-        need += shape->n_copies;
+        first += shape->n_copies;
     }
 }
 

@@ -179,7 +179,8 @@ static int pass(struct twin *twin, const struct solve_scalars *now, int from,
         code = send_rows(twin, rim);
     pass_blocks(twin, false, now, from, own);
     if (!code)
-        code = MPI_Allreduce(own, sum, SOLVE_DOTS, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+        code = MPI_Allreduce(own, sum, SOLVE_RZ, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    sum[SOLVE_RZ] = sum[SOLVE_RR];
     return on && !code ? take_rows(twin, rim) : code;
 }
 
@@ -234,7 +235,7 @@ static struct twin_traffic count_traffic(const struct twin *twin)
     /* A sum over 2^k ranks is k exchanges at least. */
     for (int ranks = 1; ranks < twin->ranks; ranks *= 2) {
         own.messages++;
-        own.bytes += SOLVE_DOTS * sizeof(double);
+        own.bytes += SOLVE_RZ * sizeof(double);
     }
     MPI_Allreduce(&own, &sum, 2, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
     return sum;

@@ -50,6 +50,13 @@ static inline void flow_put_double(unsigned char *bytes, double value)
         bytes[i] = (unsigned char)(bits >> (8 * i));
 }
 
+/* How many of the dots a pass without preconditioner sums: r.z is r.r there, and the rest is for a
+ * stop in the mass norm alone. */
+static inline size_t flow_dots(const struct model *model)
+{
+    return model->stop == MODEL_STOP_MASS_NORM ? SOLVE_DOTS : SOLVE_RZ;
+}
+
 /* Adds what a stop in the mass norm asks for to the dots of a pass. */
 static inline void flow_add_norms(const duite_call *call, const struct solve_block *block,
                                   const struct solve_rows *rows, double dots[SOLVE_DOTS])

@@ -64,9 +64,9 @@ static int pass(const duite_call *call)
     const struct solve_cut cut = {t->n_cut, t->copy_end, t->n_rim, t->rim};
     const struct solve_rows rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
                                     duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)};
-    double *dots = duite_out(call, SUMS, double);
+    double dots[SOLVE_DOTS] = {0}, *sums = duite_out(call, SUMS, double);
     if (scalars->phase == SOLVE_LAST)
-        dots[SOLVE_RR] = solve_finish(t->n, scalars->alpha, rows.q, rows.p, rows.dv, rows.r);
+        sums[SOLVE_RR] = solve_finish(t->n, scalars->alpha, rows.q, rows.p, rows.dv, rows.r);
     if (scalars->phase != SOLVE_ON)
         return 0;
     advance_copies(call, t, scalars);
@@ -74,6 +74,7 @@ static int pass(const duite_call *call)
                duite_in(call, COPIES, phys_vec) + t->n_copies, scalars->alpha, scalars->beta, &rows,
                dots);
     flow_add_norms(call, &t->matrix, &rows, dots);
+    memcpy(sums, dots, flow_dots(flow_of(call)->model) * sizeof *sums);
     write_rim(t, rows.q, duite_out(call, RIM, double));
     return 0;
 }
@@ -128,8 +129,10 @@ int flow_next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
 
 static int scalars(const duite_call *call)
 {
-    return flow_next_scalars(call, duite_in(call, 0, double),
-                             duite_in(call, 1, struct solve_scalars),
+    double dots[SOLVE_DOTS] = {0};
+    memcpy(dots, duite_in(call, 0, double), flow_dots(flow_of(call)->model) * sizeof *dots);
+    dots[SOLVE_RZ] = dots[SOLVE_RR];
+    return flow_next_scalars(call, dots, duite_in(call, 1, struct solve_scalars),
                              duite_out(call, 2, struct solve_scalars));
 }
 const duite_kernel flow_scalars = {

@@ -1,6 +1,6 @@
 /* A block's objects live where its positions live; the graph that mappings see is the one of the
  * blocks: a block weighs its vertices, and two blocks exchange what each has copies of. */
-#include "cloth/flow/tasks/tasks.h"
+#include "cloth/flow/tasks/bodies.h"
 
 #include <stddef.h>
 
@@ -65,7 +65,7 @@ void flow_objects_make(struct flow_state *state)
     for (uint32_t b = 0; b < tables->n_blocks; b++)
         hint(state, b);
     for (int i = 0; i < 2; i++) {
-        make_shared(state, DUITE_F64, SOLVE_DOTS, state->sums + i);
+        make_shared(state, DUITE_F64, flow_dots(state->flow->model), state->sums + i);
         make_shared(state, DUITE_F64, SOLVE_SCALARS, state->scalars + i);
         make_shared(state, DUITE_F64, FLOW_STATUS, state->status + i);
     }

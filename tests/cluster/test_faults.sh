@@ -9,9 +9,18 @@ on_hosts 2
 keep="--mca oob_tcp_keepalive_time 2 --mca oob_tcp_keepalive_intvl 1 --mca oob_tcp_keepalive_probes 3"
 out=$scratch/frames
 
+# A cable that was pulled just now has hosts believe for a while that there is nobody at its other end.
+forget_faults() {
+    for wait in $(seq 50); do
+        on h2 ip -o link show e0 | grep -q LOWER_UP && break
+        sleep 0.1
+    done
+    on h1 ip neigh flush dev e0 && on h2 ip neigh flush dev e0
+}
+
 # A sheet that would take hours, on two ranks; returns once it has written some frames.
 begin() { # [ARGUMENT of mpirun...]
-    plug h2 && rm -rf "$out"
+    plug h2 && forget_faults && rm -rf "$out"
     "${MPIRUN:-mpirun}" -n 2 "$@" "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --quiet --threads 2 --end 1000 --output "$out" \
         --set 'cloths[0].mesh.grid.nx=40' --set 'cloths[0].mesh.grid.ny=40' --grain 200 --set time.fps=1000 > "$scratch/log" 2>&1 &
     job=$!

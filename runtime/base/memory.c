@@ -7,14 +7,17 @@
 #include <string.h>
 #include <sys/mman.h>
 
+#define PAGE ((size_t)2 << 20) /* a large one */
+
 void *base_alloc(size_t size)
 {
-    static const size_t PAGE = (size_t)2 << 20;
-    if (size > SIZE_MAX - BASE_LINE)
+    const size_t step = size < PAGE ? BASE_LINE : PAGE;
+    if (size > SIZE_MAX - PAGE)
         return NULL;
-    size_t lines = (size + BASE_LINE - 1) / BASE_LINE;
-    void *memory = aligned_alloc(size < PAGE ? BASE_LINE : PAGE, (lines ? lines : 1) * BASE_LINE);
-    if (memory && size >= PAGE) /* advice: without it the pages are small */
+    const size_t steps = (size + step - 1) / step;
+    void *memory = aligned_alloc(step, (steps ? steps : 1) * step);
+    if (memory &&
+        size >= PAGE) /* advice: without it the pages are small, as those of the end are */
         madvise(memory, size / PAGE * PAGE, MADV_HUGEPAGE);
     return memory;
 }

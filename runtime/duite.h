@@ -258,8 +258,10 @@ const char *const *duite_balancer_names(void);
  * longer than the way of their inputs there and of their outputs back. Tasks that may go are those
  * whose fork named no rank and whose kernel postpones nothing, has no side effects and does not say
  * `stays`; in recorded graphs, those of rounds that are forked. Such a body runs wherever there is
- * time: what it finds by its context must serve there, too. Results and failures are the same; a
- * failure names the rank on which the body ran. `scatter` sends leaves anywhere, for tests. */
+ * time: what it finds by its context must serve there, too, and be there before the first such fork
+ * of any rank (after a duite_wait that follows it on all of them). Results and failures are the
+ * same; a failure names the rank on which the body ran. `scatter` sends leaves anywhere, for tests.
+ */
 
 /* Migration: with the balancer `migrate` objects get other homes when the bodies of one rank's
  * tasks take longer than those of the others. A leader moves with all that follow it, and with all

@@ -78,10 +78,8 @@ static int begin(struct cg_session *s)
     s->report = (struct flow_report){0};
     s->run = (struct flow_state){.flow = s->flow, .rt = s->rt, .report = &s->report};
     int code = flow_run_begin(&s->run);
-    if (code)
-        return tasks_code(code);
-    flow_far_make(&s->run);
-    code = flow_cg_record(&s->run);
+    if (!code)
+        code = flow_cg_record(&s->run);
     if (!code)
         code = flow_initialise(&s->run);
     if (!code)

@@ -88,10 +88,8 @@ static int begin(struct flow_state *state, struct sheet *sheet, uint32_t count)
     int code = flow_run_begin(state);
     for (; args.block < state->head.n_blocks && !code; args.block++)
         code = DUITE_FORK(state->rt, &sheet_wave_kernel, &args, state->block[args.block].table);
-    if (!code) {
-        flow_far_make(state);
+    if (!code)
         code = flow_cg_record(state);
-    }
     if (!code)
         code = flow_initialise(state);
     if (!code)

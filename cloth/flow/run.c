@@ -176,11 +176,15 @@ static void describe(const struct flow_state *state)
                                           .partition_hash = flow->partition_hash};
 }
 
-/* Objects, then tables, which go where the objects are. */
+/* Objects, then tables, which go where the objects are. What bodies find by their context is made
+ * before the tables are waited for: another rank may be ahead, and its balancer may send tasks here
+ * that this rank's main program has not come to. */
 static int make(struct flow_state *state)
 {
     flow_objects_make(state);
     flow_parcels_make(state);
+    if (state->flow->model->integrator == MODEL_IMPLICIT_EULER)
+        flow_far_make(state);
     int code = flow_deal(state);
     if (!code)
         code = duite_count_all(state->rt, &state->before);
@@ -213,17 +217,12 @@ int flow_run_begin(struct flow_state *state)
     return code;
 }
 
-static int record(struct flow_state *state)
-{
-    flow_far_make(state);
-    return flow_cg_record(state);
-}
-
 /* All steps, or until a stop that was asked for has had its frame. */
 static int run_steps(struct flow_state *state)
 {
     const uint64_t n = state->flow->n_steps;
-    int code = state->flow->model->integrator == MODEL_IMPLICIT_EULER ? record(state) : DUITE_OK;
+    const bool implicit = state->flow->model->integrator == MODEL_IMPLICIT_EULER;
+    int code = implicit ? flow_cg_record(state) : DUITE_OK;
     if (!code)
         code = flow_initialise(state);
     if (!code)

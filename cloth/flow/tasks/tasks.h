@@ -315,7 +315,7 @@ int flow_cg(struct flow_state *state, uint64_t step);
  * the far rims of a block, for even passes or odd ones. */
 void flow_far_take(struct flow_state *state);
 void flow_far_free(struct flow_state *state);
-void flow_far_make(struct flow_state *state);
+void flow_far_make(struct flow_state *state); /* flow_run_begin does */
 int flow_far_pack(struct flow_state *state, uint32_t block, int to);
 
 /* The step after which a frame is written. */

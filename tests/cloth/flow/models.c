@@ -173,6 +173,8 @@ static void run_prepared(struct record *r, struct flow *flow)
     options.bind = 0;
     if (r->scheduler)
         options.scheduler = duite_scheduler_find(r->scheduler);
+    if (r->balance)
+        options.balance = duite_balancer_find(r->balance);
     if (duite_start(&rt, &options))
         die(duite_message());
     r->vertices = flow_vertices(flow);

@@ -44,6 +44,7 @@ struct record {
     uint64_t break_frame;  /* writing this frame fails; 0: none */
     unsigned threads;      /* 0: 1 */
     const char *scheduler; /* NULL: the default */
+    const char *balance;   /* NULL: the default */
 };
 
 /* Prepares, runs and frees; every rank has the whole record then. Starts MPI if it is not; it ends

@@ -158,7 +158,7 @@ static int run(struct ranks_session *session, struct serve_request *request, dou
     if (!code)
         code = check(&state, sheet);
     end(&state);
-    return ranks_stop_cloth(&rt, code);
+    return ranks_stop(&rt, code);
 }
 
 static int ours(void *context, struct serve_request *request, double *value)

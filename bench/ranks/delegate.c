@@ -99,24 +99,16 @@ static int run(void *context, struct serve_request *request, double *value)
     static const duite_kernel *const kernels[] = {&LEAF, &BRANCH, NULL};
     const struct tree_args args = {(uint64_t)serve_number(request, "seed"),
                                    (uint32_t)serve_number(request, "depth")};
-    char scheduler[40];
     duite *rt = NULL;
-    int code = session->tasks.rt ? tasks_code(duite_stop(&session->tasks.rt)) : 0;
-    if (code)
-        return code;
-    serve_word(request, "scheduler", scheduler, sizeof scheduler);
     duite_options options = duite_options_default();
     options.kernels = kernels;
-    options.threads = (unsigned)serve_number(request, "threads");
-    options.scheduler = duite_scheduler_find(scheduler);
     options.balance = duite_balancer_find("delegate");
-    code = tasks_code(duite_start(&rt, &options));
+    int code = ranks_start(session, request, &options, &rt);
     if (!code) /* the first tree tells what a leaf costs, and warms up */
         code = time_tree(rt, &args, value);
     if (!code)
         code = time_tree(rt, &args, value);
-    const int failed = rt ? duite_stop(&rt) : 0;
-    return code ? code : tasks_code(failed);
+    return ranks_stop(&rt, code);
 }
 
 static const struct serve_run RUNS[] = {{"delegate", run}, {0}};

@@ -63,7 +63,7 @@ static int run(struct ranks_session *session, struct serve_request *request)
         code = serve_fail("%s", error.text);
     if (!code && report.cg_iterations_total != sheet->model.max_iterations)
         code = serve_fail("wrong answer: %g iterations", (double)report.cg_iterations_total);
-    return ranks_stop_cloth(&rt, code);
+    return ranks_stop(&rt, code);
 }
 
 static int memory(void *context, struct serve_request *request, double *value)

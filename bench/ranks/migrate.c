@@ -162,17 +162,10 @@ static int start(struct ranks_session *session, struct serve_request *request, c
                  duite **rt)
 {
     static const duite_kernel *const kernels[] = {&STEP, NULL};
-    char scheduler[40];
-    int code = session->tasks.rt ? tasks_code(duite_stop(&session->tasks.rt)) : 0;
-    if (code)
-        return code;
-    serve_word(request, "scheduler", scheduler, sizeof scheduler);
     duite_options options = duite_options_default();
     options.kernels = kernels;
-    options.threads = (unsigned)serve_number(request, "threads");
-    options.scheduler = duite_scheduler_find(scheduler);
     options.balance = duite_balancer_find(balance);
-    return tasks_code(duite_start(rt, &options));
+    return ranks_start(session, request, &options, rt);
 }
 
 /* The ring moves on for a while, in which blocks may move; then it is timed. */
@@ -195,8 +188,7 @@ static int run(void *context, struct serve_request *request, const char *balance
         code = check(&ring, FIRST_STEPS + steps);
     if (!code)
         drop(&ring);
-    const int failed = duite_stop(&ring.rt);
-    return code ? code : tasks_code(failed);
+    return ranks_stop(&ring.rt, code);
 }
 
 static int run_time(void *context, struct serve_request *request, double *value)

@@ -55,23 +55,29 @@ static const duite_kernel *const *kernels(void)
     return all;
 }
 
-int ranks_start_cloth(struct ranks_session *session, struct serve_request *request, duite **rt)
+int ranks_start(struct ranks_session *session, struct serve_request *request,
+                duite_options *options, duite **rt)
 {
     char scheduler[40];
-    int code = session->tasks.rt ? tasks_code(duite_stop(&session->tasks.rt)) : 0;
+    const int code = ranks_stop(&session->tasks.rt, 0);
     if (code)
         return code;
     serve_word(request, "scheduler", scheduler, sizeof scheduler);
+    options->threads = (unsigned)serve_number(request, "threads");
+    options->scheduler = duite_scheduler_find(scheduler);
+    return tasks_code(duite_start(rt, options));
+}
+
+int ranks_start_cloth(struct ranks_session *session, struct serve_request *request, duite **rt)
+{
     duite_options options = duite_options_default();
     options.kernels = kernels();
     options.context = session->sheet.flow;
-    options.threads = (unsigned)serve_number(request, "threads");
-    options.scheduler = duite_scheduler_find(scheduler);
     options.bind = !ranks_on_hosts(); /* hosts on one machine know nothing of each other's cores */
-    return tasks_code(duite_start(rt, &options));
+    return ranks_start(session, request, &options, rt);
 }
 
-int ranks_stop_cloth(duite **rt, int code)
+int ranks_stop(duite **rt, int code)
 {
     const int failed = *rt ? duite_stop(rt) : 0;
     return code ? code : tasks_code(failed);

@@ -23,10 +23,13 @@ struct subject_shape ranks_twin_on_hosts(unsigned hosts);
 /* Whether this process is on a host of its own. */
 bool ranks_on_hosts(void);
 
-/* Starts a runtime for the cloth (threads=, scheduler=) or ends it; the session's of the bench
- * "tasks" is ended before. */
+/* Starts a runtime (threads=, scheduler=; the rest as `options` has it), the session's of the bench
+ * "tasks" being ended before; the same for the cloth. Ends it, if there is one; gives `code` or why
+ * it did not end. */
+int ranks_start(struct ranks_session *session, struct serve_request *request,
+                duite_options *options, duite **rt);
 int ranks_start_cloth(struct ranks_session *session, struct serve_request *request, duite **rt);
-int ranks_stop_cloth(duite **rt, int code);
+int ranks_stop(duite **rt, int code);
 
 /* ---- The twin's solve ---- */
 

@@ -2,8 +2,7 @@
 # duite-bench runs every case in tiny sizes, against every rival that was built, and checks the answers; its lines and its
 # JSON say the same; what makes no sense, answers wrong, dies or is missing is told.
 . "${srcdir:-.}/tests/support/tap.sh"
-bench=$PWD/bench/duite-bench
-skip_unless "$bench"
+. "${srcdir:-.}/tests/bench/bench.sh"
 plan_later
 
 tasks_in_full() { DUITE_TIMEOUT=120 limited "$bench" tasks "$@"; }
@@ -45,17 +44,10 @@ same_figures() {
               exit !(n > 10 && !bad) }' "$2"
 }
 
-# Every metric that --list names has a line: a figure, or why there is none.
-all_listed() {
-    for metric in $(tasks --list | sed -n 's/^    \([a-z0-9_]*\) (.*/\1/p'); do
-        grep -Eq "^$metric: ([-0-9]|not built: |not found )" "$1" || { echo "no line of $metric" && return 1; }
-    done
-}
-
 # What is promised, and nothing else has a target.
 targets_listed() {
     "$bench" tasks --list > "$scratch/list" || return 1
-    sed -n 's/^    \([a-z0-9_]*\) ([a-z_]*), target /\1 /p' "$scratch/list" > "$scratch/targets"
+    targets "$bench" tasks > "$scratch/targets"
     diff - "$scratch/targets" << 'END' && grep -q '^    wake_us (us)$' "$scratch/list" &&
 stencil_replay_ns_per_task_vs_libomp <= 0.05
 stencil_dynamic_ns_per_task_vs_libomp <= 0.15
@@ -76,15 +68,6 @@ no_targets() { # OPTION...: other sizes or threads have none
     "$bench" tasks --list "$@" > "$scratch/list" && ! grep target "$scratch/list"
 }
 
-# A bench of its own whose rivals are the liar: StarPU alone, or all of a stencil's.
-liars_bench() { # FOLDER RIVAL...
-    folder=$scratch/$1
-    shift
-    mkdir -p "$folder/rivals" && cp "$bench" "$folder" || return 1
-    for rival; do
-        cp tests/bench/liar "$folder/rivals/$rival" || return 1
-    done
-}
 lied_to_in_full() { # ROLE OPTION...
     role=$1
     shift
@@ -131,7 +114,7 @@ ok "runs every case and checks the answers" tasks --json "$scratch/json"
 cp "$scratch/output" "$scratch/lines"
 ok "its JSON is well-formed" well_formed "$scratch/json"
 ok "its JSON has the figures of its lines" same_figures "$scratch/lines" "$scratch/json"
-ok "every metric listed has its line" all_listed "$scratch/lines"
+ok "every metric listed has its line" every_metric "$scratch/lines" "not built: |not found " tasks
 ok "the metrics that have a target, and which" targets_listed
 ok "no targets with --quick" no_targets --quick
 ok "no targets with other threads" no_targets --threads 3

@@ -2,8 +2,7 @@
 # duite-bench cg makes its states and runs every case in tiny sizes, against every rival that was built, and checks the answers; each
 # metric has its line; states are kept, and are the same wherever they are made; a wrong answer is told.
 . "${srcdir:-.}/tests/support/tap.sh"
-bench=$PWD/bench/duite-bench
-skip_unless "$bench"
+. "${srcdir:-.}/tests/bench/bench.sh"
 plan_later
 
 bench_cg() { DUITE_TIMEOUT=200 limited "$bench" cg --states "$scratch/states" "$@"; }
@@ -11,13 +10,11 @@ bench_cg() { DUITE_TIMEOUT=200 limited "$bench" cg --states "$scratch/states" "$
 all_listed() {
     bench_cg --quick --repeats 1 > "$scratch/lines" 2> "$scratch/said" || { cat "$scratch/said" && return 1; }
     cat "$scratch/lines"
-    for metric in $(bench_cg --list | sed -n 's/^    \([a-z0-9_]*\) (.*/\1/p'); do
-        grep -Eq "^$metric: ([-0-9]|not built: )" "$scratch/lines" || { echo "no line of $metric" && return 1; }
-    done
+    every_metric "$scratch/lines" "not built: " bench_cg
 }
 
 targets_listed() {
-    bench_cg --list | sed -n 's/^    \([a-z0-9_]*\) ([a-z_]*), target /\1 /p' > "$scratch/targets"
+    targets bench_cg > "$scratch/targets"
     diff - "$scratch/targets" << 'END'
 spring_150_vs_petsc <= 0.26
 spring_150_vs_twin <= 1.05
@@ -47,15 +44,6 @@ kept() { # nothing is made anew; what is damaged is
         test "$(wc -l < "$scratch/first")" -ge 17
 }
 
-# A bench of its own with a PETSc that is wrong.
-refused() {
-    mkdir -p "$scratch/bench/rivals" && cp "$bench" "$scratch/bench" && cp tests/bench/liar "$scratch/bench/rivals/petsc" || return 99
-    LIAR=wrong DUITE_TIMEOUT=60 limited "$scratch/bench/duite-bench" cg --quick --repeats 1 --only spring_150 \
-        --states "$scratch/states" > "$scratch/said" 2>&1
-    status=$?
-    cat "$scratch/said"
-    test $status = 1 && grep -q "spring_150, petsc.*: wrong answer" "$scratch/said"
-}
 no_folder() {
     status=0
     bench_cg --quick --states "$scratch/lines/states" > "$scratch/said" 2>&1 || status=$?
@@ -66,5 +54,5 @@ no_folder() {
 ok "runs every case, and every metric listed has its line" all_listed
 ok "the metrics that have a target, and which" targets_listed
 ok "states are kept, and the same from three threads" kept
-ok "a wrong answer is an error" refused
+ok "a wrong answer is an error" lie_told petsc spring_150 cg --quick --repeats 1 --only spring_150 --states "$scratch/states"
 ok "a folder that cannot be" no_folder

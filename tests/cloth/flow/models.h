@@ -14,7 +14,7 @@ struct setup {
     struct model_plane plane;
     struct model_pin pin;
     struct model_load load;
-    uint32_t pinned[4], loaded[4];
+    uint32_t pinned[40], loaded[4];
 };
 
 /* A square sheet of n x n vertices and 1 m, level at y = 0, gravity, springs with damping, no pins,

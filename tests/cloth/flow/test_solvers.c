@@ -88,35 +88,30 @@ START_TEST(one_block)
 }
 END_TEST
 
-/* Blocks of four vertices, of which some have no vertex that is free. */
-START_TEST(held_blocks)
+/* A sheet in blocks of four vertices, the first of which are held. */
+static void check_held(uint32_t side, uint32_t n_held)
 {
     struct setup setup;
     uint32_t held[40];
-    setup_sheet(&setup, 10);
-    setup.model.grain = 4;
-    for (uint32_t i = 0; i < 40; i++)
+    for (uint32_t i = 0; i < n_held; i++)
         held[i] = i;
-    setup.pin = (struct model_pin){.kind = MODEL_PIN_VERTICES, .n_vertices = 40, .vertices = held};
-    setup.cloth.pins = &setup.pin;
-    setup.cloth.n_pins = 1;
+    setup_sheet(&setup, side);
+    setup.model.grain = 4;
+    setup_pin(&setup, n_held, held);
     check(&setup);
+}
+
+/* Some blocks have no vertex that is free. */
+START_TEST(held_blocks)
+{
+    check_held(10, 40);
 }
 END_TEST
 
 /* Nothing is free at all. */
 START_TEST(all_held)
 {
-    struct setup setup;
-    uint32_t held[16];
-    setup_sheet(&setup, 4);
-    setup.model.grain = 4;
-    for (uint32_t i = 0; i < 16; i++)
-        held[i] = i;
-    setup.pin = (struct model_pin){.kind = MODEL_PIN_VERTICES, .n_vertices = 16, .vertices = held};
-    setup.cloth.pins = &setup.pin;
-    setup.cloth.n_pins = 1;
-    check(&setup);
+    check_held(4, 16);
 }
 END_TEST
 

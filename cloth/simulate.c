@@ -76,9 +76,9 @@ static int check_report(const struct simulate_options *options, struct cloth_err
 static int open_system(const struct run *run, struct cloth_error *error)
 {
     const struct model *model = &run->model;
-    if (model->integrator == MODEL_EXPLICIT_EULER)
+    if (!model_is_implicit(model))
         return cloth_fail(error, CLOTH_E_INPUT,
-                          "--save-system: the integrator explicit_euler solves no system");
+                          "--save-system: an explicit integrator solves no system");
     if (model->end / model->h + 0.5 < 1)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: the scene ends before its first step");

@@ -31,7 +31,7 @@ static double hidden_fraction(const struct summary *summary)
 static double iterations_mean(const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
-    bool implicit = summary->model->integrator == MODEL_IMPLICIT_EULER;
+    bool implicit = model_is_implicit(summary->model);
     return implicit ? ratio((double)report->cg_iterations_total, (double)report->steps) : NAN;
 }
 
@@ -70,7 +70,7 @@ void summary_print(FILE *file, const struct summary *summary)
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));
     print_times(file, report);
-    if (model->integrator == MODEL_IMPLICIT_EULER) {
+    if (model_is_implicit(model)) {
         fprintf(file, "  CG iterations    %.2f a step on average, %" PRIu64 " at most\n",
                 iterations_mean(summary), report->cg_iterations_max);
         fprintf(file,
@@ -145,7 +145,7 @@ static void add_solver(struct output_report *json, const struct summary *summary
 {
     const struct flow_report *report = summary->report;
     output_report_number(json, "cg_iterations_mean", iterations_mean(summary));
-    if (summary->model->integrator == MODEL_IMPLICIT_EULER)
+    if (model_is_implicit(summary->model))
         output_report_integer(json, "cg_iterations_max", report->cg_iterations_max);
     else
         output_report_null(json, "cg_iterations_max");

@@ -67,7 +67,14 @@ struct model_plane {
     double point[3], normal[3]; /* normal of length 1, towards the free side */
 };
 
-enum model_integrator { MODEL_EXPLICIT_EULER, MODEL_IMPLICIT_EULER };
+/* Explicit ones come first. docs/physics.md has their formulas. */
+enum model_integrator {
+    MODEL_EXPLICIT_EULER,   /* x by the velocity before the step */
+    MODEL_SYMPLECTIC_EULER, /* x by the velocity after it */
+    MODEL_VERLET,           /* velocity Verlet, drag solved for in the first half step */
+    MODEL_RK4,              /* the classical Runge-Kutta method */
+    MODEL_IMPLICIT_EULER
+};
 enum model_stop {
     MODEL_STOP_RELATIVE,
     MODEL_STOP_ABSOLUTE,
@@ -103,6 +110,12 @@ struct model {
 
     uint32_t grain; /* vertices a block */
 };
+
+/* Whether its steps solve a linear system. */
+static inline int model_is_implicit(const struct model *model)
+{
+    return model->integrator >= MODEL_IMPLICIT_EULER;
+}
 
 /* Frees what the model owns and clears it. */
 void model_free(struct model *model);

@@ -10,10 +10,12 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/bodies.h \
     cloth/flow/tasks/cg.c \
     cloth/flow/tasks/deal.c \
+    cloth/flow/tasks/explicit.c \
     cloth/flow/tasks/far.c \
     cloth/flow/tasks/finish.c \
     cloth/flow/tasks/frames.c \
     cloth/flow/tasks/kernels_cg.c \
+    cloth/flow/tasks/kernels_explicit.c \
     cloth/flow/tasks/kernels_report.c \
     cloth/flow/tasks/kernels_step.c \
     cloth/flow/tasks/kernels_turned.c \

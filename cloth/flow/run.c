@@ -37,10 +37,11 @@ const duite_kernel *const *flow_kernels(void)
     static const duite_kernel *const all[] = {
         /* Without a preconditioner */
         &flow_tell_head, &flow_tell_shared, &flow_table_make, &flow_table_keep, &flow_collect,
-        &flow_ready, &flow_initial, &flow_force, &flow_explicit, &flow_implicit, &flow_matrix,
-        &flow_begin, &flow_pack, &flow_start, &flow_pass, &flow_scalars, &flow_velocity_dv,
-        &flow_velocity_a, &flow_position, &flow_collide, &flow_status, &flow_frame, &flow_stretch,
-        &flow_most, &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
+        &flow_ready, &flow_initial, &flow_force, &flow_force_free, &flow_explicit, &flow_kick_first,
+        &flow_kick_second, &flow_runge, &flow_implicit, &flow_matrix, &flow_begin, &flow_pack,
+        &flow_start, &flow_pass, &flow_scalars, &flow_velocity_dv, &flow_velocity_a, &flow_position,
+        &flow_collide, &flow_status, &flow_frame, &flow_stretch, &flow_most, &flow_seconds,
+        &flow_tell, &flow_system_part, &flow_system_save,
         /* With one */
         &flow_basis, &flow_basis_copies, &flow_couple, &flow_factor_coarse, &flow_factor,
         &flow_start_turned, &flow_begin_coarse, &flow_pass_turned, &flow_scalars_turned,
@@ -183,7 +184,7 @@ static int make(struct flow_state *state)
 {
     flow_objects_make(state);
     flow_parcels_make(state);
-    if (state->flow->model->integrator == MODEL_IMPLICIT_EULER)
+    if (model_is_implicit(state->flow->model))
         flow_far_make(state);
     int code = flow_deal(state);
     if (!code)
@@ -221,8 +222,7 @@ int flow_run_begin(struct flow_state *state)
 static int run_steps(struct flow_state *state)
 {
     const uint64_t n = state->flow->n_steps;
-    const bool implicit = state->flow->model->integrator == MODEL_IMPLICIT_EULER;
-    int code = implicit ? flow_cg_record(state) : DUITE_OK;
+    int code = model_is_implicit(state->flow->model) ? flow_cg_record(state) : DUITE_OK;
     if (!code)
         code = flow_initialise(state);
     if (!code)
@@ -320,7 +320,7 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
     duite_wait(rt);
     if (flow->model)
         report->simulated_seconds = (double)report->steps * flow->model->h;
-    if (flow->model && flow->model->integrator == MODEL_EXPLICIT_EULER)
+    if (flow->model && !model_is_implicit(flow->model))
         report->momentum_lost = report->mass_norm_error = NAN;
     flow_memory_free(&state);
     flow->output = NULL;

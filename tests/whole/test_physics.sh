@@ -1,6 +1,7 @@
 #!/bin/sh
 # The cases of motion, failure and stop once more, with the cloth spread over two ranks.
 . "${srcdir:-.}/tests/support/tap.sh"
+skip_unless tests/cloth/flow/test_integrators
 skip_unless tests/cloth/flow/test_motion
 skip_unless tests/cloth/flow/test_run
 skip_unless tests/cloth/flow/test_failures
@@ -19,3 +20,5 @@ CK_RUN_CASE=memory
 ok "out of memory on one of 2 ranks" ranks 2 tests/cloth/flow/test_memory
 CK_RUN_CASE=solvers
 ok "preconditioners on 2 ranks" ranks 2 tests/cloth/flow/test_solvers
+CK_RUN_CASE=integrators
+ok "integrators on 2 ranks" ranks 2 tests/cloth/flow/test_integrators

@@ -62,7 +62,7 @@ refused() { # SENTENCE ARGUMENT...
     cat said
     test $status = 2 && grep -q -e "$text" said
 }
-ok "explicit runs have no system" refused "explicit_euler solves no system" --save-system none --set integrator=explicit_euler
+ok "explicit runs have no system" refused "an explicit integrator solves no system" --save-system none --set integrator=explicit_euler
 ok "and leave no folder" test ! -e none
 : > file
 ok "a folder that cannot be made" refused "cannot make the folder file/x" --save-system file/x

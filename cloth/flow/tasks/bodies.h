@@ -31,6 +31,10 @@ static inline struct flow_table flow_table_of(const duite_call *call)
     return table;
 }
 
+/* Fails if a row diverged, naming it by the input's number. what: "position" or "velocity". */
+int flow_check(const duite_call *call, const struct flow_table *table, const phys_vec *y,
+               const char *what);
+
 /* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are
  * none. */
 static inline void flow_write_rim(const struct flow_table *table, const phys_vec *y, phys_vec *rim)

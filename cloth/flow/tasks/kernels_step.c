@@ -5,12 +5,12 @@
 #include "cloth/physics/particle.h"
 
 #include <math.h>
+#include <string.h>
 
 #define ARGS sizeof(struct flow_args)
 
-/* Fails if a row diverged, naming it by the input's number. what: "position" or "velocity". */
-static int check(const duite_call *call, const struct flow_table *t, const phys_vec *y,
-                 const char *what)
+int flow_check(const duite_call *call, const struct flow_table *t, const phys_vec *y,
+               const char *what)
 {
     const size_t bad = phys_diverged(t->n, FLOW_BOUND, y);
     if (bad == t->n)
@@ -38,12 +38,11 @@ const duite_kernel flow_initial = {.name = "initial",
                                    .access = {DUITE_R, DUITE_W, DUITE_W, DUITE_W, DUITE_W},
                                    .args_size = ARGS};
 
-static int force(const duite_call *call)
+/* Adds the forces inside the cloth. */
+static void add_inner(const duite_call *call, const struct flow_table *t)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
     const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
     phys_vec *f = duite_out(call, 3, phys_vec);
-    phys_outside(t->n, t->load, t->drag, v, f);
     struct phys_springs springs = flow_table_inner(t);
     phys_springs_force(&springs, x, v, f);
     for (uint32_t s = 0; s < t->n_slots; s++) {
@@ -51,6 +50,13 @@ static int force(const duite_call *call)
         phys_springs_force_cut(&springs, x, v, duite_in(call, 4 + s, phys_vec),
                                duite_in(call, 4 + t->n_slots + s, phys_vec), f);
     }
+}
+
+static int force(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    phys_outside(t->n, t->load, t->drag, duite_in(call, 2, phys_vec), duite_out(call, 3, phys_vec));
+    add_inner(call, t);
     return 0;
 }
 FLOW_TIMED(force, FLOW_FORCE)
@@ -59,6 +65,20 @@ const duite_kernel flow_force = {.name = "force",
                                  .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W},
                                  .rest = DUITE_R,
                                  .args_size = ARGS};
+
+static int force_free(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    memcpy(duite_out(call, 3, phys_vec), t->load, t->n * sizeof *t->load);
+    add_inner(call, t);
+    return 0;
+}
+FLOW_TIMED(force_free, FLOW_FORCE)
+const duite_kernel flow_force_free = {.name = "force_free",
+                                      .body = force_free_timed,
+                                      .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W},
+                                      .rest = DUITE_R,
+                                      .args_size = ARGS};
 
 static int acceleration(const duite_call *call)
 {
@@ -140,7 +160,7 @@ static int velocity_dv(const duite_call *call)
     }
     phys_advance(t->n, 1, dv, v);
     flow_write_rim(t, v, duite_out(call, 6, phys_vec));
-    return check(call, t, v, "velocity");
+    return flow_check(call, t, v, "velocity");
 }
 FLOW_TIMED(velocity_dv, FLOW_VELOCITY)
 const duite_kernel flow_velocity_dv = {
@@ -156,7 +176,7 @@ static int velocity_a(const duite_call *call)
     phys_vec *v = duite_out(call, 2, phys_vec);
     phys_advance(t->n, flow_of(call)->model->h, duite_in(call, 1, phys_vec), v);
     flow_write_rim(t, v, duite_out(call, 3, phys_vec));
-    return check(call, t, v, "velocity");
+    return flow_check(call, t, v, "velocity");
 }
 FLOW_TIMED(velocity_a, FLOW_VELOCITY)
 const duite_kernel flow_velocity_a = {.name = "velocity_explicit",
@@ -170,7 +190,7 @@ static int position(const duite_call *call)
     phys_vec *x = duite_out(call, 2, phys_vec);
     phys_advance(t->n, flow_of(call)->model->h, duite_in(call, 1, phys_vec), x);
     flow_write_rim(t, x, duite_out(call, 3, phys_vec));
-    return check(call, t, x, "position");
+    return flow_check(call, t, x, "position");
 }
 FLOW_TIMED(position, FLOW_POSITION)
 const duite_kernel flow_position = {.name = "position",
@@ -187,7 +207,7 @@ static int collide(const duite_call *call)
         phys_plane(t->n, model->planes[i].point, model->planes[i].normal, t->free, x, v);
     flow_write_rim(t, x, duite_out(call, 3, phys_vec));
     flow_write_rim(t, v, duite_out(call, 4, phys_vec));
-    return check(call, t, x, "position");
+    return flow_check(call, t, x, "position");
 }
 FLOW_TIMED(collide, FLOW_COLLIDE)
 const duite_kernel flow_collide = {.name = "collide",

@@ -22,19 +22,40 @@ static void make_block(duite *rt, const struct flow_table *t, struct flow_object
     duite_new(rt, DUITE_F64, 4 * (size_t)t->n, &o->x);
     make(rt, t->n, o->x, &o->v);
     make(rt, t->n, o->x, &o->f);
+    make(rt, t->n_rim, o->x, &o->rim_x);
+    make(rt, t->n_rim, o->x, &o->rim_v);
+    make_numbers(rt, 1, o->x, &o->stretch);
+    duite_new(rt, DUITE_BYTE, flow_table_bytes(t), &o->table);
+    duite_follow(rt, o->table, o->x);
+}
+
+static void make_implicit(duite *rt, const struct flow_table *t, struct flow_objects *o)
+{
     make(rt, (size_t)t->n_inner + t->n_cut, o->x, &o->a);
     make(rt, t->n, o->x, &o->dv);
     make(rt, t->n, o->x, &o->r);
     make(rt, t->n, o->x, &o->p);
     make(rt, t->n, o->x, &o->q);
-    make(rt, t->n_rim, o->x, &o->rim_x);
-    make(rt, t->n_rim, o->x, &o->rim_v);
     make(rt, 2 * (size_t)t->n_copies, o->x, &o->copies);
     for (int i = 0; i < 2; i++)
         make_numbers(rt, 3 * (size_t)t->n_rim, o->x, o->rim_q + i);
-    make_numbers(rt, 1, o->x, &o->stretch);
-    duite_new(rt, DUITE_BYTE, flow_table_bytes(t), &o->table);
-    duite_follow(rt, o->table, o->x);
+}
+
+/* What the integrator of the run keeps of a block besides its state. */
+static void make_integrator(struct flow_state *state, const struct flow_table *t,
+                            struct flow_objects *o)
+{
+    const struct model *model = state->flow->model;
+    const bool runge = model->integrator == MODEL_RK4;
+    if (model_is_implicit(model))
+        make_implicit(state->rt, t, o);
+    if (runge || model->integrator == MODEL_VERLET)
+        make(state->rt, t->n, o->x, &o->v0);
+    if (!runge)
+        return;
+    make(state->rt, t->n, o->x, &o->x0);
+    make(state->rt, t->n, o->x, &o->sum_x);
+    make(state->rt, t->n, o->x, &o->sum_v);
 }
 
 static void hint(struct flow_state *state, uint32_t b)
@@ -62,6 +83,8 @@ void flow_objects_make(struct flow_state *state)
     const struct flow_tables *tables = &state->flow->tables;
     for (uint32_t b = 0; b < tables->n_blocks; b++)
         make_block(state->rt, tables->block + b, state->block + b);
+    for (uint32_t b = 0; b < tables->n_blocks; b++)
+        make_integrator(state, tables->block + b, state->block + b);
     for (uint32_t b = 0; b < tables->n_blocks; b++)
         hint(state, b);
     for (int i = 0; i < 2; i++) {
@@ -100,7 +123,7 @@ int flow_objects_free(struct flow_state *state)
             o->x,        o->v,      o->f,      o->a,     o->dv,       o->r,         o->p,
             o->q,        o->copies, o->rim_x,  o->rim_v, o->rim_q[0], o->rim_q[1],  o->stretch,
             o->z,        o->s,      o->factor, o->part,  o->basis,    o->rim_basis, o->basis_copies,
-            o->coupling, o->table};
+            o->coupling, o->x0,     o->v0,     o->sum_x, o->sum_v,    o->table};
         const int failed = release(state->rt, sizeof all / sizeof *all, all);
         code = code ? code : failed;
     }

@@ -1,101 +1,79 @@
 /* A step is forked whole while the one before it may still run; the main program looks at the
- * status of a step when the next one is under way. Explicit: f, a, x += h v, v += h a. Implicit: f,
- * b, A, dv, v += dv, x += h v. */
+ * status of a step when the next one is under way. Implicit: f, b, A, dv, v += dv, x += h v. */
 #include "cloth/flow/tasks/tasks.h"
 
 #include <math.h>
 #include <stddef.h>
 
-#define RIM_X offsetof(struct flow_objects, rim_x)
-#define RIM_V offsetof(struct flow_objects, rim_v)
-
-/* What follows the objects of a block: nothing, the status of the step, or before it the scalars of
- * a solve. */
-enum behind { NOTHING, STATUS, SCALARS_AND_STATUS };
-
-/* Forks one kernel on every block. `objects` of a block are picked by their offsets, ended by -1.
- */
-static int fork_all(struct flow_state *state, const duite_kernel *kernel, uint64_t step,
-                    const long *offsets, enum behind behind, long rim, long rim2)
+int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct flow_args args,
+                  const long *objects, enum flow_behind behind, long rim, long rim2)
 {
-    struct flow_args args = {.step = (uint32_t)step};
     int code = DUITE_OK;
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
-        duite_object objects[DUITE_MAX_ACCESS];
+    for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+        duite_object own[DUITE_MAX_ACCESS];
         size_t n = 0;
-        for (; offsets[n] >= 0; n++)
-            objects[n] =
+        for (; objects[n] >= 0; n++)
+            own[n] =
                 *(const duite_object *)(const void *)((const char *)(state->block + args.block) +
-                                                      offsets[n]);
-        if (behind == SCALARS_AND_STATUS)
-            objects[n++] = state->scalars[0];
-        if (behind != NOTHING)
-            objects[n++] = state->status[step % 2];
-        code = flow_fork(state, kernel, &args, n, objects, rim, rim2);
+                                                      objects[n]);
+        if (behind == FLOW_THEN_SCALARS_AND_STATUS)
+            own[n++] = state->scalars[0];
+        if (behind != FLOW_NOTHING)
+            own[n++] = state->status[args.step % 2];
+        code = flow_fork(state, kernel, &args, n, own, rim, rim2);
     }
     return code;
 }
 
-/* The objects of a block, by name. */
-#define AT(name)     (long)offsetof(struct flow_objects, name)
-#define OBJECTS(...) ((const long[]){__VA_ARGS__, -1})
-
 int flow_initialise(struct flow_state *state)
 {
-    const int code = fork_all(state, &flow_initial, 0, OBJECTS(AT(x), AT(v), AT(rim_x), AT(rim_v)),
-                              NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+    const int code =
+        flow_fork_all(state, &flow_initial, (struct flow_args){0},
+                      FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
+                      FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
     return code ? code : flow_turned_initialise(state);
-}
-
-static int step_explicit(struct flow_state *state, uint64_t step)
-{
-    int code =
-        fork_all(state, &flow_explicit, step, OBJECTS(AT(f)), NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
-    if (!code && step > 0)
-        code = flow_step_status(state, step - 1);
-    if (!code)
-        code = fork_all(state, &flow_position, step, OBJECTS(AT(v), AT(x), AT(rim_x)), STATUS,
-                        FLOW_NO_RIM, FLOW_NO_RIM);
-    if (!code)
-        code = fork_all(state, &flow_velocity_a, step, OBJECTS(AT(f), AT(v), AT(rim_v)), STATUS,
-                        FLOW_NO_RIM, FLOW_NO_RIM);
-    return code;
 }
 
 static int step_implicit(struct flow_state *state, uint64_t step)
 {
+    const struct flow_args args = {.step = (uint32_t)step};
     int code =
-        fork_all(state, &flow_implicit, step, OBJECTS(AT(x), AT(v), AT(f)), NOTHING, RIM_X, RIM_V);
+        flow_fork_all(state, &flow_force, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)),
+                      FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
     if (!code)
-        code =
-            fork_all(state, &flow_matrix, step, OBJECTS(AT(x), AT(a)), NOTHING, RIM_X, FLOW_NO_RIM);
+        code = flow_fork_all(state, &flow_implicit, args,
+                             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)), FLOW_NOTHING,
+                             FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    if (!code)
+        code = flow_fork_all(state, &flow_matrix, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)),
+                             FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_NO_RIM);
     if (!code)
         code = flow_cg(state, step);
     if (!code)
-        code = fork_all(state, &flow_velocity_dv, step,
-                        OBJECTS(AT(f), AT(a), AT(dv), AT(r), AT(v), AT(rim_v)), SCALARS_AND_STATUS,
-                        FLOW_NO_RIM, FLOW_NO_RIM);
+        code = flow_fork_all(state, &flow_velocity_dv, args,
+                             FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(a), FLOW_AT(dv), FLOW_AT(r),
+                                          FLOW_AT(v), FLOW_AT(rim_v)),
+                             FLOW_THEN_SCALARS_AND_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
     if (!code)
-        code = fork_all(state, &flow_position, step, OBJECTS(AT(v), AT(x), AT(rim_x)), STATUS,
-                        FLOW_NO_RIM, FLOW_NO_RIM);
+        code = flow_fork_all(state, &flow_position, args,
+                             FLOW_OBJECTS(FLOW_AT(v), FLOW_AT(x), FLOW_AT(rim_x)), FLOW_THEN_STATUS,
+                             FLOW_NO_RIM, FLOW_NO_RIM);
     return code;
 }
 
 int flow_step(struct flow_state *state, uint64_t step)
 {
     const struct model *model = state->flow->model;
+    const struct flow_args args = {.step = (uint32_t)step};
     const double nothing[FLOW_STATUS] = {0};
     int code = duite_set(state->rt, state->status[step % 2], nothing);
     if (!code)
         code =
-            fork_all(state, &flow_force, step, OBJECTS(AT(x), AT(v), AT(f)), NOTHING, RIM_X, RIM_V);
-    if (!code)
-        code = model->integrator == MODEL_EXPLICIT_EULER ? step_explicit(state, step)
-                                                         : step_implicit(state, step);
+            model_is_implicit(model) ? step_implicit(state, step) : flow_step_explicit(state, step);
     if (!code && model->n_planes)
-        code = fork_all(state, &flow_collide, step, OBJECTS(AT(x), AT(v), AT(rim_x), AT(rim_v)),
-                        NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
-    const struct flow_args args = {.step = (uint32_t)step};
+        code = flow_fork_all(state, &flow_collide, args,
+                             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
+                             FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
     if (!code)
         code = duite_fork_at(state->rt, 0, &flow_status, &args, 1, &state->status[step % 2]);
     return code;

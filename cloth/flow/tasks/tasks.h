@@ -89,6 +89,7 @@ struct flow_args {
     uint32_t block;
     uint32_t step;
     uint64_t frame;
+    uint32_t stage; /* of a step by RK4 */
 };
 
 /* Indices into the status of a step, F64, zero before the step and summed by its tasks. */
@@ -126,7 +127,14 @@ extern const duite_kernel flow_collect;     /* r vector of a block, w it without
 extern const duite_kernel flow_ready;       /* cw ready: fails if this rank cannot begin */
 extern const duite_kernel flow_initial;     /* table, w x, w v, w rim of x, w rim of v */
 extern const duite_kernel flow_force;       /* table, r x, r v, w f; rims of x, rims of v */
+extern const duite_kernel flow_force_free;  /* the same without drag */
 extern const duite_kernel flow_explicit;    /* table, rw f: acceleration */
+extern const duite_kernel flow_kick_first;  /* table, r f, rw v: guess of that at the end, w rim of
+                                               it, w v of the half step */
+extern const duite_kernel flow_kick_second; /* table, r f, r v of the half step, w v, w rim of v, cw
+                                               status */
+extern const duite_kernel flow_runge; /* table, r f: acceleration, rw x, rw v, rw x0, rw v0, rw
+                                         sum_x, rw sum_v, w rim of x, w rim of v, cw status */
 extern const duite_kernel
     flow_implicit; /* table, r x, r v, rw f: right-hand side; rims of x, rims of v */
 extern const duite_kernel flow_matrix; /* table, r x, w a; rims of x */
@@ -170,7 +178,10 @@ extern const duite_kernel flow_system_save; /* rw token; parts of all blocks: on
 /* Shared objects of a block. copies: r of its copies, then p. rim_q: three numbers a row. table: an
  * image (cloth/flow/tables/tables.h), never written once it is dealt. */
 struct flow_objects {
-    duite_object table, x, v, f, a, dv, r, p, q, copies, rim_x, rim_v, rim_q[2], stretch;
+    duite_object table, x, v, f, rim_x, rim_v, stretch;
+    duite_object a, dv, r, p, q, copies, rim_q[2]; /* of implicit runs */
+    duite_object x0, v0, sum_x, sum_v; /* RK4: struct phys_runge; Verlet: v0, that of the half step
+                                        */
     /* With a preconditioner; copies has z for r, rim_q s for q. */
     duite_object z, s, factor, part;
     duite_object basis, rim_basis, basis_copies, coupling; /* with a coarse part */
@@ -298,10 +309,25 @@ enum { FLOW_NO_RIM = -1 };
 int flow_fork(struct flow_state *state, const duite_kernel *kernel, const struct flow_args *args,
               size_t n, const duite_object *objects, long offset, long offset2);
 
+/* The objects of a block, by name: FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v)). */
+#define FLOW_AT(name)     (long)offsetof(struct flow_objects, name)
+#define FLOW_OBJECTS(...) ((const long[]){__VA_ARGS__, FLOW_NO_RIM})
+
+/* What follows the objects of a block: nothing, the status of the step, or before it the scalars of
+ * a solve. */
+enum flow_behind { FLOW_NOTHING, FLOW_THEN_STATUS, FLOW_THEN_SCALARS_AND_STATUS };
+
+/* Forks one kernel on every block, like flow_fork. args: of all of them but for the block; objects:
+ * offsets of a block's own, FLOW_OBJECTS. */
+int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct flow_args args,
+                  const long *objects, enum flow_behind behind, long rim, long rim2);
+
 /* Forks the start of all blocks. */
 int flow_initialise(struct flow_state *state);
 /* Forks a step (0, 1, ...) and waits for the one before it. */
 int flow_step(struct flow_state *state, uint64_t step);
+/* The same by an explicit integrator, between the start of its status and contact. */
+int flow_step_explicit(struct flow_state *state, uint64_t step);
 /* Waits for a step that was forked whole; adds what it says of itself to the report and shows it to
  * the program. */
 int flow_step_status(struct flow_state *state, uint64_t step);

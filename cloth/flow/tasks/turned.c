@@ -23,8 +23,8 @@ static void without_coarse(struct flow *flow, uint32_t n_blocks)
 
 void flow_turned_choose(struct flow *flow, uint32_t n_blocks)
 {
-    const bool implicit = flow->model->integrator == MODEL_IMPLICIT_EULER;
-    flow->preconditioner = implicit ? flow->model->preconditioner : MODEL_PLAIN;
+    flow->preconditioner =
+        model_is_implicit(flow->model) ? flow->model->preconditioner : MODEL_PLAIN;
     if (flow_is_coarse(flow) && n_blocks > SOLVE_MOST_BLOCKS)
         without_coarse(flow, n_blocks);
 }

@@ -150,6 +150,16 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
     return CLOTH_OK;
 }
 
+/* Which of n words; the schema lets no other pass. */
+static int word_of(const char *const *words, size_t n, const char *word)
+{
+    int found = 0;
+    for (size_t i = 0; i < n; i++)
+        if (!strcmp(words[i], word))
+            found = (int)i;
+    return found;
+}
+
 static enum model_preconditioner preconditioner_of(const char *word)
 {
     static const char *const words[] = {[MODEL_PLAIN] = "none",
@@ -157,18 +167,23 @@ static enum model_preconditioner preconditioner_of(const char *word)
                                         [MODEL_IC0] = "ic0",
                                         [MODEL_COARSE] = "coarse",
                                         [MODEL_IC0_COARSE] = "ic0_coarse"};
-    int found = MODEL_PLAIN;
-    for (int i = 0; i < (int)(sizeof words / sizeof *words); i++)
-        if (!strcmp(words[i], word))
-            found = i;
-    return (enum model_preconditioner)found;
+    return (enum model_preconditioner)word_of(words, sizeof words / sizeof *words, word);
+}
+
+static enum model_integrator integrator_of(const char *word)
+{
+    static const char *const words[] = {[MODEL_EXPLICIT_EULER] = "explicit_euler",
+                                        [MODEL_SYMPLECTIC_EULER] = "symplectic_euler",
+                                        [MODEL_VERLET] = "verlet",
+                                        [MODEL_RK4] = "rk4",
+                                        [MODEL_IMPLICIT_EULER] = "implicit_euler"};
+    return (enum model_integrator)word_of(words, sizeof words / sizeof *words, word);
 }
 
 static void build_solver(struct model *model, const struct scene_tree *tree)
 {
     int solver = scene_tree_get(tree, 1, "solver"), stop = scene_tree_get(tree, solver, "stop");
-    bool explicit = !strcmp(scene_tree_text(tree, 1, "integrator"), "explicit_euler");
-    model->integrator = explicit ? MODEL_EXPLICIT_EULER : MODEL_IMPLICIT_EULER;
+    model->integrator = integrator_of(scene_tree_text(tree, 1, "integrator"));
     model->preconditioner = preconditioner_of(scene_tree_text(tree, solver, "preconditioner"));
     model->max_iterations = scene_tree_integer(tree, solver, "max_iterations");
     if (scene_tree_get(tree, stop, "count")) {

@@ -143,7 +143,8 @@ static const struct scene_rule solver_keys[] = {
     {0}};
 
 static const char *const contacts[] = {"project", NULL};
-static const char *const integrators[] = {"implicit_euler", "explicit_euler", NULL};
+static const char *const integrators[] = {"implicit_euler", "explicit_euler", "symplectic_euler",
+                                          "verlet", "rk4", NULL};
 
 static const struct scene_rule scene_keys[] = {
     {"schema", SCENE_INTEGER, .required = true, .least = 1, .most = 1,

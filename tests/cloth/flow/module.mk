@@ -22,6 +22,10 @@ tests_cloth_flow_test_solvers_SOURCES = tests/cloth/flow/test_solvers.c $(FLOW_T
 tests_cloth_flow_test_solvers_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/flow/test_solvers
 TESTS += tests/cloth/flow/test_failures tests/cloth/flow/test_motion tests/cloth/flow/test_run
+check_PROGRAMS += tests/cloth/flow/test_integrators
+tests_cloth_flow_test_integrators_SOURCES = tests/cloth/flow/test_integrators.c $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_integrators_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/flow/test_integrators
 endif
 dist_check_SCRIPTS += tests/cloth/flow/test_ranks.sh
 TESTS += tests/cloth/flow/test_ranks.sh

@@ -163,8 +163,9 @@ START_TEST(wrong_kinds)
             .error = ":4:11: cloths[0].name is a list of 1; a text is expected"},
            {"name: sheet", "name: !mine a",
             .error = ":4:11: cloths[0].name has the tag !mine; a value without a tag is expected"},
-           {"gravity: [0, -9.81, 0]", "integrator: rk4",
-            .error = ":2:13: integrator is rk4; implicit_euler or explicit_euler is expected"},
+           {"gravity: [0, -9.81, 0]", "integrator: rk5",
+            .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
+                     "symplectic_euler or verlet or rk4 is expected"},
            {"gravity: [0, -9.81, 0]", "contact: filter",
             .error = ":2:10: contact is filter; project is expected"},
            {"[{vertices: [0, 3]}]", "[]\n    loads: []",

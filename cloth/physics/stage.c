@@ -1,0 +1,53 @@
+/* A row that is held has the acceleration and the velocity zero, and so stays where it is. */
+#include "cloth/physics/stage.h"
+
+void phys_kick(size_t n, double t, double ahead, const double *mass, const double *drag,
+               const double *free, const phys_vec *f, const phys_vec *v, phys_vec *w)
+{
+    for (size_t i = 0; i < n; i++)
+        w[i] = v[i] + free[i] * t / (mass[i] + ahead * t * drag[i]) * (f[i] - drag[i] * v[i]);
+}
+
+static void first(size_t n, double h, const phys_vec *a, const struct phys_runge *r, phys_vec *x,
+                  phys_vec *v)
+{
+    for (size_t i = 0; i < n; i++) {
+        r->x0[i] = x[i];
+        r->v0[i] = v[i];
+        r->sum_x[i] = v[i];
+        r->sum_v[i] = a[i];
+        x[i] += 0.5 * h * v[i];
+        v[i] += 0.5 * h * a[i];
+    }
+}
+
+static void middle(size_t n, double h, const phys_vec *a, const struct phys_runge *r, phys_vec *x,
+                   phys_vec *v)
+{
+    for (size_t i = 0; i < n; i++) {
+        r->sum_x[i] += 2 * v[i];
+        r->sum_v[i] += 2 * a[i];
+        x[i] = r->x0[i] + h * v[i];
+        v[i] = r->v0[i] + h * a[i];
+    }
+}
+
+static void last(size_t n, double h, const phys_vec *a, const struct phys_runge *r, phys_vec *x,
+                 phys_vec *v)
+{
+    for (size_t i = 0; i < n; i++) {
+        x[i] = r->x0[i] + h / 6 * (r->sum_x[i] + v[i]);
+        v[i] = r->v0[i] + h / 6 * (r->sum_v[i] + a[i]);
+    }
+}
+
+void phys_runge_stage(size_t n, double h, int stage, const phys_vec *a,
+                      const struct phys_runge *runge, phys_vec *x, phys_vec *v)
+{
+    if (stage == 0)
+        first(n, h, a, runge, x, v);
+    else if (stage == PHYS_RUNGE_STAGES - 1)
+        last(n, h, a, runge, x, v);
+    else
+        middle(n, stage == 1 ? 0.5 * h : h, a, runge, x, v);
+}

@@ -1,0 +1,36 @@
+#ifndef CLOTH_PHYSICS_STAGE_H
+#define CLOTH_PHYSICS_STAGE_H
+
+#include "cloth/physics/vec.h"
+
+#include <stddef.h>
+
+/* Parts of explicit steps of more than one stage. Arrays have n rows and the units of
+ * cloth/physics/particle.h. Each row is computed from itself alone. Pure functions; nothing is
+ * allocated. */
+
+/* A half step of velocity Verlet of t seconds:
+ *
+ *     w = v + t free (f - drag v) / (mass + ahead t drag)
+ *
+ * f: N, without the drag, which is linear in the velocity of its own vertex and so can be solved
+ * for there: ahead = 1 is implicit in it (v the velocity before), ahead = 0 explicit. The two
+ * halves of a step, one of each kind, are second order together and damp at any t drag / mass.
+ * w may be v. */
+void phys_kick(size_t n, double t, double ahead, const double *mass, const double *drag,
+               const double *free, const phys_vec *f, const phys_vec *v, phys_vec *w);
+
+/* The state of a step of the classical Runge-Kutta method (Kutta 1901), n rows each: x0, v0 where
+ * it began; sum_x, sum_v the weighted slopes so far. */
+struct phys_runge {
+    phys_vec *x0, *v0, *sum_x, *sum_v;
+};
+
+/* Ends stage 0, 1, 2 or 3 of a step of h seconds, whose slopes are v and the acceleration a at x,
+ * v: keeps the slopes and moves x, v to where the next stage is, after stage 3 to the end of the
+ * step. Stage 0 needs nothing of *runge. */
+enum { PHYS_RUNGE_STAGES = 4 };
+void phys_runge_stage(size_t n, double h, int stage, const phys_vec *a,
+                      const struct phys_runge *runge, phys_vec *x, phys_vec *v);
+
+#endif

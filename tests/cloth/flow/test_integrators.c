@@ -1,0 +1,267 @@
+/* Every integrator against closed forms: free fall, a weight on a damped spring (its decay and
+ * frequency are those that the scheme's own formula gives, and near those of the equation of
+ * motion), and the order of convergence in h. Figures are printed. */
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <complex.h>
+#include <math.h>
+#include <stdio.h>
+
+/* The weight of setup_weight: kg, N/m. */
+static const double M = 0.1, K = 40, G = 9.81;
+
+static const struct scheme {
+    const char *name;
+    enum model_integrator integrator;
+    double drop;  /* in free fall, n steps of h: g h^2 n (n + drop) / 2 */
+    int order;    /* of convergence */
+    double h;     /* s, for the weight */
+    double along; /* s, damping along the spring */
+} SCHEMES[] = {
+    {"explicit_euler", MODEL_EXPLICIT_EULER, -1, 1, 0.001, 0.002},
+    {"symplectic_euler", MODEL_SYMPLECTIC_EULER, 1, 1, 0.01, 0.002},
+    {"verlet", MODEL_VERLET, 0, 2, 0.01, 0},
+    {"rk4", MODEL_RK4, 0, 4, 0.01, 0.002},
+    {"implicit_euler", MODEL_IMPLICIT_EULER, 1, 1, 0.01, 0.002},
+};
+enum { N_SCHEMES = sizeof SCHEMES / sizeof *SCHEMES };
+
+static void run(struct record *record, struct setup *setup, const struct scheme *scheme)
+{
+    setup->model.integrator = scheme->integrator;
+    setup->model.tolerance = 1e-13;
+    record_run(record, &setup->model);
+    ck_assert_msg(record->code == 0, "%s: %s", scheme->name, record->error.text);
+}
+
+START_TEST(free_fall)
+{
+    const struct scheme *scheme = SCHEMES + _i;
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 8);
+    setup.model.end = 0.48;
+    setup.model.fps = 25;
+    run(&record, &setup, scheme);
+    const double n = 480, drop = G * 1e-6 * n * (n + scheme->drop) / 2;
+    for (size_t v = 0; v < record.vertices; v++)
+        for (size_t c = 0; c < 3; c++)
+            ck_assert_double_eq_tol(record_at(&record, 12, v, c),
+                                    record_at(&record, 0, v, c) - (c == 1 ? drop : 0), 5e-11);
+    ck_assert_int_eq(isnan(record.report.momentum_lost) != 0, !model_is_implicit(&setup.model));
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+/* ---- A weight on a spring ---- */
+
+/* The damping of the weight, kg/s: of its velocity, and along the spring. */
+static double damping(const struct setup *setup)
+{
+    return setup->material.damping_viscous + setup->material.damping_mass * M +
+           setup->material.damping_stiffness * K;
+}
+
+static void weigh(struct record *record, struct setup *setup, const struct scheme *scheme, double h,
+                  double end)
+{
+    setup_weight(setup);
+    setup->material.damping_viscous = 0.01;
+    setup->material.damping_mass = 0.3;
+    setup->material.damping_stiffness = scheme->along;
+    setup->model.h = h;
+    setup->model.end = end;
+    setup->model.fps = 1 / h;
+    run(record, setup, scheme);
+}
+
+/* How far below balance, m. */
+static double below(const struct record *record, size_t frame)
+{
+    return -record_at(record, frame, 1, 1) - 1 - M * G / K;
+}
+
+/* Two steps of a linear scheme: s'' = trace s' - determinant s. The two numbers by the formula of
+ * the scheme, e the damping. */
+struct map {
+    double trace, determinant;
+};
+
+static struct map map_of(enum model_integrator integrator, double h, double e)
+{
+    const double a = h * e / M, w = h * h * K / M;
+    const double complex z = h * (-e / (2 * M) + I * sqrt(K / M - e * e / (4 * M * M)));
+    const double complex r = 1 + z + z * z / 2 + z * z * z / 6 + z * z * z * z / 24;
+    switch (integrator) {
+    case MODEL_EXPLICIT_EULER:
+        return (struct map){2 - a, 1 - a + w};
+    case MODEL_SYMPLECTIC_EULER:
+        return (struct map){2 - a - w, 1 - a};
+    case MODEL_VERLET: /* leapfrog with the mean of two velocities in the drag */
+        return (struct map){(2 - w) / (1 + a / 2), (1 - a / 2) / (1 + a / 2)};
+    case MODEL_RK4:
+        return (struct map){2 * creal(r), creal(r * conj(r))};
+    case MODEL_IMPLICIT_EULER:
+        break;
+    }
+    return (struct map){1 + (1 - w) / (1 + a + w), 1 / (1 + a + w)};
+}
+
+/* The same two numbers, of the run: least squares over all its steps. */
+static struct map map_seen(const struct record *record)
+{
+    double aa = 0, ab = 0, bb = 0, ac = 0, bc = 0;
+    for (size_t n = 2; n < record->frames; n++) {
+        const double a = below(record, n - 1), b = -below(record, n - 2), c = below(record, n);
+        aa += a * a;
+        ab += a * b;
+        bb += b * b;
+        ac += a * c;
+        bc += b * c;
+    }
+    const double d = aa * bb - ab * ab;
+    return (struct map){(bb * ac - ab * bc) / d, (aa * bc - ab * ac) / d};
+}
+
+static double decay(const struct map *map, double h)
+{
+    return -log(map->determinant) / (2 * h);
+}
+
+static double frequency(const struct map *map, double h)
+{
+    return acos(map->trace / (2 * sqrt(map->determinant))) / h;
+}
+
+START_TEST(decay_and_frequency)
+{
+    const struct scheme *scheme = SCHEMES + _i;
+    struct setup setup;
+    struct record record = {0};
+    weigh(&record, &setup, scheme, scheme->h, 100 * scheme->h);
+    const double h = scheme->h, e = damping(&setup);
+    const struct map seen = map_seen(&record), wanted = map_of(scheme->integrator, h, e);
+    const double rate = e / (2 * M), omega = sqrt(K / M - rate * rate);
+    printf("# %s, h = %g s: decay %.6f 1/s (%.6f is exact), frequency %.6f rad/s (%.6f)\n",
+           scheme->name, h, decay(&seen, h), rate, frequency(&seen, h), omega);
+    ck_assert_double_eq_tol(seen.trace, wanted.trace, 1e-10);
+    ck_assert_double_eq_tol(seen.determinant, wanted.determinant, 1e-10);
+    for (size_t n = 0; n < record.frames; n++) {
+        ck_assert_double_eq(record_at(&record, n, 1, 0), 0);
+        ck_assert_double_eq(record_at(&record, n, 0, 1), 0); /* the pin */
+    }
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+/* The error after 0.4 s, two thirds of a swing, against the equation of motion. */
+static double error_at(const struct scheme *scheme, double h)
+{
+    struct setup setup;
+    struct record record = {0};
+    weigh(&record, &setup, scheme, h, 0.4);
+    const double rate = damping(&setup) / (2 * M), omega = sqrt(K / M - rate * rate);
+    const double turn = omega * 0.4, start = -M * G / K;
+    const double exact = exp(-rate * 0.4) * start * (cos(turn) + rate / omega * sin(turn));
+    const double error = fabs(below(&record, record.frames - 1) - exact);
+    record_free(&record);
+    setup_free(&setup);
+    return error;
+}
+
+START_TEST(order)
+{
+    struct scheme scheme = SCHEMES[_i];
+    scheme.along = 0.002; /* forces that depend on the velocity count, too */
+    const double h = scheme.order == 4 ? 0.01 : 0.001;
+    const double coarse = error_at(&scheme, h), fine = error_at(&scheme, h / 2);
+    const double seen = log2(coarse / fine);
+    printf("# %s: error %.3e m at h = %g s, %.3e at half of it: order %.3f\n", scheme.name, coarse,
+           h, fine, seen);
+    ck_assert_double_eq_tol(seen, scheme.order, 0.1);
+}
+END_TEST
+
+/* ---- Blocks and the floor ---- */
+
+/* A pinned, loaded and damped cloth in many blocks moves as in one. */
+START_TEST(blocks_make_no_difference)
+{
+    const struct scheme *scheme = SCHEMES + _i;
+    struct setup setup;
+    struct record one = {0}, many = {0};
+    setup_sheet(&setup, 14);
+    setup.material.damping_stiffness = 0.001;
+    setup.material.damping_mass = 0.5;
+    setup.model.end = 0.1;
+    setup.model.fps = 10;
+    setup_pin(&setup, 3, (const uint32_t[]){0, 13, 13 * 14 + 7});
+    setup_load(&setup, 100, 0.05, 0.02, -0.03);
+    setup.model.grain = 1000;
+    run(&one, &setup, scheme);
+    setup.model.grain = 9;
+    run(&many, &setup, scheme);
+    ck_assert_uint_eq(many.report.blocks, 22);
+    for (size_t v = 0; v < one.vertices; v++)
+        for (size_t c = 0; c < 3; c++)
+            ck_assert_double_eq_tol(record_at(&many, 1, v, c), record_at(&one, 1, v, c), 1e-11);
+    ck_assert_double_gt(one.report.max_stretch, 1.001);
+    record_free(&one);
+    record_free(&many);
+    setup_free(&setup);
+}
+END_TEST
+
+/* The weight of setup_weight above a floor that its spring would go through: forces from before
+ * contact are not used after it. Here is the same by hand. */
+START_TEST(verlet_after_contact)
+{
+    const double h = 0.01, floor = -1.02;
+    struct setup setup;
+    struct record record = {0};
+    setup_weight(&setup);
+    setup.material.damping_stiffness = 0;
+    setup.material.damping_mass = 0.3;
+    setup.model.n_planes = 1;
+    setup.plane = (struct model_plane){{0, floor, 0}, {0, 1, 0}};
+    setup.model.h = h;
+    setup.model.end = 100 * h;
+    setup.model.fps = 1 / h;
+    setup.cloth.velocity[1] = 1;
+    run(&record, &setup, SCHEMES + 2);
+    double y = -1, v = 1;
+    int touched = 0;
+    for (size_t n = 1; n <= 100; n++) {
+        const double half = v + h / 2 * (-G - K / M * (y + 1) - 0.3 * v) / (1 + 0.3 * h / 2);
+        y += h * half;
+        v = half + h / 2 * (-G - K / M * (y + 1) - 0.3 * half);
+        if (y <= floor) {
+            y = floor;
+            v = fmax(v, 0);
+            touched++;
+        }
+        ck_assert_double_eq_tol(record_at(&record, n, 1, 1), y, 1e-12);
+    }
+    ck_assert_int_gt(touched, 3);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("integrators");
+    TCase *cases = tcase_create("integrators");
+    tcase_add_loop_test(cases, free_fall, 0, N_SCHEMES);
+    tcase_add_loop_test(cases, decay_and_frequency, 0, N_SCHEMES);
+    tcase_add_test(cases, verlet_after_contact);
+    suite_add_tcase(suite, cases);
+    TCase *alone = tcase_create("alone"); /* one block is no work for several ranks */
+    tcase_add_loop_test(alone, order, 0, N_SCHEMES);
+    tcase_add_loop_test(alone, blocks_make_no_difference, 0, N_SCHEMES);
+    suite_add_tcase(suite, alone);
+    return unit_run(suite);
+}

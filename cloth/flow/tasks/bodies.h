@@ -2,6 +2,7 @@
 #define CLOTH_FLOW_TASKS_BODIES_H
 
 #include "cloth/flow/tasks/tasks.h"
+#include "cloth/physics/tiny.h"
 
 #include <string.h>
 
@@ -72,13 +73,15 @@ static inline void flow_add_norms(const duite_call *call, const struct solve_blo
     dots[SOLVE_BOUND] = norms.bound;
 }
 
-/* Runs a body `cost` times as long as it needs, and adds its seconds to a part of the step, on this
- * worker's line. */
+/* Runs a body without subnormal numbers, `cost` times as long as it needs, and adds its seconds to
+ * a part of the step, on this worker's line. */
 static inline int flow_timed(const duite_call *call, duite_body *body, enum flow_part part,
                              double cost)
 {
     const double start = flow_now(), worked = cost > 1 ? flow_worked() : 0;
+    const phys_tiny before = phys_tiny_off();
     const int code = body(call);
+    phys_tiny_back(before);
     if (cost > 1)
         flow_work_on(worked, cost);
     flow_of(call)->clock[call->worker].seconds[part] += flow_now() - start;

@@ -4,6 +4,7 @@
 #include "cloth/output/output.h"
 #include "cloth/summary.h"
 
+#include <math.h>
 #include <mpi.h>
 #include <signal.h>
 #include <stdio.h>
@@ -20,6 +21,7 @@ struct run {
     struct model model;
     struct flow *flow;
     struct output_frames *frames; /* rank 0, when frames are wanted */
+    struct output_probes *probes; /* then, if the scene has any */
     struct summary_progress progress;
     struct flow_report report;
 };
@@ -85,6 +87,14 @@ static int open_system(const struct run *run, struct cloth_error *error)
     return output_system_open(run->options->save_system, error);
 }
 
+/* In the folder of frames, which is there. */
+static int open_probes(struct run *run, struct cloth_error *error)
+{
+    const char *header = flow_header(run->flow);
+    return header ? output_probes_open(&run->probes, run->options->output, header, error)
+                  : output_probes_forget(run->options->output, error);
+}
+
 static int open_output(struct run *run, struct cloth_error *error)
 {
     const struct model *model = &run->model;
@@ -115,7 +125,7 @@ static int open_output(struct run *run, struct cloth_error *error)
     free(meshes);
     free(names);
     free(planes);
-    return code;
+    return code ? code : open_probes(run, error);
 }
 
 /* Rank 0 alone reads the scene, so it is compared what the ranks were asked to read. Collective;
@@ -167,6 +177,9 @@ static int prepare(struct run *run)
     const char *warning;
     for (size_t i = 0; run->rank == 0 && (warning = flow_warning(run->flow, i)); i++)
         fprintf(stderr, "duite-cloth: warning: %s\n", warning);
+    if (run->rank == 0 && run->model.n_probes && !options->output)
+        fprintf(stderr, "duite-cloth: warning: the scene has probes, whose table is written into "
+                        "the folder of --output; there is none\n");
     if (run->rank == 0 && options->save_system)
         open_system(run, &error);
     if (!error.code && run->rank == 0 && options->output)
@@ -222,11 +235,20 @@ static int write_frame(void *context, uint64_t frame, double time, const double 
     return output_frame(run->frames, frame, time, position, error);
 }
 
+static int write_row(void *context, uint64_t step, double time, size_t n, const double *values,
+                     struct cloth_error *error)
+{
+    const struct run *run = context;
+    return output_probes_row(run->probes, step, time, n, values, error);
+}
+
 static void run_flow(struct run *run, duite *rt, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
-    const struct flow_output output = {run, options->output ? write_frame : NULL,
-                                       options->save_system ? save_system : NULL};
+    const struct flow_output output = {.context = run,
+                                       .frame = options->output ? write_frame : NULL,
+                                       .row = options->output ? write_row : NULL,
+                                       .system = options->save_system ? save_system : NULL};
     const struct flow_progress progress = {run, forget_meshes, show_step, stop_wanted};
     run->threads = duite_threads(rt);
     summary_progress_begin(&run->progress);
@@ -253,8 +275,8 @@ static int execute(struct run *run)
         if (!error.code)
             runtime_fails(&error, code);
     }
-    if (run->frames)
-        output_close(&run->frames, &error);
+    output_probes_close(&run->probes, &error);
+    output_close(&run->frames, &error);
     return error.code == CLOTH_E_LOST ? say_lost(run, &error) : agree(run, &error);
 }
 
@@ -286,6 +308,11 @@ static int conclude(const struct run *run)
                                         .memory_bytes = peak};
         if (run->report.stopped)
             say_stopped(run);
+        if (run->model.rest.speed > 0 && !run->report.stopped && isnan(run->report.rest_seconds))
+            fprintf(stderr,
+                    "duite-cloth: warning: the cloth is not at rest at time.end, %g s: some vertex "
+                    "was faster than %g m/s in the last %g s\n",
+                    run->model.end, run->model.rest.speed, run->model.rest.hold);
         if (run->options->report)
             summary_write(&summary, run->options->report, &error);
         if (!run->options->quiet)
@@ -309,10 +336,9 @@ int simulate(const struct simulate_options *options)
             failure = conclude(&run);
         code = failure == CLOTH_E_LOST ? SIMULATE_LOST : failure ? SIMULATE_FAILED : SIMULATE_OK;
     }
-    if (run.frames) {
-        struct cloth_error ignored = {0};
-        output_close(&run.frames, &ignored);
-    }
+    struct cloth_error ignored = {0};
+    output_probes_close(&run.probes, &ignored);
+    output_close(&run.frames, &ignored);
     flow_free(run.flow);
     model_free(&run.model);
     return code;

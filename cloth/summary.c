@@ -67,6 +67,8 @@ void summary_print(FILE *file, const struct summary *summary)
             summary->options->mapping_name, summary->options->balance_name);
     fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
             model->h, report->simulated_seconds);
+    if (!isnan(report->rest_seconds))
+        fprintf(file, "  at rest          after %g s\n", report->rest_seconds);
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));
     print_times(file, report);
@@ -126,6 +128,7 @@ static void add_times(struct output_report *json, const struct flow_report *repo
 {
     output_report_integer(json, "steps", report->steps);
     output_report_number(json, "simulated_seconds", report->simulated_seconds);
+    output_report_number(json, "rest_seconds", report->rest_seconds);
     output_report_number(json, "wall_seconds", report->wall_seconds);
     output_report_number(json, "seconds_per_step",
                          ratio(report->wall_seconds, (double)report->steps));

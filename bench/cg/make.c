@@ -38,7 +38,7 @@ static int take(void *context, const struct solve_system *system, struct cloth_e
 /* The model of the step starts where its motion ends. */
 static int move(struct states_plan *plan, struct serve_request *request)
 {
-    const struct flow_output output = {&moved.after, NULL, take};
+    const struct flow_output output = {.context = &moved.after, .system = take};
     if (!plan->moves)
         return states_wave(&plan->model);
     if (!moved.name || strcmp(moved.name, plan->moved) != 0) {
@@ -132,7 +132,7 @@ static int make(void *context, struct serve_request *request, double *value)
     struct states_plan plan = {0};
     (void)context;
     serve_word(request, "state", state.name, sizeof state.name);
-    const struct flow_output output = {&state.system, NULL, take};
+    const struct flow_output output = {.context = &state.system, .system = take};
     int code = states_plan_make(&plan, state.name, serve_number(request, "quick") != 0);
     if (!code)
         code = move(&plan, request);

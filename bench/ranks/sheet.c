@@ -35,8 +35,8 @@ void sheet_model(struct sheet *sheet, uint32_t side, uint32_t grain)
     sheet->cloth.pins = sheet->pin;
     sheet->cloth.n_pins = 3;
     for (int i = 0; i < 3; i++) {
-        sheet->pin[i].kind = MODEL_PIN_NEAREST;
-        memcpy(sheet->pin[i].point, corner[i], sizeof corner[i]);
+        sheet->pin[i].pick.kind = MODEL_PICK_NEAREST;
+        memcpy(sheet->pin[i].pick.point, corner[i], sizeof corner[i]);
     }
     sheet->model = (struct model){.n_materials = 1,
                                   .n_cloths = 1,

@@ -5,12 +5,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+static void free_pick(struct model_pick *pick)
+{
+    free(pick->vertices);
+    free(pick->place);
+}
+
 static void free_cloth(struct model_cloth *cloth)
 {
-    for (uint32_t i = 0; i < cloth->n_pins; i++) {
-        free(cloth->pins[i].vertices);
-        free(cloth->pins[i].place);
-    }
+    for (uint32_t i = 0; i < cloth->n_pins; i++)
+        free_pick(&cloth->pins[i].pick);
     for (uint32_t i = 0; i < cloth->n_loads; i++) {
         free(cloth->loads[i].vertices);
         free(cloth->loads[i].place);
@@ -31,6 +35,11 @@ void model_free(struct model *model)
         free(model->materials[i].name);
     for (uint32_t i = 0; i < model->n_cloths; i++)
         free_cloth(&model->cloths[i]);
+    for (uint32_t i = 0; i < model->n_probes; i++) {
+        free(model->probes[i].name);
+        free_pick(&model->probes[i].pick);
+    }
+    free(model->probes);
     free(model->materials);
     free(model->cloths);
     free(model->planes);

@@ -4,6 +4,7 @@
 #include "cloth/base/error.h"
 #include "cloth/mesh/mesh.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -23,14 +24,19 @@ struct model_material {
 /* A `place` is where the scene says a thing, for messages: "scene.yaml:4:11", or an option; NULL:
  * it does not say. */
 
-/* Holds vertices where they start. */
-struct model_pin {
-    enum { MODEL_PIN_VERTICES, MODEL_PIN_NEAREST, MODEL_PIN_BOX } kind;
+/* Chooses vertices of a cloth. */
+struct model_pick {
+    enum { MODEL_PICK_VERTICES, MODEL_PICK_NEAREST, MODEL_PICK_BOX } kind;
     uint32_t n_vertices;
     uint32_t *vertices; /* of the cloth's mesh */
     double point[3];    /* nearest: its nearest vertex after the transform, the first of equals */
     double box[2][3];   /* box: every vertex inside or on it after the transform */
     char *place;
+};
+
+/* Holds vertices where they start. */
+struct model_pin {
+    struct model_pick pick;
 };
 
 /* A constant force on vertices, newton each. */
@@ -63,6 +69,20 @@ struct model_cloth {
     char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
 };
 
+/* What is told of vertices after each step. */
+struct model_probe {
+    char *name;
+    uint32_t cloth;
+    struct model_pick pick;
+    bool position, velocity, reaction; /* of each vertex */
+    bool total;                        /* the sum of their reactions */
+};
+
+/* A run ends when no vertex was faster than `speed` for `hold` seconds. */
+struct model_rest {
+    double speed, hold; /* m/s, s; speed 0: it does not end so */
+};
+
 struct model_plane {
     double point[3], normal[3]; /* normal of length 1, towards the free side */
 };
@@ -91,15 +111,17 @@ enum model_preconditioner {
 
 struct model {
     char *name; /* of the scene */
-    uint32_t n_materials, n_cloths, n_planes;
+    uint32_t n_materials, n_cloths, n_planes, n_probes;
     struct model_material *materials;
     struct model_cloth *cloths;
     struct model_plane *planes;
+    struct model_probe *probes;
     double gravity[3]; /* m/s^2 */
 
     double h;   /* s; time is an integer count of h/1024 */
     double end; /* s; N = round(end / h) steps */
     double fps; /* frames a second; frame k follows the step that ends nearest to k / fps */
+    struct model_rest rest;
     enum model_integrator integrator;
 
     enum model_stop stop; /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s);

@@ -2,10 +2,12 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/model.c cloth/flow/model.h \
     cloth/flow/run.c cloth/flow/run.h \
     cloth/flow/tables/neighbours.c \
+    cloth/flow/tables/picks.c \
     cloth/flow/tables/particles.c \
     cloth/flow/tables/sides.c \
     cloth/flow/tables/source.c cloth/flow/tables/source.h \
     cloth/flow/tables/springs.c \
+    cloth/flow/tables/watched.c \
     cloth/flow/tables/tables.c cloth/flow/tables/tables.h \
     cloth/flow/tasks/bodies.h \
     cloth/flow/tasks/cg.c \
@@ -19,9 +21,11 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/kernels_report.c \
     cloth/flow/tasks/kernels_step.c \
     cloth/flow/tasks/kernels_turned.c \
+    cloth/flow/tasks/kernels_watch.c \
     cloth/flow/tasks/memory.c \
     cloth/flow/tasks/objects.c \
     cloth/flow/tasks/step.c \
     cloth/flow/tasks/system.c \
     cloth/flow/tasks/tasks.h \
-    cloth/flow/tasks/turned.c
+    cloth/flow/tasks/turned.c \
+    cloth/flow/tasks/watch.c

@@ -40,8 +40,8 @@ const duite_kernel *const *flow_kernels(void)
         &flow_ready, &flow_initial, &flow_force, &flow_force_free, &flow_explicit, &flow_kick_first,
         &flow_kick_second, &flow_runge, &flow_implicit, &flow_matrix, &flow_begin, &flow_pack,
         &flow_start, &flow_pass, &flow_scalars, &flow_velocity_dv, &flow_velocity_a, &flow_position,
-        &flow_collide, &flow_status, &flow_frame, &flow_stretch, &flow_most, &flow_seconds,
-        &flow_tell, &flow_system_part, &flow_system_save,
+        &flow_collide, &flow_status, &flow_frame, &flow_stretch, &flow_watch_block, &flow_probe,
+        &flow_row, &flow_most, &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
         /* With one */
         &flow_basis, &flow_basis_copies, &flow_couple, &flow_factor_coarse, &flow_factor,
         &flow_start_turned, &flow_begin_coarse, &flow_pass_turned, &flow_scalars_turned,
@@ -107,6 +107,8 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     flow->partition_hash = flow->source.blocks.hash;
     warn(flow, &flow->source.particles);
     flow_turned_choose(flow, flow->source.blocks.n_blocks);
+    if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error))
+        return CLOTH_E_MEMORY;
     return keep_rest(flow, &flow->source.particles, error);
 }
 
@@ -149,12 +151,19 @@ void flow_free(struct flow *flow)
     free(flow->vertex);
     free(flow->rest.vertex);
     free(flow->rest.position);
+    flow_watched_free(&flow->watched);
+    free(flow->header);
     free(flow);
 }
 
 uint64_t flow_vertices(const struct flow *flow)
 {
     return flow->n_vertices;
+}
+
+const char *flow_header(const struct flow *flow)
+{
+    return flow->header;
 }
 
 const char *flow_warning(const struct flow *flow, size_t i)
@@ -204,6 +213,7 @@ int flow_run_begin(struct flow_state *state)
     if (code)
         return code;
     describe(state);
+    state->report->rest_seconds = NAN;
     code = flow_memory_take(state);
     if (!code)
         code = flow_share(state);
@@ -226,15 +236,21 @@ static int run_steps(struct flow_state *state)
     if (!code)
         code = flow_initialise(state);
     if (!code)
+        code = flow_watch(state, 0);
+    if (!code)
         code = flow_frames(state, 0);
     uint64_t step = 0;
     for (; step < n && !code; step++) {
         const uint64_t frame = state->next_frame;
         code = flow_step(state, step);
         if (!code)
+            code = flow_rest(state, step);
+        if (!code)
+            code = flow_watch(state, step + 1);
+        if (!code)
             code = flow_frames(state, step + 1);
-        if (state->stopping && state->next_frame > frame && step + 1 < n) {
-            state->report->stopped = true;
+        if ((state->stopping || state->resting) && state->next_frame > frame && step + 1 < n) {
+            state->report->stopped = !state->resting;
             step++;
             break;
         }
@@ -243,7 +259,7 @@ static int run_steps(struct flow_state *state)
         code = flow_system(state);
     if (!code && step > 0)
         code = flow_step_status(state, step - 1);
-    return code;
+    return code ? code : flow_rest(state, step);
 }
 
 static int code_of_cloth(int code)

@@ -29,6 +29,7 @@ struct flow_report {
     uint64_t state_hash;
     uint64_t last_frame; /* the last frame written */
     bool stopped;        /* a stop was requested before the end */
+    double rest_seconds; /* when the run was found at rest, s; NaN: it was not */
     duite_counters counters;
 };
 
@@ -41,6 +42,10 @@ struct flow_output {
      * seconds. Returns 0 or a code and fills error. */
     int (*frame)(void *context, uint64_t frame, double time, const double *position,
                  struct cloth_error *error);
+    /* A row of the table of probes: n numbers, whose names are flow_header's, of the state after so
+     * many steps, from 0 on. Returns 0 or a code and fills error. NULL: it is not wanted. */
+    int (*row)(void *context, uint64_t step, double time, size_t n, const double *values,
+               struct cloth_error *error);
     /* The system of the last step and the state after it, once, of an implicit run that made a
      * step. The arrays are lent. Returns 0 or a code and fills error. NULL: it is not wanted. */
     int (*system)(void *context, const struct solve_system *system, struct cloth_error *error);
@@ -88,6 +93,11 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
 
 /* Vertices of all cloths together; 0 where a flow only joined and has not run. Local. */
 uint64_t flow_vertices(const struct flow *flow);
+
+/* Names of the columns of the table of probes, with commas between: step, time, then those of its
+ * rows' numbers, with units. NULL: the model has no probes. On rank 0 when the flow is prepared.
+ * Lives as long as the flow. Local. */
+const char *flow_header(const struct flow *flow);
 
 /* What is odd about the model but no error: sentence i, counted from 0, with its place; NULL: there
  * are no more. Lives as long as the flow. Local. */

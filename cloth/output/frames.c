@@ -192,18 +192,6 @@ static int encode(struct output_frames *frames, uint64_t frame, const double *po
     return 0;
 }
 
-/* Nobody reads what is written to a file that another run, or the user, took away. */
-static int check_part(const struct output_frames *frames, enum part part, int file,
-                      struct cloth_error *error)
-{
-    struct stat here, there;
-    if (fstat(file, &here) == 0 && stat(frames->path[part], &there) == 0 &&
-        here.st_dev == there.st_dev && here.st_ino == there.st_ino)
-        return 0;
-    return cloth_fail(error, CLOTH_E_IO, "%s was removed or replaced while the run wrote to it",
-                      frames->path[part]);
-}
-
 /* The order is what keeps the folder whole: floats, index, both on the disk, then the count. */
 static int write_frame(struct output_frames *frames, const char *line, size_t n,
                        struct cloth_error *error)
@@ -246,8 +234,8 @@ int output_frame(void *context, uint64_t frame, double time, const double *posit
         return cloth_fail(error, CLOTH_E_RUN, "%s: frame %ju came where frame %u was due",
                           frames->path[PART_CACHE], (uintmax_t)frame, frames->n_frames);
     int code = encode(frames, frame, position, error);
-    code = code ? code : check_part(frames, PART_INDEX, frames->index, error);
-    code = code ? code : check_part(frames, PART_CACHE, frames->cache, error);
+    code = code ? code : output_check_same(frames->index, frames->path[PART_INDEX], error);
+    code = code ? code : output_check_same(frames->cache, frames->path[PART_CACHE], error);
     if (code)
         return code;
     char line[64];

@@ -43,6 +43,26 @@ int output_frame(void *context, uint64_t frame, double time, const double *posit
 /* Closes; *frames becomes NULL. */
 int output_close(struct output_frames **frames, struct cloth_error *error);
 
+/* The table of probes, DIR/probes.csv: a header, then a row a step, written when the step is done:
+ * a run that is killed leaves the rows so far. Local functions, on rank 0. */
+struct output_probes;
+
+/* Begins the table; header: its columns' names with commas between, the first two `step` and `time
+ * [s]`. Replaces the table of an earlier run, nothing else. Errors as of output_open. */
+int output_probes_open(struct output_probes **probes, const char *folder, const char *header,
+                       struct cloth_error *error);
+
+/* Appends a row. Has the form of flow_output.row, context = probes. Numbers have 17 digits, those
+ * that are not finite are left out. A row that fails leaves the ones before it whole. */
+int output_probes_row(void *context, uint64_t step, double time, size_t n, const double *values,
+                      struct cloth_error *error);
+
+/* Closes, with all rows on the disk; *probes becomes NULL. */
+int output_probes_close(struct output_probes **probes, struct cloth_error *error);
+
+/* Removes the table of an earlier run from a folder of frames, whose run has none. */
+int output_probes_forget(const char *folder, struct cloth_error *error);
+
 /* Reads a folder back (viewer, tests). */
 struct output_cache {
     struct mesh mesh; /* of cloth.obj */

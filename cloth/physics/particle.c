@@ -37,6 +37,17 @@ void phys_plane(size_t n, const double point[3], const double normal[3], const d
     }
 }
 
+double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *most)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double square = phys_dot(v + i, v + i);
+        sum += 0.5 * mass[i] * square;
+        *most = square > *most ? square : *most;
+    }
+    return sum;
+}
+
 size_t phys_diverged(size_t n, double bound, const phys_vec *y)
 {
     for (size_t i = 0; i < n; i++)

@@ -23,6 +23,9 @@ void phys_advance(size_t n, double scale, const phys_vec *d, phys_vec *y);
 void phys_plane(size_t n, const double point[3], const double normal[3], const double *free,
                 phys_vec *x, phys_vec *v);
 
+/* Sum of m v.v / 2 (J), rows in order; widens *most to the largest v.v (m^2/s^2). mass: kg. */
+double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *most);
+
 /* The first row of which a component is not finite or not below `bound` in size; n if all are well.
  */
 size_t phys_diverged(size_t n, double bound, const phys_vec *y);

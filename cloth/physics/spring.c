@@ -102,15 +102,24 @@ void phys_springs_matrix(const struct phys_springs *springs, double h, const phy
     }
 }
 
-double phys_springs_stretch(const struct phys_springs *springs, const unsigned char *chosen,
-                            const phys_vec *x, const phys_vec *x_other)
+void phys_springs_range(const struct phys_springs *springs, const unsigned char *chosen,
+                        const phys_vec *x, const phys_vec *x_other, double range[2])
 {
-    double most = 0;
     for (size_t i = 0; i < springs->n; i++) {
         phys_vec u;
         const double l = direction(x + springs->end[i][0], x_other + springs->end[i][1], &u);
-        if (chosen[i] && l / springs->length[i] > most)
-            most = l / springs->length[i];
+        const double stretch = l / springs->length[i];
+        if (chosen[i] && stretch < range[0])
+            range[0] = stretch;
+        if (chosen[i] && stretch > range[1])
+            range[1] = stretch;
     }
-    return most;
+}
+
+double phys_springs_stretch(const struct phys_springs *springs, const unsigned char *chosen,
+                            const phys_vec *x, const phys_vec *x_other)
+{
+    double range[2] = {0};
+    phys_springs_range(springs, chosen, x, x_other, range);
+    return range[1];
 }

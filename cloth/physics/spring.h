@@ -52,4 +52,8 @@ void phys_springs_matrix(const struct phys_springs *springs, double h, const phy
 double phys_springs_stretch(const struct phys_springs *springs, const unsigned char *chosen,
                             const phys_vec *x, const phys_vec *x_other);
 
+/* Widens range[0] .. range[1] to the l / L of those springs. */
+void phys_springs_range(const struct phys_springs *springs, const unsigned char *chosen,
+                        const phys_vec *x, const phys_vec *x_other, double range[2]);
+
 #endif

@@ -16,5 +16,6 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/build.h \
 	cloth/scene/build/world.c \
 	cloth/scene/build/mesh.c \
-	cloth/scene/build/cloth.c
+	cloth/scene/build/cloth.c \
+	cloth/scene/build/probe.c
 EXTRA_DIST += docs/scene.md

@@ -11,14 +11,6 @@
 /* kg of a vertex: squares of momenta beyond these would be nothing, or infinite. */
 static const double LEAST_MASS = 1e-30, MOST_MASS = 1e30;
 
-static int outside(const struct model_cloth *cloth, const char *what, uint32_t vertex,
-                   const char *place, struct cloth_error *error)
-{
-    return model_fail(place, error,
-                      "%s of cloth '%.60s' names vertex %u; its mesh has the vertices 0 to %u",
-                      what, cloth->name, vertex, cloth->mesh.n_vertices - 1);
-}
-
 static void note(struct flow_odd *odd, const struct model_cloth *cloth, uint32_t vertex,
                  const char *place)
 {
@@ -31,90 +23,39 @@ PHYS_INLINE void to_vector(const double *x, phys_vec *y)
     *y = (phys_vec){x[0], x[1], x[2], 0};
 }
 
-static int pin_vertices(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
-                        const struct model_pin *pin, struct cloth_error *error)
-{
-    for (uint32_t i = 0; i < pin->n_vertices; i++) {
-        if (pin->vertices[i] >= cloth->mesh.n_vertices)
-            return outside(cloth, "a pin", pin->vertices[i], pin->place, error);
-        if (!p->used[first + pin->vertices[i]] && p->free[first + pin->vertices[i]] != 0)
-            note(&p->pinned, cloth, pin->vertices[i], pin->place);
-        p->free[first + pin->vertices[i]] = 0;
-    }
-    return CLOTH_OK;
-}
+/* A pin and whom it holds. */
+struct holder {
+    struct flow_particles *particles;
+    uint32_t first; /* vertex of the cloth */
+    const struct model_cloth *cloth;
+    const struct model_pin *pin;
+};
 
-/* The used vertex nearest to the pin's point, the first of equals. */
-static int pin_nearest(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
-                       const struct model_pin *pin, struct cloth_error *error)
+static void hold(void *to, uint32_t vertex)
 {
-    phys_vec point;
-    to_vector(pin->point, &point);
-    uint32_t best = UINT32_MAX;
-    double least = 0;
-    for (uint32_t v = 0; v < cloth->mesh.n_vertices; v++) {
-        phys_vec d;
-        to_vector(cloth->mesh.position + 3 * (size_t)v, &d);
-        d -= point;
-        const double distance = phys_dot(&d, &d);
-        if (p->used[first + v] && (best == UINT32_MAX || distance < least)) {
-            best = v;
-            least = distance;
-        }
-    }
-    if (best == UINT32_MAX)
-        return model_fail(pin->place, error,
-                          "cloth '%.60s' has a pin but neither a face nor an edge", cloth->name);
-    p->free[first + best] = 0;
-    return CLOTH_OK;
-}
-
-static int pin_box(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
-                   const struct model_pin *pin, struct cloth_error *error)
-{
-    uint32_t inside = 0;
-    for (uint32_t v = 0; v < cloth->mesh.n_vertices; v++) {
-        int in = p->used[first + v];
-        for (size_t c = 0; c < 3; c++) { /* any two opposite corners */
-            const double x = cloth->mesh.position[3 * (size_t)v + c], from = pin->box[0][c],
-                         to = pin->box[1][c];
-            in = in && ((x >= from && x <= to) || (x <= from && x >= to));
-        }
-        if (!in)
-            continue;
-        p->free[first + v] = 0;
-        inside++;
-    }
-    if (!inside)
-        return model_fail(
-            pin->place, error,
-            "the box of a pin of cloth '%.60s' holds no vertex that a face or an edge "
-            "uses",
-            cloth->name);
-    return CLOTH_OK;
+    const struct holder *holder = to;
+    struct flow_particles *p = holder->particles;
+    const uint32_t v = holder->first + vertex;
+    if (!p->used[v] && p->free[v] != 0)
+        note(&p->pinned, holder->cloth, vertex, holder->pin->pick.place);
+    p->free[v] = 0;
 }
 
 static int pins(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
                 struct cloth_error *error)
 {
-    for (uint32_t i = 0; i < cloth->n_pins; i++) {
-        const struct model_pin *pin = cloth->pins + i;
-        int code = CLOTH_OK;
-        switch (pin->kind) {
-        case MODEL_PIN_VERTICES:
-            code = pin_vertices(p, first, cloth, pin, error);
-            break;
-        case MODEL_PIN_NEAREST:
-            code = pin_nearest(p, first, cloth, pin, error);
-            break;
-        case MODEL_PIN_BOX:
-            code = pin_box(p, first, cloth, pin, error);
-            break;
-        }
-        if (code)
-            return code;
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < cloth->n_pins && !code; i++) {
+        struct holder holder = {p, first, cloth, cloth->pins + i};
+        const struct flow_picking picking = {.pick = &cloth->pins[i].pick,
+                                             .cloth = cloth,
+                                             .used = p->used + first,
+                                             .what = "a pin",
+                                             .visit = hold,
+                                             .to = &holder};
+        code = flow_pick(&picking, error);
     }
-    return CLOTH_OK;
+    return code;
 }
 
 static int loads(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
@@ -126,7 +67,7 @@ static int loads(struct flow_particles *p, uint32_t first, const struct model_cl
         to_vector(load->force, &force);
         for (uint32_t j = 0; j < load->n_vertices; j++) {
             if (load->vertices[j] >= cloth->mesh.n_vertices)
-                return outside(cloth, "a load", load->vertices[j], load->place, error);
+                return flow_no_vertex(cloth, "a load", load->vertices[j], load->place, error);
             if (!p->used[first + load->vertices[j]])
                 note(&p->loaded, cloth, load->vertices[j], load->place);
             p->load[first + load->vertices[j]] += force;

@@ -128,6 +128,22 @@ static void fill_rows(const struct flow_source *source, const struct flow_table 
     }
 }
 
+static void fill_watched(const struct flow_source *source, const struct flow_table *t,
+                         const struct flow_image *image)
+{
+    const struct flow_watched *watched = &source->watched;
+    uint32_t low = 0, high = watched->n; /* the first at or after the block's first place */
+    while (t->n_watched && low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (watched->place[middle] < t->first)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (uint32_t i = 0; i < t->n_watched; i++)
+        image->watched[i] = watched->place[low + i] - t->first;
+}
+
 /* The inner springs come first, in order: rows of the matrix. */
 static void fill_inner(const struct flow_table *t, const struct flow_side *side,
                        const struct flow_image *image)
@@ -201,6 +217,7 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *i
     memset(image, 0, flow_table_bytes(t));
     qsort(side, (size_t)t->n_inner + t->n_cut, sizeof *side, compare_sides);
     fill_rows(source, t, &arrays);
+    fill_watched(source, t, &arrays);
     fill_inner(t, side, &arrays);
     fill_cut(source, t, side + t->n_inner, &arrays);
     fill_sides(source, t, side, &arrays);

@@ -96,6 +96,16 @@ static void find_cost(const struct flow_source *source, struct flow_table *shape
     shape->cost = (float)(1 + sum / shape->n);
 }
 
+/* How many vertices of each block are watched. */
+static void count_watched(struct flow_source *source)
+{
+    uint32_t block = 0;
+    for (uint32_t i = 0; i < source->watched.n; i++) {
+        block = flow_source_block(&source->blocks, source->watched.place[i], block);
+        source->shape[block].n_watched++;
+    }
+}
+
 static int find_shapes(struct flow_source *source, struct cloth_error *error)
 {
     const struct mesh_blocks *blocks = &source->blocks;
@@ -110,6 +120,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         find_range(blocks, shape);
         find_cost(source, shape);
     }
+    count_watched(source);
     return flow_source_meet(source, error);
 }
 
@@ -123,6 +134,8 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
     if (!code)
         code = cut(source, ranks, error);
     if (!code)
+        code = flow_watched_make(&source->watched, source, error);
+    if (!code)
         code = find_shapes(source, error);
     if (code)
         flow_source_free(source);
@@ -135,6 +148,7 @@ void flow_source_free(struct flow_source *source)
     free(source->neighbours.slot);
     free(source->neighbours.copies);
     free(source->neighbours.copy);
+    flow_watched_free(&source->watched);
     free(source->shape);
     free(source->rim);
     mesh_blocks_free(&source->blocks);

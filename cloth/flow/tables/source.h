@@ -33,6 +33,21 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
                         struct cloth_error *error);
 void flow_particles_free(struct flow_particles *particles);
 
+/* A part of the scene that picks vertices, and what becomes of each. */
+struct flow_picking {
+    const struct model_pick *pick;
+    const struct model_cloth *cloth;
+    const unsigned char *used;                /* of the cloth's vertices */
+    const char *what;                         /* in sentences: "a pin" */
+    void (*visit)(void *to, uint32_t vertex); /* of the cloth's mesh */
+    void *to;
+};
+/* Errors: CLOTH_E_INPUT for vertices outside the mesh and boxes without a vertex. Local. */
+int flow_pick(const struct flow_picking *picking, struct cloth_error *error);
+/* That of a vertex outside the mesh. */
+int flow_no_vertex(const struct model_cloth *cloth, const char *what, uint32_t vertex,
+                   const char *place, struct cloth_error *error);
+
 /* One particle, a used vertex, of the cloth that it belongs to: `vertex` in the numbering of all
  * cloths, `first` that of the cloth's first. */
 struct flow_particle {
@@ -69,6 +84,25 @@ struct flow_neighbours {
     uint32_t *copy; /* n_copies: places in the rim of the slot's block, ascending */
 };
 
+/* The vertices that probes are at. A row of the table of probes has step and time, then n_columns
+ * numbers: FLOW_RUN_COLUMNS of the run, then of each probe, of each of its vertices, position,
+ * velocity and reaction as far as they are wanted, then the sum of reactions, if it is. Where there
+ * are no probes, n_columns is 0. */
+enum {
+    FLOW_COLUMN_ITERATIONS,
+    FLOW_COLUMN_LONGEST,
+    FLOW_COLUMN_SHORTEST,
+    FLOW_COLUMN_KINETIC,
+    FLOW_RUN_COLUMNS
+};
+struct flow_watched {
+    uint32_t n, *place; /* ascending, each once */
+    uint32_t *first;    /* a probe, and one more: its entries */
+    uint32_t *entry;    /* where its place is in the list */
+    uint32_t *vertex;   /* an entry: its vertex, of all cloths */
+    size_t n_columns;
+};
+
 /* The sides of a block's springs, while its table is due. */
 struct flow_side;
 
@@ -79,6 +113,7 @@ struct flow_source {
     struct mesh_blocks blocks;
     uint32_t *rim; /* by place: its number in the rim of its block */
     struct flow_neighbours neighbours;
+    struct flow_watched watched;
     struct flow_table *shape; /* a block: shapes, which point into the neighbours */
     uint32_t from;            /* the group of blocks whose sides are gathered begins there */
     struct flow_side *side;   /* all of the group; NULL: none are gathered */
@@ -104,6 +139,16 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *i
 /* Finds the neighbours, and the numbers of rows in rims (source->rim), when blocks and springs are
  * there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */
 int flow_source_meet(struct flow_source *source, struct cloth_error *error);
+
+/* Finds what is watched, when blocks are there. Errors: as of flow_pick, and CLOTH_E_INPUT for
+ * vertices that no face or edge uses; CLOTH_E_MEMORY. Local. */
+int flow_watched_make(struct flow_watched *watched, const struct flow_source *source,
+                      struct cloth_error *error);
+void flow_watched_free(struct flow_watched *watched);
+/* Names of the columns, with units and commas; the caller frees it. NULL: no probes. Error:
+ * CLOTH_E_MEMORY. Local. */
+int flow_watched_header(const struct flow_watched *watched, const struct model *model, char **text,
+                        struct cloth_error *error);
 
 /* The cloth of a vertex, and its first vertex; looked for from the last one found. */
 struct flow_cloths {

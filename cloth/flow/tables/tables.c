@@ -39,6 +39,7 @@ static void lay(const struct flow_table *t, struct room *room, struct flow_image
     image->column = next(room, t->n_inner * sizeof *image->column);
     image->rim = next(room, t->n_rim * sizeof *image->rim);
     image->cut = next(room, ((size_t)t->n_slots + 1) * sizeof *image->cut);
+    image->watched = next(room, t->n_watched * sizeof *image->watched);
     image->stretch = next(room, sides);
 }
 
@@ -64,6 +65,7 @@ void flow_table_open(struct flow_table *t, const void *image)
     t->vertex = arrays.vertex;
     t->cut = arrays.cut;
     t->rim = arrays.rim;
+    t->watched = arrays.watched;
     t->end = (const uint32_t(*)[2])arrays.end;
     t->copy_end = (const uint32_t(*)[2])arrays.copy_end;
     t->stiffness = arrays.stiffness;

@@ -22,6 +22,7 @@ struct flow_table {
     uint32_t n_inner, n_cut;  /* springs */
     uint32_t n_rim;           /* rows that any neighbour needs */
     uint32_t n_held;          /* springs from free rows here to held ends anywhere */
+    uint32_t n_watched;       /* rows that probes are at */
     uint32_t lowest, highest; /* of its vertices */
     uint32_t n_slots;         /* neighbours */
     uint32_t n_copies;        /* rows that the cut springs end at, neighbour after neighbour */
@@ -34,6 +35,7 @@ struct flow_table {
     const uint32_t *vertex;   /* n: of the input */
     const uint32_t *cut;      /* n_slots + 1: the springs into slot s are n_inner + cut[s] .. */
     const uint32_t *rim;      /* n_rim: ascending */
+    const uint32_t *watched;  /* n_watched: rows, ascending */
     const uint32_t (*end)[2]; /* inner: rows; cut: row here, place in the neighbour's rim */
     const uint32_t (*copy_end)[2]; /* cut springs: row here, number of the copy */
     const double *stiffness, *damping, *length;
@@ -58,7 +60,8 @@ struct flow_image {
     uint32_t (*end)[2];                    /* n_inner + n_cut */
     uint32_t (*copy_end)[2];               /* n_cut */
     uint32_t (*held)[2];                   /* n_held */
-    uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_inner */, *rim, *cut /* n_slots + 1 */;
+    uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_inner */, *rim, *cut /* n_slots + 1 */,
+        *watched;
     unsigned char *stretch; /* n_inner + n_cut */
 };
 

@@ -15,7 +15,7 @@ enum {
 
 /* What is told of a block; the neighbours of all blocks follow. */
 struct shape {
-    uint32_t n, n_inner, n_cut, n_rim, n_held, lowest, highest, n_slots, n_copies;
+    uint32_t n, n_inner, n_cut, n_rim, n_held, n_watched, lowest, highest, n_slots, n_copies;
     float cost;
 };
 
@@ -74,6 +74,7 @@ static int tell_shared(const duite_call *call)
                                     .n_cut = t->n_cut,
                                     .n_rim = t->n_rim,
                                     .n_held = t->n_held,
+                                    .n_watched = t->n_watched,
                                     .lowest = t->lowest,
                                     .highest = t->highest,
                                     .n_slots = t->n_slots,
@@ -118,6 +119,7 @@ int flow_share_head(struct flow_state *state)
     flow->told.materials = NULL;
     flow->told.cloths = NULL;
     flow->told.planes = NULL;
+    flow->told.probes = NULL;
     flow->model = &flow->told;
     flow->n_steps = head->n_steps;
     flow->partition_hash = head->partition_hash;
@@ -145,6 +147,7 @@ static void unpack(struct flow_state *state)
                                                .n_cut = shape->n_cut,
                                                .n_rim = shape->n_rim,
                                                .n_held = shape->n_held,
+                                               .n_watched = shape->n_watched,
                                                .lowest = shape->lowest,
                                                .highest = shape->highest,
                                                .n_slots = shape->n_slots,
@@ -236,6 +239,8 @@ static void forget_source(struct flow_state *state)
     struct flow *flow = state->flow;
     flow->vertex = flow->source.blocks.vertex;
     flow->source.blocks.vertex = NULL;
+    flow->watched = flow->source.watched;
+    flow->source.watched = (struct flow_watched){0};
     flow_source_free(&flow->source);
     if (state->progress && state->progress->dealt)
         state->progress->dealt(state->progress->context);

@@ -18,6 +18,11 @@ static void take_room(struct flow_state *state)
     struct flow *flow = state->flow;
     if (flow_shows(state))
         flow->room = cloth_alloc(flow->n_vertices, 3 * sizeof *flow->room, &flow->trouble);
+    const struct flow_watched *watched = &flow->source.watched; /* the tables are not dealt yet */
+    if (state->output && state->output->row && watched->n_columns) {
+        flow->row = cloth_alloc(watched->n_columns, sizeof *flow->row, &flow->trouble);
+        flow->seen = cloth_alloc(watched->n, FLOW_SEEN * sizeof *flow->seen, &flow->trouble);
+    }
     state->bytes = cloth_alloc(flow_hash_part(flow), FLOW_VERTEX_BYTES, &flow->trouble);
     state->hash = XXH64_createState();
     if (!state->hash)
@@ -85,6 +90,8 @@ void flow_memory_free(struct flow_state *state)
     flow_turned_free(flow);
     free(flow->clock);
     free(flow->room);
+    free(flow->row);
+    free(flow->seen);
     free(state->block);
     free(state->parcel);
     free(state->refs);
@@ -94,7 +101,7 @@ void flow_memory_free(struct flow_state *state)
     free(state->bytes);
     XXH64_freeState(state->hash);
     flow->clock = NULL;
-    flow->room = NULL;
+    flow->room = flow->row = flow->seen = NULL;
     state->block = NULL;
     state->parcel = NULL;
     state->bytes = NULL;

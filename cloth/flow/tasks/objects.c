@@ -93,6 +93,7 @@ void flow_objects_make(struct flow_state *state)
         make_shared(state, DUITE_F64, FLOW_STATUS, state->status + i);
     }
     flow_turned_make(state);
+    flow_watch_make(state);
     make_shared(state, DUITE_I64, 1, &state->token);
     make_shared(state, DUITE_F64, 1, &state->most);
     make_shared(state, DUITE_F64, FLOW_PARTS, &state->seconds);
@@ -120,17 +121,17 @@ int flow_objects_free(struct flow_state *state)
     for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
         const struct flow_objects *o = state->block + b;
         const duite_object all[] = {
-            o->x,        o->v,      o->f,      o->a,     o->dv,       o->r,         o->p,
-            o->q,        o->copies, o->rim_x,  o->rim_v, o->rim_q[0], o->rim_q[1],  o->stretch,
-            o->z,        o->s,      o->factor, o->part,  o->basis,    o->rim_basis, o->basis_copies,
-            o->coupling, o->x0,     o->v0,     o->sum_x, o->sum_v,    o->table};
+            o->x,      o->v,     o->f,     o->a,         o->dv,           o->r,        o->p,  o->q,
+            o->copies, o->rim_x, o->rim_v, o->rim_q[0],  o->rim_q[1],     o->stretch,  o->z,  o->s,
+            o->factor, o->part,  o->basis, o->rim_basis, o->basis_copies, o->coupling, o->x0, o->v0,
+            o->sum_x,  o->sum_v, o->felt,  o->seen,      o->table};
         const int failed = release(state->rt, sizeof all / sizeof *all, all);
         code = code ? code : failed;
     }
     const duite_object all[] = {
         state->sums[0],   state->sums[1],   state->scalars[0], state->scalars[1], state->status[0],
         state->status[1], state->token,     state->most,       state->seconds,    state->told,
-        state->coarse,    state->motion[0], state->motion[1]};
+        state->coarse,    state->motion[0], state->motion[1],  state->peaks[0],   state->peaks[1]};
     const int failed = release(state->rt, sizeof all / sizeof *all, all);
     return code ? code : failed;
 }

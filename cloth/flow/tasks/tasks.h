@@ -63,6 +63,8 @@ struct flow {
     struct flow_source source; /* until the tables are dealt */
     uint32_t *vertex;          /* by place; from then on */
     struct flow_rest rest;
+    struct flow_watched watched;
+    char *header; /* of the table of probes; NULL: none */
 
     /* Of the run that is on. */
     unsigned n_clocks;
@@ -80,6 +82,8 @@ struct flow {
      * runs. */
     const struct flow_output *output;
     double *room;    /* n_vertices x 3: positions of a frame; NULL: there is no output */
+    double *row;     /* of the table of probes; NULL: it is not written */
+    double *seen;    /* watched x FLOW_SEEN */
     uint64_t frames; /* written */
     uint64_t hash;
 };
@@ -101,10 +105,16 @@ enum {
     FLOW_SIZE,     /* dv.D dv and */
     FLOW_RESIDUAL, /* r.D^-1 r, D the masses */
     FLOW_SHIFTED,  /* factors of blocks that were made with a shift or are of SSOR */
+    FLOW_KINETIC,  /* energy, J, of a state that is watched */
     FLOW_STATUS
 };
 /* What a preconditioned pass leaves of its block: the dots, then the coarse right side. */
 enum { FLOW_PART_COARSE = SOLVE_DOTS, FLOW_PART = FLOW_PART_COARSE + SOLVE_COARSE };
+/* Indices into the peaks of a state that is watched, F64, each the largest of any block: square of
+ * the speed, l / L of the springs that count for it, and minus that. */
+enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
+/* Numbers of a watched vertex: position, velocity, reaction. */
+enum { FLOW_SEEN = 9 };
 /* Indices into what rank 0 tells, I64 x 2. */
 enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
 
@@ -163,11 +173,16 @@ extern const duite_kernel flow_scalars_coarse; /* w next scalars, w next motion,
                                                   factor; all parts */
 extern const duite_kernel
     flow_velocity_dv; /* table, r f, r a, r dv, r r, rw v, w rim of v, r scalars, cw status */
-extern const duite_kernel flow_velocity_a;  /* table, r f, rw v, w rim of v, cw status */
-extern const duite_kernel flow_position;    /* table, r v, rw x, w rim of x, cw status */
-extern const duite_kernel flow_collide;     /* table, rw x, rw v, w rim of x, w rim of v */
-extern const duite_kernel flow_status;      /* cw status: on rank 0, whether a stop was asked for */
-extern const duite_kernel flow_frame;       /* rw token; x of all blocks: on rank 0 */
+extern const duite_kernel flow_velocity_a; /* table, r f, rw v, w rim of v, cw status */
+extern const duite_kernel flow_position;   /* table, r v, rw x, w rim of x, cw status */
+extern const duite_kernel flow_collide;    /* table, rw x, rw v, w rim of x, w rim of v */
+extern const duite_kernel flow_status;     /* cw status: on rank 0, whether a stop was asked for */
+extern const duite_kernel flow_frame;      /* rw token; x of all blocks: on rank 0 */
+extern const duite_kernel
+    flow_watch_block;                 /* table, r x, r v, cw status, cw peaks (max); rims of x */
+extern const duite_kernel flow_probe; /* table, r x, r v, r force, w seen */
+extern const duite_kernel
+    flow_row; /* rw token, r status, r peaks; seen of the blocks that have any: on rank 0 */
 extern const duite_kernel flow_stretch;     /* table, r x, w stretch; rims of x */
 extern const duite_kernel flow_most;        /* w stretch; stretch of all blocks */
 extern const duite_kernel flow_seconds;     /* cw seconds: of this rank */
@@ -185,6 +200,7 @@ struct flow_objects {
     /* With a preconditioner; copies has z for r, rim_q s for q. */
     duite_object z, s, factor, part;
     duite_object basis, rim_basis, basis_copies, coupling; /* with a coarse part */
+    duite_object felt, seen; /* where probes are: the force on each row; what is told of them */
 };
 
 /* What passes read of their neighbours' rims of q (far.c). */
@@ -212,6 +228,7 @@ struct flow_state {
     struct flow_far far;
     duite_graph solve; /* a round of conjugate gradients */
     duite_object sums[2], scalars[2], status[2], token, most, seconds, told;
+    duite_object peaks[2];
     duite_object coarse, motion[2]; /* with a coarse part: its factor and its part of s */
     struct flow_head head;
     duite_object *parcel;  /* a block: what travels to rank 0 on its own; empty in between */
@@ -224,6 +241,8 @@ struct flow_state {
     uint64_t next_frame;
     bool begun;    /* all ranks have their memory, objects are made */
     bool stopping; /* a stop was agreed: ends after the next frame */
+    bool resting;  /* it rests: the same */
+    double moved;  /* s: when it was last seen too fast for that */
 };
 
 /* Whether frames are wanted. */
@@ -343,6 +362,13 @@ void flow_far_take(struct flow_state *state);
 void flow_far_free(struct flow_state *state);
 void flow_far_make(struct flow_state *state); /* flow_run_begin does */
 int flow_far_pack(struct flow_state *state, uint32_t block, int to);
+
+/* Objects of what is watched. A failure is returned by the next get. */
+void flow_watch_make(struct flow_state *state);
+/* Forks what is watched of the state after so many steps, and its row of the table of probes. */
+int flow_watch(struct flow_state *state, uint64_t steps);
+/* Finds whether the run rests by then. For each number of steps in order, when they are done. */
+int flow_rest(struct flow_state *state, uint64_t steps);
 
 /* The step after which a frame is written. */
 uint64_t flow_frame_step(const struct model *model, uint64_t frame);

@@ -85,6 +85,16 @@ int output_write_at(int file, const void *bytes, size_t n, uint64_t offset)
     return 0;
 }
 
+int output_check_same(int file, const char *path, struct cloth_error *error)
+{
+    struct stat here, there;
+    if (fstat(file, &here) == 0 && stat(path, &there) == 0 && here.st_dev == there.st_dev &&
+        here.st_ino == there.st_ino)
+        return 0;
+    return cloth_fail(error, CLOTH_E_IO, "%s was removed or replaced while the run wrote to it",
+                      path);
+}
+
 int output_sync(int file)
 {
     if (fdatasync(file) == 0 || errno == EINVAL || errno == EROFS || errno == ENOSYS ||

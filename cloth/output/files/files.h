@@ -24,6 +24,10 @@ int output_make_folder(const char *folder, struct cloth_error *error);
 /* Writes all bytes at an offset, or fails with errno set (a short write counts as a full disk). */
 int output_write_at(int file, const void *bytes, size_t n, uint64_t offset);
 
+/* Whether the open file is still the one at the path: nobody reads what is written to a file that
+ * another run, or the user, took away. Error: CLOTH_E_IO. */
+int output_check_same(int file, const char *path, struct cloth_error *error);
+
 /* Brings what was written to a file to the disk. 0, or -1 with errno set. Pipes and some file
  * systems cannot be asked, and need not be. */
 int output_sync(int file);

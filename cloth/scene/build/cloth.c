@@ -59,25 +59,25 @@ static int build_box(double (*box)[3], const struct scene_tree *tree, int node,
                            cloth->name);
 }
 
-static int build_pin(struct model_pin *pin, const struct scene_tree *tree, int node,
-                     const struct model_cloth *cloth, struct cloth_error *error)
+int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int place,
+                     yaml_node_pair_t kind, const struct model_cloth *cloth,
+                     struct cloth_error *error)
 {
-    yaml_node_pair_t kind = scene_tree_pair(tree, node, 0);
     const char *name = scene_tree_scalar(tree, kind.key);
-    pin->place = scene_build_place(tree, node, error);
-    if (!pin->place)
+    pick->place = scene_build_place(tree, place, error);
+    if (!pick->place)
         return error->code;
     if (!strcmp(name, "vertices")) {
-        pin->kind = MODEL_PIN_VERTICES;
-        return build_vertices(&pin->vertices, &pin->n_vertices, tree, kind.value, cloth, error);
+        pick->kind = MODEL_PICK_VERTICES;
+        return build_vertices(&pick->vertices, &pick->n_vertices, tree, kind.value, cloth, error);
     }
     if (!strcmp(name, "nearest")) {
-        pin->kind = MODEL_PIN_NEAREST;
-        scene_tree_vector(tree, kind.value, 3, pin->point);
+        pick->kind = MODEL_PICK_NEAREST;
+        scene_tree_vector(tree, kind.value, 3, pick->point);
         return CLOTH_OK;
     }
-    pin->kind = MODEL_PIN_BOX;
-    return build_box(pin->box, tree, kind.value, cloth, error);
+    pick->kind = MODEL_PICK_BOX;
+    return build_box(pick->box, tree, kind.value, cloth, error);
 }
 
 static int build_pins(struct model_cloth *cloth, const struct scene_tree *tree, int node,
@@ -90,8 +90,11 @@ static int build_pins(struct model_cloth *cloth, const struct scene_tree *tree, 
         return error->code;
     cloth->n_pins = (uint32_t)n;
     int code = CLOTH_OK;
-    for (size_t i = 0; !code && i < n; i++)
-        code = build_pin(&cloth->pins[i], tree, scene_tree_item(tree, list, i), cloth, error);
+    for (size_t i = 0; !code && i < n; i++) {
+        int pin = scene_tree_item(tree, list, i);
+        code = scene_build_pick(&cloth->pins[i].pick, tree, pin, scene_tree_pair(tree, pin, 0),
+                                cloth, error);
+    }
     return code;
 }
 
@@ -151,18 +154,25 @@ static int build_cost(struct model_cloth *cloth, const struct scene_tree *tree, 
     return box ? build_box(cloth->cost.box, tree, box, cloth, error) : CLOTH_OK;
 }
 
+int scene_build_no_such(const char *what, const char *name, const char *const *names, size_t n,
+                        const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    char allowed[400];
+    scene_allowed_words(name, names, n, allowed, sizeof allowed);
+    return scene_tree_fail(tree, node, error, "there is no %s '%.60s'%s", what, name, allowed);
+}
+
 static int no_material(const char *name, const struct model *model, const struct scene_tree *tree,
                        int node, struct cloth_error *error)
 {
-    char allowed[400];
     const char **names = scene_build_array(model->n_materials, sizeof *names, error);
     if (!names)
         return error->code;
     for (uint32_t i = 0; i < model->n_materials; i++)
         names[i] = model->materials[i].name;
-    scene_allowed_words(name, names, model->n_materials, allowed, sizeof allowed);
+    int code = scene_build_no_such("material", name, names, model->n_materials, tree, node, error);
     free(names);
-    return scene_tree_fail(tree, node, error, "there is no material '%.60s'%s", name, allowed);
+    return code;
 }
 
 static int find_material(struct model_cloth *cloth, const struct model *model,

@@ -133,6 +133,10 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
     model->h = scene_tree_number(tree, time, "h");
     model->end = scene_tree_number(tree, time, "end");
     model->fps = scene_tree_number(tree, time, "fps");
+    const int rest = scene_tree_get(tree, time, "rest");
+    if (rest)
+        model->rest = (struct model_rest){scene_tree_number(tree, rest, "speed"),
+                                          scene_tree_number(tree, rest, "hold")};
     double steps = model->end / model->h;
     if (steps < 0.5)
         return scene_tree_fail(tree, end, error,

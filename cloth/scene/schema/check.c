@@ -165,12 +165,47 @@ static int add_missing(struct walk *walk, const struct place *at, const struct s
     return CLOTH_OK;
 }
 
+/* Where some of a map's keys are choices, exactly one of them is there. */
+static int check_choice(struct walk *walk, const struct place *at, const struct scene_rule *keys,
+                        int map)
+{
+    const char *names[MOST_KEYS], *first = NULL;
+    size_t n = 0;
+    for (const struct scene_rule *key = keys; key->key && n < MOST_KEYS; key++)
+        if (key->choice)
+            names[n++] = key->key;
+    char path[200], allowed[300] = "";
+    for (size_t i = 0; i < n; i++) {
+        const size_t used = strlen(allowed);
+        snprintf(allowed + used, sizeof allowed - used, "%s%s", i ? " or " : "", names[i]);
+    }
+    path_of(at, path, sizeof path);
+    for (size_t i = 0; i < scene_tree_length(walk->tree, map); i++) {
+        const int key = scene_tree_pair(walk->tree, map, i).key;
+        const char *name = scene_tree_scalar(walk->tree, key);
+        const struct scene_rule *rule = rule_of(keys, name);
+        if (!rule || !rule->choice)
+            continue;
+        if (first)
+            return scene_tree_fail(walk->tree, key, walk->error,
+                                   "%s has both %s and %s; one of %s is expected", path, first,
+                                   name, allowed);
+        first = name;
+    }
+    if (!n || first)
+        return CLOTH_OK;
+    return scene_tree_fail(walk->tree, map, walk->error, "%s has no %s; one of them is expected",
+                           path, allowed);
+}
+
 static int check_map(struct walk *walk, const struct place *at, const struct scene_rule *rule,
                      int node)
 {
     int code = check_names(walk, at, node);
     if (!code)
         code = check_values(walk, at, rule->inside, node);
+    if (!code)
+        code = check_choice(walk, at, rule->inside, node);
     return code ? code : add_missing(walk, at, rule->inside, node);
 }
 

@@ -50,6 +50,22 @@ static const struct scene_rule pin_kinds[] = {
     {"box", SCENE_LIST, "m", .length = 2, .inside = &point,
      .about = "all vertices in the box between two corners"},
     {0}};
+static const char *const probe_values[] = {"position", "velocity", "reaction", "total", NULL};
+static const struct scene_rule probe_value = {.type = SCENE_CHOICE, .words = probe_values};
+static const struct scene_rule probe_keys[] = {
+    {"name", SCENE_TEXT, .about = "unique, of letters, digits, _ and -; else probe1, probe2, ..."},
+    {"cloth", SCENE_TEXT, .about = "its name; optional where there is one only"},
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
+     .about = "in the mesh's numbering"},
+    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number,
+     .about = "the vertex nearest to a point"},
+    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
+     .about = "all vertices in the box between two corners"},
+    {"values", SCENE_LIST, .fallback = "[position, velocity, reaction]", .inside = &probe_value,
+     .about = "of each vertex position, velocity, reaction; total: the sum of their reactions"},
+    {0}};
+static const struct scene_rule probe = {.type = SCENE_MAP, .inside = probe_keys};
+
 static const struct scene_rule pin = {.type = SCENE_ONE_OF, .inside = pin_kinds};
 
 static const struct scene_rule load_keys[] = {
@@ -118,11 +134,17 @@ static const struct scene_rule obstacle_kinds[] = {
     {0}};
 static const struct scene_rule obstacle = {.type = SCENE_ONE_OF, .inside = obstacle_kinds};
 
+static const struct scene_rule rest_keys[] = {
+    {"speed", SCENE_NUMBER, "m/s", "0.001", .range = SCENE_POSITIVE,
+     .about = "no vertex is faster"},
+    {"hold", SCENE_NUMBER, "s", "0.1", .range = SCENE_NOT_NEGATIVE, .about = "for so long"},
+    {0}};
 static const struct scene_rule time_keys[] = {
     {"h", SCENE_NUMBER, "s", .required = true, .range = SCENE_POSITIVE, .about = "of a step"},
     {"end", SCENE_NUMBER, "s", .required = true, .range = SCENE_POSITIVE,
      .about = "round(end / h) steps are made"},
     {"fps", SCENE_NUMBER, "1/s", "25", .range = SCENE_POSITIVE, .about = "frames a second"},
+    {"rest", SCENE_MAP, .inside = rest_keys, .about = "the run ends when the cloth is at rest"},
     {0}};
 
 static const struct scene_rule stop_kinds[] = {
@@ -162,6 +184,8 @@ static const struct scene_rule scene_keys[] = {
     {"integrator", SCENE_CHOICE, .fallback = "implicit_euler", .words = integrators,
      .about = "how a step is made"},
     {"solver", SCENE_MAP, .fallback = "{}", .inside = solver_keys, .about = "of implicit steps"},
+    {"probes", SCENE_LIST, .fallback = "[]", .inside = &probe,
+     .about = "what probes.csv tells after each step"},
     {"grain", SCENE_INTEGER, .fallback = "1000", .least = 1, .about = "vertices a block"},
     {0}};
 /* clang-format on */

@@ -27,6 +27,7 @@ struct scene_rule {
     const char *unit;     /* NULL: a pure number, or not a number */
     const char *fallback; /* the default as YAML; NULL: none */
     bool required;        /* without a default: whether the key must be there */
+    bool choice;          /* of the keys of a map that are choices one must be there, and no more */
     enum scene_range range;
     double least, most;       /* of integers; most 0: 2^32 - 1 */
     size_t length;            /* of lists; 0: any */

@@ -93,11 +93,9 @@ static void integer_expected(const struct scene_rule *rule, char *text, size_t s
 
 static void list_expected(const struct scene_rule *rule, char *text, size_t size)
 {
-    const char *const items[] = {[SCENE_NUMBER] = "numbers",
-                                 [SCENE_INTEGER] = "whole numbers",
-                                 [SCENE_LIST] = "lists",
-                                 [SCENE_MAP] = "maps",
-                                 [SCENE_ONE_OF] = "maps"};
+    const char *const items[] = {[SCENE_NUMBER] = "numbers", [SCENE_INTEGER] = "whole numbers",
+                                 [SCENE_LIST] = "lists",     [SCENE_CHOICE] = "words",
+                                 [SCENE_MAP] = "maps",       [SCENE_ONE_OF] = "maps"};
     if (rule->length)
         snprintf(text, size, "a list of %zu %s", rule->length, items[rule->inside->type]);
     else
@@ -190,9 +188,9 @@ static void print_keys(FILE *file, const struct scene_rule *of, const char *path
             fprintf(file, "default %s\n", key->fallback);
         else
             fprintf(file, "%s\n",
-                    of->type == SCENE_ONE_OF ? "a choice"
-                    : key->required          ? "required"
-                                             : "optional");
+                    of->type == SCENE_ONE_OF || key->choice ? "a choice"
+                    : key->required                         ? "required"
+                                                            : "optional");
         fprintf(file, "    %s\n", key->about);
         print_inside(file, key, here);
     }

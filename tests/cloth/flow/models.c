@@ -67,9 +67,9 @@ void setup_weight(struct setup *s)
 void setup_pin(struct setup *s, uint32_t n, const uint32_t *vertices)
 {
     memcpy(s->pinned, vertices, n * sizeof *vertices);
-    s->pin.kind = MODEL_PIN_VERTICES;
-    s->pin.n_vertices = n;
-    s->pin.vertices = s->pinned;
+    s->pin.pick.kind = MODEL_PICK_VERTICES;
+    s->pin.pick.n_vertices = n;
+    s->pin.pick.vertices = s->pinned;
     s->cloth.n_pins = 1;
 }
 

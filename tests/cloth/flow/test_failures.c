@@ -128,13 +128,13 @@ START_TEST(pins_and_loads_outside)
     struct record record = {0};
     setup_sheet(&setup, 3);
     setup_pin(&setup, 1, (const uint32_t[]){9});
-    setup.pin.place = (char[]){"a.yaml:12:5"};
+    setup.pin.pick.place = (char[]){"a.yaml:12:5"};
     record_run(&record, &setup.model);
     says(&record, CLOTH_E_INPUT, "a.yaml:12:5: a pin of cloth 'test' names vertex 9");
     says(&record, CLOTH_E_INPUT, "0 to 8");
     record_free(&record);
     setup.pin = (struct model_pin){
-        .kind = MODEL_PIN_BOX, .box = {{2, 0, 0}, {3, 1, 1}}, .place = (char[]){"a.yaml:13:5"}};
+        {.kind = MODEL_PICK_BOX, .box = {{2, 0, 0}, {3, 1, 1}}, .place = (char[]){"a.yaml:13:5"}}};
     record_run(&record, &setup.model);
     says(&record, CLOTH_E_INPUT, "a.yaml:13:5: the box of a pin of cloth 'test' holds no vertex");
     record_free(&record);
@@ -154,8 +154,8 @@ START_TEST(pins_by_place)
     struct record record = {0};
     setup_sheet(&setup, 3);
     setup.cloth.n_pins = 2;
-    struct model_pin pins[2] = {{.kind = MODEL_PIN_NEAREST, .point = {-0.4, 2, 0.4}},
-                                {.kind = MODEL_PIN_BOX, .box = {{0.1, -1, -1}, {1, 1, 0}}}};
+    struct model_pin pins[2] = {{{.kind = MODEL_PICK_NEAREST, .point = {-0.4, 2, 0.4}}},
+                                {{.kind = MODEL_PICK_BOX, .box = {{0.1, -1, -1}, {1, 1, 0}}}}};
     setup.cloth.pins = pins;
     record_run(&record, &setup.model);
     ck_assert_msg(record.code == 0, "%s", record.error.text);
@@ -303,7 +303,7 @@ START_TEST(pins_and_loads_that_move_nothing)
     ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 5, vertices[0], 0, NULL, 1, triangle, &error),
                      0);
     setup_pin(&setup, 4, (const uint32_t[]){0, 4, 4, 3});
-    setup.pin.place = (char[]){"a.yaml:5:9"};
+    setup.pin.pick.place = (char[]){"a.yaml:5:9"};
     setup_load(&setup, 3, 0, 1, 0);
     setup.load.place = (char[]){"a.yaml:6:9"};
     ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);

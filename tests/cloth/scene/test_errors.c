@@ -156,7 +156,7 @@ START_TEST(wrong_kinds)
            {"gravity: [0, -9.81, 0]", "gravity: [0, {a: 1}, 0]",
             .error = ":2:14: gravity[1] is a map of 1; a finite number is expected"},
            {"time: {h: 0.001, end: 0.1}", "time: 3",
-            .error = ":12:7: time is 3; a map of h, end, fps is expected"},
+            .error = ":12:7: time is 3; a map of h, end, fps, rest is expected"},
            {"name: sheet", "name: ''",
             .error = ":4:11: cloths[0].name is the text ''; a text is expected"},
            {"name: sheet", "name: [a]",
@@ -187,11 +187,12 @@ START_TEST(unknown_and_missing_keys)
     EXPECT({"time:", "tiem:",
             .error = ":12:1: tiem is not a key of the scene; did you mean 'time'? Allowed: schema, "
                      "name, gravity, cloths, "
-                     "materials, obstacles, contact, time, integrator, solver, grain"},
+                     "materials, obstacles, contact, time, integrator, solver, probes, grain"},
            {"h: 0.001", "h: 0.001, dt: 1",
-            .error = ":12:18: dt is not a key of time; allowed: h, end, fps"},
+            .error = ":12:18: dt is not a key of time; allowed: h, end, fps, rest"},
            {"h: 0.001", "h: 0.001, fsp: 1",
-            .error = ":12:18: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps"},
+            .error =
+                ":12:18: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, rest"},
            {"stretch: 50", "strech: 50",
             .error = ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
                      "Allowed: density, stretch, "
@@ -245,6 +246,38 @@ START_TEST(names_and_indices)
 }
 END_TEST
 
+#define PROBE(text) "\ntime: {h", "\nprobes: [" text "]\ntime: {h"
+
+START_TEST(probes_that_tell_nothing)
+{
+    EXPECT(
+        {PROBE("{name: a}"),
+         .error = ":12:10: probes[0] has no vertices or nearest or box; one of them is expected"},
+        {PROBE("{vertices: [0], nearest: [0, 0, 0]}"),
+         .error = ":12:26: probes[0] has both vertices and nearest; one of vertices or nearest or "
+                  "box is expected"},
+        {PROBE("{vertices: [12]}"),
+         .error =
+             ":12:22: vertex 12 is outside the mesh of cloth 'sheet', which has 12 vertices; 0 "
+             "to 11 are allowed"},
+        {PROBE("{vertices: [1, 1]}"), .error = ":12:25: vertex 1 stands twice in one probe"},
+        {PROBE("{vertices: [1], name: 'a,b'}"),
+         .error = ":12:32: the name of a probe is 'a,b'; at most 60 letters, digits, _ and - are "
+                  "expected"},
+        {PROBE("{vertices: [1], name: probe2}, {vertices: [1]}"),
+         .error = ":12:41: a second probe is named 'probe2'; names must differ"},
+        {PROBE("{vertices: [1], cloth: shet}"),
+         .error = ":12:33: there is no cloth 'shet'; did you mean 'sheet'? Allowed: sheet"},
+        {PROBE("{vertices: [1], values: [total, mass]}"),
+         .error = ":12:42: probes[0].values[1] is mass; position or velocity or reaction or total "
+                  "is expected"},
+        {PROBE("{vertices: [1], values: [total, total]}"),
+         .error = ":12:42: total stands twice in the values of a probe"},
+        {"end: 0.1", "end: 0.1, rest: {speed: 0}",
+         .error = ":12:42: time.rest.speed is 0; a finite number > 0 (m/s) is expected"});
+}
+END_TEST
+
 START_TEST(meshes_that_cannot_be_used)
 {
     struct model model;
@@ -292,7 +325,7 @@ START_TEST(files_that_are_no_scenes)
     expect_text("a: &a [*a]\n", NULL,
                 ":1:1: a is not a key of the scene; allowed: schema, name, gravity, cloths, "
                 "materials, obstacles, contact, "
-                "time, integrator, solver, grain");
+                "time, integrator, solver, probes, grain");
     expect_text("schema: 1\ncloths: &a [*a]\n", NULL,
                 ":2:9: cloths[0] is a list of 1; a map of name, mesh, transform, material, "
                 "mass_per_vertex, velocity, "
@@ -324,7 +357,7 @@ START_TEST(sets_that_are_wrong)
         const char *set, *error;
     } all[] = {
         {"time.h=-1", "time.h is -1; a finite number > 0 (s) is expected"},
-        {"time.hh=1", "hh is not a key of time; did you mean 'h'? Allowed: h, end, fps"},
+        {"time.hh=1", "hh is not a key of time; did you mean 'h'? Allowed: h, end, fps, rest"},
         {"time.h.x=1", "'time.h' is not a map"},
         {"cloths.x=1", "'cloths' is not a map"},
         {"time[0]=1", "'time' is not a list"},
@@ -387,6 +420,7 @@ int main(void)
     tcase_add_test(cases, wrong_kinds);
     tcase_add_test(cases, unknown_and_missing_keys);
     tcase_add_test(cases, names_and_indices);
+    tcase_add_test(cases, probes_that_tell_nothing);
     tcase_add_test(cases, meshes_that_cannot_be_used);
     tcase_add_test(cases, files_that_are_no_scenes);
     tcase_add_test(cases, files_that_cannot_be_read);

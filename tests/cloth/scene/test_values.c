@@ -79,10 +79,10 @@ START_TEST(cloth_and_material)
     ck_assert_double_eq(cloth->mass_per_vertex, 0);
     same_vector(cloth->velocity, 0, 0, 0);
     ck_assert_uint_eq(cloth->n_pins, 1);
-    ck_assert_int_eq(cloth->pins[0].kind, MODEL_PIN_VERTICES);
-    ck_assert_uint_eq(cloth->pins[0].n_vertices, 2);
-    ck_assert_uint_eq(cloth->pins[0].vertices[1], 3);
-    same_place(cloth->pins[0].place, ":7:12");
+    ck_assert_int_eq(cloth->pins[0].pick.kind, MODEL_PICK_VERTICES);
+    ck_assert_uint_eq(cloth->pins[0].pick.n_vertices, 2);
+    ck_assert_uint_eq(cloth->pins[0].pick.vertices[1], 3);
+    same_place(cloth->pins[0].pick.place, ":7:12");
     ck_assert_uint_eq(cloth->n_loads, 1);
     ck_assert_uint_eq(cloth->loads[0].vertices[0], 11);
     same_vector(cloth->loads[0].force, 0, 1, 0);
@@ -163,13 +163,38 @@ START_TEST(cloths_of_every_mesh)
     const struct model_cloth *chain = &model.cloths[2];
     ck_assert_uint_eq(chain->mesh.n_lone_edges, 1);
     same_vector(chain->mesh.position + 3, -1, 0, 5); /* turned by half a circle about y */
-    ck_assert_int_eq(chain->pins[0].kind, MODEL_PIN_NEAREST);
-    same_vector(chain->pins[0].point, 0, 0, 4);
-    ck_assert_int_eq(chain->pins[1].kind, MODEL_PIN_BOX);
-    same_vector(chain->pins[1].box[0], -2, 0, 0);
-    same_vector(chain->pins[1].box[1], 1, 1, 9);
+    ck_assert_int_eq(chain->pins[0].pick.kind, MODEL_PICK_NEAREST);
+    same_vector(chain->pins[0].pick.point, 0, 0, 4);
+    ck_assert_int_eq(chain->pins[1].pick.kind, MODEL_PICK_BOX);
+    same_vector(chain->pins[1].pick.box[0], -2, 0, 0);
+    same_vector(chain->pins[1].pick.box[1], 1, 1, 9);
     ck_assert_uint_eq(model.cloths[3].mesh.triangle[0], 2);
     same_vector(model.cloths[3].mesh.position + 6, 0, 0, 2);
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
+START_TEST(probes_and_rest)
+{
+    struct model model;
+    char *text = scene_changed(
+        scene_right, "\ntime: {h: 0.001, end: 0.1",
+        "\nprobes: [{vertices: [3, 1]}, {box: [[-9, -9, -9], [9, 9, 9]], name: all-1, cloth: "
+        "sheet, values: [total, velocity]}]\ntime: {h: 0.001, end: 0.1, rest: {hold: 0}");
+    struct cloth_error error = {0};
+    ck_assert_msg(scene_read_text(&model, text, 0, NULL, &error) == 0, "%s", error.text);
+    ck_assert_double_eq(model.rest.speed, 0.001);
+    ck_assert_double_eq(model.rest.hold, 0);
+    ck_assert_uint_eq(model.n_probes, 2);
+    const struct model_probe *probe = model.probes;
+    ck_assert_str_eq(probe[0].name, "probe1");
+    ck_assert(probe[0].position && probe[0].velocity && probe[0].reaction && !probe[0].total);
+    ck_assert_int_eq(probe[0].pick.kind, MODEL_PICK_VERTICES);
+    ck_assert_uint_eq(probe[0].pick.vertices[0], 3);
+    ck_assert_str_eq(probe[1].name, "all-1");
+    ck_assert(!probe[1].position && probe[1].velocity && !probe[1].reaction && probe[1].total);
+    ck_assert_int_eq(probe[1].pick.kind, MODEL_PICK_BOX);
     model_free(&model);
     free(text);
 }
@@ -236,11 +261,12 @@ START_TEST(sets_make_and_append)
     model_free(&model);
     model = read_set("cloths[0].pins[1].nearest=[0, 0, 0]");
     ck_assert_uint_eq(model.cloths[0].n_pins, 2);
-    ck_assert_str_eq(model.cloths[0].pins[1].place, "--set cloths[0].pins[1].nearest=[0, 0, 0]");
+    ck_assert_str_eq(model.cloths[0].pins[1].pick.place,
+                     "--set cloths[0].pins[1].nearest=[0, 0, 0]");
     model_free(&model);
     model = read_set("cloths[0].pins[0].vertices[2]=5");
-    ck_assert_uint_eq(model.cloths[0].pins[0].n_vertices, 3);
-    ck_assert_uint_eq(model.cloths[0].pins[0].vertices[2], 5);
+    ck_assert_uint_eq(model.cloths[0].pins[0].pick.n_vertices, 3);
+    ck_assert_uint_eq(model.cloths[0].pins[0].pick.vertices[2], 5);
     model_free(&model);
     const struct scene_set both[] = {{.text = "materials.wool={density: 1, stretch: 1}"},
                                      {.text = "cloths[0].material=wool"},
@@ -302,6 +328,7 @@ int main(void)
     tcase_add_test(cases, cloth_and_material);
     tcase_add_test(cases, every_other_key);
     tcase_add_test(cases, cloths_of_every_mesh);
+    tcase_add_test(cases, probes_and_rest);
     tcase_add_test(cases, numbers_of_every_form);
     tcase_add_test(cases, sets_change_values);
     tcase_add_test(cases, sets_make_and_append);

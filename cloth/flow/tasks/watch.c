@@ -1,0 +1,120 @@
+/* The state after a step is watched when the step has been forked whole: probes tell of it, and the
+ * main program may find that the run rests. What is watched of a state waits where the next but one
+ * is watched, as the status of a step does. Nothing here is forked for a run that has neither. */
+#include "cloth/flow/tasks/tasks.h"
+
+#include <math.h>
+#include <stddef.h>
+
+/* Whether rows of probes are wanted. */
+static bool tells(const struct flow_state *state)
+{
+    return state->flow->model->n_probes && state->output && state->output->row;
+}
+
+static bool may_rest(const struct flow_state *state)
+{
+    return state->flow->model->rest.speed > 0;
+}
+
+/* Where the state after so many steps is watched: that of the last of them. */
+static size_t at(uint64_t steps)
+{
+    return (steps + 1) % 2;
+}
+
+void flow_watch_make(struct flow_state *state)
+{
+    for (int i = 0; i < 2; i++) {
+        duite_new(state->rt, DUITE_F64, FLOW_PEAKS, state->peaks + i);
+        duite_follow(state->rt, state->peaks[i], state->block[0].x);
+    }
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && tells(state); b++) {
+        const struct flow_table *t = state->flow->tables.block + b;
+        struct flow_objects *o = state->block + b;
+        if (!t->n_watched)
+            continue;
+        duite_new(state->rt, DUITE_F64, 4 * (size_t)t->n, &o->felt);
+        duite_follow(state->rt, o->felt, o->x);
+        duite_new(state->rt, DUITE_F64, FLOW_SEEN * (size_t)t->n_watched, &o->seen);
+        duite_follow(state->rt, o->seen, o->x);
+    }
+}
+
+static int fork_watch(struct flow_state *state, uint64_t steps)
+{
+    const double none[FLOW_PEAKS] = {0, -INFINITY, -INFINITY};
+    struct flow_args args = {.step = (uint32_t)steps};
+    int code = duite_set(state->rt, state->peaks[at(steps)], none);
+    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+        const struct flow_objects *o = state->block + args.block;
+        const duite_object objects[] = {o->x, o->v, state->status[at(steps)],
+                                        state->peaks[at(steps)]};
+        code = flow_fork(state, &flow_watch_block, &args, 4, objects, FLOW_RIM(rim_x), FLOW_NO_RIM);
+    }
+    return code;
+}
+
+static int fork_probe(struct flow_state *state, struct flow_args args)
+{
+    const struct flow_objects *o = state->block + args.block;
+    int code = flow_fork(state, &flow_force, &args, 3, (duite_object[]){o->x, o->v, o->felt},
+                         FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    if (!code)
+        code = flow_fork(state, &flow_probe, &args, 4,
+                         (duite_object[]){o->x, o->v, o->felt, o->seen}, FLOW_NO_RIM, FLOW_NO_RIM);
+    return code;
+}
+
+/* The row before must have been written by then. */
+static int fork_row(struct flow_state *state, uint64_t steps)
+{
+    int64_t token;
+    struct flow_args args = {.step = (uint32_t)steps};
+    int code = steps ? duite_get(state->rt, state->token, &token) : DUITE_OK;
+    for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
+        if (state->flow->tables.block[args.block].n_watched)
+            code = fork_probe(state, args);
+    if (code)
+        return code;
+    size_t n = 0;
+    args.block = 0;
+    state->refs[n++] = state->token;
+    state->refs[n++] = state->status[at(steps)];
+    state->refs[n++] = state->peaks[at(steps)];
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
+        if (state->flow->tables.block[b].n_watched)
+            state->refs[n++] = state->block[b].seen;
+    return duite_fork_at(state->rt, 0, &flow_row, &args, n, state->refs);
+}
+
+int flow_watch(struct flow_state *state, uint64_t steps)
+{
+    if (!tells(state) && !may_rest(state))
+        return DUITE_OK;
+    const double nothing[FLOW_STATUS] = {0};
+    int code = steps ? DUITE_OK : duite_set(state->rt, state->status[at(0)], nothing);
+    if (!code)
+        code = fork_watch(state, steps);
+    if (!code && tells(state))
+        code = fork_row(state, steps);
+    return code;
+}
+
+int flow_rest(struct flow_state *state, uint64_t steps)
+{
+    const struct model *model = state->flow->model;
+    double peaks[FLOW_PEAKS];
+    if (!may_rest(state) || state->resting)
+        return DUITE_OK;
+    const int code = duite_get(state->rt, state->peaks[at(steps)], peaks);
+    if (code)
+        return code;
+    const double time = (double)steps * model->h;
+    if (!(sqrt(peaks[FLOW_PEAK_SPEED]) <= model->rest.speed))
+        state->moved = time;
+    state->resting = steps > 0 && time - state->moved >= model->rest.hold;
+    if (state->resting)
+        state->report->rest_seconds = time;
+    return DUITE_OK;
+}

@@ -1,0 +1,141 @@
+/* Probes. Their names stand in the header of a table, so they are words without commas or quotes.
+ */
+#include "cloth/scene/build/build.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_word(const char *name)
+{
+    static const char allowed[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    return strlen(name) <= 60 && strspn(name, allowed) == strlen(name);
+}
+
+static int name_probe(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
+                      struct cloth_error *error)
+{
+    char usual[32];
+    snprintf(usual, sizeof usual, "probe%u", i + 1);
+    int at = scene_tree_get(tree, node, "name");
+    const char *name = at ? scene_tree_scalar(tree, at) : usual;
+    if (!is_word(name))
+        return scene_tree_fail(tree, at, error,
+                               "the name of a probe is '%.60s'; at most 60 letters, digits, _ and "
+                               "- are expected",
+                               name);
+    for (uint32_t j = 0; j < i; j++)
+        if (!strcmp(model->probes[j].name, name))
+            return scene_tree_fail(tree, at ? at : node, error,
+                                   "a second probe is named '%.60s'; names must differ", name);
+    model->probes[i].name = scene_build_copy(name, error);
+    return model->probes[i].name ? CLOTH_OK : error->code;
+}
+
+static int no_cloth(const char *name, const struct model *model, const struct scene_tree *tree,
+                    int node, struct cloth_error *error)
+{
+    const char **names = scene_build_array(model->n_cloths, sizeof *names, error);
+    if (!names)
+        return error->code;
+    for (uint32_t i = 0; i < model->n_cloths; i++)
+        names[i] = model->cloths[i].name;
+    int code = scene_build_no_such("cloth", name, names, model->n_cloths, tree, node, error);
+    free(names);
+    return code;
+}
+
+static int find_cloth(struct model_probe *probe, const struct model *model,
+                      const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const char *name = scene_tree_text(tree, node, "cloth");
+    if (!name && model->n_cloths == 1)
+        return CLOTH_OK;
+    if (!name)
+        return scene_tree_fail(tree, node, error,
+                               "a probe does not name its cloth, of which there are %u",
+                               model->n_cloths);
+    for (; probe->cloth < model->n_cloths; probe->cloth++)
+        if (!strcmp(model->cloths[probe->cloth].name, name))
+            return CLOTH_OK;
+    return no_cloth(name, model, tree, scene_tree_get(tree, node, "cloth"), error);
+}
+
+static int build_values(struct model_probe *probe, const struct scene_tree *tree, int list,
+                        struct cloth_error *error)
+{
+    const struct {
+        const char *word;
+        bool *value;
+    } all[] = {{"position", &probe->position},
+               {"velocity", &probe->velocity},
+               {"reaction", &probe->reaction},
+               {"total", &probe->total}};
+    for (size_t i = 0; i < scene_tree_length(tree, list); i++) {
+        const int item = scene_tree_item(tree, list, i);
+        const char *word = scene_tree_scalar(tree, item);
+        for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+            if (strcmp(all[k].word, word) != 0)
+                continue;
+            if (*all[k].value)
+                return scene_tree_fail(tree, item, error,
+                                       "%s stands twice in the values of a probe", word);
+            *all[k].value = true;
+        }
+    }
+    return CLOTH_OK;
+}
+
+/* A vertex that stands twice would be two columns of one name. */
+static int check_twice(const struct model_probe *probe, const struct scene_tree *tree, int list,
+                       uint32_t *seen, uint32_t number, struct cloth_error *error)
+{
+    for (uint32_t i = 0; i < probe->pick.n_vertices; i++) {
+        if (seen[probe->pick.vertices[i]] == number)
+            return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
+                                   "vertex %u stands twice in one probe", probe->pick.vertices[i]);
+        seen[probe->pick.vertices[i]] = number;
+    }
+    return CLOTH_OK;
+}
+
+static int build_probe(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
+                       uint32_t *seen, struct cloth_error *error)
+{
+    static const char *const kinds[] = {"vertices", "nearest", "box"};
+    struct model_probe *probe = &model->probes[i];
+    yaml_node_pair_t kind = {0};
+    for (size_t k = 0; k < scene_tree_length(tree, node); k++)
+        for (size_t j = 0; j < sizeof kinds / sizeof *kinds; j++)
+            if (!strcmp(scene_tree_scalar(tree, scene_tree_pair(tree, node, k).key), kinds[j]))
+                kind = scene_tree_pair(tree, node, k);
+    int code = name_probe(model, i, tree, node, error);
+    if (!code)
+        code = find_cloth(probe, model, tree, node, error);
+    if (!code)
+        code =
+            scene_build_pick(&probe->pick, tree, node, kind, model->cloths + probe->cloth, error);
+    if (!code)
+        code = check_twice(probe, tree, kind.value, seen, i + 1, error);
+    return code ? code : build_values(probe, tree, scene_tree_get(tree, node, "values"), error);
+}
+
+int scene_build_probes(struct model *model, const struct scene_tree *tree,
+                       struct cloth_error *error)
+{
+    int list = scene_tree_get(tree, 1, "probes"), code = CLOTH_OK;
+    uint32_t n = (uint32_t)scene_tree_length(tree, list), most = 0;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        most = model->cloths[c].mesh.n_vertices > most ? model->cloths[c].mesh.n_vertices : most;
+    uint32_t *seen = scene_build_array(n ? most : 0, sizeof *seen, error);
+    model->probes = scene_build_array(n, sizeof *model->probes, error);
+    if (seen && model->probes)
+        model->n_probes = n;
+    else
+        code = error->code;
+    for (uint32_t i = 0; !code && i < n; i++)
+        code = build_probe(model, i, tree, scene_tree_item(tree, list, i), seen, error);
+    free(seen);
+    return code;
+}

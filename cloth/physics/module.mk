@@ -1,5 +1,13 @@
 libduite_cloth_la_SOURCES += \
+    cloth/physics/bending.h \
+    cloth/physics/element.h \
+    cloth/physics/fold.c \
+    cloth/physics/hinge.c \
     cloth/physics/particle.c cloth/physics/particle.h \
     cloth/physics/spring.c cloth/physics/spring.h \
     cloth/physics/stage.c cloth/physics/stage.h cloth/physics/tiny.h \
-    cloth/physics/vec.h
+    cloth/physics/triangle.c cloth/physics/triangle.h \
+    cloth/physics/vec.h \
+    cloth/physics/detail/hinge.h \
+    cloth/physics/detail/lanes.h \
+    cloth/physics/detail/membrane.h

@@ -14,9 +14,10 @@ PHYS_INLINE double direction(const phys_vec *xa, const phys_vec *xb, phys_vec *u
 }
 
 /* Share t of the stiffness that acts across a spring. */
-PHYS_INLINE double transverse(double l, double rest)
+PHYS_INLINE double transverse(const struct phys_springs *s, size_t i, double l)
 {
-    return l > rest ? 1 - rest / l : 0;
+    const double rest = s->length[i];
+    return l > rest || (s->full && l > 0) ? 1 - rest / l : 0;
 }
 
 /* The pull on a of spring i. */
@@ -58,7 +59,7 @@ PHYS_INLINE void stiff(const struct phys_springs *s, size_t i, double scale, con
                        const phys_vec *xb, const phys_vec *d, phys_vec *y)
 {
     phys_vec u;
-    const double t = transverse(direction(xa, xb, &u), s->length[i]);
+    const double t = transverse(s, i, direction(xa, xb, &u));
     const double k = scale * s->stiffness[i];
     *y = k * t * *d + k * (1 - t) * phys_dot(&u, d) * u;
 }
@@ -95,7 +96,7 @@ void phys_springs_matrix(const struct phys_springs *springs, double h, const phy
     for (size_t i = 0; i < springs->n; i++) {
         phys_vec u;
         const double l = direction(x + springs->end[i][0], x_other + springs->end[i][1], &u);
-        const double t = transverse(l, springs->length[i]);
+        const double t = transverse(springs, i, l);
         const double k = h * h * springs->stiffness[i];
         value[i] = sqrt(k * (1 - t) + h * springs->damping[i]) * u; /* w w' */
         value[i][3] = k * t;                                        /* alpha */

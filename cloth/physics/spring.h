@@ -11,8 +11,8 @@
  * and its stiffness towards a difference of positions is
  *     K = k (u u' + t (I - u u')),  t = max(0, 1 - L / l)                           (N/m)
  * where the negative transverse term of a spring in compression is dropped, so that K is never
- * indefinite. Two particles at one place have no direction: u = 0 there, and only t and its K
- * remain defined, as zero.
+ * indefinite; `full` keeps it, t = 1 - L / l: K is then the exact slope of the force. Two particles
+ * at one place have no direction: u = 0 there, and only t and its K remain defined, as zero.
  *
  * Functions come in pairs. The plain one has both ends in the same arrays and writes both rows. The
  * one called `_cut` has end 1 in arrays of another block, and writes the rows of end 0 only; the
@@ -25,6 +25,7 @@ struct phys_springs {
     const double *stiffness;  /* n: k, N/m */
     const double *damping;    /* n: c, kg/s */
     const double *length;     /* n: L, m, > 0 */
+    int full;                 /* the whole K */
 };
 
 /* Adds the forces (N) to f. x: m, v: m/s. */

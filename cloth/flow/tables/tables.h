@@ -77,8 +77,8 @@ void flow_table_open(struct flow_table *table, const void *image);
 static inline struct phys_springs flow_table_springs(const struct flow_table *t, uint32_t from,
                                                      uint32_t to)
 {
-    return (struct phys_springs){to - from, t->end + from, t->stiffness + from, t->damping + from,
-                                 t->length + from};
+    return (struct phys_springs){to - from,         t->end + from,    t->stiffness + from,
+                                 t->damping + from, t->length + from, 0};
 }
 static inline struct phys_springs flow_table_inner(const struct flow_table *t)
 {

@@ -17,6 +17,7 @@ static const double slack[SPRINGS] = {0, 0, 0, 0, 0, 0, 0};
 
 /* A tangle of springs. Shorter: every rest length below the length, so that no term is dropped. */
 static const double shorter[SPRINGS] = {0.5, 0.7, 0.4, 0.3, 0.6, 0.55, 0.8};
+static const double longer[SPRINGS] = {2, 1.9, 1.8, 1.7, 2.1, 1.6, 2.2};
 static const phys_vec places[N] = {
     {0, 0, 0, 0}, {1, 0.1, -0.2, 0}, {0.2, 1.1, 0.3, 0}, {1.2, 0.9, 0.4, 0}, {0.7, 0.3, 1.5, 0}};
 static const phys_vec speeds[N] = {{0.3, -0.2, 0.1, 0},
@@ -27,7 +28,7 @@ static const phys_vec speeds[N] = {{0.3, -0.2, 0.1, 0},
 
 static struct phys_springs tangle(const double *c, const double *length)
 {
-    return (struct phys_springs){SPRINGS, ends, stiffness, c, length};
+    return (struct phys_springs){SPRINGS, ends, stiffness, c, length, 0};
 }
 
 /* Sum of k (l - L)^2 / 2. */
@@ -67,7 +68,7 @@ START_TEST(damping_acts_along_the_spring_only)
 {
     const uint32_t end[1][2] = {{0, 1}};
     const double k[1] = {3}, c[1] = {0.25}, length[1] = {2};
-    const struct phys_springs s = {1, end, k, c, length};
+    const struct phys_springs s = {1, end, k, c, length, 0};
     const phys_vec x[2] = {{0}, {0, 2, 0, 0}}, v[2] = {{1, 3, -2, 0}, {5, 7, 9, 0}};
     phys_vec f[2] = {{0}};
     phys_springs_force(&s, x, v, f);
@@ -88,11 +89,15 @@ static void apply(const phys_vec *value, const phys_vec *d, phys_vec *t)
 }
 
 /* -dF/dx and -dF/dv of all springs by differences, against h c u u' + h^2 K by superposition of
- * unit moves. */
+ * unit moves; the full ones also under compression. */
 START_TEST(matrix_is_the_slope_of_the_force)
 {
     const double h = 0.1, e = 1e-6;
-    const struct phys_springs still = tangle(slack, shorter), s = tangle(damping, shorter);
+    struct phys_springs still = tangle(slack, shorter), s = tangle(damping, shorter);
+    if (_i) {
+        still.length = s.length = longer;
+        s.full = 1;
+    }
     phys_vec value[SPRINGS];
     phys_springs_matrix(&s, h, places, places, value);
     for (int j = 0; j < N; j++)
@@ -128,7 +133,11 @@ END_TEST
 START_TEST(stiffness_times_velocity_is_the_slope_of_the_force)
 {
     const double e = 1e-6;
-    const struct phys_springs s = tangle(slack, shorter);
+    struct phys_springs s = tangle(slack, shorter);
+    if (_i) {
+        s.length = longer;
+        s.full = 1;
+    }
     phys_vec more[N], less[N], f[2][N] = {{{0}}}, y[N] = {{0}};
     for (int i = 0; i < N; i++) {
         more[i] = places[i] + e * speeds[i];
@@ -149,7 +158,7 @@ START_TEST(compression_drops_the_transverse_term)
 {
     const uint32_t end[1][2] = {{0, 1}};
     const double k[1] = {100}, c[1] = {0}, length[1] = {1};
-    const struct phys_springs s = {1, end, k, c, length};
+    const struct phys_springs s = {1, end, k, c, length, 0};
     const phys_vec x[2] = {{0}, {0.8, 0, 0, 0}}, v[2] = {{0}, {0, 1, 0, 0}},
                    along[2] = {{0}, {1, 0, 0, 0}};
     phys_vec value, y[2] = {{0}};
@@ -168,7 +177,7 @@ START_TEST(ends_at_one_place_pull_nowhere)
 {
     const uint32_t end[1][2] = {{0, 1}};
     const double k[1] = {100}, c[1] = {1}, length[1] = {1};
-    const struct phys_springs s = {1, end, k, c, length};
+    const struct phys_springs s = {1, end, k, c, length, 0};
     const phys_vec x[2] = {{0.5, 0, 0, 0}, {0.5, 0, 0, 0}}, v[2] = {{0}, {1, 1, 1, 0}};
     phys_vec f[2] = {{0}}, value;
     phys_springs_force(&s, x, v, f);
@@ -185,10 +194,10 @@ END_TEST
 START_TEST(cut_springs_are_exact_opposites)
 {
     const uint32_t one[1][2] = {{0, 1}}, other[1][2] = {{1, 0}};
-    const double k[1] = {37.1}, c[1] = {0.77}, length[1] = {0.9}, longer[1] = {1.7};
+    const double k[1] = {37.1}, c[1] = {0.77}, length[1] = {0.9}, more[1] = {1.7};
     for (int i = 0; i < 2; i++) {
-        const double *rest = i ? longer : length;
-        const struct phys_springs here = {1, one, k, c, rest}, there = {1, other, k, c, rest};
+        const double *rest = i ? more : length;
+        const struct phys_springs here = {1, one, k, c, rest, 0}, there = {1, other, k, c, rest, 0};
         phys_vec f[2] = {{0}}, g[2] = {{0}}, whole[2] = {{0}};
         phys_springs_force(&here, places, speeds, whole);
         phys_springs_force_cut(&here, places, speeds, places, speeds, f);
@@ -237,8 +246,8 @@ int main(void)
     TCase *cases = tcase_create("spring");
     tcase_add_test(cases, force_is_the_slope_of_the_energy);
     tcase_add_test(cases, damping_acts_along_the_spring_only);
-    tcase_add_test(cases, matrix_is_the_slope_of_the_force);
-    tcase_add_test(cases, stiffness_times_velocity_is_the_slope_of_the_force);
+    tcase_add_loop_test(cases, matrix_is_the_slope_of_the_force, 0, 2);
+    tcase_add_loop_test(cases, stiffness_times_velocity_is_the_slope_of_the_force, 0, 2);
     tcase_add_test(cases, compression_drops_the_transverse_term);
     tcase_add_test(cases, ends_at_one_place_pull_nowhere);
     tcase_add_test(cases, cut_springs_are_exact_opposites);

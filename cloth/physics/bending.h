@@ -1,0 +1,72 @@
+#ifndef CLOTH_PHYSICS_BENDING_H
+#define CLOTH_PHYSICS_BENDING_H
+
+#include "cloth/physics/element.h"
+
+/* Bending about the inner edges of a mesh. Corners 0 and 1 of an element are the ends of the edge,
+ * 2 and 3 the vertices opposite in its two triangles, (0, 1, 2) and (1, 0, 3). With theta the angle
+ * between their normals, |theta| < pi, above 0 where the edge is a ridge on their side:
+ *     hinge      W = k / 2 (s - s0)^2,  s = 2 sin(theta / 2),  s0 that of the rest shape     (J)
+ *     quadratic  W = 1 / 2 |sum of w_i x_i|^2,  for a rest shape that is flat                (J)
+ * (Grinspun, Hirani, Desbrun, Schroeder 2003; Bergou, Wardetzky, Harmon, Zorin, Grinspun 2006.) s
+ * comes by square roots: |n1 - n2| with the sign of (n1 x n2) . e. The stiffness of an edge of
+ * length L between triangles of areas A1 and A2 is
+ *     k = D L^2 / (A1 + A2)                                                                   (N m)
+ * with D the rigidity (N m) of the threads that cross the edge. So a regular mesh that is bent to a
+ * cylinder has D / 2 times curvature squared for each area, along the edges of a right-angled grid
+ * and in any direction of equilateral triangles; docs/physics.md says how far others miss it.
+ *
+ * Forces have neither sum nor torque. K of a hinge is k (ds/dx)(ds/dx)'; what bends the slope
+ * itself is left out, which vanishes at rest, and is in `full`. That of the quadratic energy is
+ * constant and whole; it has no damping, which would brake the turns of what is bent: a hinge
+ * without stiffness has. A hinge whose triangle lost its area acts through the other alone. Pure
+ * functions; nothing is allocated. */
+
+struct phys_hinges {
+    size_t n;
+    const uint32_t (*corner)[4];
+    const double *stiffness; /* n: k, N m */
+    const double *damping;   /* n: N m s: of ds/dt */
+    const double *rest;      /* n: s0 */
+};
+
+struct phys_folds {
+    size_t n;
+    const uint32_t (*corner)[4];
+    const phys_vec *weight; /* n: w_0 .. w_3, sqrt(N/m); they sum to nothing */
+};
+
+/* The rest shape of an element whose corners lie at x (m; x y z of each), flat or not. */
+struct phys_bend_rest {
+    double shape;     /* L^2 / (A1 + A2) */
+    double s;         /* of the hinge */
+    double weight[4]; /* of the positions, 1/m: theta of small moves along the normal */
+};
+
+/* 0, or -1 if a triangle has no area or numbers are not finite. */
+int phys_bend_rest(const double x[12], struct phys_bend_rest *rest);
+
+/* Rigidity (N m) across an edge of that direction (along warp, along weft; any length): that of the
+ * warp for an edge along the weft, and in between by the square of the cosine. */
+double phys_bend_rigidity(double warp, double weft, const double direction[2]);
+
+/* As of triangles (triangle.h); pairs of each element: (0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2,
+ * 3). */
+enum { PHYS_BEND_PAIRS = 6 };
+void phys_hinges_force(const struct phys_hinges *hinges, const struct phys_sight *sight,
+                       phys_vec *f);
+void phys_hinges_stiffness(const struct phys_hinges *hinges, int full, double scale,
+                           const struct phys_sight *sight, phys_vec *y);
+void phys_hinges_matrix(const struct phys_hinges *hinges, size_t from, size_t to,
+                        const struct phys_step *step, const struct phys_sight *sight,
+                        struct phys_pair *pair);
+double phys_hinges_energy(const struct phys_hinges *hinges, const struct phys_sight *sight);
+
+void phys_folds_force(const struct phys_folds *folds, const struct phys_sight *sight, phys_vec *f);
+void phys_folds_stiffness(const struct phys_folds *folds, double scale,
+                          const struct phys_sight *sight, phys_vec *y);
+void phys_folds_matrix(const struct phys_folds *folds, size_t from, size_t to, double h,
+                       struct phys_pair *pair);
+double phys_folds_energy(const struct phys_folds *folds, const struct phys_sight *sight);
+
+#endif

@@ -1,0 +1,158 @@
+#ifndef CLOTH_PHYSICS_DETAIL_MEMBRANE_H
+#define CLOTH_PHYSICS_DETAIL_MEMBRANE_H
+
+#include "cloth/physics/detail/lanes.h"
+#include "cloth/physics/triangle.h"
+
+/* Four triangles at once, in the frame of each: R's columns and the normal. Everything is inlined
+ * and written for registers. */
+
+/* A 2 x 2 matrix, first index down. */
+struct phys_plane2 {
+    phys_vec uu, uv, vu, vv;
+};
+
+struct phys_frame {
+    struct phys_wide ru, rv, normal;
+    phys_vec suu, suv, svv;               /* S */
+    phys_vec det, trace, turn;            /* of S; turn = 1 / trace */
+    phys_vec gu[3], gv[3], area;          /* gradients of the corners */
+    phys_vec c11, c12, c22, c33, damping; /* moduli, N/m; s */
+};
+
+/* Of a membrane each, where corners name them. */
+PHYS_INLINE void phys_frame_moduli(const struct phys_triangles *t, const struct phys_four *four,
+                                   struct phys_frame *frame)
+{
+    phys_vec row[PHYS_WIDE], column[PHYS_WIDE], damping = {0};
+    for (int i = 0; i < PHYS_WIDE; i++) {
+        const struct phys_membrane *membrane = t->membrane + t->corner[four->at[i]][3];
+        row[i] = membrane->modulus;
+        damping[i] = membrane->damping;
+    }
+    phys_turn(row, column);
+    frame->damping = damping;
+    frame->c11 = column[0];
+    frame->c12 = column[1];
+    frame->c22 = column[2];
+    frame->c33 = column[3];
+}
+
+/* F_u and F_v of rows of the corners: of positions, velocities or anything else. */
+PHYS_INLINE void phys_frame_slope(const struct phys_triangles *t, const struct phys_four *four,
+                                  const struct phys_frame *frame, uint32_t n, const phys_vec *own,
+                                  const phys_vec *copy, struct phys_wide *fu, struct phys_wide *fv)
+{
+    struct phys_wide a, b, c;
+    phys_gather(four, t->corner, 0, n, own, copy, &a);
+    phys_gather(four, t->corner, 1, n, own, copy, &b);
+    phys_gather(four, t->corner, 2, n, own, copy, &c);
+    phys_wide_from(&b, &a, &b);
+    phys_wide_from(&c, &a, &c);
+    phys_wide_mix(frame->gu + 1, &b, frame->gu + 2, &c, fu);
+    phys_wide_mix(frame->gv + 1, &b, frame->gv + 2, &c, fv);
+}
+
+/* R and S of F (triangle.h). */
+PHYS_INLINE void phys_frame_polar(const struct phys_wide *fu, const struct phys_wide *fv,
+                                  struct phys_frame *frame)
+{
+    phys_vec uu, uv, vv, square, inverse;
+    struct phys_wide across, turned;
+    phys_wide_dot(fu, fu, &uu);
+    phys_wide_dot(fu, fv, &uv);
+    phys_wide_dot(fv, fv, &vv);
+    phys_wide_cross(fu, fv, &across);
+    phys_wide_dot(&across, &across, &square);
+    phys_sqrt(&square, &frame->det);
+    phys_inverse(&frame->det, &inverse);
+    phys_wide_scale(&inverse, &across, &frame->normal);
+    square = uu + vv + 2 * frame->det;
+    phys_sqrt(&square, &frame->trace);
+    phys_inverse(&frame->trace, &frame->turn);
+    frame->suu = (uu + frame->det) * frame->turn;
+    frame->suv = uv * frame->turn;
+    frame->svv = (vv + frame->det) * frame->turn;
+    phys_wide_cross(fv, &frame->normal, &turned); /* R = (F + cof F) / tr S */
+    for (int i = 0; i < 3; i++)
+        frame->ru.c[i] = (fu->c[i] + turned.c[i]) * frame->turn;
+    phys_wide_cross(&frame->normal, fu, &turned);
+    for (int i = 0; i < 3; i++)
+        frame->rv.c[i] = (fv->c[i] + turned.c[i]) * frame->turn;
+}
+
+PHYS_INLINE void phys_frame_make(const struct phys_triangles *t, const struct phys_four *four,
+                                 const struct phys_sight *sight, struct phys_frame *frame)
+{
+    phys_vec g[PHYS_WIDE];
+    struct phys_wide fu, fv;
+    phys_gather_rows(four, t->gradient, g);
+    for (int i = 1; i < 3; i++) {
+        frame->gu[i] = g[2 * i - 2];
+        frame->gv[i] = g[2 * i - 1];
+    }
+    frame->gu[0] = -frame->gu[1] - frame->gu[2];
+    frame->gv[0] = -frame->gv[1] - frame->gv[2];
+    phys_gather_numbers(four, t->area, &frame->area);
+    phys_frame_moduli(t, four, frame);
+    phys_frame_slope(t, four, frame, sight->n, sight->x, sight->x_copy, &fu, &fv);
+    phys_frame_polar(&fu, &fv, frame);
+}
+
+/* T = C : e; the strain's uv and the stress's alike stand for vu too. */
+PHYS_INLINE void phys_frame_stress(const struct phys_frame *f, const struct phys_plane2 *e,
+                                   struct phys_plane2 *t)
+{
+    t->uu = f->c11 * e->uu + f->c12 * e->vv;
+    t->vv = f->c12 * e->uu + f->c22 * e->vv;
+    t->uv = t->vu = 2 * f->c33 * e->uv;
+}
+
+/* S - I. */
+PHYS_INLINE void phys_frame_strain(const struct phys_frame *f, struct phys_plane2 *e)
+{
+    const phys_vec one = {1, 1, 1, 1};
+    *e = (struct phys_plane2){f->suu - one, f->suv, f->suv, f->svv - one};
+}
+
+/* Without the normal: R' F of a slope. */
+PHYS_INLINE void phys_frame_inside(const struct phys_frame *f, const struct phys_wide *fu,
+                                   const struct phys_wide *fv, struct phys_plane2 *d)
+{
+    phys_wide_dot(&f->ru, fu, &d->uu);
+    phys_wide_dot(&f->ru, fv, &d->uv);
+    phys_wide_dot(&f->rv, fu, &d->vu);
+    phys_wide_dot(&f->rv, fv, &d->vv);
+}
+
+/* The turn w and the change of S that belong to D = R' dF: dS = D - w J S. */
+PHYS_INLINE void phys_frame_change(const struct phys_frame *f, const struct phys_plane2 *d,
+                                   phys_vec *w, struct phys_plane2 *ds)
+{
+    *w = (d->vu - d->uv) * f->turn;
+    ds->uu = d->uu + *w * f->suv;
+    ds->uv = ds->vu = d->uv + *w * f->svv;
+    ds->vv = d->vv - *w * f->suv;
+}
+
+/* c of a stress, or of any T and S: T : J S / tr S. */
+PHYS_INLINE void phys_frame_twist(const struct phys_frame *f, const struct phys_plane2 *t,
+                                  const struct phys_plane2 *s, phys_vec *c)
+{
+    *c = ((t->vv - t->uu) * s->uv + t->uv * (s->uu - s->vv)) * f->turn;
+}
+
+/* S as a matrix of the plane. */
+PHYS_INLINE void phys_frame_s(const struct phys_frame *f, struct phys_plane2 *s)
+{
+    *s = (struct phys_plane2){f->suu, f->suv, f->suv, f->svv};
+}
+
+/* q = t - c J. */
+PHYS_INLINE void phys_frame_untwist(const struct phys_plane2 *t, const phys_vec *c,
+                                    struct phys_plane2 *q)
+{
+    *q = (struct phys_plane2){t->uu, t->uv + *c, t->vu - *c, t->vv};
+}
+
+#endif

@@ -1,0 +1,76 @@
+#ifndef CLOTH_PHYSICS_TRIANGLE_H
+#define CLOTH_PHYSICS_TRIANGLE_H
+
+#include "cloth/physics/element.h"
+
+/* Triangles of an orthotropic membrane with corotated linear strain (Etzmuss, Keckeisen, Strasser
+ * 2003) in plane stress. With the rest shape in material coordinates u (warp) and v (weft), F = dx
+ * / d(u, v), 3 x 2, F = R S its polar decomposition (R with orthonormal columns, S symmetric, not
+ * negative), J the quarter turn and C the moduli:
+ *     energy  W = area / 2 (S - I) : C : (S - I)                                          (J)
+ *     stress  T = C : (S - I + damping dS/dt)                                             (N/m)
+ *     forces  f_i = -area P g_i,  P = R (T - c J),  c = (T : J S) / tr S                  (N)
+ * with g_i the gradient of corner i's shape function. P is the exact gradient of the energy, so
+ * that forces have no torque. The papers have P = R T (`uncorrected`): where moduli differ, a
+ * torque -c (tr S) area about the normal is left (phys_triangles_torque).
+ *
+ * S comes by square roots alone: F'F = S^2, det S = |F_u x F_v|, tr S = sqrt(tr F'F + 2 det S), S =
+ * (F'F + det S) / tr S. A triangle without area has no normal: only forces along what is left of it
+ * remain; one that is a point has none.
+ *
+ * K of a step is R k R' with k the stiffness at rest, and the parts of the stress that resist a
+ * turn where they do: area ((S^-1 (T - c J))+ against moves along the normal, max(T : S, 0) against
+ * spin in the plane. What compression gives, and how the strain depends on the turn, are left out:
+ * K is never indefinite. `full` has them all. Pure functions; nothing is allocated. */
+
+/* Plane stress: stresses (N/m) of strains. */
+struct phys_membrane {
+    phys_vec modulus; /* C11 C12 C22 C33, N/m; C33 of the shear angle, 2 e_uv */
+    double damping;   /* s */
+};
+
+/* Moduli (N/m) along warp and weft and of shear, Poisson ratio nu12: how much a pull along the warp
+ * narrows along the weft; nu21 = nu12 weft / warp. 0, or -1 unless moduli are finite and not
+ * negative and nu12 nu21 < 1. */
+int phys_membrane_make(double warp, double weft, double shear, double poisson, double damping,
+                       struct phys_membrane *membrane);
+
+struct phys_triangles {
+    size_t n;
+    const uint32_t (*corner)[4];          /* n: three corners, then the number of its membrane */
+    const phys_vec *gradient;             /* n: g_1u g_1v g_2u g_2v, 1/m; g_0 = -g_1 - g_2 */
+    const double *area;                   /* n: at rest, m^2, > 0 */
+    const struct phys_membrane *membrane; /* as many as corners name */
+    int uncorrected;
+};
+
+/* Rest shape of a triangle with corners at `uv` (m; u v of each): its gradient and area. 0, or -1
+ * if it has no area. */
+int phys_triangle_rest(const double uv[6], double gradient[4], double *area);
+
+/* Adds the forces (N) to f, n rows. */
+void phys_triangles_force(const struct phys_triangles *triangles, const struct phys_sight *sight,
+                          phys_vec *f);
+
+/* y -= scale K v: scale times what the stiffness adds to the forces in a unit of time. */
+void phys_triangles_stiffness(const struct phys_triangles *triangles, int full, double scale,
+                              const struct phys_sight *sight, phys_vec *y);
+
+/* The triangles from .. to - 1: pairs (0, 1), (0, 2), (1, 2) of each, 3 (to - from) of them. */
+void phys_triangles_matrix(const struct phys_triangles *triangles, size_t from, size_t to,
+                           const struct phys_step *step, const struct phys_sight *sight,
+                           struct phys_pair *pair);
+
+/* Energy (J) of the triangles that count here: those whose corner 0 is one of the n rows. */
+double phys_triangles_energy(const struct phys_triangles *triangles,
+                             const struct phys_sight *sight);
+
+/* Largest principal stretch, the larger eigenvalue of S; 0 if there are no triangles. */
+double phys_triangles_stretch(const struct phys_triangles *triangles,
+                              const struct phys_sight *sight);
+
+/* Adds the torques (N m) that the uncorrected forces leave, of the triangles that count here. */
+void phys_triangles_torque(const struct phys_triangles *triangles, const struct phys_sight *sight,
+                           double torque[3]);
+
+#endif

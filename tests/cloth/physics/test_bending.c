@@ -1,0 +1,340 @@
+/* Hinges and folds against what they are derived from, and against a cylinder. */
+#include "cloth/physics/bending.h"
+#include "tests/cloth/physics/elements.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Angles ---- */
+
+/* Two triangles of different heights and feet, folded by theta about an edge that lies askew. */
+static void fold(double theta, double x[12])
+{
+    const double c = cos(theta), s = sin(theta);
+    const double flat[4][3] = {{0, 0, 0}, {1.3, 0, 0}, {0.4, 0.7, 0}, {0.9, -1.1 * c, -1.1 * s}};
+    for (int i = 0; i < 4; i++) { /* a turn of length 3: (1 2 2)(-2 -1 2)(2 -2 1) */
+        const double *p = flat[i];
+        x[3 * i] = (p[0] - 2 * p[1] + 2 * p[2]) / 3;
+        x[3 * i + 1] = (2 * p[0] - p[1] - 2 * p[2]) / 3;
+        x[3 * i + 2] = (2 * p[0] + 2 * p[1] + p[2]) / 3;
+    }
+}
+
+START_TEST(s_is_twice_the_sine_of_half_the_angle)
+{
+    for (double theta = -3.1; theta < 3.14; theta += 0.1) {
+        double x[12];
+        struct phys_bend_rest rest;
+        fold(theta, x);
+        ck_assert_int_eq(phys_bend_rest(x, &rest), 0);
+        ck_assert_double_eq_tol(rest.s, 2 * sin(theta / 2), 1e-14);
+        ck_assert_double_eq_tol(rest.shape, 1.3 * 1.3 / (0.5 * 1.3 * (0.7 + 1.1)), 1e-14);
+        ck_assert_double_eq_tol(rest.weight[2], -1 / 0.7, 1e-14);
+        ck_assert_double_eq_tol(rest.weight[3], -1 / 1.1, 1e-14);
+        ck_assert_double_eq_tol(rest.weight[1], 0.4 / 1.3 / 0.7 + 0.9 / 1.3 / 1.1, 1e-14);
+    }
+}
+END_TEST
+
+START_TEST(rigidity_is_that_of_the_threads_across)
+{
+    ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){0, 2}), 3);
+    ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){-7, 0}), 5);
+    ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){1, -1}), 4);
+    ck_assert_double_eq(phys_bend_rigidity(3, 5, (double[]){0, 0}), 4);
+}
+END_TEST
+
+START_TEST(rest_shapes_without_area_are_refused)
+{
+    const double line[12] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0}, point[12] = {0};
+    struct phys_bend_rest rest;
+    ck_assert_int_eq(phys_bend_rest(line, &rest), -1);
+    ck_assert_int_eq(phys_bend_rest(point, &rest), -1);
+}
+END_TEST
+
+/* ---- A strip ---- */
+
+/* Six vertices in two rows, five edges with a triangle on both sides... of which three are inner:
+ * folds over (0 4), (1 4) and (1 5), and one more whose corners stand in another order. */
+enum { VERTICES = 6, BENDS = 4 };
+static const uint32_t corner[BENDS][4] = {{0, 4, 3, 1}, {1, 4, 0, 5}, {1, 5, 4, 2}, {4, 1, 5, 0}};
+static const double place[VERTICES][3] = {{0, 0, 0},    {1, 0.1, 0},   {2.1, -0.1, 0},
+                                          {-0.1, 1, 0}, {0.8, 1.1, 0}, {2, 0.9, 0}};
+
+struct strip {
+    double stiffness[BENDS], damping[BENDS], rest[BENDS];
+    phys_vec weight[BENDS];
+    struct phys_hinges hinges;
+    struct phys_folds folds;
+};
+
+static void start(struct elements_state *state)
+{
+    *state = (struct elements_state){.n = VERTICES};
+    for (int i = 0; i < VERTICES; i++)
+        state->x[i] = (phys_vec){place[i][0], place[i][1], place[i][2], 0};
+}
+
+/* Rest values are those of the state. */
+static void make_strip(struct strip *s, const struct elements_state *state, double damping)
+{
+    for (int e = 0; e < BENDS; e++) {
+        double x[12];
+        struct phys_bend_rest rest;
+        for (int i = 0; i < 12; i++)
+            x[i] = state->x[corner[e][i / 3]][i % 3];
+        ck_assert_int_eq(phys_bend_rest(x, &rest), 0);
+        s->stiffness[e] = 2 + e;
+        s->damping[e] = damping * (1 + e);
+        s->rest[e] = rest.s;
+        s->weight[e] = (phys_vec){rest.weight[0], rest.weight[1], rest.weight[2], rest.weight[3]};
+    }
+    s->hinges = (struct phys_hinges){BENDS, corner, s->stiffness, s->damping, s->rest};
+    s->folds = (struct phys_folds){BENDS, corner, s->weight};
+}
+
+static double hinge_energy(const void *of, const struct phys_sight *sight)
+{
+    return phys_hinges_energy(of, sight);
+}
+static void hinge_force(const void *of, const struct phys_sight *sight, phys_vec *f)
+{
+    phys_hinges_force(of, sight, f);
+}
+static void hinge_stiffness(const void *of, int full, double scale, const struct phys_sight *sight,
+                            phys_vec *y)
+{
+    phys_hinges_stiffness(of, full, scale, sight, y);
+}
+static void hinge_matrix(const void *of, const struct phys_step *step,
+                         const struct phys_sight *sight, struct phys_pair *pair)
+{
+    phys_hinges_matrix(of, 0, 1, step, sight, pair);
+    phys_hinges_matrix(of, 1, BENDS, step, sight, pair + PHYS_BEND_PAIRS);
+}
+static double fold_energy(const void *of, const struct phys_sight *sight)
+{
+    return phys_folds_energy(of, sight);
+}
+static void fold_force(const void *of, const struct phys_sight *sight, phys_vec *f)
+{
+    phys_folds_force(of, sight, f);
+}
+static void fold_stiffness(const void *of, int full, double scale, const struct phys_sight *sight,
+                           phys_vec *y)
+{
+    (void)full;
+    phys_folds_stiffness(of, scale, sight, y);
+}
+static void fold_matrix(const void *of, const struct phys_step *step,
+                        const struct phys_sight *sight, struct phys_pair *pair)
+{
+    (void)sight;
+    phys_folds_matrix(of, 0, 3, step->h, pair);
+    phys_folds_matrix(of, 3, BENDS, step->h, pair + 3 * PHYS_BEND_PAIRS);
+}
+
+static struct elements model_of(const struct strip *s, int folds)
+{
+    static const int pair[PHYS_BEND_PAIRS][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};
+    if (folds)
+        return (struct elements){&s->folds,   BENDS,      PHYS_BEND_PAIRS, corner,     pair,
+                                 fold_energy, fold_force, fold_stiffness,  fold_matrix};
+    return (struct elements){&s->hinges,   BENDS,       PHYS_BEND_PAIRS, corner,      pair,
+                             hinge_energy, hinge_force, hinge_stiffness, hinge_matrix};
+}
+
+/* _i: 0 hinges, 1 folds. */
+START_TEST(force_is_the_slope_of_the_energy)
+{
+    struct elements_state state;
+    struct strip s;
+    start(&state);
+    elements_shake(&state, _i ? 0 : 0.1, 5); /* folds have a flat rest shape */
+    make_strip(&s, &state, 0);
+    elements_shake(&state, 0.2, 3);
+    const struct elements model = model_of(&s, _i);
+    if (_i) { /* quadratic: differences are exact */
+        struct phys_sight sight = {state.n, state.x, state.v, NULL, NULL};
+        phys_vec f[VERTICES] = {{0}};
+        memset(state.v, 0, sizeof state.v);
+        phys_folds_force(&s.folds, &sight, f);
+        for (int i = 0; i < 3 * VERTICES; i++) {
+            double w[2];
+            for (int side = 0; side < 2; side++) {
+                state.x[i / 3][i % 3] += side ? -0.2 : 0.1;
+                w[side] = phys_folds_energy(&s.folds, &sight);
+            }
+            state.x[i / 3][i % 3] += 0.1;
+            ck_assert_double_eq_tol(f[i / 3][i % 3], -(w[0] - w[1]) / 0.2, 1e-12);
+        }
+        return;
+    }
+    elements_check_force(&model, &state, 1e-7);
+}
+END_TEST
+
+START_TEST(matrix_is_the_slope_of_the_force)
+{
+    for (int damped = 0; damped < 2; damped++) {
+        struct elements_state state;
+        struct strip s;
+        start(&state);
+        elements_shake(&state, _i ? 0 : 0.1, 5);
+        make_strip(&s, &state, 0.3 * damped);
+        elements_shake(&state, 0.3, 3);
+        const struct elements model = model_of(&s, _i);
+        elements_check_matrix(&model, &state, 1e-6);
+    }
+}
+END_TEST
+
+START_TEST(momentum_is_kept)
+{
+    struct elements_state state;
+    struct strip s;
+    start(&state);
+    make_strip(&s, &state, 0.1);
+    elements_shake(&state, 0.3, 3);
+    const struct elements model = model_of(&s, _i);
+    elements_check_momentum(&model, &state, 1e-12);
+}
+END_TEST
+
+START_TEST(rigid_motion_gives_no_force)
+{
+    struct elements_state state;
+    struct strip s;
+    start(&state);
+    elements_shake(&state, _i ? 0 : 0.3, 5); /* hinges: also of a rest shape that is not flat */
+    make_strip(&s, &state, 0.1);
+    const struct elements model = model_of(&s, _i);
+    elements_check_rigid(&model, &state, 1e-12);
+}
+END_TEST
+
+START_TEST(blocks_find_the_same_bits)
+{
+    struct elements_state state;
+    struct strip s;
+    start(&state);
+    make_strip(&s, &state, 0.1);
+    elements_shake(&state, 0.3, 3);
+    const struct elements model = model_of(&s, _i);
+    elements_check_split(&model, &state, 4);
+}
+END_TEST
+
+/* Folded nearly shut, one way and the other, forces still open it. */
+START_TEST(angles_up_to_half_a_turn)
+{
+    const uint32_t one[1][4] = {{0, 1, 2, 3}};
+    const double k = 1, damping = 0, rest = 0;
+    const struct phys_hinges hinge = {1, one, &k, &damping, &rest};
+    for (int side = -1; side < 2; side += 2) {
+        double x[12];
+        phys_vec row[4], f[4] = {{0}}, v[4] = {{0}};
+        fold(side * 3.0, x);
+        for (int i = 0; i < 4; i++)
+            row[i] = (phys_vec){x[3 * i], x[3 * i + 1], x[3 * i + 2], 0};
+        const struct phys_sight sight = {4, row, v, NULL, NULL};
+        phys_hinges_force(&hinge, &sight, f);
+        /* at the third corner: along its normal, k s cos(theta / 2) / height */
+        const double size = sqrt(phys_dot(f + 2, f + 2));
+        ck_assert_double_eq_tol(size, 2 * sin(1.5) * cos(1.5) / 0.7, 1e-12);
+        const phys_vec normal = {2.0 / 3, -2.0 / 3, 1.0 / 3, 0};
+        ck_assert_double_gt(side * phys_dot(f + 2, &normal), 0);
+    }
+}
+END_TEST
+
+START_TEST(collapsed_hinges_stay_finite)
+{
+    const uint32_t one[1][4] = {{0, 1, 2, 3}};
+    const double k = 1, damping = 1, rest = 0.5;
+    const struct phys_hinges hinge = {1, one, &k, &damping, &rest};
+    const phys_vec x[2][4] = {{{0}, {1, 0, 0, 0}, {0.5, 0, 0, 0}, {0.5, 0, 1, 0}}, {{0}}};
+    const phys_vec v[4] = {{1, 2, 3, 0}, {0}, {0}, {0}};
+    for (int i = 0; i < 2; i++) {
+        const struct phys_sight sight = {4, x[i], v, NULL, NULL};
+        const struct phys_step step = {1, 1};
+        phys_vec f[4] = {{0}};
+        struct phys_pair pair[PHYS_BEND_PAIRS];
+        phys_hinges_force(&hinge, &sight, f);
+        phys_hinges_matrix(&hinge, 0, 1, &step, &sight, pair);
+        for (int c = 0; c < 16; c++)
+            ck_assert(isfinite(f[c / 4][c % 4]));
+        for (int c = 0; c < 12 * PHYS_BEND_PAIRS; c++)
+            ck_assert(isfinite(pair[c / 12].cyclic[c / 4 % 3][c % 4]));
+    }
+}
+END_TEST
+
+/* ---- A cylinder ---- */
+
+/* Energy for each area of a sheet that is bent with curvature 1 / radius in the direction `along`,
+ * in units of 1 / 2 radius^-2, for rigidity 1. The lattice: vertex i a + j b, triangles (0, a, a +
+ * b) and (a + b, b, 0); of its three families of edges one hinge each stands for all. */
+static double cylinder(const double a[2], const double b[2], double along)
+{
+    const double p[4][2] = {{0, 0}, {a[0], a[1]}, {a[0] + b[0], a[1] + b[1]}, {b[0], b[1]}};
+    const double q[6][2] = {{0, 0},       {a[0], a[1]},   {a[0] + b[0], a[1] + b[1]},
+                            {b[0], b[1]}, {-b[0], -b[1]}, {-a[0], -a[1]}};
+    /* the diagonal, edge a with the triangle below, edge b with the one to the left */
+    const int hinge[3][4] = {{0, 2, 3, 1}, {0, 1, 2, 4}, {0, 3, 5, 2}};
+    const double radius = 1e3, cell = fabs(p[1][0] * p[3][1] - p[1][1] * p[3][0]);
+    double sum = 0;
+    for (int e = 0; e < 3; e++) {
+        double flat[12] = {0}, bent[12];
+        struct phys_bend_rest rest, now;
+        for (int i = 0; i < 4; i++) {
+            const double *x = q[hinge[e][i]];
+            const double s = cos(along) * x[0] + sin(along) * x[1];
+            flat[3 * i] = x[0];
+            flat[3 * i + 1] = x[1];
+            bent[3 * i] = radius * sin(s / radius);
+            bent[3 * i + 1] = -sin(along) * x[0] + cos(along) * x[1];
+            bent[3 * i + 2] = 2 * radius * sin(s / radius / 2) * sin(s / radius / 2);
+        }
+        ck_assert_int_eq(phys_bend_rest(flat, &rest) + phys_bend_rest(bent, &now), 0);
+        sum += rest.shape * now.s * now.s;
+    }
+    return sum * radius * radius / cell;
+}
+
+/* What docs/physics.md says of the mesh's direction. */
+START_TEST(bias_of_the_mesh)
+{
+    const double right[2][2] = {{1, 0}, {0, 1}}, equal[2][2] = {{1, 0}, {-0.5, sqrt(0.75)}};
+    for (int i = 0; i < 12; i++) {
+        const double angle = i * M_PI / 12, s = sin(angle), c = cos(angle);
+        ck_assert_double_eq_tol(cylinder(equal[0], equal[1], angle), 1, 1e-5);
+        const double w = s * c, expected = 1 + 2 * w + 4 * w * w;
+        ck_assert_double_eq_tol(cylinder(right[0], right[1], angle), expected, 1e-5);
+    }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bending");
+    TCase *angles = tcase_create("angles"), *slopes = tcase_create("slopes");
+    tcase_add_test(angles, s_is_twice_the_sine_of_half_the_angle);
+    tcase_add_test(angles, rigidity_is_that_of_the_threads_across);
+    tcase_add_test(angles, rest_shapes_without_area_are_refused);
+    tcase_add_test(angles, angles_up_to_half_a_turn);
+    tcase_add_test(angles, collapsed_hinges_stay_finite);
+    tcase_add_test(angles, bias_of_the_mesh);
+    tcase_add_loop_test(slopes, force_is_the_slope_of_the_energy, 0, 2);
+    tcase_add_loop_test(slopes, matrix_is_the_slope_of_the_force, 0, 2);
+    tcase_add_loop_test(slopes, momentum_is_kept, 0, 2);
+    tcase_add_loop_test(slopes, rigid_motion_gives_no_force, 0, 2);
+    tcase_add_loop_test(slopes, blocks_find_the_same_bits, 0, 2);
+    suite_add_tcase(suite, angles);
+    suite_add_tcase(suite, slopes);
+    return unit_run(suite);
+}

@@ -1,0 +1,375 @@
+/* Triangles against what they are derived from, and against closed forms of a membrane. */
+#include "cloth/physics/triangle.h"
+#include "tests/cloth/physics/elements.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double WARP = 1000, WEFT = 300, SHEAR = 50, POISSON = 0.4;
+
+/* ---- A sheet ---- */
+
+/* A rectangle of 4 x 3 vertices in the u-v plane, inner ones displaced, and its triangles. */
+enum { NX = 4, NY = 3, VERTICES = NX * NY, TRIANGLES = 2 * (NX - 1) * (NY - 1) };
+
+struct sheet {
+    double uv[VERTICES][2];
+    uint32_t corner[TRIANGLES][4];
+    phys_vec gradient[TRIANGLES];
+    double area[TRIANGLES];
+    struct phys_membrane membrane[2];
+    struct phys_triangles triangles;
+};
+
+static int is_inner(int i)
+{
+    return i % NX > 0 && i % NX < NX - 1 && i / NX > 0 && i / NX < NY - 1;
+}
+
+static void make_sheet(struct sheet *s, double damping)
+{
+    static const double shift[][2] = {{0.11, -0.07}, {-0.09, 0.13}};
+    int inner = 0;
+    for (int i = 0; i < VERTICES; i++) {
+        s->uv[i][0] = 0.4 * (i % NX);
+        s->uv[i][1] = 0.3 * (i / NX);
+        for (int c = 0; is_inner(i) && c < 2; c++)
+            s->uv[i][c] += shift[inner][c];
+        inner += is_inner(i);
+    }
+    uint32_t t = 0;
+    for (uint32_t j = 0; j + 1 < NY; j++)
+        for (uint32_t i = 0; i + 1 < NX; i++) {
+            const uint32_t a = j * NX + i, b = a + 1, c = a + NX, d = c + 1;
+            memcpy(s->corner[t], ((uint32_t[]){a, b, d, t % 2}), sizeof s->corner[t]);
+            t++;
+            memcpy(s->corner[t], ((uint32_t[]){d, c, a, 0}), sizeof s->corner[t]);
+            t++;
+        }
+    ck_assert_int_eq(phys_membrane_make(WARP, WEFT, SHEAR, POISSON, damping, s->membrane), 0);
+    s->membrane[1] = s->membrane[0];
+    for (t = 0; t < TRIANGLES; t++) {
+        double uv[6], gradient[4];
+        for (int k = 0; k < 3; k++)
+            memcpy(uv + 2 * k, s->uv[s->corner[t][k]], 2 * sizeof *uv);
+        ck_assert_int_eq(phys_triangle_rest(uv, gradient, s->area + t), 0);
+        s->gradient[t] = (phys_vec){gradient[0], gradient[1], gradient[2], gradient[3]};
+    }
+    s->triangles = (struct phys_triangles){
+        TRIANGLES, (const uint32_t(*)[4])s->corner, s->gradient, s->area, s->membrane, 0};
+}
+
+/* The sheet under the map (u, v) -> fu u + fv v. */
+static void place(const struct sheet *s, const phys_vec *fu, const phys_vec *fv,
+                  struct elements_state *state)
+{
+    *state = (struct elements_state){.n = VERTICES};
+    for (int i = 0; i < VERTICES; i++)
+        state->x[i] = s->uv[i][0] * *fu + s->uv[i][1] * *fv;
+}
+
+static void forces(const struct sheet *s, const struct elements_state *state, phys_vec *f)
+{
+    const struct phys_sight sight = {VERTICES, state->x, state->v, NULL, NULL};
+    memset(f, 0, VERTICES * sizeof *f);
+    phys_triangles_force(&s->triangles, &sight, f);
+}
+
+static double energy(const void *of, const struct phys_sight *sight)
+{
+    return phys_triangles_energy(of, sight);
+}
+static void force(const void *of, const struct phys_sight *sight, phys_vec *f)
+{
+    phys_triangles_force(of, sight, f);
+}
+static void stiffness(const void *of, int full, double scale, const struct phys_sight *sight,
+                      phys_vec *y)
+{
+    phys_triangles_stiffness(of, full, scale, sight, y);
+}
+static void matrix(const void *of, const struct phys_step *step, const struct phys_sight *sight,
+                   struct phys_pair *pair)
+{
+    const struct phys_triangles *t = of;
+    phys_triangles_matrix(t, 0, 5, step, sight, pair); /* in two parts, neither a multiple of 4 */
+    phys_triangles_matrix(t, 5, t->n, step, sight, pair + 15);
+}
+
+static struct elements model_of(const struct sheet *s)
+{
+    static const int pair[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+    return (struct elements){&s->triangles, TRIANGLES, 3,     s->triangles.corner, pair, energy,
+                             force,         stiffness, matrix};
+}
+
+/* Bent, stretched and shaken. */
+static void shaken(const struct sheet *s, double size, struct elements_state *state)
+{
+    const phys_vec fu = {0.9, 0.3, 0.2, 0}, fv = {-0.2, 1.1, 0.3, 0};
+    place(s, &fu, &fv, state);
+    elements_shake(state, size, 7);
+}
+
+START_TEST(force_is_the_slope_of_the_energy)
+{
+    struct sheet s;
+    struct elements_state state;
+    make_sheet(&s, 0);
+    shaken(&s, 0.05, &state);
+    const struct elements model = model_of(&s);
+    elements_check_force(&model, &state, 1e-6);
+}
+END_TEST
+
+START_TEST(matrix_is_the_slope_of_the_force)
+{
+    struct sheet s;
+    struct elements_state state;
+    for (int damped = 0; damped < 2; damped++) {
+        make_sheet(&s, 0.1 * damped);
+        shaken(&s, 0.05, &state);
+        const struct elements model = model_of(&s);
+        elements_check_matrix(&model, &state, 1e-6);
+    }
+}
+END_TEST
+
+START_TEST(momentum_is_kept)
+{
+    struct sheet s;
+    struct elements_state state;
+    make_sheet(&s, 0.1);
+    shaken(&s, 0.1, &state);
+    const struct elements model = model_of(&s);
+    elements_check_momentum(&model, &state, 1e-12);
+}
+END_TEST
+
+START_TEST(rigid_motion_gives_no_force)
+{
+    const phys_vec fu = {1, 0, 0, 0}, fv = {0, 0, 1, 0};
+    struct sheet s;
+    struct elements_state state;
+    make_sheet(&s, 0.1);
+    place(&s, &fu, &fv, &state);
+    const struct elements model = model_of(&s);
+    elements_check_rigid(&model, &state, 1e-12);
+}
+END_TEST
+
+START_TEST(blocks_find_the_same_bits)
+{
+    struct sheet s;
+    struct elements_state state;
+    make_sheet(&s, 0.1);
+    shaken(&s, 0.05, &state);
+    const struct elements model = model_of(&s);
+    elements_check_split(&model, &state, 5);
+    elements_check_split(&model, &state, 10);
+}
+END_TEST
+
+/* At rest the reduced matrix leaves nothing out. */
+START_TEST(reduced_is_full_at_rest)
+{
+    const phys_vec fu = {1, 0, 0, 0}, fv = {0, 0, 1, 0};
+    const struct phys_step reduced = {0.1, 0}, full = {0.1, 1};
+    struct sheet s;
+    struct elements_state state;
+    struct phys_pair a[3 * TRIANGLES], b[3 * TRIANGLES];
+    make_sheet(&s, 0.2);
+    place(&s, &fu, &fv, &state);
+    const struct phys_sight sight = {VERTICES, state.x, state.v, NULL, NULL};
+    phys_triangles_matrix(&s.triangles, 0, TRIANGLES, &reduced, &sight, a);
+    phys_triangles_matrix(&s.triangles, 0, TRIANGLES, &full, &sight, b);
+    for (int i = 0; i < 3 * TRIANGLES; i++)
+        for (int c = 0; c < 3; c++)
+            for (int r = 0; r < 3; r++)
+                ck_assert_double_eq_tol(a[i].cyclic[c][r], b[i].cyclic[c][r], 1e-12);
+}
+END_TEST
+
+/* ---- Closed forms ---- */
+
+/* Any affine map leaves inner vertices without force, however distorted the mesh. */
+START_TEST(patch)
+{
+    static const phys_vec map[][2] = {{{1.05, 0, 0, 0}, {0, 0, 0.98, 0}},
+                                      {{0.7, 0.6, -0.5, 0}, {0.2, 0.9, 1.2, 0}},
+                                      {{1.3, 0, 0.4, 0}, {0.3, 0, 0.8, 0}}};
+    for (size_t m = 0; m < sizeof map / sizeof *map; m++) {
+        struct sheet s;
+        struct elements_state state;
+        phys_vec f[VERTICES];
+        make_sheet(&s, 0);
+        place(&s, map[m], map[m] + 1, &state);
+        forces(&s, &state, f);
+        double inner = 0, most = 0;
+        for (int i = 0; i < VERTICES; i++) {
+            const double size = sqrt(phys_dot(f + i, f + i));
+            most = fmax(most, size);
+            if (is_inner(i))
+                inner = fmax(inner, size);
+        }
+        ck_assert_double_le(inner, 1e-12 * most);
+        ck_assert_double_gt(most, 1);
+    }
+}
+END_TEST
+
+/* Sum of the forces on the vertices of the right edge (u largest), or of the upper one. */
+static void pull(const phys_vec *f, int upper, phys_vec *sum)
+{
+    *sum = (phys_vec){0};
+    for (int i = 0; i < VERTICES; i++)
+        if (upper ? i / NX == NY - 1 : i % NX == NX - 1)
+            *sum += f[i];
+}
+
+START_TEST(uniaxial_stretch)
+{
+    const double e = 0.08, nu21 = POISSON * WEFT / WARP, width = 0.4 * (NX - 1),
+                 height = 0.3 * (NY - 1);
+    for (int along = 0; along < 2; along++) {
+        const phys_vec fu = {along ? 1 - nu21 * e : 1 + e, 0, 0, 0};
+        const phys_vec fv = {0, along ? 1 + e : 1 - POISSON * e, 0, 0};
+        struct sheet s;
+        struct elements_state state;
+        phys_vec f[VERTICES], right, up;
+        make_sheet(&s, 0);
+        place(&s, &fu, &fv, &state);
+        forces(&s, &state, f);
+        pull(f, 0, &right);
+        pull(f, 1, &up);
+        ck_assert_double_eq_tol(right[0], along ? 0 : -WARP * e * height, 1e-12);
+        ck_assert_double_eq_tol(up[1], along ? -WEFT * e * width : 0, 1e-12);
+        ck_assert_double_eq_tol(right[1], 0, 1e-12);
+        ck_assert_double_eq_tol(up[0], 0, 1e-12);
+    }
+}
+END_TEST
+
+START_TEST(pure_shear)
+{
+    const double angle = 0.06, height = 0.3 * (NY - 1);
+    const phys_vec fu = {1, angle / 2, 0, 0}, fv = {angle / 2, 1, 0, 0};
+    struct sheet s;
+    struct elements_state state;
+    phys_vec f[VERTICES], right;
+    make_sheet(&s, 0);
+    place(&s, &fu, &fv, &state);
+    forces(&s, &state, f);
+    pull(f, 0, &right);
+    ck_assert_double_eq_tol(right[1], -SHEAR * angle * height, 1e-12);
+    ck_assert_double_eq_tol(right[0], 0, 1e-12);
+}
+END_TEST
+
+START_TEST(largest_stretch)
+{
+    const double c = cos(0.7), d = sin(0.7); /* stretch 1.2 at 0.7 rad to the warp, 0.9 across */
+    const phys_vec fu = {1.2 * c * c + 0.9 * d * d, 0.3 * c * d, 0, 0};
+    const phys_vec fv = {0.3 * c * d, 1.2 * d * d + 0.9 * c * c, 0, 0};
+    struct sheet s;
+    struct elements_state state;
+    make_sheet(&s, 0);
+    place(&s, &fu, &fv, &state);
+    const struct phys_sight sight = {VERTICES, state.x, state.v, NULL, NULL};
+    ck_assert_double_eq_tol(phys_triangles_stretch(&s.triangles, &sight), 1.2, 1e-14);
+}
+END_TEST
+
+/* Stretched in a direction that is neither warp nor weft, the papers' forces turn the sheet. */
+START_TEST(uncorrected_forces_leave_their_torque)
+{
+    struct sheet s;
+    struct elements_state state;
+    phys_vec f[VERTICES];
+    double torque[3] = {0}, sum[3] = {0};
+    make_sheet(&s, 0);
+    shaken(&s, 0.05, &state);
+    s.triangles.uncorrected = 1;
+    forces(&s, &state, f);
+    for (int i = 0; i < VERTICES; i++)
+        for (int c = 0; c < 3; c++) {
+            const int a = (c + 1) % 3, b = (c + 2) % 3;
+            sum[c] += state.x[i][a] * f[i][b] - state.x[i][b] * f[i][a];
+        }
+    const struct phys_sight sight = {VERTICES, state.x, state.v, NULL, NULL};
+    phys_triangles_torque(&s.triangles, &sight, torque);
+    double size = 0;
+    for (int c = 0; c < 3; c++) {
+        ck_assert_double_eq_tol(sum[c], torque[c], 1e-12);
+        size = fmax(size, fabs(torque[c]));
+    }
+    ck_assert_double_gt(size, 1e-2);
+}
+END_TEST
+
+START_TEST(collapsed_triangles_stay_finite)
+{
+    static const phys_vec map[][2] = {{{1, 0, 0, 0}, {0.5, 0, 0, 0}}, {{0}, {0}}};
+    for (int m = 0; m < 2; m++) {
+        const struct phys_step step[2] = {{0.1, 0}, {0.1, 1}};
+        struct sheet s;
+        struct elements_state state;
+        phys_vec f[VERTICES];
+        struct phys_pair pair[3 * TRIANGLES];
+        make_sheet(&s, 0.1);
+        place(&s, map[m], map[m] + 1, &state);
+        forces(&s, &state, f);
+        const struct phys_sight sight = {VERTICES, state.x, state.v, NULL, NULL};
+        for (int full = 0; full < 2; full++) {
+            phys_triangles_matrix(&s.triangles, 0, TRIANGLES, step + full, &sight, pair);
+            for (int i = 0; i < 3 * TRIANGLES; i++)
+                for (int c = 0; c < 12; c++)
+                    ck_assert(isfinite(pair[i].cyclic[c / 4][c % 4]));
+        }
+        for (int i = 0; i < 4 * VERTICES; i++)
+            ck_assert(isfinite(f[i / 4][i % 4]));
+    }
+}
+END_TEST
+
+START_TEST(impossible_values_are_refused)
+{
+    static const double bad[][5] = {{-1, 1, 1, 0, 0},   {1, -1, 1, 0, 0},       {1, 1, -1, 0, 0},
+                                    {NAN, 1, 1, 0, 0},  {1, 1, INFINITY, 0, 0}, {1, 1, 1, 1, 0},
+                                    {1, 4, 1, 0.5, 0},  {1, 1, 1, NAN, 0},      {0, 1, 1, 0.1, 0},
+                                    {1, 1, 1, 0.2, -1}, {1, 1, 1, 0.2, NAN}};
+    const double line[6] = {0, 0, 1, 1, 2, 2}, point[6] = {0};
+    struct phys_membrane m;
+    double gradient[4], area;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        ck_assert_int_eq(
+            phys_membrane_make(bad[i][0], bad[i][1], bad[i][2], bad[i][3], bad[i][4], &m), -1);
+    ck_assert_int_eq(phys_membrane_make(1, 3.9, 1, 0.5, 0, &m), 0);
+    ck_assert_int_eq(phys_membrane_make(0, 0, 1, 0, 0, &m), 0);
+    ck_assert_int_eq(phys_triangle_rest(line, gradient, &area), -1);
+    ck_assert_int_eq(phys_triangle_rest(point, gradient, &area), -1);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("triangle");
+    TCase *slopes = tcase_create("slopes"), *forms = tcase_create("closed forms");
+    tcase_add_test(slopes, force_is_the_slope_of_the_energy);
+    tcase_add_test(slopes, matrix_is_the_slope_of_the_force);
+    tcase_add_test(slopes, momentum_is_kept);
+    tcase_add_test(slopes, rigid_motion_gives_no_force);
+    tcase_add_test(slopes, blocks_find_the_same_bits);
+    tcase_add_test(slopes, reduced_is_full_at_rest);
+    tcase_add_test(forms, patch);
+    tcase_add_test(forms, uniaxial_stretch);
+    tcase_add_test(forms, pure_shear);
+    tcase_add_test(forms, largest_stretch);
+    tcase_add_test(forms, uncorrected_forces_leave_their_torque);
+    tcase_add_test(forms, collapsed_triangles_stay_finite);
+    tcase_add_test(forms, impossible_values_are_refused);
+    suite_add_tcase(suite, slopes);
+    suite_add_tcase(suite, forms);
+    return unit_run(suite);
+}

@@ -80,7 +80,7 @@ static int prepare(const struct bench_options *options,
         if (state_read(&state, *name))
             code = make(options, &maker, *name) || state_read(&state, *name);
         snprintf(text, sizeof text, "%016" PRIx64 ", %u vertices, %zu springs", state.hash,
-                 state.system.n, state.system.n_springs);
+                 state.system.n, state.system.n_pairs);
         if (!code)
             say(key, text);
         state_free(&state);

@@ -19,7 +19,8 @@ static int take(void *context, const struct solve_system *system, struct cloth_e
 {
     struct solve_system *copy = context;
     solve_system_free(copy);
-    const int code = solve_system_make(copy, system->n, system->n_springs, error);
+    const int code =
+        solve_system_make(copy, system->n, system->n_pairs, SOLVE_PAIRS_OF_SPRINGS, error);
     const size_t n = system->n;
     if (code)
         return code;
@@ -30,8 +31,8 @@ static int take(void *context, const struct solve_system *system, struct cloth_e
     memcpy(copy->b, system->b, 3 * n * sizeof(double));
     memcpy(copy->x, system->x, 3 * n * sizeof(double));
     memcpy(copy->v, system->v, 3 * n * sizeof(double));
-    memcpy(copy->end, system->end, system->n_springs * sizeof *copy->end);
-    memcpy(copy->value, system->value, system->n_springs * sizeof *copy->value);
+    memcpy(copy->end, system->end, system->n_pairs * sizeof *copy->end);
+    memcpy(copy->value, system->value, system->n_pairs * sizeof *copy->value);
     return CLOTH_OK;
 }
 
@@ -57,7 +58,7 @@ static void each_pair(const void *context, void (*visit)(void *to, uint32_t a, u
                       void *to)
 {
     const struct solve_system *s = context;
-    for (size_t i = 0; i < s->n_springs; i++)
+    for (size_t i = 0; i < s->n_pairs; i++)
         visit(to, s->end[i][0], s->end[i][1]);
 }
 
@@ -98,8 +99,8 @@ static uint64_t hash_of(const struct solve_system *s)
                 {s->diagonal, n},
                 {s->free, n},
                 {s->b, 3 * n},
-                {s->end, s->n_springs * sizeof *s->end},
-                {s->value, s->n_springs * sizeof *s->value}};
+                {s->end, s->n_pairs * sizeof *s->end},
+                {s->value, s->n_pairs * sizeof *s->value}};
     uint64_t hash = 0;
     for (size_t i = 0; i < sizeof part / sizeof *part; i++)
         hash = XXH64(part[i].at, part[i].bytes, hash);

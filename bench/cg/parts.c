@@ -40,9 +40,9 @@ static int compare_there(const void *va, const void *vb)
 static struct side *find_sides(const struct maker *m, uint32_t p, uint32_t *n_inner, size_t *n)
 {
     const struct solve_system *s = &m->state->system;
-    struct side *side = malloc((s->n_springs + 1) * sizeof *side);
+    struct side *side = malloc((s->n_pairs + 1) * sizeof *side);
     size_t count = 0;
-    for (size_t i = 0; i < s->n_springs && side; i++) {
+    for (size_t i = 0; i < s->n_pairs && side; i++) {
         uint32_t a = m->place[s->end[i][0]], b = m->place[s->end[i][1]];
         if (m->part_of[b] == p && (m->part_of[a] != p || b < a)) {
             const uint32_t swap = a;
@@ -128,7 +128,8 @@ static void fill_springs(const struct maker *m, struct part *part, uint32_t n,
     }
     for (size_t i = n_inner; i < n_sides; i++)
         end[i - n_inner][0] = side[i].here;
-    part->matrix = (struct solve_block){n, part->owned[0], part->owned[1], row, column};
+    part->matrix =
+        (struct solve_block){n, part->owned[0], part->owned[1], row, column, SOLVE_SPRINGS};
     part->cut.n = n_sides - n_inner;
     part->cut.end = (const uint32_t(*)[2])end;
 }
@@ -185,7 +186,7 @@ static int make_part(const struct maker *m, uint32_t p)
 static void number_rims(const struct maker *m)
 {
     const struct solve_system *s = &m->state->system;
-    for (size_t i = 0; i < s->n_springs; i++) {
+    for (size_t i = 0; i < s->n_pairs; i++) {
         const uint32_t a = m->place[s->end[i][0]], b = m->place[s->end[i][1]];
         if (m->part_of[a] != m->part_of[b])
             m->rim_of[a] = m->rim_of[b] = 1;

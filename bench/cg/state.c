@@ -12,7 +12,7 @@ static const char MAGIC[8] = "state 1";
 
 struct head {
     char magic[8], name[40];
-    uint64_t hash, n_springs;
+    uint64_t hash, n_pairs;
     double h;
     uint32_t n, count;
 };
@@ -26,7 +26,7 @@ struct array {
 
 static void list_arrays(const struct state *s, struct array array[ARRAYS])
 {
-    const size_t n = s->system.n, springs = s->system.n_springs;
+    const size_t n = s->system.n, springs = s->system.n_pairs;
     const struct solve_system *y = &s->system;
     const struct array all[ARRAYS] = {
         {y->mass, n * sizeof(double)},          {y->diagonal, n * sizeof(double)},
@@ -55,7 +55,7 @@ static void path_of(const char *name, const char *ending, char *path, size_t siz
 static int read_arrays(struct state *state, const struct head *head, FILE *file)
 {
     struct array array[ARRAYS];
-    if (solve_system_make(&state->system, head->n, head->n_springs, NULL))
+    if (solve_system_make(&state->system, head->n, head->n_pairs, SOLVE_PAIRS_OF_SPRINGS, NULL))
         return serve_no_memory();
     state->system.h = head->h;
     state->after = malloc(((size_t)head->n + 1) * 3 * sizeof *state->after);
@@ -97,7 +97,7 @@ int state_write(const struct state *state)
     char path[4200], part[4200];
     struct array array[ARRAYS];
     struct head head = {.hash = state->hash,
-                        .n_springs = state->system.n_springs,
+                        .n_pairs = state->system.n_pairs,
                         .h = state->system.h,
                         .n = state->system.n,
                         .count = state->count};
@@ -154,8 +154,7 @@ int state_check(const struct state *state, uint32_t count, const double *dv)
 
 double state_bytes(const struct state *state)
 {
-    return (8 * 24 + 2 * 8) * (double)state->system.n +
-           (4 * 8 + 4) * (double)state->system.n_springs;
+    return (8 * 24 + 2 * 8) * (double)state->system.n + (4 * 8 + 4) * (double)state->system.n_pairs;
 }
 
 /* ---- Conjugate gradients ---- */
@@ -268,7 +267,7 @@ static int blocks_make(const struct solve_system *s, struct room *room)
     for (size_t v = 0; v < s->n; v++)
         for (int i = 0; i < 3; i++)
             room->inverse[v][4 * i] = s->diagonal[v] > 0 ? s->diagonal[v] : 1;
-    for (size_t k = 0; k < s->n_springs; k++)
+    for (size_t k = 0; k < s->n_pairs; k++)
         for (int side = 0; side < 2; side++)
             for (int i = 0; i < 9; i++)
                 room->inverse[s->end[k][side]][i] +=

@@ -26,7 +26,7 @@ static int cuthill(const struct state *state, uint32_t *place)
     TRY(MatSetOption(graph, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
     for (uint32_t v = 0; v < y->n; v++)
         TRY(MatSetValue(graph, (PetscInt)v, (PetscInt)v, 1, INSERT_VALUES));
-    for (size_t i = 0; i < y->n_springs; i++) {
+    for (size_t i = 0; i < y->n_pairs; i++) {
         const PetscInt a = (PetscInt)y->end[i][0], b = (PetscInt)y->end[i][1];
         TRY(MatSetValue(graph, a, b, 1, INSERT_VALUES));
         TRY(MatSetValue(graph, b, a, 1, INSERT_VALUES));
@@ -73,7 +73,7 @@ static int allocate(const struct state *state, struct system *s)
              *other_upper = own_upper + n + 1;
     for (size_t i = 0; i < n; i++)
         own[i] = own_upper[i] = 1;
-    for (size_t i = 0; i < y->n_springs; i++)
+    for (size_t i = 0; i < y->n_pairs; i++)
         for (int k = 0; k < 2; k++) {
             const uint32_t a = s->place[y->end[i][k]], b = s->place[y->end[i][1 - k]];
             if (!mine(s, a))
@@ -129,7 +129,7 @@ static int fill(const struct state *state, struct system *s)
             TRY(VecSetValue(s->b, 3 * at + c, y->free[v] * y->b[3 * (size_t)v + (size_t)c],
                             INSERT_VALUES));
     }
-    for (size_t i = 0; i < y->n_springs; i++)
+    for (size_t i = 0; i < y->n_pairs; i++)
         if (put_spring(state, s, i))
             return 1;
     TRY(MatAssemblyBegin(s->a, MAT_FINAL_ASSEMBLY));

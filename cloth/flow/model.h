@@ -3,6 +3,7 @@
 
 #include "cloth/base/error.h"
 #include "cloth/mesh/mesh.h"
+#include "cloth/solve/format.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -129,6 +130,7 @@ struct model {
     double tolerance;
     uint32_t max_iterations; /* count: exactly so many */
     enum model_preconditioner preconditioner;
+    enum solve_format format; /* of the matrix */
 
     uint32_t grain; /* vertices a block */
 };

@@ -1,31 +1,23 @@
 /* The order of every sum is given by the block: rows ascending, in the dots with q those of the rim
- * last. The fourth lane of q carries rubbish between a row's first spring and its end, and is zero
+ * last. The fourth lane of q carries rubbish between a row's first entry and its end, and is zero
  * in every result.
  *
- * A pass is one sweep: its first half is as far before the product as the product's springs reach,
- * so that both work in the nearest cache. While the product computes, the rows and springs of the
+ * A pass is one sweep: its first half is as far before the product as the product's entries reach,
+ * so that both work in the nearest cache. While the product computes, the rows and entries of the
  * next stretch are fetched. */
 #include "cloth/solve/block.h"
 
 enum {
-    STRETCH = 64,       /* rows: they and their springs take half of a cache of 32 KiB */
-    AHEAD = 96,         /* rows, */
-    SPRINGS_AHEAD = 256 /* and about as many springs: enough for memory to answer */
+    STRETCH = 64,           /* rows: they and their entries take a cache of 32 KiB or half of it */
+    AHEAD = 96,             /* rows, */
+    BYTES_AHEAD = 256 * 32, /* and about as much of the entries: enough for memory to answer */
+    LINE = 64
 };
 
-/* alpha d + w (w . d); lane 3 becomes rubbish. */
-PHYS_INLINE void spring(const phys_vec *value, const phys_vec *d, phys_vec *y)
+/* What lies so many bytes further on: an address alone, which may be behind the end. */
+PHYS_INLINE void fetch(const void *from, size_t bytes, int to_write)
 {
-    const phys_vec product = *value * *d; /* lane 3: d is zero there */
-    phys_vec dot;
-    phys_lanes_each(&product, &dot);
-    *y = (*value)[3] * *d + dot * *value;
-}
-
-/* What lies so many rows further on: an address alone, which may be behind the end. */
-PHYS_INLINE void fetch(const phys_vec *from, size_t rows, int to_write)
-{
-    const uintptr_t address = (uintptr_t)from + rows * sizeof *from;
+    const uintptr_t address = (uintptr_t)from + bytes;
     if (to_write)
         __builtin_prefetch((const void *)address, 1);
     else
@@ -57,7 +49,20 @@ PHYS_INLINE void begin_rows(size_t from, size_t to, double alpha, double beta,
     sum[SOLVE_RZ] = product;
 }
 
-/* How many rows have begun when those that the springs of rows from .. to - 1 end at have. */
+/* What comes of row a and its entries, of which i is the first. */
+PHYS_INLINE void fetch_row(enum solve_format format, const struct solve_values *values, size_t i,
+                           size_t a, const struct solve_rows *rows)
+{
+    static const size_t bytes[] = {
+        [SOLVE_SPRINGS] = 32, [SOLVE_HALF] = 72, [SOLVE_HALF_FLOAT] = 36}; /* an entry */
+    const phys_vec *const row[] = {rows->dv + a, rows->r + a, rows->p + a, rows->q + a};
+    for (int k = 0; k < 4; k++)
+        fetch(row[k], AHEAD * sizeof **row, 1);
+    for (size_t line = 0; line < 3 * bytes[format]; line += LINE) /* of three entries */
+        fetch((const char *)values->entry + bytes[format] * i, BYTES_AHEAD + line, 0);
+}
+
+/* How many rows have begun when those that the entries of rows from .. to - 1 end at have. */
 PHYS_INLINE size_t reach(const struct solve_block *block, size_t from, size_t to, size_t begun)
 {
     size_t last = begun > to ? begun : to;
@@ -69,33 +74,41 @@ PHYS_INLINE size_t reach(const struct solve_block *block, size_t from, size_t to
     return last;
 }
 
-/* Springs of row a, from `value` and `column` on: takes each from its other row and returns the sum
- * for this one. */
-PHYS_INLINE void row(size_t n, const phys_vec *restrict value, const uint32_t *column, size_t a,
-                     const phys_vec *restrict p, phys_vec *restrict q, phys_vec *sum)
+/* Entries from .. to - 1 of row a: takes each from its other row and returns the sum for this one.
+ */
+PHYS_INLINE void row(enum solve_format format, size_t from, size_t to, const void *entry,
+                     const uint32_t *column, size_t a, const phys_vec *restrict p,
+                     phys_vec *restrict q, phys_vec *sum)
 {
     const phys_vec own = p[a];
     phys_vec total = q[a];
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = from; i < to; i++) {
         const uint32_t b = column[i];
         const phys_vec d = own - p[b];
-        phys_vec y;
-        spring(value + i, &d, &y);
+        phys_vec y, turned;
+        solve_entry_times(format, entry, i, &d, &y, &turned);
         total += y;
-        q[b] -= y;
+        q[b] -= turned;
     }
     *sum = total;
 }
 
-/* q = S A p of row a, of which total is the sum over the springs. Adds p * q, r * q, q * q to the
+/* q = S A p of row a, of which total is the sum over the entries. Adds p * q, r * q, q * q to the
  * sums; with a preconditioner p * q and z * q. */
-PHYS_INLINE void end_row(const struct solve_block *block, size_t a, const phys_vec *total,
+PHYS_INLINE void end_row(const struct solve_block *block, enum solve_format format,
+                         const struct solve_values *values, size_t a, const phys_vec *total,
                          const struct solve_rows *rows, const struct solve_turned *turned,
                          phys_vec sum[SOLVE_DOTS])
 {
     const phys_vec three = {1, 1, 1, 0};
     const phys_vec p = rows->p[a];
-    const phys_vec q = (*total + block->diagonal[a] * p) * (block->free[a] * three);
+    phys_vec q = *total + block->diagonal[a] * p;
+    if (format == SOLVE_HALF_FLOAT) {
+        phys_vec cross;
+        solve_cross(values->turn + a, &p, &cross);
+        q -= cross;
+    }
+    q *= block->free[a] * three;
     rows->q[a] = q;
     sum[SOLVE_PQ] += p * q;
     sum[SOLVE_RQ] += (turned ? turned->z : rows->r)[a] * q;
@@ -103,27 +116,22 @@ PHYS_INLINE void end_row(const struct solve_block *block, size_t a, const phys_v
         sum[SOLVE_QQ] += q * q;
 }
 
-/* The inner springs of rows from .. to - 1. Ends the rows but those of the rim, of which *met were
+/* The inner entries of rows from .. to - 1. Ends the rows but those of the rim, of which *met were
  * met before. */
-PHYS_INLINE void multiply(const struct solve_block *block, const struct solve_cut *cut, size_t *met,
-                          size_t from, size_t to, const phys_vec *value,
-                          const struct solve_rows *rows, const struct solve_turned *turned,
-                          phys_vec sum[SOLVE_DOTS])
+PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format format,
+                          const struct solve_cut *cut, size_t *met, size_t from, size_t to,
+                          const struct solve_values *values, const struct solve_rows *rows,
+                          const struct solve_turned *turned, phys_vec sum[SOLVE_DOTS])
 {
     size_t i = block->row[from], rim = *met < cut->n_rim ? cut->rim[*met] : block->n;
     for (size_t a = from; a < to; a++) {
-        const size_t n = block->row[a + 1] - i;
+        const size_t end = block->row[a + 1];
         phys_vec total;
-        fetch(rows->dv + a, AHEAD, 1);
-        fetch(rows->r + a, AHEAD, 1);
-        fetch(rows->p + a, AHEAD, 1);
-        fetch(rows->q + a, AHEAD, 1);
-        fetch(value + i, SPRINGS_AHEAD, 0);
-        fetch(value + i + 2, SPRINGS_AHEAD, 0);
-        row(n, value + i, block->column + i, a, rows->p, rows->q, &total);
-        i += n;
+        fetch_row(format, values, i, a, rows);
+        row(format, i, end, values->entry, block->column, a, rows->p, rows->q, &total);
+        i = end;
         if (a != rim) {
-            end_row(block, a, &total, rows, turned, sum);
+            end_row(block, format, values, a, &total, rows, turned, sum);
             continue;
         }
         rows->q[a] = total;
@@ -131,32 +139,34 @@ PHYS_INLINE void multiply(const struct solve_block *block, const struct solve_cu
     }
 }
 
-/* The springs into other blocks, and the rows that waited for them. */
-PHYS_INLINE void end_rim(const struct solve_block *block, const struct solve_cut *cut,
-                         const phys_vec *value, const phys_vec *p_other,
-                         const struct solve_rows *rows, const struct solve_turned *turned,
-                         phys_vec sum[SOLVE_DOTS])
+/* The entries into other blocks, and the rows that waited for them. */
+PHYS_INLINE void end_rim(const struct solve_block *block, enum solve_format format,
+                         const struct solve_cut *cut, const struct solve_values *values,
+                         const phys_vec *p_other, const struct solve_rows *rows,
+                         const struct solve_turned *turned, phys_vec sum[SOLVE_DOTS])
 {
+    const size_t inner = block->row[block->n];
     for (size_t i = 0; i < cut->n; i++) {
         const uint32_t a = cut->end[i][0];
         const phys_vec d = rows->p[a] - p_other[cut->end[i][1]];
-        phys_vec y;
-        spring(value + i, &d, &y);
+        phys_vec y, other;
+        solve_entry_times(format, values->entry, inner + i, &d, &y, &other);
         rows->q[a] += y;
     }
     for (size_t i = 0; i < cut->n_rim; i++) {
         const phys_vec total = rows->q[cut->rim[i]];
-        end_row(block, cut->rim[i], &total, rows, turned, sum);
+        end_row(block, format, values, cut->rim[i], &total, rows, turned, sum);
     }
 }
 
-/* turned is NULL or not where this is inlined: two passes are made of it, neither with a look at it
- * in a loop. */
-PHYS_INLINE void pass(const struct solve_block *block, const struct solve_cut *cut,
-                      const phys_vec *value, const phys_vec *p_other, double alpha, double beta,
-                      const struct solve_rows *rows, const struct solve_turned *turned,
-                      double dots[SOLVE_DOTS])
+/* The format is known and turned is NULL or not where this is inlined: six passes are made of it,
+ * none with a look at either in a loop. */
+PHYS_INLINE void pass(const struct solve_block *block, enum solve_format format,
+                      const struct solve_cut *cut, const void *memory, const phys_vec *p_other,
+                      double alpha, double beta, const struct solve_rows *rows,
+                      const struct solve_turned *turned, double dots[SOLVE_DOTS])
 {
+    const struct solve_values values = solve_values_of(format, block->n, memory);
     phys_vec sum[SOLVE_DOTS] = {{0}}; /* no loop over it: it lives in registers */
     size_t met = 0, begun = 0;
     for (size_t from = 0; from < block->n; from += STRETCH) {
@@ -164,9 +174,9 @@ PHYS_INLINE void pass(const struct solve_block *block, const struct solve_cut *c
         const size_t next = reach(block, from, to, begun);
         begin_rows(begun, next, alpha, beta, rows, turned, sum);
         begun = next;
-        multiply(block, cut, &met, from, to, value, rows, turned, sum);
+        multiply(block, format, cut, &met, from, to, &values, rows, turned, sum);
     }
-    end_rim(block, cut, value + block->row[block->n], p_other, rows, turned, sum);
+    end_rim(block, format, cut, &values, p_other, rows, turned, sum);
     dots[SOLVE_RR] = phys_lanes(sum + SOLVE_RR);
     dots[SOLVE_PQ] = phys_lanes(sum + SOLVE_PQ);
     dots[SOLVE_RQ] = phys_lanes(sum + SOLVE_RQ);
@@ -174,34 +184,64 @@ PHYS_INLINE void pass(const struct solve_block *block, const struct solve_cut *c
     dots[SOLVE_RZ] = turned ? phys_lanes(sum + SOLVE_RZ) : dots[SOLVE_RR];
 }
 
-PHYS_CLONES
-void solve_pass(const struct solve_block *block, const struct solve_cut *cut, const phys_vec *value,
-                const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
-                double dots[SOLVE_DOTS])
-{
-    pass(block, cut, value, p_other, alpha, beta, rows, NULL, dots);
-}
+/* A pass with the format known, in a function of its own. */
+#define PASS(name, format)                                                                         \
+    PHYS_CLONES                                                                                    \
+    static void name(const struct solve_block *block, const struct solve_cut *cut,                 \
+                     const void *values, const phys_vec *p_other, double alpha, double beta,       \
+                     const struct solve_rows *rows, const struct solve_turned *turned,             \
+                     double dots[SOLVE_DOTS])                                                      \
+    {                                                                                              \
+        if (turned) {                                                                              \
+            const struct solve_turned here = *turned;                                              \
+            pass(block, format, cut, values, p_other, alpha, beta, rows, &here, dots);             \
+        } else {                                                                                   \
+            pass(block, format, cut, values, p_other, alpha, beta, rows, NULL, dots);              \
+        }                                                                                          \
+    }
+PASS(pass_springs, SOLVE_SPRINGS)
+PASS(pass_half, SOLVE_HALF)
+PASS(pass_half_float, SOLVE_HALF_FLOAT)
 
-PHYS_CLONES
 void solve_pass_turned(const struct solve_block *block, const struct solve_cut *cut,
-                       const phys_vec *value, const phys_vec *p_other, double alpha, double beta,
+                       const void *values, const phys_vec *p_other, double alpha, double beta,
                        const struct solve_rows *rows, const struct solve_turned *turned,
                        double dots[SOLVE_DOTS])
 {
-    const struct solve_turned here = *turned;
-    pass(block, cut, value, p_other, alpha, beta, rows, &here, dots);
+    if (block->format == SOLVE_SPRINGS)
+        pass_springs(block, cut, values, p_other, alpha, beta, rows, turned, dots);
+    else if (block->format == SOLVE_HALF)
+        pass_half(block, cut, values, p_other, alpha, beta, rows, turned, dots);
+    else
+        pass_half_float(block, cut, values, p_other, alpha, beta, rows, turned, dots);
 }
 
-void solve_lost(const struct solve_block *block, const struct solve_held *held,
-                const phys_vec *value, const phys_vec *b, const phys_vec *dv, double lost[3])
+void solve_pass(const struct solve_block *block, const struct solve_cut *cut, const void *values,
+                const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
+                double dots[SOLVE_DOTS])
 {
+    solve_pass_turned(block, cut, values, p_other, alpha, beta, rows, NULL, dots);
+}
+
+/* In the sum over the free rows of A, column b is the diagonal of row b, its turn, and N' of its
+ * entries to held rows. */
+void solve_lost(const struct solve_block *block, const struct solve_held *held, const void *memory,
+                const phys_vec *b, const phys_vec *dv, double lost[3])
+{
+    const struct solve_values values = solve_values_of(block->format, block->n, memory);
+    const size_t inner = block->row[block->n];
     phys_vec sum = {0};
-    for (size_t a = 0; a < block->n; a++)
-        sum += block->free[a] * (b[a] - block->diagonal[a] * dv[a]);
-    for (size_t i = 0; i < held->n; i++) {
-        phys_vec y;
-        spring(value + held->at[i][1], dv + held->at[i][0], &y);
-        sum -= y;
+    for (size_t a = 0; a < block->n; a++) {
+        phys_vec turned = {0};
+        if (values.turn)
+            solve_cross(values.turn + a, dv + a, &turned);
+        sum += block->free[a] * (b[a] - block->diagonal[a] * dv[a] - turned);
+    }
+    for (size_t k = 0; k < held->n; k++) {
+        const uint32_t a = held->at[k][0], i = held->at[k][1];
+        phys_vec y, turned;
+        solve_entry_times(block->format, values.entry, i, dv + a, &y, &turned);
+        sum -= i < inner && block->column[i] == a ? y : turned;
     }
     for (int c = 0; c < 3; c++)
         lost[c] += sum[c];

@@ -1,27 +1,27 @@
 #ifndef CLOTH_SOLVE_BLOCK_H
 #define CLOTH_SOLVE_BLOCK_H
 
-#include "cloth/physics/vec.h"
 #include "cloth/solve/cg.h"
+#include "cloth/solve/format.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* One block of rows of the matrix of an implicit step, A = diagonal + springs, as a spring knows
- * it: four doubles a spring (w0 w1 w2 alpha, phys_springs_matrix). A spring adds alpha d + w (w .
- * d), d = p_a - p_b, to row a and takes it from row b: what moves rigidly feels the diagonal alone,
- * exactly. Springs with both ends in the block are stored once, in rows by their lower end; a
- * spring whose other end is in another block is known to both, each for its own row. With S =
- * diag(free) the system is S A S dv = S b (Baraff & Witkin 1998). */
+/* One block of rows of the matrix of an implicit step, A = diagonal + entries, in any format
+ * (cloth/solve/format.h). Entries with both ends in the block are stored once, in rows by their
+ * lower end; an entry whose other end is in another block is known to both, each for its own row.
+ * In half storage two rows have one entry at most; of springs, each is one. With S = diag(free) the
+ * system is S A S dv = S b (Baraff & Witkin 1998). */
 struct solve_block {
     size_t n;               /* rows */
     const double *diagonal; /* n: mass + h (drag), kg, > 0 */
     const double *free;     /* n: 1, or 0 for a particle that is held */
-    const uint32_t *row;    /* n + 1: the inner springs of row a are row[a] .. row[a + 1] - 1 */
-    const uint32_t *column; /* row[n]: the higher end of each inner spring, ascending in a row */
+    const uint32_t *row;    /* n + 1: the inner entries of row a are row[a] .. row[a + 1] - 1 */
+    const uint32_t *column; /* row[n]: the higher end of each inner entry, ascending in a row */
+    enum solve_format format;
 };
 
-/* Springs into other blocks, whose values follow those of the inner ones: `own` the row here,
+/* Entries into other blocks, whose values follow those of the inner ones: `own` the row here,
  * `other` the row in an array of copies. The rim is the rows that they end at here. */
 struct solve_cut {
     size_t n;
@@ -35,9 +35,9 @@ struct solve_rows {
     phys_vec *dv, *r, *p, *q;
 };
 
-/* A pass over a block (cloth/solve/cg.h): all of it but the factors. p_other: p of the copies, as
- * it is after the first half of this pass. */
-void solve_pass(const struct solve_block *block, const struct solve_cut *cut, const phys_vec *value,
+/* A pass over a block (cloth/solve/cg.h): all of it but the factors. values: of the entries, as the
+ * block's format has them. p_other: p of the copies, as it is after the first half of this pass. */
+void solve_pass(const struct solve_block *block, const struct solve_cut *cut, const void *values,
                 const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
                 double dots[SOLVE_DOTS]);
 
@@ -49,18 +49,18 @@ struct solve_turned {
     const phys_vec *s;
 };
 void solve_pass_turned(const struct solve_block *block, const struct solve_cut *cut,
-                       const phys_vec *value, const phys_vec *p_other, double alpha, double beta,
+                       const void *values, const phys_vec *p_other, double alpha, double beta,
                        const struct solve_rows *rows, const struct solve_turned *turned,
                        double dots[SOLVE_DOTS]);
 
 /* Adds the sum over the free rows of b - A dv to lost[3] (kg m/s), for a dv that is zero where
- * particles are held. The springs between free rows cancel in this sum, wherever their ends are;
- * those to held ends remain. They are given by their free row and their place in `value`. */
+ * particles are held. The entries between free rows cancel in this sum, wherever their ends are;
+ * those to held ends remain. They are given by their free row and their place among the values. */
 struct solve_held {
     size_t n;
-    const uint32_t (*at)[2]; /* n: row, place in value */
+    const uint32_t (*at)[2]; /* n: row, place */
 };
-void solve_lost(const struct solve_block *block, const struct solve_held *held,
-                const phys_vec *value, const phys_vec *b, const phys_vec *dv, double lost[3]);
+void solve_lost(const struct solve_block *block, const struct solve_held *held, const void *values,
+                const phys_vec *b, const phys_vec *dv, double lost[3]);
 
 #endif

@@ -16,15 +16,15 @@ enum { SOLVE_COARSE = 9, SOLVE_COUPLING = SOLVE_COARSE * SOLVE_COARSE };
 /* Row a of P: 1 u v 0 for each of x, y and z; zero where the row is held. */
 void solve_basis(size_t n, const double *free, const phys_vec *position, phys_vec *basis);
 
-/* The diagonal block that inner springs and the diagonal make, row by row, own[3 k + c][3 l + d]:
+/* The diagonal block that inner entries and the diagonal make, row by row, own[3 k + c][3 l + d]:
  * function k along axis c. */
-void solve_couple(const struct solve_block *block, const phys_vec *value, const phys_vec *basis,
+void solve_couple(const struct solve_block *block, const void *values, const phys_vec *basis,
                   double own[SOLVE_COUPLING]);
 
-/* Adds springs into one other block to `own`, and sets beside, this block's rows by the other's
- * columns. end: own row, row in other_basis. */
-void solve_couple_cut(size_t n, const uint32_t (*end)[2], const phys_vec *value,
-                      const phys_vec *basis, const phys_vec *other_basis,
+/* Adds n entries into one other block, at `from` among the values, to `own`, and sets beside, this
+ * block's rows by the other's columns. end: own row, row in other_basis. */
+void solve_couple_cut(const struct solve_block *block, const void *values, size_t from, size_t n,
+                      const uint32_t (*end)[2], const phys_vec *basis, const phys_vec *other_basis,
                       double own[SOLVE_COUPLING], double beside[SOLVE_COUPLING]);
 
 /* P' y of a block; y += P x of a block. */

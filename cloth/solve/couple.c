@@ -1,6 +1,7 @@
-/* What one block adds to the coarse matrix. A spring of K = alpha I + w w' between a and b adds
- * (phi_a - phi_b)(phi_a - phi_b)' times K, phi the rows of P; the sums go over symmetric 3 x 3
- * blocks, six for one block, nine for two. */
+/* What one block adds to the coarse matrix. An entry of N = K + [w]x between a and b, K symmetric,
+ * adds (phi_a - phi_b)(phi_a - phi_b)' times K, phi the rows of P, and (phi_b phi_a' - phi_a
+ * phi_b') times [w]x, since those of a row come to nothing; the sums go over symmetric 3 x 3
+ * blocks, six for one block, nine for two, and over vectors w, three and nine. */
 #include "cloth/solve/coarse.h"
 #include "cloth/solve/matrix3.h"
 
@@ -121,48 +122,94 @@ static void put_squares(const struct solve_symmetric sum[6], double *matrix)
         }
 }
 
-PHYS_CLONES
-void solve_couple(const struct solve_block *block, const phys_vec *value, const phys_vec *basis,
-                  double own[SOLVE_COUPLING])
+/* Adds [w]x to the block of functions k and l. */
+static void put_turn(const phys_vec *w, double sign, int k, int l, double *matrix)
 {
+    for (int c = 0; c < 3; c++) {
+        const int d = (c + 1) % 3, e = (c + 2) % 3;
+        matrix[SOLVE_COARSE * (3 * k + e) + 3 * l + d] += sign * (*w)[c];
+        matrix[SOLVE_COARSE * (3 * k + d) + 3 * l + e] -= sign * (*w)[c];
+    }
+}
+
+/* Adds the turns between a and b: of functions 01 02 12. */
+PHYS_INLINE void add_turns(phys_vec sum[3], const phys_vec *a, const phys_vec *b, const phys_vec *w)
+{
+    sum[0] += ((*b)[0] * (*a)[1] - (*a)[0] * (*b)[1]) * *w;
+    sum[1] += ((*b)[0] * (*a)[2] - (*a)[0] * (*b)[2]) * *w;
+    sum[2] += ((*b)[1] * (*a)[2] - (*a)[1] * (*b)[2]) * *w;
+}
+
+PHYS_INLINE void couple(const struct solve_block *block, enum solve_format format,
+                        const void *values, const phys_vec *basis, double own[SOLVE_COUPLING])
+{
+    const void *entry = solve_values_of(format, block->n, values).entry;
     const phys_vec three = {1, 1, 1, 0};
     struct solve_symmetric sum[6] = {{{0}, {0}}};
+    phys_vec turns[3] = {{0}};
     for (size_t a = 0; a < block->n; a++) {
         const double d = block->diagonal[a];
         struct solve_symmetric mass = {{0}, {0}};
         mass.diagonal += d * three;
         add_square(sum, basis + a, &mass);
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
-            const phys_vec phi = basis[a] - basis[block->column[i]];
+            const phys_vec *other = basis + block->column[i], phi = basis[a] - *other;
             struct solve_symmetric m = {{0}, {0}};
-            solve_spring(value + i, &m);
+            phys_vec w;
+            solve_entry_of(format, entry, i, &m, &w);
             add_square(sum, &phi, &m);
+            if (format != SOLVE_SPRINGS)
+                add_turns(turns, basis + a, other, &w);
         }
     }
     memset(own, 0, SOLVE_COUPLING * sizeof *own);
     put_squares(sum, own);
+    for (int k = 0; k < 3 && format != SOLVE_SPRINGS; k++) {
+        const int first = k == 2, last = k ? 2 : 1;
+        put_turn(turns + k, 1, first, last, own);
+        put_turn(turns + k, -1, last, first, own);
+    }
 }
 
 PHYS_CLONES
-void solve_couple_cut(size_t n, const uint32_t (*end)[2], const phys_vec *value,
-                      const phys_vec *basis, const phys_vec *other_basis,
+void solve_couple(const struct solve_block *block, const void *values, const phys_vec *basis,
+                  double own[SOLVE_COUPLING])
+{
+    if (block->format == SOLVE_SPRINGS)
+        couple(block, SOLVE_SPRINGS, values, basis, own);
+    else if (block->format == SOLVE_HALF)
+        couple(block, SOLVE_HALF, values, basis, own);
+    else
+        couple(block, SOLVE_HALF_FLOAT, values, basis, own);
+}
+
+PHYS_CLONES
+void solve_couple_cut(const struct solve_block *block, const void *values, size_t from, size_t n,
+                      const uint32_t (*end)[2], const phys_vec *basis, const phys_vec *other_basis,
                       double own[SOLVE_COUPLING], double beside[SOLVE_COUPLING])
 {
+    const void *entry = solve_values_of(block->format, block->n, values).entry;
     struct solve_symmetric square[6] = {{{0}, {0}}}, sum[9] = {{{0}, {0}}};
+    phys_vec turns[9] = {{0}};
     for (size_t i = 0; i < n; i++) {
         const phys_vec phi = basis[end[i][0]], other = other_basis[end[i][1]];
         struct solve_symmetric m = {{0}, {0}};
-        solve_spring(value + i, &m);
+        phys_vec w;
+        solve_entry_of(block->format, entry, from + i, &m, &w);
         add_square(square, &phi, &m);
         for (int k = 0; k < 3; k++)
-            for (int l = 0; l < 3; l++)
+            for (int l = 0; l < 3; l++) {
                 add(sum + 3 * k + l, phi[k] * other[l], &m);
+                turns[3 * k + l] += (phi[k] * other[l]) * w;
+            }
     }
     put_squares(square, own);
     memset(beside, 0, SOLVE_COUPLING * sizeof *beside);
     for (int k = 0; k < 3; k++)
-        for (int l = 0; l < 3; l++)
+        for (int l = 0; l < 3; l++) {
             put(sum + 3 * k + l, -1, k, l, beside);
+            put_turn(turns + 3 * k + l, -1, k, l, beside);
+        }
 }
 
 /* ---- Between the levels ---- */

@@ -1,5 +1,5 @@
 /* A factor is, for each row, the inverse of a 3 x 3 block (struct solve_symmetric), and behind them
- * for IC(0), for each inner spring, its block of T. The same T stands on both sides of E, so M is
+ * for IC(0), for each inner entry, its block of T. The same T stands on both sides of E, so M is
  * exactly symmetric and as definite as E. T in float takes half the bytes and is slower: what is
  * converted is in the cache of the core anyway. */
 #include "cloth/solve/local.h"
@@ -24,10 +24,10 @@ static struct factor factor_of(const struct solve_block *block, double *memory)
     return (struct factor){inverse, (struct solve_columns *)(void *)(inverse + block->n)};
 }
 
-size_t solve_local_doubles(size_t n, size_t springs, enum solve_local kind)
+size_t solve_local_doubles(size_t n, size_t entries, enum solve_local kind)
 {
-    const size_t entries = kind == SOLVE_IC0 ? springs : 0;
-    return (n * sizeof(struct solve_symmetric) + entries * sizeof(struct solve_columns)) /
+    const size_t blocks = kind == SOLVE_IC0 ? entries : 0;
+    return (n * sizeof(struct solve_symmetric) + blocks * sizeof(struct solve_columns)) /
            sizeof(double);
 }
 
@@ -39,21 +39,24 @@ PHYS_INLINE void add(struct solve_symmetric *to, const struct solve_symmetric *m
 
 /* The blocks on the diagonal of B. */
 PHYS_INLINE void gather(const struct solve_block *block, const struct solve_cut *cut,
-                        const phys_vec *value, struct solve_symmetric *sum)
+                        const void *values, struct solve_symmetric *sum)
 {
+    const enum solve_format format = block->format;
+    const void *entry = solve_values_of(format, block->n, values).entry;
     struct solve_symmetric m = {{0}, {0}};
+    phys_vec turn; /* of a row they come to nothing */
     for (size_t a = 0; a < block->n; a++) {
         const double d = block->diagonal[a];
         sum[a] = (struct solve_symmetric){{d, d, d, 0}, {0}};
     }
     for (size_t a = 0; a < block->n; a++)
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
-            solve_spring(value + i, &m);
+            solve_entry_of(format, entry, i, &m, &turn);
             add(sum + a, &m);
             add(sum + block->column[i], &m);
         }
     for (size_t i = 0; i < cut->n; i++) {
-        solve_spring(value + block->row[block->n] + i, &m);
+        solve_entry_of(format, entry, block->row[block->n] + i, &m, &turn);
         add(sum + cut->end[i][0], &m);
     }
     for (size_t a = 0; a < block->n; a++)
@@ -77,15 +80,17 @@ PHYS_INLINE void invert_surely(struct solve_symmetric *m)
     *m = inverse;
 }
 
-/* The inner springs of B: zero where an end is held. */
-PHYS_INLINE void spread(const struct solve_block *block, const phys_vec *value,
+/* The inner entries of B: zero where an end is held. */
+PHYS_INLINE void spread(const struct solve_block *block, const void *values,
                         struct solve_columns *t)
 {
+    const void *entry = solve_values_of(block->format, block->n, values).entry;
     for (size_t a = 0; a < block->n; a++)
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
             struct solve_symmetric m = {{0}, {0}};
-            solve_spring(value + i, &m);
-            solve_columns_of(&m, t + i);
+            phys_vec turn;
+            solve_entry_of(block->format, entry, i, &m, &turn);
+            solve_entry_columns(&m, &turn, t + i);
             const double sign = -block->free[a] * block->free[block->column[i]];
             for (int k = 0; k < 3; k++)
                 t[i].c[k] *= sign;
@@ -148,10 +153,10 @@ PHYS_INLINE void eliminate(const struct solve_block *block, size_t a,
 
 /* IC(0) with the diagonal entries of B times 1 + shift. Returns false if a pivot fails. */
 PHYS_INLINE bool factorise(const struct solve_block *block, const struct solve_cut *cut,
-                           const phys_vec *value, double shift, struct factor *f)
+                           const void *values, double shift, struct factor *f)
 {
-    gather(block, cut, value, f->inverse);
-    spread(block, value, f->t);
+    gather(block, cut, values, f->inverse);
+    spread(block, values, f->t);
     for (size_t a = 0; a < block->n; a++)
         f->inverse[a].diagonal *= 1 + shift;
     for (size_t a = 0; a < block->n; a++) {
@@ -167,10 +172,10 @@ PHYS_INLINE bool factorise(const struct solve_block *block, const struct solve_c
 
 /* (I + T') E (I + T) with E the diagonal of B, T = E^-1 (its upper part). */
 PHYS_INLINE void over_relax(const struct solve_block *block, const struct solve_cut *cut,
-                            const phys_vec *value, struct factor *f)
+                            const void *values, struct factor *f)
 {
-    gather(block, cut, value, f->inverse);
-    spread(block, value, f->t);
+    gather(block, cut, values, f->inverse);
+    spread(block, values, f->t);
     for (size_t a = 0; a < block->n; a++) {
         invert_surely(f->inverse + a);
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++)
@@ -180,20 +185,20 @@ PHYS_INLINE void over_relax(const struct solve_block *block, const struct solve_
 
 PHYS_CLONES
 int solve_local_factor(const struct solve_block *block, const struct solve_cut *cut,
-                       const phys_vec *value, enum solve_local kind, double *factor)
+                       const void *values, enum solve_local kind, double *factor)
 {
     static const double shift[SOLVE_SSOR] = {0, 0.01, 0.05, 0.2, 1};
     struct factor f = factor_of(block, factor);
     if (kind == SOLVE_JACOBI) {
-        gather(block, cut, value, f.inverse);
+        gather(block, cut, values, f.inverse);
         for (size_t a = 0; a < block->n; a++)
             invert_surely(f.inverse + a);
         return 0;
     }
     for (int i = 0; i < SOLVE_SSOR; i++)
-        if (factorise(block, cut, value, shift[i], &f))
+        if (factorise(block, cut, values, shift[i], &f))
             return i;
-    over_relax(block, cut, value, &f);
+    over_relax(block, cut, values, &f);
     return SOLVE_SSOR;
 }
 

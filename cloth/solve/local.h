@@ -4,8 +4,8 @@
 #include "cloth/solve/block.h"
 
 /* Preconditioners of one block of rows, made of B, the block's own part of S A S + (I - S): all
- * that its rows have on their diagonals, springs into other blocks and to held rows included, and
- * its inner springs between free rows. They are symmetric and positive definite, and leave held
+ * that its rows have on their diagonals, entries into other blocks and to held rows included, and
+ * its inner entries between free rows. They are symmetric and positive definite, and leave held
  * rows at zero. Pure functions; nothing is allocated. */
 enum solve_local {
     SOLVE_JACOBI, /* the inverses of the 3 x 3 blocks on the diagonal */
@@ -13,8 +13,8 @@ enum solve_local {
                * pattern of B (Meijerink & van der Vorst 1977), exact where that has no fill */
 };
 
-/* Doubles that a factor takes, of so many rows and inner springs. */
-size_t solve_local_doubles(size_t n, size_t springs, enum solve_local kind);
+/* Doubles that a factor takes, of so many rows and inner entries. */
+size_t solve_local_doubles(size_t n, size_t entries, enum solve_local kind);
 
 /* Makes the factor of a block, aligned to 32 bytes. A pivot of IC(0) may fail where B itself is
  * positive definite; then it is tried again with the diagonal of B times 1.01, 1.05, 1.2 and 2
@@ -22,7 +22,7 @@ size_t solve_local_doubles(size_t n, size_t springs, enum solve_local kind);
  * it was tried again: 0 .. SOLVE_SSOR. */
 enum { SOLVE_SSOR = 5 };
 int solve_local_factor(const struct solve_block *block, const struct solve_cut *cut,
-                       const phys_vec *value, enum solve_local kind, double *factor);
+                       const void *values, enum solve_local kind, double *factor);
 
 /* s = M^-1 q, of a q that is zero in held rows. Returns q.s. */
 double solve_local_apply(const struct solve_block *block, enum solve_local kind,

@@ -1,5 +1,6 @@
 libduite_cloth_la_SOURCES += \
-    cloth/solve/block.c cloth/solve/block.h \
+    cloth/solve/assemble.c cloth/solve/assemble.h \
+    cloth/solve/block.c cloth/solve/block.h cloth/solve/format.h \
     cloth/solve/cg.c cloth/solve/cg.h \
     cloth/solve/coarse.c cloth/solve/coarse.h cloth/solve/couple.c \
     cloth/solve/local.c cloth/solve/local.h cloth/solve/matrix3.h \

@@ -1,14 +1,14 @@
-/* Springs are worked on one after the other: whoever has the same arrays gets the same bits. */
+/* Pairs are worked on one after the other: whoever has the same arrays gets the same bits. */
 #include "cloth/solve/system.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-int solve_system_make(struct solve_system *system, uint32_t n, size_t n_springs,
-                      struct cloth_error *error)
+int solve_system_make(struct solve_system *system, uint32_t n, size_t n_pairs,
+                      enum solve_pairs pairs, struct cloth_error *error)
 {
     const size_t rows = (size_t)n + 1;
-    *system = (struct solve_system){.n = n, .n_springs = n_springs};
+    *system = (struct solve_system){.n = n, .n_pairs = n_pairs};
     double **row[] = {&system->mass, &system->diagonal, &system->free};
     double **vector[] = {&system->b, &system->dv, &system->x, &system->v};
     int has = 1;
@@ -16,9 +16,12 @@ int solve_system_make(struct solve_system *system, uint32_t n, size_t n_springs,
         has = (*row[i] = calloc(rows, sizeof(double))) && has;
     for (size_t i = 0; i < sizeof vector / sizeof *vector; i++)
         has = (*vector[i] = calloc(rows, 3 * sizeof(double))) && has;
-    system->end = calloc(n_springs + 1, sizeof *system->end);
-    system->value = calloc(n_springs + 1, sizeof *system->value);
-    if (has && system->end && system->value)
+    system->end = calloc(n_pairs + 1, sizeof *system->end);
+    if (pairs == SOLVE_PAIRS_OF_SPRINGS)
+        system->value = calloc(n_pairs + 1, sizeof *system->value);
+    else
+        system->block = calloc(n_pairs + 1, sizeof *system->block);
+    if (has && system->end && (system->value || system->block))
         return CLOTH_OK;
     solve_system_free(system);
     return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for a system of %u vertices", n);
@@ -32,7 +35,21 @@ void solve_system_free(struct solve_system *system)
         free(array[i]);
     free(system->end);
     free(system->value);
+    free(system->block);
     *system = (struct solve_system){0};
+}
+
+void solve_system_pair(const struct solve_system *system, size_t i, double n[3][3])
+{
+    for (int c = 0; c < 3; c++)
+        for (int d = 0; d < 3; d++) {
+            if (system->block) {
+                n[c][d] = system->block[i][3 * c + d];
+                continue;
+            }
+            const double *w = system->value[i];
+            n[c][d] = w[c] * w[d] + (c == d ? w[3] : 0);
+        }
 }
 
 /* ---- Order ---- */
@@ -40,6 +57,7 @@ void solve_system_free(struct solve_system *system)
 struct entry {
     uint32_t end[2];
     size_t at;
+    int turned;
 };
 
 static int compare(const void *va, const void *vb)
@@ -51,31 +69,82 @@ static int compare(const void *va, const void *vb)
     return (a->at > b->at) - (a->at < b->at);
 }
 
+/* Moves what belongs to the pairs, `bytes` each, to where they are now. room: as large. */
+static void move(const struct entry *entry, size_t n, size_t bytes, void *array, void *room)
+{
+    char *to = array, *from = room;
+    memcpy(from, to, n * bytes);
+    for (size_t i = 0; i < n; i++)
+        memcpy(to + i * bytes, from + entry[i].at * bytes, bytes);
+}
+
+static void transpose(double n[9])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < i; j++) {
+            const double other = n[3 * i + j];
+            n[3 * i + j] = n[3 * j + i];
+            n[3 * j + i] = other;
+        }
+}
+
 int solve_system_sort(struct solve_system *system, struct cloth_error *error)
 {
-    const size_t n = system->n_springs;
+    const size_t n = system->n_pairs;
+    const size_t bytes = system->block ? sizeof *system->block : sizeof *system->value;
     struct entry *entry = malloc((n + 1) * sizeof *entry);
-    double(*value)[4] = malloc((n + 1) * sizeof *value);
-    const int has = entry && value;
-    for (size_t i = 0; i < n && has; i++) {
+    void *room = malloc((n + 1) * bytes);
+    if (!entry || !room) {
+        free(entry);
+        free(room);
+        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %zu pairs in order", n);
+    }
+    for (size_t i = 0; i < n; i++) {
         const uint32_t a = system->end[i][0], b = system->end[i][1];
-        entry[i] = (struct entry){{a < b ? a : b, a < b ? b : a}, i};
+        entry[i] = (struct entry){{a < b ? a : b, a < b ? b : a}, i, a > b};
     }
-    if (has) {
-        qsort(entry, n, sizeof *entry, compare);
-        memcpy(value, system->value, n * sizeof *value);
-    }
-    for (size_t i = 0; i < n && has; i++) {
+    qsort(entry, n, sizeof *entry, compare);
+    move(entry, n, bytes, system->block ? (void *)system->block : system->value, room);
+    for (size_t i = 0; i < n; i++) {
         memcpy(system->end[i], entry[i].end, sizeof system->end[i]);
-        memcpy(system->value[i], value[entry[i].at], sizeof system->value[i]);
+        if (system->block && entry[i].turned)
+            transpose(system->block[i]);
     }
     free(entry);
-    free(value);
-    return has ? CLOTH_OK
-               : cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %zu springs in order", n);
+    free(room);
+    return CLOTH_OK;
 }
 
 /* ---- Product ---- */
+
+/* (N + N') / 2 of the difference d, and the turn of N, (N - N') / 2, of p_a and p_b. */
+static void add_block(const double *n, const double p[2][3], double *y_a, double *y_b)
+{
+    for (int c = 0; c < 3; c++) {
+        double same = 0, a = 0, b = 0;
+        for (int e = 0; e < 3; e++) {
+            const double turn = 0.5 * (n[3 * c + e] - n[3 * e + c]);
+            same += 0.5 * (n[3 * c + e] + n[3 * e + c]) * (p[0][e] - p[1][e]);
+            a += turn * p[1][e];
+            b += turn * p[0][e];
+        }
+        y_a[c] += same - a;
+        y_b[c] -= same - b;
+    }
+}
+
+static void add_spring(const double *w, const double p[2][3], double *y_a, double *y_b)
+{
+    double d[3];
+    for (size_t c = 0; c < 3; c++)
+        d[c] = p[0][c] - p[1][c];
+    const double dot = w[0] * d[0] + w[1] * d[1] + w[2] * d[2];
+    for (size_t c = 0; c < 3; c++) {
+        const double force = w[3] * d[c] + dot * w[c];
+        y_a[c] += force;
+        y_b[c] -= force;
+    }
+}
 
 void solve_system_multiply(const struct solve_system *system, const double *p, double *y)
 {
@@ -83,18 +152,17 @@ void solve_system_multiply(const struct solve_system *system, const double *p, d
     for (uint32_t a = 0; a < system->n; a++)
         for (size_t c = 0; c < 3; c++)
             y[3 * (size_t)a + c] = system->diagonal[a] * (free[a] * p[3 * (size_t)a + c]);
-    for (size_t i = 0; i < system->n_springs; i++) {
+    for (size_t i = 0; i < system->n_pairs; i++) {
         const size_t a = system->end[i][0], b = system->end[i][1];
-        const double *w = system->value[i];
-        double d[3];
-        for (size_t c = 0; c < 3; c++)
-            d[c] = free[a] * p[3 * a + c] - free[b] * p[3 * b + c];
-        const double dot = w[0] * d[0] + w[1] * d[1] + w[2] * d[2];
+        double ends[2][3];
         for (size_t c = 0; c < 3; c++) {
-            const double force = w[3] * d[c] + dot * w[c];
-            y[3 * a + c] += force;
-            y[3 * b + c] -= force;
+            ends[0][c] = free[a] * p[3 * a + c];
+            ends[1][c] = free[b] * p[3 * b + c];
         }
+        if (system->block)
+            add_block(system->block[i], (const double(*)[3])ends, y + 3 * a, y + 3 * b);
+        else
+            add_spring(system->value[i], (const double(*)[3])ends, y + 3 * a, y + 3 * b);
     }
     for (uint32_t a = 0; a < system->n; a++)
         for (size_t c = 0; c < 3; c++)

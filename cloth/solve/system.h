@@ -9,26 +9,34 @@
 /* The system of one implicit step in plain arrays, in the numbering of the input, for whoever wants
  * to look at it, keep it or solve it otherwise: S A S dv = S b with S = diag(free) and
  *
- *     A = diagonal + the sum over the springs of (alpha I + w w') on the difference of their ends.
+ *     A = diagonal + the sum over the pairs of their N (cloth/solve/format.h),
  *
- * Vertices that nothing uses have mass, diagonal and free of zero. */
+ * where a pair of vertices a, b adds -N to block (a, b), -N' to (b, a), and (N + N') / 2 to (a, a)
+ * and (b, b). Vertices that nothing uses have mass, diagonal and free of zero. */
 struct solve_system {
     uint32_t n;                     /* vertices */
     double h;                       /* s */
     double *mass, *diagonal, *free; /* n: kg; kg, mass + h drag; 1, or 0 where held */
     double *b, *dv;                 /* n x 3: kg m/s; m/s, as the step found it */
     double *x, *v;                  /* n x 3: m, m/s after the step */
-    size_t n_springs;
-    uint32_t (*end)[2]; /* n_springs: lower vertex, higher; sorted by both */
-    double (*value)[4]; /* n_springs: w0 w1 w2 alpha (phys_springs_matrix) */
+    size_t n_pairs;
+    uint32_t (*end)[2]; /* n_pairs: lower vertex, higher; sorted by both */
+    /* One of these is there, the other NULL. */
+    double (*value)[4]; /* n_pairs: springs, w0 w1 w2 alpha (phys_springs_matrix) */
+    double (*block)[9]; /* n_pairs: N of the lower vertex towards the higher, by rows */
 };
 
-/* Zeroed arrays of these sizes. Error: CLOTH_E_MEMORY, and nothing is left to be freed. Local. */
-int solve_system_make(struct solve_system *system, uint32_t n, size_t n_springs,
-                      struct cloth_error *error);
+/* Zeroed arrays of these sizes; of springs or of any pairs. Error: CLOTH_E_MEMORY, and nothing is
+ * left to be freed. Local. */
+enum solve_pairs { SOLVE_PAIRS_OF_SPRINGS, SOLVE_PAIRS_OF_BLOCKS };
+int solve_system_make(struct solve_system *system, uint32_t n, size_t n_pairs,
+                      enum solve_pairs pairs, struct cloth_error *error);
 
-/* Puts the ends of each spring, and the springs, in order. Springs of equal ends keep theirs.
- * Error: CLOTH_E_MEMORY. Local. */
+/* N of a pair, of either kind. Local. */
+void solve_system_pair(const struct solve_system *system, size_t i, double n[3][3]);
+
+/* Puts the ends of each pair, and the pairs, in order. Pairs of equal ends keep theirs. Error:
+ * CLOTH_E_MEMORY. Local. */
 int solve_system_sort(struct solve_system *system, struct cloth_error *error);
 
 /* y = S A S p, n x 3 each. Local. */

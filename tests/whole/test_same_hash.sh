@@ -22,6 +22,10 @@ else
         # shellcheck disable=SC2086
         ok "40 x 40, preconditioner $kind, some" ranks 4 tests/whole/same_hash "$scene" some 0 $small solver.preconditioner=$kind
     done
+    for format in half half_float; do
+        # shellcheck disable=SC2086
+        ok "40 x 40, format $format, some" ranks 4 tests/whole/same_hash "$scene" some 0 $small solver.format=$format
+    done
     # shellcheck disable=SC2086
     ok "40 x 40, explicit, some" ranks 4 tests/whole/same_hash "$scene" some 3 $small integrator=explicit_euler
     for kind in symplectic_euler verlet rk4; do

@@ -29,29 +29,42 @@ static void add_need(struct finder *finder, uint32_t reader, uint32_t other, uin
         finder->code = CLOTH_E_MEMORY;
 }
 
-static void find(void *to, const struct flow_spring *spring)
+/* Counts an entry between vertices a and b that something joins; that they have one already does
+ * no harm. Returns the blocks of both. */
+static void join(struct finder *finder, uint32_t a, uint32_t b, struct flow_table *block[2])
 {
-    struct finder *finder = to;
     const struct flow_source *source = finder->source;
-    const uint32_t p = source->blocks.place[spring->a], q = source->blocks.place[spring->b];
+    const uint32_t p = source->blocks.place[a], q = source->blocks.place[b];
     const uint32_t bp = flow_source_block(&source->blocks, p, finder->block);
     const uint32_t bq = flow_source_block(&source->blocks, q, bp);
-    struct flow_table *one = source->shape + bp, *two = source->shape + bq;
-    const bool free_p = source->particles.free[spring->a];
-    const bool free_q = source->particles.free[spring->b];
+    const bool free_p = source->particles.free[a], free_q = source->particles.free[b];
     finder->block = bp;
+    block[0] = source->shape + bp;
+    block[1] = source->shape + bq;
     if (free_p != free_q)
-        (free_p ? one : two)->n_held++;
+        block[free_q]->n_held++;
     if (bp == bq) {
-        one->n_inner++;
+        block[0]->n_entries++;
         return;
     }
-    one->n_cut++;
-    two->n_cut++;
+    block[0]->n_cut_entries++;
+    block[1]->n_cut_entries++;
     if (finder->code)
         return;
     add_need(finder, bp, bq, q);
     add_need(finder, bq, bp, p);
+}
+
+static void find(void *to, const struct flow_spring *spring)
+{
+    struct flow_table *block[2];
+    join(to, spring->a, spring->b, block);
+    if (block[0] == block[1]) {
+        block[0]->n_inner++;
+        return;
+    }
+    block[0]->n_cut++;
+    block[1]->n_cut++;
 }
 
 /* Numbers the rows that other blocks need, which are marked. */

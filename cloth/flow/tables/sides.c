@@ -144,17 +144,29 @@ static void fill_watched(const struct flow_source *source, const struct flow_tab
         image->watched[i] = watched->place[low + i] - t->first;
 }
 
-/* The inner springs come first, in order: rows of the matrix. */
-static void fill_inner(const struct flow_table *t, const struct flow_side *side,
-                       const struct flow_image *image)
+/* Whether side i is the first one of its entry. */
+static bool opens(const struct flow_table *t, const struct flow_side *side, uint32_t i)
 {
-    uint32_t i = 0;
+    if (t->format == SOLVE_SPRINGS || i == 0)
+        return true;
+    const struct flow_side *before = side + i - 1;
+    return side[i].other != before->other || side[i].here != before->here ||
+           side[i].there != before->there;
+}
+
+/* The inner entries come first, in order: rows of the matrix. Returns how many they are. */
+static uint32_t fill_inner(const struct flow_table *t, const struct flow_side *side,
+                           const struct flow_image *image)
+{
+    uint32_t i = 0, entries = 0;
     for (uint32_t a = 0; a < t->n; a++) {
-        image->row[a] = i;
+        image->row[a] = entries;
         for (; i < t->n_inner && side[i].here - t->first == a; i++)
-            image->column[i] = side[i].there - t->first;
+            if (opens(t, side, i))
+                image->column[entries++] = side[i].there - t->first;
     }
-    image->row[t->n] = i;
+    image->row[t->n] = entries;
+    return entries;
 }
 
 /* Where a row of the rim of slot s is among the block's copies. */
@@ -171,26 +183,35 @@ static uint32_t copy_of(const struct flow_table *t, uint32_t s, uint32_t row)
     return low;
 }
 
-/* The cut springs follow, neighbour after neighbour. */
+/* The cut springs and entries follow, neighbour after neighbour. */
 static void fill_cut(const struct flow_source *source, const struct flow_table *t,
                      const struct flow_side *side, const struct flow_image *image)
 {
-    uint32_t slots = 0;
+    uint32_t slots = 0, entries = 0;
     for (uint32_t i = 0; i < t->n_cut; i++) {
-        if (i == 0 || side[i].other != side[i - 1].other)
-            image->cut[slots++] = i;
-        image->copy_end[i][0] = side[i].here - t->first;
-        image->copy_end[i][1] = copy_of(t, slots - 1, source->rim[side[i].there]);
+        if (i == 0 || side[i].other != side[i - 1].other) {
+            image->cut[slots] = i;
+            image->cut_entry[slots++] = entries;
+        }
+        if (!opens(t, side, i))
+            continue;
+        image->copy_end[entries][0] = side[i].here - t->first;
+        image->copy_end[entries++][1] = copy_of(t, slots - 1, source->rim[side[i].there]);
     }
     image->cut[slots] = t->n_cut;
+    image->cut_entry[slots] = entries;
 }
 
 static void fill_sides(const struct flow_source *source, const struct flow_table *t,
                        const struct flow_side *side, const struct flow_image *image)
 {
     const uint32_t *vertex = source->blocks.vertex;
-    uint32_t held = 0;
+    uint32_t held = 0, entries = 0;
     for (uint32_t i = 0; i < t->n_inner + t->n_cut; i++) {
+        const bool first = opens(t, side, i);
+        entries += first;
+        if (t->format != SOLVE_SPRINGS)
+            image->at[i] = entries - 1;
         const uint32_t here = side[i].here - t->first;
         const uint32_t there =
             side[i].other ? source->rim[side[i].there] : side[i].there - t->first;
@@ -202,11 +223,12 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
         image->damping[i] = side[i].damping;
         image->length[i] = side[i].length;
         image->stretch[i] = side[i].stretch;
-        if (free_here == free_there || (side[i].other && !free_here))
+        if (!first || free_here == free_there || (side[i].other && !free_here))
             continue; /* neither end is held, or the free row is the neighbour's */
         image->held[held][0] = free_here ? here : there;
-        image->held[held++][1] = i;
+        image->held[held++][1] = entries - 1;
     }
+    *image->n_held = held;
 }
 
 void flow_source_table(const struct flow_source *source, uint32_t block, void *image)

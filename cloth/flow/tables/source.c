@@ -115,6 +115,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         return CLOTH_E_MEMORY;
     for (uint32_t b = 0; b < blocks->n_blocks; b++) {
         struct flow_table *shape = source->shape + b;
+        shape->format = source->model->format;
         shape->first = blocks->start[b];
         shape->n = blocks->start[b + 1] - blocks->start[b];
         find_range(blocks, shape);

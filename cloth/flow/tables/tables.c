@@ -21,6 +21,7 @@ static void *next(struct room *room, size_t bytes)
 static void lay(const struct flow_table *t, struct room *room, struct flow_image *image)
 {
     const size_t n = t->n, sides = (size_t)t->n_inner + t->n_cut;
+    const size_t slots = (size_t)t->n_slots + 1;
     image->load = next(room, n * sizeof *image->load);
     image->position = next(room, n * sizeof *image->position);
     image->velocity = next(room, n * sizeof *image->velocity);
@@ -32,13 +33,16 @@ static void lay(const struct flow_table *t, struct room *room, struct flow_image
     image->damping = next(room, sides * sizeof *image->damping);
     image->length = next(room, sides * sizeof *image->length);
     image->end = next(room, sides * sizeof *image->end);
-    image->copy_end = next(room, t->n_cut * sizeof *image->copy_end);
+    image->copy_end = next(room, t->n_cut_entries * sizeof *image->copy_end);
     image->held = next(room, t->n_held * sizeof *image->held);
     image->vertex = next(room, n * sizeof *image->vertex);
     image->row = next(room, (n + 1) * sizeof *image->row);
-    image->column = next(room, t->n_inner * sizeof *image->column);
+    image->column = next(room, t->n_entries * sizeof *image->column);
     image->rim = next(room, t->n_rim * sizeof *image->rim);
-    image->cut = next(room, ((size_t)t->n_slots + 1) * sizeof *image->cut);
+    image->cut = next(room, slots * sizeof *image->cut);
+    image->cut_entry = next(room, slots * sizeof *image->cut_entry);
+    image->at = next(room, t->format == SOLVE_SPRINGS ? 0 : sides * sizeof *image->at);
+    image->n_held = next(room, sizeof *image->n_held);
     image->watched = next(room, t->n_watched * sizeof *image->watched);
     image->stretch = next(room, sides);
 }
@@ -72,8 +76,11 @@ void flow_table_open(struct flow_table *t, const void *image)
     t->damping = arrays.damping;
     t->length = arrays.length;
     t->stretch = arrays.stretch;
-    t->matrix = (struct solve_block){t->n, arrays.diagonal, arrays.free, arrays.row, arrays.column};
-    t->held = (struct solve_held){t->n_held, (const uint32_t(*)[2])arrays.held};
+    t->cut_entry = arrays.cut_entry;
+    t->at = arrays.at;
+    t->matrix = (struct solve_block){t->n,       arrays.diagonal, arrays.free,
+                                     arrays.row, arrays.column,   t->format};
+    t->held = (struct solve_held){*arrays.n_held, (const uint32_t(*)[2])arrays.held};
     t->mass = arrays.mass;
     t->drag = arrays.drag;
     t->free = arrays.free;

@@ -15,13 +15,17 @@
 #define FLOW_BOUND 1e6
 
 /* One block. Its springs: first the inner ones, sorted by (lower row, higher row), then those cut
- * by its border, neighbour after neighbour. A cut spring is known to both blocks. */
+ * by its border, neighbour after neighbour. A cut spring is known to both blocks. The entries of
+ * its matrix (cloth/solve/format.h) are in that order, too: the springs themselves or, in half
+ * storage, the pairs of rows that anything joins, each once. */
 struct flow_table {
     /* Its shape, known to every rank. */
-    uint32_t n, first;        /* rows, place of row 0 */
-    uint32_t n_inner, n_cut;  /* springs */
+    uint32_t n, first;                 /* rows, place of row 0 */
+    uint32_t n_inner, n_cut;           /* springs */
+    uint32_t n_entries, n_cut_entries; /* of the matrix: what is counted here may be one entry */
+    enum solve_format format;
     uint32_t n_rim;           /* rows that any neighbour needs */
-    uint32_t n_held;          /* springs from free rows here to held ends anywhere */
+    uint32_t n_held;          /* springs from free rows here to held ends: entries at most */
     uint32_t n_watched;       /* rows that probes are at */
     uint32_t lowest, highest; /* of its vertices */
     uint32_t n_slots;         /* neighbours */
@@ -37,7 +41,9 @@ struct flow_table {
     const uint32_t *rim;      /* n_rim: ascending */
     const uint32_t *watched;  /* n_watched: rows, ascending */
     const uint32_t (*end)[2]; /* inner: rows; cut: row here, place in the neighbour's rim */
-    const uint32_t (*copy_end)[2]; /* cut springs: row here, number of the copy */
+    const uint32_t (*copy_end)[2]; /* cut entries: row here, number of the copy */
+    const uint32_t *cut_entry; /* n_slots + 1: the cut entries into slot s are cut_entry[s] .. */
+    const uint32_t *at;        /* half storage: of each spring, its entry */
     const double *stiffness, *damping, *length;
     const unsigned char *stretch; /* counts for the largest stretch */
     struct solve_block matrix;
@@ -58,11 +64,14 @@ struct flow_image {
     double *mass, *drag, *free, *diagonal; /* n */
     double *stiffness, *damping, *length;  /* n_inner + n_cut */
     uint32_t (*end)[2];                    /* n_inner + n_cut */
-    uint32_t (*copy_end)[2];               /* n_cut */
+    uint32_t (*copy_end)[2];               /* n_cut_entries */
     uint32_t (*held)[2];                   /* n_held */
-    uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_inner */, *rim, *cut /* n_slots + 1 */,
-        *watched;
-    unsigned char *stretch; /* n_inner + n_cut */
+    uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_entries */, *rim;
+    uint32_t *cut, *cut_entry; /* n_slots + 1 */
+    uint32_t *watched;         /* n_watched */
+    uint32_t *at;              /* n_inner + n_cut; of springs as entries: none */
+    uint32_t *n_held;          /* 1: held entries */
+    unsigned char *stretch;    /* n_inner + n_cut */
 };
 
 /* Bytes of an image, which its shape decides; and where its arrays are. image: aligned to 64 bytes.
@@ -87,6 +96,16 @@ static inline struct phys_springs flow_table_inner(const struct flow_table *t)
 static inline struct phys_springs flow_table_cut(const struct flow_table *t, uint32_t s)
 {
     return flow_table_springs(t, t->n_inner + t->cut[s], t->n_inner + t->cut[s + 1]);
+}
+
+/* The cut entries, and the doubles of the values of all. */
+static inline struct solve_cut flow_table_cut_entries(const struct flow_table *t)
+{
+    return (struct solve_cut){t->cut_entry[t->n_slots], t->copy_end, t->n_rim, t->rim};
+}
+static inline size_t flow_table_doubles(const struct flow_table *t)
+{
+    return solve_format_doubles(t->format, t->n, (size_t)t->n_entries + t->n_cut_entries);
 }
 
 #endif

@@ -15,7 +15,8 @@ enum {
 
 /* What is told of a block; the neighbours of all blocks follow. */
 struct shape {
-    uint32_t n, n_inner, n_cut, n_rim, n_held, n_watched, lowest, highest, n_slots, n_copies;
+    uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_rim, n_held, lowest, highest;
+    uint32_t n_watched, n_slots, n_copies;
     float cost;
 };
 
@@ -48,6 +49,7 @@ static int tell_head(const duite_call *call)
         head->most_rows = larger(t->n, head->most_rows);
         head->most_slots = larger(t->n_slots, head->most_slots);
         head->most_rim = larger(t->n_rim, head->most_rim);
+        head->most_entries = larger(t->n_entries + t->n_cut_entries, head->most_entries);
     }
     return 0;
 }
@@ -72,6 +74,8 @@ static int tell_shared(const duite_call *call)
         const struct shape shape = {.n = t->n,
                                     .n_inner = t->n_inner,
                                     .n_cut = t->n_cut,
+                                    .n_entries = t->n_entries,
+                                    .n_cut_entries = t->n_cut_entries,
                                     .n_rim = t->n_rim,
                                     .n_held = t->n_held,
                                     .n_watched = t->n_watched,
@@ -145,6 +149,9 @@ static void unpack(struct flow_state *state)
                                                .first = first,
                                                .n_inner = shape->n_inner,
                                                .n_cut = shape->n_cut,
+                                               .n_entries = shape->n_entries,
+                                               .n_cut_entries = shape->n_cut_entries,
+                                               .format = flow->model->format,
                                                .n_rim = shape->n_rim,
                                                .n_held = shape->n_held,
                                                .n_watched = shape->n_watched,

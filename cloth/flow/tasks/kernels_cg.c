@@ -61,7 +61,7 @@ static int pass(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     const struct solve_scalars *scalars = duite_in(call, SCALARS, struct solve_scalars);
-    const struct solve_cut cut = {t->n_cut, t->copy_end, t->n_rim, t->rim};
+    const struct solve_cut cut = flow_table_cut_entries(t);
     const struct solve_rows rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
                                     duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)};
     double dots[SOLVE_DOTS] = {0}, *sums = duite_out(call, SUMS, double);

@@ -3,6 +3,7 @@
 #include "cloth/flow/tasks/bodies.h"
 
 #include "cloth/physics/particle.h"
+#include "cloth/solve/assemble.h"
 
 #include <math.h>
 #include <string.h>
@@ -117,12 +118,48 @@ const duite_kernel flow_implicit = {.name = "acceleration_implicit",
                                     .rest = DUITE_R,
                                     .args_size = ARGS};
 
+/* Springs from .. to - 1 of a block, whose ends 1 are in x_other. */
+static void assemble_springs(const struct flow_table *t, uint32_t from, uint32_t to, double h,
+                             const phys_vec *x, const phys_vec *x_other, double *sums)
+{
+    enum { AT_ONCE = 64 };
+    phys_vec value[AT_ONCE];
+    while (from < to) {
+        const uint32_t n = to - from < AT_ONCE ? to - from : AT_ONCE;
+        const struct phys_springs springs = flow_table_springs(t, from, from + n);
+        phys_springs_matrix(&springs, h, x, x_other, value);
+        solve_assemble_springs(n, t->at + from, value, sums);
+        from += n;
+    }
+}
+
+/* In half storage. */
+static void assemble(const duite_call *call, const struct flow_table *t)
+{
+    const struct flow *flow = flow_of(call);
+    const double h = flow->model->h;
+    const phys_vec *x = duite_in(call, 1, phys_vec);
+    const struct solve_cut cut = flow_table_cut_entries(t);
+    double *values = duite_out(call, 2, double);
+    double *sums = flow->sums ? flow->sums + call->worker * flow->n_sums : values;
+    memset(sums, 0, SOLVE_NINE * (t->matrix.row[t->n] + cut.n) * sizeof *sums);
+    assemble_springs(t, 0, t->n_inner, h, x, x, sums);
+    for (uint32_t s = 0; s < t->n_slots; s++)
+        assemble_springs(t, t->n_inner + t->cut[s], t->n_inner + t->cut[s + 1], h, x,
+                         duite_in(call, 3 + s, phys_vec), sums);
+    solve_assembled(&t->matrix, &cut, sums, values);
+}
+
 static int matrix(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     const double h = flow_of(call)->model->h;
     const phys_vec *x = duite_in(call, 1, phys_vec);
     phys_vec *value = duite_out(call, 2, phys_vec);
+    if (t->format != SOLVE_SPRINGS) {
+        assemble(call, t);
+        return 0;
+    }
     struct phys_springs springs = flow_table_inner(t);
     phys_springs_matrix(&springs, h, x, x, value);
     for (uint32_t s = 0; s < t->n_slots; s++) {

@@ -22,11 +22,6 @@ static enum solve_local local_of(const duite_call *call)
     return flow_local(flow_of(call));
 }
 
-static struct solve_cut cut_of(const struct flow_table *t)
-{
-    return (struct solve_cut){t->n_cut, t->copy_end, t->n_rim, t->rim};
-}
-
 /* ---- What does not change during a run ---- */
 
 static int basis(const duite_call *call)
@@ -63,16 +58,16 @@ const duite_kernel flow_basis_copies = {.name = "basis_copies",
 static int couple(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
-    const phys_vec *value = duite_in(call, 1, phys_vec), *rows = duite_in(call, 2, phys_vec);
-    const phys_vec *copies = duite_in(call, 3, phys_vec);
+    const double *values = duite_in(call, 1, double);
+    const phys_vec *rows = duite_in(call, 2, phys_vec), *copies = duite_in(call, 3, phys_vec);
     double *own = duite_out(call, 4, double), *later = own + SOLVE_COUPLING;
     double earlier[SOLVE_COUPLING];
-    solve_couple(&t->matrix, value, rows, own);
+    solve_couple(&t->matrix, values, rows, own);
     for (uint32_t s = 0; s < t->n_slots; s++) {
-        const uint32_t from = t->cut[s];
+        const uint32_t from = t->cut_entry[s], n = t->cut_entry[s + 1] - from;
         const bool is_later = t->slot[s] > flow_args_of(call)->block;
-        solve_couple_cut(t->cut[s + 1] - from, t->copy_end + from, value + t->n_inner + from, rows,
-                         copies, own, is_later ? later : earlier);
+        solve_couple_cut(&t->matrix, values, t->matrix.row[t->n] + from, n, t->copy_end + from,
+                         rows, copies, own, is_later ? later : earlier);
         later += is_later ? SOLVE_COUPLING : 0;
     }
     return 0;
@@ -105,8 +100,8 @@ const duite_kernel flow_factor_coarse = {.name = "factor_coarse",
 static int factor(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
-    const struct solve_cut cut = cut_of(t);
-    const int tried = solve_local_factor(&t->matrix, &cut, duite_in(call, 1, phys_vec),
+    const struct solve_cut cut = flow_table_cut_entries(t);
+    const int tried = solve_local_factor(&t->matrix, &cut, duite_in(call, 1, double),
                                          local_of(call), duite_out(call, 2, double));
     duite_out(call, 3, double)[FLOW_SHIFTED] = tried > 0;
     return 0;
@@ -197,7 +192,7 @@ static void advance(const duite_call *call, const struct flow_table *t,
                     const struct solve_scalars *scalars, const struct solve_rows *rows)
 {
     const struct flow *flow = flow_of(call);
-    const struct solve_cut cut = cut_of(t);
+    const struct solve_cut cut = flow_table_cut_entries(t);
     const phys_vec *span = is_coarse(call) ? coarse_in(call, t, BASIS) : NULL;
     phys_vec *s = duite_out(call, S, phys_vec);
     double *part = duite_out(call, PART, double);

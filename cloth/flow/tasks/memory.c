@@ -40,6 +40,9 @@ static void take(struct flow_state *state)
         memset(flow->clock, 0, flow->n_clocks * sizeof *flow->clock);
     else
         cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for %u clocks", flow->n_clocks);
+    flow->n_sums = SOLVE_NINE * (size_t)head->most_entries;
+    if (flow->model->format == SOLVE_HALF_FLOAT)
+        flow->sums = cloth_alloc(flow->n_clocks * flow->n_sums, sizeof *flow->sums, &flow->trouble);
     flow->shared = cloth_alloc(head->shared_bytes, 1, &flow->trouble);
     flow->tables.block = cloth_alloc(head->n_blocks, sizeof *flow->tables.block, &flow->trouble);
     flow->tables.n_blocks = head->n_blocks;
@@ -89,6 +92,7 @@ void flow_memory_free(struct flow_state *state)
     struct flow *flow = state->flow;
     flow_turned_free(flow);
     free(flow->clock);
+    free(flow->sums);
     free(flow->room);
     free(flow->row);
     free(flow->seen);
@@ -101,6 +105,7 @@ void flow_memory_free(struct flow_state *state)
     free(state->bytes);
     XXH64_freeState(state->hash);
     flow->clock = NULL;
+    flow->sums = NULL;
     flow->room = flow->row = flow->seen = NULL;
     state->block = NULL;
     state->parcel = NULL;

@@ -31,7 +31,7 @@ static void make_block(duite *rt, const struct flow_table *t, struct flow_object
 
 static void make_implicit(duite *rt, const struct flow_table *t, struct flow_objects *o)
 {
-    make(rt, (size_t)t->n_inner + t->n_cut, o->x, &o->a);
+    make_numbers(rt, flow_table_doubles(t), o->x, &o->a);
     make(rt, t->n, o->x, &o->dv);
     make(rt, t->n, o->x, &o->r);
     make(rt, t->n, o->x, &o->p);

@@ -1,24 +1,30 @@
 /* The system of the last step, brought together on rank 0: each block says its part of it, in
- * numbers, and one task on rank 0 makes plain arrays of all parts. A spring between two blocks is
+ * numbers, and one task on rank 0 makes plain arrays of all parts. An entry between two blocks is
  * told by both; the lower block's word counts. */
 #include "cloth/flow/tasks/bodies.h"
 
 #include "cloth/solve/system.h"
 
-/* A part: rows, springs, rows of the rim. Of a row: its vertex, mass, diagonal, free, then vectors;
- * of a spring: its row here, the block of its other end and the row there (in another block: its
- * place in the rim there), then its values. */
+/* A part: rows, entries, rows of the rim. Of a row: its vertex, mass, diagonal, free, then vectors;
+ * of an entry: its row here, the block of its other end, or less than 0 where there is no entry any
+ * more, and the row there (in another block: its place in the rim there), then its values: those of
+ * a spring, or N by rows. */
 enum { VERTEX, MASS, DIAGONAL, FREE, B, DV = B + 3, X = DV + 3, V = X + 3, ROW = V + 3 };
-enum { HERE, BLOCK, THERE, VALUE, SPRING = VALUE + 4 };
+enum { HERE, BLOCK, THERE, VALUE, SPRING = VALUE + 4, PAIR = VALUE + SOLVE_NINE };
 
-static size_t springs_at(const struct flow_table *t)
+static size_t entry_doubles(const struct flow_table *t)
+{
+    return t->format == SOLVE_SPRINGS ? SPRING : PAIR;
+}
+
+static size_t entries_at(const struct flow_table *t)
 {
     return (size_t)ROW * t->n;
 }
 
 static size_t rim_at(const struct flow_table *t)
 {
-    return springs_at(t) + (size_t)SPRING * (t->n_inner + t->n_cut);
+    return entries_at(t) + entry_doubles(t) * (t->n_entries + t->n_cut_entries);
 }
 
 static double *put_vector(double *to, const phys_vec *from)
@@ -40,29 +46,58 @@ static void put_rows(const duite_call *call, const struct flow_table *t, double 
     }
 }
 
-static double *put_springs(const struct flow_table *t, uint32_t from, uint32_t n, uint32_t block,
-                           const phys_vec *value, double *to)
+/* Value i of an entry. */
+static double *put_value(const struct flow_table *t, const struct solve_values *values, size_t i,
+                         double *to)
 {
-    for (uint32_t i = from; i < from + n; i++) {
-        *to++ = t->end[i][0];
-        *to++ = block;
-        *to++ = t->end[i][1];
-        to = put_vector(to, value + i);
-        *to++ = value[i][3];
+    struct solve_symmetric symmetric = {{0}, {0}};
+    struct solve_columns n;
+    phys_vec turn;
+    if (t->format == SOLVE_SPRINGS) {
+        memcpy(to, (const phys_vec *)values->entry + i, sizeof(phys_vec));
+        return to + 4;
     }
+    solve_entry_of(t->format, values->entry, i, &symmetric, &turn);
+    solve_entry_columns(&symmetric, &turn, &n);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            *to++ = n.c[c][r];
+    return to;
+}
+
+static double *put_entry(const struct flow_table *t, const struct solve_values *values, size_t i,
+                         const uint32_t place[3], double *to)
+{
+    for (int k = 0; k < 3; k++)
+        *to++ = place[k];
+    return put_value(t, values, i, to);
+}
+
+static double *put_entries(const struct flow_table *t, uint32_t block,
+                           const struct solve_values *values, double *to)
+{
+    const struct solve_block *m = &t->matrix;
+    for (uint32_t a = 0; a < t->n; a++)
+        for (uint32_t i = m->row[a]; i < m->row[a + 1]; i++)
+            to = put_entry(t, values, i, (const uint32_t[]){a, block, m->column[i]}, to);
+    for (uint32_t s = 0; s < t->n_slots; s++)
+        for (uint32_t i = t->cut_entry[s]; i < t->cut_entry[s + 1]; i++) {
+            const uint32_t place[] = {t->copy_end[i][0], t->slot[s], t->copy[t->copy_end[i][1]]};
+            to = put_entry(t, values, m->row[t->n] + (size_t)i, place, to);
+        }
     return to;
 }
 
 static int part(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
-    const phys_vec *value = duite_in(call, 2, phys_vec);
-    double *to = duite_out(call, 6, double);
-    put_rows(call, t, to);
-    to = put_springs(t, 0, t->n_inner, flow_args_of(call)->block, value, to + springs_at(t));
-    for (uint32_t s = 0; s < t->n_slots; s++)
-        to = put_springs(t, t->n_inner + t->cut[s], t->cut[s + 1] - t->cut[s], t->slot[s], value,
-                         to);
+    const struct solve_values values =
+        solve_values_of(t->format, t->n, duite_in(call, 2, phys_vec));
+    double *part = duite_out(call, 6, double), *to = part + entries_at(t);
+    put_rows(call, t, part);
+    to = put_entries(t, flow_args_of(call)->block, &values, to);
+    for (; to < part + rim_at(t); to += entry_doubles(t))
+        to[BLOCK] = -1;
     for (uint32_t i = 0; i < t->n_rim; i++)
         *to++ = t->rim[i];
     return 0;
@@ -97,39 +132,43 @@ static void take_rows(struct solve_system *system, const struct flow_table *t, c
 }
 
 /* Of block b; parts of all blocks are the task's parameters from 1 on. */
-static void take_springs(struct solve_system *system, const duite_call *call, uint32_t b)
+static void take_entries(struct solve_system *system, const duite_call *call, uint32_t b)
 {
     const struct flow_table *tables = flow_of(call)->tables.block, *t = tables + b;
-    const double *own = duite_in(call, 1 + b, double), *spring = own + springs_at(t);
-    for (uint32_t i = 0; i < t->n_inner + t->n_cut; i++, spring += SPRING) {
-        const uint32_t other = (uint32_t)spring[BLOCK];
-        if (other < b)
+    const double *own = duite_in(call, 1 + b, double), *entry = own + entries_at(t);
+    for (; entry < own + rim_at(t); entry += entry_doubles(t)) {
+        if (entry[BLOCK] < b)
             continue;
+        const uint32_t other = (uint32_t)entry[BLOCK];
         const double *there = duite_in(call, 1 + other, double);
         const double row =
-            other == b ? spring[THERE] : there[rim_at(tables + other) + (size_t)spring[THERE]];
-        const size_t at = system->n_springs++;
-        system->end[at][0] = vertex_of(own, spring[HERE]);
+            other == b ? entry[THERE] : there[rim_at(tables + other) + (size_t)entry[THERE]];
+        const size_t at = system->n_pairs++;
+        system->end[at][0] = vertex_of(own, entry[HERE]);
         system->end[at][1] = vertex_of(there, row);
-        for (int k = 0; k < 4; k++)
-            system->value[at][k] = spring[VALUE + k];
+        if (system->block)
+            memcpy(system->block[at], entry + VALUE, sizeof *system->block);
+        else
+            memcpy(system->value[at], entry + VALUE, sizeof *system->value);
     }
 }
 
 static int gather(const duite_call *call, struct solve_system *system, struct cloth_error *error)
 {
     const struct flow *flow = flow_of(call);
-    size_t sides = 0;
+    const enum solve_pairs pairs =
+        flow->model->format == SOLVE_SPRINGS ? SOLVE_PAIRS_OF_SPRINGS : SOLVE_PAIRS_OF_BLOCKS;
+    size_t entries = 0;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
-        sides += (size_t)flow->tables.block[b].n_inner + flow->tables.block[b].n_cut;
-    const int code = solve_system_make(system, flow->n_vertices, sides, error);
+        entries += (size_t)flow->tables.block[b].n_entries + flow->tables.block[b].n_cut_entries;
+    const int code = solve_system_make(system, flow->n_vertices, entries, pairs, error);
     if (code)
         return code;
     system->h = flow->model->h;
-    system->n_springs = 0;
+    system->n_pairs = 0;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
         take_rows(system, flow->tables.block + b, duite_in(call, 1 + b, double));
-        take_springs(system, call, b);
+        take_entries(system, call, b);
     }
     return solve_system_sort(system, error);
 }

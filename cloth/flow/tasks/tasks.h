@@ -69,6 +69,9 @@ struct flow {
     /* Of the run that is on. */
     unsigned n_clocks;
     struct flow_clock *clock; /* a worker */
+    double *sums;             /* a worker, nine for each of most_entries: room for a matrix while it
+                               * is assembled; NULL but in float */
+    size_t n_sums;            /* doubles of a worker */
     uint32_t *at; /* of each copy of all blocks: its place in what a pass reads of the neighbour */
     struct flow_far_rim *far_rim; /* of far.c */
     uint32_t *far_row;
@@ -123,7 +126,7 @@ struct flow_head {
     uint64_t n_steps, partition_hash;
     uint64_t shared_bytes;                                         /* of what they are told next */
     uint32_t n_vertices, n_triangles, n_blocks, n_slots, n_copies; /* of all blocks */
-    uint32_t most_rows, most_slots, most_rim;                      /* of any block */
+    uint32_t most_rows, most_slots, most_rim, most_entries;        /* of any block */
     struct model model; /* pointers mean nothing elsewhere */
 };
 

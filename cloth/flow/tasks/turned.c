@@ -89,7 +89,7 @@ void flow_turned_make(struct flow_state *state)
         const struct flow_table *t = flow->tables.block + b;
         make(state, 4 * (size_t)t->n, o->x, &o->z);
         make(state, 4 * (size_t)t->n, o->x, &o->s);
-        make(state, solve_local_doubles(t->n, t->n_inner, local), o->x, &o->factor);
+        make(state, solve_local_doubles(t->n, t->n_entries, local), o->x, &o->factor);
         make(state, FLOW_PART, o->x, &o->part);
         if (flow_is_coarse(flow))
             make_coarse(state, b);

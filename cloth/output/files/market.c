@@ -1,25 +1,32 @@
-/* Columns are written one after the other, rows ascending; springs of equal ends are one entry. */
+/* Columns are written one after the other, rows ascending; pairs of equal ends are one entry. */
 #include "cloth/output/files/files.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Sums of 3x3 blocks: of a vertex, and of the springs to one higher vertex. */
+/* Sums of 3x3 blocks: of a vertex, and of the pairs with one higher vertex. */
 struct sums {
     const struct solve_system *system;
     double (*own)[6];  /* n: xx yx zx yy zy zz */
-    size_t n_pairs;    /* of free vertices that springs join */
+    size_t n_pairs;    /* of free vertices */
     size_t *start;     /* n + 1: pairs of each lower vertex */
     uint32_t *other;   /* n_pairs */
-    double (*pair)[6]; /* n_pairs */
+    double (*pair)[9]; /* n_pairs: rows of the higher vertex, columns of the lower */
 };
 
-static void add(double sum[6], double sign, const double value[4])
+static void add_own(double sum[6], double factor, double n[3][3])
 {
     int k = 0;
     for (int j = 0; j < 3; j++)
         for (int i = j; i < 3; i++)
-            sum[k++] += sign * (value[i] * value[j] + (i == j ? value[3] : 0));
+            sum[k++] += factor * (0.5 * (n[i][j] + n[j][i]));
+}
+
+static void add_pair(double sum[9], double n[3][3])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            sum[3 * i + j] -= n[j][i];
 }
 
 /* A symmetric block's entry. */
@@ -29,24 +36,10 @@ static double entry(const double sum[6], int i, int j)
     return sum[at[i][j]];
 }
 
-static void add_springs(struct sums *sums)
+/* What vertices have besides pairs, and where the pairs of those without any begin. */
+static void add_diagonals(struct sums *sums)
 {
     const struct solve_system *s = sums->system;
-    uint32_t before[2] = {0, 0}; /* no spring has equal ends */
-    for (size_t i = 0; i < s->n_springs; i++) {
-        const uint32_t a = s->end[i][0], b = s->end[i][1];
-        add(sums->own[a], s->free[a] * s->free[a], s->value[i]);
-        add(sums->own[b], s->free[b] * s->free[b], s->value[i]);
-        if (!(s->free[a] > 0) || !(s->free[b] > 0))
-            continue;
-        if (a != before[0] || b != before[1]) {
-            sums->other[sums->n_pairs++] = b;
-            sums->start[a + 1] = sums->n_pairs;
-        }
-        before[0] = a;
-        before[1] = b;
-        add(sums->pair[sums->n_pairs - 1], -1, s->value[i]);
-    }
     for (uint32_t a = 0; a < s->n; a++) {
         double *own = sums->own[a];
         const double scalar = s->free[a] > 0 ? s->diagonal[a] : 1;
@@ -58,16 +51,39 @@ static void add_springs(struct sums *sums)
     }
 }
 
+static void add_pairs(struct sums *sums)
+{
+    const struct solve_system *s = sums->system;
+    uint32_t before[2] = {0, 0}; /* no pair has equal ends */
+    for (size_t i = 0; i < s->n_pairs; i++) {
+        const uint32_t a = s->end[i][0], b = s->end[i][1];
+        double n[3][3];
+        solve_system_pair(s, i, n);
+        add_own(sums->own[a], s->free[a] * s->free[a], n);
+        add_own(sums->own[b], s->free[b] * s->free[b], n);
+        if (!(s->free[a] > 0) || !(s->free[b] > 0))
+            continue;
+        if (a != before[0] || b != before[1]) {
+            sums->other[sums->n_pairs++] = b;
+            sums->start[a + 1] = sums->n_pairs;
+        }
+        before[0] = a;
+        before[1] = b;
+        add_pair(sums->pair[sums->n_pairs - 1], n);
+    }
+    add_diagonals(sums);
+}
+
 static int sums_make(struct sums *sums, const struct solve_system *system)
 {
     *sums = (struct sums){.system = system};
     sums->own = calloc((size_t)system->n + 1, sizeof *sums->own);
     sums->start = calloc((size_t)system->n + 2, sizeof *sums->start);
-    sums->other = calloc(system->n_springs + 1, sizeof *sums->other);
-    sums->pair = calloc(system->n_springs + 1, sizeof *sums->pair);
+    sums->other = calloc(system->n_pairs + 1, sizeof *sums->other);
+    sums->pair = calloc(system->n_pairs + 1, sizeof *sums->pair);
     if (!sums->own || !sums->start || !sums->other || !sums->pair)
         return 1;
-    add_springs(sums);
+    add_pairs(sums);
     return 0;
 }
 
@@ -92,7 +108,7 @@ static void fill_column(FILE *file, const struct sums *sums, size_t a, int j)
     for (size_t k = sums->start[a]; k < sums->start[a + 1]; k++)
         for (int i = 0; i < 3; i++)
             fprintf(file, "%zu %zu %.17g\n", 3 * (size_t)sums->other[k] + (size_t)i + 1, column,
-                    entry(sums->pair[k], i, j));
+                    sums->pair[k][3 * i + j]);
 }
 
 static int fill_matrix(FILE *file, const void *what)

@@ -184,11 +184,19 @@ static enum model_integrator integrator_of(const char *word)
     return (enum model_integrator)word_of(words, sizeof words / sizeof *words, word);
 }
 
+static enum solve_format format_of(const char *word)
+{
+    if (!strcmp(word, "half"))
+        return SOLVE_HALF;
+    return strcmp(word, "half_float") ? SOLVE_SPRINGS : SOLVE_HALF_FLOAT;
+}
+
 static void build_solver(struct model *model, const struct scene_tree *tree)
 {
     int solver = scene_tree_get(tree, 1, "solver"), stop = scene_tree_get(tree, solver, "stop");
     model->integrator = integrator_of(scene_tree_text(tree, 1, "integrator"));
     model->preconditioner = preconditioner_of(scene_tree_text(tree, solver, "preconditioner"));
+    model->format = format_of(scene_tree_text(tree, solver, "format"));
     model->max_iterations = scene_tree_integer(tree, solver, "max_iterations");
     if (scene_tree_get(tree, stop, "count")) {
         model->stop = MODEL_STOP_COUNT;

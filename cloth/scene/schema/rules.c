@@ -155,11 +155,15 @@ static const struct scene_rule stop_kinds[] = {
     {"count", SCENE_INTEGER, .least = 1, .about = "so many iterations, no test"},
     {0}};
 static const char *const preconditioners[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse", NULL};
+static const char *const formats[] = {"springs", "half", "half_float", NULL};
 static const struct scene_rule solver_keys[] = {
     {"stop", SCENE_ONE_OF, .fallback = "{mass_norm: 0.01}", .inside = stop_kinds,
      .about = "when conjugate gradients end"},
     {"preconditioner", SCENE_CHOICE, .fallback = "ic0_coarse", .words = preconditioners,
      .about = "of conjugate gradients"},
+    {"format", SCENE_CHOICE, .fallback = "springs", .words = formats,
+     .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in double "
+              "or float"},
     {"max_iterations", SCENE_INTEGER, .fallback = "10000", .least = 1,
      .about = "a solve that needs more fails"},
     {0}};

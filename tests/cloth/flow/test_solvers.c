@@ -75,6 +75,33 @@ START_TEST(a_sheet_moves_alike)
 }
 END_TEST
 
+/* In half storage, too, with every preconditioner, of a sheet whose bend springs join vertices that
+ * have others between them, and some twice. */
+START_TEST(formats_move_alike)
+{
+    struct record springs = {0};
+    struct setup setup;
+    setup_stiff(&setup, 14);
+    setup.material.bend = 50;
+    setup.model.grain = 30;
+    setup.model.tolerance = 1e-10;
+    record_run(&springs, &setup.model);
+    ck_assert_msg(springs.code == 0, "%s", springs.error.text);
+    for (int i = 0; i < 2 * KINDS; i++) {
+        struct record record = {.threads = 1 + (unsigned)i % 2};
+        setup.model.preconditioner = kinds[i / 2];
+        setup.model.format = i % 2 ? SOLVE_HALF_FLOAT : SOLVE_HALF;
+        record_run(&record, &setup.model);
+        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        ck_assert_double_le(farthest(&springs, &record), 1e-6);
+        ck_assert_double_le(record.report.momentum_lost, 1e-9);
+        record_free(&record);
+    }
+    record_free(&springs);
+    setup_free(&setup);
+}
+END_TEST
+
 START_TEST(one_block)
 {
     struct setup setup;
@@ -220,6 +247,7 @@ int main(void)
     Suite *suite = suite_create("solvers");
     TCase *cases = tcase_create("solvers");
     tcase_add_test(cases, a_sheet_moves_alike);
+    tcase_add_test(cases, formats_move_alike);
     tcase_add_test(cases, one_block);
     tcase_add_test(cases, held_blocks);
     tcase_add_test(cases, all_held);

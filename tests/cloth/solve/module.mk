@@ -2,13 +2,16 @@ if HAVE_CHECK
 SOLVE_TEST_SYSTEM = tests/cloth/solve/system.c tests/cloth/solve/system.h
 SOLVE_TEST_TWO_LEVEL = $(SOLVE_TEST_SYSTEM) tests/cloth/solve/two_level.c tests/cloth/solve/two_level.h
 check_PROGRAMS += tests/cloth/solve/test_block tests/cloth/solve/test_pass tests/cloth/solve/test_cg
+check_PROGRAMS += tests/cloth/solve/test_format
+tests_cloth_solve_test_format_SOURCES = tests/cloth/solve/test_format.c $(SOLVE_TEST_SYSTEM)
+tests_cloth_solve_test_format_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_solve_test_block_SOURCES = tests/cloth/solve/test_block.c
 tests_cloth_solve_test_block_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_solve_test_pass_SOURCES = tests/cloth/solve/test_pass.c
 tests_cloth_solve_test_pass_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_solve_test_cg_SOURCES = tests/cloth/solve/test_cg.c
 tests_cloth_solve_test_cg_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/solve/test_block tests/cloth/solve/test_pass tests/cloth/solve/test_cg
+TESTS += tests/cloth/solve/test_block tests/cloth/solve/test_pass tests/cloth/solve/test_cg tests/cloth/solve/test_format
 check_PROGRAMS += tests/cloth/solve/test_local tests/cloth/solve/test_coarse tests/cloth/solve/test_preconditioned
 tests_cloth_solve_test_local_SOURCES = tests/cloth/solve/test_local.c $(SOLVE_TEST_SYSTEM)
 tests_cloth_solve_test_local_LDADD = $(CLOTH_TEST_LIBS)

@@ -1,6 +1,8 @@
 /* Systems are made the same way in every run. */
 #include "tests/cloth/solve/system.h"
 
+#include "cloth/solve/assemble.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,9 +33,16 @@ static void place(struct system *s, uint32_t a, double x, double y)
     s->free[a] = 1;
 }
 
+static void clear(struct system *s)
+{
+    const enum solve_format format = s->format;
+    memset(s, 0, sizeof *s);
+    s->format = format;
+}
+
 void system_chain(struct system *s, uint32_t n, double stiffness)
 {
-    memset(s, 0, sizeof *s);
+    clear(s);
     s->n = n;
     for (uint32_t a = 0; a < n; a++)
         place(s, a, a, 0);
@@ -43,7 +52,7 @@ void system_chain(struct system *s, uint32_t n, double stiffness)
 
 void system_sheet(struct system *s, uint32_t nx, uint32_t ny, double stiffness)
 {
-    memset(s, 0, sizeof *s);
+    clear(s);
     s->n = nx * ny;
     for (uint32_t a = 0; a < s->n; a++)
         place(s, a, a % nx, a / nx);
@@ -58,28 +67,65 @@ void system_sheet(struct system *s, uint32_t nx, uint32_t ny, double stiffness)
     }
 }
 
+static uint32_t find(const struct system *s, uint32_t a, uint32_t b)
+{
+    uint32_t i = 0;
+    while (i < s->n_springs && (s->end[i][0] != a || s->end[i][1] != b))
+        i++;
+    return i;
+}
+
+void system_turn(struct system *s, double size)
+{
+    for (uint32_t i = 0; i < s->n_springs && s->format != SOLVE_SPRINGS; i++)
+        for (uint32_t j = i + 1; j < s->n_springs; j++) {
+            const uint32_t k = find(s, s->end[i][0], s->end[j][1]);
+            if (s->end[j][0] != s->end[i][1] || k == s->n_springs)
+                continue;
+            const phys_vec turn = size * (phys_vec){system_draw(), system_draw(), system_draw(), 0};
+            s->turn[i] += turn;
+            s->turn[j] += turn;
+            s->turn[k] -= turn;
+        }
+}
+
 /* ---- The dense matrix ---- */
 
-static void add_dense(struct system *s, uint32_t a, uint32_t b, const phys_vec *value, double sign)
+/* N of a spring as the format keeps it. */
+static void block_of(const struct system *s, uint32_t i, double n[3][3])
 {
-    const double factor = sign * s->free[a] * s->free[b];
+    const phys_vec *w = s->value + i, *t = s->turn + i;
+    const double turn[3][3] = {
+        {0, -(*t)[2], (*t)[1]}, {(*t)[2], 0, -(*t)[0]}, {-(*t)[1], (*t)[0], 0}};
     for (int c = 0; c < 3; c++)
-        for (int d = 0; d < 3; d++)
-            s->dense[3 * a + (uint32_t)c][3 * b + (uint32_t)d] +=
-                factor * ((*value)[c] * (*value)[d] + (c == d ? (*value)[3] : 0));
+        for (int d = 0; d < 3; d++) {
+            n[c][d] = (*w)[c] * (*w)[d] + (c == d ? (*w)[3] : 0) + turn[c][d];
+            if (s->format == SOLVE_HALF_FLOAT)
+                n[c][d] = (float)n[c][d];
+        }
+}
+
+static void add_dense(struct system *s, uint32_t a, uint32_t b, double n[3][3])
+{
+    for (uint32_t c = 0; c < 3; c++)
+        for (uint32_t d = 0; d < 3; d++) {
+            const double half = 0.5 * (n[c][d] + n[d][c]);
+            s->dense[3 * a + c][3 * a + d] += s->free[a] * half;
+            s->dense[3 * b + c][3 * b + d] += s->free[b] * half;
+            s->dense[3 * a + c][3 * b + d] -= s->free[a] * s->free[b] * n[c][d];
+            s->dense[3 * b + d][3 * a + c] -= s->free[a] * s->free[b] * n[c][d];
+        }
 }
 
 static void make_dense(struct system *s)
 {
+    double n[3][3];
     memset(s->dense, 0, sizeof s->dense);
     for (uint32_t i = 0; i < 3 * s->n; i++)
         s->dense[i][i] = s->free[i / 3] > 0 ? s->diagonal[i / 3] : 1;
     for (uint32_t i = 0; i < s->n_springs; i++) {
-        const uint32_t a = s->end[i][0], b = s->end[i][1];
-        add_dense(s, a, a, s->value + i, 1);
-        add_dense(s, b, b, s->value + i, 1);
-        add_dense(s, a, b, s->value + i, -1);
-        add_dense(s, b, a, s->value + i, -1);
+        block_of(s, i, n);
+        add_dense(s, s->end[i][0], s->end[i][1], n);
     }
 }
 
@@ -93,10 +139,38 @@ static uint32_t copy_of(const struct system_block *b, uint32_t row)
     return i;
 }
 
+/* Adds spring i of the whole to entry `at`, of which the second end may be here. */
+static void add_entry(const struct system *s, uint32_t i, uint32_t at, bool turned,
+                      struct system_block *b, double *sums)
+{
+    if (s->format == SOLVE_SPRINGS) {
+        b->value[at] = s->value[i];
+        return;
+    }
+    const phys_vec *t = s->turn + i;
+    double turn[3][3] = {{0, -(*t)[2], (*t)[1]}, {(*t)[2], 0, -(*t)[0]}, {-(*t)[1], (*t)[0], 0}};
+    solve_assemble_springs(1, &at, s->value + i, sums);
+    solve_assemble(sums + SOLVE_NINE * at, turned, (const double(*)[3])turn);
+}
+
+/* Entries between rows of the block and of others, behind the inner ones. */
+static void cut_entries(struct system *s, struct system_block *b, uint32_t n, double *sums)
+{
+    for (uint32_t i = 0; i < s->n_springs; i++) {
+        const uint32_t x = s->end[i][0] - b->first, y = s->end[i][1] - b->first;
+        if ((x < n) == (y < n))
+            continue;
+        add_entry(s, i, b->row[n] + (uint32_t)b->cut.n, y < n, b, sums);
+        b->end[b->cut.n][0] = x < n ? x : y;
+        b->end[b->cut.n++][1] = copy_of(b, (x < n ? y : x) + b->first);
+    }
+}
+
 /* Inner springs, then those cut, of the rows first .. first + n - 1. */
 static void cut_block(struct system *s, struct system_block *b, uint32_t first, uint32_t n)
 {
     bool seen[SYSTEM_ROWS] = {0}, rim[SYSTEM_ROWS] = {0};
+    double sums[SOLVE_NINE * SYSTEM_SPRINGS] = {0};
     uint32_t inner = 0;
     *b = (struct system_block){.first = first};
     memcpy(b->diagonal, s->diagonal + first, n * sizeof *b->diagonal);
@@ -105,7 +179,7 @@ static void cut_block(struct system *s, struct system_block *b, uint32_t first, 
     for (uint32_t i = 0; i < s->n_springs; i++) {
         const uint32_t x = s->end[i][0] - first, y = s->end[i][1] - first;
         if (x < n && y < n) {
-            b->value[inner] = s->value[i];
+            add_entry(s, i, inner, false, b, sums);
             b->column[inner++] = y;
             b->row[x + 1] = inner;
         } else if (x < n || y < n) {
@@ -121,17 +195,12 @@ static void cut_block(struct system *s, struct system_block *b, uint32_t first, 
     for (uint32_t a = 0; a < s->n; a++)
         if (seen[a])
             b->copy[b->n_copies++] = a;
-    for (uint32_t i = 0; i < s->n_springs; i++) {
-        const uint32_t x = s->end[i][0] - first, y = s->end[i][1] - first;
-        if ((x < n) == (y < n))
-            continue;
-        b->value[inner + b->cut.n] = s->value[i];
-        b->end[b->cut.n][0] = x < n ? x : y;
-        b->end[b->cut.n++][1] = copy_of(b, (x < n ? y : x) + first);
-    }
-    b->matrix = (struct solve_block){n, b->diagonal, b->free, b->row, b->column};
+    cut_entries(s, b, n, sums);
+    b->matrix = (struct solve_block){n, b->diagonal, b->free, b->row, b->column, s->format};
     b->cut.end = (const uint32_t(*)[2])b->end;
     b->cut.rim = b->rim;
+    if (s->format != SOLVE_SPRINGS)
+        solve_assembled(&b->matrix, &b->cut, sums, (double *)(void *)b->value);
 }
 
 void system_cut(struct system *s, uint32_t n_blocks)

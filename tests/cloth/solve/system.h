@@ -5,7 +5,8 @@
 
 #include <stdbool.h>
 
-/* A small spring system, whole as a dense matrix and cut into strips of rows as blocks see it. */
+/* A small system of springs, whole as a dense matrix and cut into strips of rows as blocks see it,
+ * in any format. */
 enum { SYSTEM_ROWS = 64, SYSTEM_SPRINGS = 256, SYSTEM_BLOCKS = 8 };
 
 struct system_block {
@@ -15,14 +16,17 @@ struct system_block {
     double diagonal[SYSTEM_ROWS], free[SYSTEM_ROWS];
     uint32_t row[SYSTEM_ROWS + 1], column[SYSTEM_SPRINGS], end[SYSTEM_SPRINGS][2];
     uint32_t rim[SYSTEM_ROWS];
-    uint32_t n_copies, copy[SYSTEM_SPRINGS]; /* rows in the whole, ascending */
-    phys_vec value[SYSTEM_SPRINGS], position[SYSTEM_ROWS];
+    uint32_t n_copies, copy[SYSTEM_SPRINGS];          /* rows in the whole, ascending */
+    phys_vec value[3 * SYSTEM_SPRINGS + SYSTEM_ROWS]; /* of the entries, as the format has them */
+    phys_vec position[SYSTEM_ROWS];
 };
 
 struct system {
+    enum solve_format format; /* stays what it was */
     uint32_t n, n_springs, n_blocks;
     uint32_t end[SYSTEM_SPRINGS][2]; /* the lower row first, in order */
     phys_vec value[SYSTEM_SPRINGS], position[SYSTEM_ROWS];
+    phys_vec turn[SYSTEM_SPRINGS]; /* in half storage added to the spring's N as [turn]x */
     double diagonal[SYSTEM_ROWS], free[SYSTEM_ROWS];
     struct system_block block[SYSTEM_BLOCKS];
     double dense[3 * SYSTEM_ROWS][3 * SYSTEM_ROWS]; /* S A S + I - S */
@@ -32,6 +36,10 @@ struct system {
  * Positions are drawn about the regular ones, stiffness is that of a step. */
 void system_chain(struct system *system, uint32_t n, double stiffness);
 void system_sheet(struct system *system, uint32_t nx, uint32_t ny, double stiffness);
+
+/* Where three springs close a triangle, gives them turns of about a size that come to nothing in
+ * every row, as elements have them; none where springs are the format. */
+void system_turn(struct system *system, double size);
 
 /* Cuts it into strips of about the same size and makes the dense matrix, when free and diagonal are
  * as they shall be. */

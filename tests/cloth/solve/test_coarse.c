@@ -23,6 +23,7 @@ static void column_of(uint32_t b, int i, phys_vec *y)
 static void make_sheet(uint32_t nx, uint32_t ny, uint32_t n_blocks, int hold)
 {
     system_sheet(&sys, nx, ny, 20);
+    system_turn(&sys, 2);
     for (uint32_t a = 0; a < sys.n && hold; a++)
         sys.free[a] = rand() % hold != 0;
     system_cut(&sys, n_blocks);
@@ -46,6 +47,7 @@ static void check_coupling(uint32_t b, uint32_t other, const double *matrix)
 START_TEST(matrix_is_of_the_filtered_system)
 {
     srand(1);
+    sys.format = (enum solve_format)_i;
     for (int hold = 0; hold < 9; hold += 4) {
         make_sheet(8, 8, 5, hold);
         for (uint32_t b = 0; b < sys.n_blocks; b++) {
@@ -65,6 +67,7 @@ END_TEST
 START_TEST(what_it_spans_is_solved_at_once)
 {
     srand(2);
+    sys.format = (enum solve_format)_i;
     for (uint32_t n_blocks = 1; n_blocks <= SYSTEM_BLOCKS; n_blocks++) {
         make_sheet(8, 8, n_blocks, n_blocks % 2 ? 6 : 0);
         phys_vec x[SYSTEM_ROWS] = {{0}}, y[SYSTEM_ROWS], back[SYSTEM_ROWS] = {{0}};
@@ -271,8 +274,10 @@ int main(void)
 {
     Suite *suite = suite_create("coarse");
     TCase *cases = tcase_create("coarse");
-    tcase_add_test(cases, matrix_is_of_the_filtered_system);
-    tcase_add_test(cases, what_it_spans_is_solved_at_once);
+    tcase_add_loop_test(cases, matrix_is_of_the_filtered_system, SOLVE_SPRINGS,
+                        SOLVE_HALF_FLOAT + 1);
+    tcase_add_loop_test(cases, what_it_spans_is_solved_at_once, SOLVE_SPRINGS,
+                        SOLVE_HALF_FLOAT + 1);
     tcase_add_test(cases, basis_has_every_affine_motion_of_a_flat_block);
     tcase_add_test(cases, columns_that_add_nothing);
     tcase_add_test(cases, sparse_factor_of_every_graph);

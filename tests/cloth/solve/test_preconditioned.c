@@ -125,6 +125,7 @@ static void check_all(double stiffness, uint32_t n_blocks, int hold)
     static struct run run;
     double iterations[KINDS];
     system_sheet(&sys, 8, 8, stiffness);
+    system_turn(&sys, 0.02 * stiffness);
     for (uint32_t a = 0; a < sys.n; a++)
         sys.free[a] = !hold || a % (uint32_t)hold;
     system_cut(&sys, n_blocks);
@@ -142,6 +143,7 @@ static void check_all(double stiffness, uint32_t n_blocks, int hold)
 START_TEST(every_preconditioner_solves)
 {
     srand(1);
+    sys.format = (enum solve_format)_i;
     for (uint32_t n_blocks = 1; n_blocks <= SYSTEM_BLOCKS; n_blocks += 3)
         for (int hold = 0; hold <= 14; hold += 7) {
             check_all(1, n_blocks, hold);
@@ -254,7 +256,7 @@ int main(void)
 {
     Suite *suite = suite_create("preconditioned");
     TCase *cases = tcase_create("preconditioned");
-    tcase_add_test(cases, every_preconditioner_solves);
+    tcase_add_loop_test(cases, every_preconditioner_solves, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1);
     tcase_add_test(cases, a_chain_at_once);
     tcase_add_test(cases, rigid_and_affine_motion);
     tcase_add_test(cases, error_in_the_mass_norm);

@@ -37,18 +37,18 @@ static void couple(struct two_level *level, uint32_t b)
     uint32_t later = 1;
     for (uint32_t s = level->first[b]; s < level->first[b + 1]; s++) {
         uint32_t end[SYSTEM_SPRINGS][2], n = 0;
-        phys_vec value[SYSTEM_SPRINGS];
+        size_t from = 0;
         double beside[SOLVE_COUPLING];
-        for (size_t i = 0; i < block->cut.n; i++) {
+        for (size_t i = 0; i < block->cut.n; i++) { /* those into one block follow each other */
             const uint32_t other = block->copy[block->cut.end[i][1]];
             if (block_of(level->system, other) != level->slot[s])
                 continue;
-            value[n] = block->value[block->row[block->matrix.n] + i];
+            from = n ? from : i;
             end[n][0] = block->cut.end[i][0];
             end[n++][1] = other;
         }
-        solve_couple_cut(n, (const uint32_t(*)[2])end, value, basis, level->basis, coupling[0],
-                         beside);
+        solve_couple_cut(&block->matrix, block->value, block->row[block->matrix.n] + from, n,
+                         (const uint32_t(*)[2])end, basis, level->basis, coupling[0], beside);
         if (level->slot[s] > b)
             memcpy(coupling[later++], beside, sizeof beside);
     }

@@ -1,0 +1,31 @@
+#ifndef CLOTH_SOLVE_ASSEMBLE_H
+#define CLOTH_SOLVE_ASSEMBLE_H
+
+#include "cloth/solve/block.h"
+
+/* The values of the half formats (cloth/solve/format.h), from any elements. Each entry is summed up
+ * in nine doubles, all in zero at first; an element of any number of vertices adds its -A_ab to the
+ * entry of each two of them, in an order that the block's table gives: sums of a cut entry are the
+ * same on both sides if both add in the same order. When all have been added, the values are made
+ * of the sums. Pure functions. */
+
+/* Adds N to the nine of an entry whose first row is that of N, or, turned, whose second is. */
+static inline void solve_assemble(double *sum, bool turned, const double n[3][3])
+{
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        sum[i] += n[i][i];
+        sum[3 + i] += turned ? n[j][i] : n[i][j];
+        sum[6 + i] += turned ? n[k][i] : n[i][k];
+    }
+}
+
+/* Adds n springs (w0 w1 w2 alpha each), of which spring i belongs to entry at[i]. */
+void solve_assemble_springs(size_t n, const uint32_t *at, const phys_vec *value, double *sums);
+
+/* The values of a block of format SOLVE_HALF or SOLVE_HALF_FLOAT from sums of all its entries.
+ * memory: solve_format_doubles of them; for SOLVE_HALF it may be where the sums are. */
+void solve_assembled(const struct solve_block *block, const struct solve_cut *cut,
+                     const double *sums, double *memory);
+
+#endif

@@ -1,0 +1,136 @@
+#ifndef CLOTH_SOLVE_FORMAT_H
+#define CLOTH_SOLVE_FORMAT_H
+
+#include "cloth/solve/matrix3.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* How the off-diagonal part of a matrix is kept. An entry joins two rows, a and b: with N = -A_ab
+ * it adds N d, d = p_a - p_b, to row a and takes N' d from row b. So the diagonal is not kept:
+ * block a of it is what the row has besides entries (its mass, h times its drag, kg) plus the sum
+ * of N over the row's entries as they are rounded, and what moves as a whole feels the former
+ * alone, in every format. */
+enum solve_format {
+    SOLVE_SPRINGS,   /* N = alpha I + w w', four doubles an entry: w0 w1 w2 alpha */
+    SOLVE_HALF,      /* any N, nine doubles an entry: n00 n11 n22, n01 n12 n20, n02 n10 n21 */
+    SOLVE_HALF_FLOAT /* the same nine in float; behind them four doubles a row, its turn */
+};
+enum { SOLVE_NINE = 9 };
+
+/* The sum of N over a row is symmetric where elements are; rounded to float it is so but for a
+ * vector w, (sum - sum') / 2 = [w]x, the turn of the row. Taken back, the matrix is symmetric. */
+
+/* Doubles of the values of a block, aligned to 32 bytes. */
+static inline size_t solve_format_doubles(enum solve_format format, size_t rows, size_t entries)
+{
+    if (format == SOLVE_SPRINGS)
+        return 4 * entries;
+    if (format == SOLVE_HALF)
+        return SOLVE_NINE * entries + 1; /* what is read as four numbers may end behind the last */
+    return 4 * rows + (SOLVE_NINE * entries + 2) / 2;
+}
+
+/* The values of a block as kernels read them. */
+struct solve_values {
+    const void *entry;    /* of entry 0 */
+    const phys_vec *turn; /* rows; NULL: none */
+};
+PHYS_INLINE struct solve_values solve_values_of(enum solve_format format, size_t rows,
+                                                const void *memory)
+{
+    const phys_vec *row = memory;
+    if (format == SOLVE_HALF_FLOAT)
+        return (struct solve_values){row + rows, row};
+    return (struct solve_values){memory, NULL};
+}
+
+/* Four numbers anywhere. */
+typedef double solve_four __attribute__((vector_size(32), aligned(8), may_alias));
+typedef float solve_four_floats __attribute__((vector_size(16), aligned(4), may_alias));
+
+/* N of one entry as it lies in memory, three lanes and rubbish each. */
+struct solve_nine {
+    phys_vec diagonal, upper, lower;
+};
+PHYS_INLINE void solve_nine_of(enum solve_format format, const void *entry, size_t i,
+                               struct solve_nine *n)
+{
+    if (format == SOLVE_HALF) {
+        const double *at = (const double *)entry + SOLVE_NINE * i;
+        n->diagonal = *(const solve_four *)(const void *)at;
+        n->upper = *(const solve_four *)(const void *)(at + 3);
+        n->lower = *(const solve_four *)(const void *)(at + 6);
+    } else {
+        const float *at = (const float *)entry + SOLVE_NINE * i;
+        const solve_four_floats *const four[] = {(const void *)at, (const void *)(at + 3),
+                                                 (const void *)(at + 6)};
+        n->diagonal = __builtin_convertvector(*four[0], phys_vec);
+        n->upper = __builtin_convertvector(*four[1], phys_vec);
+        n->lower = __builtin_convertvector(*four[2], phys_vec);
+    }
+}
+
+/* alpha d + w (w . d) of a spring; lane 3 becomes rubbish. */
+PHYS_INLINE void solve_spring_times(const phys_vec *value, const phys_vec *d, phys_vec *y)
+{
+    const phys_vec product = *value * *d; /* lane 3: d is zero there */
+    phys_vec dot;
+    phys_lanes_each(&product, &dot);
+    *y = (*value)[3] * *d + dot * *value;
+}
+
+/* N d and N' d of one entry, of a d that is zero in lane 3. */
+PHYS_INLINE void solve_entry_times(enum solve_format format, const void *entry, size_t i,
+                                   const phys_vec *d, phys_vec *y, phys_vec *turned)
+{
+    if (format == SOLVE_SPRINGS) {
+        solve_spring_times((const phys_vec *)entry + i, d, y);
+        *turned = *y;
+        return;
+    }
+    struct solve_nine n;
+    solve_nine_of(format, entry, i, &n);
+    const phys_vec same = n.diagonal * *d, lower = n.lower * *d, upper = n.upper * *d;
+    *y = same + n.upper * SOLVE_YZX(*d) + n.lower * SOLVE_ZXY(*d);
+    *turned = same + SOLVE_YZX(lower) + SOLVE_ZXY(upper);
+}
+
+/* N = symmetric + [turn]x of one entry. */
+PHYS_INLINE void solve_entry_of(enum solve_format format, const void *entry, size_t i,
+                                struct solve_symmetric *symmetric, phys_vec *turn)
+{
+    if (format == SOLVE_SPRINGS) {
+        solve_spring((const phys_vec *)entry + i, symmetric);
+        *turn = (phys_vec){0};
+        return;
+    }
+    const phys_vec three = {1, 1, 1, 0};
+    struct solve_nine n;
+    solve_nine_of(format, entry, i, &n);
+    const phys_vec below = SOLVE_YZX(n.lower); /* n10 n21 n02 */
+    const phys_vec z_x_y = 0.5 * (below - n.upper);
+    symmetric->diagonal = three * n.diagonal;
+    symmetric->beside = 0.5 * three * (n.upper + below);
+    *turn = three * SOLVE_YZX(z_x_y);
+}
+
+/* The columns of symmetric + [turn]x. */
+PHYS_INLINE void solve_entry_columns(const struct solve_symmetric *symmetric, const phys_vec *turn,
+                                     struct solve_columns *columns)
+{
+    const double x = (*turn)[0], y = (*turn)[1], z = (*turn)[2];
+    solve_columns_of(symmetric, columns);
+    columns->c[0] += (phys_vec){0, z, -y, 0};
+    columns->c[1] += (phys_vec){-z, 0, x, 0};
+    columns->c[2] += (phys_vec){y, -x, 0, 0};
+}
+
+/* w x p, in lanes 0 to 2; zero in lane 3 where those of both are. */
+PHYS_INLINE void solve_cross(const phys_vec *w, const phys_vec *p, phys_vec *y)
+{
+    const phys_vec z_x_y = *w * SOLVE_YZX(*p) - SOLVE_YZX(*w) * *p;
+    *y = SOLVE_YZX(z_x_y);
+}
+
+#endif

@@ -24,6 +24,8 @@ enum {
     SEED,
     SET,
     THREADS,
+    TRACE,
+    TRACE_STEPS,
     USAGE
 };
 
@@ -33,6 +35,13 @@ static const struct argp_option OPTIONS[] = {
     {"save-system", SAVE_SYSTEM, "DIR", 0,
      "write the linear system of the last step, in Matrix Market form, into this folder, which is "
      "made",
+     1},
+    {"trace", TRACE, "FILE", 0,
+     "write what each worker does when into FILE, and FILE.1, FILE.2, ... on the other ranks; for "
+     "duite-trace and duite-predict",
+     1},
+    {"trace-steps", TRACE_STEPS, "A:B", 0,
+     "only from step A up to, not including, step B; the first step is 0; either may be left out",
      1},
     {"quiet", QUIET, NULL, 0, "neither progress nor summary", 1},
     {"end", END, "SECONDS", 0, "simulated time, instead of the scene's time.end", 2},
@@ -184,6 +193,30 @@ static error_t parse_name(struct argp_state *state, const char *option, const ch
     return EINVAL;
 }
 
+/* A number up to the character, or the default if there is none. */
+static const char *parse_step(const char *text, uint64_t otherwise, uint64_t *step)
+{
+    char *end = (char *)text;
+    errno = 0;
+    *step = *text >= '0' && *text <= '9' ? strtoull(text, &end, 10) : otherwise;
+    return errno ? NULL : end;
+}
+
+static error_t parse_steps(struct command *command, struct argp_state *state, const char *text)
+{
+    struct simulate_options *run = &command->run;
+    const char *colon = parse_step(text, 0, &run->trace_first);
+    const char *end =
+        colon && *colon == ':' ? parse_step(colon + 1, UINT64_MAX, &run->trace_end) : NULL;
+    if (end && !*end && run->trace_first < run->trace_end)
+        return 0;
+    argp_failure(state, 0, 0,
+                 "--trace-steps %s: two steps with a colon between them are expected, the first "
+                 "one smaller, such as 10:20, 10: or :20",
+                 text);
+    return EINVAL;
+}
+
 static error_t parse_scene(struct command *command, struct argp_state *state, const char *path)
 {
     if (command->run.scene) {
@@ -203,6 +236,10 @@ static error_t parse(int key, char *value, struct argp_state *state)
         return parse_name(state, "--report", value, &command->run.report);
     case SAVE_SYSTEM:
         return parse_name(state, "--save-system", value, &command->run.save_system);
+    case TRACE:
+        return parse_name(state, "--trace", value, &command->run.trace);
+    case TRACE_STEPS:
+        return parse_steps(command, state, value);
     case QUIET:
         command->run.quiet = true;
         return 0;
@@ -255,6 +292,11 @@ static int command_line(struct command *command, int argc, char **argv)
         fprintf(stderr, "duite-cloth: out of memory\n");
     if (error)
         return error == ENOMEM ? SIMULATE_FAILED : SIMULATE_BAD_INPUT;
+    if (!command->run.trace && (command->run.trace_first || command->run.trace_end != UINT64_MAX)) {
+        if (command->talks)
+            fprintf(stderr, "duite-cloth: --trace-steps without --trace FILE\n");
+        return SIMULATE_BAD_INPUT;
+    }
     if (command->done || command->run.scene)
         return SIMULATE_OK;
     if (command->talks)
@@ -299,6 +341,7 @@ int main(int argc, char **argv)
                                       .mapping_name = "metis",
                                       .balance = duite_balancer_find("none"),
                                       .balance_name = "none",
+                                      .trace_end = UINT64_MAX,
                                       .seed = 1},
                               .talks = rank == 0};
     int code = agree(command_line(&command, argc, argv));

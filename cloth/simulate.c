@@ -24,6 +24,7 @@ struct run {
     struct output_probes *probes; /* then, if the scene has any */
     struct summary_progress progress;
     struct flow_report report;
+    struct cloth_error untraced; /* why the trace is not whole */
 };
 
 static volatile sig_atomic_t stop_requested;
@@ -61,18 +62,18 @@ static int agree(const struct run *run, const struct cloth_error *error)
     return code;
 }
 
-/* Found before the run, so that its figures are not lost after it. */
-static int check_report(const struct simulate_options *options, struct cloth_error *error)
+/* Found before the run, so that what is written after it, or as it runs, is not lost. */
+static int check_file(const struct simulate_options *options, const char *option, const char *path,
+                      struct cloth_error *error)
 {
     struct cloth_error inner = {0};
-    struct stat report, scene;
-    if (stat(options->report, &report) == 0 && stat(options->scene, &scene) == 0 &&
-        report.st_dev == scene.st_dev && report.st_ino == scene.st_ino)
+    struct stat file, scene;
+    if (stat(path, &file) == 0 && stat(options->scene, &scene) == 0 &&
+        file.st_dev == scene.st_dev && file.st_ino == scene.st_ino)
         return cloth_fail(error, CLOTH_E_INPUT,
-                          "--report %s: this is the scene itself, which would be lost",
-                          options->report);
-    const int code = output_report_check(options->report, options->output, &inner);
-    return code ? cloth_fail(error, code, "--report %s: %s", options->report, inner.text) : code;
+                          "--%s %s: this is the scene itself, which would be lost", option, path);
+    const int code = output_report_check(path, options->output, &inner);
+    return code ? cloth_fail(error, code, "--%s %s: %s", option, path, inner.text) : code;
 }
 
 static int open_system(const struct run *run, struct cloth_error *error)
@@ -156,7 +157,9 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     if (!code)
         code = flow_prepare(&run->flow, &run->model, run->ranks, error);
     if (!code && options->report)
-        code = check_report(options, error);
+        code = check_file(options, "report", options->report, error);
+    if (!code && options->trace)
+        code = check_file(options, "trace", options->trace, error);
     return code;
 }
 
@@ -269,8 +272,13 @@ static int execute(struct run *run)
     options.mapping = run->options->mapping;
     options.balance = run->options->balance;
     options.seed = run->options->seed;
+    options.trace = run->options->trace;
+    options.trace_first = run->options->trace_first;
+    options.trace_end = run->options->trace_end;
     if (!runtime_fails(&error, duite_start(&rt, &options))) {
         run_flow(run, rt, &error);
+        if (!error.code && duite_trace_end(rt))
+            cloth_fail(&run->untraced, CLOTH_E_IO, "%s", duite_message());
         int code = duite_stop(&rt);
         if (!error.code)
             runtime_fails(&error, code);
@@ -318,7 +326,8 @@ static int conclude(const struct run *run)
         if (!run->options->quiet)
             summary_print(stdout, &summary);
     }
-    return agree(run, &error);
+    const int code = agree(run, &error);
+    return code ? code : agree(run, &run->untraced);
 }
 
 int simulate(const struct simulate_options *options)

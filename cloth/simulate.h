@@ -14,6 +14,8 @@ struct simulate_options {
     struct scene_set *sets;
     const char *output, *report;             /* folder of frames, JSON file; NULL: none */
     const char *save_system;                 /* folder; NULL: none */
+    const char *trace;                       /* file; NULL: none */
+    uint64_t trace_first, trace_end;         /* steps from .. to the one before */
     const struct duite_scheduler *scheduler; /* never NULL */
     const struct duite_mapping *mapping;     /* never NULL */
     const struct duite_balancer *balance;    /* never NULL */

@@ -3,6 +3,7 @@
  * data that no other one thinks of sending. */
 #include "runtime/instance.h"
 
+#include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 
 /* The remembered error, which is told once. */
@@ -115,7 +116,9 @@ static int get_and_recall(duite *rt, duite_object object, int rank, void *values
     int code = program_enter(rt, call);
     if (code)
         return code;
+    const uint64_t from = rt->trace ? base_ticks() : 0;
     code = program_get(rt, object, rank, values, count, call);
+    trace_get(rt->trace, object, rank, from);
     int before = recall(rt);
     return before ? before : code;
 }
@@ -199,7 +202,11 @@ int program_wait(duite *rt, const char *call)
 
 int duite_wait(duite *rt)
 {
-    return program_wait(rt, "duite_wait");
+    const uint64_t from = rt && rt->trace ? base_ticks() : 0;
+    const int code = program_wait(rt, "duite_wait");
+    if (rt && !inside_body(rt))
+        trace_wait(rt->trace, from);
+    return code;
 }
 
 /* ---- Counters ---- */

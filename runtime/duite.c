@@ -43,6 +43,7 @@ duite_options duite_options_default(void)
                            .stuck_seconds = seconds_of(getenv("DUITE_STUCK_SECONDS"), 60),
                            .lost_seconds = seconds_of(getenv("DUITE_LOST_SECONDS"), 8),
                            .spin_seconds = 100e-6,
+                           .trace_end = UINT64_MAX,
                            .bind = 1};
 }
 
@@ -124,6 +125,8 @@ static int check_rest(const duite_options *options)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: lost_seconds (or DUITE_LOST_SECONDS) is not a number "
                           "from 0 to 1e9");
+    if (options->trace && options->trace_first > options->trace_end)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: trace_first is after trace_end");
     return DUITE_OK;
 }
 
@@ -147,7 +150,8 @@ static uint64_t hash_kernels(const struct graph *graph)
 /* What must be the same on all ranks, and what they tell one another besides. */
 struct started {
     uint64_t kernels, laws, seed, scheduler, mapping, balance;
-    double lost_seconds; /* that of rank 0 counts */
+    uint64_t traced, first, end; /* whether there is a trace, and of which steps */
+    double lost_seconds;         /* that of rank 0 counts */
     char host[64];
 };
 
@@ -163,6 +167,8 @@ static const char *difference(const struct started *a, const struct started *b)
         return "schedulers";
     if (a->mapping != b->mapping)
         return "mappings";
+    if (a->traced != b->traced || a->first != b->first || a->end != b->end)
+        return "traces";
     return a->balance != b->balance ? "balancers" : NULL;
 }
 
@@ -200,6 +206,9 @@ static struct started own_start(const duite *rt, const duite_options *options)
         .scheduler = XXH64(options->scheduler->name, strlen(options->scheduler->name), 0),
         .mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0),
         .balance = XXH64(options->balance->name, strlen(options->balance->name), 0),
+        .traced = options->trace != NULL,
+        .first = options->trace ? options->trace_first : 0,
+        .end = options->trace ? options->trace_end : 0,
         .lost_seconds = options->lost_seconds};
     if (gethostname(own.host, sizeof own.host - 1))
         strcpy(own.host, "(without a name)");
@@ -264,12 +273,15 @@ static int start_workers(duite *rt, const duite_options *options, int code)
     rt->threads = threads;
     rt->oversubscribed = host.total > cores.n;
     bool bind = options->bind && !rt->oversubscribed;
+    if (!code && options->trace)
+        code = traced_open(rt, options);
     if (!code)
         code = work_start(
             &rt->pool,
             &(struct work_setup){.graph = &rt->graph,
                                  .comm = rt->comm,
                                  .check = rt->check,
+                                 .trace = rt->trace,
                                  .scheduler = options->scheduler,
                                  .balancer = options->balance,
                                  .context = options->context,
@@ -317,6 +329,7 @@ static void end(duite *rt)
     work_stop(rt->pool);
     recorded_stop(rt); /* closes their channels */
     bool whole = comm_stop(rt->comm);
+    trace_free(rt->trace, whole);
     if (whole)
         MPI_Comm_free(&rt->mpi);
     if (whole || !comm_is_cut(rt->comm)) /* else MPI would wait for the lost when it is finalised */
@@ -365,6 +378,7 @@ int duite_start(duite **out, const duite_options *options)
             options->balance->victim || options->balance->place || options->balance->migrate;
         if (rt->comm && moves)
             comm_measure(rt->comm);
+        traced_begin(rt);
         comm_open(rt->comm, options->balance->victim != NULL);
         *out = rt;
     }
@@ -396,6 +410,9 @@ int duite_stop(duite **out)
     int code = program_wait(rt, "duite_stop");
     if (!code)
         code = not_freed(rt);
+    const int traced = instance_is_broken(rt) ? DUITE_OK : traced_end(rt, "duite_stop");
+    if (!code)
+        code = traced;
     end(rt);
     *out = NULL;
     return code;

@@ -236,6 +236,10 @@ typedef struct duite_options {
     double lost_seconds; /* a rank that gives no sign of life for so long is lost, see below; 0:
                             never. What rank 0 says counts for all. Default 8, or what
                             DUITE_LOST_SECONDS in the environment says */
+    const char *trace; /* a file in which each rank writes down what happens, see duite_trace_step.
+                          Default NULL: none */
+    uint64_t trace_first, trace_end; /* steps that are written down: from trace_first on, before
+                                        trace_end. Default: all, and what comes before them */
     int check; /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
                   environment */
 } duite_options;
@@ -568,6 +572,25 @@ int duite_graph_print(duite *rt, duite_graph graph, FILE *file);
 
 /* Frees a graph; replays that are on their way come to their end. Collective. */
 int duite_graph_free(duite *rt, duite_graph graph);
+
+/* ---- Traces ----
+ *
+ * With options.trace a run leaves the files trace, trace.1, trace.2 and so on, one a rank: what
+ * each worker did when, and what the main program called. duite-trace turns them into the forms of
+ * viewers, duite-predict works out what the run would take elsewhere. If the file cannot be made,
+ * duite_start fails; if it cannot be written later on, the run goes on, what was written is kept,
+ * and duite_trace_end tells. */
+
+/* Step `step` of the program begins, counted from 0: what was written down is brought to the file,
+ * and recording begins or ends if options.trace_first or trace_end say so; just then it waits, like
+ * duite_wait, for all tasks forked so far (and leaves their errors to the next wait). Does nothing
+ * without a trace. Collective. */
+int duite_trace_step(duite *rt, uint64_t step);
+
+/* The trace ends; duite_stop sees to that, too. Waits for all tasks forked so far, as
+ * duite_trace_step. DUITE_E_SYSTEM: this rank's file is not whole, for the reason that the sentence
+ * tells. Does nothing without a trace, and the second time. Collective. */
+int duite_trace_end(duite *rt);
 
 /* ---- Counters ---- */
 

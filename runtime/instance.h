@@ -4,6 +4,7 @@
 #include "runtime/comm/comm.h"
 #include "runtime/graph/graph.h"
 #include "runtime/graph/record.h"
+#include "runtime/trace/trace.h"
 #include "runtime/workers/workers.h"
 
 /* A running runtime: the parts, and the errors that the next get, wait or stop still has to tell.
@@ -14,6 +15,8 @@ struct duite {
     struct comm *comm;   /* NULL: one rank */
     struct check *check; /* NULL: not in checking mode */
     struct work_pool *pool;
+    struct trace *trace; /* NULL: nothing is written down */
+    bool traced;         /* the trace is closed */
     const duite_mapping *mapping;
     const duite_balancer *balance;
     uint64_t seed;
@@ -67,6 +70,13 @@ int program_agree(duite *rt, const struct work_why *why, struct comm_word *own,
 int program_migrate(duite *rt);
 /* duite_wait, under the name of who calls it. */
 int program_wait(duite *rt, const char *call);
+/* The trace ends, if there is one that did not: as duite_trace_end, under the name of who calls. */
+int traced_end(duite *rt, const char *call);
+/* Recording begins. All ranks have started. */
+void traced_begin(duite *rt);
+/* Opens the trace that the options want. Local. */
+int traced_open(duite *rt, const duite_options *options);
+
 /* Copies to the values, or tells the count, whichever is wanted here. */
 int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
                 const char *call);

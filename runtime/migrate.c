@@ -259,6 +259,7 @@ static int move_blocks(struct migration *m)
             continue;
         object->block = m->blocks.block[block].number;
         code = graph_move(graph, work_main(m->rt->pool), object, m->home[block]);
+        trace_moved(m->rt->trace, table, &slot, 1);
         m->rt->migration.objects++;
     }
     work_tick(m->rt->pool);
@@ -274,6 +275,7 @@ static int migrate(struct migration *m)
     if (!code)
         code = gather(m);
     const double begun = base_seconds(); /* until now it waited for tasks, too */
+    const uint64_t ticks = base_ticks(), moved = rt->migration.objects;
     if (!code && !rt->graph.rank)
         code = decide(m);
     if (!code)
@@ -290,6 +292,10 @@ static int migrate(struct migration *m)
             "balancer %s moves a block to a rank that there is not, or one that stays",
             rt->balance->name);
     code = move_blocks(m);
+    work_note(rt->pool, &(struct trace_event){.begin = ticks,
+                                              .took = base_ticks() - ticks,
+                                              .number = last->objects - moved,
+                                              .kind = TRACE_MIGRATE});
     last->since = base_seconds();
     last->took = last->since - begun;
     return code;

@@ -10,7 +10,7 @@ libduite_la_LDFLAGS = $(AM_LDFLAGS) -version-info 0:0:0 -export-symbols-regex '^
 libduite_core_la_SOURCES = $(libduite_la_SOURCES)
 libduite_core_la_LIBADD = $(libduite_la_LIBADD)
 
-libduite_la_SOURCES += runtime/duite.c runtime/inside.c runtime/instance.h runtime/migrate.c runtime/objects.c runtime/program.c runtime/blocking.c runtime/recorded.c
+libduite_la_SOURCES += runtime/duite.c runtime/inside.c runtime/instance.h runtime/migrate.c runtime/objects.c runtime/program.c runtime/blocking.c runtime/recorded.c runtime/traced.c
 include runtime/base/module.mk
 include runtime/data/module.mk
 include runtime/graph/module.mk
@@ -19,4 +19,10 @@ include runtime/map/module.mk
 include runtime/balance/module.mk
 include runtime/comm/module.mk
 include runtime/check/module.mk
+include runtime/trace/module.mk
 include runtime/workers/module.mk
+
+bin_PROGRAMS += duite-trace
+dist_man_MANS += runtime/duite-trace.1
+duite_trace_SOURCES = runtime/duite-trace.c
+duite_trace_LDADD = libduite_core.la

@@ -23,7 +23,10 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
             rt, base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
     graph_mix(&rt->graph, count);
     graph_mix(&rt->graph, (uint64_t)type);
-    return program_remember(rt, data_object_new(&rt->graph.table, type, count, object));
+    code = data_object_new(&rt->graph.table, type, count, object);
+    if (!code)
+        trace_object(rt->trace, &rt->graph.table, *object);
+    return program_remember(rt, code);
 }
 
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite_object *object)
@@ -42,7 +45,10 @@ int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite
     graph_mix(&rt->graph, count);
     graph_mix(&rt->graph, most);
     graph_mix(&rt->graph, (uint64_t)type);
-    return program_remember(rt, data_object_new_sized(&rt->graph.table, type, count, most, object));
+    code = data_object_new_sized(&rt->graph.table, type, count, most, object);
+    if (!code)
+        trace_object(rt->trace, &rt->graph.table, *object);
+    return program_remember(rt, code);
 }
 
 static void mix_name(duite *rt, duite_object object)
@@ -64,7 +70,10 @@ int duite_view(duite *rt, duite_object object, size_t n, const size_t *indices, 
     graph_mix(&rt->graph, n);
     for (size_t i = 0; indices && i < n; i++)
         graph_mix(&rt->graph, indices[i]);
-    return program_remember(rt, data_view_new(&rt->graph.table, object, n, indices, view));
+    code = data_view_new(&rt->graph.table, object, n, indices, view);
+    if (!code)
+        trace_object(rt->trace, &rt->graph.table, *view);
+    return program_remember(rt, code);
 }
 
 static void mix_double(duite *rt, double value)
@@ -93,8 +102,10 @@ int duite_hint(duite *rt, duite_object object, double weight, size_t n,
     if (code)
         return code;
     mix_hint(rt, object, weight, n, neighbours, edge_weights);
-    return program_remember(
-        rt, map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights));
+    code = map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights);
+    if (!code)
+        trace_hint(rt->trace, object, weight, n, neighbours, edge_weights);
+    return program_remember(rt, code);
 }
 
 int duite_follow(duite *rt, duite_object object, duite_object leader)
@@ -104,7 +115,10 @@ int duite_follow(duite *rt, duite_object object, duite_object leader)
         return code;
     mix_name(rt, object);
     mix_name(rt, leader);
-    return program_remember(rt, map_follow(&rt->graph.table, object, leader));
+    code = map_follow(&rt->graph.table, object, leader);
+    if (!code)
+        trace_follow(rt->trace, object, leader);
+    return program_remember(rt, code);
 }
 
 int duite_home(duite *rt, duite_object object)
@@ -143,5 +157,7 @@ int duite_free(duite *rt, duite_object object)
         code = program_remember(rt, program_settle(rt));
     if (!code)
         code = program_remember(rt, graph_free(&rt->graph.root, work_main(rt->pool), object));
+    if (!code)
+        trace_freed(rt->trace, object);
     return code;
 }

@@ -51,7 +51,14 @@ int program_remember(duite *rt, int code)
 
 int program_settle(duite *rt)
 {
-    return map_settle(&rt->graph.table, rt->mapping, rt->seed);
+    const struct data_table *table = &rt->graph.table;
+    if (!table->n_unsettled)
+        return DUITE_OK;
+    trace_settles(rt->trace, table);
+    int code = map_settle(&rt->graph.table, rt->mapping, rt->seed);
+    if (!code)
+        trace_settled(rt->trace, table);
+    return code;
 }
 
 /* ---- MPI of the program's own ---- */
@@ -102,6 +109,8 @@ static int fork_task(duite *rt, const struct graph_how *how, const duite_kernel 
     int code = program_settle(rt);
     if (!code)
         code = graph_fork(&rt->graph.root, work_main(rt->pool), how, kernel, args, n, objects);
+    if (!code)
+        trace_fork(rt->trace, kernel, how, n, objects);
     work_tick(rt->pool);
     if (!code)
         program_throttle(rt);
@@ -117,6 +126,7 @@ static bool pruned(duite *rt, const duite_kernel *kernel, const void *args, size
     if (!rt || !rt->comm || rt->building || rt->graph.table.n_unsettled || rt->graph.broken ||
         !work_may_fork(rt->pool) || !graph_prune(&rt->graph, kernel, args, n, objects))
         return false;
+    trace_fork(rt->trace, kernel, &(struct graph_how){.at = GRAPH_ANYWHERE}, n, objects);
     if (rt->graph.root.forks % FORKS_A_TICK == 0)
         work_tick(rt->pool);
     return true;
@@ -182,6 +192,8 @@ static int set(duite *rt, duite_object object, const void *values, const size_t 
     if (!code)
         code = program_remember(
             rt, graph_set(&rt->graph.root, work_main(rt->pool), object, values, count));
+    if (!code)
+        trace_set(rt->trace, object);
     return code;
 }
 

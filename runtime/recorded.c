@@ -3,6 +3,7 @@
  * go where they can run: to the plan, or through the forks of the dynamic path. */
 #include "runtime/instance.h"
 
+#include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
@@ -98,6 +99,8 @@ static int record(duite *rt, struct recorded_graph *slot)
         graph_record_clear(record, work_main(rt->pool));
     else
         graph_record_end(record);
+    if (!code)
+        trace_graph(rt->trace, (uint32_t)(slot - rt->recorded), record);
     return code;
 }
 
@@ -258,6 +261,8 @@ int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
     graph_mix(&rt->graph, graph.slot);
     graph_mix(&rt->graph, rounds);
     code = prepare(rt, found, rounds);
+    if (!code)
+        trace_replay(rt->trace, graph.slot - 1, found->record, NULL, rounds);
     return program_remember(rt, code ? code : replay(rt, found->record, rounds));
 }
 
@@ -311,6 +316,8 @@ int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t
     code = prepare(rt, found, most);
     if (!code && !most)
         code = base_error(DUITE_E_ARGUMENT, "duite_replay_while: at most 0 rounds");
+    if (!code)
+        trace_replay(rt->trace, graph.slot - 1, found->record, &flag, most);
     return program_remember(rt, code ? code : replay_while(rt, found->record, flag, most));
 }
 
@@ -329,8 +336,10 @@ int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
         return DUITE_E_OBJECT;
     if (!rounds)
         return base_error(DUITE_E_ARGUMENT, "duite_graph_rounds: nowhere to put the number");
+    const uint64_t from = rt->trace ? base_ticks() : 0;
     work_until(rt->pool, &(struct work_why){"duite_graph_rounds", "the last replay", NULL}, is_over,
                found->record);
+    trace_wait(rt->trace, from);
     if (!graph_replay_over(found->record)) {
         instance_give_up(rt);
         return comm_broken(rt->comm);

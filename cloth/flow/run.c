@@ -242,7 +242,9 @@ static int run_steps(struct flow_state *state)
     uint64_t step = 0;
     for (; step < n && !code; step++) {
         const uint64_t frame = state->next_frame;
-        code = flow_step(state, step);
+        code = duite_trace_step(state->rt, step);
+        if (!code)
+            code = flow_step(state, step);
         if (!code)
             code = flow_rest(state, step);
         if (!code)

@@ -265,6 +265,7 @@ static void start_send(struct comm *comm, struct graph_task *node, struct side *
     if (comm_mpi_ok(comm, mpi, "MPI_Isend")) {
         atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
         atomic_fetch_add_explicit(&comm->bytes, bytes, memory_order_relaxed);
+        comm_note(comm, true, channel->peer, bytes);
     }
     push(over, node);
 }
@@ -316,6 +317,7 @@ static void receive(struct comm *comm, struct graph_task **over)
         struct side *side = awaited->what[awaited->n + i];
         graph_channel_unpack(side->channel->node, side->buffer[side->turn % 2]);
         atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
+        comm_note(comm, false, side->channel->peer, side->channel->bytes);
         post_receive(comm, side, side->turn++);
         push(over, side->channel->node);
     }

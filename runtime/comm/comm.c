@@ -60,6 +60,11 @@ void comm_ring(struct comm *comm, double seconds, const char *host)
         comm_pulse_open(comm, seconds, host);
 }
 
+void comm_tell(struct comm *comm, comm_told *tell)
+{
+    comm->tell = tell;
+}
+
 void comm_open(struct comm *comm, bool asks)
 {
     if (!comm)
@@ -142,6 +147,7 @@ static bool start_send(struct comm *comm, struct graph_task *task)
     comm_requests_started(&comm->sends, task);
     atomic_fetch_add_explicit(&comm->messages, 1, memory_order_relaxed);
     atomic_fetch_add_explicit(&comm->bytes, lines * sizeof *packet, memory_order_relaxed);
+    comm_note(comm, true, task->send->to, lines * sizeof *packet);
     return true;
 }
 
@@ -208,6 +214,7 @@ static bool start_receive(struct comm *comm)
         return false;
     }
     comm_requests_started(&comm->receives, packet);
+    comm_note(comm, false, status.MPI_SOURCE, (size_t)lines * sizeof *packet);
     return true;
 }
 
@@ -382,6 +389,7 @@ static bool pass(struct comm *comm, void *worker, bool looks)
         struct found found = {0};
         if (!comm_try_lock(comm))
             break;
+        comm->worker = worker;
         if (comm->sends.n || atomic_load_explicit(&comm->posts, memory_order_relaxed))
             start_sends(comm, &found);
         found.nodes = comm_channels_pass(comm, NULL);

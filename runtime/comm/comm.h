@@ -22,6 +22,10 @@ int comm_start(struct comm **comm, MPI_Comm mpi, struct graph *graph);
  * any time) is lost. host: of the rank before this one, in a ring. comm NULL is fine. */
 void comm_ring(struct comm *comm, double seconds, const char *host);
 
+/* Before comm_open: to be told of each message that a worker sends or receives, with its bytes. */
+typedef void comm_told(void *worker, bool sends, int peer, size_t bytes);
+void comm_tell(struct comm *comm, comm_told *tell);
+
 /* From now on messages are sent and received; `asks`: ranks may ask others for tasks, the same on
  * all. Before, the lock keeps workers out of MPI, so that the main thread may call it while it
  * starts. All ranks come here or none. NULL is fine. */

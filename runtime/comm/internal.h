@@ -31,6 +31,8 @@ struct comm {
     struct comm_farewells farewells;
     struct comm_pulse pulse;
     struct comm_calls calls;
+    comm_told *tell; /* NULL: nobody */
+    void *worker;    /* under the lock: who passes */
     bool may_ask;
     struct comm_asks asks;
     uint64_t entered;                       /* collective calls */
@@ -45,6 +47,13 @@ void comm_catch_up(struct comm *comm);
 
 /* True for MPI_SUCCESS; else communication is broken. */
 bool comm_mpi_ok(struct comm *comm, int mpi, const char *what);
+
+/* A message is sent, or came, or nobody is told. Under the lock. */
+static inline void comm_note(const struct comm *comm, bool sends, int peer, size_t bytes)
+{
+    if (comm->tell)
+        comm->tell(comm->worker, sends, peer, bytes);
+}
 
 static inline bool comm_is_broken(struct comm *comm)
 {

@@ -382,6 +382,13 @@ static inline bool graph_follows(const struct graph_task *task, uint32_t *block)
     return scope->placed;
 }
 
+/* The number of the main program's task that it is or descends from, of whatever rank; nested: it
+ * descends. */
+uint64_t graph_main_number(const struct graph_task *task, bool *nested);
+
+/* What a task without a body is called. */
+const char *graph_own_name(uint32_t kind);
+
 /* Whether the task calls a body of the program. */
 static inline bool graph_has_body(const struct graph_task *task)
 {

@@ -24,6 +24,18 @@ const struct data_failure *graph_guest_place(const struct graph_scope *top)
     return top == &top->graph->root ? NULL : &((const struct graph_guest *)top)->place;
 }
 
+uint64_t graph_main_number(const struct graph_task *task, bool *nested)
+{
+    const struct graph_scope *scope = task->scope;
+    const struct data_failure *place = graph_guest_place(scope->top);
+    *nested = scope->depth || (place && place->path_length);
+    if (place)
+        return place->number;
+    while (scope->depth > 1)
+        scope = scope->parent;
+    return scope->depth ? scope->number : task->number;
+}
+
 int graph_guest_home(const struct graph_task *guest)
 {
     return (int)guest->guest->parcel->key.slot;

@@ -305,6 +305,20 @@ bool graph_run(struct graph *graph, void *worker, struct graph_task *task, const
     return false;
 }
 
+const char *graph_own_name(uint32_t kind)
+{
+    static const char *const own[] = {
+        [GRAPH_COMBINE] = "duite_sum",      [GRAPH_PIECES] = "duite_sum",
+        [GRAPH_GATHER] = "duite_sum",       [GRAPH_VIEW] = "duite_view",
+        [GRAPH_COPY] = "duite_get",         [GRAPH_MOVE] = "duite_replay",
+        [GRAPH_VOID] = "duite_fork",        [GRAPH_REPLAY] = "duite_replay",
+        [GRAPH_NODE_SET] = "duite_set",     [GRAPH_NODE_SUM] = "duite_sum",
+        [GRAPH_NODE_PARTIAL] = "duite_sum", [GRAPH_NODE_COPY] = "duite_replay",
+        [GRAPH_NODE_VIEW] = "duite_view",   [GRAPH_NODE_FLAG] = "duite_replay_while"};
+    const char *name = kind < sizeof own / sizeof own[0] ? own[kind] : NULL;
+    return name ? name : "duite";
+}
+
 void graph_finish(struct graph *graph, void *worker, struct graph_task *task)
 {
     if (task->kind > GRAPH_REPLAY)

@@ -163,9 +163,12 @@ static bool describe(const struct work_pool *pool, const struct graph_task *task
 
 static bool send(struct work_worker *worker, struct graph_task *task, int to)
 {
+    bool nested;
+    const uint64_t number = graph_main_number(task, &nested);
     if (!graph_send_away(worker->pool->setup.graph, worker, task, to))
         return false;
     work_bump(&worker->counts.delegated, 1);
+    trace_mark(worker->ring, TRACE_DELEGATE, (uint32_t)to, number);
     return true;
 }
 
@@ -293,6 +296,8 @@ static void ask(struct work_worker *worker)
     bool other = rank >= 0 && rank < pool->setup.graph->n_ranks && rank != pool->setup.graph->rank;
     if (other && !comm_ask(pool->setup.comm, rank, idle, seconds))
         return;
+    if (other)
+        work_note_message(worker, true, rank, sizeof(struct data_packet));
     atomic_store_explicit(&balance->next, now + (uint64_t)(seconds / balance->tick),
                           memory_order_relaxed);
     atomic_store_explicit(&balance->attempt, attempt + 1, memory_order_relaxed);

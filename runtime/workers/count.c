@@ -63,10 +63,11 @@ void work_stir(struct work_worker *worker)
     const struct comm *comm = worker->pool->setup.comm;
     if (worker->idle_since) {
         uint64_t idle = base_ticks() - worker->idle_since;
+        uint64_t exposed = comm ? comm_awaited_ticks(comm) - worker->awaited_then : 0;
         work_bump(&worker->counts.idle, idle);
+        work_bump(&worker->counts.exposed, exposed);
         worker->within += idle;
-        if (comm)
-            work_bump(&worker->counts.exposed, comm_awaited_ticks(comm) - worker->awaited_then);
+        work_note_idle(worker, idle, exposed);
     }
     worker->idle_since = 0;
     worker->pause = WORK_FIRST_PAUSE_SECONDS;

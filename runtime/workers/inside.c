@@ -79,6 +79,7 @@ static struct graph_task *steal_from(struct work_worker *worker, unsigned victim
     if (!task)
         return NULL;
     work_bump(&worker->counts.stolen, 1);
+    trace_mark(worker->ring, TRACE_STEAL, victim, 0);
     if (graph_may_run(wait->scope, task))
         return task;
     wait->refused++;

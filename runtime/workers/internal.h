@@ -28,7 +28,8 @@ struct work_worker {
     struct work_queue queue;
     struct work_park park;
     struct work_pool *pool;
-    void *state; /* of the scheduler */
+    struct trace_ring *ring; /* of the trace; NULL: there is none */
+    void *state;             /* of the scheduler */
     unsigned index;
     bool finishing;                  /* a task of this worker makes others ready right now */
     bool may_chain;                  /* ... and may run one of them next */
@@ -110,6 +111,21 @@ struct work_wish {
     void *context;
     bool unheard; /* nobody wakes the worker for it: sleep for a pause at most */
 };
+
+/* A task that ran, and how. */
+struct work_ran {
+    uint64_t start, took, within;
+    uint32_t kind; /* before: a sum may have turned into its message */
+    bool body, chained;
+};
+
+/* What the trace is told, if there is one. Of a task before it is finished; whether the ring was
+ * full, and may have been written; idle for so many ticks since idle_since. */
+void work_note_task(struct work_worker *worker, const struct graph_task *task,
+                    const struct work_ran *ran);
+bool work_note_relieve(struct work_worker *worker);
+void work_note_idle(struct work_worker *worker, uint64_t idle, uint64_t exposed);
+void work_note_message(void *worker, bool sends, int peer, size_t bytes);
 
 /* Looks for work once; idles for a moment if there is none. */
 void work_look(struct work_worker *worker, const struct work_wish *wish);

@@ -24,15 +24,8 @@ enum { LONGEST_CHAIN = 64, CLOCKED = 16 };
 
 static duite_ready describe(const struct graph *graph, const struct graph_task *task)
 {
-    static const char *const own[] = {
-        [GRAPH_COMBINE] = "duite_sum",      [GRAPH_PIECES] = "duite_sum",
-        [GRAPH_GATHER] = "duite_sum",       [GRAPH_VIEW] = "duite_view",
-        [GRAPH_COPY] = "duite_get",         [GRAPH_MOVE] = "duite_replay",
-        [GRAPH_VOID] = "duite_fork",        [GRAPH_REPLAY] = "duite_replay",
-        [GRAPH_NODE_SET] = "duite_set",     [GRAPH_NODE_SUM] = "duite_sum",
-        [GRAPH_NODE_PARTIAL] = "duite_sum", [GRAPH_NODE_COPY] = "duite_replay",
-        [GRAPH_NODE_VIEW] = "duite_view",   [GRAPH_NODE_FLAG] = "duite_replay_while"};
-    const char *name = graph_has_body(task) ? graph->kernels[task->kernel]->name : own[task->kind];
+    const char *name =
+        graph_has_body(task) ? graph->kernels[task->kernel]->name : graph_own_name(task->kind);
     return (duite_ready){.kernel = name,
                          .number = task->number,
                          .block = task->block,
@@ -121,8 +114,10 @@ static struct graph_task *find(struct work_worker *worker)
         if (victim == worker->index)
             continue;
         task = work_queue_steal(queue = &pool->worker[victim].queue, &worker->queue);
-        if (task)
+        if (task) {
             work_bump(&worker->counts.stolen, 1);
+            trace_mark(worker->ring, TRACE_STEAL, victim, 0);
+        }
     }
     worker->left_some = task && work_queue_ranks(queue);
     return task;
@@ -171,10 +166,14 @@ void work_run(struct work_worker *worker, struct graph_task *task)
         uint64_t outer = worker->within;
         worker->within = 0;
         const struct graph_task *below = work_enters(worker, task);
+        uint32_t kind = task->kind;
         bool body = graph_run(graph, worker, task, &worker->call);
         work_leaves(worker, below);
         uint64_t end = base_ticks(), took = end > start ? end - start : 0;
         uint64_t own = took > worker->within ? took - worker->within : 0;
+        if (worker->ring)
+            work_note_task(worker, task,
+                           &(struct work_ran){start, took, took - own, kind, body, length > 1});
         worker->within = outer + took;
         work_bump(&worker->counts.tasks, body);
         work_bump(&worker->counts.busy, body ? own : 0);
@@ -197,7 +196,8 @@ void work_run(struct work_worker *worker, struct graph_task *task)
         task = worker->next;
         worker->next = NULL;
         work_bump(&worker->counts.chained, task != NULL);
-        start = next_start(worker, length, end);
+        bool wrote = worker->ring && work_note_relieve(worker);
+        start = wrote ? base_ticks() : next_start(worker, length, end);
     }
 }
 
@@ -319,6 +319,7 @@ static bool prepare(struct work_pool *pool, unsigned index, int unit)
     worker->index = index;
     worker->unit = unit;
     worker->state = pool->states + index * lines * BASE_LINE;
+    worker->ring = trace_ring(setup->trace, index);
     worker->pause = WORK_FIRST_PAUSE_SECONDS;
     worker->call = (duite_call){
         .context = setup->context, .rt = setup->rt, .rank = setup->graph->rank, .worker = index};
@@ -371,6 +372,8 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
                                                .expect = work_expect,
                                                .open = work_open,
                                                .starved = work_starved};
+    if (setup->trace && setup->comm)
+        comm_tell(setup->comm, work_note_message);
     int code = fine ? start_threads(pool) : base_no_memory("the workers");
     int watched = work_watch_start(pool, code ? 0 : setup->stuck_seconds);
     return code ? code : watched;

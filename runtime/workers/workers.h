@@ -4,6 +4,7 @@
 #include "runtime/check/check.h"
 #include "runtime/comm/comm.h"
 #include "runtime/graph/graph.h"
+#include "runtime/trace/trace.h"
 
 #include <duite_policy.h>
 
@@ -18,6 +19,7 @@ struct work_setup {
     struct graph *graph; /* its hooks are set by work_start */
     struct comm *comm;   /* NULL: one rank */
     struct check *check; /* NULL: bodies are called directly */
+    struct trace *trace; /* NULL: nobody writes down what happens */
     const duite_scheduler *scheduler;
     const duite_balancer *balancer; /* NULL: nothing moves */
     void *context;                  /* for bodies */
@@ -85,6 +87,10 @@ void work_count(struct work_pool *pool, duite_counters *counters);
 double work_block_seconds(struct work_pool *pool, uint32_t block);
 double work_other_seconds(struct work_pool *pool);
 uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home);
+
+/* For the trace: an event of worker 0; what each worker of this rank counted. Main thread. */
+void work_note(struct work_pool *pool, const struct trace_event *event);
+void work_note_counters(struct work_pool *pool, struct trace_counters *counters);
 
 /* True if the calling thread is the main thread and not inside a body. */
 bool work_may_fork(struct work_pool *pool);

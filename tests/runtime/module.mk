@@ -68,6 +68,8 @@ tests_runtime_ranks_migrate_values_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_migrate.sh tests/runtime/test_migrate_long.sh
 TESTS += tests/runtime/test_migrate.sh
 LONG_TESTS += tests/runtime/test_migrate_long.sh
+dist_check_SCRIPTS += tests/runtime/test_trace.sh
+TESTS += tests/runtime/test_trace.sh
 
 if HAVE_CHECK
 AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_rename

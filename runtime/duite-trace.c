@@ -1,0 +1,134 @@
+/* The command line of duite-trace: reads a trace once, and writes each form that is asked for. */
+#include "runtime/trace/export.h"
+#include "runtime/trace/sums.h"
+
+#include <duite.h>
+
+#include <config.h>
+
+#include <argp.h>
+#include <errno.h>
+#include <string.h>
+
+enum { FAILED = 1, BAD_INPUT = 2 };
+enum { CHECK = 256, CHROME, CSV, PAJE, PARTIAL, N_FORMS = 3 };
+
+const char *argp_program_version = "duite-trace (" PACKAGE_STRING ")";
+
+struct command {
+    const char *file;
+    const char *out[N_FORMS];
+    bool partial, check;
+};
+
+static const struct argp_option OPTIONS[] = {
+    {"paje", PAJE, "OUT", 0, "write a Paje trace, which ViTE opens", 1},
+    {"chrome", CHROME, "OUT", 0, "write Chrome's JSON, which Perfetto opens", 1},
+    {"csv", CSV, "OUT", 0, "write a line an event", 1},
+    {"check", CHECK, NULL, 0, "whether the events add up to what the workers counted", 2},
+    {"partial", PARTIAL, NULL, 0, "take what there is of a run that did not come to its end", 2},
+    {0}};
+
+static const struct {
+    int (*write)(const struct trace_run *run, FILE *file);
+    int key;
+} FORMS[N_FORMS] = {{trace_write_paje, PAJE}, {trace_write_chrome, CHROME}, {trace_write_csv, CSV}};
+
+static error_t parse(int key, char *value, struct argp_state *state)
+{
+    struct command *command = state->input;
+    for (size_t i = 0; i < N_FORMS; i++)
+        if (FORMS[i].key == key) {
+            command->out[i] = value;
+            return 0;
+        }
+    switch (key) {
+    case CHECK:
+        command->check = true;
+        return 0;
+    case PARTIAL:
+        command->partial = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (command->file)
+            argp_error(state, "%s: a second trace; one is expected", value);
+        command->file = value;
+        return 0;
+    case ARGP_KEY_NO_ARGS:
+        argp_error(state, "the file of a trace is expected");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp ARGP = {
+    .options = OPTIONS,
+    .parser = parse,
+    .args_doc = "TRACE",
+    .doc = "Says what a trace has (duite-cloth --trace), or turns it into forms that viewers open. "
+           "OUT may be - for standard output. The files TRACE.1, TRACE.2, ... of the other ranks "
+           "are expected beside TRACE.\v"
+           "Exit codes: 0 done, 1 a file could not be written or --check found a difference, 2 the "
+           "trace or the command line is wrong."};
+
+static int write_failed(const char *out)
+{
+    fprintf(stderr, "duite-trace: %s cannot be written: %s\n", out, strerror(errno));
+    return FAILED;
+}
+
+static int write_form(const struct trace_run *run, size_t form, const char *out)
+{
+    bool standard = !strcmp(out, "-");
+    FILE *file = standard ? stdout : fopen(out, "w");
+    if (!file)
+        return write_failed(out);
+    int code = FORMS[form].write(run, file);
+    errno = 0;
+    bool fine = !ferror(file) && !fflush(file);
+    if (!standard)
+        fine = !fclose(file) && fine;
+    if (code)
+        fprintf(stderr, "duite-trace: %s\n", duite_message());
+    else if (!fine)
+        return write_failed(out);
+    return code ? FAILED : 0;
+}
+
+static int work(const struct command *command, const struct trace_run *run)
+{
+    bool asked = command->check;
+    int code = 0;
+    if (run->lost)
+        fprintf(stderr, "duite-trace: warning: %s: %llu events or words were lost\n", command->file,
+                (unsigned long long)run->lost);
+    for (size_t i = 0; i < N_FORMS && !code; i++) {
+        asked |= command->out[i] != NULL;
+        if (command->out[i])
+            code = write_form(run, i, command->out[i]);
+    }
+    if (command->check && !code && !trace_sums_agree(run, stderr))
+        code = FAILED;
+    if (!asked && trace_print(run, stdout))
+        code = FAILED;
+    if (fflush(stdout) && !code)
+        code = write_failed("standard output");
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    struct command command = {0};
+    argp_err_exit_status = BAD_INPUT;
+    if (argp_parse(&ARGP, argc, argv, 0, NULL, &command))
+        return BAD_INPUT;
+    struct trace_run *run;
+    if (trace_read(&run, command.file, command.partial)) {
+        fprintf(stderr, "duite-trace: %s\n", duite_message());
+        return BAD_INPUT;
+    }
+    int code = work(&command, run);
+    trace_run_free(run);
+    return code;
+}

@@ -1,0 +1,44 @@
+/* A line an event; columns that an event has nothing for are empty. */
+#include "runtime/trace/export.h"
+
+#include <inttypes.h>
+
+struct writer {
+    const struct trace_run *run;
+    FILE *file;
+};
+
+/* In quotes, for names are the program's. */
+static void put_name(FILE *file, const char *name)
+{
+    fputc('"', file);
+    for (; *name; name++)
+        fputs(*name == '"' ? "\"\"" : (const char[]){*name, 0}, file);
+    fputc('"', file);
+}
+
+static void put(void *context, const struct trace_seen *seen)
+{
+    const struct writer *writer = context;
+    const struct trace_event *event = seen->event;
+    FILE *file = writer->file;
+    bool task = event->kind == TRACE_TASK || event->kind == TRACE_OWN;
+    bool peer = event->kind >= TRACE_STEAL && event->kind <= TRACE_DELEGATE;
+    fprintf(file, "%" PRIu32 ",%" PRIu32 ",%s,", seen->rank, seen->worker,
+            trace_kind_name(event->kind));
+    put_name(file, trace_event_name(writer->run, event));
+    fprintf(file, ",%.9f,%.9f,%.9f,%" PRIu64 ",", seen->begin, seen->took,
+            trace_lasts(writer->run, seen->rank, event->within), event->number);
+    if (peer)
+        fprintf(file, "%" PRIu32, event->kernel);
+    fprintf(file, ",%d,%d,%d\n", task && event->flags & TRACE_NESTED,
+            task && event->flags & TRACE_GUEST ? 1 : 0,
+            task && event->flags & TRACE_CHAINED ? 1 : 0);
+}
+
+int trace_write_csv(const struct trace_run *run, FILE *file)
+{
+    fputs("rank,worker,kind,name,begin,seconds,within,number,peer,nested,guest,chained\n", file);
+    trace_each(run, put, &(struct writer){run, file});
+    return 0;
+}

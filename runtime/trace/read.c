@@ -1,0 +1,379 @@
+/* Reading: every section is checked before anything points to it, so that whoever has a run need
+ * not. Files stay mapped as long as the run is there. */
+#include "runtime/trace/read.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/graph/graph.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MOST_RANKS = 1 << 24, MOST_WORKERS = 4096 };
+
+/* One file while it is read. */
+struct source {
+    struct trace_run *run;
+    struct trace_rank *rank;
+    const char *path;
+    const char *bytes;
+    size_t size, end; /* of the file; of what is to be read */
+    bool partial;
+};
+
+static int damaged(const struct source *source, size_t at, const char *what)
+{
+    return base_error(DUITE_E_ARGUMENT, "%s: byte %zu: %s", source->path, at, what);
+}
+
+/* ---- Opening ---- */
+
+static int map(struct source *source)
+{
+    struct stat status;
+    int file = open(source->path, O_RDONLY | O_CLOEXEC);
+    if (file < 0 || fstat(file, &status)) {
+        int reason = errno;
+        if (file >= 0)
+            close(file);
+        return base_error(DUITE_E_SYSTEM, "%s cannot be read: %s", source->path, strerror(reason));
+    }
+    source->size = (size_t)status.st_size;
+    void *bytes = !S_ISREG(status.st_mode) || !source->size
+                      ? MAP_FAILED
+                      : mmap(NULL, source->size, PROT_READ, MAP_PRIVATE, file, 0);
+    close(file);
+    if (bytes == MAP_FAILED)
+        return base_error(DUITE_E_ARGUMENT, "%s: byte 0: this is no trace, or an empty file",
+                          source->path);
+    source->bytes = bytes;
+    source->rank->header = bytes;
+    source->rank->bytes = source->size;
+    return DUITE_OK;
+}
+
+static int check_size(struct source *source)
+{
+    const struct trace_header *header = source->rank->header;
+    char text[200];
+    source->end = source->size;
+    if (!header->whole && source->partial)
+        return DUITE_OK;
+    if (!header->whole)
+        return damaged(source, offsetof(struct trace_header, whole),
+                       "the run did not come to its end; --partial takes what is there");
+    source->end = header->bytes;
+    if (header->bytes <= source->size)
+        return DUITE_OK;
+    snprintf(text, sizeof text, "truncated: the file had %" PRIu64 " bytes when it was written",
+             header->bytes);
+    return damaged(source, source->size, text);
+}
+
+static int check_header(struct source *source, uint32_t rank)
+{
+    const struct trace_header *header = source->rank->header;
+    const struct trace_header *first = source->run->rank[0].header;
+    char text[200];
+    size_t magic = source->size < 8 ? source->size : 8;
+    if (memcmp(source->bytes, TRACE_MAGIC, magic) != 0)
+        return damaged(source, 0, "this is no trace of duite");
+    if (source->size < sizeof *header)
+        return damaged(source, source->size, "truncated in its header");
+    if (header->order != TRACE_ORDER)
+        return damaged(source, offsetof(struct trace_header, order),
+                       "written on a machine with another order of bytes");
+    if (header->version != TRACE_VERSION) {
+        snprintf(text, sizeof text, "a trace of version %" PRIu32 "; this program reads version %d",
+                 header->version, TRACE_VERSION);
+        return damaged(source, offsetof(struct trace_header, version), text);
+    }
+    if (header->rank != rank || !header->n_ranks || !header->workers || !(header->tick > 0) ||
+        header->n_ranks > MOST_RANKS || header->workers > MOST_WORKERS)
+        return damaged(source, offsetof(struct trace_header, rank),
+                       "another rank, or nonsense, where this one was expected");
+    if (rank && (header->run != first->run || header->n_ranks != first->n_ranks))
+        return damaged(source, offsetof(struct trace_header, run),
+                       "of another run than the file of rank 0");
+    return check_size(source);
+}
+
+/* ---- Sections ---- */
+
+static int take_kernels(struct source *source, const struct trace_section *section, size_t at)
+{
+    struct trace_run *run = source->run;
+    const char *begin = (const char *)(section + 1), *end = begin + section->bytes;
+    uint32_t n = section->worker;
+    if (source->rank != run->rank || run->kernel)
+        return DUITE_OK;
+    if (section->bytes / sizeof *run->kernel < n)
+        return damaged(source, at, "fewer kernels than it says");
+    run->kernel = (const void *)begin;
+    run->kernel_name = base_alloc((n + 1) * sizeof *run->kernel_name);
+    if (!run->kernel_name)
+        return base_no_memory("a trace");
+    const char *name = (const char *)(run->kernel + n);
+    for (run->n_kernels = 0; run->n_kernels < n; run->n_kernels++) {
+        const char *stop = memchr(name, 0, (size_t)(end - name));
+        if (!stop)
+            return damaged(source, at, "a kernel's name does not end");
+        if (run->kernel[run->n_kernels].fixed > 16)
+            return damaged(source, at, "a kernel with too many modes");
+        run->kernel_name[run->n_kernels] = name;
+        name = stop + 1;
+    }
+    return DUITE_OK;
+}
+
+static bool event_is_sane(const struct trace_run *run, const struct trace_event *event)
+{
+    bool peer =
+        event->kind == TRACE_SEND || event->kind == TRACE_RECEIVE || event->kind == TRACE_DELEGATE;
+    return event->kind && event->kind < TRACE_KINDS &&
+           (event->kind != TRACE_TASK || event->kernel < run->n_kernels) &&
+           (!peer || event->kernel < run->n_ranks) && event->within <= event->took;
+}
+
+static int take_events(struct source *source, const struct trace_section *section, size_t at)
+{
+    struct trace_rank *rank = source->rank;
+    const struct trace_event *event = (const void *)(section + 1);
+    size_t n = section->bytes / sizeof *event;
+    if (section->bytes % sizeof *event || section->worker >= rank->header->workers)
+        return damaged(source, at, "events of no worker, or cut in pieces");
+    for (size_t i = 0; i < n; i++)
+        if (!event_is_sane(source->run, &event[i]))
+            return damaged(source, at + sizeof *section + i * sizeof *event,
+                           "an event that cannot be");
+    void *moved =
+        base_grow(rank->piece, &rank->pieces_capacity, rank->n_pieces + 1, sizeof *rank->piece);
+    if (!moved)
+        return base_no_memory("a trace");
+    rank->piece = moved;
+    rank->piece[rank->n_pieces++] = (struct trace_piece){event, n, section->worker};
+    rank->n_events += n;
+    return DUITE_OK;
+}
+
+static int take_words(struct source *source, const struct trace_section *section, size_t at)
+{
+    struct trace_run *run = source->run;
+    size_t n = section->bytes / sizeof *run->word;
+    if (source->rank != run->rank || section->bytes % 8)
+        return damaged(source, at, "words of the program where there are none");
+    void *moved =
+        base_grow(run->word, &run->words_capacity, run->n_words + n + 1, sizeof *run->word);
+    if (!moved)
+        return base_no_memory("a trace");
+    run->word = moved;
+    memcpy(run->word + run->n_words, section + 1, section->bytes);
+    run->n_words += n;
+    if (n && section->worker)
+        run->n_words--;
+    return DUITE_OK;
+}
+
+static int take_other(struct source *source, const struct trace_section *section, size_t at)
+{
+    struct trace_rank *rank = source->rank;
+    if (section->kind == TRACE_CLOCK) {
+        if (section->bytes != sizeof rank->clock[0] || rank->n_clocks == 2)
+            return damaged(source, at, "a clock that cannot be");
+        memcpy(&rank->clock[rank->n_clocks++], section + 1, sizeof rank->clock[0]);
+        return DUITE_OK;
+    }
+    if (section->kind != TRACE_COUNTERS || section->worker >= rank->header->workers ||
+        section->bytes != sizeof(struct trace_counters))
+        return damaged(source, at, "a section that cannot be");
+    rank->counters[section->worker] = (const void *)(section + 1);
+    return DUITE_OK;
+}
+
+static int take_sections(struct source *source)
+{
+    size_t at = sizeof(struct trace_header);
+    int code = DUITE_OK;
+    while (at < source->end && !code) {
+        const struct trace_section *section = (const void *)(source->bytes + at);
+        size_t room = source->end - at;
+        if (room < sizeof *section || section->bytes > room - sizeof *section ||
+            section->bytes % 8) {
+            if (!source->rank->header->whole)
+                return DUITE_OK; /* --partial: it was being written */
+            return damaged(source, at, "truncated in a section, or damaged");
+        }
+        if (section->kind == TRACE_KERNELS)
+            code = take_kernels(source, section, at);
+        else if (section->kind == TRACE_EVENTS)
+            code = take_events(source, section, at);
+        else if (section->kind == TRACE_PROGRAM)
+            code = take_words(source, section, at);
+        else
+            code = take_other(source, section, at);
+        at += sizeof *section + section->bytes;
+    }
+    return code;
+}
+
+/* ---- Files ---- */
+
+static int read_rank(struct trace_run *run, const char *file, uint32_t rank, bool partial)
+{
+    char *path = NULL;
+    struct trace_rank *own = &run->rank[rank];
+    if (rank ? asprintf(&path, "%s.%" PRIu32, file, rank) < 0 : !(path = strdup(file)))
+        return base_no_memory("a trace");
+    struct source source = {.run = run, .rank = own, .path = path, .partial = partial};
+    int code = map(&source);
+    if (!code)
+        code = check_header(&source, rank);
+    if (!code) {
+        own->counters = base_alloc_zero((own->header->workers + 1) * sizeof *own->counters);
+        code = own->counters ? take_sections(&source) : base_no_memory("a trace");
+    }
+    if (!code) {
+        run->whole &= own->header->whole != 0;
+        run->lost += own->header->whole ? own->header->lost : 0;
+    }
+    free(path);
+    return code;
+}
+
+/* The first moment, and how well the clocks agree. */
+static void find_zero(struct trace_run *run)
+{
+    double zero = INFINITY;
+    for (uint32_t r = 0; r < run->n_ranks; r++) {
+        const struct trace_rank *rank = &run->rank[r];
+        for (size_t i = 0; r && i < rank->n_clocks; i++)
+            run->bound = fmax(run->bound, rank->clock[i].bound);
+        if (r && !rank->n_clocks)
+            run->bound = INFINITY;
+        for (size_t p = 0; p < rank->n_pieces; p++)
+            for (size_t i = 0; i < rank->piece[p].n; i++)
+                zero = fmin(zero, trace_when(run, r, rank->piece[p].event[i].begin));
+    }
+    run->zero = zero < INFINITY ? zero : 0;
+}
+
+/* How many ranks there are; the rest is checked when the file is read. */
+static int look(const char *path, struct trace_header *header)
+{
+    struct trace_run run = {.n_ranks = 1};
+    struct trace_rank rank = {0};
+    run.rank = &rank;
+    struct source source = {.run = &run, .rank = &rank, .path = path, .partial = true};
+    int code = map(&source);
+    if (!code)
+        code = check_header(&source, 0);
+    if (!code)
+        *header = *rank.header;
+    if (rank.header)
+        munmap((void *)(uintptr_t)rank.header, rank.bytes);
+    return code;
+}
+
+static int read_all(struct trace_run *run, const char *file, bool partial)
+{
+    struct trace_header header;
+    int code = look(file, &header);
+    if (code)
+        return code;
+    run->rank = base_alloc_zero(header.n_ranks * sizeof *run->rank);
+    if (!run->rank)
+        return base_no_memory("a trace");
+    run->n_ranks = header.n_ranks;
+    code = read_rank(run, file, 0, partial);
+    for (uint32_t r = 1; r < run->n_ranks && !code; r++)
+        code = read_rank(run, file, r, partial);
+    return code;
+}
+
+int trace_read(struct trace_run **out, const char *file, bool partial)
+{
+    struct trace_run *run = base_alloc_zero(sizeof *run);
+    *out = NULL;
+    if (!run)
+        return base_no_memory("a trace");
+    run->whole = true;
+    int code = read_all(run, file, partial);
+    if (code) {
+        trace_run_free(run);
+        return code;
+    }
+    find_zero(run);
+    *out = run;
+    return DUITE_OK;
+}
+
+void trace_run_free(struct trace_run *run)
+{
+    if (!run)
+        return;
+    for (uint32_t r = 0; r < run->n_ranks; r++) {
+        if (run->rank[r].header)
+            munmap((void *)(uintptr_t)run->rank[r].header, run->rank[r].bytes);
+        free(run->rank[r].piece);
+        base_free(run->rank[r].counters);
+    }
+    base_free(run->rank);
+    base_free(run->kernel_name);
+    free(run->word);
+    base_free(run);
+}
+
+/* ---- What is asked of it ---- */
+
+/* How far the clock is ahead of rank 0's: in a straight line between what was measured. */
+static double ahead(const struct trace_rank *rank, double at)
+{
+    const struct trace_clock *c = rank->clock;
+    if (rank->n_clocks < 2 || !(c[1].at > c[0].at))
+        return c[0].ahead;
+    return c[0].ahead + (c[1].ahead - c[0].ahead) * (at - c[0].at) / (c[1].at - c[0].at);
+}
+
+double trace_lasts(const struct trace_run *run, uint32_t rank, uint64_t ticks)
+{
+    return run->rank[rank].header->tick * (double)ticks;
+}
+
+double trace_when(const struct trace_run *run, uint32_t rank, uint64_t ticks)
+{
+    const struct trace_header *header = run->rank[rank].header;
+    double at = header->tick * (double)(int64_t)(ticks - header->epoch);
+    return at - ahead(&run->rank[rank], at) - run->zero;
+}
+
+const char *trace_kind_name(unsigned kind)
+{
+    static const char *const names[] = {"",        "task",     "runtime", "idle", "steal", "send",
+                                        "receive", "delegate", "migrate", "step", "flush"};
+    return kind < TRACE_KINDS ? names[kind] : "";
+}
+
+const char *trace_event_name(const struct trace_run *run, const struct trace_event *event)
+{
+    if (event->kind == TRACE_TASK)
+        return run->kernel_name[event->kernel];
+    if (event->kind == TRACE_OWN)
+        return graph_own_name(event->kernel);
+    return trace_kind_name(event->kind);
+}
+
+uint32_t trace_first_worker(const struct trace_run *run, uint32_t rank)
+{
+    uint32_t before = 0;
+    for (uint32_t r = 0; r < rank; r++)
+        before += run->rank[r].header->workers;
+    return before;
+}

@@ -1,0 +1,196 @@
+/* Sums are of ticks where they are compared with counters, so that they agree exactly. */
+#include "runtime/trace/sums.h"
+#include "runtime/trace/export.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+struct adding {
+    const struct trace_run *run;
+    struct trace_sums *sums;
+};
+
+static void add_task(struct trace_sums *sums, const struct trace_event *event, double own)
+{
+    struct trace_kernel_sum *kernel = &sums->kernel[event->kernel];
+    sums->tasks++;
+    sums->chained += event->flags & TRACE_CHAINED ? 1 : 0;
+    sums->busy += own;
+    kernel->n++;
+    kernel->seconds += own;
+    kernel->longest = fmax(kernel->longest, own);
+}
+
+static void add(void *context, const struct trace_seen *seen)
+{
+    const struct adding *adding = context;
+    struct trace_sums *sums = adding->sums;
+    const struct trace_event *event = seen->event;
+    double within = trace_lasts(adding->run, seen->rank, event->within);
+    sums->first = fmin(sums->first, seen->begin);
+    sums->last = fmax(sums->last, seen->begin + seen->took);
+    sums->messages += event->kind == TRACE_SEND;
+    sums->bytes += event->kind == TRACE_SEND ? event->number : 0;
+    sums->received += event->kind == TRACE_RECEIVE;
+    sums->stolen += event->kind == TRACE_STEAL;
+    sums->delegated += event->kind == TRACE_DELEGATE;
+    if (event->kind == TRACE_TASK)
+        add_task(sums, event, seen->took - within);
+    if (event->kind == TRACE_OWN)
+        sums->own += seen->took - within;
+    if (event->kind == TRACE_FLUSH)
+        sums->flush += seen->took;
+    if (event->kind == TRACE_MIGRATE && !seen->rank)
+        sums->migrated += event->number;
+    if (event->kind == TRACE_IDLE) {
+        sums->idle += seen->took;
+        sums->exposed += within;
+    }
+}
+
+int trace_sum(const struct trace_run *run, struct trace_sums *sums)
+{
+    *sums =
+        (struct trace_sums){.first = INFINITY, .workers = trace_first_worker(run, run->n_ranks)};
+    sums->kernel = base_alloc_zero((run->n_kernels + 1) * sizeof *sums->kernel);
+    if (!sums->kernel)
+        return base_no_memory("sums of a trace");
+    trace_each(run, add, &(struct adding){run, sums});
+    if (!(sums->first < INFINITY))
+        sums->first = 0;
+    return DUITE_OK;
+}
+
+void trace_sums_free(struct trace_sums *sums)
+{
+    base_free(sums->kernel);
+    sums->kernel = NULL;
+}
+
+/* ---- Against the counters ---- */
+
+static void count(struct trace_counters *worker, struct trace_counters *first,
+                  const struct trace_event *event)
+{
+    bool task = event->kind == TRACE_TASK;
+    worker->tasks += task;
+    worker->chained += (task || event->kind == TRACE_OWN) && event->flags & TRACE_CHAINED ? 1 : 0;
+    worker->busy += task ? event->took - event->within : 0;
+    worker->idle += event->kind == TRACE_IDLE ? event->took : 0;
+    worker->stolen += event->kind == TRACE_STEAL;
+    worker->delegated += event->kind == TRACE_DELEGATE;
+    first->messages += event->kind == TRACE_SEND;
+    first->bytes += event->kind == TRACE_SEND ? event->number : 0;
+}
+
+static bool same(FILE *file, uint32_t rank, uint32_t worker, const char *what, uint64_t events,
+                 uint64_t counted)
+{
+    if (events != counted)
+        fprintf(file,
+                "rank %" PRIu32 " worker %" PRIu32 ": events add up to %" PRIu64
+                " %s, it counted %" PRIu64 "\n",
+                rank, worker, events, what, counted);
+    return events == counted;
+}
+
+static bool worker_agrees(FILE *file, uint32_t rank, uint32_t worker,
+                          const struct trace_counters *sum, const struct trace_counters *counted)
+{
+    bool fine = same(file, rank, worker, "tasks", sum->tasks, counted->tasks);
+    fine &= same(file, rank, worker, "stolen tasks", sum->stolen, counted->stolen);
+    fine &= same(file, rank, worker, "chained tasks", sum->chained, counted->chained);
+    fine &= same(file, rank, worker, "delegated tasks", sum->delegated, counted->delegated);
+    fine &= same(file, rank, worker, "busy ticks", sum->busy, counted->busy);
+    fine &= same(file, rank, worker, "idle ticks", sum->idle, counted->idle);
+    fine &= same(file, rank, worker, "messages", sum->messages, counted->messages);
+    return fine & same(file, rank, worker, "bytes", sum->bytes, counted->bytes);
+}
+
+static bool rank_agrees(const struct trace_run *run, FILE *file, uint32_t r,
+                        struct trace_counters *sum)
+{
+    const struct trace_rank *rank = &run->rank[r];
+    bool fine = true;
+    memset(sum, 0, rank->header->workers * sizeof *sum);
+    for (size_t p = 0; p < rank->n_pieces; p++)
+        for (size_t i = 0; i < rank->piece[p].n; i++)
+            count(&sum[rank->piece[p].worker], &sum[0], &rank->piece[p].event[i]);
+    for (uint32_t w = 0; w < rank->header->workers; w++) {
+        if (!rank->counters[w])
+            fprintf(file, "rank %" PRIu32 " worker %" PRIu32 ": no counters\n", r, w);
+        fine &= rank->counters[w] && worker_agrees(file, r, w, &sum[w], rank->counters[w]);
+    }
+    return fine;
+}
+
+bool trace_sums_agree(const struct trace_run *run, FILE *file)
+{
+    const struct trace_header *header = run->rank[0].header;
+    bool fine = true;
+    if (!run->whole || run->lost || header->first || header->end != UINT64_MAX) {
+        fputs("not all of the run was recorded: there is nothing to compare\n", file);
+        return false;
+    }
+    for (uint32_t r = 0; r < run->n_ranks && fine; r++) {
+        struct trace_counters *sum = base_alloc(run->rank[r].header->workers * sizeof *sum);
+        fine = sum && rank_agrees(run, file, r, sum);
+        base_free(sum);
+    }
+    return fine;
+}
+
+/* ---- For people ---- */
+
+static double ratio(double a, double b)
+{
+    return b > 0 ? a / b : 0;
+}
+
+static void print_kernels(const struct trace_run *run, const struct trace_sums *sums, FILE *file)
+{
+    fprintf(file, "  %-28s %10s %12s %12s %12s\n", "kernel", "tasks", "seconds", "mean us",
+            "longest us");
+    for (uint32_t k = 0; k < run->n_kernels; k++) {
+        const struct trace_kernel_sum *kernel = &sums->kernel[k];
+        if (kernel->n)
+            fprintf(file, "  %-28s %10" PRIu64 " %12.6f %12.3f %12.3f\n", run->kernel_name[k],
+                    kernel->n, kernel->seconds, 1e6 * ratio(kernel->seconds, (double)kernel->n),
+                    1e6 * kernel->longest);
+    }
+    fprintf(file, "  %-28s %10s %12.6f\n", "(the runtime's own)", "", sums->own);
+}
+
+int trace_print(const struct trace_run *run, FILE *file)
+{
+    struct trace_sums sums;
+    int code = trace_sum(run, &sums);
+    if (code)
+        return code;
+    double span = sums.last - sums.first, all = span * sums.workers;
+    fprintf(file, "  ranks         %" PRIu32 ", workers %" PRIu32 "\n", run->n_ranks, sums.workers);
+    fprintf(file, "  time          %.6f s\n", span);
+    fprintf(file,
+            "  tasks         %" PRIu64 ", stolen %" PRIu64 ", chained %" PRIu64
+            ", delegated %" PRIu64 "\n",
+            sums.tasks, sums.stolen, sums.chained, sums.delegated);
+    fprintf(file, "  busy          %.1f %%, idle %.1f %%, of that with messages awaited %.1f %%\n",
+            100 * ratio(sums.busy, all), 100 * ratio(sums.idle, all),
+            100 * ratio(sums.exposed, all));
+    fprintf(file, "  messages      %" PRIu64 ", %.3f MB\n", sums.messages,
+            1e-6 * (double)sums.bytes);
+    if (run->n_ranks > 1)
+        fprintf(file, "  clocks        agree within %.3g us\n", 1e6 * run->bound);
+    fprintf(file, "  writing       %.6f s\n", sums.flush);
+    if (run->lost)
+        fprintf(file, "  LOST          %" PRIu64 " events or words of the program\n", run->lost);
+    if (!run->whole)
+        fputs("  NOT WHOLE     the run did not come to its end\n", file);
+    print_kernels(run, &sums, file);
+    trace_sums_free(&sums);
+    return DUITE_OK;
+}

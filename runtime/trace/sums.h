@@ -1,0 +1,32 @@
+#ifndef DUITE_TRACE_SUMS_H
+#define DUITE_TRACE_SUMS_H
+
+#include "runtime/trace/read.h"
+
+#include <stdio.h>
+
+/* What the events of a run add up to. */
+struct trace_sums {
+    uint64_t tasks, stolen, chained, delegated, messages, bytes, received, migrated;
+    double busy, idle, exposed, flush; /* s, over all workers; the last: of writing */
+    double own;                        /* in the runtime's own tasks */
+    double first, last;                /* s: when the first event begins, and the last one ends */
+    uint32_t workers;
+    struct trace_kernel_sum {
+        uint64_t n;
+        double seconds, longest;
+    } * kernel; /* run->n_kernels; to be freed */
+};
+
+/* Errors: memory. */
+int trace_sum(const struct trace_run *run, struct trace_sums *sums);
+void trace_sums_free(struct trace_sums *sums);
+
+/* Whether the events of each worker add up to what it counted. Only runs of which all was recorded
+ * and nothing was lost can be asked. Prints each difference. */
+bool trace_sums_agree(const struct trace_run *run, FILE *file);
+
+/* For people. */
+int trace_print(const struct trace_run *run, FILE *file);
+
+#endif

@@ -1,0 +1,82 @@
+#ifndef DUITE_TRACE_TRACE_H
+#define DUITE_TRACE_TRACE_H
+
+#include "runtime/data/object.h"
+#include "runtime/graph/record.h"
+#include "runtime/trace/ring.h"
+
+#include <mpi.h>
+
+/* What a running rank writes down. Workers put events into rings of their own; the main thread
+ * writes them to the file between steps, and a worker its own between two tasks when its ring gets
+ * full. What does not fit is counted as lost. A failure of the file ends the writing, not the run:
+ * it is told by trace_close. */
+struct trace;
+
+struct trace_setup {
+    const char *file; /* of rank 0; the others add .RANK */
+    uint64_t first, end;
+    int rank, n_ranks;
+    unsigned workers;
+    const duite_kernel *const *kernels;
+    size_t n_kernels;
+};
+
+/* Opens the file of this rank, which is replaced. Local. Errors: memory; DUITE_E_SYSTEM if it
+ * cannot be written. */
+int trace_open(struct trace **trace, const struct trace_setup *setup);
+
+/* Aligns the clocks, at the start and at the end: rank 0 makes round trips with one rank after the
+ * other, and keeps the shortest. Ranks that do not answer within some seconds stay unaligned. On a
+ * duplicate of the communicator, made the first time. Nobody else calls MPI meanwhile. Collective,
+ * main thread. */
+void trace_align(struct trace *trace, MPI_Comm mpi);
+
+/* Ends it: writes what is left. `counters`: one a worker, or NULL for want of memory. Returns 0, or
+ * DUITE_E_SYSTEM with the sentence if not everything was written. Main thread; no task runs. */
+int trace_close(struct trace *trace, const struct trace_counters *counters);
+/* Frees it, whatever became of it; `mpi`: MPI can be asked. Collective then. NULL is fine. */
+void trace_free(struct trace *trace, bool mpi);
+
+/* NULL on a rank without a trace. */
+struct trace_ring *trace_ring(struct trace *trace, unsigned worker);
+
+/* Writes the worker's ring if it is nearly full and nobody else is writing. By that worker, between
+ * two tasks. */
+void trace_relieve(struct trace *trace, struct trace_ring *ring);
+/* Writes all rings. Main thread. */
+void trace_flush(struct trace *trace);
+
+/* Whether this step is recorded; all, and what comes before them; whether events are at the moment.
+ */
+bool trace_wants(const struct trace *trace, uint64_t step);
+bool trace_wants_all(const struct trace *trace);
+bool trace_is_on(const struct trace *trace);
+/* Recording begins or ends with a step, when no task runs; forks: so far. Main thread. */
+void trace_switch(struct trace *trace, bool on, uint64_t step, uint64_t forks);
+
+/* ---- What the main program calls. Main thread; nothing on other ranks than 0. NULL is fine. ----
+ */
+
+void trace_object(struct trace *trace, const struct data_table *table, duite_object name);
+void trace_freed(struct trace *trace, duite_object name);
+void trace_hint(struct trace *trace, duite_object name, double weight, size_t n,
+                const duite_object *neighbours, const double *edge_weights);
+void trace_follow(struct trace *trace, duite_object name, duite_object leader);
+/* Objects without homes, before they are settled; and afterwards the homes of these. */
+void trace_settles(struct trace *trace, const struct data_table *table);
+void trace_settled(struct trace *trace, const struct data_table *table);
+/* Homes of objects that moved. */
+void trace_moved(struct trace *trace, const struct data_table *table, const uint32_t *slots,
+                 size_t n);
+void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct graph_how *how,
+                size_t n, const duite_object *objects);
+void trace_set(struct trace *trace, duite_object name);
+void trace_get(struct trace *trace, duite_object name, int rank, uint64_t from);
+void trace_wait(struct trace *trace, uint64_t from);
+void trace_graph(struct trace *trace, uint32_t name, const struct graph_record *record);
+/* Before it begins; rounds: at most. */
+void trace_replay(struct trace *trace, uint32_t name, const struct graph_record *record,
+                  const duite_object *flag, uint64_t rounds);
+
+#endif

@@ -1,0 +1,77 @@
+/* The trace as the main program sees it: it is opened with the workers, recording changes between
+ * steps while no task is left, and it is closed before the workers go. */
+#include "runtime/instance.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+int traced_open(duite *rt, const duite_options *options)
+{
+    return trace_open(&rt->trace, &(struct trace_setup){.file = options->trace,
+                                                        .first = options->trace_first,
+                                                        .end = options->trace_end,
+                                                        .rank = rt->graph.rank,
+                                                        .n_ranks = rt->graph.n_ranks,
+                                                        .workers = rt->threads,
+                                                        .kernels = rt->graph.kernels,
+                                                        .n_kernels = rt->graph.n_kernels});
+}
+
+void traced_begin(duite *rt)
+{
+    if (!rt->trace)
+        return;
+    trace_align(rt->trace, rt->mpi);
+    if (trace_wants_all(rt->trace))
+        trace_switch(rt->trace, true, 0, 0);
+}
+
+int duite_trace_step(duite *rt, uint64_t step)
+{
+    int code = program_enter(rt, "duite_trace_step");
+    if (code || !rt->trace || rt->traced)
+        return code;
+    bool wants = trace_wants(rt->trace, step);
+    if (wants != trace_is_on(rt->trace)) {
+        code = program_meet(rt, "duite_trace_step");
+        trace_flush(rt->trace);
+        trace_switch(rt->trace, wants, step, rt->graph.root.forks);
+    }
+    work_note(rt->pool,
+              &(struct trace_event){.begin = base_ticks(), .number = step, .kind = TRACE_STEP});
+    trace_flush(rt->trace);
+    return code;
+}
+
+static int close_file(duite *rt)
+{
+    struct trace_counters *counters = base_alloc_zero(rt->threads * sizeof *counters);
+    if (counters)
+        work_note_counters(rt->pool, counters);
+    if (trace_is_on(rt->trace))
+        trace_switch(rt->trace, false, 0, rt->graph.root.forks);
+    int code = trace_close(rt->trace, counters);
+    base_free(counters);
+    return code;
+}
+
+int traced_end(duite *rt, const char *call)
+{
+    if (!rt->trace || rt->traced)
+        return DUITE_OK;
+    int code = program_meet(rt, call);
+    if (rt->comm && !code) {
+        comm_hold(rt->comm);
+        trace_align(rt->trace, rt->mpi);
+        comm_let_go(rt->comm);
+    }
+    rt->traced = true;
+    const int closed = close_file(rt);
+    return code ? code : closed;
+}
+
+int duite_trace_end(duite *rt)
+{
+    int code = program_enter(rt, "duite_trace_end");
+    return code ? code : traced_end(rt, "duite_trace_end");
+}

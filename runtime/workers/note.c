@@ -1,0 +1,67 @@
+/* What workers tell the trace. Each writes to its own ring, and nothing where there is none. */
+#include "runtime/workers/internal.h"
+
+void work_note_task(struct work_worker *worker, const struct graph_task *task,
+                    const struct work_ran *ran)
+{
+    if (graph_has_body(task) && !ran->body)
+        return; /* poison kept it from running */
+    bool nested;
+    struct trace_event event = {.begin = ran->start,
+                                .took = ran->took,
+                                .within = ran->within,
+                                .number = graph_main_number(task, &nested),
+                                .kernel = ran->body ? task->kernel : ran->kind,
+                                .kind = ran->body ? TRACE_TASK : TRACE_OWN};
+    if (nested)
+        event.flags |= TRACE_NESTED;
+    if (task->kind == GRAPH_GUEST)
+        event.flags |= TRACE_GUEST;
+    if (ran->chained)
+        event.flags |= TRACE_CHAINED;
+    trace_put(worker->ring, &event);
+}
+
+bool work_note_relieve(struct work_worker *worker)
+{
+    bool full = trace_is_full(worker->ring);
+    if (full)
+        trace_relieve(worker->pool->setup.trace, worker->ring);
+    return full;
+}
+
+void work_note_idle(struct work_worker *worker, uint64_t idle, uint64_t exposed)
+{
+    trace_put(worker->ring, &(struct trace_event){.begin = worker->idle_since,
+                                                  .took = idle,
+                                                  .within = exposed < idle ? exposed : idle,
+                                                  .kind = TRACE_IDLE});
+}
+
+void work_note_message(void *who, bool sends, int peer, size_t bytes)
+{
+    const struct work_worker *worker = who;
+    if (worker)
+        trace_mark(worker->ring, sends ? TRACE_SEND : TRACE_RECEIVE, (uint32_t)peer, bytes);
+}
+
+void work_note(struct work_pool *pool, const struct trace_event *event)
+{
+    trace_put(pool->worker[0].ring, event);
+}
+
+void work_note_counters(struct work_pool *pool, struct trace_counters *counters)
+{
+    for (unsigned i = 0; i < pool->setup.threads; i++) {
+        struct counts *from = &pool->worker[i].counts;
+        counters[i] = (struct trace_counters){
+            .tasks = atomic_load_explicit(&from->tasks, memory_order_relaxed),
+            .stolen = atomic_load_explicit(&from->stolen, memory_order_relaxed),
+            .chained = atomic_load_explicit(&from->chained, memory_order_relaxed),
+            .delegated = atomic_load_explicit(&from->delegated, memory_order_relaxed),
+            .busy = atomic_load_explicit(&from->busy, memory_order_relaxed),
+            .idle = atomic_load_explicit(&from->idle, memory_order_relaxed)};
+    }
+    if (pool->setup.comm)
+        comm_count(pool->setup.comm, &counters[0].messages, &counters[0].bytes);
+}

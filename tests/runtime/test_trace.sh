@@ -1,0 +1,149 @@
+#!/bin/sh
+# Traces: their sums are the counters, viewers can read them, broken files are refused with the byte, and a file that cannot
+# be written costs nothing but itself.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+skip_unless ./duite-trace
+plan_later
+
+cloth() { # FILE OPTION...: a traced run in the scratch folder
+    file=$1
+    shift
+    "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --set 'cloths[0].mesh.grid.nx=30' --set 'cloths[0].mesh.grid.ny=30' \
+        --set 'cloths[0].pins=[]' --grain 100 --end 0.004 --quiet --trace "$scratch/$file" "$@"
+}
+
+untraced() {
+    "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --set 'cloths[0].mesh.grid.nx=30' --set 'cloths[0].mesh.grid.ny=30' \
+        --set 'cloths[0].pins=[]' --grain 100 --end 0.004 --quiet --report "$scratch/plain.json"
+}
+
+hash_of() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$scratch/$1"; }
+
+same_result() { untraced && test -n "$(hash_of plain.json)" && test "$(hash_of plain.json)" = "$(hash_of "$1")"; }
+
+ok "a traced run on 2 threads" cloth two --threads 2 --report "$scratch/two.json"
+ok "the result is that of an untraced one" same_result two.json
+ok "events add up to the counters" ./duite-trace --check "$scratch/two"
+ok "traced on 2 ranks" eval 'limited "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n 2 "$DUITE_CLOTH" \
+    "$srcdir/cloth/scenes/sheet.yaml" --set "cloths[0].mesh.grid.nx=30" --set "cloths[0].mesh.grid.ny=30" \
+    --set "cloths[0].pins=[]" --grain 100 --end 0.004 --threads 2 --balance scatter --quiet --trace "$scratch/ranks"'
+ok "events of 2 ranks add up, messages and delegated tasks too" ./duite-trace --check "$scratch/ranks"
+
+bound_is_told() {
+    ./duite-trace "$scratch/ranks" | sed -n 's/.*agree within \(.*\) us/\1/p' | awk '{ exit !($1 > 0 && $1 < 1e5) }'
+}
+ok "clocks are aligned within a bound" bound_is_told
+
+# ---- What viewers get ----
+
+csv_is_whole() { # 12 columns, every kind of number a number, spans of a worker nested or apart
+    ./duite-trace "$scratch/$1" --csv "$scratch/$1.csv" && awk -F, '
+        NR == 1 { if (NF != 12 || $1 != "rank") bad = 1; next }
+        NF != 12 || $5 !~ /^-?[0-9.]+$/ || $6 !~ /^[0-9.]+$/ { bad = 1 }
+        { n[$3]++ }
+        END { exit bad || !n["task"] || !n["idle"] || !n["step"] || NR < 100 }' "$scratch/$1.csv"
+}
+paje_is_whole() { # times in order, each pop after a push of its own worker, none left
+    ./duite-trace "$scratch/$1" --paje "$scratch/$1.paje" && awk '
+        /^[6789] / { if ($2 + 0 < last) { print "goes back: " $0; bad = 1 } last = $2 + 0 }
+        $1 == 5 { known[$3] = 1 }
+        $1 == 7 { if (!known[$4]) bad = 1; depth[$4]++; n++ }
+        $1 == 8 { if (--depth[$4] < 0) { print "nothing to pop: " $0; bad = 1 } }
+        END { for (w in depth) if (depth[w]) { print "left open: " w; bad = 1 } exit bad || n < 100 }' "$scratch/$1.paje"
+}
+chrome_is_json() {
+    ./duite-trace "$scratch/$1" --chrome "$scratch/$1.json" && python3 -c '
+import json, sys
+events = json.load(open(sys.argv[1]))["traceEvents"]
+tasks = [e for e in events if e.get("cat") == "task"]
+assert len(tasks) > 100 and all(e["ph"] == "X" and e["dur"] >= 0 and e["ts"] > -1e6 for e in tasks)
+assert {e["pid"] for e in tasks} == set(range(int(sys.argv[2])))' "$scratch/$1.json" "$2"
+}
+for trace in two ranks; do
+    ok "CSV of $trace" csv_is_whole $trace
+    ok "Paje of $trace" paje_is_whole $trace
+    if command -v python3 > /dev/null; then
+        ok "Chrome's JSON of $trace" chrome_is_json $trace "$(test $trace = two && echo 1 || echo 2)"
+    else
+        skip "Chrome's JSON of $trace" "no python3"
+    fi
+done
+
+# ---- Steps ----
+
+ok "the steps 1 and 2 alone" cloth some --threads 2 --trace-steps 1:3
+steps_are() { test "$(./duite-trace "$scratch/some" --csv - | awk -F, '$3 == "step" { printf "%s ", $8 }')" = "1 2 "; }
+ok "... have no other steps" steps_are
+fewer() { test "$(./duite-trace "$scratch/some" --csv - | wc -l)" -lt "$(wc -l < "$scratch/two.csv")"; }
+ok "... and fewer events" fewer
+exits 1 "... which cannot be compared with counters" ./duite-trace --check "$scratch/some"
+exits 2 "steps that end before they begin" cloth none --trace-steps 3:1
+exits 2 "steps that are no numbers" cloth none --trace-steps x
+exits 2 "steps without a file" "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --trace-steps 1:2
+
+# ---- What is no trace ----
+
+refused() { # FILE WORDS: refused with a sentence that has these words
+    if ./duite-trace "$scratch/$1" > "$scratch/said" 2>&1; then return 1; else test $? = 2 || return 1; fi
+    grep "$2" "$scratch/said"
+}
+bytes=$(wc -c < "$scratch/two")
+head -c $((bytes - 100)) "$scratch/two" > "$scratch/short"
+ok "a truncated file" refused short "byte $((bytes - 100)): truncated: the file had $bytes bytes"
+head -c 50 "$scratch/two" > "$scratch/short"
+ok "truncated in the header" refused short "byte 50: truncated in its header"
+: > "$scratch/short"
+ok "an empty file" refused short "byte 0: "
+cp "$srcdir/README.md" "$scratch/foreign"
+ok "a foreign file" refused foreign "byte 0: this is no trace"
+cp "$scratch/two" "$scratch/newer"
+printf '\002' | dd of="$scratch/newer" bs=1 seek=8 conv=notrunc 2> /dev/null
+ok "a newer one" refused newer "byte 8: a trace of version 2"
+cp "$scratch/two" "$scratch/turned"
+printf '\001\002\003\004' | dd of="$scratch/turned" bs=1 seek=12 conv=notrunc 2> /dev/null
+ok "one of another order of bytes" refused turned "byte 12: written on a machine with another order of bytes"
+cp "$scratch/two" "$scratch/damaged"
+printf '\377\377\377' | dd of="$scratch/damaged" bs=1 seek=$((bytes / 2)) conv=notrunc 2> /dev/null
+# Whatever was hit there, nothing but a sentence comes of it.
+survives() { ./duite-trace "$scratch/damaged" > "$scratch/said" 2>&1 || test $? -le 2; }
+ok "a damaged one" survives
+printf '\377' | dd of="$scratch/damaged" bs=1 seek=104 conv=notrunc 2> /dev/null
+ok "a damaged section" refused damaged "byte 104: "
+mv "$scratch/ranks.1" "$scratch/away"
+ok "a rank that is missing" refused ranks "ranks.1 cannot be read"
+cp "$scratch/two" "$scratch/ranks.1"
+ok "a file of another run" refused ranks "ranks.1: byte [0-9]*: another rank"
+ok "no file" refused nothing "nothing cannot be read"
+
+# ---- What cannot be written ----
+
+exits 2 "no such folder" cloth nowhere/trace
+exits 2 "the scene itself" eval 'cp "$srcdir/cloth/scenes/sheet.yaml" "$scratch/own.yaml" &&
+    "$DUITE_CLOTH" "$scratch/own.yaml" --trace "$scratch/own.yaml"'
+if test -w /dev/full; then
+    exits 1 "a full disk at the start" "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --end 0.004 --trace /dev/full
+else
+    skip "a full disk at the start" "no /dev/full"
+fi
+full() { # the disk has room for 32 KiB: the run ends, and says at its end that the trace is not whole
+    status=0
+    (ulimit -f 64 && cloth full --threads 2 --report "$scratch/full.json") > "$scratch/said" 2>&1 || status=$?
+    cat "$scratch/said"
+    test $status = 1 && grep "full is not whole: File too large" "$scratch/said" && test "$(hash_of full.json)" = "$(hash_of plain.json)"
+}
+ok "a disk that fills up costs the rest of the trace" full
+kept() { ./duite-trace "$scratch/full" > "$scratch/said" 2>&1 && cat "$scratch/said" && grep "events or words were lost" "$scratch/said"; }
+ok "what was written before is kept, and the loss counted" kept
+
+killed() {
+    cloth killed --end 20 & victim=$!
+    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+        sleep 0.1
+        test ! -s "$scratch/killed" || test "$(wc -c < "$scratch/killed")" -lt 100000 || break
+    done
+    kill -9 $victim
+    wait $victim || true
+    refused killed "byte 28: the run did not come to its end" && ./duite-trace --partial "$scratch/killed" | grep "NOT WHOLE"
+}
+ok "a run that was killed" killed

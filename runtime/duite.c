@@ -435,25 +435,3 @@ int duite_abandon(duite **out)
     *out = NULL;
     return DUITE_OK;
 }
-
-/* ---- Who am I ---- */
-
-int duite_rank(const duite *rt)
-{
-    return rt ? rt->graph.rank : -1;
-}
-
-int duite_ranks(const duite *rt)
-{
-    return rt ? rt->graph.n_ranks : -1;
-}
-
-unsigned duite_threads(const duite *rt)
-{
-    return rt ? rt->threads : 0;
-}
-
-int duite_oversubscribed(const duite *rt)
-{
-    return rt ? rt->oversubscribed : 0;
-}

@@ -206,3 +206,25 @@ int duite_set_sized(duite *rt, duite_object object, const void *values, size_t c
 {
     return set(rt, object, values, &count, "duite_set_sized");
 }
+
+/* ---- Who am I ---- */
+
+int duite_rank(const duite *rt)
+{
+    return rt ? rt->graph.rank : -1;
+}
+
+int duite_ranks(const duite *rt)
+{
+    return rt ? rt->graph.n_ranks : -1;
+}
+
+unsigned duite_threads(const duite *rt)
+{
+    return rt ? rt->threads : 0;
+}
+
+int duite_oversubscribed(const duite *rt)
+{
+    return rt ? rt->oversubscribed : 0;
+}

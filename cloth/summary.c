@@ -157,6 +157,19 @@ static void add_solver(struct output_report *json, const struct summary *summary
     output_report_integer(json, "factors_shifted", report->factors_shifted);
 }
 
+static void add_energies(struct output_report *json, const struct flow_report *report)
+{
+    const struct flow_energy *start = &report->start, *end = &report->end;
+    output_report_number(json, "energy_start",
+                         start->kinetic + start->elastic + start->gravity + start->loads);
+    output_report_number(json, "energy_end",
+                         end->kinetic + end->elastic + end->gravity + end->loads);
+    output_report_number(json, "energy_kinetic", end->kinetic);
+    output_report_number(json, "energy_elastic", end->elastic);
+    output_report_number(json, "energy_gravity", end->gravity);
+    output_report_number(json, "energy_loads", end->loads);
+}
+
 static void add_runtime(struct output_report *json, const struct summary *summary)
 {
     const duite_counters *counters = &summary->report->counters;
@@ -190,6 +203,7 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
     add_setting(json, summary);
     add_times(json, summary->report);
     add_solver(json, summary);
+    add_energies(json, summary->report);
     add_runtime(json, summary);
     output_report_number(json, "max_stretch", summary->report->max_stretch);
     add_hash(json, "state_hash", summary->report->state_hash);

@@ -44,7 +44,20 @@ void model_free(struct model *model)
     free(model->cloths);
     free(model->planes);
     free(model->name);
+    free(model->h_place);
     *model = (struct model){0};
+}
+
+const char *model_integrator_name(enum model_integrator integrator)
+{
+    static const char *const names[MODEL_INTEGRATORS] = {
+        [MODEL_EXPLICIT_EULER] = "explicit_euler",
+        [MODEL_SYMPLECTIC_EULER] = "symplectic_euler",
+        [MODEL_VERLET] = "verlet",
+        [MODEL_RK4] = "rk4",
+        [MODEL_IMPLICIT_EULER] = "implicit_euler",
+    };
+    return names[integrator];
 }
 
 int model_fail(const char *place, struct cloth_error *error, const char *format, ...)

@@ -96,6 +96,7 @@ enum model_integrator {
     MODEL_RK4,              /* the classical Runge-Kutta method */
     MODEL_IMPLICIT_EULER
 };
+enum { MODEL_INTEGRATORS = MODEL_IMPLICIT_EULER + 1 };
 enum model_stop {
     MODEL_STOP_RELATIVE,
     MODEL_STOP_ABSOLUTE,
@@ -119,7 +120,8 @@ struct model {
     struct model_probe *probes;
     double gravity[3]; /* m/s^2 */
 
-    double h;   /* s; time is an integer count of h/1024 */
+    double h; /* s; time is an integer count of h/1024 */
+    char *h_place;
     double end; /* s; N = round(end / h) steps */
     double fps; /* frames a second; frame k follows the step that ends nearest to k / fps */
     struct model_rest rest;
@@ -140,6 +142,9 @@ static inline int model_is_implicit(const struct model *model)
 {
     return model->integrator >= MODEL_IMPLICIT_EULER;
 }
+
+/* Its name in scenes. */
+const char *model_integrator_name(enum model_integrator integrator);
 
 /* Frees what the model owns and clears it. */
 void model_free(struct model *model);

@@ -1,6 +1,7 @@
 libduite_cloth_la_SOURCES += \
     cloth/flow/model.c cloth/flow/model.h \
     cloth/flow/run.c cloth/flow/run.h \
+    cloth/flow/tables/limit.c \
     cloth/flow/tables/neighbours.c \
     cloth/flow/tables/picks.c \
     cloth/flow/tables/particles.c \
@@ -12,11 +13,13 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/bodies.h \
     cloth/flow/tasks/cg.c \
     cloth/flow/tasks/deal.c \
+    cloth/flow/tasks/energy.c \
     cloth/flow/tasks/explicit.c \
     cloth/flow/tasks/far.c \
     cloth/flow/tasks/finish.c \
     cloth/flow/tasks/frames.c \
     cloth/flow/tasks/kernels_cg.c \
+    cloth/flow/tasks/kernels_energy.c \
     cloth/flow/tasks/kernels_explicit.c \
     cloth/flow/tasks/kernels_report.c \
     cloth/flow/tasks/kernels_step.c \

@@ -41,7 +41,8 @@ const duite_kernel *const *flow_kernels(void)
         &flow_kick_second, &flow_runge, &flow_implicit, &flow_matrix, &flow_begin, &flow_pack,
         &flow_start, &flow_pass, &flow_scalars, &flow_velocity_dv, &flow_velocity_a, &flow_position,
         &flow_collide, &flow_status, &flow_frame, &flow_stretch, &flow_watch_block, &flow_probe,
-        &flow_row, &flow_most, &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
+        &flow_row, &flow_most, &flow_energy, &flow_level, &flow_seconds, &flow_tell,
+        &flow_system_part, &flow_system_save,
         /* With one */
         &flow_basis, &flow_basis_copies, &flow_couple, &flow_factor_coarse, &flow_factor,
         &flow_start_turned, &flow_begin_coarse, &flow_pass_turned, &flow_scalars_turned,
@@ -71,6 +72,35 @@ static void warn(struct flow *flow, const struct flow_particles *particles)
                  "they stay where they are without a pin");
     describe_odd(flow->warning[2], size, "loads on vertices", &particles->loaded,
                  "they move nothing");
+}
+
+/* An explicit step that lets vibrations grow is made all the same. */
+static int warn_of_h(struct flow *flow, struct cloth_error *error)
+{
+    const struct model *model = flow->model;
+    const char *name = model_integrator_name(model->integrator);
+    const char *place = model->h_place ? model->h_place : "h";
+    struct flow_limit limit;
+    if (model_is_implicit(model))
+        return CLOTH_OK;
+    if (flow_limit_find(&flow->source, &limit, error))
+        return CLOTH_E_MEMORY;
+    const double most = flow_limit_of(&limit, model->integrator), turn = model->h * limit.omega;
+    const size_t size = sizeof flow->warning[4];
+    if (!(most > 0))
+        snprintf(
+            flow->warning[4], size,
+            "%.200s: no step is short enough for %s without damping: the fastest vibration "
+            "(up to %g rad/s, at vertex %u of cloth '%.60s') can grow %g times in each of %g s",
+            place, name, limit.omega, limit.vertex, limit.cloth->name, sqrt(1 + turn * turn),
+            model->h);
+    else if (model->h > most)
+        snprintf(
+            flow->warning[4], size,
+            "%.200s: steps of %g s are beyond the limit of %s, %g s: the fastest vibration (up "
+            "to %g rad/s, at vertex %u of cloth '%.60s') can grow in each",
+            place, model->h, name, most, limit.omega, limit.vertex, limit.cloth->name);
+    return CLOTH_OK;
 }
 
 /* Keeps where the vertices are that no block has. */
@@ -107,7 +137,8 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     flow->partition_hash = flow->source.blocks.hash;
     warn(flow, &flow->source.particles);
     flow_turned_choose(flow, flow->source.blocks.n_blocks);
-    if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error))
+    if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||
+        warn_of_h(flow, error))
         return CLOTH_E_MEMORY;
     return keep_rest(flow, &flow->source.particles, error);
 }
@@ -237,6 +268,8 @@ static int run_steps(struct flow_state *state)
         code = flow_initialise(state);
     if (!code)
         code = flow_watch(state, 0);
+    if (!code)
+        code = flow_energy_get(state, &state->report->start);
     if (!code)
         code = flow_frames(state, 0);
     uint64_t step = 0;

@@ -9,6 +9,12 @@
 
 /* Runs a model on a duite runtime. The same on every rank. */
 
+/* Energies, J. Those of weights and of constant forces are zero at the origin. By symplectic Euler,
+ * whose v is that of half a step before x, `kinetic` is that of v half a step on. */
+struct flow_energy {
+    double kinetic, elastic, gravity, loads;
+};
+
 /* What was run and how long it took; filled on every rank, the same on all of them but for times.
  */
 struct flow_report {
@@ -26,6 +32,7 @@ struct flow_report {
     uint64_t
         factors_shifted; /* blocks times steps whose IC(0) needed a shift, or gave way to SSOR */
     double max_stretch;  /* largest length / rest length of any stretch spring at the end */
+    struct flow_energy start, end; /* of all vertices */
     uint64_t state_hash;
     uint64_t last_frame; /* the last frame written */
     bool stopped;        /* a stop was requested before the end */

@@ -3,6 +3,8 @@ libduite_cloth_la_SOURCES += \
     cloth/physics/element.h \
     cloth/physics/fold.c \
     cloth/physics/hinge.c \
+    cloth/physics/energy.c cloth/physics/energy.h \
+    cloth/physics/limit.c cloth/physics/limit.h \
     cloth/physics/particle.c cloth/physics/particle.h \
     cloth/physics/spring.c cloth/physics/spring.h \
     cloth/physics/stage.c cloth/physics/stage.h cloth/physics/tiny.h \

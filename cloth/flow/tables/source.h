@@ -149,6 +149,19 @@ void flow_watched_free(struct flow_watched *watched);
  * CLOTH_E_MEMORY. Local. */
 int flow_watched_header(const struct flow_watched *watched, const struct model *model, char **text,
                         struct cloth_error *error);
+/* The fastest vibration that a model can have where it starts, from above, and where it is. */
+struct flow_limit {
+    double omega; /* rad/s; 0: there are no springs */
+    double drag;  /* 1/s: drag over mass there */
+    double along; /* 1/s: damping of springs in that vibration over the mass */
+    uint32_t vertex;
+    const struct model_cloth *cloth; /* that vertex is of its mesh */
+};
+/* Error: CLOTH_E_MEMORY. Local. */
+int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
+                    struct cloth_error *error);
+/* The longest step, s, in which an integrator does not let it grow; infinite for implicit ones. */
+double flow_limit_of(const struct flow_limit *limit, enum model_integrator integrator);
 
 /* The cloth of a vertex, and its first vertex; looked for from the last one found. */
 struct flow_cloths {

@@ -119,9 +119,7 @@ int flow_step_explicit(struct flow_state *state, uint64_t step)
         return verlet(state, step);
     case MODEL_RK4:
         return runge(state, step);
-    case MODEL_EXPLICIT_EULER:
-    case MODEL_IMPLICIT_EULER:
-        break;
+    default:
+        return euler(state, step);
     }
-    return euler(state, step);
 }

@@ -24,6 +24,21 @@ static int largest_stretch(struct flow_state *state)
     return code ? code : duite_get(state->rt, state->most, &state->report->max_stretch);
 }
 
+int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
+{
+    double sums[FLOW_ENERGIES];
+    const struct flow_args args = {.step = (uint32_t)state->report->steps};
+    int code = flow_energies(state, args, state->energy);
+    if (!code)
+        code = duite_get(state->rt, state->energy, sums);
+    if (!code)
+        *energy = (struct flow_energy){.kinetic = sums[FLOW_ENERGY_MOTION],
+                                       .elastic = sums[FLOW_ENERGY_ELASTIC],
+                                       .gravity = sums[FLOW_ENERGY_GRAVITY],
+                                       .loads = sums[FLOW_ENERGY_LOADS]};
+    return code;
+}
+
 /* Seconds in bodies, of all ranks in rank order. No other task runs meanwhile. */
 static int sum_seconds(struct flow_state *state)
 {
@@ -211,6 +226,8 @@ static int count(struct flow_state *state)
 int flow_finish(struct flow_state *state)
 {
     int code = largest_stretch(state);
+    if (!code)
+        code = flow_energy_get(state, &state->report->end);
     if (!code)
         code = hash_all(state);
     if (!code)

@@ -97,6 +97,7 @@ void flow_objects_make(struct flow_state *state)
     make_shared(state, DUITE_I64, 1, &state->token);
     make_shared(state, DUITE_F64, 1, &state->most);
     make_shared(state, DUITE_F64, FLOW_PARTS, &state->seconds);
+    make_shared(state, DUITE_F64, FLOW_ENERGIES, &state->energy);
     make_shared(state, DUITE_I64, FLOW_TELL, &state->told);
 }
 
@@ -129,9 +130,10 @@ int flow_objects_free(struct flow_state *state)
         code = code ? code : failed;
     }
     const duite_object all[] = {
-        state->sums[0],   state->sums[1],   state->scalars[0], state->scalars[1], state->status[0],
-        state->status[1], state->token,     state->most,       state->seconds,    state->told,
-        state->coarse,    state->motion[0], state->motion[1],  state->peaks[0],   state->peaks[1]};
+        state->sums[0],   state->sums[1],   state->scalars[0], state->scalars[1],
+        state->status[0], state->status[1], state->token,      state->most,
+        state->seconds,   state->told,      state->coarse,     state->motion[0],
+        state->motion[1], state->peaks[0],  state->peaks[1],   state->energy};
     const int failed = release(state->rt, sizeof all / sizeof *all, all);
     return code ? code : failed;
 }

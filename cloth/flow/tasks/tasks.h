@@ -59,7 +59,8 @@ struct flow {
     void *shared;              /* planes, slots and copies that the above point to */
 
     /* Rank 0 only. */
-    char warning[4][512]; /* of all vertices, pinned ones, loaded ones, the solver; empty: none */
+    char warning[5]
+                [512]; /* of all vertices, pinned ones, loaded ones, the solver, h; empty: none */
     struct flow_source source; /* until the tables are dealt */
     uint32_t *vertex;          /* by place; from then on */
     struct flow_rest rest;
@@ -118,6 +119,14 @@ enum { FLOW_PART_COARSE = SOLVE_DOTS, FLOW_PART = FLOW_PART_COARSE + SOLVE_COARS
 enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
 /* Numbers of a watched vertex: position, velocity, reaction. */
 enum { FLOW_SEEN = 9 };
+/* Energies, J (kernels_energy.c). */
+enum {
+    FLOW_ENERGY_MOTION,
+    FLOW_ENERGY_ELASTIC,
+    FLOW_ENERGY_GRAVITY,
+    FLOW_ENERGY_LOADS,
+    FLOW_ENERGIES
+};
 /* Indices into what rank 0 tells, I64 x 2. */
 enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
 
@@ -189,6 +198,8 @@ extern const duite_kernel
 extern const duite_kernel flow_stretch;     /* table, r x, w stretch; rims of x */
 extern const duite_kernel flow_most;        /* w stretch; stretch of all blocks */
 extern const duite_kernel flow_seconds;     /* cw seconds: of this rank */
+extern const duite_kernel flow_energy;      /* table, r x, r v, cw energies; rims of x */
+extern const duite_kernel flow_level;       /* table, r v, rw f: v where x is */
 extern const duite_kernel flow_tell;        /* w told: what rank 0 knows */
 extern const duite_kernel flow_system_part; /* table, r f, r a, r dv, r x, r v, w part */
 extern const duite_kernel flow_system_save; /* rw token; parts of all blocks: on rank 0 */
@@ -231,7 +242,7 @@ struct flow_state {
     struct flow_far far;
     duite_graph solve; /* a round of conjugate gradients */
     duite_object sums[2], scalars[2], status[2], token, most, seconds, told;
-    duite_object peaks[2];
+    duite_object peaks[2], energy;
     duite_object coarse, motion[2]; /* with a coarse part: its factor and its part of s */
     struct flow_head head;
     duite_object *parcel;  /* a block: what travels to rank 0 on its own; empty in between */
@@ -372,6 +383,12 @@ void flow_watch_make(struct flow_state *state);
 int flow_watch(struct flow_state *state, uint64_t steps);
 /* Finds whether the run rests by then. For each number of steps in order, when they are done. */
 int flow_rest(struct flow_state *state, uint64_t steps);
+/* Forks what adds up the energies of the present state in `sums` (F64, FLOW_ENERGIES). args: those
+ * of the step that ends there. */
+int flow_energies(struct flow_state *state, struct flow_args args, duite_object sums);
+
+/* The energies of the present state. Waits for it. */
+int flow_energy_get(struct flow_state *state, struct flow_energy *energy);
 
 /* The step after which a frame is written. */
 uint64_t flow_frame_step(const struct model *model, uint64_t frame);

@@ -131,6 +131,9 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
 {
     int time = scene_tree_get(tree, 1, "time"), end = scene_tree_get(tree, time, "end");
     model->h = scene_tree_number(tree, time, "h");
+    model->h_place = scene_build_place(tree, scene_tree_get(tree, time, "h"), error);
+    if (!model->h_place)
+        return error->code;
     model->end = scene_tree_number(tree, time, "end");
     model->fps = scene_tree_number(tree, time, "fps");
     const int rest = scene_tree_get(tree, time, "rest");
@@ -154,16 +157,6 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
     return CLOTH_OK;
 }
 
-/* Which of n words; the schema lets no other pass. */
-static int word_of(const char *const *words, size_t n, const char *word)
-{
-    int found = 0;
-    for (size_t i = 0; i < n; i++)
-        if (!strcmp(words[i], word))
-            found = (int)i;
-    return found;
-}
-
 static enum model_preconditioner preconditioner_of(const char *word)
 {
     static const char *const words[] = {[MODEL_PLAIN] = "none",
@@ -171,17 +164,20 @@ static enum model_preconditioner preconditioner_of(const char *word)
                                         [MODEL_IC0] = "ic0",
                                         [MODEL_COARSE] = "coarse",
                                         [MODEL_IC0_COARSE] = "ic0_coarse"};
-    return (enum model_preconditioner)word_of(words, sizeof words / sizeof *words, word);
+    int found = MODEL_PLAIN;
+    for (int i = 0; i < (int)(sizeof words / sizeof *words); i++)
+        if (!strcmp(words[i], word))
+            found = i;
+    return (enum model_preconditioner)found;
 }
 
 static enum model_integrator integrator_of(const char *word)
 {
-    static const char *const words[] = {[MODEL_EXPLICIT_EULER] = "explicit_euler",
-                                        [MODEL_SYMPLECTIC_EULER] = "symplectic_euler",
-                                        [MODEL_VERLET] = "verlet",
-                                        [MODEL_RK4] = "rk4",
-                                        [MODEL_IMPLICIT_EULER] = "implicit_euler"};
-    return (enum model_integrator)word_of(words, sizeof words / sizeof *words, word);
+    int found = MODEL_IMPLICIT_EULER;
+    for (int i = 0; i < MODEL_INTEGRATORS; i++)
+        if (!strcmp(model_integrator_name((enum model_integrator)i), word))
+            found = i;
+    return (enum model_integrator)found;
 }
 
 static enum solve_format format_of(const char *word)

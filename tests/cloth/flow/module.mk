@@ -26,6 +26,10 @@ check_PROGRAMS += tests/cloth/flow/test_integrators
 tests_cloth_flow_test_integrators_SOURCES = tests/cloth/flow/test_integrators.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_integrators_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/flow/test_integrators
+check_PROGRAMS += tests/cloth/flow/test_limits
+tests_cloth_flow_test_limits_SOURCES = tests/cloth/flow/test_limits.c $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_limits_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/flow/test_limits
 endif
 dist_check_SCRIPTS += tests/cloth/flow/test_ranks.sh
 TESTS += tests/cloth/flow/test_ranks.sh

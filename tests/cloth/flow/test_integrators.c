@@ -251,6 +251,38 @@ START_TEST(verlet_after_contact)
 }
 END_TEST
 
+/* ---- Energies ---- */
+
+/* Of the weight, by the last three positions: v is the mean of two steps. */
+START_TEST(energies)
+{
+    const double h = 1e-4, load = 0.3;
+    struct setup setup;
+    struct record record = {0};
+    setup_weight(&setup);
+    setup_load(&setup, 1, 0, load, 0);
+    setup.cloth.velocity[1] = 0.7;
+    setup.model.h = h;
+    setup.model.end = 0.2;
+    setup.model.fps = 1 / h;
+    run(&record, &setup, SCHEMES + _i);
+    const size_t n = record.frames - 1;
+    const double y = record_at(&record, n, 1, 1), v = (y - record_at(&record, n - 1, 1, 1)) / h;
+    const struct flow_energy *start = &record.report.start, *end = &record.report.end;
+    /* symplectic Euler: v half a kick on */
+    ck_assert_double_eq_tol(start->kinetic, 0.5 * M * 0.7 * 0.7, 1e-4);
+    ck_assert_double_eq(start->elastic, 0);
+    ck_assert_double_eq_tol(start->gravity, -M * G, 1e-15);
+    ck_assert_double_eq_tol(start->loads, load, 1e-15);
+    ck_assert_double_eq_tol(end->kinetic, 0.5 * M * v * v, 2e-3 * start->kinetic);
+    ck_assert_double_eq_tol(end->elastic, 0.5 * K * (y + 1) * (y + 1), 1e-14);
+    ck_assert_double_eq_tol(end->gravity, M * G * y, 1e-14);
+    ck_assert_double_eq_tol(end->loads, -load * y, 1e-14);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("integrators");
@@ -258,6 +290,7 @@ int main(void)
     tcase_add_loop_test(cases, free_fall, 0, N_SCHEMES);
     tcase_add_loop_test(cases, decay_and_frequency, 0, N_SCHEMES);
     tcase_add_test(cases, verlet_after_contact);
+    tcase_add_loop_test(cases, energies, 0, N_SCHEMES);
     suite_add_tcase(suite, cases);
     TCase *alone = tcase_create("alone"); /* one block is no work for several ranks */
     tcase_add_loop_test(alone, order, 0, N_SCHEMES);

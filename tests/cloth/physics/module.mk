@@ -23,4 +23,10 @@ check_PROGRAMS += tests/cloth/physics/test_triangle
 tests_cloth_physics_test_triangle_SOURCES = tests/cloth/physics/test_triangle.c tests/cloth/physics/elements.c tests/cloth/physics/elements.h
 tests_cloth_physics_test_triangle_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/physics/test_triangle
+check_PROGRAMS += tests/cloth/physics/test_energy tests/cloth/physics/test_limit
+tests_cloth_physics_test_energy_SOURCES = tests/cloth/physics/test_energy.c
+tests_cloth_physics_test_energy_LDADD = $(CLOTH_TEST_LIBS)
+tests_cloth_physics_test_limit_SOURCES = tests/cloth/physics/test_limit.c
+tests_cloth_physics_test_limit_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/physics/test_energy tests/cloth/physics/test_limit
 endif

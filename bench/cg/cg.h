@@ -76,7 +76,7 @@ struct measure_series *cg_series(struct measure *measure, const struct bench_opt
 struct measure_series *cg_petsc(struct measure *measure, const struct bench_options *options,
                                 const char *run, const char *state, const char *more);
 
-extern const struct bench_case cg_spring_150, cg_spring_400, cg_solve, cg_jacobi, cg_error, cg_step,
-    cg_realtime;
+extern const struct bench_case cg_spring_150, cg_spring_400, cg_half_150, cg_solve, cg_jacobi,
+    cg_error, cg_step, cg_realtime;
 
 #endif

@@ -117,17 +117,20 @@ static void stop_by_default(struct cg_session *s)
     stop_by(s, s->stop, s->tolerance, s->most);
 }
 
-/* solver=plain or jacobi: that preconditioner; without the word the default one. */
+/* solver=plain or jacobi: that preconditioner; format=half or half_float: that format; without the
+ * words the default ones. */
 static int ready(struct cg_session *s, struct serve_request *request)
 {
-    char settings[sizeof s->settings], scheduler[40], solver[16];
+    char settings[sizeof s->settings], scheduler[40], solver[16], format[16];
     const struct model *model = &s->plan.model;
     const unsigned threads = (unsigned)serve_number(request, "threads");
     const uint64_t quick = serve_number(request, "quick");
     int code = state_ready(&s->state, request);
     serve_word(request, "scheduler", scheduler, sizeof scheduler);
     serve_word(request, "solver", solver, sizeof solver);
-    snprintf(settings, sizeof settings, "%s %u %s %s", s->state.name, threads, scheduler, solver);
+    serve_word(request, "format", format, sizeof format);
+    snprintf(settings, sizeof settings, "%s %u %s %s %s", s->state.name, threads, scheduler, solver,
+             format);
     if (code || !strcmp(settings, s->settings))
         return code;
     code = end(s, code);
@@ -139,6 +142,8 @@ static int ready(struct cg_session *s, struct serve_request *request)
         s->plan.model.preconditioner = MODEL_PLAIN;
     if (!strcmp(solver, "jacobi"))
         s->plan.model.preconditioner = MODEL_JACOBI;
+    if (*format)
+        s->plan.model.format = strcmp(format, "half") ? SOLVE_HALF_FLOAT : SOLVE_HALF;
     s->stop = model->stop;
     s->tolerance = model->tolerance;
     s->most = model->max_iterations;

@@ -55,9 +55,10 @@ PHYS_INLINE void fetch_row(enum solve_format format, const struct solve_values *
 {
     static const size_t bytes[] = {
         [SOLVE_SPRINGS] = 32, [SOLVE_HALF] = 72, [SOLVE_HALF_FLOAT] = 36}; /* an entry */
-    const phys_vec *const row[] = {rows->dv + a, rows->r + a, rows->p + a, rows->q + a};
-    for (int k = 0; k < 4; k++)
-        fetch(row[k], AHEAD * sizeof **row, 1);
+    fetch(rows->dv + a, AHEAD * sizeof(phys_vec), 1);
+    fetch(rows->r + a, AHEAD * sizeof(phys_vec), 1);
+    fetch(rows->p + a, AHEAD * sizeof(phys_vec), 1);
+    fetch(rows->q + a, AHEAD * sizeof(phys_vec), 1);
     for (size_t line = 0; line < 3 * bytes[format]; line += LINE) /* of three entries */
         fetch((const char *)values->entry + bytes[format] * i, BYTES_AHEAD + line, 0);
 }

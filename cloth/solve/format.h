@@ -49,6 +49,15 @@ PHYS_INLINE struct solve_values solve_values_of(enum solve_format format, size_t
 typedef double solve_four __attribute__((vector_size(32), aligned(8), may_alias));
 typedef float solve_four_floats __attribute__((vector_size(16), aligned(4), may_alias));
 
+/* One by one, which compilers make one conversion of: of __builtin_convertvector GCC 12 makes two
+ * and puts them together. */
+PHYS_INLINE void solve_widen(const float *from, phys_vec *to)
+{
+    const solve_four_floats *four = (const void *)from;
+    *to = (phys_vec){(double)(*four)[0], (double)(*four)[1], (double)(*four)[2],
+                     (double)(*four)[3]};
+}
+
 /* N of one entry as it lies in memory, three lanes and rubbish each. */
 struct solve_nine {
     phys_vec diagonal, upper, lower;
@@ -63,11 +72,9 @@ PHYS_INLINE void solve_nine_of(enum solve_format format, const void *entry, size
         n->lower = *(const solve_four *)(const void *)(at + 6);
     } else {
         const float *at = (const float *)entry + SOLVE_NINE * i;
-        const solve_four_floats *const four[] = {(const void *)at, (const void *)(at + 3),
-                                                 (const void *)(at + 6)};
-        n->diagonal = __builtin_convertvector(*four[0], phys_vec);
-        n->upper = __builtin_convertvector(*four[1], phys_vec);
-        n->lower = __builtin_convertvector(*four[2], phys_vec);
+        solve_widen(at, &n->diagonal);
+        solve_widen(at + 3, &n->upper);
+        solve_widen(at + 6, &n->lower);
     }
 }
 

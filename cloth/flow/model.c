@@ -40,6 +40,8 @@ void model_free(struct model *model)
         free_pick(&model->probes[i].pick);
     }
     free(model->probes);
+    free(model->motions);
+    free(model->keys);
     free(model->materials);
     free(model->cloths);
     free(model->planes);

@@ -3,6 +3,7 @@
 
 #include "cloth/base/error.h"
 #include "cloth/mesh/mesh.h"
+#include "cloth/physics/motion.h"
 #include "cloth/solve/format.h"
 
 #include <stdbool.h>
@@ -35,9 +36,16 @@ struct model_pick {
     char *place;
 };
 
-/* Holds vertices where they start. */
+/* Holds vertices where they start, or moves them from there. */
 struct model_pin {
     struct model_pick pick;
+    uint32_t motion; /* number of the model's motion, from 1; 0: it does not move */
+};
+
+/* Key frames first .. first + n - 1 of the model's, about a point (m). */
+struct model_motion {
+    uint32_t first, n; /* n > 0 */
+    double about[3];
 };
 
 /* A constant force on vertices, newton each. */
@@ -118,7 +126,10 @@ struct model {
     struct model_cloth *cloths;
     struct model_plane *planes;
     struct model_probe *probes;
-    double gravity[3]; /* m/s^2 */
+    uint32_t n_motions, n_keys;
+    struct model_motion *motions;
+    struct phys_key *keys; /* of each motion in ascending order; at time 0 it is no motion */
+    double gravity[3];     /* m/s^2 */
 
     double h; /* s; time is an integer count of h/1024 */
     char *h_place;

@@ -21,6 +21,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/kernels_cg.c \
     cloth/flow/tasks/kernels_energy.c \
     cloth/flow/tasks/kernels_explicit.c \
+    cloth/flow/tasks/kernels_pins.c \
     cloth/flow/tasks/kernels_report.c \
     cloth/flow/tasks/kernels_step.c \
     cloth/flow/tasks/kernels_turned.c \

@@ -5,6 +5,7 @@ libduite_cloth_la_SOURCES += \
     cloth/physics/hinge.c \
     cloth/physics/energy.c cloth/physics/energy.h \
     cloth/physics/limit.c cloth/physics/limit.h \
+    cloth/physics/motion.c cloth/physics/motion.h \
     cloth/physics/particle.c cloth/physics/particle.h \
     cloth/physics/spring.c cloth/physics/spring.h \
     cloth/physics/stage.c cloth/physics/stage.h cloth/physics/tiny.h \

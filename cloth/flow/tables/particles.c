@@ -29,15 +29,20 @@ struct holder {
     uint32_t first; /* vertex of the cloth */
     const struct model_cloth *cloth;
     const struct model_pin *pin;
+    uint32_t torn; /* a vertex that another pin moves in another way, or holds; UINT32_MAX: none */
 };
 
 static void hold(void *to, uint32_t vertex)
 {
-    const struct holder *holder = to;
+    struct holder *holder = to;
     struct flow_particles *p = holder->particles;
     const uint32_t v = holder->first + vertex;
     if (!p->used[v] && p->free[v] != 0)
         note(&p->pinned, holder->cloth, vertex, holder->pin->pick.place);
+    if (p->motion && p->free[v] == 0 && p->motion[v] != holder->pin->motion)
+        holder->torn = vertex;
+    if (p->motion)
+        p->motion[v] = holder->pin->motion;
     p->free[v] = 0;
 }
 
@@ -46,7 +51,7 @@ static int pins(struct flow_particles *p, uint32_t first, const struct model_clo
 {
     int code = CLOTH_OK;
     for (uint32_t i = 0; i < cloth->n_pins && !code; i++) {
-        struct holder holder = {p, first, cloth, cloth->pins + i};
+        struct holder holder = {p, first, cloth, cloth->pins + i, UINT32_MAX};
         const struct flow_picking picking = {.pick = &cloth->pins[i].pick,
                                              .cloth = cloth,
                                              .used = p->used + first,
@@ -54,6 +59,11 @@ static int pins(struct flow_particles *p, uint32_t first, const struct model_clo
                                              .visit = hold,
                                              .to = &holder};
         code = flow_pick(&picking, error);
+        if (!code && holder.torn != UINT32_MAX)
+            code = model_fail(cloth->pins[i].pick.place, error,
+                              "vertex %u of cloth '%.60s' is held by two pins that do not move "
+                              "alike; one is expected",
+                              holder.torn, cloth->name);
     }
     return code;
 }
@@ -163,13 +173,15 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     return code;
 }
 
-static int allocate(struct flow_particles *p, uint32_t n, bool loaded, struct cloth_error *error)
+static int allocate(struct flow_particles *p, uint32_t n, bool loaded, bool moved,
+                    struct cloth_error *error)
 {
     p->n = n;
     p->used = cloth_alloc(n, 1, error);
     p->free = cloth_alloc(n, 1, error);
     p->mass = cloth_alloc(n, sizeof *p->mass, error);
-    if (!p->used || !p->free || !p->mass)
+    p->motion = moved ? cloth_alloc(n, sizeof *p->motion, error) : NULL;
+    if (!p->used || !p->free || !p->mass || (moved && !p->motion))
         return CLOTH_E_MEMORY;
     if (!loaded)
         return CLOTH_OK;
@@ -191,7 +203,7 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     if (n >= UINT32_MAX)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%zu vertices are too many; at most 4294967294 are possible", n);
-    int code = allocate(particles, (uint32_t)n, loaded, error);
+    int code = allocate(particles, (uint32_t)n, loaded, model->n_motions, error);
     uint32_t first = 0;
     for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
         code = cloth_particles(particles, first, model, model->cloths + c, error);
@@ -232,6 +244,7 @@ void flow_particles_free(struct flow_particles *particles)
     free(particles->used);
     free(particles->free);
     free(particles->mass);
+    free(particles->motion);
     free(particles->load);
     *particles = (struct flow_particles){0};
 }

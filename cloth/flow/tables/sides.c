@@ -128,6 +128,19 @@ static void fill_rows(const struct flow_source *source, const struct flow_table 
     }
 }
 
+static void fill_moved(const struct flow_source *source, const struct flow_table *t,
+                       const struct flow_image *image)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; n < t->n_moved; i++) {
+        const uint32_t motion = source->particles.motion[source->blocks.vertex[t->first + i]];
+        if (!motion)
+            continue;
+        image->moved[n][0] = i;
+        image->moved[n++][1] = motion;
+    }
+}
+
 static void fill_watched(const struct flow_source *source, const struct flow_table *t,
                          const struct flow_image *image)
 {
@@ -240,6 +253,7 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *i
     qsort(side, (size_t)t->n_inner + t->n_cut, sizeof *side, compare_sides);
     fill_rows(source, t, &arrays);
     fill_watched(source, t, &arrays);
+    fill_moved(source, t, &arrays);
     fill_inner(t, side, &arrays);
     fill_cut(source, t, side + t->n_inner, &arrays);
     fill_sides(source, t, side, &arrays);

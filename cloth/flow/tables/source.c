@@ -106,6 +106,15 @@ static void count_watched(struct flow_source *source)
     }
 }
 
+/* How many vertices of a block pins move. */
+static uint32_t count_moved(const struct flow_source *source, const struct flow_table *shape)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; source->particles.motion && i < shape->n; i++)
+        n += source->particles.motion[source->blocks.vertex[shape->first + i]] != 0;
+    return n;
+}
+
 static int find_shapes(struct flow_source *source, struct cloth_error *error)
 {
     const struct mesh_blocks *blocks = &source->blocks;
@@ -120,6 +129,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         shape->n = blocks->start[b + 1] - blocks->start[b];
         find_range(blocks, shape);
         find_cost(source, shape);
+        shape->n_moved = count_moved(source, shape);
     }
     count_watched(source);
     return flow_source_meet(source, error);

@@ -43,6 +43,7 @@ static void lay(const struct flow_table *t, struct room *room, struct flow_image
     image->cut_entry = next(room, slots * sizeof *image->cut_entry);
     image->at = next(room, t->format == SOLVE_SPRINGS ? 0 : sides * sizeof *image->at);
     image->n_held = next(room, sizeof *image->n_held);
+    image->moved = next(room, t->n_moved * sizeof *image->moved);
     image->watched = next(room, t->n_watched * sizeof *image->watched);
     image->stretch = next(room, sides);
 }
@@ -70,6 +71,7 @@ void flow_table_open(struct flow_table *t, const void *image)
     t->cut = arrays.cut;
     t->rim = arrays.rim;
     t->watched = arrays.watched;
+    t->moved = (const uint32_t(*)[2])arrays.moved;
     t->end = (const uint32_t(*)[2])arrays.end;
     t->copy_end = (const uint32_t(*)[2])arrays.copy_end;
     t->stiffness = arrays.stiffness;

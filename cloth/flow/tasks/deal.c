@@ -16,7 +16,7 @@ enum {
 /* What is told of a block; the neighbours of all blocks follow. */
 struct shape {
     uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_rim, n_held, lowest, highest;
-    uint32_t n_watched, n_slots, n_copies;
+    uint32_t n_watched, n_moved, n_slots, n_copies;
     float cost;
 };
 
@@ -42,6 +42,8 @@ static int tell_head(const duite_call *call)
     head->n_slots = source->neighbours.n_slots;
     head->n_copies = source->neighbours.n_copies;
     head->shared_bytes = flow->model->n_planes * sizeof *flow->model->planes +
+                         flow->model->n_keys * sizeof *flow->model->keys +
+                         flow->model->n_motions * sizeof *flow->model->motions +
                          head->n_blocks * (sizeof(struct shape) + sizeof(uint32_t)) +
                          (2 * (uint64_t)head->n_slots + head->n_copies) * sizeof(uint32_t);
     for (uint32_t b = 0; b < head->n_blocks; b++) {
@@ -68,7 +70,10 @@ static int tell_shared(const duite_call *call)
     const struct flow *flow = flow_of(call);
     const struct flow_source *source = &flow->source;
     char *to = duite_out(call, 0, char);
-    to = put(to, flow->model->planes, flow->model->n_planes * sizeof *flow->model->planes);
+    const struct model *model = flow->model;
+    to = put(to, model->planes, model->n_planes * sizeof *model->planes);
+    to = put(to, model->keys, model->n_keys * sizeof *model->keys);
+    to = put(to, model->motions, model->n_motions * sizeof *model->motions);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
         const struct shape shape = {.n = t->n,
@@ -79,6 +84,7 @@ static int tell_shared(const duite_call *call)
                                     .n_rim = t->n_rim,
                                     .n_held = t->n_held,
                                     .n_watched = t->n_watched,
+                                    .n_moved = t->n_moved,
                                     .lowest = t->lowest,
                                     .highest = t->highest,
                                     .n_slots = t->n_slots,
@@ -124,6 +130,8 @@ int flow_share_head(struct flow_state *state)
     flow->told.cloths = NULL;
     flow->told.planes = NULL;
     flow->told.probes = NULL;
+    flow->told.keys = NULL;
+    flow->told.motions = NULL;
     flow->model = &flow->told;
     flow->n_steps = head->n_steps;
     flow->partition_hash = head->partition_hash;
@@ -137,7 +145,9 @@ static void unpack(struct flow_state *state)
     struct flow *flow = state->flow;
     struct flow_tables *tables = &flow->tables;
     flow->told.planes = flow->shared;
-    const struct shape *shape = (const void *)(flow->told.planes + flow->model->n_planes);
+    flow->told.keys = (void *)(flow->told.planes + flow->model->n_planes);
+    flow->told.motions = (void *)(flow->told.keys + flow->model->n_keys);
+    const struct shape *shape = (const void *)(flow->told.motions + flow->model->n_motions);
     const uint32_t *slot = (const void *)(shape + tables->n_blocks);
     const uint32_t *copies = slot + state->head.n_slots;
     const uint32_t *copy = copies + state->head.n_slots + tables->n_blocks;
@@ -155,6 +165,7 @@ static void unpack(struct flow_state *state)
                                                .n_rim = shape->n_rim,
                                                .n_held = shape->n_held,
                                                .n_watched = shape->n_watched,
+                                               .n_moved = shape->n_moved,
                                                .lowest = shape->lowest,
                                                .highest = shape->highest,
                                                .n_slots = shape->n_slots,

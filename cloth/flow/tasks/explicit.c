@@ -70,11 +70,12 @@ static int symplectic(struct flow_state *state, uint64_t step)
     return code ? code : fork_position(state, step, FLOW_AT(v));
 }
 
-/* f, without the drag, stays from step to step: what ends one begins the next, unless contact moved
- * something in between. */
+/* f, without the drag, stays from step to step: what ends one begins the next, unless contact or
+ * pins moved something in between. */
 static int verlet(struct flow_state *state, uint64_t step)
 {
-    const bool stale = step == 0 || state->flow->model->n_planes;
+    const struct model *model = state->flow->model;
+    const bool stale = step == 0 || model->n_planes || model->n_motions;
     int code = stale ? fork_force(state, step, &flow_force_free) : DUITE_OK;
     if (!code)
         code = flow_fork_all(state, &flow_kick_first, args_of(step),

@@ -36,6 +36,21 @@ const duite_kernel flow_watch_block = {.name = "watch",
                                        .rest = DUITE_R,
                                        .args_size = ARGS};
 
+/* m a - f of a row that is held, a the acceleration that its pin gives it. */
+static void reaction(const duite_call *call, const struct flow_table *t, uint32_t row,
+                     const phys_vec *force, phys_vec *pull)
+{
+    const struct model *model = flow_of(call)->model;
+    *pull = (phys_vec){0};
+    if (t->free[row] != 0)
+        return;
+    for (uint32_t i = 0; i < t->n_moved; i++)
+        if (t->moved[i][0] == row)
+            flow_due_acceleration(model, t->moved[i][1], flow_args_of(call)->step * model->h,
+                                  t->position + row, pull);
+    *pull = t->mass[row] * *pull - *force;
+}
+
 static int probe(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
@@ -44,10 +59,12 @@ static int probe(const duite_call *call)
     double *to = duite_out(call, 4, double);
     for (uint32_t i = 0; i < t->n_watched; i++, to += FLOW_SEEN) {
         const uint32_t row = t->watched[i];
+        phys_vec pull;
+        reaction(call, t, row, force + row, &pull);
         for (int c = 0; c < 3; c++) {
             to[c] = x[row][c];
             to[3 + c] = v[row][c];
-            to[6 + c] = t->free[row] != 0 ? 0 : 0 - force[row][c];
+            to[6 + c] = pull[c];
         }
     }
     return 0;

@@ -68,8 +68,12 @@ int flow_step(struct flow_state *state, uint64_t step)
     const double nothing[FLOW_STATUS] = {0};
     int code = duite_set(state->rt, state->status[step % 2], nothing);
     if (!code)
+        code = flow_pins_drive(state, step);
+    if (!code)
         code =
             model_is_implicit(model) ? step_implicit(state, step) : flow_step_explicit(state, step);
+    if (!code)
+        code = flow_pins_place(state, step);
     if (!code && model->n_planes)
         code = flow_fork_all(state, &flow_collide, args,
                              FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),

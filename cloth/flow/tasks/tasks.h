@@ -56,7 +56,7 @@ struct flow {
     uint32_t n_vertices, n_triangles;
     uint64_t n_steps, partition_hash;
     struct flow_tables tables; /* shapes */
-    void *shared;              /* planes, slots and copies that the above point to */
+    void *shared;              /* planes, key frames, slots and copies that the above point to */
 
     /* Rank 0 only. */
     char warning[5]
@@ -141,8 +141,9 @@ struct flow_head {
 
 /* Kernels. Objects in order; "table" (r) is that of the task's block, "rims" are one of each
  * neighbour, in slot order. Vectors are rows of four doubles. */
-extern const duite_kernel flow_tell_head;   /* w head: on rank 0 */
-extern const duite_kernel flow_tell_shared; /* w shared: planes, shapes, neighbours; on rank 0 */
+extern const duite_kernel flow_tell_head; /* w head: on rank 0 */
+extern const duite_kernel
+    flow_tell_shared; /* w shared: planes, motions, shapes, neighbours; on rank 0 */
 extern const duite_kernel flow_table_make;  /* w table of a block: on rank 0 */
 extern const duite_kernel flow_table_keep;  /* rw table: where the block lives */
 extern const duite_kernel flow_collect;     /* r vector of a block, w it without its fourth lane */
@@ -190,6 +191,8 @@ extern const duite_kernel flow_position;   /* table, r v, rw x, w rim of x, cw s
 extern const duite_kernel flow_collide;    /* table, rw x, rw v, w rim of x, w rim of v */
 extern const duite_kernel flow_status;     /* cw status: on rank 0, whether a stop was asked for */
 extern const duite_kernel flow_frame;      /* rw token; x of all blocks: on rank 0 */
+extern const duite_kernel flow_drive;      /* table, r x, rw v, w rim of v */
+extern const duite_kernel flow_place;      /* table, rw x, w rim of x */
 extern const duite_kernel
     flow_watch_block;                 /* table, r x, r v, cw status, cw peaks (max); rims of x */
 extern const duite_kernel flow_probe; /* table, r x, r v, r force, w seen */
@@ -376,6 +379,14 @@ void flow_far_take(struct flow_state *state);
 void flow_far_free(struct flow_state *state);
 void flow_far_make(struct flow_state *state); /* flow_run_begin does */
 int flow_far_pack(struct flow_state *state, uint32_t block, int to);
+
+/* Fork what moves the pins of a step: before its forces, and when x has moved. */
+int flow_pins_drive(struct flow_state *state, uint64_t step);
+int flow_pins_place(struct flow_state *state, uint64_t step);
+/* In a body: the acceleration that a motion gives a vertex that starts there in the step that ends
+ * at a time, from the places at its ends and one step before. */
+void flow_due_acceleration(const struct model *model, uint32_t motion, double time,
+                           const phys_vec *start, phys_vec *a);
 
 /* Objects of what is watched. A failure is returned by the next get. */
 void flow_watch_make(struct flow_state *state);

@@ -111,6 +111,9 @@ int flow_rest(struct flow_state *state, uint64_t steps)
     if (code)
         return code;
     const double time = (double)steps * model->h;
+    for (uint32_t i = 0; i < model->n_motions; i++)
+        if (model->keys[model->motions[i].first + model->motions[i].n - 1].time > time)
+            state->moved = time; /* a pin will move yet */
     if (!(sqrt(peaks[FLOW_PEAK_SPEED]) <= model->rest.speed))
         state->moved = time;
     state->resting = steps > 0 && time - state->moved >= model->rest.hold;

@@ -19,10 +19,13 @@ int scene_build_cloths(struct model *model, const struct scene_tree *tree,
 int scene_build_probes(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
 
-/* What picks vertices: `kind` is the key that says how, `place` the node for messages. */
-int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int place,
-                     yaml_node_pair_t kind, const struct model_cloth *cloth,
-                     struct cloth_error *error);
+/* What picks vertices: a map with one of the keys vertices, nearest, box. */
+int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
+                     const struct model_cloth *cloth, struct cloth_error *error);
+
+/* The motion of a pin, added to the model's. */
+int scene_build_motion(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
+                       int node, struct cloth_error *error);
 
 /* That there is no `what` of this name, with those that there are. names: n strings. */
 int scene_build_no_such(const char *what, const char *name, const char *const *names, size_t n,

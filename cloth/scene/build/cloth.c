@@ -59,29 +59,29 @@ static int build_box(double (*box)[3], const struct scene_tree *tree, int node,
                            cloth->name);
 }
 
-int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int place,
-                     yaml_node_pair_t kind, const struct model_cloth *cloth,
-                     struct cloth_error *error)
+int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
+                     const struct model_cloth *cloth, struct cloth_error *error)
 {
-    const char *name = scene_tree_scalar(tree, kind.key);
-    pick->place = scene_build_place(tree, place, error);
+    const int vertices = scene_tree_get(tree, node, "vertices");
+    const int nearest = scene_tree_get(tree, node, "nearest");
+    pick->place = scene_build_place(tree, node, error);
     if (!pick->place)
         return error->code;
-    if (!strcmp(name, "vertices")) {
+    if (vertices) {
         pick->kind = MODEL_PICK_VERTICES;
-        return build_vertices(&pick->vertices, &pick->n_vertices, tree, kind.value, cloth, error);
+        return build_vertices(&pick->vertices, &pick->n_vertices, tree, vertices, cloth, error);
     }
-    if (!strcmp(name, "nearest")) {
+    if (nearest) {
         pick->kind = MODEL_PICK_NEAREST;
-        scene_tree_vector(tree, kind.value, 3, pick->point);
+        scene_tree_vector(tree, nearest, 3, pick->point);
         return CLOTH_OK;
     }
     pick->kind = MODEL_PICK_BOX;
-    return build_box(pick->box, tree, kind.value, cloth, error);
+    return build_box(pick->box, tree, scene_tree_get(tree, node, "box"), cloth, error);
 }
 
-static int build_pins(struct model_cloth *cloth, const struct scene_tree *tree, int node,
-                      struct cloth_error *error)
+static int build_pins(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
+                      int node, struct cloth_error *error)
 {
     int list = scene_tree_get(tree, node, "pins");
     size_t n = scene_tree_length(tree, list);
@@ -91,9 +91,10 @@ static int build_pins(struct model_cloth *cloth, const struct scene_tree *tree, 
     cloth->n_pins = (uint32_t)n;
     int code = CLOTH_OK;
     for (size_t i = 0; !code && i < n; i++) {
-        int pin = scene_tree_item(tree, list, i);
-        code = scene_build_pick(&cloth->pins[i].pick, tree, pin, scene_tree_pair(tree, pin, 0),
-                                cloth, error);
+        int pin = scene_tree_item(tree, list, i), motion = scene_tree_get(tree, pin, "motion");
+        code = scene_build_pick(&cloth->pins[i].pick, tree, pin, cloth, error);
+        if (!code && motion)
+            code = scene_build_motion(model, &cloth->pins[i], tree, motion, error);
     }
     return code;
 }
@@ -229,7 +230,7 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
     if (!code)
         code = scene_build_mesh(&cloth->mesh, tree, node, error);
     if (!code)
-        code = build_pins(cloth, tree, node, error);
+        code = build_pins(model, cloth, tree, node, error);
     if (!code)
         code = build_cost(cloth, tree, node, error);
     return code ? code : build_loads(cloth, tree, node, error);

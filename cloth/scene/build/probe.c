@@ -103,21 +103,14 @@ static int check_twice(const struct model_probe *probe, const struct scene_tree 
 static int build_probe(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
                        uint32_t *seen, struct cloth_error *error)
 {
-    static const char *const kinds[] = {"vertices", "nearest", "box"};
     struct model_probe *probe = &model->probes[i];
-    yaml_node_pair_t kind = {0};
-    for (size_t k = 0; k < scene_tree_length(tree, node); k++)
-        for (size_t j = 0; j < sizeof kinds / sizeof *kinds; j++)
-            if (!strcmp(scene_tree_scalar(tree, scene_tree_pair(tree, node, k).key), kinds[j]))
-                kind = scene_tree_pair(tree, node, k);
     int code = name_probe(model, i, tree, node, error);
     if (!code)
         code = find_cloth(probe, model, tree, node, error);
     if (!code)
-        code =
-            scene_build_pick(&probe->pick, tree, node, kind, model->cloths + probe->cloth, error);
+        code = scene_build_pick(&probe->pick, tree, node, model->cloths + probe->cloth, error);
     if (!code)
-        code = check_twice(probe, tree, kind.value, seen, i + 1, error);
+        code = check_twice(probe, tree, scene_tree_get(tree, node, "vertices"), seen, i + 1, error);
     return code ? code : build_values(probe, tree, scene_tree_get(tree, node, "values"), error);
 }
 

@@ -43,13 +43,29 @@ static const struct scene_rule transform_keys[] = {
      .about = "last: a shift"},
     {0}};
 
-static const struct scene_rule pin_kinds[] = {
-    {"vertices", SCENE_LIST, .filled = true, .inside = &vertex, .about = "in the mesh's numbering"},
-    {"nearest", SCENE_LIST, "m", .length = 3, .inside = &number,
-     .about = "the vertex nearest to a point"},
-    {"box", SCENE_LIST, "m", .length = 2, .inside = &point,
-     .about = "all vertices in the box between two corners"},
+static const struct scene_rule quaternion = {
+    .type = SCENE_LIST, .length = 4, .inside = &number};
+static const struct scene_rule motion_keys[] = {
+    {"times", SCENE_LIST, "s", .required = true, .filled = true, .inside = &number,
+     .about = "of the key frames, ascending"},
+    {"translate", SCENE_LIST, "m", .inside = &point, .about = "a shift for each time"},
+    {"rotate", SCENE_LIST, .inside = &quaternion,
+     .about = "a quaternion [w, x, y, z] for each time"},
+    {"about", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     .about = "the point that is rotated about"},
     {0}};
+
+static const struct scene_rule pin_keys[] = {
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
+     .about = "in the mesh's numbering"},
+    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number,
+     .about = "the vertex nearest to a point"},
+    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
+     .about = "all vertices in the box between two corners"},
+    {"motion", SCENE_MAP, .inside = motion_keys, .about = "of the vertices, by key frames"},
+    {0}};
+static const struct scene_rule pin = {.type = SCENE_MAP, .inside = pin_keys};
+
 static const char *const probe_values[] = {"position", "velocity", "reaction", "total", NULL};
 static const struct scene_rule probe_value = {.type = SCENE_CHOICE, .words = probe_values};
 static const struct scene_rule probe_keys[] = {
@@ -66,7 +82,6 @@ static const struct scene_rule probe_keys[] = {
     {0}};
 static const struct scene_rule probe = {.type = SCENE_MAP, .inside = probe_keys};
 
-static const struct scene_rule pin = {.type = SCENE_ONE_OF, .inside = pin_kinds};
 
 static const struct scene_rule load_keys[] = {
     {"vertices", SCENE_LIST, .required = true, .filled = true, .inside = &vertex,
@@ -93,7 +108,7 @@ static const struct scene_rule cloth_keys[] = {
      .about = "instead of density times area"},
     {"velocity", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
      .about = "at the start"},
-    {"pins", SCENE_LIST, .fallback = "[]", .inside = &pin, .about = "vertices held where they start"},
+    {"pins", SCENE_LIST, .fallback = "[]", .inside = &pin, .about = "vertices held, or moved"},
     {"loads", SCENE_LIST, .fallback = "[]", .inside = &load, .about = "forces on vertices"},
     {"cost", SCENE_MAP, .inside = cost_keys, .about = "time lost on purpose, to try balancers"},
     {0}};

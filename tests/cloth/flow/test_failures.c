@@ -133,8 +133,9 @@ START_TEST(pins_and_loads_outside)
     says(&record, CLOTH_E_INPUT, "a.yaml:12:5: a pin of cloth 'test' names vertex 9");
     says(&record, CLOTH_E_INPUT, "0 to 8");
     record_free(&record);
-    setup.pin = (struct model_pin){
-        {.kind = MODEL_PICK_BOX, .box = {{2, 0, 0}, {3, 1, 1}}, .place = (char[]){"a.yaml:13:5"}}};
+    setup.pin = (struct model_pin){.pick = {.kind = MODEL_PICK_BOX,
+                                            .box = {{2, 0, 0}, {3, 1, 1}},
+                                            .place = (char[]){"a.yaml:13:5"}}};
     record_run(&record, &setup.model);
     says(&record, CLOTH_E_INPUT, "a.yaml:13:5: the box of a pin of cloth 'test' holds no vertex");
     record_free(&record);
@@ -154,8 +155,9 @@ START_TEST(pins_by_place)
     struct record record = {0};
     setup_sheet(&setup, 3);
     setup.cloth.n_pins = 2;
-    struct model_pin pins[2] = {{{.kind = MODEL_PICK_NEAREST, .point = {-0.4, 2, 0.4}}},
-                                {{.kind = MODEL_PICK_BOX, .box = {{0.1, -1, -1}, {1, 1, 0}}}}};
+    struct model_pin pins[2] = {
+        {.pick = {.kind = MODEL_PICK_NEAREST, .point = {-0.4, 2, 0.4}}},
+        {.pick = {.kind = MODEL_PICK_BOX, .box = {{0.1, -1, -1}, {1, 1, 0}}}}};
     setup.cloth.pins = pins;
     record_run(&record, &setup.model);
     ck_assert_msg(record.code == 0, "%s", record.error.text);

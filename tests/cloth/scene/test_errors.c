@@ -149,36 +149,37 @@ END_TEST
 
 START_TEST(wrong_kinds)
 {
-    EXPECT({"gravity: [0, -9.81, 0]", "gravity: 9.81",
-            .error = ":2:10: gravity is 9.81; a list of 3 numbers (m/s^2) is expected"},
-           {"gravity: [0, -9.81, 0]", "gravity: [0, 1]",
-            .error = ":2:10: gravity is a list of 2; a list of 3 numbers (m/s^2) is expected"},
-           {"gravity: [0, -9.81, 0]", "gravity: [0, {a: 1}, 0]",
-            .error = ":2:14: gravity[1] is a map of 1; a finite number is expected"},
-           {"time: {h: 0.001, end: 0.1}", "time: 3",
-            .error = ":12:7: time is 3; a map of h, end, fps, rest is expected"},
-           {"name: sheet", "name: ''",
-            .error = ":4:11: cloths[0].name is the text ''; a text is expected"},
-           {"name: sheet", "name: [a]",
-            .error = ":4:11: cloths[0].name is a list of 1; a text is expected"},
-           {"name: sheet", "name: !mine a",
-            .error = ":4:11: cloths[0].name has the tag !mine; a value without a tag is expected"},
-           {"gravity: [0, -9.81, 0]", "integrator: rk5",
-            .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
-                     "symplectic_euler or verlet or rk4 is expected"},
-           {"gravity: [0, -9.81, 0]", "contact: filter",
-            .error = ":2:10: contact is filter; project is expected"},
-           {"[{vertices: [0, 3]}]", "[]\n    loads: []",
-            .error = ":9:5: loads is twice in cloths[0]; each key is allowed once"},
-           {"pins: [{vertices: [0, 3]}]", "pins: [{}]",
-            .error = ":7:12: cloths[0].pins[0] has 0 keys; a map with exactly one of vertices, "
-                     "nearest, box is expected"},
-           {"{vertices: [0, 3]}", "{vertices: [0], nearest: [0, 0, 0]}",
-            .error = ":7:28: cloths[0].pins[0] has 2 keys; a map with exactly one of vertices, "
-                     "nearest, box is expected"},
-           {"vertices: [0, 3]", "vertices: []",
-            .error = ":7:23: cloths[0].pins[0].vertices is an empty list; a non-empty list of "
-                     "whole numbers is expected"});
+    EXPECT(
+        {"gravity: [0, -9.81, 0]", "gravity: 9.81",
+         .error = ":2:10: gravity is 9.81; a list of 3 numbers (m/s^2) is expected"},
+        {"gravity: [0, -9.81, 0]", "gravity: [0, 1]",
+         .error = ":2:10: gravity is a list of 2; a list of 3 numbers (m/s^2) is expected"},
+        {"gravity: [0, -9.81, 0]", "gravity: [0, {a: 1}, 0]",
+         .error = ":2:14: gravity[1] is a map of 1; a finite number is expected"},
+        {"time: {h: 0.001, end: 0.1}", "time: 3",
+         .error = ":12:7: time is 3; a map of h, end, fps, rest is expected"},
+        {"name: sheet", "name: ''",
+         .error = ":4:11: cloths[0].name is the text ''; a text is expected"},
+        {"name: sheet", "name: [a]",
+         .error = ":4:11: cloths[0].name is a list of 1; a text is expected"},
+        {"name: sheet", "name: !mine a",
+         .error = ":4:11: cloths[0].name has the tag !mine; a value without a tag is expected"},
+        {"gravity: [0, -9.81, 0]", "integrator: rk5",
+         .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
+                  "symplectic_euler or verlet or rk4 is expected"},
+        {"gravity: [0, -9.81, 0]", "contact: filter",
+         .error = ":2:10: contact is filter; project is expected"},
+        {"[{vertices: [0, 3]}]", "[]\n    loads: []",
+         .error = ":9:5: loads is twice in cloths[0]; each key is allowed once"},
+        {"pins: [{vertices: [0, 3]}]", "pins: [{}]",
+         .error =
+             ":7:12: cloths[0].pins[0] has no vertices or nearest or box; one of them is expected"},
+        {"{vertices: [0, 3]}", "{vertices: [0], nearest: [0, 0, 0]}",
+         .error = ":7:28: cloths[0].pins[0] has both vertices and nearest; one of vertices or "
+                  "nearest or box is expected"},
+        {"vertices: [0, 3]", "vertices: []",
+         .error = ":7:23: cloths[0].pins[0].vertices is an empty list; a non-empty list of "
+                  "whole numbers is expected"});
 }
 END_TEST
 
@@ -243,6 +244,33 @@ START_TEST(names_and_indices)
            {"{vertices: [0, 3]}", "{box: [[9, 9, 9], [8, 8, 8]]}",
             .error = ":7:18: the box holds no vertex of cloth 'sheet'; it is meant for positions "
                      "after the transform"});
+}
+END_TEST
+
+#define MOTION(text) "{vertices: [0, 3]}", "{vertices: [0, 3], motion: {" text "}}"
+
+START_TEST(motions_that_cannot_be_made)
+{
+    EXPECT(
+        {MOTION("times: [0, 1, 1], translate: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]"),
+         .error =
+             ":7:54: the time 1 of a motion does not come after 1, the one before it; times in "
+             "ascending order are expected"},
+        {MOTION("times: [0, 1], translate: [[0, 0, 0]]"),
+         .error = ":7:66: translate of a motion has 1 entries, but there are 2 times; as many are "
+                  "expected"},
+        {MOTION("times: [0, 1], rotate: [[1, 0, 0, 0], [0, 0, 0, 0]]"),
+         .error = ":7:78: a rotation of a motion is zero; a quaternion [w, x, y, z] that is not is "
+                  "expected"},
+        {MOTION("times: [0, 1], rotate: [[1, 0, 0, 0], [0, 2, 0, 0]]"),
+         .error = ":7:78: a rotation of a motion is half a turn from the one before, so that its "
+                  "way is open; smaller ones are expected"},
+        {MOTION("times: [0, 1], translate: [[0, 1, 0], [0, 0, 0]]"),
+         .error = ":7:39: a motion does not begin where the vertices start; at time 0 no shift and "
+                  "no rotation are expected"},
+        {MOTION("times: [], translate: []"),
+         .error = ":7:47: cloths[0].pins[0].motion.times is an empty list; a non-empty list of "
+                  "numbers (s) is expected"});
 }
 END_TEST
 
@@ -368,8 +396,8 @@ START_TEST(sets_that_are_wrong)
          "cloths[1].mesh is missing; a map with exactly one of grid, file, inline is expected"},
         {"cloths[0].pins[0].vertices[0]=12", "vertex 12 is outside the mesh of cloth 'sheet', "
                                              "which has 12 vertices; 0 to 11 are allowed"},
-        {"cloths[0].pins[0].nearest=[0, 0, 0]", "cloths[0].pins[0] has 2 keys; a map with exactly "
-                                                "one of vertices, nearest, box is expected"},
+        {"cloths[0].pins[0].nearest=[0, 0, 0]", "cloths[0].pins[0] has both vertices and nearest; "
+                                                "one of vertices or nearest or box is expected"},
         {"time", "KEY=VALUE is expected, such as time.h=0.002"},
         {"", "KEY=VALUE is expected, such as time.h=0.002"},
         {"=1", "KEY=VALUE is expected, such as time.h=0.002"},
@@ -420,6 +448,7 @@ int main(void)
     tcase_add_test(cases, wrong_kinds);
     tcase_add_test(cases, unknown_and_missing_keys);
     tcase_add_test(cases, names_and_indices);
+    tcase_add_test(cases, motions_that_cannot_be_made);
     tcase_add_test(cases, probes_that_tell_nothing);
     tcase_add_test(cases, meshes_that_cannot_be_used);
     tcase_add_test(cases, files_that_are_no_scenes);

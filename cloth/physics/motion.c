@@ -1,0 +1,74 @@
+/* + - * / and sqrt only, so that a motion has the same bits everywhere. */
+#include "cloth/physics/motion.h"
+
+#include <math.h>
+
+/* The key at or before the time; n > 0. */
+static size_t key_before(size_t n, const struct phys_key *keys, double time)
+{
+    size_t low = 0, high = n;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (keys[middle].time <= time)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The rotation by a quaternion of any length but 0. */
+static void turn_of(const double q[4], double turn[3][3])
+{
+    double square = 0;
+    for (int i = 0; i < 4; i++)
+        square += q[i] * q[i];
+    const double length = sqrt(square), w = q[0] / length, x = q[1] / length, y = q[2] / length,
+                 z = q[3] / length;
+    turn[0][0] = 1 - 2 * (y * y + z * z);
+    turn[0][1] = 2 * (x * y - w * z);
+    turn[0][2] = 2 * (x * z + w * y);
+    turn[1][0] = 2 * (x * y + w * z);
+    turn[1][1] = 1 - 2 * (x * x + z * z);
+    turn[1][2] = 2 * (y * z - w * x);
+    turn[2][0] = 2 * (x * z - w * y);
+    turn[2][1] = 2 * (y * z + w * x);
+    turn[2][2] = 1 - 2 * (x * x + y * y);
+}
+
+void phys_pose_at(size_t n, const struct phys_key *keys, const double about[3], double time,
+                  struct phys_pose *pose)
+{
+    const struct phys_key *a = keys + key_before(n, keys, time), *b = a + 1 < keys + n ? a + 1 : a;
+    const double part = b == a || time <= a->time ? 0 : (time - a->time) / (b->time - a->time);
+    double dot = 0, q[4];
+    for (int i = 0; i < 4; i++)
+        dot += a->rotate[i] * b->rotate[i];
+    const double sign = dot < 0 ? -1 : 1;
+    for (int i = 0; i < 4; i++)
+        q[i] = (1 - part) * a->rotate[i] + part * sign * b->rotate[i];
+    turn_of(q, pose->turn);
+    for (int i = 0; i < 3; i++) {
+        pose->about[i] = about[i];
+        pose->translate[i] = (1 - part) * a->translate[i] + part * b->translate[i];
+    }
+}
+
+void phys_pose_direction(const struct phys_pose *pose, const phys_vec *from, phys_vec *to)
+{
+    const phys_vec d = *from;
+    phys_vec turned = {0};
+    for (int i = 0; i < 3; i++)
+        turned[i] = pose->turn[i][0] * d[0] + pose->turn[i][1] * d[1] + pose->turn[i][2] * d[2];
+    *to = turned;
+}
+
+void phys_pose_point(const struct phys_pose *pose, const phys_vec *from, phys_vec *to)
+{
+    const phys_vec about = {pose->about[0], pose->about[1], pose->about[2], 0};
+    const phys_vec shift = {pose->translate[0], pose->translate[1], pose->translate[2], 0};
+    const phys_vec arm = *from - about;
+    phys_vec turned;
+    phys_pose_direction(pose, &arm, &turned);
+    *to = turned + about + shift;
+}

@@ -1,0 +1,80 @@
+#!/bin/sh
+# Textbook cases said by scenes and read from probes alone: what moves pins, what they carry, how chains hang.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+cd "$scratch" || exit 99
+
+run() { limited "$DUITE_CLOTH" "$@" --quiet; }
+
+# ---- A pendulum whose pin begins to move: x = u t - u / w sin w t, w^2 = g / L, L the length that the weight stretches it to.
+cat > pendulum.yaml << 'END'
+schema: 1
+cloths:
+  - mesh: {inline: {vertices: [[0, 0, 0], [0, -1, 0]], edges: [[0, 1]]}}
+    material: wire
+    mass_per_vertex: 0.1
+    pins: [{vertices: [0], motion: {times: [0, 10], translate: [[0, 0, 0], [0.1, 0, 0]]}}]
+materials: {wire: {density: 1, stretch: 2000, damping: {stiffness: 0.002}}}
+time: {h: 0.002, end: 4}
+integrator: rk4
+grain: 1
+probes: [{vertices: [0, 1]}]
+END
+pendulum() { # ARGUMENT...: integrator and the error that is allowed, against the amplitude
+    allowed=$1
+    shift
+    rm -rf swing
+    run pendulum.yaml --output swing "$@" || return 1
+    awk -F, -v allowed="$allowed" 'NR > 1 { t = $2; u = 0.01; w = sqrt(9.81 / (1 + 0.981 / 2000)); n++
+            error = $16 - (u * t - u / w * sin(w * t)); if (error < 0) error = -error; if (error > most) most = error
+            pin = $7 - u * t; if (pin < 0) pin = -pin; if (pin > off) off = pin }
+        END { print n " rows, error " most / (u / w) " of the amplitude, pin off by " off
+            exit !(n == 2001 && most < allowed * u / w && off < 1e-15) }' swing/probes.csv
+}
+ok "a pendulum on a pin that begins to move, rk4" pendulum 0.002
+for integrator in verlet symplectic_euler; do
+    ok "with $integrator" pendulum 0.02 --set integrator=$integrator
+done
+ok "with implicit_euler" pendulum 0.02 --set integrator=implicit_euler --set time.h=0.0001 --set 'solver.stop={relative: 1e-10}' \
+    --set time.end=0.2
+
+# ---- Pins that turn: a quarter turn about the y axis through (1, 0, 0) by keys of an eighth, there and back.
+turning() {
+    run pendulum.yaml --output turn --set 'cloths[0].pins[0].motion={times: [0, 1, 2, 3], about: [1, 0, 0], rotate: [[1, 0, 0, 0],
+        [0.9238795325112867, 0, 0.3826834323650898, 0], [-2, 0, -2, 0], [1, 0, 0, 0]]}' || return 1
+    awk -F, '$2 == 1 || $2 == 2 || $2 == 4 { n++; r = sqrt(0.5)
+            x = $2 == 1 ? 1 - r : $2 == 2 ? 1 : 0; z = $2 == 1 ? r : $2 == 2 ? 1 : 0; print $2, $7, $8, $9
+            if (($7 - x) ^ 2 + $8 ^ 2 + ($9 - z) ^ 2 > 1e-28) bad = 1 }
+        NR > 1 && (($7 - 1) ^ 2 + $9 ^ 2 - 1) ^ 2 > 1e-28 { bad = 1 }
+        END { exit bad || n != 3 }' turn/probes.csv
+}
+ok "a pin that turns" turning
+
+# ---- A chain between two pins at rest. With H and V the pulls at its left end and W the weight of a vertex, link i pulls by
+# (H, V_i), V_i = V - i W, has the length l (1 + T_i / k), and all of them together lead to the right end.
+awk 'BEGIN { printf "schema: 1\ncloths:\n  - mesh: {inline: {vertices: ["
+    for (i = 0; i <= 16; i++) printf "%s[%g, 0, 0]", i ? ", " : "", i / 16
+    printf "], edges: ["
+    for (i = 0; i < 16; i++) printf "%s[%d, %d]", i ? ", " : "", i, i + 1
+    print "]}}\n    material: rope\n    mass_per_vertex: 0.01\n    pins: [{vertices: [0]}, {vertices: [16], motion: {times: [0, 1],"
+    print "      translate: [[0, 0, 0], [-0.4, 0.1, 0]]}}]\nmaterials: {rope: {density: 1, stretch: 500, damping: {viscous: 0.02, stiffness: 0.01}}}"
+    print "time: {h: 0.01, end: 60, fps: 10, rest: {speed: 1e-9, hold: 0.2}}\ngrain: 5\nsolver: {stop: {relative: 1e-10}}"
+    print "probes: [{name: ends, vertices: [0, 16], values: [reaction, total]}, {name: all, box: [[-1, -1, -1], [1, 1, 1]], values: [position]}]" }' > chain.yaml
+chain() {
+    run chain.yaml --output chain --report chain.json && grep -q '"rest_seconds": [0-9]' chain.json || return 1
+    tail -n 1 chain/probes.csv | awk -F, '{ H = -$7; V = $8; W = 0.01 * 9.81; weight = 17 * W; x = y = 0
+        print "reactions", $7, $8, $10, $11, "total", $14 - weight, "along", $13
+        bad = ($14 - weight) ^ 2 > 1e-16 || $13 ^ 2 > 1e-16
+        V -= W # the pin carries its own vertex, too
+        for (i = 1; i <= 16; i++) {
+            T = sqrt(H * H + V * V)
+            l = 1 / 16 + T / 500
+            x += l * H / T; y -= l * V / T; V -= W
+            off = ($(16 + 3 * i) - x) ^ 2 + ($(17 + 3 * i) - y) ^ 2
+            if (off > most) most = off
+        }
+        print "shape off by", sqrt(most), "end", x, y
+        exit bad || sqrt(most) > 1e-8 || (x - 0.6) ^ 2 > 1e-14 || (y - 0.1) ^ 2 > 1e-14 }'
+}
+ok "a chain hangs as its reactions say, which carry its weight" chain

@@ -6,6 +6,8 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 
+#include <stdio.h>
+
 /* The remembered error, which is told once. */
 static int recall(duite *rt)
 {
@@ -175,6 +177,23 @@ int program_meet(duite *rt, const char *call)
     return code;
 }
 
+/* No task's: after all that are. */
+#define POLICY_FAILED UINT64_MAX
+
+/* What this rank tells when all its tasks are over: a scheduler that never ended a round, too. */
+static struct comm_word last_word(const duite *rt)
+{
+    struct comm_word own = own_word(&rt->graph);
+    const char *endless = work_endless(rt->pool);
+    if (own.failed || !endless)
+        return own;
+    own.failed = POLICY_FAILED;
+    own.failure = (struct data_failure){
+        .code = DUITE_E_ARGUMENT, .rank = rt->graph.rank, .number = POLICY_FAILED};
+    snprintf(own.failure.text, sizeof own.failure.text, "%s", endless);
+    return own;
+}
+
 int program_wait(duite *rt, const char *call)
 {
     struct duite_call_private *body = inside_body(rt);
@@ -187,15 +206,20 @@ int program_wait(duite *rt, const char *call)
     code = program_meet(rt, call);
     if (code)
         return code;
-    struct comm_word own = own_word(graph), *words = &own;
-    if (rt->comm &&
-        (code = agree(rt, &(struct work_why){call, "the tasks of other ranks", NULL}, &words)))
+    struct comm_word own = last_word(rt), *words = &own;
+    const struct work_why why = {call, "the tasks of other ranks", NULL};
+    if (rt->comm && (code = program_agree(rt, &why, &own, &words)))
         return code;
     work_idle_ends(rt->pool);
     code = recall(rt);
     const struct data_failure *failure = first_failure(words, graph->n_ranks);
     if (code || !failure)
         return code;
+    if (failure->number == POLICY_FAILED)
+        return base_error(failure->code,
+                          "scheduler %s names victims without an end (seen on rank %d): its victim "
+                          "has to return DUITE_NO_QUEUE at last",
+                          failure->text, failure->rank);
     graph_first_failure(&graph->root); /* told */
     return graph_failure_error(graph, failure);
 }
@@ -225,14 +249,14 @@ int duite_count_all(duite *rt, duite_counters *counters)
         .sums = {(double)own.tasks, (double)own.placed, (double)own.stolen, (double)own.chained,
                  (double)own.messages, (double)own.bytes, own.busy, own.idle,
                  (double)atomic_load_explicit(&rt->graph.renamed, memory_order_relaxed),
-                 (double)own.delegated, own.awaited, own.exposed}};
+                 (double)own.delegated, own.awaited, own.exposed, (double)own.stolen_far}};
     const double *sums = word.sums;
     code = enter_blocking(rt, "duite_count_all");
     word.forks = rt->graph.root.forks;
     word.fingerprint = rt->graph.fingerprint;
     work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
     if (rt->comm && !code)
-        code = comm_sum(rt->comm, &word, 12, between, rt->pool);
+        code = comm_sum(rt->comm, &word, 13, between, rt->pool);
     work_waits(rt->pool, NULL);
     work_idle_ends(rt->pool);
     if (code)
@@ -249,6 +273,7 @@ int duite_count_all(duite *rt, duite_counters *counters)
                                  .delegated = (uint64_t)sums[9],
                                  .awaited = sums[10],
                                  .exposed = sums[11],
+                                 .stolen_far = (uint64_t)sums[12],
                                  .graphs_recorded = rt->graphs_recorded,
                                  .migrated = rt->migration.objects};
     return code;

@@ -284,6 +284,7 @@ static int start_workers(duite *rt, const duite_options *options, int code)
                                  .trace = rt->trace,
                                  .scheduler = options->scheduler,
                                  .balancer = options->balance,
+                                 .measures = options->mapping->map_tasks != NULL,
                                  .context = options->context,
                                  .rt = rt,
                                  .threads = threads,
@@ -374,8 +375,8 @@ int duite_start(duite **out, const duite_options *options)
     if (code) {
         end(rt);
     } else {
-        bool moves =
-            options->balance->victim || options->balance->place || options->balance->migrate;
+        bool moves = options->balance->victim || options->balance->place ||
+                     options->balance->migrate || options->mapping->map_tasks;
         if (rt->comm && moves)
             comm_measure(rt->comm);
         traced_begin(rt);

@@ -609,7 +609,8 @@ typedef struct duite_counters {
     double awaited; /* seconds in which a rank awaited messages, times its workers, over all ranks:
                        from the fork of the task that needs one, or the get, until it is there */
     double exposed; /* the part of it in which those workers had no task */
-    uint64_t migrated; /* objects that got another home; the same on every rank, counted once */
+    uint64_t migrated;   /* objects that got another home; the same on every rank, counted once */
+    uint64_t stolen_far; /* of the stolen: between workers that others are nearer to (duite_near) */
 } duite_counters;
 
 /* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.

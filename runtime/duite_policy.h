@@ -23,7 +23,8 @@ extern "C" {
 typedef enum duite_end {
     DUITE_NEWEST,
     DUITE_OLDEST,
-    DUITE_HIGHEST /* the one with the largest priority; of equals the oldest */
+    DUITE_HIGHEST /* the one with the largest priority; of equals the one with the longest path, of
+                     these the oldest */
 } duite_end;
 
 /* A task that became ready. */
@@ -39,7 +40,20 @@ typedef struct duite_ready {
      * duite_get), which are short and waited for, have the priority INT32_MAX. */
     int32_t priority;
     double cost; /* seconds; 0: not said */
+    /* Of a task of the program in a replay, if the scheduler asks for it (`paths`): the longest
+     * path from its begin to the end of the round, in seconds of the costs that forks said; one
+     * that said none counts as their mean, or as 1 if none did. Else 0. */
+    double path;
 } duite_ready;
+
+/* The other workers as one of them sees them. */
+typedef struct duite_near {
+    unsigned n;               /* there are so many others */
+    const unsigned *worker;   /* n: nearest first, equally near ones from the next number on */
+    const unsigned *distance; /* n: how many levels of the machine's topology (cores, caches,
+                                 packages, as hwloc sees them) lie between the cores of the two and
+                                 what they share; 0 where workers are not bound to cores */
+} duite_near;
 
 typedef struct duite_scheduler {
     const char *name;
@@ -56,10 +70,15 @@ typedef struct duite_scheduler {
     /* The worker's queue that an idle worker steals the oldest task from (the highest, if that one
      * serves its queue by priority) at its attempt-th try in a row (0, 1, ...); DUITE_NO_QUEUE ends
      * the round, and the worker idles for a moment. Its own queue and the shared one were found
-     * empty before attempt 0; they are always served, so that a policy cannot lose a task. */
+     * empty before attempt 0; they are always served, so that a policy cannot lose a task. A round
+     * without an end is ended after 64 tries and 16 for each worker, and is an error that the next
+     * duite_wait tells. */
     unsigned (*victim)(void *state, unsigned attempt);
     /* Whether a task that just became ready may run directly after the one that made it so. */
     int (*chain)(void *state, const duite_ready *task);
+    /* After start: where this worker is; `near` is alive as long as the state. Optional. */
+    void (*look)(void *state, const duite_near *near);
+    int paths; /* 1: duite_ready.path is wanted, which costs time when a graph is compiled */
 } duite_scheduler;
 
 /* ---- Mappings: which rank keeps an object ---- */
@@ -74,12 +93,43 @@ typedef struct duite_object_graph {
     const double *edge_weight; /* start[n] */
 } duite_object_graph;
 
+#define DUITE_NO_BLOCK 0xffffffffu
+
+/* One round of a recorded graph as a graph of tasks, and the blocks of objects (a leader and those
+ * that follow it) that they run for. */
+typedef struct duite_task_graph {
+    size_t n; /* tasks in fork order, those that the runtime adds (sums, views, sets) among them */
+    /* n: seconds, as the fork said; else, from the graph's second replay on, this task's share of
+     * what was measured for its block; else the mean of those that are known, or 1 microsecond.
+     * 0 of what the runtime adds. */
+    const double *cost;
+    const uint32_t *block; /* n: it runs where this block lives; DUITE_NO_BLOCK: on the rank that
+                              its fork named, or everywhere */
+    const size_t *start;   /* n + 1 */
+    const uint32_t *from;  /* start[n]: row i has the tasks whose results task i reads: an earlier
+                              one (< i) of the same round, or any other (>= i) of the round before */
+    const double *bytes;   /* start[n]: what it reads of it */
+    size_t n_blocks;
+    const unsigned char *stays; /* n_blocks: 1: it must keep its home, see duite_kernel.stays */
+    int n_ranks;
+    const unsigned *workers;              /* a rank */
+    double byte_seconds, message_seconds; /* a byte, and a message, from rank to rank, after a
+                                             measurement at start */
+    uint64_t seed;
+} duite_task_graph;
+
 typedef struct duite_mapping {
     const char *name;
     const char *summary;
     /* Writes home[n], each in 0 .. n_ranks - 1. Deterministic: called with the same graph on every
      * rank. Returns 0, or a duite code. */
     int (*map)(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
+    /* Maps blocks anew, knowing the tasks: home[n_blocks] has the present homes, and blocks whose
+     * home is changed move. Asked at the beginning of the first replay of each graph, and, unless
+     * all forks of its kernels said what they cost, once more at its second one, with measured
+     * costs. On rank 0 only, and need not be deterministic. Returns 0, or a duite code. Optional.
+     */
+    int (*map_tasks)(const duite_task_graph *graph, int *home);
 } duite_mapping;
 
 /* ---- Balancers: which ready tasks run on another rank, and which objects move there ---- */

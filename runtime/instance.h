@@ -66,8 +66,11 @@ int program_meet(duite *rt, const char *call);
 /* Exchanges words: own, whose head is filled in; *words, one a rank. There are several ranks. */
 int program_agree(duite *rt, const struct work_why *why, struct comm_word *own,
                   struct comm_word **words);
-/* A replay begins: if it is time, blocks of objects move where the balancer wants them. */
-int program_migrate(duite *rt);
+/* The `replay`-th replay of a recorded graph begins, from 0: if it is time, blocks of objects move
+ * where the mapping, or the balancer, wants them. `*map_at`: the replay before which the mapping is
+ * to see its tasks (again); it begins with 0. */
+int program_migrate(duite *rt, const struct graph_record *record, uint64_t replay,
+                    uint64_t *map_at);
 /* duite_wait, under the name of who calls it. */
 int program_wait(duite *rt, const char *call);
 /* The trace ends, if there is one that did not: as duite_trace_end, under the name of who calls. */

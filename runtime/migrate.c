@@ -1,7 +1,8 @@
 /* Homes that change: at the beginning of a replay that is due, when all ranks have come to it and
- * no task is left. Each rank says what the bodies of its blocks took, rank 0 asks the balancer and
- * answers all, and all move the same blocks in the same order. Everything that follows from homes
- * (who runs a task, where values are needed, plans of recorded graphs) is derived from them anew.
+ * no task is left. Each rank says what the bodies of its blocks took, rank 0 asks the mapping, or
+ * the balancer, and answers all, and all move the same blocks in the same order. Everything that
+ * follows from homes (who runs a task, where values are needed, plans of recorded graphs) is
+ * derived from them anew.
  */
 #include "runtime/instance.h"
 
@@ -9,15 +10,18 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/map/blocks.h"
+#include "runtime/map/tasks.h"
 
 /* What a rank says of itself before its blocks; what rank 0 answers before the blocks that move. */
 enum { SAID_WORKERS, SAID_OTHER, SAID_BLOCKS };
-enum { TOLD_CODE, TOLD_NEXT, TOLD_MOVES, TOLD_BLOCKS };
+enum { TOLD_CODE, TOLD_REFUSED, TOLD_NEXT, TOLD_AGAIN, TOLD_MOVES, TOLD_BLOCKS };
 
 #define NEVER (UINT64_C(1) << 52) /* replays; a double has room for them */
 
 struct migration {
     duite *rt;
+    const struct graph_record
+        *record; /* whose tasks the mapping is to see; NULL: the balancer's turn */
     struct map_blocks blocks;
     size_t *first;  /* n_ranks + 1: of each rank's blocks in `row` */
     uint32_t *row;  /* blocks by home */
@@ -159,56 +163,91 @@ static int add_traffic(void *context, const struct graph_record *record, double 
     return map_traffic_add(&m->traffic, &m->blocks, record, rounds);
 }
 
+static double byte_seconds(const duite *rt)
+{
+    return 1e-6 * (comm_transfer(rt->comm, 1000000) - comm_transfer(rt->comm, 0));
+}
+
 static uint64_t ask(struct migration *m)
 {
     duite *rt = m->rt;
     const struct instance_migration *last = &rt->migration;
-    const duite_blocks blocks = {
-        .graph = {.n = m->blocks.n,
-                  .weight = m->seconds,
-                  .start = m->traffic.start,
-                  .neighbour = m->traffic.neighbour,
-                  .edge_weight = m->traffic.bytes},
-        .bytes = m->bytes,
-        .stays = m->stays,
-        .n_ranks = rt->graph.n_ranks,
-        .other = m->other,
-        .workers = m->workers,
-        .byte_seconds = 1e-6 * (comm_transfer(rt->comm, 1000000) - comm_transfer(rt->comm, 0)),
-        .seconds = base_seconds() - last->since,
-        .look_seconds = last->took,
-        .replays = last->replays,
-        .since = last->replays - last->looked,
-        .mapping = rt->mapping,
-        .seed = rt->seed};
+    const duite_blocks blocks = {.graph = {.n = m->blocks.n,
+                                           .weight = m->seconds,
+                                           .start = m->traffic.start,
+                                           .neighbour = m->traffic.neighbour,
+                                           .edge_weight = m->traffic.bytes},
+                                 .bytes = m->bytes,
+                                 .stays = m->stays,
+                                 .n_ranks = rt->graph.n_ranks,
+                                 .other = m->other,
+                                 .workers = m->workers,
+                                 .byte_seconds = byte_seconds(rt),
+                                 .seconds = base_seconds() - last->since,
+                                 .look_seconds = last->took,
+                                 .replays = last->replays,
+                                 .since = last->replays - last->looked,
+                                 .mapping = rt->mapping,
+                                 .seed = rt->seed};
     return work_migrate(rt->pool, &blocks, m->home);
 }
 
-/* Whether the balancer keeps to what it was told. */
+/* The mapping sees the tasks of the graph; *again: with measured costs it is to see them once more.
+ */
+static int ask_mapping(struct migration *m, bool *again)
+{
+    duite *rt = m->rt;
+    struct map_tasks tasks;
+    int code = map_tasks_find(&tasks, m->record, &m->blocks, m->seconds);
+    *again = tasks.guessed;
+    tasks.graph.stays = m->stays;
+    tasks.graph.n_ranks = rt->graph.n_ranks;
+    tasks.graph.workers = m->workers;
+    tasks.graph.byte_seconds = byte_seconds(rt);
+    tasks.graph.message_seconds = comm_transfer(rt->comm, 0);
+    tasks.graph.seed = rt->seed;
+    if (!code)
+        code = rt->mapping->map_tasks(&tasks.graph, m->home);
+    map_tasks_free(&tasks);
+    return code;
+}
+
+/* Whether the policy keeps to what it was told. */
 static bool is_allowed(const struct migration *m, size_t block)
 {
     int from = m->blocks.block[block].home, to = m->home[block];
     return to == from || (to >= 0 && to < m->rt->graph.n_ranks && !m->stays[block]);
 }
 
-static int decide(struct migration *m)
+static int ask_balancer(struct migration *m, uint64_t *next)
 {
     int code = recorded_each(m->rt, add_traffic, m);
     if (!code)
         code = map_traffic_end(&m->traffic, &m->blocks);
-    if (code)
-        return code;
+    if (!code)
+        *next = ask(m);
+    return code;
+}
+
+static int decide(struct migration *m)
+{
     size_t n_moves = 0;
+    uint64_t next = 0;
+    bool again = false;
     for (size_t i = 0; i < m->blocks.n; i++) {
         m->bytes[i] = m->blocks.block[i].bytes;
         m->home[i] = m->blocks.block[i].home;
     }
-    uint64_t next = ask(m);
+    int code = m->record ? ask_mapping(m, &again) : ask_balancer(m, &next);
+    if (code && (code == DUITE_E_MEMORY || !m->record))
+        return code;
     m->values[TOLD_NEXT] = next < NEVER ? (double)next : 0;
-    m->values[TOLD_CODE] = DUITE_OK;
-    for (size_t i = 0; i < m->blocks.n; i++) {
+    m->values[TOLD_AGAIN] = again;
+    m->values[TOLD_CODE] = code;
+    m->values[TOLD_REFUSED] = 0;
+    for (size_t i = 0; i < m->blocks.n && !code; i++) {
         if (!is_allowed(m, i))
-            m->values[TOLD_CODE] = DUITE_E_ARGUMENT;
+            m->values[TOLD_REFUSED] = 1;
         else if (m->home[i] != m->blocks.block[i].home)
             m->values[TOLD_BLOCKS + n_moves++] = (double)i * m->rt->graph.n_ranks + m->home[i];
     }
@@ -266,7 +305,36 @@ static int move_blocks(struct migration *m)
     return code;
 }
 
-static int migrate(struct migration *m)
+/* When this is asked again. */
+static void schedule(const struct migration *m, uint64_t replay, uint64_t *map_at)
+{
+    struct instance_migration *last = &m->rt->migration;
+    uint64_t next = (uint64_t)m->values[TOLD_NEXT];
+    if (m->record)
+        *map_at = m->values[TOLD_AGAIN] > 0 && !replay ? 1 : UINT64_MAX;
+    if (m->record && last->due == last->replays)
+        last->due++;
+    if (!m->record)
+        last->due = next ? last->replays + next : UINT64_MAX;
+    last->looked = last->replays;
+}
+
+/* The policy did not do its work: the same error on all ranks. */
+static int refused(const struct migration *m)
+{
+    int code = (int)m->values[TOLD_CODE];
+    if (code)
+        return base_error(code, "mapping %s failed on rank 0 with code %d (%s)",
+                          m->rt->mapping->name, code, duite_code_text(code));
+    if (!(m->values[TOLD_REFUSED] > 0))
+        return DUITE_OK;
+    return base_error(DUITE_E_ARGUMENT,
+                      "%s %s moves a block to a rank that there is not, or one that stays",
+                      m->record ? "mapping" : "balancer",
+                      m->record ? m->rt->mapping->name : m->rt->balance->name);
+}
+
+static int migrate(struct migration *m, uint64_t replay, uint64_t *map_at)
 {
     duite *rt = m->rt;
     int code = program_meet(rt, "duite_replay");
@@ -283,14 +351,10 @@ static int migrate(struct migration *m)
     if (code)
         return code;
     struct instance_migration *last = &rt->migration;
-    uint64_t next = (uint64_t)m->values[TOLD_NEXT];
-    last->due = next ? last->replays + next : UINT64_MAX;
-    last->looked = last->replays;
-    if ((int)m->values[TOLD_CODE])
-        return base_error(
-            DUITE_E_ARGUMENT,
-            "balancer %s moves a block to a rank that there is not, or one that stays",
-            rt->balance->name);
+    schedule(m, replay, map_at);
+    code = refused(m);
+    if (code)
+        return code;
     code = move_blocks(m);
     work_note(rt->pool, &(struct trace_event){.begin = ticks,
                                               .took = base_ticks() - ticks,
@@ -301,13 +365,14 @@ static int migrate(struct migration *m)
     return code;
 }
 
-int program_migrate(duite *rt)
+int program_migrate(duite *rt, const struct graph_record *record, uint64_t replay, uint64_t *map_at)
 {
     struct instance_migration *own = &rt->migration;
+    bool maps = rt->mapping->map_tasks && replay == *map_at;
     int code = DUITE_OK;
-    if (rt->comm && rt->balance->migrate && own->replays == own->due) {
-        struct migration m = {.rt = rt};
-        code = migrate(&m);
+    if (rt->comm && (maps || (rt->balance->migrate && own->replays == own->due))) {
+        struct migration m = {.rt = rt, .record = maps ? record : NULL};
+        code = migrate(&m, replay, map_at);
         release(&m);
     }
     if (!own->replays++)

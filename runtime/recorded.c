@@ -16,6 +16,8 @@ struct recorded_graph {
     struct graph_record *record; /* NULL: the slot is free */
     uint32_t generation;
     uint64_t replays; /* since recorded_each was called last */
+    uint64_t begun;   /* all of them */
+    uint64_t map_at;  /* of these: see program_migrate */
 };
 
 int recorded_failed(duite *rt, int code)
@@ -70,7 +72,7 @@ static uint32_t take_slot(duite *rt)
     if (slot == rt->n_recorded)
         rt->recorded[rt->n_recorded++].generation = 0;
     rt->recorded[slot].record = record;
-    rt->recorded[slot].replays = 0;
+    rt->recorded[slot].replays = rt->recorded[slot].begun = rt->recorded[slot].map_at = 0;
     rt->recorded[slot].generation++;
     return (uint32_t)slot + 1;
 }
@@ -211,8 +213,9 @@ static int prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds)
     if (!code)
         code = check_rounds(slot->record, rounds);
     if (!code)
-        code = program_migrate(rt);
+        code = program_migrate(rt, slot->record, slot->begun, &slot->map_at);
     slot->replays += !code;
+    slot->begun += !code;
     return code;
 }
 

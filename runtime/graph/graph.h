@@ -78,8 +78,11 @@ struct graph_task {
     uint32_t kernel;           /* index in the list given at start */
     uint32_t block;            /* for schedulers: of the object that it runs for */
     int32_t priority;
-    float cost;      /* seconds; 0: not said */
-    uint32_t grains; /* of all of it, GRAPH_GRAIN bytes each */
+    float cost; /* seconds; 0: not said */
+    union {
+        uint32_t grains; /* of all of it, GRAPH_GRAIN bytes each */
+        float path;      /* NODE...: seconds from its begin to the end of the round, or 0 */
+    };
     enum graph_kind kind : 16;
     unsigned pinned : 1; /* its fork named a rank: no other one runs it */
     unsigned placed : 1; /* by the home of an object, whose block it has: it moves with that */
@@ -92,6 +95,11 @@ enum { GRAPH_GRAIN = 16, GRAPH_MOST_OBJECTS = 1 << 26 /* of a task */ };
 static inline void *graph_task_rest(struct graph_task *task, size_t n)
 {
     return (char *)task + sizeof *task + n * sizeof task->access[0];
+}
+
+static inline float graph_task_path(const struct graph_task *task)
+{
+    return task->kind >= GRAPH_NODE ? task->path : 0;
 }
 
 /* SEND: a version and where it goes. */
@@ -200,6 +208,7 @@ struct graph {
         uint32_t n, postponed;
     } * fixed;
     uint32_t n_kernels;
+    bool paths; /* plans are to know the paths of their tasks; set before the first of them */
     _Atomic int given_up; /* bodies do not run any more */
     struct graph_hooks hooks;
     /* The main thread's, written with every fork: on cache lines of its own. */

@@ -126,6 +126,26 @@ int graph_record_args(struct graph_record *record, size_t k, const void *args);
 /* Errors: DUITE_E_OBJECT, DUITE_E_BINDING. */
 int graph_record_bind(struct graph_record *record, duite_object recorded, duite_object object);
 
+/* One round of it: its tasks and what the runtime adds (sets, sums, views) in order, and who reads
+ * whose results. Says nothing of ranks. */
+struct graph_tasks {
+    size_t n;
+    const duite_kernel **kernel; /* n: of a task of the program, else NULL */
+    double *cost;    /* n: seconds, as its fork says; 0: not said, or not the program's */
+    uint32_t *owner; /* n: the place in record->object that it runs for, or GRAPH_NOBODY */
+    size_t *start;   /* n + 1: of its rows */
+    uint32_t *from;  /* whose result it reads: before it, or, not before it, of the last round */
+    double *bytes;   /* of it */
+};
+
+/* Errors: memory; graph_tasks_free is due all the same. */
+int graph_record_tasks(const struct graph_record *record, struct graph_tasks *tasks);
+void graph_tasks_free(struct graph_tasks *tasks);
+
+/* By fork: seconds on the longest path from it to the end of the round, see duite_ready.path; to be
+ * freed by base_free. NULL without memory. */
+float *graph_record_paths(const struct graph_record *record);
+
 /* Writes the record as dot, with the objects of the next replay. Errors: memory, DUITE_E_SYSTEM. */
 int graph_record_print(const struct graph_record *record, FILE *file);
 

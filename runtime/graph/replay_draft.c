@@ -237,6 +237,7 @@ void graph_draft_free(struct graph_draft *draft)
     base_free(draft->mark);
     base_free(draft->merge);
     base_free(draft->channel);
+    base_free(draft->path);
     free(draft->edge);
 }
 

@@ -57,6 +57,7 @@ struct graph_draft {
     size_t n_merges;
     struct graph_draft_channel *channel;
     size_t n_channels;
+    float *path; /* by fork, or NULL: nobody asks */
     bool decides, failed;
 };
 

@@ -169,6 +169,8 @@ static void fill_node(struct graph_plan *plan, const struct graph_draft *draft, 
     }
     if (from->kind == GRAPH_NODE || from->kind == GRAPH_NODE_SET)
         fill_call(plan, record, from, task, plan->owner[i] != GRAPH_NO_PLACE);
+    if (from->kind == GRAPH_NODE && draft->path)
+        task->path = draft->path[from->fork];
 }
 /* Successors in one row, those of the next round before those of the same. */
 static void fill_next(struct graph_plan *plan, const struct graph_draft *draft)
@@ -281,6 +283,8 @@ struct graph_plan *graph_plan_new(const struct graph_record *record, const duite
     bool fine = record->graph->n_ranks > 1
                     ? graph_plan_spread(plan, &draft, flag)
                     : graph_draft_make(&draft, plan->n_objects, plan->flag_place);
+    if (fine && plan->graph->paths)
+        fine = (draft.path = graph_record_paths(record)) != NULL;
     fine = fine && fill(plan, &draft, flag);
     if (fine && plan->words)
         fine = !graph_plan_open(plan, &draft);

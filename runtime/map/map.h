@@ -6,7 +6,10 @@
 #include <duite_policy.h>
 
 /* The built-in mappings. */
-extern const duite_mapping map_metis, map_block, map_cyclic, map_random;
+extern const duite_mapping map_metis, map_block, map_cyclic, map_random, map_taskgraph, map_list;
+
+/* That of `metis`: equal weights, few bytes between ranks. */
+int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
 
 /* Notes a hint: the weight, and edges to n neighbours; or a leader. Homes that are settled stay.
  * Main thread, collective. Errors: objects, arguments, memory. */

@@ -45,7 +45,7 @@ static int partition(const duite_object_graph *graph, int n_ranks, uint64_t seed
     return DUITE_OK;
 }
 
-static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
 {
     size_t n = graph->n, edges = graph->start[n];
     if (!edges || n <= (size_t)n_ranks)
@@ -63,5 +63,5 @@ static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int 
 const duite_mapping map_metis = {
     .name = "metis",
     .summary = "METIS on the hinted objects: equal weights, few bytes between ranks",
-    .map = map,
+    .map = map_by_metis,
 };

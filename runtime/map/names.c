@@ -3,8 +3,10 @@
 
 #include "runtime/base/policy.h"
 
-static const char *const names[] = {"metis", "block", "cyclic", "random", NULL};
-static const void *const tables[] = {&map_metis, &map_block, &map_cyclic, &map_random};
+static const char *const names[] = {"metis",     "block", "cyclic", "random",
+                                    "taskgraph", "list",  NULL};
+static const void *const tables[] = {&map_metis,  &map_block,     &map_cyclic,
+                                     &map_random, &map_taskgraph, &map_list};
 
 const duite_mapping *duite_mapping_find(const char *name)
 {

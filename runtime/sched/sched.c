@@ -5,10 +5,10 @@
 
 #include <duite.h>
 
-static const char *const names[] = {"steal",    "owner",  "fifo",    "lifo",
-                                    "priority", "static", "shuffle", NULL};
-static const void *const tables[] = {&sched_steal,    &sched_owner,  &sched_fifo,   &sched_lifo,
-                                     &sched_priority, &sched_static, &sched_shuffle};
+static const char *const names[] = {"steal",    "locality", "owner",   "fifo", "lifo",
+                                    "priority", "static",   "shuffle", NULL};
+static const void *const tables[] = {&sched_steal, &sched_locality, &sched_owner,  &sched_fifo,
+                                     &sched_lifo,  &sched_priority, &sched_static, &sched_shuffle};
 
 const duite_scheduler *duite_scheduler_find(const char *name)
 {

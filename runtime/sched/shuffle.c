@@ -3,26 +3,20 @@
  */
 #include "runtime/sched/sched.h"
 
-struct state {
-    uint64_t random;
-    unsigned n_workers;
-};
-
 static void start(void *state, unsigned worker, unsigned n_workers, uint64_t seed)
 {
-    struct state *own = state;
-    *own = (struct state){.random = seed * 1000003 + worker, .n_workers = n_workers};
+    sched_start(state, worker, n_workers, seed * 1000003);
 }
 
 static unsigned draw(void *state, unsigned below)
 {
-    return (unsigned)(duite_random(&((struct state *)state)->random) % below);
+    return (unsigned)(duite_random(&((struct sched_state *)state)->random) % below);
 }
 
 static unsigned place(void *state, const duite_ready *task)
 {
     (void)task;
-    unsigned n_workers = ((struct state *)state)->n_workers;
+    unsigned n_workers = ((struct sched_state *)state)->n_workers;
     unsigned queue = draw(state, n_workers + 1);
     return queue == n_workers ? DUITE_SHARED_QUEUE : queue;
 }
@@ -34,7 +28,7 @@ static duite_end serve(void *state)
 
 static unsigned victim(void *state, unsigned attempt)
 {
-    unsigned n_workers = ((struct state *)state)->n_workers;
+    unsigned n_workers = ((struct sched_state *)state)->n_workers;
     if (attempt >= n_workers || draw(state, 8) == 0)
         return DUITE_NO_QUEUE;
     return draw(state, n_workers);
@@ -49,7 +43,7 @@ static int chain(void *state, const duite_ready *task)
 const duite_scheduler sched_shuffle = {
     .name = "shuffle",
     .summary = "random decisions from the seed, for tests",
-    .state_size = sizeof(struct state),
+    .state_size = sizeof(struct sched_state),
     .start = start,
     .place = place,
     .serve = serve,

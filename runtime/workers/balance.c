@@ -29,7 +29,7 @@ struct work_balance {
     uint64_t first_ask, serve_ticks;
     _Atomic uint64_t *cost; /* ticks, a row of kernels for each worker; 0: none ran */
     size_t row;
-    struct work_spent *spent;      /* one a worker, if homes may change; else NULL */
+    struct work_spent *spent;      /* one a worker, if it is to be measured; else NULL */
     _Atomic uint64_t next, served; /* ticks: when to ask, when it was given last */
     _Atomic unsigned attempt;
     _Atomic int giver;
@@ -41,8 +41,8 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     const struct graph *graph = pool->setup.graph;
     unsigned n = pool->setup.threads;
     *out = NULL;
-    if (!balancer || graph->n_ranks == 1 ||
-        !(balancer->victim || balancer->place || balancer->migrate))
+    bool measures = pool->setup.measures || (balancer && balancer->migrate);
+    if (!balancer || graph->n_ranks == 1 || !(balancer->victim || balancer->place || measures))
         return DUITE_OK;
     struct work_balance *balance = *out = base_alloc_zero(sizeof *balance);
     if (!balance)
@@ -56,9 +56,9 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     balance->row = (graph->n_kernels / 8 + 2) * 8;
     balance->states = base_alloc_zero(n * balance->stride);
     balance->cost = base_alloc_zero(n * balance->row * sizeof *balance->cost);
-    if (balancer->migrate)
+    if (measures)
         balance->spent = base_alloc_zero(n * sizeof *balance->spent);
-    if (!balance->states || !balance->cost || (balancer->migrate && !balance->spent))
+    if (!balance->states || !balance->cost || (measures && !balance->spent))
         return base_no_memory("the balancer");
     for (unsigned i = 0; i < n && balancer->start; i++)
         balancer->start(balance->states + i * balance->stride, graph->rank, graph->n_ranks, i,

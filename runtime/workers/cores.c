@@ -22,7 +22,9 @@ static int load(void)
         return DUITE_OK;
     if (hwloc_topology_init(&new))
         return base_error(DUITE_E_SYSTEM, "hwloc cannot start");
-    hwloc_topology_set_all_types_filter(new, HWLOC_TYPE_FILTER_KEEP_NONE);
+    hwloc_topology_set_all_types_filter(new, HWLOC_TYPE_FILTER_KEEP_STRUCTURE);
+    hwloc_topology_set_io_types_filter(new, HWLOC_TYPE_FILTER_KEEP_NONE);
+    hwloc_topology_set_type_filter(new, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL);
     hwloc_topology_set_type_filter(new, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL);
     if (hwloc_topology_load(new)) {
         hwloc_topology_destroy(new);
@@ -87,6 +89,18 @@ void work_cores_free(struct work_cores *cores)
 {
     base_free(cores->unit);
     *cores = (struct work_cores){0};
+}
+
+unsigned work_cores_distance(int a, int b)
+{
+    unsigned distance = 0;
+    pthread_mutex_lock(&lock);
+    hwloc_obj_t one = hwloc_get_pu_obj_by_os_index(topology, (unsigned)a),
+                other = hwloc_get_pu_obj_by_os_index(topology, (unsigned)b);
+    for (; one && other && !hwloc_bitmap_isincluded(other->cpuset, one->cpuset); one = one->parent)
+        distance++;
+    pthread_mutex_unlock(&lock);
+    return one && other ? distance : 0;
 }
 
 void work_cores_bind(int unit)

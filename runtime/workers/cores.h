@@ -15,6 +15,10 @@ struct work_cores {
 int work_cores_find(struct work_cores *cores);
 void work_cores_free(struct work_cores *cores);
 
+/* How many levels of the topology lie between two processing units and the smallest part of the
+ * machine that has both; 0 if it is one or hwloc does not know them. After work_cores_find. */
+unsigned work_cores_distance(int a, int b);
+
 /* Binds the calling thread to one processing unit; -1: leaves it where it is. A refusal is not an
  * error: binding is a favour. */
 void work_cores_bind(int unit);

@@ -108,6 +108,7 @@ void work_count(struct work_pool *pool, duite_counters *counters)
         counters->tasks += atomic_load_explicit(&counts->tasks, memory_order_relaxed);
         counters->placed += atomic_load_explicit(&counts->placed, memory_order_relaxed);
         counters->stolen += atomic_load_explicit(&counts->stolen, memory_order_relaxed);
+        counters->stolen_far += atomic_load_explicit(&counts->far, memory_order_relaxed);
         counters->chained += atomic_load_explicit(&counts->chained, memory_order_relaxed);
         counters->delegated += atomic_load_explicit(&counts->delegated, memory_order_relaxed);
         counters->busy +=
@@ -120,4 +121,10 @@ void work_count(struct work_pool *pool, duite_counters *counters)
     if (pool->setup.comm)
         counters->awaited =
             pool->setup.threads * pool->tick * (double)comm_awaited_ticks(pool->setup.comm);
+}
+
+const char *work_endless(const struct work_pool *pool)
+{
+    bool endless = atomic_load_explicit(&pool->endless, memory_order_relaxed);
+    return endless ? pool->setup.scheduler->name : NULL;
 }

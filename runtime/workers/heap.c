@@ -10,6 +10,7 @@ struct work_ranked {
     struct graph_task *task;
     uint64_t came;
     int32_t priority;
+    float path;
 };
 
 void work_heap_start(struct work_heap *heap)
@@ -38,7 +39,9 @@ void work_heap_leave(struct work_heap *heap)
 
 static bool before(const struct work_ranked *a, const struct work_ranked *b)
 {
-    return a->priority != b->priority ? a->priority > b->priority : a->came < b->came;
+    if (a->priority != b->priority)
+        return a->priority > b->priority;
+    return a->path != b->path ? a->path > b->path : a->came < b->came;
 }
 
 bool work_heap_push(struct work_heap *heap, struct graph_task *task)
@@ -48,7 +51,7 @@ bool work_heap_push(struct work_heap *heap, struct graph_task *task)
     if (!moved)
         return false;
     heap->entry = moved;
-    struct work_ranked new = {task, heap->came++, task->priority};
+    struct work_ranked new = {task, heap->came++, task->priority, graph_task_path(task)};
     atomic_store_explicit(&heap->n, i + 1, memory_order_relaxed);
     for (; i && before(&new, &heap->entry[(i - 1) / 2]); i = (i - 1) / 2)
         heap->entry[i] = heap->entry[(i - 1) / 2];

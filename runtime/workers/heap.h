@@ -8,8 +8,8 @@
 
 struct graph_task;
 
-/* Tasks by priority; of equals the one that came first. Whoever holds `busy` may look inside; `n`
- * anybody may read. */
+/* Tasks by priority; of equals the one with the longest path, then the one that came first. Whoever
+ * holds `busy` may look inside; `n` anybody may read. */
 struct work_heap {
     struct work_ranked *entry;
     size_t capacity;

@@ -2,6 +2,7 @@
 #define DUITE_WORKERS_INTERNAL_H
 
 #include "runtime/workers/balance.h"
+#include "runtime/workers/near.h"
 #include "runtime/workers/park.h"
 #include "runtime/workers/queue.h"
 #include "runtime/workers/watch.h"
@@ -21,6 +22,7 @@
 struct counts {
     _Atomic uint64_t over, more; /* tasks of all kinds; what is waited for beside the forked ones */
     _Atomic uint64_t tasks, placed, stolen, chained, delegated;
+    _Atomic uint64_t far;                 /* of those stolen: not from the nearest */
     _Atomic uint64_t busy, idle, exposed; /* ticks; the last: idle while messages were awaited */
 };
 
@@ -59,10 +61,12 @@ struct work_pool {
     uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks;
     unsigned started; /* threads, worker 0 among them */
     pthread_t main;
+    struct work_near near;
     struct work_queue shared;
     struct work_watch watch;
     struct work_balance *balance; /* NULL: nothing moves between ranks */
     _Alignas(64) _Atomic int stop;
+    _Atomic int endless;             /* the scheduler named victims without an end */
     _Atomic int watched;             /* somebody reads the tasks that run: they must not go on */
     _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
     _Alignas(64) _Atomic int seat;   /* taken by the idle worker that polls */

@@ -16,6 +16,9 @@
  * these, those before which the clock is read. */
 enum { LONGEST_CHAIN = 64, CLOCKED = 16 };
 
+/* Tries of a scheduler that names victims, in one round. */
+enum { MOST_ATTEMPTS = 64, MOST_ATTEMPTS_A_WORKER = 16 };
+
 /* Seconds between polls while there is work; while there is none, the longest pause. */
 #define POLL_SECONDS          5e-6
 #define LONGEST_PAUSE_SECONDS 1e-3
@@ -30,7 +33,8 @@ static duite_ready describe(const struct graph *graph, const struct graph_task *
                          .number = task->number,
                          .block = task->block,
                          .priority = task->priority,
-                         .cost = task->cost};
+                         .cost = task->cost,
+                         .path = graph_task_path(task)};
 }
 
 void work_wake_one(struct work_pool *pool, unsigned queue)
@@ -98,6 +102,23 @@ void work_notify(void *context)
 
 /* ---- One worker's work ---- */
 
+/* A scheduler names victims without an end: the main program will tell. */
+static bool is_endless(struct work_pool *pool, unsigned attempt)
+{
+    if (attempt < MOST_ATTEMPTS + MOST_ATTEMPTS_A_WORKER * pool->setup.threads)
+        return false;
+    atomic_store_explicit(&pool->endless, 1, memory_order_relaxed);
+    return true;
+}
+
+static void count_steal(struct work_worker *worker, unsigned victim)
+{
+    const struct work_near *near = &worker->pool->near;
+    work_bump(&worker->counts.stolen, 1);
+    work_bump(&worker->counts.far, work_near_is_far(near, worker->index, victim));
+    trace_mark(worker->ring, TRACE_STEAL, victim, 0);
+}
+
 static struct graph_task *find(struct work_worker *worker)
 {
     struct work_pool *pool = worker->pool;
@@ -109,15 +130,13 @@ static struct graph_task *find(struct work_worker *worker)
         task = work_queue_take_shared(queue = &pool->shared, end);
     for (unsigned attempt = 0; !task; attempt++) {
         unsigned victim = scheduler->victim(worker->state, attempt);
-        if (victim >= pool->setup.threads)
+        if (victim >= pool->setup.threads || is_endless(pool, attempt))
             break;
         if (victim == worker->index)
             continue;
         task = work_queue_steal(queue = &pool->worker[victim].queue, &worker->queue);
-        if (task) {
-            work_bump(&worker->counts.stolen, 1);
-            trace_mark(worker->ring, TRACE_STEAL, victim, 0);
-        }
+        if (task)
+            count_steal(worker, victim);
     }
     worker->left_some = task && work_queue_ranks(queue);
     return task;
@@ -325,6 +344,8 @@ static bool prepare(struct work_pool *pool, unsigned index, int unit)
         .context = setup->context, .rt = setup->rt, .rank = setup->graph->rank, .worker = index};
     if (setup->scheduler->start)
         setup->scheduler->start(worker->state, index, setup->threads, setup->seed);
+    if (setup->scheduler->look)
+        setup->scheduler->look(worker->state, work_near_of(&pool->near, index));
     bool queue = work_queue_start(&worker->queue);
     return work_park_start(&worker->park) && queue;
 }
@@ -359,7 +380,9 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     pool->await_ticks = (uint64_t)(WORK_AWAIT_SECONDS / pool->tick);
     pool->worker = base_alloc_zero(n * sizeof pool->worker[0]);
     pool->states = base_alloc_zero(n * lines * BASE_LINE);
-    bool fine = pool->worker && pool->states && work_queue_start(&pool->shared);
+    setup->graph->paths = setup->scheduler->paths;
+    bool fine = pool->worker && pool->states && work_near_start(&pool->near, n, setup->cores) &&
+                work_queue_start(&pool->shared);
     for (unsigned i = 0; i < n && fine; i++)
         fine = prepare(pool, i, setup->cores ? setup->cores[i] : -1);
     if (fine)
@@ -405,6 +428,7 @@ void work_stop(struct work_pool *pool)
     }
     work_queue_stop(&pool->shared);
     work_balance_stop(pool);
+    work_near_stop(&pool->near);
     base_free(pool->worker);
     base_free(pool->states);
     base_free(pool);

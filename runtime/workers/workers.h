@@ -22,6 +22,7 @@ struct work_setup {
     struct trace *trace; /* NULL: nobody writes down what happens */
     const duite_scheduler *scheduler;
     const duite_balancer *balancer; /* NULL: nothing moves */
+    bool measures;                  /* what bodies take is asked for, whatever the balancer */
     void *context;                  /* for bodies */
     duite *rt;                      /* for bodies */
     unsigned threads;
@@ -73,6 +74,9 @@ void work_tick(struct work_pool *pool);
 
 /* Tasks of this rank that are not over. Main thread. */
 uint64_t work_unfinished(const struct work_pool *pool);
+
+/* The name of the scheduler if it named victims without an end, which is an error; else NULL. */
+const char *work_endless(const struct work_pool *pool);
 
 /* Works while more than `most` of them are not, until a quarter less is, or communication broke.
  * Main thread. */

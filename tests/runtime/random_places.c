@@ -66,7 +66,7 @@ static int are_apart(const struct run *run, const struct prog_op *op)
 void prog_check_places(struct run *run, const struct prog_context *context,
                        const struct prog_setup *setup)
 {
-    const int moves = strcmp(setup->balance, "none") != 0;
+    const int moves = run->moves || strcmp(setup->balance, "none") != 0;
     unsigned char *all = moves ? count_runs(run, context, setup->comm) : NULL;
     int rebound = 0; /* then its tasks may run on several ranks */
 

@@ -320,7 +320,7 @@ static void run_operations(struct run *run, const struct prog_setup *setup,
     options.bind = 0;
     options.window = setup->window;
     options.rename_bytes = setup->rename;
-    run->moves = options.balance->migrate != NULL;
+    run->moves = options.balance->migrate || options.mapping->map_tasks;
     const int code = duite_start(&run->rt, &options);
 
     expect(run, "start", code, DUITE_OK);

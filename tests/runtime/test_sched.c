@@ -282,8 +282,12 @@ static void check_told(const duite_ready *ready)
 
 START_TEST(what_is_said)
 {
-    static const duite_scheduler LISTENING = {"listening", "for tests", 0,      NULL,
-                                              listen,      in_turn,     nobody, never};
+    static const duite_scheduler LISTENING = {.name = "listening",
+                                              .summary = "for tests",
+                                              .place = listen,
+                                              .serve = in_turn,
+                                              .victim = nobody,
+                                              .chain = never};
     static const duite_kernel *const KERNELS[] = {&NOTE, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = NULL;

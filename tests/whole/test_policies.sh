@@ -37,8 +37,9 @@ static void start(void *state, int rank, int n_ranks, unsigned worker, uint64_t 
     (void)state, (void)rank, (void)n_ranks, (void)worker, (void)seed, say("balance");
 }
 static int stay(void *state, const duite_leaf *leaf) { (void)state, (void)leaf; return -1; }
-const duite_scheduler duite_own_scheduler = {"mine", "", 8, NULL, place, serve, victim, chain};
-const duite_mapping duite_own_mapping = {"mine", "", map};
+const duite_scheduler duite_own_scheduler = {
+    .name = "mine", .summary = "", .state_size = 8, .place = place, .serve = serve, .victim = victim, .chain = chain};
+const duite_mapping duite_own_mapping = {.name = "mine", .summary = "", .map = map};
 const duite_balancer duite_own_balancer = {.name = "mine", .summary = "", .state_size = 8, .start = start, .place = stay};
 EOF
 

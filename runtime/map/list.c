@@ -1,0 +1,168 @@
+/* list: earliest finish time. The tasks of a recorded graph are gone through by their upward rank,
+ * the longest path of costs and transfers to the end, and the first task of each block takes the
+ * block to the rank where it would be over first, after the free time of that rank's workers and
+ * the arrival of what it reads; the block's other tasks follow. After Topcuoglu, Hariri & Wu,
+ * Performance-effective and low-complexity task scheduling for heterogeneous computing (HEFT), IEEE
+ * TPDS 13(3), 2002, without insertion into gaps. Only what a round reads of itself counts. Until a
+ * graph is replayed, homes are those of `metis`. */
+#include "runtime/map/map.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <stdlib.h>
+
+struct plan {
+    const duite_task_graph *graph;
+    int *home;
+    bool *placed;    /* by block */
+    double *upward;  /* by task */
+    uint32_t *order; /* tasks by upward rank */
+    double *end;     /* by task: when it is over; */
+    int *rank;       /* and where; DUITE_NO_RANK: everywhere */
+    double *free;    /* by worker, rank after rank: when it is idle */
+    size_t *first;   /* n_ranks + 1: of each rank's workers */
+};
+
+static double way(const duite_task_graph *graph, size_t edge)
+{
+    return graph->message_seconds + graph->bytes[edge] * graph->byte_seconds;
+}
+
+/* Rows lead to earlier tasks: from the last one back, all who read a task's result are known. */
+static void rank_upward(struct plan *plan)
+{
+    const duite_task_graph *graph = plan->graph;
+    for (size_t i = graph->n; i-- > 0;) {
+        plan->upward[i] += graph->cost[i];
+        for (size_t e = graph->start[i]; e < graph->start[i + 1]; e++) {
+            double *before = &plan->upward[graph->from[e]];
+            if (graph->from[e] < i && *before < plan->upward[i] + way(graph, e))
+                *before = plan->upward[i] + way(graph, e);
+        }
+    }
+}
+
+static int compare(const void *a, const void *b, void *context)
+{
+    const struct plan *plan = context;
+    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    double left = plan->upward[x], right = plan->upward[y];
+    return left != right ? (left > right ? -1 : 1) : (x < y ? -1 : x > y);
+}
+
+/* When all that it reads is there. */
+static double arrival(const struct plan *plan, size_t task, int rank)
+{
+    const duite_task_graph *graph = plan->graph;
+    double all = 0;
+    for (size_t e = graph->start[task]; e < graph->start[task + 1]; e++) {
+        size_t from = graph->from[e];
+        if (from >= task)
+            continue;
+        bool here = plan->rank[from] == rank || plan->rank[from] == DUITE_NO_RANK;
+        double there = plan->end[from] + (here ? 0 : way(graph, e));
+        all = there > all ? there : all;
+    }
+    return all;
+}
+
+/* The worker of the rank that is idle first. */
+static size_t first_idle(const struct plan *plan, int rank)
+{
+    size_t best = plan->first[rank];
+    for (size_t w = best; w < plan->first[rank + 1]; w++)
+        if (plan->free[w] < plan->free[best])
+            best = w;
+    return best;
+}
+
+static double finish(const struct plan *plan, size_t task, int rank)
+{
+    double free = plan->free[first_idle(plan, rank)], there = arrival(plan, task, rank);
+    return (free > there ? free : there) + plan->graph->cost[task];
+}
+
+static int choose(const struct plan *plan, size_t task)
+{
+    int best = 0;
+    double least = finish(plan, task, 0);
+    for (int rank = 1; rank < plan->graph->n_ranks; rank++) {
+        double over = finish(plan, task, rank);
+        if (over < least) {
+            least = over;
+            best = rank;
+        }
+    }
+    return best;
+}
+
+static void place(struct plan *plan, size_t task)
+{
+    const duite_task_graph *graph = plan->graph;
+    uint32_t block = graph->block[task];
+    if (block == DUITE_NO_BLOCK) {
+        plan->rank[task] = DUITE_NO_RANK;
+        plan->end[task] = arrival(plan, task, DUITE_NO_RANK) + graph->cost[task];
+        return;
+    }
+    if (!plan->placed[block] && !graph->stays[block])
+        plan->home[block] = choose(plan, task);
+    plan->placed[block] = true;
+    int rank = plan->rank[task] = plan->home[block];
+    plan->end[task] = finish(plan, task, rank);
+    if (graph->cost[task] > 0)
+        plan->free[first_idle(plan, rank)] = plan->end[task];
+}
+
+static bool allocate(struct plan *plan)
+{
+    const duite_task_graph *graph = plan->graph;
+    size_t n = graph->n + 1, ranks = (size_t)graph->n_ranks;
+    plan->first = base_alloc_zero((ranks + 1) * sizeof *plan->first);
+    if (!plan->first)
+        return false;
+    for (size_t r = 0; r < ranks; r++)
+        plan->first[r + 1] = plan->first[r] + graph->workers[r];
+    plan->placed = base_alloc_zero((graph->n_blocks + 1) * sizeof *plan->placed);
+    plan->upward = base_alloc_zero(n * sizeof *plan->upward);
+    plan->order = base_alloc(n * sizeof *plan->order);
+    plan->end = base_alloc(n * sizeof *plan->end);
+    plan->rank = base_alloc(n * sizeof *plan->rank);
+    plan->free = base_alloc_zero(plan->first[ranks] * sizeof *plan->free);
+    return plan->placed && plan->upward && plan->order && plan->end && plan->rank && plan->free;
+}
+
+static void release(struct plan *plan)
+{
+    base_free(plan->first);
+    base_free(plan->placed);
+    base_free(plan->upward);
+    base_free(plan->order);
+    base_free(plan->end);
+    base_free(plan->rank);
+    base_free(plan->free);
+}
+
+static int map_tasks(const duite_task_graph *graph, int *home)
+{
+    struct plan plan = {.graph = graph, .home = home};
+    bool fine = allocate(&plan);
+    if (fine) {
+        rank_upward(&plan);
+        for (size_t i = 0; i < graph->n; i++)
+            plan.order[i] = (uint32_t)i;
+        qsort_r(plan.order, graph->n, sizeof *plan.order, compare, &plan);
+        for (size_t i = 0; i < graph->n; i++)
+            place(&plan, plan.order[i]);
+    }
+    release(&plan);
+    return fine ? DUITE_OK : base_no_memory("the mapping list");
+}
+
+const duite_mapping map_list = {
+    .name = "list",
+    .summary = "blocks where the tasks of a recorded graph are over first (HEFT)",
+    .map = map_by_metis,
+    .map_tasks = map_tasks,
+};

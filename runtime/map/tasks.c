@@ -1,0 +1,79 @@
+/* From the tasks of a record to those of blocks: who runs for which, and what they cost as far as
+ * it is said, measured, or to be guessed. */
+#include "runtime/map/tasks.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#define GUESSED_SECONDS 1e-6
+
+static bool is_asked(const struct graph_tasks *tasks, size_t i)
+{
+    return tasks->kernel[i] && !(tasks->cost[i] > 0);
+}
+
+/* The seconds of a block are those of its tasks that do not say them, each the same. */
+static bool share_out(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
+{
+    struct graph_tasks *all = &tasks->tasks;
+    double *asked = base_alloc_zero((n_blocks + 1) * sizeof *asked);
+    if (!asked)
+        return false;
+    for (size_t i = 0; i < all->n; i++) {
+        bool is = is_asked(all, i);
+        tasks->guessed |= is;
+        if (is && tasks->block[i] != DUITE_NO_BLOCK)
+            asked[tasks->block[i]]++;
+    }
+    for (size_t i = 0; i < all->n; i++)
+        if (is_asked(all, i) && tasks->block[i] != DUITE_NO_BLOCK)
+            all->cost[i] = seconds[tasks->block[i]] / asked[tasks->block[i]];
+    base_free(asked);
+    return true;
+}
+
+static void guess(struct graph_tasks *tasks)
+{
+    double sum = 0, known = 0;
+    for (size_t i = 0; i < tasks->n; i++) {
+        sum += tasks->cost[i];
+        known += tasks->cost[i] > 0;
+    }
+    for (size_t i = 0; i < tasks->n; i++)
+        if (is_asked(tasks, i))
+            tasks->cost[i] = known > 0 ? sum / known : GUESSED_SECONDS;
+}
+
+int map_tasks_find(struct map_tasks *tasks, const struct graph_record *record,
+                   const struct map_blocks *blocks, const double *seconds)
+{
+    struct graph_tasks *all = &tasks->tasks;
+    *tasks = (struct map_tasks){0};
+    int code = graph_record_tasks(record, all);
+    if (code)
+        return code;
+    tasks->block = base_alloc((all->n + 1) * sizeof *tasks->block);
+    if (!tasks->block)
+        return base_no_memory("the tasks of a recorded graph");
+    for (size_t i = 0; i < all->n; i++)
+        tasks->block[i] = all->owner[i] == GRAPH_NOBODY
+                              ? DUITE_NO_BLOCK
+                              : blocks->of[record->object[all->owner[i]].bound.slot];
+    if (!share_out(tasks, blocks->n, seconds))
+        return base_no_memory("the tasks of a recorded graph");
+    guess(all);
+    tasks->graph = (duite_task_graph){.n = all->n,
+                                      .cost = all->cost,
+                                      .block = tasks->block,
+                                      .start = all->start,
+                                      .from = all->from,
+                                      .bytes = all->bytes,
+                                      .n_blocks = blocks->n};
+    return DUITE_OK;
+}
+
+void map_tasks_free(struct map_tasks *tasks)
+{
+    graph_tasks_free(&tasks->tasks);
+    base_free(tasks->block);
+}

@@ -1,0 +1,174 @@
+/* Schedulers that know more: of paths to the end of a graph, of distances in the machine; and ones
+ * that do not keep to the rules. */
+#include "tests/negative/misuse.h"
+#include "tests/support/unit.h"
+
+#include <duite_policy.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+enum { TASKS = 30 };
+
+static int order[TASKS], n_ran; /* the tasks' numbers as they ran */
+
+static int note(const duite_call *call)
+{
+    order[n_ran++] = *(const int *)call->args;
+    return 0;
+}
+
+static const duite_kernel NOTE = {
+    .name = "note", .body = note, .access = {DUITE_W}, .args_size = sizeof(int)};
+
+static duite *start(const struct duite_scheduler *scheduler, unsigned threads)
+{
+    static const duite_kernel *const KERNELS[] = {&NOTE, NULL};
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = NULL;
+
+    misuse_mpi();
+    n_ran = 0;
+    options.kernels = KERNELS;
+    options.scheduler = scheduler;
+    options.threads = threads;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+    return rt;
+}
+
+/* ---- The longest path ---- */
+
+/* Twenty short tasks, then a chain of three; a task that costs more than the first two of the chain
+ * together, but less than all of it; and one that says nothing and counts as the mean. */
+static int build_chain(duite *rt, void *context)
+{
+    const duite_object *object = context;
+
+    for (int i = 0; i < 20; i++)
+        duite_fork_with(rt, &(duite_how){.cost = 1}, &NOTE, &i, 1, &object[i]);
+    for (int i = 20; i < 23; i++)
+        duite_fork_with(rt, &(duite_how){.cost = 10}, &NOTE, &i, 1, &object[20]);
+    duite_fork_with(rt, &(duite_how){.cost = 25}, &NOTE, &(int){23}, 1, &object[21]);
+    return duite_fork(rt, &NOTE, &(int){24}, 1, &object[22]);
+}
+
+/* Under `priority` one worker takes the chain first, though it was forked last. */
+START_TEST(longest_path_first)
+{
+    static const int EXPECTED[] = {20, 23, 21, 22, 24, 0, 1, 2};
+    duite *rt = start(duite_scheduler_find("priority"), 1);
+    duite_object object[23];
+    duite_graph graph;
+
+    for (int i = 0; i < 23; i++)
+        object[i] = misuse_new(rt, 1);
+    ck_assert_int_eq(duite_graph_new(rt, build_chain, object, &graph), DUITE_OK);
+    ck_assert_int_eq(duite_replay(rt, graph, 1), DUITE_OK);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    ck_assert_int_eq(n_ran, 25);
+    for (int i = 0; i < 8; i++)
+        ck_assert_int_eq(order[i], EXPECTED[i]);
+    for (int i = 0; i < 23; i++)
+        duite_free(rt, object[i]);
+    duite_graph_free(rt, graph);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}
+END_TEST
+
+/* ---- Distances ---- */
+
+/* The first ring is tried before the second, each from a random one on. */
+START_TEST(nearest_first)
+{
+    static const unsigned WORKER[] = {2, 4, 5, 0, 1}, DISTANCE[] = {1, 1, 1, 3, 3};
+    const struct duite_scheduler *s = duite_scheduler_find("locality");
+    void *state = calloc(1, s->state_size);
+    unsigned firsts = 0;
+
+    s->start(state, 3, 6, 1);
+    s->look(state, &(duite_near){5, WORKER, DISTANCE});
+    for (int round = 0; round < 50; round++) {
+        unsigned seen = 0, victim = 0;
+
+        for (unsigned attempt = 0; attempt < 5; attempt++) {
+            victim = s->victim(state, attempt);
+            ck_assert_uint_eq(victim == 0 || victim == 1, attempt >= 3);
+            ck_assert_uint_eq(seen & 1u << victim, 0);
+            seen |= 1u << victim;
+            firsts |= attempt ? 0 : 1u << victim;
+        }
+        ck_assert_uint_eq(s->victim(state, 5), DUITE_NO_QUEUE);
+    }
+    ck_assert_uint_eq(firsts, 1u << 2 | 1u << 4 | 1u << 5);
+    free(state);
+}
+END_TEST
+
+/* ---- Schedulers that do not keep to the rules ---- */
+
+static unsigned nowhere(void *state, const duite_ready *task)
+{
+    (void)state;
+    return 77 + (unsigned)task->number;
+}
+
+static duite_end no_end(void *state)
+{
+    (void)state;
+    return (duite_end)99;
+}
+
+static int never(void *state, const duite_ready *task)
+{
+    (void)state;
+    (void)task;
+    return 0;
+}
+
+static unsigned always(void *state, unsigned attempt)
+{
+    (void)state;
+    return attempt % 2;
+}
+
+/* Queues that there are not, and rounds that do not end: all tasks run once, and the wait names who
+ * it was. */
+START_TEST(misbehaving)
+{
+    static const duite_scheduler WRONG = {.name = "wrong",
+                                          .summary = "for tests",
+                                          .place = nowhere,
+                                          .serve = no_end,
+                                          .victim = always,
+                                          .chain = never};
+    duite *rt = start(&WRONG, 2);
+    duite_object a = misuse_new(rt, 1);
+
+    for (int i = 0; i < TASKS; i++)
+        ck_assert_int_eq(duite_fork(rt, &NOTE, &i, 1, &a), DUITE_OK);
+    int32_t value;
+    ck_assert_int_eq(duite_get(rt, a, &value), DUITE_OK);
+    ck_assert_int_eq(n_ran, TASKS);
+    int code = DUITE_OK;
+    while (!code) /* until a worker ran out of tasks */
+        code = duite_wait(rt);
+    ck_assert_int_eq(code, DUITE_E_ARGUMENT);
+    ck_assert_str_eq(
+        duite_message(),
+        "scheduler wrong names victims without an end (seen on rank 0): its victim has "
+        "to return DUITE_NO_QUEUE at last");
+    duite_free(rt, a);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_E_ARGUMENT);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("schedulers that know more");
+    TCase *test = tcase_create("knowing");
+
+    tcase_add_test(test, longest_path_first);
+    tcase_add_test(test, nearest_first);
+    tcase_add_test(test, misbehaving);
+    suite_add_tcase(suite, test);
+    return unit_run(suite);
+}

@@ -69,6 +69,9 @@ void summary_print(FILE *file, const struct summary *summary)
             model->h, report->simulated_seconds);
     if (!isnan(report->rest_seconds))
         fprintf(file, "  at rest          after %g s\n", report->rest_seconds);
+    if (report->steps_halved)
+        fprintf(file, "  shorter steps    down to h / %.0f; halved %" PRIu64 " times\n",
+                model->h / report->shortest_step, report->steps_halved);
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));
     print_times(file, report);
@@ -190,7 +193,7 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_number(json, "communication_hidden_fraction", hidden_fraction(summary));
     output_report_null(json, "critical_path_seconds");
     output_report_null(json, "lower_bound_seconds");
-    output_report_null(json, "steps_halved");
+    output_report_integer(json, "steps_halved", summary->report->steps_halved);
     output_report_integer(json, "peak_memory_bytes", summary->memory_bytes);
 }
 

@@ -83,7 +83,7 @@ static int begin(struct cg_session *s)
     if (!code)
         code = flow_initialise(&s->run);
     if (!code)
-        code = flow_step(&s->run, 0);
+        code = flow_step(&s->run);
     if (!code)
         code = duite_wait(s->rt);
     return tasks_code(code);
@@ -186,7 +186,7 @@ static double *new_answer(const struct cg_session *s)
 static int error_of(struct cg_session *s, double *error)
 {
     double *dv = new_answer(s);
-    int code = dv ? tasks_code(flow_cg(&s->run, 0)) : 1;
+    int code = dv ? tasks_code(flow_cg(&s->run)) : 1;
     if (!code)
         code = answer(s, dv);
     if (!code)
@@ -202,13 +202,13 @@ static int time_solve(struct cg_session *s, double *seconds)
     stop_after(s, 2);
     int code = flow_initialise(&s->run);
     if (!code)
-        code = flow_step(&s->run, 0);
+        code = flow_step(&s->run);
     if (!code)
         code = duite_wait(s->rt);
     stop_after(s, most);
     const double begin = serve_seconds();
     if (!code)
-        code = flow_cg(&s->run, 0);
+        code = flow_cg(&s->run);
     if (!code)
         code = duite_wait(s->rt);
     *seconds = serve_seconds() - begin;
@@ -315,14 +315,14 @@ static int step(void *context, struct serve_request *request, double *value)
         code = tasks_code(duite_wait(s->rt));
     const double begin = serve_seconds();
     for (uint64_t i = 0; i < steps && !code; i++)
-        code = tasks_code(flow_step(&s->run, i));
+        code = tasks_code(flow_step(&s->run));
     if (!code)
         code = tasks_code(duite_wait(s->rt));
     *value = serve_seconds() - begin;
     if (!code)
         code = tasks_code(flow_initialise(&s->run));
     if (!code)
-        code = tasks_code(flow_step(&s->run, 0));
+        code = tasks_code(flow_step(&s->run));
     if (!code)
         code = error_of(s, &left);
     if (!code && !(left < 0.5))

@@ -73,7 +73,7 @@ static int solve(struct flow_state *state, struct sheet *sheet, uint32_t count, 
     int code = duite_wait(state->rt);
     const double start = serve_seconds();
     if (!code)
-        code = flow_cg(state, 0);
+        code = flow_cg(state);
     if (!code)
         code = duite_wait(state->rt);
     *seconds = serve_seconds() - start;
@@ -93,7 +93,7 @@ static int begin(struct flow_state *state, struct sheet *sheet, uint32_t count)
     if (!code)
         code = flow_initialise(state);
     if (!code)
-        code = flow_step(state, 0);
+        code = flow_step(state);
     return code ? tasks_code(code) : solve(state, sheet, count / 10 + 1, &seconds);
 }
 

@@ -122,6 +122,7 @@ static int make_tables(struct sheet *s, struct cloth_error *error)
         flow_source_table(&s->source, b, s->image[b]);
         sheet_wave(t, s->image[b]);
         flow_table_open(t, s->image[b]);
+        t->matrix.diagonal = t->mass; /* there is no drag */
     }
     return code;
 }

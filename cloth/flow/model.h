@@ -133,8 +133,12 @@ struct model {
 
     double h; /* s; time is an integer count of h/1024 */
     char *h_place;
-    double end; /* s; N = round(end / h) steps */
-    double fps; /* frames a second; frame k follows the step that ends nearest to k / fps */
+    double end;   /* s; N = round(end / h) steps */
+    double fps;   /* frames a second; frame k follows the step that ends nearest to k / fps */
+    bool halving; /* a step that fails is made anew with half the length, to h/1024; */
+    double stretch_growth; /* so is one in which the largest length / rest length of stretch springs
+                              grows by more, */
+    double stretch_limit;  /* or that ends with a larger one; 0: no limit */
     struct model_rest rest;
     enum model_integrator integrator;
 

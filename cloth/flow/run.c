@@ -40,9 +40,9 @@ const duite_kernel *const *flow_kernels(void)
         &flow_ready, &flow_initial, &flow_force, &flow_force_free, &flow_explicit, &flow_kick_first,
         &flow_kick_second, &flow_runge, &flow_implicit, &flow_matrix, &flow_begin, &flow_pack,
         &flow_start, &flow_pass, &flow_scalars, &flow_velocity_dv, &flow_velocity_a, &flow_position,
-        &flow_collide, &flow_status, &flow_frame, &flow_stretch, &flow_drive, &flow_place,
-        &flow_watch_block, &flow_probe, &flow_row, &flow_most, &flow_energy, &flow_level,
-        &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
+        &flow_collide, &flow_keep, &flow_restore, &flow_status, &flow_frame, &flow_stretch,
+        &flow_drive, &flow_place, &flow_watch_block, &flow_probe, &flow_row, &flow_energy,
+        &flow_level, &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
         /* With one */
         &flow_basis, &flow_basis_copies, &flow_couple, &flow_factor_coarse, &flow_factor,
         &flow_start_turned, &flow_begin_coarse, &flow_pass_turned, &flow_scalars_turned,
@@ -262,39 +262,15 @@ int flow_run_begin(struct flow_state *state)
 /* All steps, or until a stop that was asked for has had its frame. */
 static int run_steps(struct flow_state *state)
 {
-    const uint64_t n = state->flow->n_steps;
-    int code = model_is_implicit(state->flow->model) ? flow_cg_record(state) : DUITE_OK;
+    const bool implicit = model_is_implicit(state->flow->model);
+    int code = implicit ? flow_cg_record(state) : DUITE_OK;
     if (!code)
         code = flow_initialise(state);
     if (!code)
-        code = flow_watch(state, 0);
-    if (!code)
-        code = flow_energy_get(state, &state->report->start);
-    if (!code)
-        code = flow_frames(state, 0);
-    uint64_t step = 0;
-    for (; step < n && !code; step++) {
-        const uint64_t frame = state->next_frame;
-        code = duite_trace_step(state->rt, step);
-        if (!code)
-            code = flow_step(state, step);
-        if (!code)
-            code = flow_rest(state, step);
-        if (!code)
-            code = flow_watch(state, step + 1);
-        if (!code)
-            code = flow_frames(state, step + 1);
-        if ((state->stopping || state->resting) && state->next_frame > frame && step + 1 < n) {
-            state->report->stopped = !state->resting;
-            step++;
-            break;
-        }
-    }
-    if (!code && step > 0 && state->output && state->output->system)
+        code = flow_steps(state);
+    if (!code && implicit && state->report->steps && state->output && state->output->system)
         code = flow_system(state);
-    if (!code && step > 0)
-        code = flow_step_status(state, step - 1);
-    return code ? code : flow_rest(state, step);
+    return code;
 }
 
 static int code_of_cloth(int code)
@@ -324,6 +300,8 @@ static const char *reason(const struct flow_state *state, int code)
 {
     if (code == FLOW_NOT_WRITTEN && state->flow->trouble.code)
         return state->flow->trouble.text;
+    if (code == FLOW_STRETCHED)
+        return state->reason;
     return code > 0 ? own_sentence(duite_message(), code) : duite_message();
 }
 
@@ -332,7 +310,11 @@ static const char *reason(const struct flow_state *state, int code)
 static int explain(struct flow_state *state, int code)
 {
     struct cloth_error why = {0};
-    cloth_fail(&why, code_of_cloth(code), "%s", reason(state, code));
+    cloth_fail(&why, code_of_cloth(code), "%.900s%s", reason(state, code),
+               code >= FLOW_DIVERGED && code_of_cloth(code) == CLOTH_E_RUN &&
+                       state->attempt.length == 1
+                   ? "; the step had been halved down to h/1024"
+                   : "");
     if (code < 0) /* the runtime itself failed: no more is asked of it */
         return cloth_fail(state->error, why.code, "%s", why.text);
     duite_wait(state->rt); /* its error is the one in hand */
@@ -369,8 +351,11 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
     if (!failed && (parcels || objects))
         failed = cloth_fail(error, CLOTH_E_LIBRARY, "%s", duite_message());
     duite_wait(rt);
-    if (flow->model)
-        report->simulated_seconds = (double)report->steps * flow->model->h;
+    if (flow->model) {
+        report->simulated_seconds = (double)state.grid.now * flow->model->h / FLOW_TICKS;
+        report->shortest_step = state.grid.least_done * flow->model->h / FLOW_TICKS;
+        report->steps_halved = state.grid.refused;
+    }
     if (flow->model && !model_is_implicit(flow->model))
         report->momentum_lost = report->mass_norm_error = NAN;
     flow_memory_free(&state);

@@ -19,8 +19,11 @@ struct flow_energy {
  */
 struct flow_report {
     uint64_t vertices, triangles, blocks, grain, partition_hash;
-    uint64_t steps, frames, cg_iterations_total, cg_iterations_max;
-    double simulated_seconds, wall_seconds; /* wall: from the first step on */
+    uint64_t steps;        /* made, of any length */
+    uint64_t steps_halved; /* how often a step was given up and begun anew with half the length */
+    uint64_t frames, cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */
+    double shortest_step;                                    /* s */
+    double simulated_seconds, wall_seconds;                  /* wall: from the first step on */
     double seconds_force, seconds_acceleration, seconds_matrix, seconds_cg, seconds_velocity,
         seconds_position, seconds_collide,
         seconds_output;   /* in task bodies, over all workers and ranks */
@@ -59,12 +62,14 @@ struct flow_output {
 };
 
 /* What a run says while it goes on; called by the main thread of rank 0 after each step, when the
- * next one is under way. cg_iterations: of this step. May be NULL. */
+ * next one is under way. May be NULL. */
 struct flow_progress {
     void *context;
     /* The meshes of the model are not read any more: all blocks have their tables. Called once,
      * before the first step. May be NULL. */
     void (*dealt)(void *context);
+    /* step: how many of the steps of length h are over, or begun; after each shorter step, too.
+     * cg_iterations: of this step. */
     void (*step)(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations);
     /* Nonzero asks the run to finish its frame and stop. Asked on rank 0 after each step. May be
      * NULL. */
@@ -91,7 +96,8 @@ int flow_join(struct flow **flow, struct cloth_error *error);
  * `output` is given on all ranks or on none. First the tables of the blocks go to the ranks that
  * keep them: a flow runs once. Collective, the same result on every rank. On failure `report` still
  * says how many steps were done and which frame was written last. Errors: CLOTH_E_RUN (diverged; a
- * matrix that is not positive definite; a solve that needs more than max_iterations), CLOTH_E_IO (a
+ * matrix that is not positive definite; a solve that needs more than max_iterations; a cloth that
+ * stretches too far; where steps are halved, in one of h/1024), CLOTH_E_IO (a
  * frame was not written), CLOTH_E_MEMORY (of any rank), CLOTH_E_LIBRARY; CLOTH_E_LOST, which other
  * ranks need not get: MPI may not be called any more. */
 int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,

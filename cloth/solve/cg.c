@@ -89,6 +89,15 @@ static int next_factors(const double dots[SOLVE_DOTS], struct solve_scalars *aft
     return SOLVE_OK;
 }
 
+/* Ends a solve that came to nothing. */
+static int fail(int code, struct solve_scalars *after)
+{
+    after->outcome = code;
+    if (code)
+        after->phase = SOLVE_DONE;
+    return code;
+}
+
 int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                        const struct solve_scalars *before, struct solve_scalars *after)
 {
@@ -109,12 +118,12 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
     if (reached(stop, after))
         return SOLVE_OK;
     if (before->iterations == stop->most)
-        return stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED;
+        return fail(stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED, after);
     after->iterations = before->iterations + 1;
     after->phase = stop->count && after->iterations == stop->most ? SOLVE_LAST : SOLVE_ON;
     const int code = next_factors(dots, after);
     remember(after->alpha * dots[SOLVE_RZ], after);
-    return code;
+    return fail(code, after);
 }
 
 PHYS_CLONES

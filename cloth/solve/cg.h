@@ -63,7 +63,8 @@ struct solve_scalars {
     double wanted;      /* (kg m/s)^2: r.r at which to stop */
     double square;      /* r.r of the last pass */
     double curvature;   /* p.q of the last pass */
-    double step;        /* the caller's */
+    double outcome;     /* of the solve: SOLVE_OK ..., below */
+    double step, last;  /* the caller's */
     double first;       /* r.r of the first pass */
     double size, bound; /* dv.D dv, r.D^-1 r of the last pass */
     double energy;      /* sum of alpha r.z over all iterations, (kg m^2/s^2) */
@@ -72,12 +73,12 @@ struct solve_scalars {
 };
 enum { SOLVE_SCALARS = sizeof(struct solve_scalars) / sizeof(double) };
 
-/* Before the first pass. */
+/* Before the first pass; `last` is zero. */
 struct solve_scalars solve_scalars_start(double step);
 
 /* From the dots of a pass, what the next one does. Returns SOLVE_OK; or why there is none: p.Ap is
- * not positive, or so many iterations were not enough. `after` says in any case with what numbers.
- */
+ * not positive, or so many iterations were not enough. `after` says in any case with what numbers,
+ * and keeps the outcome. */
 enum { SOLVE_OK, SOLVE_BREAKDOWN, SOLVE_NOT_CONVERGED };
 int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                        const struct solve_scalars *before, struct solve_scalars *after);

@@ -119,7 +119,6 @@ static void fill_rows(const struct flow_source *source, const struct flow_table 
         image->mass[i] = p.mass;
         image->drag[i] = p.drag;
         image->free[i] = p.free;
-        image->diagonal[i] = p.mass + model->h * p.drag;
         image->load[i] = p.load;
         image->position[i] = p.position;
         image->velocity[i] = p.velocity;

@@ -28,7 +28,6 @@ static void lay(const struct flow_table *t, struct room *room, struct flow_image
     image->mass = next(room, n * sizeof *image->mass);
     image->drag = next(room, n * sizeof *image->drag);
     image->free = next(room, n * sizeof *image->free);
-    image->diagonal = next(room, n * sizeof *image->diagonal);
     image->stiffness = next(room, sides * sizeof *image->stiffness);
     image->damping = next(room, sides * sizeof *image->damping);
     image->length = next(room, sides * sizeof *image->length);
@@ -80,8 +79,7 @@ void flow_table_open(struct flow_table *t, const void *image)
     t->stretch = arrays.stretch;
     t->cut_entry = arrays.cut_entry;
     t->at = arrays.at;
-    t->matrix = (struct solve_block){t->n,       arrays.diagonal, arrays.free,
-                                     arrays.row, arrays.column,   t->format};
+    t->matrix = (struct solve_block){t->n, NULL, arrays.free, arrays.row, arrays.column, t->format};
     t->held = (struct solve_held){*arrays.n_held, (const uint32_t(*)[2])arrays.held};
     t->mass = arrays.mass;
     t->drag = arrays.drag;

@@ -48,7 +48,7 @@ struct flow_table {
     const uint32_t *at;        /* half storage: of each spring, its entry */
     const double *stiffness, *damping, *length;
     const unsigned char *stretch; /* counts for the largest stretch */
-    struct solve_block matrix;
+    struct solve_block matrix;    /* its diagonal: of each step, NULL here */
     struct solve_held held;
     const double *mass, *drag, *free; /* kg; kg/s, viscous + mass damping; 1 or 0 where held */
     const phys_vec *load, *position, *velocity; /* N, gravity included; m, m/s, at the start */
@@ -62,13 +62,13 @@ struct flow_tables {
 
 /* The arrays of a table as they lie in its image, one piece of memory, for who makes it. */
 struct flow_image {
-    phys_vec *load, *position, *velocity;  /* n */
-    double *mass, *drag, *free, *diagonal; /* n */
-    double *stiffness, *damping, *length;  /* n_inner + n_cut */
-    uint32_t (*end)[2];                    /* n_inner + n_cut */
-    uint32_t (*copy_end)[2];               /* n_cut_entries */
-    uint32_t (*held)[2];                   /* n_held */
-    uint32_t (*moved)[2];                  /* n_moved */
+    phys_vec *load, *position, *velocity; /* n */
+    double *mass, *drag, *free;           /* n */
+    double *stiffness, *damping, *length; /* n_inner + n_cut */
+    uint32_t (*end)[2];                   /* n_inner + n_cut */
+    uint32_t (*copy_end)[2];              /* n_cut_entries */
+    uint32_t (*held)[2];                  /* n_held */
+    uint32_t (*moved)[2];                 /* n_moved */
     uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_entries */, *rim;
     uint32_t *cut, *cut_entry; /* n_slots + 1 */
     uint32_t *watched;         /* n_watched */

@@ -4,6 +4,7 @@
 #include "cloth/flow/tasks/tasks.h"
 #include "cloth/physics/tiny.h"
 
+#include <math.h>
 #include <string.h>
 
 /* What the bodies of kernels have in common. Local functions. */
@@ -16,6 +17,12 @@ static inline struct flow *flow_of(const duite_call *call)
 static inline const struct flow_args *flow_args_of(const duite_call *call)
 {
     return call->args;
+}
+
+/* The number, counted from 1, of the step of length h that a tick is in. */
+static inline double flow_step_number(double tick)
+{
+    return floor(tick / FLOW_TICKS) + 1;
 }
 
 /* The block of a task without its table. */
@@ -32,9 +39,24 @@ static inline struct flow_table flow_table_of(const duite_call *call)
     return table;
 }
 
-/* Fails if a row diverged, naming it by the input's number. what: "position" or "velocity". */
+/* Fails if a row diverged, naming it by the input's number, or, where the step can be made anew,
+ * notes it in the status, parameter i. what: "position" or "velocity". */
 int flow_check(const duite_call *call, const struct flow_table *table, const phys_vec *y,
-               const char *what);
+               const char *what, size_t i);
+
+/* The matrix of a step as its object has it: the diagonal, then the values of the springs. */
+static inline size_t flow_diagonal_rows(const struct flow_table *t)
+{
+    return ((size_t)t->n + 3) / 4;
+}
+
+/* Gives the table the diagonal of parameter i and returns the values. */
+static inline const phys_vec *flow_open_matrix(const duite_call *call, struct flow_table *t,
+                                               size_t i)
+{
+    t->matrix.diagonal = duite_in(call, i, double);
+    return duite_in(call, i, phys_vec) + flow_diagonal_rows(t);
+}
 
 /* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are
  * none. */
@@ -60,6 +82,15 @@ static inline void flow_put_double(unsigned char *bytes, double value)
 static inline size_t flow_dots(const struct model *model)
 {
     return model->stop == MODEL_STOP_MASS_NORM ? SOLVE_DOTS : SOLVE_RZ;
+}
+
+/* The scalars before a solve. */
+static inline struct solve_scalars flow_begin_scalars(const duite_call *call)
+{
+    const struct flow_args *args = flow_args_of(call);
+    struct solve_scalars scalars = solve_scalars_start(args->begin);
+    scalars.last = args->last;
+    return scalars;
 }
 
 /* Adds what a stop in the mass norm asks for to the dots of a pass. */

@@ -64,14 +64,21 @@ static int fork_start(struct flow_state *state, struct flow_args args)
     return code;
 }
 
-int flow_cg(struct flow_state *state, uint64_t step)
+int flow_cg_start(struct flow_state *state)
 {
-    int code = flow_is_turned(state->flow)
-                   ? flow_turned_start(state, step)
-                   : fork_start(state, (struct flow_args){.step = (uint32_t)step});
-    if (!code && step > 0)
-        code = flow_step_status(state, step - 1);
+    return flow_is_turned(state->flow) ? flow_turned_start(state)
+                                       : fork_start(state, flow_attempt_args(state));
+}
+
+int flow_cg_iterate(struct flow_state *state)
+{
     /* One pass more than there are iterations. */
     const uint64_t rounds = (uint64_t)state->flow->model->max_iterations / 2 + 1;
-    return code ? code : duite_replay_while(state->rt, state->solve, state->scalars[0], rounds);
+    return duite_replay_while(state->rt, state->solve, state->scalars[0], rounds);
+}
+
+int flow_cg(struct flow_state *state)
+{
+    const int code = flow_cg_start(state);
+    return code ? code : flow_cg_iterate(state);
 }

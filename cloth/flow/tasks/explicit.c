@@ -6,101 +6,77 @@
 
 #include <stddef.h>
 
-static struct flow_args args_of(uint64_t step)
-{
-    return (struct flow_args){.step = (uint32_t)step};
-}
-
 /* f at x, v: all forces, or those without the drag. */
-static int fork_force(struct flow_state *state, uint64_t step, const duite_kernel *kernel)
+static int fork_force(struct flow_state *state, const duite_kernel *kernel)
 {
-    return flow_fork_all(state, kernel, args_of(step),
+    return flow_fork_all(state, kernel, flow_attempt_args(state),
                          FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)), FLOW_NOTHING,
                          FLOW_RIM(rim_x), FLOW_RIM(rim_v));
 }
 
 /* f becomes the acceleration. */
-static int fork_acceleration(struct flow_state *state, uint64_t step)
+static int fork_acceleration(struct flow_state *state)
 {
-    const int code = fork_force(state, step, &flow_force);
+    const int code = fork_force(state, &flow_force);
     return code ? code
-                : flow_fork_all(state, &flow_explicit, args_of(step), FLOW_OBJECTS(FLOW_AT(f)),
-                                FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+                : flow_fork_all(state, &flow_explicit, flow_attempt_args(state),
+                                FLOW_OBJECTS(FLOW_AT(f)), FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
 }
 
 /* x += h v, by the velocity at an offset. */
-static int fork_position(struct flow_state *state, uint64_t step, long v)
+static int fork_position(struct flow_state *state, long v)
 {
-    return flow_fork_all(state, &flow_position, args_of(step),
+    return flow_fork_all(state, &flow_position, flow_attempt_args(state),
                          FLOW_OBJECTS(v, FLOW_AT(x), FLOW_AT(rim_x)), FLOW_THEN_STATUS, FLOW_NO_RIM,
                          FLOW_NO_RIM);
 }
 
 /* v += h a. */
-static int fork_velocity(struct flow_state *state, uint64_t step)
+static int fork_velocity(struct flow_state *state)
 {
-    return flow_fork_all(state, &flow_velocity_a, args_of(step),
+    return flow_fork_all(state, &flow_velocity_a, flow_attempt_args(state),
                          FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(v), FLOW_AT(rim_v)), FLOW_THEN_STATUS,
                          FLOW_NO_RIM, FLOW_NO_RIM);
 }
 
-/* The status of the step before, when this one is under way. */
-static int look_back(struct flow_state *state, uint64_t step)
+static int euler(struct flow_state *state)
 {
-    return step > 0 ? flow_step_status(state, step - 1) : DUITE_OK;
+    const int code = fork_position(state, FLOW_AT(v));
+    return code ? code : fork_velocity(state);
 }
 
-static int euler(struct flow_state *state, uint64_t step)
+static int symplectic(struct flow_state *state)
 {
-    int code = fork_acceleration(state, step);
-    if (!code)
-        code = look_back(state, step);
-    if (!code)
-        code = fork_position(state, step, FLOW_AT(v));
-    return code ? code : fork_velocity(state, step);
-}
-
-static int symplectic(struct flow_state *state, uint64_t step)
-{
-    int code = fork_acceleration(state, step);
-    if (!code)
-        code = look_back(state, step);
-    if (!code)
-        code = fork_velocity(state, step);
-    return code ? code : fork_position(state, step, FLOW_AT(v));
+    const int code = fork_velocity(state);
+    return code ? code : fork_position(state, FLOW_AT(v));
 }
 
 /* f, without the drag, stays from step to step: what ends one begins the next, unless contact or
- * pins moved something in between. */
-static int verlet(struct flow_state *state, uint64_t step)
+ * pins moved something in between, or the step was taken back. */
+static int verlet(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
-    const bool stale = step == 0 || model->n_planes || model->n_motions;
-    int code = stale ? fork_force(state, step, &flow_force_free) : DUITE_OK;
-    if (!code)
-        code = flow_fork_all(state, &flow_kick_first, args_of(step),
+    const struct flow_args args = flow_attempt_args(state);
+    int code = flow_fork_all(state, &flow_kick_first, args,
                              FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(v), FLOW_AT(rim_v), FLOW_AT(v0)),
                              FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
     if (!code)
-        code = look_back(state, step);
+        code = fork_position(state, FLOW_AT(v0));
     if (!code)
-        code = fork_position(state, step, FLOW_AT(v0));
-    if (!code)
-        code = fork_force(state, step, &flow_force_free);
+        code = fork_force(state, &flow_force_free);
+    state->settled_forces = !model->n_planes && !model->n_motions;
     return code ? code
-                : flow_fork_all(state, &flow_kick_second, args_of(step),
+                : flow_fork_all(state, &flow_kick_second, args,
                                 FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(v0), FLOW_AT(v), FLOW_AT(rim_v)),
                                 FLOW_THEN_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
 }
 
-static int runge(struct flow_state *state, uint64_t step)
+static int runge(struct flow_state *state)
 {
-    struct flow_args args = args_of(step);
+    struct flow_args args = flow_attempt_args(state);
     int code = DUITE_OK;
     for (; args.stage < PHYS_RUNGE_STAGES && !code; args.stage++) {
-        code = fork_acceleration(state, step);
-        if (!code && args.stage == 0)
-            code = look_back(state, step);
+        code = args.stage > 0 ? fork_acceleration(state) : DUITE_OK;
         if (!code)
             code = flow_fork_all(state, &flow_runge, args,
                                  FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(x), FLOW_AT(v), FLOW_AT(x0),
@@ -111,16 +87,23 @@ static int runge(struct flow_state *state, uint64_t step)
     return code;
 }
 
-int flow_step_explicit(struct flow_state *state, uint64_t step)
+int flow_explicit_begin(struct flow_state *state)
+{
+    if (state->flow->model->integrator != MODEL_VERLET)
+        return fork_acceleration(state);
+    return state->settled_forces ? DUITE_OK : fork_force(state, &flow_force_free);
+}
+
+int flow_explicit_end(struct flow_state *state)
 {
     switch (state->flow->model->integrator) {
     case MODEL_SYMPLECTIC_EULER:
-        return symplectic(state, step);
+        return symplectic(state);
     case MODEL_VERLET:
-        return verlet(state, step);
+        return verlet(state);
     case MODEL_RK4:
-        return runge(state, step);
+        return runge(state);
     default:
-        return euler(state, step);
+        return euler(state);
     }
 }

@@ -7,27 +7,14 @@
 
 static int largest_stretch(struct flow_state *state)
 {
-    struct flow_args args = {0};
-    const uint32_t n = state->flow->tables.n_blocks;
-    int code = DUITE_OK;
-    for (; args.block < n && !code; args.block++) {
-        const struct flow_objects *o = state->block + args.block;
-        code = flow_fork(state, &flow_stretch, &args, 2, (duite_object[]){o->x, o->stretch},
-                         offsetof(struct flow_objects, rim_x), FLOW_NO_RIM);
-    }
-    args.block = 0;
-    state->refs[0] = state->most;
-    for (uint32_t b = 0; b < n; b++)
-        state->refs[1 + b] = state->block[b].stretch;
-    if (!code)
-        code = duite_fork(state->rt, &flow_most, &args, 1 + (size_t)n, state->refs);
-    return code ? code : duite_get(state->rt, state->most, &state->report->max_stretch);
+    const int code = flow_stretch_fork(state, state->stretch[0]);
+    return code ? code : duite_get(state->rt, state->stretch[0], &state->report->max_stretch);
 }
 
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
 {
     double sums[FLOW_ENERGIES];
-    const struct flow_args args = {.step = (uint32_t)state->report->steps};
+    const struct flow_args args = {0};
     int code = flow_energies(state, args, state->energy);
     if (!code)
         code = duite_get(state->rt, state->energy, sums);

@@ -9,7 +9,7 @@
 
 static int begin(const duite_call *call)
 {
-    *duite_out(call, 0, struct solve_scalars) = solve_scalars_start(flow_args_of(call)->step);
+    *duite_out(call, 0, struct solve_scalars) = flow_begin_scalars(call);
     return 0;
 }
 const duite_kernel flow_begin = {.name = "cg_begin",
@@ -59,7 +59,8 @@ static void advance_copies(const duite_call *call, const struct flow_table *t,
 
 static int pass(const duite_call *call)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
+    struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *value = flow_open_matrix(call, t, A);
     const struct solve_scalars *scalars = duite_in(call, SCALARS, struct solve_scalars);
     const struct solve_cut cut = flow_table_cut_entries(t);
     const struct solve_rows rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
@@ -70,9 +71,8 @@ static int pass(const duite_call *call)
     if (scalars->phase != SOLVE_ON)
         return 0;
     advance_copies(call, t, scalars);
-    solve_pass(&t->matrix, &cut, duite_in(call, A, phys_vec),
-               duite_in(call, COPIES, phys_vec) + t->n_copies, scalars->alpha, scalars->beta, &rows,
-               dots);
+    solve_pass(&t->matrix, &cut, value, duite_in(call, COPIES, phys_vec) + t->n_copies,
+               scalars->alpha, scalars->beta, &rows, dots);
     flow_add_norms(call, &t->matrix, &rows, dots);
     memcpy(sums, dots, flow_dots(flow_of(call)->model) * sizeof *sums);
     write_rim(t, rows.q, duite_out(call, RIM, double));
@@ -102,13 +102,15 @@ static int not_converged(const duite_call *call, const struct solve_scalars *now
                           "step %.0f: conjugate gradients stopped at an error of %g of dv after "
                           "%.0f iterations, %g was asked for; allow more iterations, a larger "
                           "tolerance or a smaller h",
-                          now->step + 1, sqrt(solve_scalars_error(now, now->bound) / now->size),
-                          now->iterations, flow_of(call)->model->tolerance);
+                          flow_step_number(now->step),
+                          sqrt(solve_scalars_error(now, now->bound) / now->size), now->iterations,
+                          flow_of(call)->model->tolerance);
     return duite_fail(call, FLOW_NOT_CONVERGED,
                       "step %.0f: conjugate gradients stopped at a residual of %g after %.0f "
                       "iterations, %g was asked for; allow more iterations, a larger tolerance "
                       "or a smaller h",
-                      now->step + 1, sqrt(now->square), now->iterations, sqrt(now->wanted));
+                      flow_step_number(now->step), sqrt(now->square), now->iterations,
+                      sqrt(now->wanted));
 }
 
 /* Of what is the same on every rank, the model too. */
@@ -117,13 +119,15 @@ int flow_next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
 {
     const struct solve_stop stop = stop_of(flow_of(call)->model);
     const int outcome = solve_scalars_next(&stop, dots, before, after);
+    if (after->last == 0) /* the outcome goes on to the status of the step */
+        return 0;
     if (outcome == SOLVE_NOT_CONVERGED)
         return not_converged(call, after);
     if (outcome == SOLVE_BREAKDOWN)
         return duite_fail(call, FLOW_INDEFINITE,
                           "step %.0f: conjugate gradients broke down (p.Ap = %g, r.r = %g): the "
                           "matrix is not positive definite, or forces are beyond all measure",
-                          after->step + 1, after->curvature, after->square);
+                          flow_step_number(after->step), after->curvature, after->square);
     return 0;
 }
 

@@ -10,7 +10,7 @@
 static int kick_first(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
-    const double half = 0.5 * flow_of(call)->model->h;
+    const double half = 0.5 * flow_args_of(call)->h;
     const phys_vec *f = duite_in(call, 1, phys_vec);
     phys_vec *v = duite_out(call, 2, phys_vec), *middle = duite_out(call, 4, phys_vec);
     phys_kick(t->n, half, 1, t->mass, t->drag, t->free, f, v, middle);
@@ -28,10 +28,10 @@ static int kick_second(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     phys_vec *v = duite_out(call, 3, phys_vec);
-    phys_kick(t->n, 0.5 * flow_of(call)->model->h, 0, t->mass, t->drag, t->free,
+    phys_kick(t->n, 0.5 * flow_args_of(call)->h, 0, t->mass, t->drag, t->free,
               duite_in(call, 1, phys_vec), duite_in(call, 2, phys_vec), v);
     flow_write_rim(t, v, duite_out(call, 4, phys_vec));
-    return flow_check(call, t, v, "velocity");
+    return flow_check(call, t, v, "velocity", 5);
 }
 FLOW_TIMED(kick_second, FLOW_VELOCITY)
 const duite_kernel flow_kick_second = {
@@ -50,12 +50,12 @@ static int stage(const duite_call *call)
         .sum_x = duite_out(call, 6, phys_vec),
         .sum_v = duite_out(call, 7, phys_vec),
     };
-    phys_runge_stage(t->n, flow_of(call)->model->h, (int)flow_args_of(call)->stage,
+    phys_runge_stage(t->n, flow_args_of(call)->h, (int)flow_args_of(call)->stage,
                      duite_in(call, 1, phys_vec), &runge, x, v);
     flow_write_rim(t, x, duite_out(call, 8, phys_vec));
     flow_write_rim(t, v, duite_out(call, 9, phys_vec));
-    const int code = flow_check(call, t, x, "position");
-    return code ? code : flow_check(call, t, v, "velocity");
+    const int code = flow_check(call, t, x, "position", 10);
+    return code ? code : flow_check(call, t, v, "velocity", 10);
 }
 FLOW_TIMED(stage, FLOW_POSITION)
 const duite_kernel flow_runge = {.name = "runge",

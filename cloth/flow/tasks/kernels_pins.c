@@ -28,10 +28,10 @@ static void find(struct due *due, uint32_t motion, const phys_vec *start, phys_v
 static int drive(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
-    const double h = flow_of(call)->model->h;
+    const double h = flow_args_of(call)->h;
     const phys_vec *x = duite_in(call, 1, phys_vec);
     phys_vec *v = duite_out(call, 2, phys_vec);
-    struct due due = {.model = flow_of(call)->model, .time = (flow_args_of(call)->step + 1) * h};
+    struct due due = {.model = flow_of(call)->model, .time = flow_args_of(call)->time};
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
         phys_vec to;
@@ -51,8 +51,7 @@ static int place(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     phys_vec *x = duite_out(call, 1, phys_vec);
-    struct due due = {.model = flow_of(call)->model,
-                      .time = (flow_args_of(call)->step + 1) * flow_of(call)->model->h};
+    struct due due = {.model = flow_of(call)->model, .time = flow_args_of(call)->time};
     for (uint32_t i = 0; i < t->n_moved; i++)
         find(&due, t->moved[i][1], t->position + t->moved[i][0], x + t->moved[i][0]);
     flow_write_rim(t, x, duite_out(call, 2, phys_vec));
@@ -78,10 +77,9 @@ void flow_due_acceleration(const struct model *model, uint32_t motion, double ti
 
 /* ---- The main program ---- */
 
-static int fork_moved(struct flow_state *state, const duite_kernel *kernel, uint64_t step,
-                      const long *objects)
+static int fork_moved(struct flow_state *state, const duite_kernel *kernel, const long *objects)
 {
-    struct flow_args args = {.step = (uint32_t)step};
+    struct flow_args args = flow_attempt_args(state);
     int code = DUITE_OK;
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         if (!state->flow->tables.block[args.block].n_moved)
@@ -97,13 +95,12 @@ static int fork_moved(struct flow_state *state, const duite_kernel *kernel, uint
     return code;
 }
 
-int flow_pins_drive(struct flow_state *state, uint64_t step)
+int flow_pins_drive(struct flow_state *state)
 {
-    return fork_moved(state, &flow_drive, step,
-                      FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_v)));
+    return fork_moved(state, &flow_drive, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_v)));
 }
 
-int flow_pins_place(struct flow_state *state, uint64_t step)
+int flow_pins_place(struct flow_state *state)
 {
-    return fork_moved(state, &flow_place, step, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(rim_x)));
+    return fork_moved(state, &flow_place, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(rim_x)));
 }

@@ -22,8 +22,8 @@ static int frame(const duite_call *call)
             for (int c = 0; c < 3; c++)
                 flow->room[3 * (size_t)flow->vertex[t->first + i] + (size_t)c] = x[i][c];
     }
-    if (flow->output->frame(flow->output->context, args->frame, args->step * flow->model->h,
-                            flow->room, &flow->trouble))
+    if (flow->output->frame(flow->output->context, args->frame, args->time, flow->room,
+                            &flow->trouble))
         return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
     flow->frames = args->frame + 1;
     return 0;
@@ -69,23 +69,10 @@ static int stretch(const duite_call *call)
 }
 const duite_kernel flow_stretch = {.name = "stretch",
                                    .body = stretch,
-                                   .access = {DUITE_R, DUITE_R, DUITE_W},
+                                   .access = {DUITE_R, DUITE_R, DUITE_CW},
+                                   .law = {NULL, NULL, &duite_max},
                                    .rest = DUITE_R,
                                    .args_size = sizeof(struct flow_args)};
-
-static int most(const duite_call *call)
-{
-    double largest = 0;
-    for (size_t i = 1; i < call->n_params; i++)
-        largest = *duite_in(call, i, double) > largest ? *duite_in(call, i, double) : largest;
-    *duite_out(call, 0, double) = largest;
-    return 0;
-}
-const duite_kernel flow_most = {.name = "stretch_most",
-                                .body = most,
-                                .access = {DUITE_W},
-                                .rest = DUITE_R,
-                                .args_size = sizeof(struct flow_args)};
 
 /* Runs when nothing else does. */
 static int seconds(const duite_call *call)

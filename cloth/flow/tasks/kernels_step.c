@@ -11,15 +11,19 @@
 #define ARGS sizeof(struct flow_args)
 
 int flow_check(const duite_call *call, const struct flow_table *t, const phys_vec *y,
-               const char *what)
+               const char *what, size_t i)
 {
     const size_t bad = phys_diverged(t->n, FLOW_BOUND, y);
-    if (bad == t->n)
+    const struct flow_args *args = flow_args_of(call);
+    if (bad < t->n)
+        duite_out(call, i, double)[FLOW_WRONG] = 1;
+    if (bad == t->n || !args->last)
         return 0;
-    return duite_fail(call, FLOW_DIVERGED,
-                      "step %u: the %s of vertex %u in block %u is (%g, %g, %g): the run diverged",
-                      flow_args_of(call)->step + 1, what, t->vertex[bad], flow_args_of(call)->block,
-                      y[bad][0], y[bad][1], y[bad][2]);
+    return duite_fail(
+        call, FLOW_DIVERGED,
+        "step %.0f: the %s of vertex %u in block %u is (%g, %g, %g): the run diverged",
+        flow_step_number(args->begin), what, t->vertex[bad], args->block, y[bad][0], y[bad][1],
+        y[bad][2]);
 }
 
 static int initial(const duite_call *call)
@@ -97,7 +101,7 @@ const duite_kernel flow_explicit = {.name = "acceleration_explicit",
 static int right_side(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
-    const double h = flow_of(call)->model->h;
+    const double h = flow_args_of(call)->h;
     const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
     phys_vec *f = duite_out(call, 3, phys_vec);
     for (uint32_t i = 0; i < t->n; i++)
@@ -134,13 +138,12 @@ static void assemble_springs(const struct flow_table *t, uint32_t from, uint32_t
 }
 
 /* In half storage. */
-static void assemble(const duite_call *call, const struct flow_table *t)
+static void assemble(const duite_call *call, const struct flow_table *t, void *values)
 {
     const struct flow *flow = flow_of(call);
-    const double h = flow->model->h;
+    const double h = flow_args_of(call)->h;
     const phys_vec *x = duite_in(call, 1, phys_vec);
     const struct solve_cut cut = flow_table_cut_entries(t);
-    double *values = duite_out(call, 2, double);
     double *sums = flow->sums ? flow->sums + call->worker * flow->n_sums : values;
     memset(sums, 0, SOLVE_NINE * (t->matrix.row[t->n] + cut.n) * sizeof *sums);
     assemble_springs(t, 0, t->n_inner, h, x, x, sums);
@@ -153,11 +156,16 @@ static void assemble(const duite_call *call, const struct flow_table *t)
 static int matrix(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
-    const double h = flow_of(call)->model->h;
+    const double h = flow_args_of(call)->h;
     const phys_vec *x = duite_in(call, 1, phys_vec);
-    phys_vec *value = duite_out(call, 2, phys_vec);
+    double *diagonal = duite_out(call, 2, double);
+    phys_vec *value = duite_out(call, 2, phys_vec) + flow_diagonal_rows(t);
+    for (uint32_t i = 0; i < t->n; i++)
+        diagonal[i] = t->mass[i] + h * t->drag[i];
+    for (size_t i = t->n; i < 4 * flow_diagonal_rows(t); i++)
+        diagonal[i] = 0;
     if (t->format != SOLVE_SPRINGS) {
-        assemble(call, t);
+        assemble(call, t, value);
         return 0;
     }
     struct phys_springs springs = flow_table_inner(t);
@@ -176,28 +184,28 @@ const duite_kernel flow_matrix = {.name = "matrix",
                                   .rest = DUITE_R,
                                   .args_size = ARGS};
 
-/* v += dv, and what the solve took and lost of the momentum. A solve that failed leaves no scalars:
- * then this does not run. */
+/* v += dv, and what the solve took and lost of the momentum. A solve that failed in a step that
+ * must not leaves no scalars: then this does not run. */
 static int velocity_dv(const duite_call *call)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    const phys_vec *dv = duite_in(call, 3, phys_vec);
+    struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *value = flow_open_matrix(call, t, 2), *dv = duite_in(call, 3, phys_vec);
+    const struct solve_scalars *scalars = duite_in(call, 7, struct solve_scalars);
     phys_vec *v = duite_out(call, 5, phys_vec);
     double *status = duite_out(call, 8, double);
-    solve_lost(&t->matrix, &t->held, duite_in(call, 2, phys_vec), duite_in(call, 1, phys_vec), dv,
-               status + FLOW_LOST);
+    solve_lost(&t->matrix, &t->held, value, duite_in(call, 1, phys_vec), dv, status + FLOW_LOST);
     const struct solve_norms norms =
         solve_norms(t->n, t->matrix.diagonal, dv, duite_in(call, 4, phys_vec));
     status[FLOW_SIZE] = norms.size;
     status[FLOW_RESIDUAL] = norms.bound;
+    status[FLOW_WRONG] = scalars->outcome != SOLVE_OK;
     if (flow_args_of(call)->block == 0) {
-        const struct solve_scalars *scalars = duite_in(call, 7, struct solve_scalars);
         status[FLOW_ITERATIONS] = scalars->iterations;
         status[FLOW_ERROR] = solve_scalars_error(scalars, INFINITY);
     }
     phys_advance(t->n, 1, dv, v);
     flow_write_rim(t, v, duite_out(call, 6, phys_vec));
-    return flow_check(call, t, v, "velocity");
+    return flow_check(call, t, v, "velocity", 8);
 }
 FLOW_TIMED(velocity_dv, FLOW_VELOCITY)
 const duite_kernel flow_velocity_dv = {
@@ -211,9 +219,9 @@ static int velocity_a(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     phys_vec *v = duite_out(call, 2, phys_vec);
-    phys_advance(t->n, flow_of(call)->model->h, duite_in(call, 1, phys_vec), v);
+    phys_advance(t->n, flow_args_of(call)->h, duite_in(call, 1, phys_vec), v);
     flow_write_rim(t, v, duite_out(call, 3, phys_vec));
-    return flow_check(call, t, v, "velocity");
+    return flow_check(call, t, v, "velocity", 4);
 }
 FLOW_TIMED(velocity_a, FLOW_VELOCITY)
 const duite_kernel flow_velocity_a = {.name = "velocity_explicit",
@@ -225,9 +233,9 @@ static int position(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     phys_vec *x = duite_out(call, 2, phys_vec);
-    phys_advance(t->n, flow_of(call)->model->h, duite_in(call, 1, phys_vec), x);
+    phys_advance(t->n, flow_args_of(call)->h, duite_in(call, 1, phys_vec), x);
     flow_write_rim(t, x, duite_out(call, 3, phys_vec));
-    return flow_check(call, t, x, "position");
+    return flow_check(call, t, x, "position", 4);
 }
 FLOW_TIMED(position, FLOW_POSITION)
 const duite_kernel flow_position = {.name = "position",
@@ -244,10 +252,11 @@ static int collide(const duite_call *call)
         phys_plane(t->n, model->planes[i].point, model->planes[i].normal, t->free, x, v);
     flow_write_rim(t, x, duite_out(call, 3, phys_vec));
     flow_write_rim(t, v, duite_out(call, 4, phys_vec));
-    return flow_check(call, t, x, "position");
+    return flow_check(call, t, x, "position", 5);
 }
 FLOW_TIMED(collide, FLOW_COLLIDE)
-const duite_kernel flow_collide = {.name = "collide",
-                                   .body = collide_timed,
-                                   .access = {DUITE_R, DUITE_RW, DUITE_RW, DUITE_W, DUITE_W},
-                                   .args_size = ARGS};
+const duite_kernel flow_collide = {
+    .name = "collide",
+    .body = collide_timed,
+    .access = {DUITE_R, DUITE_RW, DUITE_RW, DUITE_W, DUITE_W, DUITE_CW},
+    .args_size = ARGS};

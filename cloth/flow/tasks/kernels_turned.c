@@ -57,8 +57,8 @@ const duite_kernel flow_basis_copies = {.name = "basis_copies",
 
 static int couple(const duite_call *call)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    const double *values = duite_in(call, 1, double);
+    struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *values = flow_open_matrix(call, t, 1);
     const phys_vec *rows = duite_in(call, 2, phys_vec), *copies = duite_in(call, 3, phys_vec);
     double *own = duite_out(call, 4, double), *later = own + SOLVE_COUPLING;
     double earlier[SOLVE_COUPLING];
@@ -99,10 +99,11 @@ const duite_kernel flow_factor_coarse = {.name = "factor_coarse",
 
 static int factor(const duite_call *call)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
+    struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *values = flow_open_matrix(call, t, 1);
     const struct solve_cut cut = flow_table_cut_entries(t);
-    const int tried = solve_local_factor(&t->matrix, &cut, duite_in(call, 1, double),
-                                         local_of(call), duite_out(call, 2, double));
+    const int tried =
+        solve_local_factor(&t->matrix, &cut, values, local_of(call), duite_out(call, 2, double));
     duite_out(call, 3, double)[FLOW_SHIFTED] = tried > 0;
     return 0;
 }
@@ -189,7 +190,8 @@ static void advance_copies(const duite_call *call, const struct flow_table *t,
 }
 
 static void advance(const duite_call *call, const struct flow_table *t,
-                    const struct solve_scalars *scalars, const struct solve_rows *rows)
+                    const struct solve_scalars *scalars, const phys_vec *value,
+                    const struct solve_rows *rows)
 {
     const struct flow *flow = flow_of(call);
     const struct solve_cut cut = flow_table_cut_entries(t);
@@ -203,9 +205,8 @@ static void advance(const duite_call *call, const struct flow_table *t,
                           solve_coarse_at(&flow->pattern, flow_args_of(call)->block),
                       s);
     advance_copies(call, t, scalars);
-    solve_pass_turned(&t->matrix, &cut, duite_in(call, A, phys_vec),
-                      duite_in(call, COPIES, phys_vec) + t->n_copies, scalars->alpha, scalars->beta,
-                      rows, &turned, part);
+    solve_pass_turned(&t->matrix, &cut, value, duite_in(call, COPIES, phys_vec) + t->n_copies,
+                      scalars->alpha, scalars->beta, rows, &turned, part);
     turn(call, t, duite_in(call, FACTOR, double), span, rows->q, s, part);
     flow_add_norms(call, &t->matrix, rows, part);
     write_rim(t, s, duite_out(call, RIM, double));
@@ -213,7 +214,8 @@ static void advance(const duite_call *call, const struct flow_table *t,
 
 static int pass(const duite_call *call)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
+    struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *value = flow_open_matrix(call, t, A);
     const struct solve_scalars *scalars = duite_in(call, SCALARS, struct solve_scalars);
     const struct solve_rows rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
                                     duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)};
@@ -221,7 +223,7 @@ static int pass(const duite_call *call)
         duite_out(call, PART, double)[SOLVE_RR] =
             solve_finish(t->n, scalars->alpha, rows.q, rows.p, rows.dv, rows.r);
     if (scalars->phase == SOLVE_ON)
-        advance(call, t, scalars, &rows);
+        advance(call, t, scalars, value, &rows);
     return 0;
 }
 FLOW_TIMED(pass, FLOW_CG)
@@ -300,7 +302,7 @@ const duite_kernel flow_scalars_coarse = {.name = "cg_scalars_coarse",
 
 static int begin_coarse(const duite_call *call)
 {
-    *duite_out(call, 0, struct solve_scalars) = solve_scalars_start(flow_args_of(call)->step);
+    *duite_out(call, 0, struct solve_scalars) = flow_begin_scalars(call);
     solve_motion(call, duite_in(call, 2, double), 3, duite_out(call, 1, double));
     return 0;
 }

@@ -46,7 +46,7 @@ static void reaction(const duite_call *call, const struct flow_table *t, uint32_
         return;
     for (uint32_t i = 0; i < t->n_moved; i++)
         if (t->moved[i][0] == row)
-            flow_due_acceleration(model, t->moved[i][1], flow_args_of(call)->step * model->h,
+            flow_due_acceleration(model, t->moved[i][1], flow_args_of(call)->time,
                                   t->position + row, pull);
     *pull = t->mass[row] * *pull - *force;
 }
@@ -118,8 +118,8 @@ static int row(const duite_call *call)
     to[FLOW_COLUMN_SHORTEST] = -peaks[FLOW_PEAK_SHORTEST];
     to[FLOW_COLUMN_KINETIC] = status[FLOW_KINETIC];
     fill_probes(flow, flow->seen, to + FLOW_RUN_COLUMNS);
-    if (flow->output->row(flow->output->context, args->step, args->step * flow->model->h,
-                          flow->watched.n_columns, flow->row, &flow->trouble))
+    if (flow->output->row(flow->output->context, args->frame, args->time, flow->watched.n_columns,
+                          flow->row, &flow->trouble))
         return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
     return 0;
 }

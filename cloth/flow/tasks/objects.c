@@ -24,14 +24,13 @@ static void make_block(duite *rt, const struct flow_table *t, struct flow_object
     make(rt, t->n, o->x, &o->f);
     make(rt, t->n_rim, o->x, &o->rim_x);
     make(rt, t->n_rim, o->x, &o->rim_v);
-    make_numbers(rt, 1, o->x, &o->stretch);
     duite_new(rt, DUITE_BYTE, flow_table_bytes(t), &o->table);
     duite_follow(rt, o->table, o->x);
 }
 
 static void make_implicit(duite *rt, const struct flow_table *t, struct flow_objects *o)
 {
-    make_numbers(rt, flow_table_doubles(t), o->x, &o->a);
+    make_numbers(rt, 4 * flow_diagonal_rows(t) + flow_table_doubles(t), o->x, &o->a);
     make(rt, t->n, o->x, &o->dv);
     make(rt, t->n, o->x, &o->r);
     make(rt, t->n, o->x, &o->p);
@@ -81,8 +80,14 @@ static void make_shared(struct flow_state *state, duite_type type, size_t count,
 void flow_objects_make(struct flow_state *state)
 {
     const struct flow_tables *tables = &state->flow->tables;
-    for (uint32_t b = 0; b < tables->n_blocks; b++)
-        make_block(state->rt, tables->block + b, state->block + b);
+    for (uint32_t b = 0; b < tables->n_blocks; b++) {
+        struct flow_objects *o = state->block + b;
+        make_block(state->rt, tables->block + b, o);
+        if (!state->flow->model->halving)
+            continue;
+        make(state->rt, tables->block[b].n, o->x, &o->kept_x);
+        make(state->rt, tables->block[b].n, o->x, &o->kept_v);
+    }
     for (uint32_t b = 0; b < tables->n_blocks; b++)
         make_integrator(state, tables->block + b, state->block + b);
     for (uint32_t b = 0; b < tables->n_blocks; b++)
@@ -91,11 +96,11 @@ void flow_objects_make(struct flow_state *state)
         make_shared(state, DUITE_F64, flow_dots(state->flow->model), state->sums + i);
         make_shared(state, DUITE_F64, SOLVE_SCALARS, state->scalars + i);
         make_shared(state, DUITE_F64, FLOW_STATUS, state->status + i);
+        make_shared(state, DUITE_F64, 1, state->stretch + i);
     }
     flow_turned_make(state);
     flow_watch_make(state);
     make_shared(state, DUITE_I64, 1, &state->token);
-    make_shared(state, DUITE_F64, 1, &state->most);
     make_shared(state, DUITE_F64, FLOW_PARTS, &state->seconds);
     make_shared(state, DUITE_F64, FLOW_ENERGIES, &state->energy);
     make_shared(state, DUITE_I64, FLOW_TELL, &state->told);
@@ -121,19 +126,29 @@ int flow_objects_free(struct flow_state *state)
     }
     for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
         const struct flow_objects *o = state->block + b;
-        const duite_object all[] = {
-            o->x,      o->v,     o->f,     o->a,         o->dv,           o->r,        o->p,  o->q,
-            o->copies, o->rim_x, o->rim_v, o->rim_q[0],  o->rim_q[1],     o->stretch,  o->z,  o->s,
-            o->factor, o->part,  o->basis, o->rim_basis, o->basis_copies, o->coupling, o->x0, o->v0,
-            o->sum_x,  o->sum_v, o->felt,  o->seen,      o->table};
+        const duite_object all[] = {o->x,         o->v,
+                                    o->f,         o->a,
+                                    o->dv,        o->r,
+                                    o->p,         o->q,
+                                    o->copies,    o->rim_x,
+                                    o->rim_v,     o->rim_q[0],
+                                    o->rim_q[1],  o->kept_x,
+                                    o->kept_v,    o->z,
+                                    o->s,         o->factor,
+                                    o->part,      o->basis,
+                                    o->rim_basis, o->basis_copies,
+                                    o->coupling,  o->x0,
+                                    o->v0,        o->sum_x,
+                                    o->sum_v,     o->felt,
+                                    o->seen,      o->table};
         const int failed = release(state->rt, sizeof all / sizeof *all, all);
         code = code ? code : failed;
     }
     const duite_object all[] = {
-        state->sums[0],   state->sums[1],   state->scalars[0], state->scalars[1],
-        state->status[0], state->status[1], state->token,      state->most,
-        state->seconds,   state->told,      state->coarse,     state->motion[0],
-        state->motion[1], state->peaks[0],  state->peaks[1],   state->energy};
+        state->sums[0],   state->sums[1], state->scalars[0], state->scalars[1], state->status[0],
+        state->status[1], state->token,   state->stretch[0], state->stretch[1], state->seconds,
+        state->told,      state->coarse,  state->motion[0],  state->motion[1],  state->peaks[0],
+        state->peaks[1],  state->energy};
     const int failed = release(state->rt, sizeof all / sizeof *all, all);
     return code ? code : failed;
 }

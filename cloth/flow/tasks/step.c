@@ -1,9 +1,22 @@
-/* A step is forked whole while the one before it may still run; the main program looks at the
- * status of a step when the next one is under way. Implicit: f, b, A, dv, v += dv, x += h v. */
+/* A step is forked whole while the one before it may still run: what only reads the state comes
+ * first, then the main program looks at the status of the step before, then what changes the state
+ * is forked. Implicit: f, b, A, dv, v += dv, x += h v. */
 #include "cloth/flow/tasks/tasks.h"
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
+
+struct flow_args flow_attempt_args(const struct flow_state *state)
+{
+    const struct model *model = state->flow->model;
+    const struct flow_attempt *attempt = &state->attempt;
+    return (struct flow_args){.last = !model->halving || attempt->length == 1,
+                              .h = model->h * attempt->length / FLOW_TICKS,
+                              .begin = (double)attempt->begin,
+                              .time = (double)(attempt->begin + attempt->length) * model->h /
+                                      FLOW_TICKS};
+}
 
 int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct flow_args args,
                   const long *objects, enum flow_behind behind, long rim, long rim2)
@@ -19,93 +32,168 @@ int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct f
         if (behind == FLOW_THEN_SCALARS_AND_STATUS)
             own[n++] = state->scalars[0];
         if (behind != FLOW_NOTHING)
-            own[n++] = state->status[args.step % 2];
+            own[n++] = state->status[state->attempt.parity];
         code = flow_fork(state, kernel, &args, n, own, rim, rim2);
     }
     return code;
 }
 
+/* The same for the step under way. */
+static int fork_all(struct flow_state *state, const duite_kernel *kernel, const long *objects,
+                    enum flow_behind behind, long rim, long rim2)
+{
+    return flow_fork_all(state, kernel, flow_attempt_args(state), objects, behind, rim, rim2);
+}
+
 int flow_initialise(struct flow_state *state)
 {
-    const int code =
-        flow_fork_all(state, &flow_initial, (struct flow_args){0},
-                      FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
-                      FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+    const int code = fork_all(state, &flow_initial,
+                              FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
+                              FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+    state->settled_forces = false;
     return code ? code : flow_turned_initialise(state);
 }
 
-static int step_implicit(struct flow_state *state, uint64_t step)
+int flow_stretch_fork(struct flow_state *state, duite_object stretch)
 {
-    const struct flow_args args = {.step = (uint32_t)step};
-    int code =
-        flow_fork_all(state, &flow_force, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)),
-                      FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
-    if (!code)
-        code = flow_fork_all(state, &flow_implicit, args,
-                             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)), FLOW_NOTHING,
-                             FLOW_RIM(rim_x), FLOW_RIM(rim_v));
-    if (!code)
-        code = flow_fork_all(state, &flow_matrix, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)),
-                             FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_NO_RIM);
-    if (!code)
-        code = flow_cg(state, step);
-    if (!code)
-        code = flow_fork_all(state, &flow_velocity_dv, args,
-                             FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(a), FLOW_AT(dv), FLOW_AT(r),
-                                          FLOW_AT(v), FLOW_AT(rim_v)),
-                             FLOW_THEN_SCALARS_AND_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
-    if (!code)
-        code = flow_fork_all(state, &flow_position, args,
-                             FLOW_OBJECTS(FLOW_AT(v), FLOW_AT(x), FLOW_AT(rim_x)), FLOW_THEN_STATUS,
-                             FLOW_NO_RIM, FLOW_NO_RIM);
+    struct flow_args args = {0};
+    const double nothing = 0;
+    int code = duite_set(state->rt, stretch, &nothing);
+    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+        const duite_object objects[] = {state->block[args.block].x, stretch};
+        code = flow_fork(state, &flow_stretch, &args, 2, objects, FLOW_RIM(rim_x), FLOW_NO_RIM);
+    }
     return code;
 }
 
-int flow_step(struct flow_state *state, uint64_t step)
+/* ---- A step ---- */
+
+static int keep(struct flow_state *state)
+{
+    const struct flow_args args = flow_attempt_args(state);
+    int code = DUITE_OK;
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++) {
+        const struct flow_objects *o = state->block + b;
+        struct flow_args here = args;
+        here.block = b;
+        code = DUITE_FORK(state->rt, &flow_keep, &here, o->x, o->v, o->kept_x, o->kept_v);
+    }
+    return code;
+}
+
+static int restore(struct flow_state *state)
+{
+    return fork_all(state, &flow_restore,
+                    FLOW_OBJECTS(FLOW_AT(kept_x), FLOW_AT(kept_v), FLOW_AT(x), FLOW_AT(v),
+                                 FLOW_AT(rim_x), FLOW_AT(rim_v)),
+                    FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+}
+
+static int begin_implicit(struct flow_state *state)
+{
+    int code = fork_all(state, &flow_force, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)),
+                        FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    if (!code)
+        code = fork_all(state, &flow_implicit, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)),
+                        FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    if (!code)
+        code = fork_all(state, &flow_matrix, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)), FLOW_NOTHING,
+                        FLOW_RIM(rim_x), FLOW_NO_RIM);
+    return code ? code : flow_cg_start(state);
+}
+
+/* Pins that move get their velocities before the forces: such a step does not begin before the one
+ * before it is accepted. */
+static int drive(struct flow_state *state)
+{
+    const int code = state->flow->model->halving ? keep(state) : DUITE_OK;
+    return code ? code : flow_pins_drive(state);
+}
+
+/* The part of the attempt that, but for pins that move, leaves x and v as they are. */
+static int begin_step(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
-    const struct flow_args args = {.step = (uint32_t)step};
     const double nothing[FLOW_STATUS] = {0};
-    int code = duite_set(state->rt, state->status[step % 2], nothing);
+    int code = duite_trace_step(state->rt, state->attempt.begin / FLOW_TICKS);
     if (!code)
-        code = flow_pins_drive(state, step);
+        code = duite_set(state->rt, state->status[state->attempt.parity], nothing);
+    if (!code && model->n_motions)
+        code = drive(state);
+    if (code)
+        return code;
+    return model_is_implicit(model) ? begin_implicit(state) : flow_explicit_begin(state);
+}
+
+static int move_implicit(struct flow_state *state)
+{
+    int code = flow_cg_iterate(state);
     if (!code)
-        code =
-            model_is_implicit(model) ? step_implicit(state, step) : flow_step_explicit(state, step);
+        code = fork_all(state, &flow_velocity_dv,
+                        FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(a), FLOW_AT(dv), FLOW_AT(r), FLOW_AT(v),
+                                     FLOW_AT(rim_v)),
+                        FLOW_THEN_SCALARS_AND_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
+    return code ? code
+                : fork_all(state, &flow_position,
+                           FLOW_OBJECTS(FLOW_AT(v), FLOW_AT(x), FLOW_AT(rim_x)), FLOW_THEN_STATUS,
+                           FLOW_NO_RIM, FLOW_NO_RIM);
+}
+
+/* The rest of it. */
+static int end_step(struct flow_state *state)
+{
+    const struct model *model = state->flow->model;
+    const duite_object status = state->status[state->attempt.parity];
+    const struct flow_args args = flow_attempt_args(state);
+    int code = model->halving && !model->n_motions ? keep(state) : DUITE_OK;
     if (!code)
-        code = flow_pins_place(state, step);
+        code = model_is_implicit(model) ? move_implicit(state) : flow_explicit_end(state);
+    if (!code && model->n_motions)
+        code = flow_pins_place(state);
     if (!code && model->n_planes)
-        code = flow_fork_all(state, &flow_collide, args,
-                             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
-                             FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+        code = fork_all(state, &flow_collide,
+                        FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
+                        FLOW_THEN_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
+    if (!code && flow_is_judged(model))
+        code = flow_stretch_fork(state, state->stretch[state->attempt.parity]);
     if (!code)
-        code = duite_fork_at(state->rt, 0, &flow_status, &args, 1, &state->status[step % 2]);
+        code = flow_watch(state);
+    if (!code)
+        code = duite_fork_at(state->rt, 0, &flow_status, &args, 1, &status);
+    state->attempt.forked = !code;
     return code;
 }
 
+int flow_step(struct flow_state *state)
+{
+    state->attempt.length = FLOW_TICKS;
+    const int code = begin_step(state);
+    return code ? code : end_step(state);
+}
+
+/* ---- Judging it ---- */
+
 /* Shows a finished step to the program and asks it whether to go on; on rank 0. */
-static void tell_progress(struct flow_state *state, uint64_t step, uint64_t iterations)
+static void tell_progress(struct flow_state *state, uint64_t iterations)
 {
     const struct flow_progress *progress = state->progress;
     if (!progress || duite_rank(state->rt))
         return;
+    const uint64_t step = (state->grid.now + FLOW_TICKS - 1) / FLOW_TICKS;
     if (progress->step)
-        progress->step(progress->context, step + 1, state->flow->n_steps, iterations);
+        progress->step(progress->context, step, state->flow->n_steps, iterations);
     if (progress->stop && progress->stop(progress->context))
         atomic_store_explicit(&state->flow->stop, 1, memory_order_relaxed);
 }
 
-int flow_step_status(struct flow_state *state, uint64_t step)
+/* Adds an accepted step to the report. */
+static void note(struct flow_state *state, const double status[FLOW_STATUS])
 {
-    double status[FLOW_STATUS];
-    const int code = duite_get(state->rt, state->status[step % 2], status);
-    if (code)
-        return code;
     struct flow_report *report = state->report;
     const double *lost = status + FLOW_LOST;
     const double momentum = sqrt(lost[0] * lost[0] + lost[1] * lost[1] + lost[2] * lost[2]);
     const uint64_t iterations = (uint64_t)status[FLOW_ITERATIONS];
-    report->steps = step + 1;
+    report->steps++;
     report->cg_iterations_total += iterations;
     if (iterations > report->cg_iterations_max)
         report->cg_iterations_max = iterations;
@@ -116,6 +204,129 @@ int flow_step_status(struct flow_state *state, uint64_t step)
         report->mass_norm_error = error;
     report->factors_shifted += (uint64_t)status[FLOW_SHIFTED];
     state->stopping = state->stopping || status[FLOW_STOP] > 0;
-    tell_progress(state, step, iterations);
-    return DUITE_OK;
+    tell_progress(state, iterations);
+}
+
+/* No step is short enough. */
+static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
+{
+    const struct flow_args args = flow_attempt_args(state);
+    const bool above = verdict->most > 0 && verdict->after > verdict->most;
+    snprintf(state->reason, sizeof state->reason,
+             "step %llu: in %g s the largest stretch of an edge grows from %g to %g times its "
+             "length at rest, %s %g is allowed at most (%s)",
+             (unsigned long long)(state->attempt.begin / FLOW_TICKS + 1), args.h, verdict->before,
+             verdict->after, above ? "up to" : "by", above ? verdict->most : verdict->growth,
+             above ? "time.stretch_limit" : "time.stretch_growth");
+    return FLOW_STRETCHED;
+}
+
+/* Takes the step back: it is to be made anew with half the length. */
+static int refuse(struct flow_state *state, const struct flow_verdict *verdict)
+{
+    state->attempt.forked = state->settled_forces = false;
+    if (!state->flow->model->halving || !flow_grid_halve(&state->grid))
+        return give_up(state, verdict);
+    return restore(state);
+}
+
+/* Waits for the step that was forked whole and accepts it, with its frames, or refuses it. */
+static int settle(struct flow_state *state)
+{
+    const struct model *model = state->flow->model;
+    const struct flow_attempt attempt = state->attempt;
+    struct flow_verdict verdict = {.before = state->longest,
+                                   .after = state->longest,
+                                   .most = model->stretch_limit,
+                                   .growth = model->stretch_growth};
+    double status[FLOW_STATUS];
+    int code = duite_get(state->rt, state->status[attempt.parity], status);
+    if (!code && flow_is_judged(model))
+        code = duite_get(state->rt, state->stretch[attempt.parity], &verdict.after);
+    if (code)
+        return code;
+    verdict.failed = status[FLOW_WRONG] > 0;
+    if (flow_verdict_refuses(&verdict))
+        return refuse(state, &verdict);
+    state->attempt.forked = false;
+    state->longest = verdict.after;
+    flow_grid_accept(&state->grid, flow_verdict_calm(&verdict));
+    note(state, status);
+    code = flow_watched(state);
+    return code ? code : flow_frames(state, attempt.begin);
+}
+
+/* The step that follows what is under way, if that is accepted. */
+static struct flow_attempt next_attempt(const struct flow_state *state)
+{
+    const struct flow_attempt *attempt = &state->attempt;
+    return (struct flow_attempt){.begin = state->grid.now + (attempt->forked ? attempt->length : 0),
+                                 .length = state->grid.length,
+                                 .parity = 1 - attempt->parity};
+}
+
+/* Settles what is under way while `next` begins. A step that follows a shorter one does not begin
+ * before: its length is not known. *begun: next has begun and follows what was accepted. */
+static int settle_beside(struct flow_state *state, bool *begun)
+{
+    const struct flow_attempt before = state->attempt;
+    const struct flow_attempt next = next_attempt(state);
+    int code = DUITE_OK;
+    *begun = !before.forked || (before.length == FLOW_TICKS && !state->stopping &&
+                                !state->resting && !state->flow->model->n_motions);
+    *begun = *begun && next.begin < state->grid.end;
+    if (*begun) {
+        state->attempt = next;
+        code = begin_step(state);
+    }
+    if (!code && before.forked) {
+        state->attempt = before;
+        code = settle(state);
+        *begun = *begun && state->grid.now == next.begin;
+    }
+    if (*begun)
+        state->attempt = next;
+    return code;
+}
+
+static int first_stretch(struct flow_state *state)
+{
+    if (!flow_is_judged(state->flow->model))
+        return DUITE_OK;
+    const int code = flow_stretch_fork(state, state->stretch[0]);
+    return code ? code : duite_get(state->rt, state->stretch[0], &state->longest);
+}
+
+static int watch_start(struct flow_state *state)
+{
+    const double nothing[FLOW_STATUS] = {0};
+    int code = duite_set(state->rt, state->status[state->attempt.parity], nothing);
+    if (!code)
+        code = flow_watch(state);
+    return code ? code : flow_watched(state);
+}
+
+int flow_steps(struct flow_state *state)
+{
+    flow_grid_begin(&state->grid, state->flow->n_steps);
+    int code = watch_start(state);
+    if (!code)
+        code = flow_energy_get(state, &state->report->start);
+    if (!code)
+        code = flow_frames(state, 0);
+    if (!code)
+        code = first_stretch(state);
+    while (!code && (state->grid.now < state->grid.end)) {
+        const uint64_t frame = state->next_frame;
+        bool begun;
+        code = settle_beside(state, &begun);
+        if (!code && begun)
+            code = end_step(state);
+        else if (!code && (state->stopping || state->resting) && state->next_frame > frame &&
+                 state->grid.now < state->grid.end) {
+            state->report->stopped = !state->resting;
+            break;
+        }
+    }
+    return code;
 }

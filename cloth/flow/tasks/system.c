@@ -90,9 +90,9 @@ static double *put_entries(const struct flow_table *t, uint32_t block,
 
 static int part(const duite_call *call)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
+    struct flow_table table = flow_table_of(call), *t = &table;
     const struct solve_values values =
-        solve_values_of(t->format, t->n, duite_in(call, 2, phys_vec));
+        solve_values_of(t->format, t->n, flow_open_matrix(call, t, 2));
     double *part = duite_out(call, 6, double), *to = part + entries_at(t);
     put_rows(call, t, part);
     to = put_entries(t, flow_args_of(call)->block, &values, to);
@@ -164,7 +164,7 @@ static int gather(const duite_call *call, struct solve_system *system, struct cl
     const int code = solve_system_make(system, flow->n_vertices, entries, pairs, error);
     if (code)
         return code;
-    system->h = flow->model->h;
+    system->h = flow_args_of(call)->h;
     system->n_pairs = 0;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
         take_rows(system, flow->tables.block + b, duite_in(call, 1 + b, double));
@@ -217,7 +217,7 @@ static int fork_parts(struct flow_state *state, duite_object *part)
 int flow_system(struct flow_state *state)
 {
     const uint32_t n = state->flow->tables.n_blocks;
-    const struct flow_args args = {0};
+    const struct flow_args args = flow_attempt_args(state);
     duite_object *part = state->part;
     int code = fork_parts(state, part);
     state->refs[0] = state->token;

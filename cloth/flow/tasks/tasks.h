@@ -4,6 +4,7 @@
 #include "cloth/flow/run.h"
 #include "cloth/flow/tables/source.h"
 #include "cloth/flow/tables/tables.h"
+#include "cloth/flow/tasks/grid.h"
 #include "cloth/solve/coarse.h"
 #include "cloth/solve/local.h"
 
@@ -35,7 +36,14 @@ struct flow_clock {
 };
 
 /* Codes of bodies that fail. */
-enum { FLOW_DIVERGED = 1, FLOW_INDEFINITE, FLOW_NOT_WRITTEN, FLOW_NO_MEMORY, FLOW_NOT_CONVERGED };
+enum {
+    FLOW_DIVERGED = 1,
+    FLOW_INDEFINITE,
+    FLOW_NOT_WRITTEN,
+    FLOW_NO_MEMORY,
+    FLOW_NOT_CONVERGED,
+    FLOW_STRETCHED
+};
 
 /* Rows of a block's rim that blocks on one other rank read. */
 struct flow_far_rim {
@@ -95,9 +103,12 @@ struct flow {
 /* Arguments of every kernel; those that a kernel does not name are zero. */
 struct flow_args {
     uint32_t block;
-    uint32_t step;
+    uint32_t last; /* not zero: what goes wrong in this step is an error of its body; else it is
+                    * only counted, and the step is made anew with half the length */
     uint64_t frame;
-    uint32_t stage; /* of a step by RK4 */
+    uint32_t stage;  /* of a step by RK4 */
+    double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */
+    double time;     /* s: of a frame; at the end of the step */
 };
 
 /* Indices into the status of a step, F64, zero before the step and summed by its tasks. */
@@ -110,6 +121,7 @@ enum {
     FLOW_RESIDUAL, /* r.D^-1 r, D the masses */
     FLOW_SHIFTED,  /* factors of blocks that were made with a shift or are of SSOR */
     FLOW_KINETIC,  /* energy, J, of a state that is watched */
+    FLOW_WRONG,    /* solves that failed, rows that diverged */
     FLOW_STATUS
 };
 /* What a preconditioned pass leaves of its block: the dots, then the coarse right side. */
@@ -160,7 +172,7 @@ extern const duite_kernel flow_runge; /* table, r f: acceleration, rw x, rw v, r
                                          sum_x, rw sum_v, w rim of x, w rim of v, cw status */
 extern const duite_kernel
     flow_implicit; /* table, r x, r v, rw f: right-hand side; rims of x, rims of v */
-extern const duite_kernel flow_matrix; /* table, r x, w a; rims of x */
+extern const duite_kernel flow_matrix; /* table, r x, w a; rims of x. a: flow_open_matrix */
 extern const duite_kernel flow_begin;  /* w scalars */
 extern const duite_kernel flow_start;  /* table, r f, w dv, w r, w p, w q, w copies, w rim of q */
 extern const duite_kernel flow_pass;   /* table, r scalars, r a, rw dv, rw r, rw p, rw q, rw copies,
@@ -188,18 +200,19 @@ extern const duite_kernel
     flow_velocity_dv; /* table, r f, r a, r dv, r r, rw v, w rim of v, r scalars, cw status */
 extern const duite_kernel flow_velocity_a; /* table, r f, rw v, w rim of v, cw status */
 extern const duite_kernel flow_position;   /* table, r v, rw x, w rim of x, cw status */
-extern const duite_kernel flow_collide;    /* table, rw x, rw v, w rim of x, w rim of v */
-extern const duite_kernel flow_status;     /* cw status: on rank 0, whether a stop was asked for */
-extern const duite_kernel flow_frame;      /* rw token; x of all blocks: on rank 0 */
-extern const duite_kernel flow_drive;      /* table, r x, rw v, w rim of v */
-extern const duite_kernel flow_place;      /* table, rw x, w rim of x */
+extern const duite_kernel flow_collide; /* table, rw x, rw v, w rim of x, w rim of v, cw status */
+extern const duite_kernel flow_keep;    /* r x, r v, w kept x, w kept v */
+extern const duite_kernel flow_restore; /* table, r kept x, r kept v, w x, w v, w rims of both */
+extern const duite_kernel flow_status;  /* cw status: on rank 0, whether a stop was asked for */
+extern const duite_kernel flow_frame;   /* rw token; x of all blocks: on rank 0 */
+extern const duite_kernel flow_drive;   /* table, r x, rw v, w rim of v */
+extern const duite_kernel flow_place;   /* table, rw x, w rim of x */
 extern const duite_kernel
     flow_watch_block;                 /* table, r x, r v, cw status, cw peaks (max); rims of x */
 extern const duite_kernel flow_probe; /* table, r x, r v, r force, w seen */
 extern const duite_kernel
     flow_row; /* rw token, r status, r peaks; seen of the blocks that have any: on rank 0 */
-extern const duite_kernel flow_stretch;     /* table, r x, w stretch; rims of x */
-extern const duite_kernel flow_most;        /* w stretch; stretch of all blocks */
+extern const duite_kernel flow_stretch;     /* table, r x, cw largest stretch; rims of x */
 extern const duite_kernel flow_seconds;     /* cw seconds: of this rank */
 extern const duite_kernel flow_energy;      /* table, r x, r v, cw energies; rims of x */
 extern const duite_kernel flow_level;       /* table, r v, rw f: v where x is */
@@ -210,10 +223,11 @@ extern const duite_kernel flow_system_save; /* rw token; parts of all blocks: on
 /* Shared objects of a block. copies: r of its copies, then p. rim_q: three numbers a row. table: an
  * image (cloth/flow/tables/tables.h), never written once it is dealt. */
 struct flow_objects {
-    duite_object table, x, v, f, rim_x, rim_v, stretch;
+    duite_object table, x, v, f, rim_x, rim_v;
     duite_object a, dv, r, p, q, copies, rim_q[2]; /* of implicit runs */
     duite_object x0, v0, sum_x, sum_v; /* RK4: struct phys_runge; Verlet: v0, that of the half step
                                         */
+    duite_object kept_x, kept_v;       /* before the step, where it may be given up */
     /* With a preconditioner; copies has z for r, rim_q s for q. */
     duite_object z, s, factor, part;
     duite_object basis, rim_basis, basis_copies, coupling; /* with a coarse part */
@@ -233,6 +247,14 @@ struct flow_far {
     uint32_t *number; /* room for the rows of any rim */
 };
 
+/* A step that is under way. */
+struct flow_attempt {
+    uint64_t begin;  /* tick */
+    uint32_t length; /* ticks */
+    unsigned parity; /* which status and stretch are its */
+    bool forked;     /* whole: its status can be asked for */
+};
+
 /* A run as the main program sees it; the same on every rank. */
 struct flow_state {
     struct flow *flow;
@@ -244,7 +266,7 @@ struct flow_state {
     struct flow_objects *block;
     struct flow_far far;
     duite_graph solve; /* a round of conjugate gradients */
-    duite_object sums[2], scalars[2], status[2], token, most, seconds, told;
+    duite_object sums[2], scalars[2], status[2], stretch[2], token, seconds, told;
     duite_object peaks[2], energy;
     duite_object coarse, motion[2]; /* with a coarse part: its factor and its part of s */
     struct flow_head head;
@@ -255,6 +277,11 @@ struct flow_state {
     unsigned char *bytes;  /* rank 0: a part of the state, to be hashed, */
     XXH64_state_t *hash;   /* and what was hashed so far */
     duite_counters before; /* what was counted before the first step */
+    struct flow_grid grid;
+    struct flow_attempt attempt;
+    bool settled_forces; /* f is that of x and v (velocity Verlet) */
+    double longest;      /* largest stretch at grid.now, if steps are judged by it */
+    char reason[600];    /* why no step is short enough */
     uint64_t next_frame;
     bool begun;    /* all ranks have their memory, objects are made */
     bool stopping; /* a stop was agreed: ends after the next frame */
@@ -331,7 +358,7 @@ void flow_turned_make(struct flow_state *state);
 /* Forks of a preconditioned solve: once a run; in each step before the solve; pass `from` (0, 1) of
  * a recorded round. */
 int flow_turned_initialise(struct flow_state *state);
-int flow_turned_start(struct flow_state *state, uint64_t step);
+int flow_turned_start(struct flow_state *state);
 int flow_turned_pass(struct flow_state *state, int from);
 
 /* In a body: what solve_scalars_next makes of these dots under the model's stop, or its failure. */
@@ -360,17 +387,34 @@ int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct f
 
 /* Forks the start of all blocks. */
 int flow_initialise(struct flow_state *state);
-/* Forks a step (0, 1, ...) and waits for the one before it. */
-int flow_step(struct flow_state *state, uint64_t step);
-/* The same by an explicit integrator, between the start of its status and contact. */
-int flow_step_explicit(struct flow_state *state, uint64_t step);
-/* Waits for a step that was forked whole; adds what it says of itself to the report and shows it to
- * the program. */
-int flow_step_status(struct flow_state *state, uint64_t step);
+/* The part of an explicit step that leaves the state as it is, if there is one; the rest of it but
+ * for contact. */
+int flow_explicit_begin(struct flow_state *state);
+int flow_explicit_end(struct flow_state *state);
+/* Steps are judged by their stretch. */
+static inline bool flow_is_judged(const struct model *model)
+{
+    return model->stretch_growth > 0 || model->stretch_limit > 0;
+}
+/* Forks a step of length h whole, which nobody judges. */
+int flow_step(struct flow_state *state);
+/* All steps from the start on, with their frames; ends early if a stop was agreed. */
+int flow_steps(struct flow_state *state);
+/* Forks what finds the largest stretch of the current positions. */
+int flow_stretch_fork(struct flow_state *state, duite_object stretch);
+/* s: of the steps accepted so far. */
+static inline double flow_time(const struct flow_state *state)
+{
+    return (double)state->grid.now * state->flow->model->h / FLOW_TICKS;
+}
+/* Arguments of tasks of the step under way. */
+struct flow_args flow_attempt_args(const struct flow_state *state);
 /* Records a round of the solve; once a run, when its objects are made. */
 int flow_cg_record(struct flow_state *state);
-/* Forks the solve for dv; the step before is waited for when it has begun. */
-int flow_cg(struct flow_state *state, uint64_t step);
+/* Forks what a solve for dv begins with, which reads f and a; then its iterations; both. */
+int flow_cg_start(struct flow_state *state);
+int flow_cg_iterate(struct flow_state *state);
+int flow_cg(struct flow_state *state);
 
 /* What a solve reads of neighbours: memory, a part of flow_memory_take; which objects these are,
  * when the others are made (a failure is returned by the next get); forks of the tasks that pack
@@ -381,8 +425,8 @@ void flow_far_make(struct flow_state *state); /* flow_run_begin does */
 int flow_far_pack(struct flow_state *state, uint32_t block, int to);
 
 /* Fork what moves the pins of a step: before its forces, and when x has moved. */
-int flow_pins_drive(struct flow_state *state, uint64_t step);
-int flow_pins_place(struct flow_state *state, uint64_t step);
+int flow_pins_drive(struct flow_state *state);
+int flow_pins_place(struct flow_state *state);
 /* In a body: the acceleration that a motion gives a vertex that starts there in the step that ends
  * at a time, from the places at its ends and one step before. */
 void flow_due_acceleration(const struct model *model, uint32_t motion, double time,
@@ -390,10 +434,11 @@ void flow_due_acceleration(const struct model *model, uint32_t motion, double ti
 
 /* Objects of what is watched. A failure is returned by the next get. */
 void flow_watch_make(struct flow_state *state);
-/* Forks what is watched of the state after so many steps, and its row of the table of probes. */
-int flow_watch(struct flow_state *state, uint64_t steps);
-/* Finds whether the run rests by then. For each number of steps in order, when they are done. */
-int flow_rest(struct flow_state *state, uint64_t steps);
+/* Forks what is watched of the state at the end of the step under way, or at the start. */
+int flow_watch(struct flow_state *state);
+/* Forks its row of the table of probes, and finds whether the run rests: when the step is accepted,
+ * and for the start. */
+int flow_watched(struct flow_state *state);
 /* Forks what adds up the energies of the present state in `sums` (F64, FLOW_ENERGIES). args: those
  * of the step that ends there. */
 int flow_energies(struct flow_state *state, struct flow_args args, duite_object sums);
@@ -401,10 +446,11 @@ int flow_energies(struct flow_state *state, struct flow_args args, duite_object 
 /* The energies of the present state. Waits for it. */
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy);
 
-/* The step after which a frame is written. */
-uint64_t flow_frame_step(const struct model *model, uint64_t frame);
-/* Forks the frames that are due after so many steps. */
-int flow_frames(struct flow_state *state, uint64_t steps);
+/* The tick, not rounded, that a frame shows. */
+double flow_frame_tick(const struct model *model, uint64_t frame);
+/* Forks the frames whose nearest end of a step is known: the last step, accepted, went from tick
+ * `from` to grid.now. */
+int flow_frames(struct flow_state *state, uint64_t from);
 
 /* Forks what hands the system of the last step to the program. */
 int flow_system(struct flow_state *state);

@@ -156,15 +156,15 @@ static int fork_begin(struct flow_state *state, struct flow_args args)
     return duite_fork(state->rt, &flow_begin_coarse, &args, add_parts(state, 3), state->refs);
 }
 
-int flow_turned_start(struct flow_state *state, uint64_t step)
+int flow_turned_start(struct flow_state *state)
 {
     const struct flow_tables *tables = &state->flow->tables;
     const bool coarse = flow_is_coarse(state->flow);
-    struct flow_args args = {.step = (uint32_t)step};
+    struct flow_args args = flow_attempt_args(state);
     int code = coarse ? fork_coarse(state, args) : DUITE_OK;
     for (; args.block < tables->n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
-        const duite_object factor[] = {o->a, o->factor, state->status[step % 2]};
+        const duite_object factor[] = {o->a, o->factor, state->status[state->attempt.parity]};
         const duite_object start[] = {o->f, o->factor, o->dv,     o->r,        o->p,    o->q,
                                       o->z, o->s,      o->copies, o->rim_q[0], o->part, o->basis};
         code = flow_fork(state, &flow_factor, &args, 3, factor, FLOW_NO_RIM, FLOW_NO_RIM);

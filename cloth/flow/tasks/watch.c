@@ -1,6 +1,7 @@
-/* The state after a step is watched when the step has been forked whole: probes tell of it, and the
- * main program may find that the run rests. What is watched of a state waits where the next but one
- * is watched, as the status of a step does. Nothing here is forked for a run that has neither. */
+/* The state after a step is watched when the step has been forked whole; when it is accepted,
+ * probes tell of it, and the main program may find that the run rests. What is watched of a state
+ * waits where the next but one is watched, as the status of a step does. Nothing here is forked for
+ * a run that has neither. */
 #include "cloth/flow/tasks/tasks.h"
 
 #include <math.h>
@@ -15,12 +16,6 @@ static bool tells(const struct flow_state *state)
 static bool may_rest(const struct flow_state *state)
 {
     return state->flow->model->rest.speed > 0;
-}
-
-/* Where the state after so many steps is watched: that of the last of them. */
-static size_t at(uint64_t steps)
-{
-    return (steps + 1) % 2;
 }
 
 void flow_watch_make(struct flow_state *state)
@@ -41,15 +36,17 @@ void flow_watch_make(struct flow_state *state)
     }
 }
 
-static int fork_watch(struct flow_state *state, uint64_t steps)
+int flow_watch(struct flow_state *state)
 {
+    if (!tells(state) && !may_rest(state))
+        return DUITE_OK;
     const double none[FLOW_PEAKS] = {0, -INFINITY, -INFINITY};
-    struct flow_args args = {.step = (uint32_t)steps};
-    int code = duite_set(state->rt, state->peaks[at(steps)], none);
+    const unsigned at = state->attempt.parity;
+    struct flow_args args = flow_attempt_args(state);
+    int code = duite_set(state->rt, state->peaks[at], none);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
-        const duite_object objects[] = {o->x, o->v, state->status[at(steps)],
-                                        state->peaks[at(steps)]};
+        const duite_object objects[] = {o->x, o->v, state->status[at], state->peaks[at]};
         code = flow_fork(state, &flow_watch_block, &args, 4, objects, FLOW_RIM(rim_x), FLOW_NO_RIM);
     }
     return code;
@@ -67,10 +64,12 @@ static int fork_probe(struct flow_state *state, struct flow_args args)
 }
 
 /* The row before must have been written by then. */
-static int fork_row(struct flow_state *state, uint64_t steps)
+static int fork_row(struct flow_state *state)
 {
     int64_t token;
-    struct flow_args args = {.step = (uint32_t)steps};
+    const uint64_t steps = state->report->steps;
+    const unsigned at = state->attempt.parity;
+    struct flow_args args = {.frame = steps, .time = flow_time(state)};
     int code = steps ? duite_get(state->rt, state->token, &token) : DUITE_OK;
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
         if (state->flow->tables.block[args.block].n_watched)
@@ -80,44 +79,38 @@ static int fork_row(struct flow_state *state, uint64_t steps)
     size_t n = 0;
     args.block = 0;
     state->refs[n++] = state->token;
-    state->refs[n++] = state->status[at(steps)];
-    state->refs[n++] = state->peaks[at(steps)];
+    state->refs[n++] = state->status[at];
+    state->refs[n++] = state->peaks[at];
     for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
         if (state->flow->tables.block[b].n_watched)
             state->refs[n++] = state->block[b].seen;
     return duite_fork_at(state->rt, 0, &flow_row, &args, n, state->refs);
 }
 
-int flow_watch(struct flow_state *state, uint64_t steps)
-{
-    if (!tells(state) && !may_rest(state))
-        return DUITE_OK;
-    const double nothing[FLOW_STATUS] = {0};
-    int code = steps ? DUITE_OK : duite_set(state->rt, state->status[at(0)], nothing);
-    if (!code)
-        code = fork_watch(state, steps);
-    if (!code && tells(state))
-        code = fork_row(state, steps);
-    return code;
-}
-
-int flow_rest(struct flow_state *state, uint64_t steps)
+/* Whether the run rests, by the speeds at the end of a step. */
+static int find_rest(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
     double peaks[FLOW_PEAKS];
     if (!may_rest(state) || state->resting)
         return DUITE_OK;
-    const int code = duite_get(state->rt, state->peaks[at(steps)], peaks);
+    const int code = duite_get(state->rt, state->peaks[state->attempt.parity], peaks);
     if (code)
         return code;
-    const double time = (double)steps * model->h;
+    const double time = flow_time(state);
     for (uint32_t i = 0; i < model->n_motions; i++)
         if (model->keys[model->motions[i].first + model->motions[i].n - 1].time > time)
             state->moved = time; /* a pin will move yet */
     if (!(sqrt(peaks[FLOW_PEAK_SPEED]) <= model->rest.speed))
         state->moved = time;
-    state->resting = steps > 0 && time - state->moved >= model->rest.hold;
+    state->resting = state->grid.now > 0 && time - state->moved >= model->rest.hold;
     if (state->resting)
         state->report->rest_seconds = time;
     return DUITE_OK;
+}
+
+int flow_watched(struct flow_state *state)
+{
+    const int code = tells(state) ? fork_row(state) : DUITE_OK;
+    return code ? code : find_rest(state);
 }

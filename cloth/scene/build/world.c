@@ -140,6 +140,9 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
     if (rest)
         model->rest = (struct model_rest){scene_tree_number(tree, rest, "speed"),
                                           scene_tree_number(tree, rest, "hold")};
+    model->halving = !strcmp(scene_tree_text(tree, time, "halving"), "on");
+    model->stretch_growth = model->halving ? scene_tree_number(tree, time, "stretch_growth") : 0;
+    model->stretch_limit = scene_tree_number(tree, time, "stretch_limit");
     double steps = model->end / model->h;
     if (steps < 0.5)
         return scene_tree_fail(tree, end, error,

@@ -154,11 +154,18 @@ static const struct scene_rule rest_keys[] = {
      .about = "no vertex is faster"},
     {"hold", SCENE_NUMBER, "s", "0.1", .range = SCENE_NOT_NEGATIVE, .about = "for so long"},
     {0}};
+static const char *const switches[] = {"on", "off", NULL};
 static const struct scene_rule time_keys[] = {
     {"h", SCENE_NUMBER, "s", .required = true, .range = SCENE_POSITIVE, .about = "of a step"},
     {"end", SCENE_NUMBER, "s", .required = true, .range = SCENE_POSITIVE,
      .about = "round(end / h) steps are made"},
     {"fps", SCENE_NUMBER, "1/s", "25", .range = SCENE_POSITIVE, .about = "frames a second"},
+    {"halving", SCENE_CHOICE, .fallback = "on", .words = switches,
+     .about = "a step that fails is made anew with half the length, down to h/1024"},
+    {"stretch_growth", SCENE_NUMBER, .fallback = "0.1", .range = SCENE_NOT_NEGATIVE,
+     .about = "largest stretch of an edge may grow by so much in a step; 0: by any"},
+    {"stretch_limit", SCENE_NUMBER, .fallback = "0", .range = SCENE_NOT_NEGATIVE,
+     .about = "and no step may stretch beyond, length / length at rest; 0: no limit"},
     {"rest", SCENE_MAP, .inside = rest_keys, .about = "the run ends when the cloth is at rest"},
     {0}};
 

@@ -157,7 +157,8 @@ START_TEST(wrong_kinds)
         {"gravity: [0, -9.81, 0]", "gravity: [0, {a: 1}, 0]",
          .error = ":2:14: gravity[1] is a map of 1; a finite number is expected"},
         {"time: {h: 0.001, end: 0.1}", "time: 3",
-         .error = ":12:7: time is 3; a map of h, end, fps, rest is expected"},
+         .error = ":12:7: time is 3; a map of h, end, fps, halving, stretch_growth, "
+                  "stretch_limit, rest is expected"},
         {"name: sheet", "name: ''",
          .error = ":4:11: cloths[0].name is the text ''; a text is expected"},
         {"name: sheet", "name: [a]",
@@ -190,10 +191,11 @@ START_TEST(unknown_and_missing_keys)
                      "name, gravity, cloths, "
                      "materials, obstacles, contact, time, integrator, solver, probes, grain"},
            {"h: 0.001", "h: 0.001, dt: 1",
-            .error = ":12:18: dt is not a key of time; allowed: h, end, fps, rest"},
+            .error = ":12:18: dt is not a key of time; allowed: h, end, fps, halving, "
+                     "stretch_growth, stretch_limit, rest"},
            {"h: 0.001", "h: 0.001, fsp: 1",
-            .error =
-                ":12:18: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, rest"},
+            .error = ":12:18: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, "
+                     "halving, stretch_growth, stretch_limit, rest"},
            {"stretch: 50", "strech: 50",
             .error = ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
                      "Allowed: density, stretch, "
@@ -385,7 +387,8 @@ START_TEST(sets_that_are_wrong)
         const char *set, *error;
     } all[] = {
         {"time.h=-1", "time.h is -1; a finite number > 0 (s) is expected"},
-        {"time.hh=1", "hh is not a key of time; did you mean 'h'? Allowed: h, end, fps, rest"},
+        {"time.hh=1", "hh is not a key of time; did you mean 'h'? Allowed: h, end, fps, halving, "
+                      "stretch_growth, stretch_limit, rest"},
         {"time.h.x=1", "'time.h' is not a map"},
         {"cloths.x=1", "'cloths' is not a map"},
         {"time[0]=1", "'time' is not a list"},

@@ -1,0 +1,127 @@
+/* The time grid and what steps are refused for, without a run. */
+#include "cloth/flow/tasks/grid.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+
+START_TEST(whole_steps)
+{
+    struct flow_grid grid;
+    flow_grid_begin(&grid, 3);
+    for (uint64_t i = 0; i < 3; i++) {
+        ck_assert_uint_eq(grid.now, i * FLOW_TICKS);
+        ck_assert_uint_lt(grid.now, grid.end);
+        flow_grid_accept(&grid, true);
+        ck_assert_uint_eq(grid.length, FLOW_TICKS);
+    }
+    ck_assert_uint_eq(grid.now, grid.end);
+    ck_assert_uint_eq(grid.refused, 0);
+    ck_assert_uint_eq(grid.least_done, FLOW_TICKS);
+}
+END_TEST
+
+START_TEST(halved_to_a_tick)
+{
+    struct flow_grid grid;
+    flow_grid_begin(&grid, 4294967294);
+    for (uint32_t length = FLOW_TICKS; length > 1; length /= 2) {
+        ck_assert_uint_eq(grid.length, length);
+        ck_assert(flow_grid_halve(&grid));
+    }
+    ck_assert(!flow_grid_halve(&grid));
+    ck_assert_uint_eq(grid.length, 1);
+    ck_assert_uint_eq(grid.refused, 10);
+    ck_assert_uint_eq(grid.least_done, FLOW_TICKS); /* none was made */
+}
+END_TEST
+
+/* Each step begins at a multiple of its length, whatever is refused, and the end is met. */
+START_TEST(steps_begin_at_multiples_of_their_length)
+{
+    struct flow_grid grid;
+    uint32_t random = 1, longer = 0;
+    flow_grid_begin(&grid, 50);
+    while (grid.now < grid.end) {
+        const uint32_t before = grid.length;
+        ck_assert_uint_eq(grid.now % grid.length, 0);
+        ck_assert_uint_le(grid.now + grid.length, grid.end);
+        random = random * 1664525 + 1013904223;
+        if ((random >> 24) % 3 == 0 && flow_grid_halve(&grid))
+            continue;
+        flow_grid_accept(&grid, (random >> 16) % 4 > 0);
+        longer += grid.length > before;
+        ck_assert_uint_le(grid.length, 2 * before);
+    }
+    ck_assert_uint_eq(grid.now, grid.end);
+    ck_assert_uint_gt(longer, 10);
+}
+END_TEST
+
+START_TEST(grown_only_when_calm)
+{
+    struct flow_grid grid;
+    flow_grid_begin(&grid, 2);
+    flow_grid_halve(&grid);
+    flow_grid_accept(&grid, true); /* at 512: 1024 does not begin there */
+    ck_assert_uint_eq(grid.length, 512);
+    flow_grid_accept(&grid, false);
+    ck_assert_uint_eq(grid.length, 512);
+    flow_grid_accept(&grid, true);
+    flow_grid_accept(&grid, true);
+    ck_assert_uint_eq(grid.length, FLOW_TICKS);
+    ck_assert_uint_eq(grid.least_done, 512);
+}
+END_TEST
+
+START_TEST(what_is_refused)
+{
+    const struct flow_verdict fine = {.before = 1.2, .after = 1.25, .most = 1.4, .growth = 0.1};
+    struct flow_verdict v = fine;
+    ck_assert(!flow_verdict_refuses(&v));
+    v.failed = true;
+    ck_assert(flow_verdict_refuses(&v));
+    v = fine;
+    v.after = NAN;
+    ck_assert(flow_verdict_refuses(&v));
+    v.after = 1.31; /* grows too fast */
+    ck_assert(flow_verdict_refuses(&v));
+    v.growth = 0;
+    ck_assert(!flow_verdict_refuses(&v));
+    v.after = 1.41; /* too far */
+    ck_assert(flow_verdict_refuses(&v));
+    v.before = 1.5; /* on its way back */
+    ck_assert(!flow_verdict_refuses(&v));
+    v.most = 0;
+    v.before = 1;
+    ck_assert(!flow_verdict_refuses(&v));
+}
+END_TEST
+
+START_TEST(what_is_calm)
+{
+    struct flow_verdict v = {.before = 1.2, .after = 1.24, .growth = 0.1};
+    ck_assert(flow_verdict_calm(&v));
+    v.after = 1.26;
+    ck_assert(!flow_verdict_calm(&v));
+    v = (struct flow_verdict){.before = 1.2, .after = 1.3, .most = 1.51};
+    ck_assert(flow_verdict_calm(&v));
+    v.most = 1.49;
+    ck_assert(!flow_verdict_calm(&v));
+    v.after = 1.1;
+    ck_assert(flow_verdict_calm(&v));
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("grid");
+    TCase *cases = tcase_create("grid");
+    tcase_add_test(cases, whole_steps);
+    tcase_add_test(cases, halved_to_a_tick);
+    tcase_add_test(cases, steps_begin_at_multiples_of_their_length);
+    tcase_add_test(cases, grown_only_when_calm);
+    tcase_add_test(cases, what_is_refused);
+    tcase_add_test(cases, what_is_calm);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

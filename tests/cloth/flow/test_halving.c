@@ -1,0 +1,237 @@
+/* Steps that are given up and made anew with half the length: that the run goes on from the state
+ * before them, grows back, says how often, shows frames at the right times; and what it says where
+ * no step is short enough. */
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+static void runs(struct record *record, const struct model *model)
+{
+    record_run(record, model);
+    ck_assert_msg(record->code == 0, "%s", record->error.text);
+}
+
+/* A weight that falls until its edge is taut. */
+static void setup_jerk(struct setup *setup)
+{
+    setup_weight(setup);
+    setup->cloth.velocity[1] = -3;
+    setup->model.h = 0.064;
+    setup->model.end = 0.64;
+    setup->model.fps = 1 / 0.064;
+    setup->model.halving = true;
+}
+
+/* Nothing is wrong: the same bits as without. */
+START_TEST(steps_that_are_fine)
+{
+    struct setup setup;
+    struct record plain = {0}, halving = {0};
+    setup_sheet(&setup, 8);
+    setup_pin(&setup, 1, (const uint32_t[]){0});
+    runs(&plain, &setup.model);
+    setup.model.halving = true;
+    setup.model.stretch_growth = 0.1;
+    setup.model.stretch_limit = 2;
+    runs(&halving, &setup.model);
+    ck_assert_uint_eq(halving.report.steps_halved, 0);
+    ck_assert_uint_eq(halving.report.steps, 10);
+    ck_assert(halving.report.state_hash == plain.report.state_hash);
+    ck_assert_uint_eq(halving.frames, plain.frames);
+    ck_assert_mem_eq(halving.time, plain.time, plain.frames * sizeof(double));
+    record_free(&plain);
+    record_free(&halving);
+    setup_free(&setup);
+}
+END_TEST
+
+/* All steps are of the same length h / 2^k in the end, and the result is bit for bit that of a run
+ * with this h: a step that was given up has left nothing. */
+START_TEST(a_halved_run_is_one_with_a_smaller_h)
+{
+    for (int i = MODEL_EXPLICIT_EULER; i <= MODEL_IMPLICIT_EULER; i++) {
+        struct setup setup;
+        struct record halved = {0}, small = {0};
+        setup_sheet(&setup, 8);
+        setup.cloth.velocity[0] = 0.5;
+        setup_pin(&setup, 1, (const uint32_t[]){0});
+        setup.model.integrator = (enum model_integrator)i;
+        setup.model.end = 0.004;
+        setup.model.fps = 250;
+        setup.model.halving = true;
+        setup.model.stretch_growth = 1e-3; /* 0.5 m/s on edges of 1/7 m: less than 0.3 ms */
+        runs(&halved, &setup.model);
+        ck_assert_uint_gt(halved.report.steps_halved, 0);
+        ck_assert_double_le(halved.report.shortest_step, 0.0005);
+        ck_assert_double_eq(halved.report.simulated_seconds, 0.004);
+        ck_assert_uint_eq(halved.shown, 4);
+        setup.model.h = halved.report.shortest_step;
+        setup.model.halving = false;
+        setup.model.stretch_growth = 0;
+        runs(&small, &setup.model);
+        if (halved.report.steps == small.report.steps)
+            ck_assert(halved.report.state_hash == small.report.state_hash);
+        for (size_t c = 0; c < 3; c++)
+            ck_assert_double_eq_tol(record_at(&halved, 1, 9, c), record_at(&small, 1, 9, c), 1e-5);
+        record_free(&halved);
+        record_free(&small);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
+/* In frame 1. */
+static double distance(const struct record *a, const struct record *b)
+{
+    return fabs(record_at(a, 1, 1, 1) - record_at(b, 1, 1, 1));
+}
+
+/* Steps are short while the edge is jerked, and long again afterwards; until then the
+ * run is nearer to one of short steps than one of long steps is. */
+START_TEST(an_edge_that_is_jerked)
+{
+    struct setup setup;
+    struct record plain = {0}, halved = {0}, small = {0};
+    setup_jerk(&setup);
+    setup.model.halving = false;
+    runs(&plain, &setup.model);
+    setup.model.halving = true;
+    setup.model.stretch_growth = 0.02;
+    runs(&halved, &setup.model);
+    ck_assert_uint_gt(halved.report.steps_halved, 2);
+    ck_assert_uint_gt(halved.report.steps, 20);
+    ck_assert_uint_lt(halved.report.steps, 320);
+    setup.model.halving = false;
+    setup.model.h /= 1024;
+    runs(&small, &setup.model);
+    ck_assert_uint_eq(plain.frames, small.frames);
+    ck_assert_uint_eq(halved.frames, small.frames);
+    ck_assert_double_lt(3 * distance(&halved, &small), distance(&plain, &small));
+    record_free(&plain);
+    record_free(&halved);
+    record_free(&small);
+    setup_free(&setup);
+}
+END_TEST
+
+/* Frame k is shown after the step whose end is nearest to k / fps, whatever the steps are. */
+START_TEST(frames_between_shorter_steps)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_jerk(&setup);
+    setup.model.stretch_growth = 0.02;
+    setup.model.fps = 23;
+    runs(&record, &setup.model);
+    double farthest = 0;
+    for (size_t k = 0; k < record.frames; k++) {
+        const double tick = record.time[k] / setup.model.h * 1024;
+        ck_assert_double_eq_tol(tick, round(tick), 1e-6);
+        ck_assert_double_ge(record.time[k], k ? record.time[k - 1] : 0);
+        farthest = fmax(farthest, fabs(record.time[k] - (double)k / 23));
+    }
+    ck_assert_uint_eq(record.frames, 16); /* the last is nearer to the end than to what follows */
+    ck_assert_double_le(farthest, setup.model.h / 2);
+    /* The first jerk is at once: frame 1 lies among steps of less than h / 4. */
+    ck_assert_double_le(fabs(record.time[1] - 1.0 / 23), setup.model.h / 8);
+    ck_assert_double_gt(fabs(record.time[1] - setup.model.h), setup.model.h / 8);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+/* The solve needs fewer iterations in a shorter step. */
+START_TEST(a_solve_that_converges_in_a_shorter_step)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 10);
+    setup.model.h = 0.02;
+    setup.model.end = 0.1;
+    setup.model.fps = 50;
+    setup.model.max_iterations = 6;
+    setup.model.halving = true;
+    setup_pin(&setup, 1, (const uint32_t[]){0});
+    runs(&record, &setup.model);
+    ck_assert_uint_gt(record.report.steps_halved, 0);
+    ck_assert_uint_gt(record.report.steps, 5);
+    ck_assert_uint_le(record.report.cg_iterations_max, 6);
+    ck_assert_uint_eq(record.frames, 6);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+static void fails(struct record *record, const struct model *model, const char *begin,
+                  const char *part)
+{
+    record_run(record, model);
+    ck_assert_int_eq(record->code, CLOTH_E_RUN);
+    ck_assert_msg(strncmp(record->error.text, begin, strlen(begin)) == 0, "'%s' is not before '%s'",
+                  begin, record->error.text);
+    ck_assert_msg(strstr(record->error.text, part), "'%s' is not in '%s'", part,
+                  record->error.text);
+    ck_assert_msg(strstr(record->error.text, "halved down to h/1024"), "%s", record->error.text);
+    ck_assert_uint_eq(record->report.steps_halved, 10);
+}
+
+/* At h / 1024 it stops, and says why. */
+START_TEST(no_step_is_short_enough)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 4);
+    setup.model.halving = true;
+    setup_load(&setup, 3, 1e200, 0, 0);
+    fails(&record, &setup.model, "step 1: conjugate gradients broke down", "not positive definite");
+    record_free(&record);
+    setup_free(&setup);
+
+    setup_weight(&setup);
+    setup.model.halving = true;
+    setup.model.stretch_limit = 1;
+    fails(&record, &setup.model, "step 1: in 9.76563e-07 s the largest stretch of an edge grows",
+          "up to 1 is allowed at most (time.stretch_limit)");
+    ck_assert_uint_eq(record.report.steps, 0);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+/* Explicit Euler is unstable at this h; it goes on with shorter steps, however small. */
+START_TEST(an_explicit_run_that_is_unstable)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 6);
+    setup.model.integrator = MODEL_EXPLICIT_EULER;
+    setup.model.h = 0.05;
+    setup.model.end = 0.5;
+    setup.model.fps = 20;
+    setup_pin(&setup, 1, (const uint32_t[]){0});
+    setup.model.halving = true;
+    setup.model.stretch_growth = 0.1;
+    runs(&record, &setup.model);
+    ck_assert_uint_gt(record.report.steps_halved, 0);
+    ck_assert_double_lt(record.report.max_stretch, 3);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("halving");
+    TCase *cases = tcase_create("halving");
+    tcase_add_test(cases, steps_that_are_fine);
+    tcase_add_test(cases, a_halved_run_is_one_with_a_smaller_h);
+    tcase_add_test(cases, an_edge_that_is_jerked);
+    tcase_add_test(cases, frames_between_shorter_steps);
+    tcase_add_test(cases, a_solve_that_converges_in_a_shorter_step);
+    tcase_add_test(cases, no_step_is_short_enough);
+    tcase_add_test(cases, an_explicit_run_that_is_unstable);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

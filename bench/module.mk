@@ -67,7 +67,7 @@ if HAVE_RIVAL_OPENMP
 check_PROGRAMS += bench/cg/twin
 BENCH_RIVALS += bench/cg/twin$(EXEEXT)
 bench_cg_twin_SOURCES = bench/cg/twin.c bench/cg/parts.c bench/cg/parts.h cloth/solve/block.c cloth/solve/block.h \
-	cloth/solve/cg.c cloth/solve/cg.h cloth/physics/vec.h $(RIVAL_STATE)
+	cloth/solve/cg.c cloth/solve/cg.h cloth/physics/vec.h cloth/base/simd.c cloth/base/simd.h $(RIVAL_STATE)
 bench_cg_twin_CFLAGS = $(RIVAL_CFLAGS) -ffp-contract=off $(OPENMP_CFLAGS)
 bench_cg_twin_LDFLAGS =
 bench_cg_twin_LDADD = -lm

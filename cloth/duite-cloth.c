@@ -1,5 +1,6 @@
 /* The command line of duite-cloth. It is read after MPI has started, on every rank alike, and only
  * rank 0 prints, so that a mistake is said once and every rank ends with the same code. */
+#include "cloth/base/simd.h"
 #include "cloth/simulate.h"
 
 #include <config.h>
@@ -7,6 +8,7 @@
 #include <argp.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -328,6 +330,18 @@ static int agree(int code)
     return code;
 }
 
+/* Hosts may differ: the first rank that cannot have what it was asked for says so. */
+static int check_instructions(int rank)
+{
+    struct cloth_error error = {0};
+    const int code = cloth_simd_check(&error) ? SIMULATE_BAD_INPUT : SIMULATE_OK;
+    int first = code ? rank : INT_MAX;
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    if (first == rank)
+        fprintf(stderr, "duite-cloth: %s\n", error.text);
+    return code;
+}
+
 int main(int argc, char **argv)
 {
     int provided, rank;
@@ -345,6 +359,8 @@ int main(int argc, char **argv)
                                       .seed = 1},
                               .talks = rank == 0};
     int code = agree(command_line(&command, argc, argv));
+    if (code == SIMULATE_OK && !command.done)
+        code = agree(check_instructions(rank));
     if (code == SIMULATE_OK && !command.done)
         code = simulate(&command.run);
     code = finish_output(code);

@@ -1,6 +1,8 @@
 /* Everything printed here comes from the report of the run; nothing is measured but the progress
  * line's time. */
 #include "cloth/summary.h"
+
+#include "cloth/base/simd.h"
 #include "cloth/output/output.h"
 
 #include <inttypes.h>
@@ -65,6 +67,7 @@ void summary_print(FILE *file, const struct summary *summary)
             "  ran on           %d ranks x %u threads, scheduler %s, mapping %s, balance %s\n",
             summary->ranks, summary->threads, summary->options->scheduler_name,
             summary->options->mapping_name, summary->options->balance_name);
+    fprintf(file, "  instructions     %s\n", cloth_simd_name());
     fprintf(file, "  steps            %" PRIu64 " of %g s, %g s simulated\n", report->steps,
             model->h, report->simulated_seconds);
     if (!isnan(report->rest_seconds))
@@ -125,6 +128,7 @@ static void add_setting(struct output_report *json, const struct summary *summar
     output_report_text(json, "scheduler", summary->options->scheduler_name);
     output_report_text(json, "mapping", summary->options->mapping_name);
     output_report_text(json, "balance", summary->options->balance_name);
+    output_report_text(json, "simd", cloth_simd_name());
 }
 
 static void add_times(struct output_report *json, const struct flow_report *report)

@@ -1,3 +1,4 @@
 libduite_cloth_la_SOURCES += \
 	cloth/base/error.c cloth/base/error.h \
-	cloth/base/memory.c cloth/base/memory.h
+	cloth/base/memory.c cloth/base/memory.h \
+	cloth/base/simd.c cloth/base/simd.h

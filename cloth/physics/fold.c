@@ -31,8 +31,9 @@ PHYS_INLINE void add_forces(const struct phys_folds *folds, size_t e, uint32_t n
         y[corner[0]] += first;
 }
 
-PHYS_CLONES
-void phys_folds_force(const struct phys_folds *folds, const struct phys_sight *sight, phys_vec *f)
+PHYS_KERNEL(phys_folds_force,
+            (const struct phys_folds *folds, const struct phys_sight *sight, phys_vec *f),
+            (folds, sight, f))
 {
     for (size_t e = 0; e < folds->n; e++) {
         phys_vec x;
@@ -41,9 +42,10 @@ void phys_folds_force(const struct phys_folds *folds, const struct phys_sight *s
     }
 }
 
-PHYS_CLONES
-void phys_folds_stiffness(const struct phys_folds *folds, double scale,
-                          const struct phys_sight *sight, phys_vec *y)
+PHYS_KERNEL(phys_folds_stiffness,
+            (const struct phys_folds *folds, double scale, const struct phys_sight *sight,
+             phys_vec *y),
+            (folds, scale, sight, y))
 {
     for (size_t e = 0; e < folds->n; e++) {
         phys_vec v;
@@ -70,8 +72,8 @@ void phys_folds_matrix(const struct phys_folds *folds, size_t from, size_t to, d
     }
 }
 
-PHYS_CLONES
-double phys_folds_energy(const struct phys_folds *folds, const struct phys_sight *sight)
+PHYS_KERNEL_OF(double, phys_folds_energy,
+               (const struct phys_folds *folds, const struct phys_sight *sight), (folds, sight))
 {
     double sum = 0;
     for (size_t e = 0; e < folds->n; e++) {

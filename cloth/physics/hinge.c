@@ -6,9 +6,9 @@
 
 #include <math.h>
 
-PHYS_CLONES
-void phys_hinges_force(const struct phys_hinges *hinges, const struct phys_sight *sight,
-                       phys_vec *f)
+PHYS_KERNEL(phys_hinges_force,
+            (const struct phys_hinges *hinges, const struct phys_sight *sight, phys_vec *f),
+            (hinges, sight, f))
 {
     for (size_t first = 0; first < hinges->n; first += PHYS_WIDE) {
         struct phys_four four;
@@ -87,9 +87,10 @@ PHYS_INLINE void stiffness(const struct phys_hinges *hinges, int full, double sc
     }
 }
 
-PHYS_CLONES
-void phys_hinges_stiffness(const struct phys_hinges *hinges, int full, double scale,
-                           const struct phys_sight *sight, phys_vec *y)
+PHYS_KERNEL(phys_hinges_stiffness,
+            (const struct phys_hinges *hinges, int full, double scale,
+             const struct phys_sight *sight, phys_vec *y),
+            (hinges, full, scale, sight, y))
 {
     if (full)
         stiffness(hinges, 1, scale, sight, y);
@@ -146,10 +147,10 @@ PHYS_INLINE void matrix(const struct phys_hinges *hinges, size_t from, size_t to
     }
 }
 
-PHYS_CLONES
-void phys_hinges_matrix(const struct phys_hinges *hinges, size_t from, size_t to,
-                        const struct phys_step *step, const struct phys_sight *sight,
-                        struct phys_pair *pair)
+PHYS_KERNEL(phys_hinges_matrix,
+            (const struct phys_hinges *hinges, size_t from, size_t to, const struct phys_step *step,
+             const struct phys_sight *sight, struct phys_pair *pair),
+            (hinges, from, to, step, sight, pair))
 {
     if (step->full)
         matrix(hinges, from, to, step, 1, sight, pair);
@@ -157,8 +158,8 @@ void phys_hinges_matrix(const struct phys_hinges *hinges, size_t from, size_t to
         matrix(hinges, from, to, step, 0, sight, pair);
 }
 
-PHYS_CLONES
-double phys_hinges_energy(const struct phys_hinges *hinges, const struct phys_sight *sight)
+PHYS_KERNEL_OF(double, phys_hinges_energy,
+               (const struct phys_hinges *hinges, const struct phys_sight *sight), (hinges, sight))
 {
     double sum = 0;
     for (size_t first = 0; first < hinges->n; first += PHYS_WIDE) {

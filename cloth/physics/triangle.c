@@ -57,9 +57,9 @@ PHYS_INLINE void add_forces(const struct phys_triangles *t, const struct phys_fo
     phys_scatter(four, t->corner, 0, n, &first, y);
 }
 
-PHYS_CLONES
-void phys_triangles_force(const struct phys_triangles *t, const struct phys_sight *sight,
-                          phys_vec *f)
+PHYS_KERNEL(phys_triangles_force,
+            (const struct phys_triangles *t, const struct phys_sight *sight, phys_vec *f),
+            (t, sight, f))
 {
     const double twisted = t->uncorrected ? 0 : 1;
     for (size_t first = 0; first < t->n; first += PHYS_WIDE) {
@@ -204,9 +204,10 @@ PHYS_INLINE void stiffness(const struct phys_triangles *t, int full, double scal
     }
 }
 
-PHYS_CLONES
-void phys_triangles_stiffness(const struct phys_triangles *triangles, int full, double scale,
-                              const struct phys_sight *sight, phys_vec *y)
+PHYS_KERNEL(phys_triangles_stiffness,
+            (const struct phys_triangles *triangles, int full, double scale,
+             const struct phys_sight *sight, phys_vec *y),
+            (triangles, full, scale, sight, y))
 {
     if (full)
         stiffness(triangles, 1, scale, sight, y);
@@ -288,10 +289,10 @@ PHYS_INLINE void matrix(const struct phys_triangles *t, size_t from, size_t to, 
     }
 }
 
-PHYS_CLONES
-void phys_triangles_matrix(const struct phys_triangles *triangles, size_t from, size_t to,
-                           const struct phys_step *step, const struct phys_sight *sight,
-                           struct phys_pair *pair)
+PHYS_KERNEL(phys_triangles_matrix,
+            (const struct phys_triangles *triangles, size_t from, size_t to,
+             const struct phys_step *step, const struct phys_sight *sight, struct phys_pair *pair),
+            (triangles, from, to, step, sight, pair))
 {
     if (step->full)
         matrix(triangles, from, to, step->h, 1, sight, pair);
@@ -301,8 +302,8 @@ void phys_triangles_matrix(const struct phys_triangles *triangles, size_t from, 
 
 /* ---- What a state says of itself ---- */
 
-PHYS_CLONES
-double phys_triangles_energy(const struct phys_triangles *t, const struct phys_sight *sight)
+PHYS_KERNEL_OF(double, phys_triangles_energy,
+               (const struct phys_triangles *t, const struct phys_sight *sight), (t, sight))
 {
     double sum = 0;
     for (size_t first = 0; first < t->n; first += PHYS_WIDE) {
@@ -319,8 +320,8 @@ double phys_triangles_energy(const struct phys_triangles *t, const struct phys_s
     return sum;
 }
 
-PHYS_CLONES
-double phys_triangles_stretch(const struct phys_triangles *t, const struct phys_sight *sight)
+PHYS_KERNEL_OF(double, phys_triangles_stretch,
+               (const struct phys_triangles *t, const struct phys_sight *sight), (t, sight))
 {
     double most = 0;
     for (size_t first = 0; first < t->n; first += PHYS_WIDE) {
@@ -340,9 +341,9 @@ double phys_triangles_stretch(const struct phys_triangles *t, const struct phys_
     return most;
 }
 
-PHYS_CLONES
-void phys_triangles_torque(const struct phys_triangles *t, const struct phys_sight *sight,
-                           double torque[3])
+PHYS_KERNEL(phys_triangles_torque,
+            (const struct phys_triangles *t, const struct phys_sight *sight, double torque[3]),
+            (t, sight, torque))
 {
     for (size_t first = 0; first < t->n; first += PHYS_WIDE) {
         struct phys_four four;

@@ -1,6 +1,8 @@
 #ifndef CLOTH_PHYSICS_VEC_H
 #define CLOTH_PHYSICS_VEC_H
 
+#include "cloth/base/simd.h"
+
 #include <stdint.h>
 
 /* Vectors of the state are rows of four doubles, x y z 0, aligned to 32 bytes: one AVX register,
@@ -9,18 +11,59 @@
  * Helpers are always inlined: no vector is passed by value. */
 typedef double phys_vec __attribute__((vector_size(32)));
 
-/* Before a function whose loops carry the run: compiled twice, with and without AVX2, and chosen
- * when the program starts. The bits are the same, since fused multiply-adds stay off. GCC only:
- * calls from other files do not find what clang 14 makes of it. Not with sanitizers, which are not
- * yet there when the choice is made. */
-#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && !defined(__AVX2__) &&      \
-    !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define PHYS_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define PHYS_CLONES
-#endif
-
 #define PHYS_INLINE static inline __attribute__((always_inline, unused))
+
+/* Heads of functions whose loops carry the run, in place of
+ *
+ *     void name(params)            and      type name(params)
+ *
+ * They are compiled several times and chosen by what the processor has (cloth/base/simd.h). args:
+ * the names of the parameters, in order. The bits are the same, since fused multiply-adds stay off.
+ * What they call is to be PHYS_INLINE, or it is compiled once. */
+#if defined(__x86_64__) && !defined(__AVX512VL__)
+#define PHYS_AVX2   __attribute__((target("avx2")))
+#define PHYS_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq")))
+#define PHYS_KERNEL(name, params, args)                                                            \
+    PHYS_INLINE void name##_body params;                                                           \
+    PHYS_AVX2 static void name##_avx2 params                                                       \
+    {                                                                                              \
+        name##_body args;                                                                          \
+    }                                                                                              \
+    PHYS_AVX512 static void name##_avx512 params                                                   \
+    {                                                                                              \
+        name##_body args;                                                                          \
+    }                                                                                              \
+    void name params                                                                               \
+    {                                                                                              \
+        if (cloth_simd == CLOTH_SIMD_AVX512)                                                       \
+            name##_avx512 args;                                                                    \
+        else if (cloth_simd == CLOTH_SIMD_AVX2)                                                    \
+            name##_avx2 args;                                                                      \
+        else                                                                                       \
+            name##_body args;                                                                      \
+    }                                                                                              \
+    PHYS_INLINE void name##_body params
+#define PHYS_KERNEL_OF(type, name, params, args)                                                   \
+    PHYS_INLINE type name##_body params;                                                           \
+    PHYS_AVX2 static type name##_avx2 params                                                       \
+    {                                                                                              \
+        return name##_body args;                                                                   \
+    }                                                                                              \
+    PHYS_AVX512 static type name##_avx512 params                                                   \
+    {                                                                                              \
+        return name##_body args;                                                                   \
+    }                                                                                              \
+    type name params                                                                               \
+    {                                                                                              \
+        if (cloth_simd == CLOTH_SIMD_AVX512)                                                       \
+            return name##_avx512 args;                                                             \
+        return cloth_simd == CLOTH_SIMD_AVX2 ? name##_avx2 args : name##_body args;                \
+    }                                                                                              \
+    PHYS_INLINE type name##_body params
+#else
+#define PHYS_KERNEL(name, params, args)          void name params
+#define PHYS_KERNEL_OF(type, name, params, args) type name params
+#endif
 
 /* Sum of all four lanes, (0 + 2) + (1 + 3): the order that two-lane registers add in. */
 PHYS_INLINE double phys_lanes(const phys_vec *a)

@@ -185,43 +185,37 @@ PHYS_INLINE void pass(const struct solve_block *block, enum solve_format format,
     dots[SOLVE_RZ] = turned ? phys_lanes(sum + SOLVE_RZ) : dots[SOLVE_RR];
 }
 
-/* A pass with the format known, in a function of its own. */
-#define PASS(name, format)                                                                         \
-    PHYS_CLONES                                                                                    \
-    static void name(const struct solve_block *block, const struct solve_cut *cut,                 \
-                     const void *values, const phys_vec *p_other, double alpha, double beta,       \
-                     const struct solve_rows *rows, const struct solve_turned *turned,             \
-                     double dots[SOLVE_DOTS])                                                      \
-    {                                                                                              \
-        if (turned) {                                                                              \
-            const struct solve_turned here = *turned;                                              \
-            pass(block, format, cut, values, p_other, alpha, beta, rows, &here, dots);             \
-        } else {                                                                                   \
-            pass(block, format, cut, values, p_other, alpha, beta, rows, NULL, dots);              \
-        }                                                                                          \
-    }
-PASS(pass_springs, SOLVE_SPRINGS)
-PASS(pass_half, SOLVE_HALF)
-PASS(pass_half_float, SOLVE_HALF_FLOAT)
-
-void solve_pass_turned(const struct solve_block *block, const struct solve_cut *cut,
-                       const void *values, const phys_vec *p_other, double alpha, double beta,
-                       const struct solve_rows *rows, const struct solve_turned *turned,
-                       double dots[SOLVE_DOTS])
+/* turned: NULL or not where this is inlined, too. */
+PHYS_INLINE void pass_of(const struct solve_block *block, const struct solve_cut *cut,
+                         const void *values, const phys_vec *p_other, double alpha, double beta,
+                         const struct solve_rows *rows, const struct solve_turned *turned,
+                         double dots[SOLVE_DOTS])
 {
     if (block->format == SOLVE_SPRINGS)
-        pass_springs(block, cut, values, p_other, alpha, beta, rows, turned, dots);
+        pass(block, SOLVE_SPRINGS, cut, values, p_other, alpha, beta, rows, turned, dots);
     else if (block->format == SOLVE_HALF)
-        pass_half(block, cut, values, p_other, alpha, beta, rows, turned, dots);
+        pass(block, SOLVE_HALF, cut, values, p_other, alpha, beta, rows, turned, dots);
     else
-        pass_half_float(block, cut, values, p_other, alpha, beta, rows, turned, dots);
+        pass(block, SOLVE_HALF_FLOAT, cut, values, p_other, alpha, beta, rows, turned, dots);
 }
 
-void solve_pass(const struct solve_block *block, const struct solve_cut *cut, const void *values,
-                const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
-                double dots[SOLVE_DOTS])
+PHYS_KERNEL(solve_pass_turned,
+            (const struct solve_block *block, const struct solve_cut *cut, const void *values,
+             const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
+             const struct solve_turned *turned, double dots[SOLVE_DOTS]),
+            (block, cut, values, p_other, alpha, beta, rows, turned, dots))
 {
-    solve_pass_turned(block, cut, values, p_other, alpha, beta, rows, NULL, dots);
+    const struct solve_turned here = *turned;
+    pass_of(block, cut, values, p_other, alpha, beta, rows, &here, dots);
+}
+
+PHYS_KERNEL(solve_pass,
+            (const struct solve_block *block, const struct solve_cut *cut, const void *values,
+             const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
+             double dots[SOLVE_DOTS]),
+            (block, cut, values, p_other, alpha, beta, rows, dots))
+{
+    pass_of(block, cut, values, p_other, alpha, beta, rows, NULL, dots);
 }
 
 /* In the sum over the free rows of A, column b is the diagonal of row b, its turn, and N' of its

@@ -126,9 +126,10 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
     return fail(code, after);
 }
 
-PHYS_CLONES
-struct solve_norms solve_norms(size_t n, const double *restrict diagonal,
-                               const phys_vec *restrict dv, const phys_vec *restrict r)
+PHYS_KERNEL_OF(struct solve_norms, solve_norms,
+               (size_t n, const double *restrict diagonal, const phys_vec *restrict dv,
+                const phys_vec *restrict r),
+               (n, diagonal, dv, r))
 {
     phys_vec size = {0}, bound = {0};
     for (size_t a = 0; a < n; a++) {
@@ -138,10 +139,11 @@ struct solve_norms solve_norms(size_t n, const double *restrict diagonal,
     return (struct solve_norms){phys_lanes(&size), phys_lanes(&bound)};
 }
 
-PHYS_CLONES
-void solve_start(size_t n, const double *restrict free, const phys_vec *restrict b,
-                 phys_vec *restrict dv, phys_vec *restrict r, phys_vec *restrict p,
-                 phys_vec *restrict q)
+PHYS_KERNEL(solve_start,
+            (size_t n, const double *restrict free, const phys_vec *restrict b,
+             phys_vec *restrict dv, phys_vec *restrict r, phys_vec *restrict p,
+             phys_vec *restrict q),
+            (n, free, b, dv, r, p, q))
 {
     for (size_t a = 0; a < n; a++)
         q[a] = -(free[a] * b[a]);
@@ -150,9 +152,10 @@ void solve_start(size_t n, const double *restrict free, const phys_vec *restrict
     memset(p, 0, n * sizeof *p);
 }
 
-PHYS_CLONES
-double solve_finish(size_t n, double alpha, const phys_vec *restrict q, const phys_vec *restrict p,
-                    phys_vec *restrict dv, phys_vec *restrict r)
+PHYS_KERNEL_OF(double, solve_finish,
+               (size_t n, double alpha, const phys_vec *restrict q, const phys_vec *restrict p,
+                phys_vec *restrict dv, phys_vec *restrict r),
+               (n, alpha, q, p, dv, r))
 {
     phys_vec dot = {0};
     for (size_t a = 0; a < n; a++) {
@@ -163,9 +166,10 @@ double solve_finish(size_t n, double alpha, const phys_vec *restrict q, const ph
     return phys_lanes(&dot);
 }
 
-PHYS_CLONES
-void solve_advance_copies(size_t n, double alpha, double beta, const double *restrict q,
-                          const uint32_t *restrict at, phys_vec *restrict r, phys_vec *restrict p)
+PHYS_KERNEL(solve_advance_copies,
+            (size_t n, double alpha, double beta, const double *restrict q,
+             const uint32_t *restrict at, phys_vec *restrict r, phys_vec *restrict p),
+            (n, alpha, beta, q, at, r, p))
 {
     for (size_t i = 0; i < n; i++) {
         const double *row = q + 3 * (size_t)at[i];

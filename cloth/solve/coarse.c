@@ -280,8 +280,8 @@ PHYS_INLINE void reduce_all(const struct solve_pattern *pattern, uint32_t k, str
     }
 }
 
-PHYS_CLONES
-uint32_t solve_coarse_factor(const struct solve_pattern *pattern, double *factor)
+PHYS_KERNEL_OF(uint32_t, solve_coarse_factor, (const struct solve_pattern *pattern, double *factor),
+               (pattern, factor))
 {
     const struct parts parts = parts_of(pattern, factor);
     uint32_t dropped = 0;
@@ -333,8 +333,9 @@ PHYS_INLINE void backward_column(const struct solve_pattern *pattern, const stru
         ((double *)(void *)y)[j] -= phys_lanes(sum + j);
 }
 
-PHYS_CLONES
-void solve_coarse_solve(const struct solve_pattern *pattern, const double *factor, double *x)
+PHYS_KERNEL(solve_coarse_solve,
+            (const struct solve_pattern *pattern, const double *factor, double *x),
+            (pattern, factor, x))
 {
     const struct parts parts = parts_of(pattern, (double *)(uintptr_t)factor);
     phys_vec *all = (phys_vec *)(void *)x;

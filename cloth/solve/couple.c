@@ -171,9 +171,10 @@ PHYS_INLINE void couple(const struct solve_block *block, enum solve_format forma
     }
 }
 
-PHYS_CLONES
-void solve_couple(const struct solve_block *block, const void *values, const phys_vec *basis,
-                  double own[SOLVE_COUPLING])
+PHYS_KERNEL(solve_couple,
+            (const struct solve_block *block, const void *values, const phys_vec *basis,
+             double own[SOLVE_COUPLING]),
+            (block, values, basis, own))
 {
     if (block->format == SOLVE_SPRINGS)
         couple(block, SOLVE_SPRINGS, values, basis, own);
@@ -183,10 +184,11 @@ void solve_couple(const struct solve_block *block, const void *values, const phy
         couple(block, SOLVE_HALF_FLOAT, values, basis, own);
 }
 
-PHYS_CLONES
-void solve_couple_cut(const struct solve_block *block, const void *values, size_t from, size_t n,
-                      const uint32_t (*end)[2], const phys_vec *basis, const phys_vec *other_basis,
-                      double own[SOLVE_COUPLING], double beside[SOLVE_COUPLING])
+PHYS_KERNEL(solve_couple_cut,
+            (const struct solve_block *block, const void *values, size_t from, size_t n,
+             const uint32_t (*end)[2], const phys_vec *basis, const phys_vec *other_basis,
+             double own[SOLVE_COUPLING], double beside[SOLVE_COUPLING]),
+            (block, values, from, n, end, basis, other_basis, own, beside))
 {
     const void *entry = solve_values_of(block->format, block->n, values).entry;
     struct solve_symmetric square[6] = {{{0}, {0}}}, sum[9] = {{{0}, {0}}};
@@ -214,8 +216,9 @@ void solve_couple_cut(const struct solve_block *block, const void *values, size_
 
 /* ---- Between the levels ---- */
 
-PHYS_CLONES
-void solve_restrict(size_t n, const phys_vec *basis, const phys_vec *y, double x[SOLVE_COARSE])
+PHYS_KERNEL(solve_restrict,
+            (size_t n, const phys_vec *basis, const phys_vec *y, double x[SOLVE_COARSE]),
+            (n, basis, y, x))
 {
     phys_vec sum[3] = {{0}};
     for (size_t a = 0; a < n; a++) {
@@ -240,8 +243,9 @@ PHYS_INLINE void motions(const double x[SOLVE_COARSE], phys_vec motion[3])
         motion[k] = (phys_vec){x[3 * k], x[3 * k + 1], x[3 * k + 2], 0};
 }
 
-PHYS_CLONES
-void solve_prolong(size_t n, const phys_vec *basis, const double x[SOLVE_COARSE], phys_vec *y)
+PHYS_KERNEL(solve_prolong,
+            (size_t n, const phys_vec *basis, const double x[SOLVE_COARSE], phys_vec *y),
+            (n, basis, x, y))
 {
     phys_vec motion[3];
     motions(x, motion);
@@ -249,10 +253,10 @@ void solve_prolong(size_t n, const phys_vec *basis, const double x[SOLVE_COARSE]
         lift(basis + a, motion, y + a);
 }
 
-PHYS_CLONES
-void solve_advance_copies_coarse(size_t n, double alpha, double beta, const double *s,
-                                 const uint32_t *at, const phys_vec *basis,
-                                 const double x[SOLVE_COARSE], phys_vec *z, phys_vec *p)
+PHYS_KERNEL(solve_advance_copies_coarse,
+            (size_t n, double alpha, double beta, const double *s, const uint32_t *at,
+             const phys_vec *basis, const double x[SOLVE_COARSE], phys_vec *z, phys_vec *p),
+            (n, alpha, beta, s, at, basis, x, z, p))
 {
     phys_vec motion[3];
     motions(x, motion);

@@ -54,8 +54,8 @@ typedef float solve_four_floats __attribute__((vector_size(16), aligned(4), may_
 PHYS_INLINE void solve_widen(const float *from, phys_vec *to)
 {
     const solve_four_floats *four = (const void *)from;
-    *to = (phys_vec){(double)(*four)[0], (double)(*four)[1], (double)(*four)[2],
-                     (double)(*four)[3]};
+    *to =
+        (phys_vec){(double)(*four)[0], (double)(*four)[1], (double)(*four)[2], (double)(*four)[3]};
 }
 
 /* N of one entry as it lies in memory, three lanes and rubbish each. */

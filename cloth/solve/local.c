@@ -183,9 +183,10 @@ PHYS_INLINE void over_relax(const struct solve_block *block, const struct solve_
     }
 }
 
-PHYS_CLONES
-int solve_local_factor(const struct solve_block *block, const struct solve_cut *cut,
-                       const void *values, enum solve_local kind, double *factor)
+PHYS_KERNEL_OF(int, solve_local_factor,
+               (const struct solve_block *block, const struct solve_cut *cut, const void *values,
+                enum solve_local kind, double *factor),
+               (block, cut, values, kind, factor))
 {
     static const double shift[SOLVE_SSOR] = {0, 0.01, 0.05, 0.2, 1};
     struct factor f = factor_of(block, factor);
@@ -234,9 +235,10 @@ PHYS_INLINE double backward(const struct solve_block *block, const struct factor
     return phys_lanes(&dot);
 }
 
-PHYS_CLONES
-double solve_local_apply(const struct solve_block *block, enum solve_local kind,
-                         const double *factor, const phys_vec *q, phys_vec *s)
+PHYS_KERNEL_OF(double, solve_local_apply,
+               (const struct solve_block *block, enum solve_local kind, const double *factor,
+                const phys_vec *q, phys_vec *s),
+               (block, kind, factor, q, s))
 {
     const struct solve_symmetric *inverse = (const struct solve_symmetric *)(const void *)factor;
     const struct factor f = {(struct solve_symmetric *)(uintptr_t)inverse,

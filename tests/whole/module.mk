@@ -16,5 +16,7 @@ dist_check_SCRIPTS += tests/whole/test_input.sh tests/whole/test_options.sh
 TESTS += tests/whole/test_input.sh tests/whole/test_options.sh
 dist_check_SCRIPTS += tests/whole/test_policies.sh
 TESTS += tests/whole/test_policies.sh
+dist_check_SCRIPTS += tests/whole/test_simd.sh
+TESTS += tests/whole/test_simd.sh
 dist_check_SCRIPTS += tests/whole/test_system.sh
 TESTS += tests/whole/test_system.sh

@@ -136,7 +136,7 @@ ok "--set solver.stop" eval 'run scene.yaml --set "solver.stop={count: 3}" --rep
 ok "an explicit run has no iterations" eval 'run scene.yaml --set integrator=explicit_euler --set time.h=1e-4 --end 0.001 \
     --report report.json && is cg_iterations_mean null && is momentum_lost null'
 
-awk '/^```yaml/ { inside = 1; next } /^```/ { inside = 0 } inside' "$top/docs/scene.md" > example.yaml
+awk '/^```yaml/ { inside = 1; next } /^```/ && inside { exit } inside' "$top/docs/scene.md" > example.yaml
 ok "the example of docs/scene.md runs" run example.yaml --end 0.003
 
 # ---- Ends

@@ -35,12 +35,12 @@ column() { # FILE NAME: the numbers of a column
 
 whole() { # FILE ROWS: a header and so many rows of as many fields, steps from 0 on
     awk -F, -v rows="$2" 'NR == 1 { n = NF } NF != n || (NR > 1 && $1 != NR - 2) { bad = 1 }
-        END { exit bad || NR != rows + 1 || n != 6 + 9 + 9 + 36 }' "$1"
+        END { exit bad || NR != rows + 1 || n != 9 + 9 + 9 + 36 }' "$1"
 }
 table() { run sheet.yaml --output one --threads 1 && whole one/probes.csv 21; }
 ok "a row for the start and for each step" table
 named() {
-    head -n 1 one/probes.csv | grep -F 'kinetic [J],corners.11.rx [N],corners.11.ry [N]' &&
+    head -n 1 one/probes.csv | grep -F 'loads [J],corners.11.rx [N],corners.11.ry [N]' &&
         head -n 1 one/probes.csv | grep -F ',corners.total.rz [N],tip.2.x [m],' && head -n 1 one/probes.csv | grep -F ',probe3.132.x [m],'
 }
 ok "columns are named with their units" named
@@ -50,6 +50,14 @@ same() { # the same bytes
         ranks 3 "$DUITE_CLOTH" sheet.yaml --quiet --output three --threads 2 --balance delegate && cmp one/probes.csv three/probes.csv
 }
 ok "the same bytes on threads and ranks" same
+energies() { # of the last row, as the report has them
+    run sheet.yaml --output one --threads 1 --report report.json || return 1
+    for name in kinetic elastic gravity loads; do
+        column one/probes.csv "$name [J]" | tail -n 1 > last
+        sed -n "s/.*\"energy_$name\": \([^,]*\),*/\1/p" report.json | cmp - last || { cat last && return 1; }
+    done
+}
+ok "energies are those of the report" energies
 explicit() {
     run sheet.yaml --output one --threads 1 --set integrator=explicit_euler --set time.h=0.001 --end 0.01 && whole one/probes.csv 11 &&
         ranks 2 "$DUITE_CLOTH" sheet.yaml --quiet --output three --set integrator=explicit_euler --set time.h=0.001 --end 0.01 &&

@@ -27,8 +27,8 @@ pendulum() { # ARGUMENT...: integrator and the error that is allowed, against th
     rm -rf swing
     run pendulum.yaml --output swing "$@" || return 1
     awk -F, -v allowed="$allowed" 'NR > 1 { t = $2; u = 0.01; w = sqrt(9.81 / (1 + 0.981 / 2000)); n++
-            error = $16 - (u * t - u / w * sin(w * t)); if (error < 0) error = -error; if (error > most) most = error
-            pin = $7 - u * t; if (pin < 0) pin = -pin; if (pin > off) off = pin }
+            error = $19 - (u * t - u / w * sin(w * t)); if (error < 0) error = -error; if (error > most) most = error
+            pin = $10 - u * t; if (pin < 0) pin = -pin; if (pin > off) off = pin }
         END { print n " rows, error " most / (u / w) " of the amplitude, pin off by " off
             exit !(n == 2001 && most < allowed * u / w && off < 1e-15) }' swing/probes.csv
 }
@@ -44,9 +44,9 @@ turning() {
     run pendulum.yaml --output turn --set 'cloths[0].pins[0].motion={times: [0, 1, 2, 3], about: [1, 0, 0], rotate: [[1, 0, 0, 0],
         [0.9238795325112867, 0, 0.3826834323650898, 0], [-2, 0, -2, 0], [1, 0, 0, 0]]}' || return 1
     awk -F, '$2 == 1 || $2 == 2 || $2 == 4 { n++; r = sqrt(0.5)
-            x = $2 == 1 ? 1 - r : $2 == 2 ? 1 : 0; z = $2 == 1 ? r : $2 == 2 ? 1 : 0; print $2, $7, $8, $9
-            if (($7 - x) ^ 2 + $8 ^ 2 + ($9 - z) ^ 2 > 1e-28) bad = 1 }
-        NR > 1 && (($7 - 1) ^ 2 + $9 ^ 2 - 1) ^ 2 > 1e-28 { bad = 1 }
+            x = $2 == 1 ? 1 - r : $2 == 2 ? 1 : 0; z = $2 == 1 ? r : $2 == 2 ? 1 : 0; print $2, $10, $11, $12
+            if (($10 - x) ^ 2 + $11 ^ 2 + ($12 - z) ^ 2 > 1e-28) bad = 1 }
+        NR > 1 && (($10 - 1) ^ 2 + $12 ^ 2 - 1) ^ 2 > 1e-28 { bad = 1 }
         END { exit bad || n != 3 }' turn/probes.csv
 }
 ok "a pin that turns" turning
@@ -63,15 +63,15 @@ awk 'BEGIN { printf "schema: 1\ncloths:\n  - mesh: {inline: {vertices: ["
     print "probes: [{name: ends, vertices: [0, 16], values: [reaction, total]}, {name: all, box: [[-1, -1, -1], [1, 1, 1]], values: [position]}]" }' > chain.yaml
 chain() {
     run chain.yaml --output chain --report chain.json && grep -q '"rest_seconds": [0-9]' chain.json || return 1
-    tail -n 1 chain/probes.csv | awk -F, '{ H = -$7; V = $8; W = 0.01 * 9.81; weight = 17 * W; x = y = 0
-        print "reactions", $7, $8, $10, $11, "total", $14 - weight, "along", $13
-        bad = ($14 - weight) ^ 2 > 1e-16 || $13 ^ 2 > 1e-16
+    tail -n 1 chain/probes.csv | awk -F, '{ H = -$10; V = $11; W = 0.01 * 9.81; weight = 17 * W; x = y = 0
+        print "reactions", $10, $11, $13, $14, "total", $17 - weight, "along", $16
+        bad = ($17 - weight) ^ 2 > 1e-16 || $16 ^ 2 > 1e-16
         V -= W # the pin carries its own vertex, too
         for (i = 1; i <= 16; i++) {
             T = sqrt(H * H + V * V)
             l = 1 / 16 + T / 500
             x += l * H / T; y -= l * V / T; V -= W
-            off = ($(16 + 3 * i) - x) ^ 2 + ($(17 + 3 * i) - y) ^ 2
+            off = ($(19 + 3 * i) - x) ^ 2 + ($(20 + 3 * i) - y) ^ 2
             if (off > most) most = off
         }
         print "shape off by", sqrt(most), "end", x, y

@@ -93,8 +93,8 @@ enum {
     FLOW_COLUMN_ITERATIONS,
     FLOW_COLUMN_LONGEST,
     FLOW_COLUMN_SHORTEST,
-    FLOW_COLUMN_KINETIC,
-    FLOW_RUN_COLUMNS
+    FLOW_COLUMN_ENERGY, /* kinetic, elastic, of weights, of loads */
+    FLOW_RUN_COLUMNS = FLOW_COLUMN_ENERGY + 4
 };
 struct flow_watched {
     uint32_t n, *place; /* ascending, each once */

@@ -178,7 +178,9 @@ int flow_watched_header(const struct flow_watched *watched, const struct model *
     FILE *file = open_memstream(text, &size);
     if (!file)
         return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for the header of the probes");
-    fputs("step,time [s],iterations,longest [1],shortest [1],kinetic [J]", file);
+    fputs("step,time [s],iterations,longest [1],shortest [1],kinetic [J],elastic [J],gravity "
+          "[J],loads [J]",
+          file);
     for (uint32_t p = 0; p < model->n_probes; p++)
         print_probe(file, watched, model, p);
     const bool failed = ferror(file);

@@ -6,6 +6,7 @@
 #include "cloth/physics/particle.h"
 
 #include <math.h>
+#include <string.h>
 
 #define ARGS sizeof(struct flow_args)
 
@@ -13,15 +14,14 @@ static int watch(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     const phys_vec *x = duite_in(call, 1, phys_vec);
-    double *status = duite_out(call, 3, double), *peaks = duite_out(call, 4, double);
-    double range[2] = {INFINITY, -INFINITY}, most = 0;
-    status[FLOW_KINETIC] = phys_kinetic(t->n, t->mass, duite_in(call, 2, phys_vec), &most);
+    double *peaks = duite_out(call, 3, double), range[2] = {INFINITY, -INFINITY}, most = 0;
+    phys_kinetic(t->n, t->mass, duite_in(call, 2, phys_vec), &most);
     struct phys_springs springs = flow_table_inner(t);
     phys_springs_range(&springs, t->stretch, x, x, range);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
         phys_springs_range(&springs, t->stretch + t->n_inner + t->cut[s], x,
-                           duite_in(call, 5 + s, phys_vec), range);
+                           duite_in(call, 4 + s, phys_vec), range);
     }
     peaks[FLOW_PEAK_SPEED] = most;
     peaks[FLOW_PEAK_LONGEST] = range[1];
@@ -31,8 +31,8 @@ static int watch(const duite_call *call)
 FLOW_TIMED(watch, FLOW_OUTPUT)
 const duite_kernel flow_watch_block = {.name = "watch",
                                        .body = watch_timed,
-                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_CW, DUITE_CW},
-                                       .law = {[4] = &duite_max},
+                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_CW},
+                                       .law = {[3] = &duite_max},
                                        .rest = DUITE_R,
                                        .args_size = ARGS};
 
@@ -102,7 +102,7 @@ static void fill_probes(const struct flow *flow, const double *seen, double *to)
     }
 }
 
-enum { STATUS = 1, PEAKS, BLOCKS }; /* parameters of a row */
+enum { STATUS = 1, PEAKS, ENERGY, BLOCKS }; /* parameters of a row */
 
 static int row(const duite_call *call)
 {
@@ -116,7 +116,7 @@ static int row(const duite_call *call)
     to[FLOW_COLUMN_ITERATIONS] = status[FLOW_ITERATIONS];
     to[FLOW_COLUMN_LONGEST] = peaks[FLOW_PEAK_LONGEST];
     to[FLOW_COLUMN_SHORTEST] = -peaks[FLOW_PEAK_SHORTEST];
-    to[FLOW_COLUMN_KINETIC] = status[FLOW_KINETIC];
+    memcpy(to + FLOW_COLUMN_ENERGY, duite_in(call, ENERGY, double), FLOW_ENERGIES * sizeof *to);
     fill_probes(flow, flow->seen, to + FLOW_RUN_COLUMNS);
     if (flow->output->row(flow->output->context, args->frame, args->time, flow->watched.n_columns,
                           flow->row, &flow->trouble))
@@ -126,7 +126,7 @@ static int row(const duite_call *call)
 FLOW_TIMED_PLAIN(row, FLOW_OUTPUT)
 const duite_kernel flow_row = {.name = "row",
                                .body = row_timed,
-                               .access = {DUITE_RW, DUITE_R, DUITE_R},
+                               .access = {DUITE_RW, DUITE_R, DUITE_R, DUITE_R},
                                .rest = DUITE_R,
                                .args_size = ARGS,
                                .side_effects = 1};

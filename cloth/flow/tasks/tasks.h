@@ -120,7 +120,6 @@ enum {
     FLOW_SIZE,     /* dv.D dv and */
     FLOW_RESIDUAL, /* r.D^-1 r, D the masses */
     FLOW_SHIFTED,  /* factors of blocks that were made with a shift or are of SSOR */
-    FLOW_KINETIC,  /* energy, J, of a state that is watched */
     FLOW_WRONG,    /* solves that failed, rows that diverged */
     FLOW_STATUS
 };
@@ -207,11 +206,10 @@ extern const duite_kernel flow_status;  /* cw status: on rank 0, whether a stop 
 extern const duite_kernel flow_frame;   /* rw token; x of all blocks: on rank 0 */
 extern const duite_kernel flow_drive;   /* table, r x, rw v, w rim of v */
 extern const duite_kernel flow_place;   /* table, rw x, w rim of x */
-extern const duite_kernel
-    flow_watch_block;                 /* table, r x, r v, cw status, cw peaks (max); rims of x */
-extern const duite_kernel flow_probe; /* table, r x, r v, r force, w seen */
-extern const duite_kernel
-    flow_row; /* rw token, r status, r peaks; seen of the blocks that have any: on rank 0 */
+extern const duite_kernel flow_watch_block; /* table, r x, r v, cw peaks (max); rims of x */
+extern const duite_kernel flow_probe;       /* table, r x, r v, r force, w seen */
+extern const duite_kernel flow_row; /* rw token, r status, r peaks, r energies; seen of the blocks
+                                       that have any: on rank 0 */
 extern const duite_kernel flow_stretch;     /* table, r x, cw largest stretch; rims of x */
 extern const duite_kernel flow_seconds;     /* cw seconds: of this rank */
 extern const duite_kernel flow_energy;      /* table, r x, r v, cw energies; rims of x */

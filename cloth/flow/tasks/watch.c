@@ -46,9 +46,11 @@ int flow_watch(struct flow_state *state)
     int code = duite_set(state->rt, state->peaks[at], none);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
-        const duite_object objects[] = {o->x, o->v, state->status[at], state->peaks[at]};
-        code = flow_fork(state, &flow_watch_block, &args, 4, objects, FLOW_RIM(rim_x), FLOW_NO_RIM);
+        const duite_object objects[] = {o->x, o->v, state->peaks[at]};
+        code = flow_fork(state, &flow_watch_block, &args, 3, objects, FLOW_RIM(rim_x), FLOW_NO_RIM);
     }
+    if (!code && tells(state))
+        code = flow_energies(state, flow_attempt_args(state), state->energy);
     return code;
 }
 
@@ -81,6 +83,7 @@ static int fork_row(struct flow_state *state)
     state->refs[n++] = state->token;
     state->refs[n++] = state->status[at];
     state->refs[n++] = state->peaks[at];
+    state->refs[n++] = state->energy;
     for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
         if (state->flow->tables.block[b].n_watched)
             state->refs[n++] = state->block[b].seen;

@@ -16,8 +16,8 @@ static void free_cloth(struct model_cloth *cloth)
     for (uint32_t i = 0; i < cloth->n_pins; i++)
         free_pick(&cloth->pins[i].pick);
     for (uint32_t i = 0; i < cloth->n_loads; i++) {
-        free(cloth->loads[i].vertices);
-        free(cloth->loads[i].place);
+        free_pick(&cloth->loads[i].pick);
+        free(cloth->loads[i].edges);
     }
     free(cloth->pins);
     free(cloth->loads);

@@ -48,12 +48,13 @@ struct model_motion {
     double about[3];
 };
 
-/* A constant force on vertices, newton each. */
+/* A constant force: on each of the picked vertices, newton; or, if there are edges, along these,
+ * newton a metre of the length at rest, half of an edge's on each end. */
 struct model_load {
-    uint32_t n_vertices;
-    uint32_t *vertices; /* one that stands twice gets it twice */
+    struct model_pick pick; /* a vertex that stands twice gets it twice; edges: its place alone */
+    uint32_t n_edges;
+    uint32_t (*edges)[2]; /* of the cloth's mesh */
     double force[3];
-    char *place;
 };
 
 /* Time lost on purpose: the tasks of a block whose vertices lie in the box take `factor` times as

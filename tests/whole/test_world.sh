@@ -78,3 +78,12 @@ chain() {
         exit bad || sqrt(most) > 1e-8 || (x - 0.6) ^ 2 > 1e-14 || (y - 0.1) ^ 2 > 1e-14 }'
 }
 ok "a chain hangs as its reactions say, which carry its weight" chain
+
+# ---- Loads along edges and on what a box holds: what all pins carry together is their sum, and the chain's weight.
+loads() {
+    run chain.yaml --output loads --set 'cloths[0].loads=[{edges: [[3, 4], [4, 5]], force: [1, -2, 4]}, {box: [[0.49, -1, -1], [0.51, 1, 1]],
+        force: [0, 0, 0.25]}, {nearest: [0.9, 0, 0], force: [0.5, 0, 0]}]' || return 1
+    tail -n 1 loads/probes.csv | awk -F, '{ print $16, $17, $18
+        exit ($16 + 0.125 + 0.5) ^ 2 > 1e-14 || ($17 - 0.25 - 17 * 0.01 * 9.81) ^ 2 > 1e-14 || ($18 + 0.5 + 0.25) ^ 2 > 1e-14 }'
+}
+ok "loads along edges, in boxes and at points" loads

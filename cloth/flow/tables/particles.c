@@ -5,6 +5,7 @@
 #include "cloth/base/memory.h"
 #include "cloth/physics/particle.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,22 +69,63 @@ static int pins(struct flow_particles *p, uint32_t first, const struct model_clo
     return code;
 }
 
+/* A load and what it adds to a vertex. */
+struct loader {
+    struct flow_particles *particles;
+    uint32_t first; /* vertex of the cloth */
+    const struct model_cloth *cloth;
+    const char *place;
+    phys_vec force; /* N */
+};
+
+static void add_load(void *to, uint32_t vertex)
+{
+    const struct loader *loader = to;
+    struct flow_particles *p = loader->particles;
+    if (!p->used[loader->first + vertex])
+        note(&p->loaded, loader->cloth, vertex, loader->place);
+    p->load[loader->first + vertex] += loader->force;
+}
+
+static int load_edges(struct loader *loader, const struct model_load *load,
+                      struct cloth_error *error)
+{
+    const struct mesh *mesh = &loader->cloth->mesh;
+    phys_vec a, b, force;
+    to_vector(load->force, &force);
+    for (uint32_t i = 0; i < load->n_edges; i++) {
+        const uint32_t *end = load->edges[i];
+        for (int k = 0; k < 2; k++)
+            if (end[k] >= mesh->n_vertices)
+                return flow_no_vertex(loader->cloth, "a load", end[k], loader->place, error);
+        to_vector(mesh->position + 3 * (size_t)end[0], &a);
+        to_vector(mesh->position + 3 * (size_t)end[1], &b);
+        b -= a;
+        loader->force = 0.5 * sqrt(phys_dot(&b, &b)) * force;
+        add_load(loader, end[0]);
+        add_load(loader, end[1]);
+    }
+    return CLOTH_OK;
+}
+
 static int loads(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
                  struct cloth_error *error)
 {
-    for (uint32_t i = 0; i < cloth->n_loads; i++) {
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < cloth->n_loads && !code; i++) {
         const struct model_load *load = cloth->loads + i;
-        phys_vec force;
-        to_vector(load->force, &force);
-        for (uint32_t j = 0; j < load->n_vertices; j++) {
-            if (load->vertices[j] >= cloth->mesh.n_vertices)
-                return flow_no_vertex(cloth, "a load", load->vertices[j], load->place, error);
-            if (!p->used[first + load->vertices[j]])
-                note(&p->loaded, cloth, load->vertices[j], load->place);
-            p->load[first + load->vertices[j]] += force;
-        }
+        struct loader loader = {
+            .particles = p, .first = first, .cloth = cloth, .place = load->pick.place};
+        const struct flow_picking picking = {.pick = &load->pick,
+                                             .cloth = cloth,
+                                             .used = p->used + first,
+                                             .what = "a load",
+                                             .visit = add_load,
+                                             .to = &loader};
+        to_vector(load->force, &loader.force);
+        code = load->n_edges ? load_edges(&loader, load, error) : flow_pick(&picking, error);
     }
-    return CLOTH_OK;
+    return code;
 }
 
 static int masses(struct flow_particles *p, uint32_t first, const struct model *model,

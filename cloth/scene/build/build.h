@@ -23,6 +23,14 @@ int scene_build_probes(struct model *model, const struct scene_tree *tree,
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error);
 
+/* That the mesh of the cloth has no vertex of this number. */
+int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
+                          const struct scene_tree *tree, int node, struct cloth_error *error);
+
+/* The loads of a cloth that has its mesh and name. */
+int scene_build_loads(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                      struct cloth_error *error);
+
 /* The motion of a pin, added to the model's. */
 int scene_build_motion(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
                        int node, struct cloth_error *error);

@@ -1,4 +1,4 @@
-/* Cloths with their pins and loads. Indices are checked here against the mesh, each with its own
+/* Cloths with their pins. Indices are checked here against the mesh, each with its own
  * place in the file. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/rules.h"
@@ -8,6 +8,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
+                          const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    return scene_tree_fail(tree, node, error,
+                           "vertex %u is outside the mesh of cloth '%.60s', which has %u vertices; "
+                           "0 to %u are allowed",
+                           vertex, cloth->name, cloth->mesh.n_vertices, cloth->mesh.n_vertices - 1);
+}
 
 static int build_vertices(uint32_t **vertices, uint32_t *n_vertices, const struct scene_tree *tree,
                           int list, const struct model_cloth *cloth, struct cloth_error *error)
@@ -22,11 +31,7 @@ static int build_vertices(uint32_t **vertices, uint32_t *n_vertices, const struc
         uint32_t *vertex = &(*vertices)[i];
         scene_scalar_integer(scene_tree_scalar(tree, item), vertex);
         if (*vertex >= cloth->mesh.n_vertices)
-            return scene_tree_fail(tree, item, error,
-                                   "vertex %u is outside the mesh of cloth '%.60s', which has %u "
-                                   "vertices; 0 to %u are allowed",
-                                   *vertex, cloth->name, cloth->mesh.n_vertices,
-                                   cloth->mesh.n_vertices - 1);
+            return scene_build_no_vertex(*vertex, cloth, tree, item, error);
     }
     return CLOTH_OK;
 }
@@ -96,48 +101,6 @@ static int build_pins(struct model *model, struct model_cloth *cloth, const stru
         if (!code && motion)
             code = scene_build_motion(model, &cloth->pins[i], tree, motion, error);
     }
-    return code;
-}
-
-/* seen: an entry for each vertex, the number of the last load that named it; number: of this load,
- * from 1. */
-static int build_load(struct model_load *load, const struct scene_tree *tree, int node,
-                      const struct model_cloth *cloth, uint32_t *seen, uint32_t number,
-                      struct cloth_error *error)
-{
-    int list = scene_tree_get(tree, node, "vertices");
-    load->place = scene_build_place(tree, node, error);
-    if (!load->place)
-        return error->code;
-    scene_tree_vector(tree, scene_tree_get(tree, node, "force"), 3, load->force);
-    int code = build_vertices(&load->vertices, &load->n_vertices, tree, list, cloth, error);
-    for (uint32_t i = 0; !code && i < load->n_vertices; i++) {
-        uint32_t vertex = load->vertices[i];
-        if (seen[vertex] == number)
-            code = scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
-                                   "vertex %u stands twice in one load; to load it twice, write "
-                                   "another load or a larger force",
-                                   vertex);
-        seen[vertex] = number;
-    }
-    return code;
-}
-
-static int build_loads(struct model_cloth *cloth, const struct scene_tree *tree, int node,
-                       struct cloth_error *error)
-{
-    int list = scene_tree_get(tree, node, "loads"), code = CLOTH_OK;
-    uint32_t n = (uint32_t)scene_tree_length(tree, list);
-    uint32_t *seen = scene_build_array(n ? cloth->mesh.n_vertices : 0, sizeof *seen, error);
-    cloth->loads = scene_build_array(n, sizeof *cloth->loads, error);
-    if (seen && cloth->loads)
-        cloth->n_loads = n;
-    else
-        code = error->code;
-    for (uint32_t i = 0; !code && i < n; i++)
-        code = build_load(&cloth->loads[i], tree, scene_tree_item(tree, list, i), cloth, seen,
-                          i + 1, error);
-    free(seen);
     return code;
 }
 
@@ -233,7 +196,7 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
         code = build_pins(model, cloth, tree, node, error);
     if (!code)
         code = build_cost(cloth, tree, node, error);
-    return code ? code : build_loads(cloth, tree, node, error);
+    return code ? code : scene_build_loads(cloth, tree, node, error);
 }
 
 int scene_build_cloths(struct model *model, const struct scene_tree *tree,

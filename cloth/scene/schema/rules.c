@@ -84,8 +84,14 @@ static const struct scene_rule probe = {.type = SCENE_MAP, .inside = probe_keys}
 
 
 static const struct scene_rule load_keys[] = {
-    {"vertices", SCENE_LIST, .required = true, .filled = true, .inside = &vertex,
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
      .about = "in the mesh's numbering"},
+    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number,
+     .about = "the vertex nearest to a point"},
+    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
+     .about = "all vertices in the box between two corners"},
+    {"edges", SCENE_LIST, .choice = true, .filled = true, .inside = &edge,
+     .about = "pairs of vertices: the force is along them, in N/m of their length at rest"},
     {"force", SCENE_LIST, "N", .required = true, .length = 3, .inside = &number,
      .about = "constant, on each of the vertices"},
     {0}};

@@ -76,7 +76,8 @@ void setup_pin(struct setup *s, uint32_t n, const uint32_t *vertices)
 void setup_load(struct setup *s, uint32_t vertex, double x, double y, double z)
 {
     s->loaded[0] = vertex;
-    s->load = (struct model_load){.n_vertices = 1, .vertices = s->loaded, .force = {x, y, z}};
+    s->load =
+        (struct model_load){.pick = {.n_vertices = 1, .vertices = s->loaded}, .force = {x, y, z}};
     s->cloth.n_loads = 1;
 }
 

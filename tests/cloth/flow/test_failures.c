@@ -141,7 +141,7 @@ START_TEST(pins_and_loads_outside)
     record_free(&record);
     setup.cloth.n_pins = 0;
     setup_load(&setup, 9, 0, 1, 0);
-    setup.load.place = (char[]){"a.yaml:14:5"};
+    setup.load.pick.place = (char[]){"a.yaml:14:5"};
     record_run(&record, &setup.model);
     says(&record, CLOTH_E_INPUT, "a.yaml:14:5: a load of cloth 'test' names vertex 9");
     record_free(&record);
@@ -307,7 +307,7 @@ START_TEST(pins_and_loads_that_move_nothing)
     setup_pin(&setup, 4, (const uint32_t[]){0, 4, 4, 3});
     setup.pin.pick.place = (char[]){"a.yaml:5:9"};
     setup_load(&setup, 3, 0, 1, 0);
-    setup.load.place = (char[]){"a.yaml:6:9"};
+    setup.load.pick.place = (char[]){"a.yaml:6:9"};
     ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);
     warns(flow, 0, "vertices that no face or edge uses: 2, the first is vertex 3 ");
     warns(flow, 1,

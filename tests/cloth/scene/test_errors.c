@@ -201,7 +201,8 @@ START_TEST(unknown_and_missing_keys)
                      "Allowed: density, stretch, "
                      "shear, bend, damping, diagonals"},
            {"vertices: [11]", "vertex: [11]",
-            .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, force"},
+            .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, "
+                     "nearest, box, edges, force"},
            {"plane:", "plan:",
             .error =
                 ":11:14: plan is not a key of obstacles[0]; did you mean 'plane'? Allowed: plane"},
@@ -250,6 +251,20 @@ START_TEST(names_and_indices)
 END_TEST
 
 #define MOTION(text) "{vertices: [0, 3]}", "{vertices: [0, 3], motion: {" text "}}"
+
+START_TEST(loads_that_cannot_be_made)
+{
+    EXPECT({"vertices: [11]", "edges: [[0, 99]]",
+            .error = ":8:26: vertex 99 is outside the mesh of cloth 'sheet', which has 12 "
+                     "vertices; 0 to 11 are allowed"},
+           {"vertices: [11]", "edges: [[3, 3]]",
+            .error = ":8:26: an edge of a load joins vertex 3 to itself; two vertices are "
+                     "expected"},
+           {"vertices: [11], ", "",
+            .error = ":8:13: cloths[0].loads[0] has no vertices or nearest or box or edges; one of "
+                     "them is expected"});
+}
+END_TEST
 
 START_TEST(motions_that_cannot_be_made)
 {
@@ -451,6 +466,7 @@ int main(void)
     tcase_add_test(cases, wrong_kinds);
     tcase_add_test(cases, unknown_and_missing_keys);
     tcase_add_test(cases, names_and_indices);
+    tcase_add_test(cases, loads_that_cannot_be_made);
     tcase_add_test(cases, motions_that_cannot_be_made);
     tcase_add_test(cases, probes_that_tell_nothing);
     tcase_add_test(cases, meshes_that_cannot_be_used);

@@ -84,9 +84,9 @@ START_TEST(cloth_and_material)
     ck_assert_uint_eq(cloth->pins[0].pick.vertices[1], 3);
     same_place(cloth->pins[0].pick.place, ":7:12");
     ck_assert_uint_eq(cloth->n_loads, 1);
-    ck_assert_uint_eq(cloth->loads[0].vertices[0], 11);
+    ck_assert_uint_eq(cloth->loads[0].pick.vertices[0], 11);
     same_vector(cloth->loads[0].force, 0, 1, 0);
-    same_place(cloth->loads[0].place, ":8:13");
+    same_place(cloth->loads[0].pick.place, ":8:13");
     same_place(cloth->place, ":4:5");
     same_place(cloth->mesh_place, ":5:18");
     same_place(cloth->velocity_place, ""); /* a default */

@@ -1,0 +1,78 @@
+/* Loads: forces on vertices, or along edges. */
+#include "cloth/scene/build/build.h"
+#include "cloth/scene/yaml/scalar.h"
+
+#include <stdlib.h>
+
+static int check_twice(const struct model_load *load, const struct scene_tree *tree, int list,
+                       uint32_t *seen, uint32_t number, struct cloth_error *error)
+{
+    for (uint32_t i = 0; i < load->pick.n_vertices; i++) {
+        const uint32_t vertex = load->pick.vertices[i];
+        if (seen[vertex] == number)
+            return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
+                                   "vertex %u stands twice in one load; to load it twice, write "
+                                   "another load or a larger force",
+                                   vertex);
+        seen[vertex] = number;
+    }
+    return CLOTH_OK;
+}
+
+static int build_edges(struct model_load *load, const struct scene_tree *tree, int list,
+                       const struct model_cloth *cloth, struct cloth_error *error)
+{
+    const size_t n = scene_tree_length(tree, list);
+    load->edges = scene_build_array(n, sizeof *load->edges, error);
+    if (!load->edges)
+        return error->code;
+    load->n_edges = (uint32_t)n;
+    for (size_t i = 0; i < 2 * n; i++) {
+        const int item = scene_tree_item(tree, scene_tree_item(tree, list, i / 2), i % 2);
+        uint32_t *end = &load->edges[i / 2][i % 2];
+        scene_scalar_integer(scene_tree_scalar(tree, item), end);
+        if (*end >= cloth->mesh.n_vertices)
+            return scene_build_no_vertex(*end, cloth, tree, item, error);
+        if (i % 2 && end[0] == end[-1])
+            return scene_tree_fail(tree, item, error,
+                                   "an edge of a load joins vertex %u to itself; two vertices are "
+                                   "expected",
+                                   *end);
+    }
+    return CLOTH_OK;
+}
+
+/* seen: an entry for each vertex, the number of the last load that named it; number: of this load,
+ * from 1. */
+static int build_load(struct model_load *load, const struct scene_tree *tree, int node,
+                      const struct model_cloth *cloth, uint32_t *seen, uint32_t number,
+                      struct cloth_error *error)
+{
+    const int edges = scene_tree_get(tree, node, "edges");
+    scene_tree_vector(tree, scene_tree_get(tree, node, "force"), 3, load->force);
+    if (edges) {
+        load->pick.place = scene_build_place(tree, node, error);
+        return load->pick.place ? build_edges(load, tree, edges, cloth, error) : error->code;
+    }
+    const int code = scene_build_pick(&load->pick, tree, node, cloth, error);
+    const int vertices = scene_tree_get(tree, node, "vertices");
+    return code ? code : check_twice(load, tree, vertices, seen, number, error);
+}
+
+int scene_build_loads(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                      struct cloth_error *error)
+{
+    int list = scene_tree_get(tree, node, "loads"), code = CLOTH_OK;
+    uint32_t n = (uint32_t)scene_tree_length(tree, list);
+    uint32_t *seen = scene_build_array(n ? cloth->mesh.n_vertices : 0, sizeof *seen, error);
+    cloth->loads = scene_build_array(n, sizeof *cloth->loads, error);
+    if (seen && cloth->loads)
+        cloth->n_loads = n;
+    else
+        code = error->code;
+    for (uint32_t i = 0; !code && i < n; i++)
+        code = build_load(&cloth->loads[i], tree, scene_tree_item(tree, list, i), cloth, seen,
+                          i + 1, error);
+    free(seen);
+    return code;
+}

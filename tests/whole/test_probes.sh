@@ -58,6 +58,14 @@ energies() { # of the last row, as the report has them
     done
 }
 ok "energies are those of the report" energies
+unseen() { # INTEGRATOR: whether there are probes or not makes no difference
+    run sheet.yaml --report report.json --set integrator=$1 --set time.h=0.001 --end 0.01 2> /dev/null &&
+        run sheet.yaml --report told.json --output told --set integrator=$1 --set time.h=0.001 --end 0.01 &&
+        grep '"state_hash"' report.json > hash && grep '"state_hash"' told.json | cmp - hash
+}
+for integrator in implicit_euler symplectic_euler verlet rk4; do
+    ok "probes change nothing, $integrator" unseen $integrator
+done
 explicit() {
     run sheet.yaml --output one --threads 1 --set integrator=explicit_euler --set time.h=0.001 --end 0.01 && whole one/probes.csv 11 &&
         ranks 2 "$DUITE_CLOTH" sheet.yaml --quiet --output three --set integrator=explicit_euler --set time.h=0.001 --end 0.01 &&

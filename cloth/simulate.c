@@ -82,6 +82,10 @@ static int open_system(const struct run *run, struct cloth_error *error)
     if (!model_is_implicit(model))
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: an explicit integrator solves no system");
+    if (model->integrator != MODEL_IMPLICIT_EULER || model->newton_steps > 1)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "--save-system: a step has one system of its own by implicit_euler with "
+                          "newton.steps 1 only");
     if (model->end / model->h + 0.5 < 1)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: the scene ends before its first step");

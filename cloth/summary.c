@@ -162,6 +162,8 @@ static void add_solver(struct output_report *json, const struct summary *summary
     output_report_number(json, "mass_norm_error", report->mass_norm_error);
     output_report_number(json, "momentum_lost", report->momentum_lost);
     output_report_integer(json, "factors_shifted", report->factors_shifted);
+    output_report_integer(json, "newton_steps", report->newton_steps);
+    output_report_integer(json, "newton_unconverged", report->newton_unconverged);
 }
 
 static void add_energies(struct output_report *json, const struct flow_report *report)
@@ -171,6 +173,9 @@ static void add_energies(struct output_report *json, const struct flow_report *r
                          start->kinetic + start->elastic + start->gravity + start->loads);
     output_report_number(json, "energy_end",
                          end->kinetic + end->elastic + end->gravity + end->loads);
+    output_report_number(json, "energy_lowest", report->energy_lowest);
+    output_report_number(json, "energy_highest", report->energy_highest);
+    output_report_number(json, "energy_gained", report->energy_gained);
     output_report_number(json, "energy_kinetic", end->kinetic);
     output_report_number(json, "energy_elastic", end->elastic);
     output_report_number(json, "energy_gravity", end->gravity);

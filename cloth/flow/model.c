@@ -58,6 +58,7 @@ const char *model_integrator_name(enum model_integrator integrator)
         [MODEL_VERLET] = "verlet",
         [MODEL_RK4] = "rk4",
         [MODEL_IMPLICIT_EULER] = "implicit_euler",
+        [MODEL_BDF2] = "bdf2",
     };
     return names[integrator];
 }

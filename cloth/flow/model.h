@@ -103,9 +103,10 @@ enum model_integrator {
     MODEL_SYMPLECTIC_EULER, /* x by the velocity after it */
     MODEL_VERLET,           /* velocity Verlet, drag solved for in the first half step */
     MODEL_RK4,              /* the classical Runge-Kutta method */
-    MODEL_IMPLICIT_EULER
+    MODEL_IMPLICIT_EULER,
+    MODEL_BDF2 /* begins with implicit Euler, also after contact or a change of h */
 };
-enum { MODEL_INTEGRATORS = MODEL_IMPLICIT_EULER + 1 };
+enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
 enum model_stop {
     MODEL_STOP_RELATIVE,
     MODEL_STOP_ABSOLUTE,
@@ -142,6 +143,10 @@ struct model {
     double stretch_limit;  /* or that ends with a larger one; 0: no limit */
     struct model_rest rest;
     enum model_integrator integrator;
+    uint32_t newton_steps;   /* at most, of a step of an implicit one; 0: as 1, one linear step */
+    double newton_tolerance; /* |dv| of the last <= tolerance |change of v in the step|, by mass */
+
+    bool energy_steps; /* the report tells of energies after each step */
 
     enum model_stop stop; /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s);
                              count: no test; mass_norm: the error of dv <= tolerance |dv| */

@@ -19,9 +19,11 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/finish.c \
     cloth/flow/tasks/frames.c \
     cloth/flow/tasks/grid.c cloth/flow/tasks/grid.h \
+    cloth/flow/tasks/implicit.c \
     cloth/flow/tasks/kernels_cg.c \
     cloth/flow/tasks/kernels_energy.c \
     cloth/flow/tasks/kernels_explicit.c \
+    cloth/flow/tasks/kernels_implicit.c \
     cloth/flow/tasks/kernels_pins.c \
     cloth/flow/tasks/kernels_report.c \
     cloth/flow/tasks/kernels_state.c \

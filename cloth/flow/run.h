@@ -19,7 +19,9 @@ struct flow_energy {
  */
 struct flow_report {
     uint64_t vertices, triangles, blocks, grain, partition_hash;
-    uint64_t steps;        /* made, of any length */
+    uint64_t steps;                            /* made, of any length */
+    uint64_t newton_steps, newton_unconverged; /* Newton steps; steps of time whose last Newton step
+                                                  was not small enough; 0 where there is but one */
     uint64_t steps_halved; /* how often a step was given up and begun anew with half the length */
     uint64_t frames, cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */
     double shortest_step;                                    /* s */
@@ -35,7 +37,9 @@ struct flow_report {
     uint64_t
         factors_shifted; /* blocks times steps whose IC(0) needed a shift, or gave way to SSOR */
     double max_stretch;  /* largest length / rest length of any stretch spring at the end */
-    struct flow_energy start, end; /* of all vertices */
+    struct flow_energy start, end;        /* of all vertices */
+    double energy_lowest, energy_highest, /* of their sum, at the start and after each step; */
+        energy_gained; /* the most that it rose above an earlier one; NaN but with energy_steps */
     uint64_t state_hash;
     uint64_t last_frame; /* the last frame written */
     bool stopped;        /* a stop was requested before the end */

@@ -4,6 +4,7 @@ libduite_cloth_la_SOURCES += \
     cloth/physics/fold.c \
     cloth/physics/hinge.c \
     cloth/physics/energy.c cloth/physics/energy.h \
+    cloth/physics/implicit.c cloth/physics/implicit.h \
     cloth/physics/limit.c cloth/physics/limit.h \
     cloth/physics/motion.c cloth/physics/motion.h \
     cloth/physics/particle.c cloth/physics/particle.h \

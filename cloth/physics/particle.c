@@ -20,21 +20,24 @@ void phys_advance(size_t n, double scale, const phys_vec *d, phys_vec *y)
         y[i] += scale * d[i];
 }
 
-void phys_plane(size_t n, const double point[3], const double normal[3], const double *free,
-                phys_vec *x, phys_vec *v)
+size_t phys_plane(size_t n, const double point[3], const double normal[3], const double *free,
+                  phys_vec *x, phys_vec *v)
 {
     const phys_vec origin = {point[0], point[1], point[2], 0};
+    size_t touched = 0;
     const phys_vec up = {normal[0], normal[1], normal[2], 0};
     for (size_t i = 0; i < n; i++) {
         const phys_vec from = x[i] - origin;
         const double height = phys_dot(&from, &up);
         if (height > 0 || free[i] == 0)
             continue;
+        touched++;
         x[i] -= height * up;
         const double speed = phys_dot(v + i, &up);
         if (speed < 0)
             v[i] -= speed * up;
     }
+    return touched;
 }
 
 double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *most)

@@ -19,9 +19,9 @@ void phys_accelerate(size_t n, const double *mass, const double *free, phys_vec 
 void phys_advance(size_t n, double scale, const phys_vec *d, phys_vec *y);
 
 /* Lifts particles that are on or under a plane onto it and takes the velocity into it away; what is
- * tangent stays. point: m, normal: of length 1, towards the free side. */
-void phys_plane(size_t n, const double point[3], const double normal[3], const double *free,
-                phys_vec *x, phys_vec *v);
+ * tangent stays. Returns how many. point: m, normal: of length 1, towards the free side. */
+size_t phys_plane(size_t n, const double point[3], const double normal[3], const double *free,
+                  phys_vec *x, phys_vec *v);
 
 /* Sum of m v.v / 2 (J), rows in order; widens *most to the largest v.v (m^2/s^2). mass: kg. */
 double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *most);

@@ -32,5 +32,7 @@ else
         # shellcheck disable=SC2086
         ok "40 x 40, $kind, few" ranks 4 tests/whole/same_hash "$scene" few 0 $small integrator=$kind obstacles=[] time.h=1e-5 time.end=5e-5 materials.cloth.damping.stiffness=1e-4
     done
+    # shellcheck disable=SC2086
+    ok "40 x 40, bdf2 with Newton steps and energies, few" ranks 4 tests/whole/same_hash "$scene" few 0 $small integrator=bdf2 newton.steps=3 energies=steps time.h=0.004 time.end=0.012
     ok "sheet, a dozen" ranks 4 tests/whole/same_hash "$scene" some 0 time.end=0.01
 fi

@@ -72,6 +72,8 @@ refused() { # SENTENCE ARGUMENT...
     cat said
     test $status = 2 && grep -q -e "$text" said
 }
+ok "a step of several systems has none of its own" refused "by implicit_euler with newton.steps 1 only" --save-system none \
+    --set newton.steps=2
 ok "explicit runs have no system" refused "an explicit integrator solves no system" --save-system none --set integrator=explicit_euler
 ok "and leave no folder" test ! -e none
 : > file

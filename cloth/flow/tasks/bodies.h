@@ -68,6 +68,16 @@ static inline void flow_write_rim(const struct flow_table *table, const phys_vec
         rim[0] = (phys_vec){0};
 }
 
+/* What a solve left of a block. */
+struct flow_solved {
+    const void *value; /* of the matrix */
+    const phys_vec *b, *dv, *r;
+    const struct solve_scalars *scalars;
+};
+/* Notes it in the status: what it took, its error, the momentum that it lost, whether it failed. */
+void flow_note_solve(const duite_call *call, const struct flow_table *table,
+                     const struct flow_solved *solved, double *status);
+
 /* A double as eight bytes, the lowest first. */
 static inline void flow_put_double(unsigned char *bytes, double value)
 {

@@ -30,3 +30,63 @@ int flow_energies(struct flow_state *state, struct flow_args args, duite_object 
     }
     return code;
 }
+
+int flow_energy_fork(struct flow_state *state)
+{
+    return state->flow->model->energy_steps ? flow_energies(state, flow_attempt_args(state),
+                                                            state->energies[state->attempt.parity])
+                                            : DUITE_OK;
+}
+
+int flow_energy_note(struct flow_state *state)
+{
+    struct flow_report *report = state->report;
+    double sums[FLOW_ENERGIES], total = 0;
+    if (!state->flow->model->energy_steps)
+        return DUITE_OK;
+    const int code = duite_get(state->rt, state->energies[state->attempt.parity], sums);
+    if (code)
+        return code;
+    for (int i = 0; i < FLOW_ENERGIES; i++)
+        total += sums[i];
+    report->energy_lowest = fmin(report->energy_lowest, total);
+    report->energy_highest = fmax(report->energy_highest, total);
+    report->energy_gained = fmax(report->energy_gained, total - report->energy_lowest);
+    return DUITE_OK;
+}
+
+/* Before the first step. */
+static void begin(struct flow_state *state)
+{
+    struct flow_report *report = state->report;
+    const struct flow_energy *start = &report->start;
+    const double total = start->kinetic + start->elastic + start->gravity + start->loads;
+    const bool looks = state->flow->model->energy_steps;
+    report->energy_lowest = report->energy_highest = looks ? total : NAN;
+    report->energy_gained = looks ? 0 : NAN;
+}
+
+int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
+{
+    double sums[FLOW_ENERGIES];
+    struct flow_args args = flow_attempt_args(state);
+    args.h = args.h > 0 ? args.h : state->flow->model->h; /* before the first step */
+    int code = flow_energies(state, args, state->energy);
+    if (!code)
+        code = duite_get(state->rt, state->energy, sums);
+    if (code)
+        return code;
+    *energy = (struct flow_energy){.kinetic = sums[FLOW_ENERGY_MOTION],
+                                   .elastic = sums[FLOW_ENERGY_ELASTIC],
+                                   .gravity = sums[FLOW_ENERGY_GRAVITY],
+                                   .loads = sums[FLOW_ENERGY_LOADS]};
+    return DUITE_OK;
+}
+
+int flow_energy_begin(struct flow_state *state)
+{
+    const int code = flow_energy_get(state, &state->report->start);
+    if (!code)
+        begin(state);
+    return code;
+}

@@ -11,21 +11,6 @@ static int largest_stretch(struct flow_state *state)
     return code ? code : duite_get(state->rt, state->stretch[0], &state->report->max_stretch);
 }
 
-int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
-{
-    double sums[FLOW_ENERGIES];
-    const struct flow_args args = {0};
-    int code = flow_energies(state, args, state->energy);
-    if (!code)
-        code = duite_get(state->rt, state->energy, sums);
-    if (!code)
-        *energy = (struct flow_energy){.kinetic = sums[FLOW_ENERGY_MOTION],
-                                       .elastic = sums[FLOW_ENERGY_ELASTIC],
-                                       .gravity = sums[FLOW_ENERGY_GRAVITY],
-                                       .loads = sums[FLOW_ENERGY_LOADS]};
-    return code;
-}
-
 /* Seconds in bodies, of all ranks in rank order. No other task runs meanwhile. */
 static int sum_seconds(struct flow_state *state)
 {

@@ -40,7 +40,7 @@ static int level(const duite_call *call)
     phys_vec *f = duite_out(call, 2, phys_vec);
     phys_accelerate(t->n, t->mass, t->free, f);
     for (uint32_t i = 0; i < t->n; i++)
-        f[i] = v[i] + 0.5 * flow_of(call)->model->h * f[i];
+        f[i] = v[i] + 0.5 * flow_args_of(call)->h * f[i];
     return 0;
 }
 const duite_kernel flow_level = {

@@ -184,26 +184,34 @@ const duite_kernel flow_matrix = {.name = "matrix",
                                   .rest = DUITE_R,
                                   .args_size = ARGS};
 
+void flow_note_solve(const duite_call *call, const struct flow_table *t,
+                     const struct flow_solved *solved, double *status)
+{
+    const struct solve_scalars *scalars = solved->scalars;
+    solve_lost(&t->matrix, &t->held, solved->value, solved->b, solved->dv, status + FLOW_LOST);
+    const struct solve_norms norms = solve_norms(t->n, t->matrix.diagonal, solved->dv, solved->r);
+    status[FLOW_SIZE] = norms.size;
+    status[FLOW_RESIDUAL] = norms.bound;
+    status[FLOW_WRONG] = scalars->outcome != SOLVE_OK;
+    if (flow_args_of(call)->block != 0)
+        return;
+    status[FLOW_ITERATIONS] = scalars->iterations;
+    status[FLOW_ERROR] = solve_scalars_error(scalars, INFINITY);
+}
+
 /* v += dv, and what the solve took and lost of the momentum. A solve that failed in a step that
  * must not leaves no scalars: then this does not run. */
 static int velocity_dv(const duite_call *call)
 {
     struct flow_table table = flow_table_of(call), *t = &table;
-    const phys_vec *value = flow_open_matrix(call, t, 2), *dv = duite_in(call, 3, phys_vec);
-    const struct solve_scalars *scalars = duite_in(call, 7, struct solve_scalars);
     phys_vec *v = duite_out(call, 5, phys_vec);
-    double *status = duite_out(call, 8, double);
-    solve_lost(&t->matrix, &t->held, value, duite_in(call, 1, phys_vec), dv, status + FLOW_LOST);
-    const struct solve_norms norms =
-        solve_norms(t->n, t->matrix.diagonal, dv, duite_in(call, 4, phys_vec));
-    status[FLOW_SIZE] = norms.size;
-    status[FLOW_RESIDUAL] = norms.bound;
-    status[FLOW_WRONG] = scalars->outcome != SOLVE_OK;
-    if (flow_args_of(call)->block == 0) {
-        status[FLOW_ITERATIONS] = scalars->iterations;
-        status[FLOW_ERROR] = solve_scalars_error(scalars, INFINITY);
-    }
-    phys_advance(t->n, 1, dv, v);
+    const struct flow_solved solved = {.value = flow_open_matrix(call, t, 2),
+                                       .b = duite_in(call, 1, phys_vec),
+                                       .dv = duite_in(call, 3, phys_vec),
+                                       .r = duite_in(call, 4, phys_vec),
+                                       .scalars = duite_in(call, 7, struct solve_scalars)};
+    flow_note_solve(call, t, &solved, duite_out(call, 8, double));
+    phys_advance(t->n, 1, solved.dv, v);
     flow_write_rim(t, v, duite_out(call, 6, phys_vec));
     return flow_check(call, t, v, "velocity", 8);
 }
@@ -248,8 +256,10 @@ static int collide(const duite_call *call)
     const struct flow_table table = flow_table_of(call), *t = &table;
     const struct model *model = flow_of(call)->model;
     phys_vec *x = duite_out(call, 1, phys_vec), *v = duite_out(call, 2, phys_vec);
+    double *status = duite_out(call, 5, double);
     for (uint32_t i = 0; i < model->n_planes; i++)
-        phys_plane(t->n, model->planes[i].point, model->planes[i].normal, t->free, x, v);
+        status[FLOW_TOUCHED] += (double)phys_plane(t->n, model->planes[i].point,
+                                                   model->planes[i].normal, t->free, x, v);
     flow_write_rim(t, x, duite_out(call, 3, phys_vec));
     flow_write_rim(t, v, duite_out(call, 4, phys_vec));
     return flow_check(call, t, x, "position", 5);

@@ -48,6 +48,14 @@ static void make_integrator(struct flow_state *state, const struct flow_table *t
     const bool runge = model->integrator == MODEL_RK4;
     if (model_is_implicit(model))
         make_implicit(state->rt, t, o);
+    if (model->integrator == MODEL_BDF2 || (model_is_implicit(model) && model->newton_steps > 1)) {
+        make(state->rt, t->n, o->x, &o->base_x);
+        make(state->rt, t->n, o->x, &o->base_v);
+    }
+    if (model->integrator == MODEL_BDF2) {
+        make(state->rt, t->n, o->x, &o->last_x);
+        make(state->rt, t->n, o->x, &o->last_v);
+    }
     if (runge || model->integrator == MODEL_VERLET)
         make(state->rt, t->n, o->x, &o->v0);
     if (!runge)
@@ -103,6 +111,10 @@ void flow_objects_make(struct flow_state *state)
     make_shared(state, DUITE_I64, 1, &state->token);
     make_shared(state, DUITE_F64, FLOW_PARTS, &state->seconds);
     make_shared(state, DUITE_F64, FLOW_ENERGIES, &state->energy);
+    for (int i = 0; i < 2; i++)
+        make_shared(state, DUITE_F64, FLOW_ENERGIES, state->energies + i);
+    make_shared(state, DUITE_F64, FLOW_STATUS, &state->trial);
+    make_shared(state, DUITE_F64, 1, &state->slope);
     make_shared(state, DUITE_I64, FLOW_TELL, &state->told);
 }
 
@@ -142,8 +154,14 @@ int flow_objects_free(struct flow_state *state)
                                     o->sum_v,     o->felt,
                                     o->seen,      o->table};
         const int failed = release(state->rt, sizeof all / sizeof *all, all);
-        code = code ? code : failed;
+        const duite_object steps[] = {o->base_x, o->base_v, o->last_x, o->last_v};
+        const int too = release(state->rt, sizeof steps / sizeof *steps, steps);
+        code = code ? code : failed ? failed : too;
     }
+    const duite_object integrator[] = {state->trial, state->slope, state->energies[0],
+                                       state->energies[1]};
+    const int first = release(state->rt, 4, integrator);
+    code = code ? code : first;
     const duite_object all[] = {
         state->sums[0],   state->sums[1], state->scalars[0], state->scalars[1], state->status[0],
         state->status[1], state->token,   state->stretch[0], state->stretch[1], state->seconds,

@@ -1,6 +1,6 @@
 /* A step is forked whole while the one before it may still run: what only reads the state comes
  * first, then the main program looks at the status of the step before, then what changes the state
- * is forked. Implicit: f, b, A, dv, v += dv, x += h v. */
+ * is forked. */
 #include "cloth/flow/tasks/tasks.h"
 
 #include <math.h>
@@ -89,19 +89,6 @@ static int restore(struct flow_state *state)
                     FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
 }
 
-static int begin_implicit(struct flow_state *state)
-{
-    int code = fork_all(state, &flow_force, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)),
-                        FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
-    if (!code)
-        code = fork_all(state, &flow_implicit, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)),
-                        FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
-    if (!code)
-        code = fork_all(state, &flow_matrix, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)), FLOW_NOTHING,
-                        FLOW_RIM(rim_x), FLOW_NO_RIM);
-    return code ? code : flow_cg_start(state);
-}
-
 /* Pins that move get their velocities before the forces: such a step does not begin before the one
  * before it is accepted. */
 static int drive(struct flow_state *state)
@@ -122,21 +109,7 @@ static int begin_step(struct flow_state *state)
         code = drive(state);
     if (code)
         return code;
-    return model_is_implicit(model) ? begin_implicit(state) : flow_explicit_begin(state);
-}
-
-static int move_implicit(struct flow_state *state)
-{
-    int code = flow_cg_iterate(state);
-    if (!code)
-        code = fork_all(state, &flow_velocity_dv,
-                        FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(a), FLOW_AT(dv), FLOW_AT(r), FLOW_AT(v),
-                                     FLOW_AT(rim_v)),
-                        FLOW_THEN_SCALARS_AND_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
-    return code ? code
-                : fork_all(state, &flow_position,
-                           FLOW_OBJECTS(FLOW_AT(v), FLOW_AT(x), FLOW_AT(rim_x)), FLOW_THEN_STATUS,
-                           FLOW_NO_RIM, FLOW_NO_RIM);
+    return model_is_implicit(model) ? flow_implicit_begin(state) : flow_explicit_begin(state);
 }
 
 /* The rest of it. */
@@ -147,7 +120,7 @@ static int end_step(struct flow_state *state)
     const struct flow_args args = flow_attempt_args(state);
     int code = model->halving && !model->n_motions ? keep(state) : DUITE_OK;
     if (!code)
-        code = model_is_implicit(model) ? move_implicit(state) : flow_explicit_end(state);
+        code = model_is_implicit(model) ? flow_implicit_end(state) : flow_explicit_end(state);
     if (!code && model->n_motions)
         code = flow_pins_place(state);
     if (!code && model->n_planes)
@@ -158,6 +131,8 @@ static int end_step(struct flow_state *state)
         code = flow_stretch_fork(state, state->stretch[state->attempt.parity]);
     if (!code)
         code = flow_watch(state);
+    if (!code)
+        code = flow_energy_fork(state);
     if (!code)
         code = duite_fork_at(state->rt, 0, &flow_status, &args, 1, &status);
     state->attempt.forked = !code;
@@ -245,14 +220,19 @@ static int settle(struct flow_state *state)
         code = duite_get(state->rt, state->stretch[attempt.parity], &verdict.after);
     if (code)
         return code;
+    flow_implicit_status(state, status);
     verdict.failed = status[FLOW_WRONG] > 0;
-    if (flow_verdict_refuses(&verdict))
+    const bool refused = flow_verdict_refuses(&verdict);
+    flow_implicit_settle(state, !refused, status);
+    if (refused)
         return refuse(state, &verdict);
     state->attempt.forked = false;
     state->longest = verdict.after;
     flow_grid_accept(&state->grid, flow_verdict_calm(&verdict));
     note(state, status);
-    code = flow_watched(state);
+    code = flow_energy_note(state);
+    if (!code)
+        code = flow_watched(state);
     return code ? code : flow_frames(state, attempt.begin);
 }
 
@@ -311,7 +291,7 @@ int flow_steps(struct flow_state *state)
     flow_grid_begin(&state->grid, state->flow->n_steps);
     int code = watch_start(state);
     if (!code)
-        code = flow_energy_get(state, &state->report->start);
+        code = flow_energy_begin(state);
     if (!code)
         code = flow_frames(state, 0);
     if (!code)

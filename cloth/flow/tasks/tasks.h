@@ -109,6 +109,7 @@ struct flow_args {
     uint32_t stage;  /* of a step by RK4 */
     double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */
     double time;     /* s: of a frame; at the end of the step */
+    double part;     /* of dv */
 };
 
 /* Indices into the status of a step, F64, zero before the step and summed by its tasks. */
@@ -121,6 +122,10 @@ enum {
     FLOW_RESIDUAL, /* r.D^-1 r, D the masses */
     FLOW_SHIFTED,  /* factors of blocks that were made with a shift or are of SSOR */
     FLOW_WRONG,    /* solves that failed, rows that diverged */
+    FLOW_TOUCHED,  /* vertices that contact moved */
+    FLOW_SLOPE,    /* of a Newton step: dv.b before it, */
+    FLOW_CHANGE,   /* dv.M dv, */
+    FLOW_WHOLE,    /* (v - base_v).M (v - base_v) after it */
     FLOW_STATUS
 };
 /* What a preconditioned pass leaves of its block: the dots, then the coarse right side. */
@@ -171,12 +176,18 @@ extern const duite_kernel flow_runge; /* table, r f: acceleration, rw x, rw v, r
                                          sum_x, rw sum_v, w rim of x, w rim of v, cw status */
 extern const duite_kernel
     flow_implicit; /* table, r x, r v, rw f: right-hand side; rims of x, rims of v */
-extern const duite_kernel flow_matrix; /* table, r x, w a; rims of x. a: flow_open_matrix */
-extern const duite_kernel flow_begin;  /* w scalars */
-extern const duite_kernel flow_start;  /* table, r f, w dv, w r, w p, w q, w copies, w rim of q */
-extern const duite_kernel flow_pass;   /* table, r scalars, r a, rw dv, rw r, rw p, rw q, rw copies,
-                                          rw   rim of q, cw sums; the other rims of q, or far ones */
-extern const duite_kernel flow_pack;   /* r rim of q, w far rim */
+extern const duite_kernel flow_predict; /* table, rw x, r v, rw last x, rw last v, w base x, w base
+                                           v, w rim of x */
+extern const duite_kernel flow_correct; /* table, r b, r a, r dv, r r, r base x, r base v, rw v, w
+                                           x, w rim of v, w rim of x, r scalars, cw status */
+extern const duite_kernel flow_shift; /* table, r dv, r base x, rw v, w x, w rim of v, w rim of x */
+extern const duite_kernel flow_residual; /* table, r base v, r v, r dv, rw f: b, cw slope */
+extern const duite_kernel flow_matrix;   /* table, r x, w a; rims of x. a: flow_open_matrix */
+extern const duite_kernel flow_begin;    /* w scalars */
+extern const duite_kernel flow_start;    /* table, r f, w dv, w r, w p, w q, w copies, w rim of q */
+extern const duite_kernel flow_pass; /* table, r scalars, r a, rw dv, rw r, rw p, rw q, rw copies,
+                                        rw   rim of q, cw sums; the other rims of q, or far ones */
+extern const duite_kernel flow_pack; /* r rim of q, w far rim */
 extern const duite_kernel flow_scalars; /* r sums, r scalars, w next scalars */
 /* The same with a preconditioner (turned.c, kernels_turned.c); s takes the place of q. "coarse":
  * only with a coarse part. */
@@ -225,7 +236,8 @@ struct flow_objects {
     duite_object a, dv, r, p, q, copies, rim_q[2]; /* of implicit runs */
     duite_object x0, v0, sum_x, sum_v; /* RK4: struct phys_runge; Verlet: v0, that of the half step
                                         */
-    duite_object kept_x, kept_v;       /* before the step, where it may be given up */
+    duite_object base_x, base_v, last_x, last_v; /* Newton steps, BDF2: struct phys_states */
+    duite_object kept_x, kept_v;                 /* before the step, where it may be given up */
     /* With a preconditioner; copies has z for r, rim_q s for q. */
     duite_object z, s, factor, part;
     duite_object basis, rim_basis, basis_copies, coupling; /* with a coarse part */
@@ -253,6 +265,13 @@ struct flow_attempt {
     bool forked;     /* whole: its status can be asked for */
 };
 
+/* The Newton steps of one step of time. */
+struct flow_newton {
+    uint64_t steps;
+    bool converged;
+    double status[FLOW_STATUS]; /* in place of what the solve of a linear step notes */
+};
+
 /* A run as the main program sees it; the same on every rank. */
 struct flow_state {
     struct flow *flow;
@@ -265,7 +284,10 @@ struct flow_state {
     struct flow_far far;
     duite_graph solve; /* a round of conjugate gradients */
     duite_object sums[2], scalars[2], status[2], stretch[2], token, seconds, told;
-    duite_object peaks[2], energy;
+    duite_object peaks[2], energy, energies[2]; /* energies: of steps */
+    duite_object trial, slope;                  /* of a Newton step: status, slope */
+    struct flow_newton newton;
+    uint32_t smooth; /* ticks of the step before, if contact had no part in it; else 0 */
     duite_object coarse, motion[2]; /* with a coarse part: its factor and its part of s */
     struct flow_head head;
     duite_object *parcel;  /* a block: what travels to rank 0 on its own; empty in between */
@@ -389,6 +411,14 @@ int flow_initialise(struct flow_state *state);
  * for contact. */
 int flow_explicit_begin(struct flow_state *state);
 int flow_explicit_end(struct flow_state *state);
+/* The same of an implicit one. */
+int flow_implicit_begin(struct flow_state *state);
+int flow_implicit_end(struct flow_state *state);
+/* When the status of a step is known: adds what its Newton steps noted. Then, when it is accepted
+ * or not: what the next step may build on, and the report. */
+void flow_implicit_status(const struct flow_state *state, double status[FLOW_STATUS]);
+void flow_implicit_settle(struct flow_state *state, bool accepted,
+                          const double status[FLOW_STATUS]);
 /* Steps are judged by their stretch. */
 static inline bool flow_is_judged(const struct model *model)
 {
@@ -443,6 +473,12 @@ int flow_energies(struct flow_state *state, struct flow_args args, duite_object 
 
 /* The energies of the present state. Waits for it. */
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy);
+/* Those before the first step go into the report. Waits. */
+int flow_energy_begin(struct flow_state *state);
+/* If a run looks at them after each step: forks that of the step under way; adds them to the report
+ * when it is accepted. */
+int flow_energy_fork(struct flow_state *state);
+int flow_energy_note(struct flow_state *state);
 
 /* The tick, not rounded, that a frame shows. */
 double flow_frame_tick(const struct model *model, uint64_t frame);

@@ -192,8 +192,12 @@ static enum solve_format format_of(const char *word)
 
 static void build_solver(struct model *model, const struct scene_tree *tree)
 {
+    int newton = scene_tree_get(tree, 1, "newton");
     int solver = scene_tree_get(tree, 1, "solver"), stop = scene_tree_get(tree, solver, "stop");
     model->integrator = integrator_of(scene_tree_text(tree, 1, "integrator"));
+    model->energy_steps = !strcmp(scene_tree_text(tree, 1, "energies"), "steps");
+    model->newton_steps = scene_tree_integer(tree, newton, "steps");
+    model->newton_tolerance = scene_tree_number(tree, newton, "tolerance");
     model->preconditioner = preconditioner_of(scene_tree_text(tree, solver, "preconditioner"));
     model->format = format_of(scene_tree_text(tree, solver, "format"));
     model->max_iterations = scene_tree_integer(tree, solver, "max_iterations");

@@ -198,7 +198,14 @@ static const struct scene_rule solver_keys[] = {
 
 static const char *const contacts[] = {"project", NULL};
 static const char *const integrators[] = {"implicit_euler", "explicit_euler", "symplectic_euler",
-                                          "verlet", "rk4", NULL};
+                                          "verlet", "rk4", "bdf2", NULL};
+static const char *const energies[] = {"ends", "steps", NULL};
+static const struct scene_rule newton_keys[] = {
+    {"steps", SCENE_INTEGER, .fallback = "1", .least = 1, .most = 100,
+     .about = "at most; 1: one linear step"},
+    {"tolerance", SCENE_NUMBER, .fallback = "1e-4", .range = SCENE_FRACTION,
+     .about = "last change of velocity against that of the step, by mass"},
+    {0}};
 
 static const struct scene_rule scene_keys[] = {
     {"schema", SCENE_INTEGER, .required = true, .least = 1, .most = 1,
@@ -215,6 +222,10 @@ static const struct scene_rule scene_keys[] = {
     {"time", SCENE_MAP, .required = true, .inside = time_keys, .about = "of the simulation"},
     {"integrator", SCENE_CHOICE, .fallback = "implicit_euler", .words = integrators,
      .about = "how a step is made"},
+    {"energies", SCENE_CHOICE, .fallback = "ends", .words = energies,
+     .about = "the report's: of start and end, or after each step too"},
+    {"newton", SCENE_MAP, .fallback = "{}", .inside = newton_keys,
+     .about = "Newton steps, with a line search, of implicit steps"},
     {"solver", SCENE_MAP, .fallback = "{}", .inside = solver_keys, .about = "of implicit steps"},
     {"probes", SCENE_LIST, .fallback = "[]", .inside = &probe,
      .about = "what probes.csv tells after each step"},

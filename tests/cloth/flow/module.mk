@@ -36,6 +36,10 @@ check_PROGRAMS += tests/cloth/flow/test_limits
 tests_cloth_flow_test_limits_SOURCES = tests/cloth/flow/test_limits.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_limits_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/flow/test_limits
+check_PROGRAMS += tests/cloth/flow/test_newton
+tests_cloth_flow_test_newton_SOURCES = tests/cloth/flow/test_newton.c $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_newton_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/flow/test_newton
 endif
 dist_check_SCRIPTS += tests/cloth/flow/test_ranks.sh
 TESTS += tests/cloth/flow/test_ranks.sh

@@ -167,7 +167,7 @@ START_TEST(wrong_kinds)
          .error = ":4:11: cloths[0].name has the tag !mine; a value without a tag is expected"},
         {"gravity: [0, -9.81, 0]", "integrator: rk5",
          .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
-                  "symplectic_euler or verlet or rk4 is expected"},
+                  "symplectic_euler or verlet or rk4 or bdf2 is expected"},
         {"gravity: [0, -9.81, 0]", "contact: filter",
          .error = ":2:10: contact is filter; project is expected"},
         {"[{vertices: [0, 3]}]", "[]\n    loads: []",
@@ -189,7 +189,8 @@ START_TEST(unknown_and_missing_keys)
     EXPECT({"time:", "tiem:",
             .error = ":12:1: tiem is not a key of the scene; did you mean 'time'? Allowed: schema, "
                      "name, gravity, cloths, "
-                     "materials, obstacles, contact, time, integrator, solver, probes, grain"},
+                     "materials, obstacles, contact, time, integrator, energies, newton, solver, "
+                     "probes, grain"},
            {"h: 0.001", "h: 0.001, dt: 1",
             .error = ":12:18: dt is not a key of time; allowed: h, end, fps, halving, "
                      "stretch_growth, stretch_limit, rest"},
@@ -370,7 +371,7 @@ START_TEST(files_that_are_no_scenes)
     expect_text("a: &a [*a]\n", NULL,
                 ":1:1: a is not a key of the scene; allowed: schema, name, gravity, cloths, "
                 "materials, obstacles, contact, "
-                "time, integrator, solver, probes, grain");
+                "time, integrator, energies, newton, solver, probes, grain");
     expect_text("schema: 1\ncloths: &a [*a]\n", NULL,
                 ":2:9: cloths[0] is a list of 1; a map of name, mesh, transform, material, "
                 "mass_per_vertex, velocity, "

@@ -54,6 +54,9 @@ START_TEST(world_and_time)
     ck_assert_double_eq(model.end, 0.1);
     ck_assert_double_eq(model.fps, 25);
     ck_assert_int_eq(model.integrator, MODEL_IMPLICIT_EULER);
+    ck_assert_int_eq(model.energy_steps, 0);
+    ck_assert_uint_eq(model.newton_steps, 1);
+    ck_assert_double_eq(model.newton_tolerance, 1e-4);
     ck_assert_int_eq(model.stop, MODEL_STOP_MASS_NORM);
     ck_assert_double_eq(model.tolerance, 0.01);
     ck_assert_int_eq(model.preconditioner, MODEL_IC0_COARSE);
@@ -112,10 +115,14 @@ START_TEST(every_other_key)
                      "               damping: {viscous: 5, mass: 6, stiffness: 7}}\n"
                      "  cotton: *silk\n"
                      "name: more\ngrain: 7\nintegrator: explicit_euler\ncontact: project\n"
+                     "energies: steps\nnewton: {steps: 5, tolerance: 1e-7}\n"
                      "solver: {stop: {absolute: 1e-9}, max_iterations: 12}\n");
     ck_assert_str_eq(model.name, "more");
     ck_assert_uint_eq(model.grain, 7);
     ck_assert_int_eq(model.integrator, MODEL_EXPLICIT_EULER);
+    ck_assert_int_eq(model.energy_steps, 1);
+    ck_assert_uint_eq(model.newton_steps, 5);
+    ck_assert_double_eq(model.newton_tolerance, 1e-7);
     ck_assert_int_eq(model.stop, MODEL_STOP_ABSOLUTE);
     ck_assert_double_eq(model.tolerance, 1e-9);
     ck_assert_uint_eq(model.max_iterations, 12);

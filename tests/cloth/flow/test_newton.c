@@ -1,0 +1,366 @@
+/* Newton steps and BDF2 on a chain that swings far: the equations of the step are solved, by one
+ * step nearly, by several to the tolerance; energy is what the scheme promises; a floor and shorter
+ * steps start BDF2 anew. */
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { LINKS = 5 };
+static const double M = 0.02, K = 300, G = 9.81, LENGTH = 0.2;
+
+/* Level, held at its first vertex, and let go. A frame a step. */
+static void chain(struct setup *s, double h, size_t steps)
+{
+    double vertices[3 * (LINKS + 1)] = {0};
+    uint32_t edges[2 * LINKS];
+    struct cloth_error error = {0};
+    setup_weight(s);
+    mesh_free(&s->cloth.mesh);
+    for (uint32_t i = 0; i <= LINKS; i++)
+        vertices[3 * i] = LENGTH * i;
+    for (uint32_t i = 0; i < LINKS; i++) {
+        edges[2 * i] = i;
+        edges[2 * i + 1] = i + 1;
+    }
+    ck_assert_int_eq(
+        mesh_inline(&s->cloth.mesh, LINKS + 1, vertices, LINKS, edges, 0, NULL, &error), 0);
+    s->cloth.mass_per_vertex = M;
+    s->material.stretch = K;
+    s->material.damping_stiffness = 0;
+    s->model.h = h;
+    s->model.end = h * (double)steps;
+    s->model.fps = 1 / h;
+    s->model.grain = 2;
+    s->model.tolerance = 1e-12;
+    s->model.newton_steps = 1;
+    s->model.newton_tolerance = 1e-10;
+}
+
+static void run(struct record *record, const struct setup *setup)
+{
+    record_run(record, &setup->model);
+    ck_assert_msg(record->code == 0, "%s", record->error.text);
+}
+
+/* Force on component c of vertex i in a frame, N. */
+static double force(const struct record *r, size_t frame, size_t i, size_t c)
+{
+    double sum = c == 1 ? -M * G : 0;
+    for (size_t other = i - 1; other <= i + 1 && other <= LINKS; other += 2) {
+        double d[3], square = 0;
+        for (size_t k = 0; k < 3; k++) {
+            d[k] = record_at(r, frame, other, k) - record_at(r, frame, i, k);
+            square += d[k] * d[k];
+        }
+        sum += K * (sqrt(square) - LENGTH) * d[c] / sqrt(square);
+    }
+    return sum;
+}
+
+/* x of `back` steps before a frame; at rest before the start. */
+static double at(const struct record *r, size_t frame, size_t back, size_t i, size_t c)
+{
+    return record_at(r, frame > back ? frame - back : 0, i, c);
+}
+
+/* The largest of what is missing in the equations of any step of implicit Euler, as a part of the
+ * weight: M (x2 - 2 x1 + x0) / h^2 = f(x2). */
+static double missing_euler(const struct record *r, double h)
+{
+    double most = 0;
+    for (size_t n = 1; n < r->frames; n++)
+        for (size_t i = 1; i <= LINKS; i++)
+            for (size_t c = 0; c < 3; c++) {
+                const double a =
+                    (at(r, n, 0, i, c) - 2 * at(r, n, 1, i, c) + at(r, n, 2, i, c)) / (h * h);
+                most = fmax(most, fabs(M * a - force(r, n, i, c)) / (M * G));
+            }
+    return most;
+}
+
+START_TEST(euler_solves_its_equations)
+{
+    const double h = 0.02;
+    struct setup setup;
+    struct record one = {0}, many = {0};
+    chain(&setup, h, 50);
+    run(&one, &setup);
+    setup.model.newton_steps = 20;
+    run(&many, &setup);
+    printf("# chain, h = %g s: missing in the step's equations, of the weight: %.3e after one "
+           "Newton step, %.3e after %.2f\n",
+           h, missing_euler(&one, h), missing_euler(&many, h),
+           (double)many.report.newton_steps / 50);
+    ck_assert_double_gt(missing_euler(&one, h), 1e-2);
+    ck_assert_double_lt(missing_euler(&many, h), 1e-7);
+    ck_assert_uint_eq(one.report.newton_steps, 0);
+    ck_assert_uint_eq(many.report.newton_unconverged, 0);
+    ck_assert_uint_gt(many.report.newton_steps, 100);
+    ck_assert_double_lt(many.report.momentum_lost, 1e-9);
+    record_free(&one);
+    record_free(&many);
+    setup_free(&setup);
+}
+END_TEST
+
+/* BDF2 of positions, where v by them is (3 x2 - 4 x1 + x0) / 2 h: from its second step on. */
+START_TEST(bdf2_solves_its_equations)
+{
+    const double h = 0.02;
+    struct setup setup;
+    struct record r = {0};
+    double most = 0;
+    chain(&setup, h, 50);
+    setup.model.integrator = MODEL_BDF2;
+    setup.model.newton_steps = 20;
+    run(&r, &setup);
+    for (size_t n = 4; n < r.frames; n++)
+        for (size_t i = 1; i <= LINKS; i++)
+            for (size_t c = 0; c < 3; c++) {
+                double v[3];
+                for (size_t k = 0; k < 3; k++)
+                    v[k] = (3 * at(&r, n, k, i, c) - 4 * at(&r, n, k + 1, i, c) +
+                            at(&r, n, k + 2, i, c)) /
+                           (2 * h);
+                const double a = (3 * v[0] - 4 * v[1] + v[2]) / (2 * h);
+                most = fmax(most, fabs(M * a - force(&r, n, i, c)) / (M * G));
+            }
+    printf("# chain, h = %g s: missing in BDF2's equations, of the weight: %.3e\n", h, most);
+    ck_assert_double_lt(most, 1e-7);
+    record_free(&r);
+    setup_free(&setup);
+}
+END_TEST
+
+/* Where the last vertex is after 0.24 s. */
+static void end_of(struct record *r, enum model_integrator integrator, uint32_t newton, double h,
+                   double x[2])
+{
+    struct setup setup;
+    chain(&setup, h, (size_t)(0.24 / h + 0.5));
+    setup.model.integrator = integrator;
+    setup.model.newton_steps = newton;
+    *r = (struct record){0};
+    run(r, &setup);
+    for (size_t c = 0; c < 2; c++)
+        x[c] = record_at(r, r->frames - 1, LINKS, c);
+    record_free(r);
+    setup_free(&setup);
+}
+
+/* By Richardson: of three lengths of steps. */
+START_TEST(order_of_a_swing)
+{
+    static const struct {
+        const char *name;
+        enum model_integrator integrator;
+        uint32_t newton;
+        double order;
+    } rows[] = {{"implicit Euler, one Newton step", MODEL_IMPLICIT_EULER, 1, 1},
+                {"implicit Euler, converged", MODEL_IMPLICIT_EULER, 20, 1},
+                {"BDF2, one Newton step", MODEL_BDF2, 1, 2},
+                {"BDF2, converged", MODEL_BDF2, 20, 2}};
+    struct record r;
+    double x[3][2], change[2] = {0};
+    for (int i = 0; i < 3; i++)
+        end_of(&r, rows[_i].integrator, rows[_i].newton, 0.0004 / (1 << i), x[i]);
+    for (int i = 0; i < 2; i++)
+        change[i] = hypot(x[i + 1][0] - x[i][0], x[i + 1][1] - x[i][1]);
+    const double seen = log2(change[0] / change[1]);
+    printf("# chain, %s: order %.3f\n", rows[_i].name, seen);
+    ck_assert_double_eq_tol(seen, rows[_i].order, 0.15);
+}
+END_TEST
+
+/* A weight in the middle of a wire without tension, which feels nothing of the wire where the step
+ * is linearised: a whole Newton step takes it to where the wire holds it with a thousand times its
+ * weight. Two Newton steps get near the solution because the first is cut. */
+START_TEST(line_search)
+{
+    const double h = 0.2, half = 0.5, k = 3e5, m = 0.02;
+    static const double vertices[] = {-0.5, 0, 0, 0, 0, 0, 0.5, 0, 0};
+    static const uint32_t edges[] = {0, 1, 1, 2};
+    struct cloth_error error = {0};
+    struct setup setup;
+    struct record r = {0};
+    chain(&setup, h, 1);
+    mesh_free(&setup.cloth.mesh);
+    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 3, vertices, 2, edges, 0, NULL, &error), 0);
+    setup_pin(&setup, 2, (const uint32_t[]){0, 2});
+    setup.material.stretch = k;
+    setup.model.newton_steps = 2;
+    run(&r, &setup);
+    double low = 0, high = 1; /* m u / h^2 = m g - 2 k (l - L) u / l */
+    for (int i = 0; i < 100; i++) {
+        const double u = (low + high) / 2, l = hypot(half, u);
+        if (m * u / (h * h) < m * G - 2 * k * (l - half) * u / l)
+            low = u;
+        else
+            high = u;
+    }
+    const double seen = -record_at(&r, 1, 1, 1);
+    printf("# a wire catches a weight: %.6f m after two Newton steps, %.6f is due, %.6f without "
+           "the wire\n",
+           seen, low, h * h * G);
+    ck_assert_double_eq_tol(seen, low, 0.5 * low);
+    ck_assert_double_gt(h * h * G, 20 * low);
+    ck_assert_uint_eq(r.report.newton_unconverged, 1);
+    record_free(&r);
+    setup_free(&setup);
+}
+END_TEST
+
+/* Contact and BDF2: the chain falls on a floor and never through it; the step after a touch is the
+ * same as of a run by implicit Euler that begins there, so it has no memory of the fall. */
+START_TEST(bdf2_after_contact)
+{
+    const double h = 0.01, floor = -0.1;
+    struct setup setup;
+    struct record r = {0};
+    double y = 0, v = 0, last_y = 0, last_v = 0;
+    setup_weight(&setup);
+    setup.cloth.n_pins = 0;
+    setup.material.stretch = 0;
+    setup.material.damping_stiffness = 0;
+    setup.model.gravity[1] = -G;
+    setup.model.integrator = MODEL_BDF2;
+    setup.model.n_planes = 1;
+    setup.plane = (struct model_plane){{0, floor, 0}, {0, 1, 0}};
+    setup.cloth.start = (double[12]){0, 0, 0, 0, 0, 0, 0, 0.3, 0, 1, 0, 0};
+    setup.model.h = h;
+    setup.model.end = 100 * h;
+    setup.model.fps = 1 / h;
+    setup.model.tolerance = 1e-13;
+    run(&r, &setup);
+    bool smooth = false; /* of the first vertex and the other one alike: one that touches counts */
+    double z = 0.3, w = 0, last_z = 0, last_w = 0;
+    for (size_t n = 1; n <= 100; n++) {
+        const double t = smooth ? 2 * h / 3 : h;
+        const double by = smooth ? (4 * y - last_y) / 3 : y, bv = smooth ? (4 * v - last_v) / 3 : v;
+        const double bz = smooth ? (4 * z - last_z) / 3 : z, bw = smooth ? (4 * w - last_w) / 3 : w;
+        last_y = y;
+        last_v = v;
+        last_z = z;
+        last_w = w;
+        v = bv - t * G;
+        y = by + t * v;
+        w = bw - t * G;
+        z = bz + t * w;
+        smooth = y > floor && z > floor;
+        v = y <= floor && v < 0 ? 0 : v;
+        w = z <= floor && w < 0 ? 0 : w;
+        y = fmax(y, floor);
+        z = fmax(z, floor);
+        ck_assert_double_eq_tol(record_at(&r, n, 0, 1), y, 1e-12);
+        ck_assert_double_eq_tol(record_at(&r, n, 1, 1), z, 1e-12);
+    }
+    record_free(&r);
+    setup_free(&setup);
+}
+END_TEST
+
+/* ---- Energies ---- */
+
+/* The chain's fall from level to upright would set this free, J. */
+static double fall(void)
+{
+    double sum = 0;
+    for (int i = 1; i <= LINKS; i++)
+        sum += M * G * LENGTH * i;
+    return sum;
+}
+
+/* Undriven and without damping: what a run of the chain gains. */
+START_TEST(energy_is_not_gained)
+{
+    static const struct {
+        const char *name;
+        enum model_integrator integrator;
+        uint32_t newton;
+        double h, most; /* of the fall */
+    } rows[] = {{"implicit Euler, converged", MODEL_IMPLICIT_EULER, 50, 0.001, 1e-9},
+                {"implicit Euler, converged", MODEL_IMPLICIT_EULER, 50, 0.02, 1e-9},
+                {"implicit Euler, one Newton step", MODEL_IMPLICIT_EULER, 1, 0.001, 0.01},
+                {"implicit Euler, one Newton step", MODEL_IMPLICIT_EULER, 1, 0.02, 0.01},
+                {"BDF2, one Newton step", MODEL_BDF2, 1, 0.001, 0.01},
+                {"BDF2, converged", MODEL_BDF2, 50, 0.001, 0.01}};
+    struct setup setup;
+    struct record r = {0};
+    chain(&setup, rows[_i].h, (size_t)(1 / rows[_i].h + 0.5));
+    setup.model.integrator = rows[_i].integrator;
+    setup.model.newton_steps = rows[_i].newton;
+    setup.model.energy_steps = true;
+    run(&r, &setup);
+    const double gained = r.report.energy_gained / fall();
+    printf("# chain, %s, h = %g s: gains %.2e of its fall in 1 s, loses %.4f\n", rows[_i].name,
+           rows[_i].h, gained, (0 - r.report.energy_lowest) / fall());
+    ck_assert_double_le(gained, rows[_i].most);
+    ck_assert_double_lt(r.report.energy_lowest, -1e-4 * fall());
+    record_free(&r);
+    setup_free(&setup);
+}
+END_TEST
+
+/* The weight on its spring without damping: how far the energy wavers in 2 s. */
+static double band(enum model_integrator integrator, double h)
+{
+    struct setup setup;
+    struct record r = {0};
+    setup_weight(&setup);
+    setup.material.damping_stiffness = 0;
+    setup.model.integrator = integrator;
+    setup.model.energy_steps = true;
+    setup.model.h = h;
+    setup.model.end = 2;
+    setup.model.fps = 1;
+    run(&r, &setup);
+    const double wide = r.report.energy_highest - r.report.energy_lowest;
+    ck_assert_double_eq_tol(r.report.energy_gained, wide, 0.6 * wide);
+    record_free(&r);
+    setup_free(&setup);
+    return wide;
+}
+
+START_TEST(energy_wavers_in_a_band)
+{
+    static const enum model_integrator all[] = {MODEL_VERLET, MODEL_SYMPLECTIC_EULER};
+    const double wide = band(all[_i], 0.01), narrow = band(all[_i], 0.005);
+    printf("# %s: energy wavers by %.3e J at h = 0.01 s, %.3e at half of it: order %.3f\n",
+           model_integrator_name(all[_i]), wide, narrow, log2(wide / narrow));
+    ck_assert_double_eq_tol(log2(wide / narrow), 2, 0.1);
+}
+END_TEST
+
+START_TEST(energies_are_told_when_asked)
+{
+    struct setup setup;
+    struct record r = {0};
+    chain(&setup, 0.01, 3);
+    run(&r, &setup);
+    ck_assert_double_nan(r.report.energy_lowest);
+    ck_assert_double_nan(r.report.energy_highest);
+    ck_assert_double_nan(r.report.energy_gained);
+    record_free(&r);
+    setup_free(&setup);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("newton");
+    TCase *cases = tcase_create("newton");
+    tcase_add_test(cases, euler_solves_its_equations);
+    tcase_add_test(cases, bdf2_solves_its_equations);
+    tcase_add_test(cases, line_search);
+    tcase_add_test(cases, bdf2_after_contact);
+    tcase_add_loop_test(cases, energy_is_not_gained, 0, 6);
+    tcase_add_loop_test(cases, energy_wavers_in_a_band, 0, 2);
+    tcase_add_test(cases, energies_are_told_when_asked);
+    suite_add_tcase(suite, cases);
+    TCase *alone = tcase_create("alone");
+    tcase_add_loop_test(alone, order_of_a_swing, 0, 4);
+    suite_add_tcase(suite, alone);
+    return unit_run(suite);
+}

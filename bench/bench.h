@@ -11,6 +11,7 @@ struct bench_options {
     const char *scheduler; /* ours */
     bool quick;            /* tiny sizes, to see that everything works */
     const char *states;    /* of cg: the folder of its states; NULL: beside the program */
+    const char *system;    /* of cg: the folder of a saved system to be solved; NULL: none */
 };
 
 struct bench_case {
@@ -35,6 +36,9 @@ struct bench {
     int (*prepare)(const struct bench_options *options,
                    void (*say)(const char *key, const char *text));
 };
+
+/* The case of cg that solves a saved system. */
+extern const char *const bench_cg_saved;
 
 extern const struct bench bench_tasks, bench_ranks, bench_cg;
 

@@ -23,6 +23,11 @@ int serve_fail(const char *format, ...)
     return 1;
 }
 
+const char *serve_failure(void)
+{
+    return failure;
+}
+
 int serve_no_memory(void)
 {
     return serve_fail("out of memory");

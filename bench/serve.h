@@ -28,6 +28,8 @@ struct serve_run {
 /* Why a run failed; above all: that its answer is wrong. Returns 1. */
 int serve_fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 int serve_no_memory(void);
+/* What was said last. */
+const char *serve_failure(void);
 
 /* Seconds since some fixed moment. */
 double serve_seconds(void);

@@ -34,6 +34,10 @@ int states_wave(struct model *model);
 /* Lets the model's cloth start at x with v, n x 3 each. */
 int states_start(struct model *model, const double *x, const double *v);
 
+/* The vertices of a state block after block, then those that no block has; the hash of a system. */
+int cg_order(struct state *state, uint32_t grain);
+uint64_t cg_hash(const struct solve_system *system);
+
 /* The run "make": makes a state that is not there, in full or quick. */
 extern const struct serve_run cg_make_runs[];
 
@@ -62,6 +66,15 @@ int cg_run(const struct model *model, struct serve_request *request,
 
 extern const struct serve_run cg_runs[];
 
+/* A system that was saved into a folder, as the state of this name. */
+#define CG_SYSTEM "system"
+/* Makes the state, with its solution to 1e-12; text: what it is. 0, or what serve_fail returns. */
+int cg_system_make(const char *folder, bool quick, char *text, size_t size);
+/* For ours: the plan of a run with as many pairs; the numbers of the state in place of what its
+ * step made, when no task runs. 0, or what serve_fail returns. */
+int cg_system_plan(struct states_plan *plan, const struct solve_system *system, bool quick);
+int cg_system_put(const struct cg_session *session);
+
 /* Ends what runs have left for the next one. 1 if the runtime did not stop well. Collective. */
 int cg_end(struct cg_session *session);
 
@@ -77,6 +90,6 @@ struct measure_series *cg_petsc(struct measure *measure, const struct bench_opti
                                 const char *run, const char *state, const char *more);
 
 extern const struct bench_case cg_spring_150, cg_spring_400, cg_half_150, cg_solve, cg_jacobi,
-    cg_error, cg_step, cg_realtime;
+    cg_error, cg_step, cg_realtime, cg_saved;
 
 #endif

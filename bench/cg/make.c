@@ -62,8 +62,7 @@ static void each_pair(const void *context, void (*visit)(void *to, uint32_t a, u
         visit(to, s->end[i][0], s->end[i][1]);
 }
 
-/* The vertices block after block, then those that no block has. */
-static int find_order(struct state *state, uint32_t grain)
+int cg_order(struct state *state, uint32_t grain)
 {
     const struct solve_system *s = &state->system;
     const struct mesh_pairs pairs = {s, each_pair};
@@ -73,6 +72,8 @@ static int find_order(struct state *state, uint32_t grain)
     state->order = calloc((size_t)s->n + 1, sizeof *state->order);
     for (uint32_t v = 0; used && v < s->n; v++)
         used[v] = s->mass[v] > 0;
+    for (size_t i = 0; used && i < 2 * s->n_pairs; i++)
+        used[s->end[i / 2][i % 2]] = 1; /* of a saved system held vertices have no mass */
     int code = used && state->order ? 0 : serve_no_memory();
     if (!code && mesh_blocks_cut(&blocks, s->n, used, &pairs, grain, &error))
         code = serve_fail("%s", error.text);
@@ -87,7 +88,7 @@ static int find_order(struct state *state, uint32_t grain)
     return code;
 }
 
-static uint64_t hash_of(const struct solve_system *s)
+uint64_t cg_hash(const struct solve_system *s)
 {
     const size_t n = s->n * sizeof(double);
     const struct {
@@ -100,7 +101,8 @@ static uint64_t hash_of(const struct solve_system *s)
                 {s->free, n},
                 {s->b, 3 * n},
                 {s->end, s->n_pairs * sizeof *s->end},
-                {s->value, s->n_pairs * sizeof *s->value}};
+                {s->value, s->value ? s->n_pairs * sizeof *s->value : 0},
+                {s->block, s->block ? s->n_pairs * sizeof *s->block : 0}};
     uint64_t hash = 0;
     for (size_t i = 0; i < sizeof part / sizeof *part; i++)
         hash = XXH64(part[i].at, part[i].bytes, hash);
@@ -116,10 +118,10 @@ static int complete(struct state *state, const struct states_plan *plan)
         memcpy(s->x + 3 * v, start + 6 * v, 3 * sizeof *start);
         memcpy(s->v + 3 * v, start + 6 * v + 3, 3 * sizeof *start);
     }
-    state->hash = hash_of(s);
+    state->hash = cg_hash(s);
     state->count = plan->count;
     state->after = calloc((size_t)s->n + 1, 3 * sizeof *state->after);
-    int code = state->after ? find_order(state, plan->model.grain) : serve_no_memory();
+    int code = state->after ? cg_order(state, plan->model.grain) : serve_no_memory();
     if (!code)
         code = state_iterate(s, state->count, state->after);
     if (!code && plan->solved)

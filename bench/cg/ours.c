@@ -134,9 +134,11 @@ static int ready(struct cg_session *s, struct serve_request *request)
     if (code || !strcmp(settings, s->settings))
         return code;
     code = end(s, code);
+    const bool saved = s->state.system.block != NULL;
     if (!code)
-        code = states_plan_make(&s->plan, s->state.name, quick != 0);
-    if (!code)
+        code = saved ? cg_system_plan(&s->plan, &s->state.system, quick != 0)
+                     : states_plan_make(&s->plan, s->state.name, quick != 0);
+    if (!code && !saved)
         code = states_start(&s->plan.model, s->state.system.x, s->state.system.v);
     if (!strcmp(solver, "plain"))
         s->plan.model.preconditioner = MODEL_PLAIN;
@@ -154,21 +156,25 @@ static int ready(struct cg_session *s, struct serve_request *request)
         code = start_runtime(request, s->flow, &s->rt);
     if (!code)
         code = begin(s);
+    if (!code && saved)
+        code = cg_system_put(s);
     if (!code)
         snprintf(s->settings, sizeof s->settings, "%s", settings);
     return code;
 }
 
-/* dv, in the numbering of the input: the state has the order of the blocks. */
+/* dv, in the numbering of the input. Rank 0 knows the order of the blocks, others the state's,
+ * which is the same but of a saved system. */
 static int answer(struct cg_session *s, double *dv)
 {
     const struct flow *flow = s->flow;
+    const uint32_t *vertex = flow->vertex ? flow->vertex : s->state.order;
     int code = 0;
     for (uint32_t b = 0; b < flow->tables.n_blocks && !code; b++) {
         const struct flow_table *t = flow->tables.block + b;
         code = tasks_code(duite_get(s->rt, s->run.block[b].dv, s->run.rows));
         for (uint32_t i = 0; i < t->n && !code; i++)
-            memcpy(dv + 3 * (size_t)s->state.order[t->first + i], s->run.rows + 4 * (size_t)i,
+            memcpy(dv + 3 * (size_t)vertex[t->first + i], s->run.rows + 4 * (size_t)i,
                    3 * sizeof *dv);
     }
     return code;
@@ -195,17 +201,28 @@ static int error_of(struct cg_session *s, double *error)
     return code;
 }
 
+static int step_again(struct cg_session *s)
+{
+    int code = flow_initialise(&s->run);
+    if (!code)
+        code = flow_step(&s->run);
+    return code ? code : duite_wait(s->rt);
+}
+
 /* With a matrix that has just been written, as a step writes its own. */
 static int time_solve(struct cg_session *s, double *seconds)
 {
     const uint32_t most = s->plan.model.max_iterations;
-    stop_after(s, 2);
-    int code = flow_initialise(&s->run);
-    if (!code)
-        code = flow_step(&s->run);
-    if (!code)
-        code = duite_wait(s->rt);
-    stop_after(s, most);
+    int code = 0;
+    if (s->state.system.block) {
+        code = cg_system_put(s);
+    } else {
+        stop_after(s, 2);
+        code = tasks_code(step_again(s));
+        stop_after(s, most);
+    }
+    if (code)
+        return code;
     const double begin = serve_seconds();
     if (!code)
         code = flow_cg(&s->run);

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char MAGIC[8] = "state 1";
+static const char MAGIC[8] = "state 1", BLOCKS[8] = "blocks1"; /* of springs, of pairs */
 
 struct head {
     char magic[8], name[40];
@@ -28,13 +28,18 @@ static void list_arrays(const struct state *s, struct array array[ARRAYS])
 {
     const size_t n = s->system.n, springs = s->system.n_pairs;
     const struct solve_system *y = &s->system;
-    const struct array all[ARRAYS] = {
-        {y->mass, n * sizeof(double)},          {y->diagonal, n * sizeof(double)},
-        {y->free, n * sizeof(double)},          {y->b, 3 * n * sizeof(double)},
-        {y->dv, 3 * n * sizeof(double)},        {y->x, 3 * n * sizeof(double)},
-        {y->v, 3 * n * sizeof(double)},         {y->end, springs * sizeof *y->end},
-        {y->value, springs * sizeof *y->value}, {s->after, 3 * n * sizeof(double)},
-        {s->order, n * sizeof *s->order}};
+    const struct array all[ARRAYS] = {{y->mass, n * sizeof(double)},
+                                      {y->diagonal, n * sizeof(double)},
+                                      {y->free, n * sizeof(double)},
+                                      {y->b, 3 * n * sizeof(double)},
+                                      {y->dv, 3 * n * sizeof(double)},
+                                      {y->x, 3 * n * sizeof(double)},
+                                      {y->v, 3 * n * sizeof(double)},
+                                      {y->end, springs * sizeof *y->end},
+                                      {y->block ? (void *)y->block : y->value,
+                                       springs * (y->block ? sizeof *y->block : sizeof *y->value)},
+                                      {s->after, 3 * n * sizeof(double)},
+                                      {s->order, n * sizeof *s->order}};
     memcpy(array, all, sizeof all);
 }
 
@@ -55,7 +60,9 @@ static void path_of(const char *name, const char *ending, char *path, size_t siz
 static int read_arrays(struct state *state, const struct head *head, FILE *file)
 {
     struct array array[ARRAYS];
-    if (solve_system_make(&state->system, head->n, head->n_pairs, SOLVE_PAIRS_OF_SPRINGS, NULL))
+    const enum solve_pairs pairs =
+        memcmp(head->magic, BLOCKS, sizeof BLOCKS) ? SOLVE_PAIRS_OF_SPRINGS : SOLVE_PAIRS_OF_BLOCKS;
+    if (solve_system_make(&state->system, head->n, head->n_pairs, pairs, NULL))
         return serve_no_memory();
     state->system.h = head->h;
     state->after = malloc(((size_t)head->n + 1) * 3 * sizeof *state->after);
@@ -78,9 +85,11 @@ int state_read(struct state *state, const char *name)
     if (!file)
         return serve_fail("there is no state %s", path);
     *state = (struct state){0};
-    int code = fread(&head, sizeof head, 1, file) != 1 || memcmp(head.magic, MAGIC, sizeof MAGIC)
-                   ? serve_fail("%s is not a state of this version", path)
-                   : read_arrays(state, &head, file);
+    int code =
+        fread(&head, sizeof head, 1, file) != 1 || (memcmp(head.magic, MAGIC, sizeof MAGIC) &&
+                                                    memcmp(head.magic, BLOCKS, sizeof BLOCKS))
+            ? serve_fail("%s is not a state of this version", path)
+            : read_arrays(state, &head, file);
     fclose(file);
     if (code) {
         state_free(state);
@@ -101,7 +110,7 @@ int state_write(const struct state *state)
                         .h = state->system.h,
                         .n = state->system.n,
                         .count = state->count};
-    memcpy(head.magic, MAGIC, sizeof MAGIC);
+    memcpy(head.magic, state->system.block ? BLOCKS : MAGIC, sizeof MAGIC);
     memcpy(head.name, state->name, sizeof head.name);
     path_of(state->name, "", path, sizeof path);
     path_of(state->name, ".part", part, sizeof part);
@@ -267,11 +276,13 @@ static int blocks_make(const struct solve_system *s, struct room *room)
     for (size_t v = 0; v < s->n; v++)
         for (int i = 0; i < 3; i++)
             room->inverse[v][4 * i] = s->diagonal[v] > 0 ? s->diagonal[v] : 1;
-    for (size_t k = 0; k < s->n_pairs; k++)
+    for (size_t k = 0; k < s->n_pairs; k++) {
+        double n[3][3];
+        solve_system_pair(s, k, n);
         for (int side = 0; side < 2; side++)
             for (int i = 0; i < 9; i++)
-                room->inverse[s->end[k][side]][i] +=
-                    s->value[k][i / 3] * s->value[k][i % 3] + (i % 4 ? 0 : s->value[k][3]);
+                room->inverse[s->end[k][side]][i] += 0.5 * (n[i / 3][i % 3] + n[i % 3][i / 3]);
+    }
     for (size_t v = 0; v < s->n; v++) {
         double block[9];
         memcpy(block, room->inverse[v], sizeof block);

@@ -94,14 +94,15 @@ static PetscErrorCode put(Mat a, PetscInt row, PetscInt column, const double blo
     return MatSetValuesBlocked(a, 1, &row, 1, &column, block, ADD_VALUES);
 }
 
-static int put_spring(const struct state *state, const struct system *s, size_t i)
+static int put_pair(const struct state *state, const struct system *s, size_t i)
 {
     const struct solve_system *y = &state->system;
-    const double *w = y->value[i];
-    double on[9], off[9];
+    double n[3][3], on[9], off[2][9]; /* off: of the lower vertex's row, of the higher one's */
+    solve_system_pair(y, i, n);
     for (int k = 0; k < 9; k++) {
-        on[k] = w[k / 3] * w[k % 3] + (k % 4 ? 0 : w[3]);
-        off[k] = -on[k];
+        on[k] = 0.5 * (n[k / 3][k % 3] + n[k % 3][k / 3]);
+        off[0][k] = -n[k / 3][k % 3];
+        off[1][k] = -n[k % 3][k / 3];
     }
     for (int k = 0; k < 2; k++) {
         const uint32_t v = y->end[i][k], u = y->end[i][1 - k];
@@ -110,7 +111,7 @@ static int put_spring(const struct state *state, const struct system *s, size_t 
             continue;
         TRY(put(s->a, a, a, on));
         if (y->free[u] > 0)
-            TRY(put(s->a, a, b, off));
+            TRY(put(s->a, a, b, off[k]));
     }
     return 0;
 }
@@ -130,7 +131,7 @@ static int fill(const struct state *state, struct system *s)
                             INSERT_VALUES));
     }
     for (size_t i = 0; i < y->n_pairs; i++)
-        if (put_spring(state, s, i))
+        if (put_pair(state, s, i))
             return 1;
     TRY(MatAssemblyBegin(s->a, MAT_FINAL_ASSEMBLY));
     TRY(MatAssemblyEnd(s->a, MAT_FINAL_ASSEMBLY));

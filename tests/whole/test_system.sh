@@ -20,8 +20,8 @@ solver: {stop: {relative: 1.0e-10}}
 END
 
 run() { limited "$DUITE_CLOTH" scene.yaml "$@"; }
-saves() { run --save-system one --quiet && ls one && test "$(ls one | wc -l)" = 4; }
-ok "writes four files" saves
+saves() { run --save-system one --quiet && ls one && test "$(ls one | wc -l)" = 5; }
+ok "writes five files" saves
 
 # |b - A x| against |b|, of 216 unknowns.
 solved() { # FOLDER TOLERANCE
@@ -40,7 +40,7 @@ not_ok_expected "to the tolerance of the scene, no better" solved one 1e-12
 same() { # NAME COMMAND...: the same files as those of one rank
     same_name=$1
     shift
-    "$@" --save-system "$same_name" --quiet && for file in matrix rhs solution mass; do
+    "$@" --save-system "$same_name" --quiet && for file in matrix rhs solution mass position; do
         cmp "one/$file.mtx" "$same_name/$file.mtx" || return 1
     done
 }

@@ -130,7 +130,7 @@ static int fill_matrix(FILE *file, const void *what)
 struct array {
     const char *comment;
     uint32_t n;
-    const double *free;  /* n: factors, */
+    const double *free;  /* n: factors, NULL: all 1, */
     const double *value; /* of n x 3 numbers, or of n that stand for three each */
     size_t of_vertex;
 };
@@ -143,7 +143,7 @@ static int fill_array(FILE *file, const void *what)
     for (size_t v = 0; v < array->n && !ferror(file); v++)
         for (size_t c = 0; c < 3; c++) {
             const double value = array->value[array->of_vertex * v + c % array->of_vertex];
-            fprintf(file, "%.17g\n", array->free[v] > 0 ? value : 0.0);
+            fprintf(file, "%.17g\n", !array->free || array->free[v] > 0 ? value : 0.0);
         }
     return ferror(file);
 }
@@ -170,6 +170,7 @@ int output_system(const char *folder, const struct solve_system *s, struct cloth
     const struct array rhs = {"S b; kg m/s", s->n, s->free, s->b, 3};
     const struct array solution = {"dv, as the step found it; m/s", s->n, s->free, s->dv, 3};
     const struct array mass = {"mass of each unknown, 0 where held; kg", s->n, s->free, s->mass, 1};
+    const struct array position = {"positions after the step; m", s->n, NULL, s->x, 3};
     int code = CLOTH_OK;
     if (sums_make(&sums, s))
         code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for the matrix of %u vertices", s->n);
@@ -181,6 +182,8 @@ int output_system(const char *folder, const struct solve_system *s, struct cloth
         code = write(folder, "solution", fill_array, &solution, error);
     if (!code)
         code = write(folder, "mass", fill_array, &mass, error);
+    if (!code)
+        code = write(folder, "position", fill_array, &position, error);
     sums_free(&sums);
     return code;
 }

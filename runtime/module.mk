@@ -21,8 +21,13 @@ include runtime/comm/module.mk
 include runtime/check/module.mk
 include runtime/trace/module.mk
 include runtime/workers/module.mk
+include runtime/predict/module.mk
 
 bin_PROGRAMS += duite-trace
 dist_man_MANS += runtime/duite-trace.1
 duite_trace_SOURCES = runtime/duite-trace.c
 duite_trace_LDADD = libduite_core.la
+bin_PROGRAMS += duite-predict
+dist_man_MANS += runtime/duite-predict.1
+duite_predict_SOURCES = runtime/duite-predict.c
+duite_predict_LDADD = libduite_core.la

@@ -1,0 +1,251 @@
+/* The command line of duite-predict. */
+#include "runtime/predict/predict.h"
+
+#include <duite.h>
+
+#include <config.h>
+
+#include <argp.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FAILED = 1, BAD_INPUT = 2 };
+enum {
+    BANDWIDTH = 256,
+    CORES,
+    CORE_SPEED,
+    HOSTS,
+    LATENCY,
+    MAPPING,
+    OVERHEAD,
+    PAJE,
+    SCHEDULER,
+    SEED,
+    SWITCH
+};
+
+const char *argp_program_version = "duite-predict (" PACKAGE_STRING ")";
+
+struct command {
+    const char *file, *paje, *scheduler, *mapping;
+    struct predict_cluster cluster;
+};
+
+static const struct argp_option OPTIONS[] = {
+    {"hosts", HOSTS, "N", 0, "hosts, each a rank (default: the ranks of the trace)", 1},
+    {"cores", CORES, "N", 0, "cores of a host (default: the threads of the trace)", 1},
+    {"core-speed", CORE_SPEED, "X", 0, "how fast a core is, against the traced one (default: 1)",
+     1},
+    {"latency", LATENCY, "SECONDS", 0, "of a message (default: as rank 0 measured it, else 5e-6)",
+     1},
+    {"bandwidth", BANDWIDTH, "BYTES/S", 0, "of a network card (default: 1.25e9, 10 Gbit/s)", 1},
+    {"switch", SWITCH, "BYTES/S", 0, "of all messages together (default: enough)", 1},
+    {"overhead", OVERHEAD, "SECONDS", 0, "between two tasks (default: as it was traced)", 1},
+    {"scheduler", SCHEDULER, "NAME", 0, "as of duite-cloth (default: steal)", 2},
+    {"mapping", MAPPING, "NAME", 0,
+     "as of duite-cloth (default: the homes of the trace, if there are as many hosts as ranks; "
+     "else "
+     "metis)",
+     2},
+    {"seed", SEED, "N", 0, "of what is random in them (default: 1)", 2},
+    {"paje", PAJE, "OUT", 0, "write the predicted run as a Paje trace", 3},
+    {0}};
+
+static double number(struct argp_state *state, const char *option, const char *text)
+{
+    char *end;
+    errno = 0;
+    double value = strtod(text, &end);
+    if (end == text || *end || errno || !isfinite(value) || value < 0)
+        argp_error(state, "--%s %s: a number >= 0 is expected", option, text);
+    return value;
+}
+
+static uint64_t whole(struct argp_state *state, const char *option, const char *text,
+                      uint64_t least, uint64_t most)
+{
+    char *end;
+    errno = 0;
+    uint64_t value = strtoull(text, &end, 10);
+    if (*text < '0' || *text > '9' || *end || errno || value < least || value > most)
+        argp_error(state, "--%s %s: a whole number from %llu to %llu is expected", option, text,
+                   (unsigned long long)least, (unsigned long long)most);
+    return value;
+}
+
+static error_t parse_policy(struct argp_state *state, int key, const char *value)
+{
+    struct command *command = state->input;
+    struct predict_cluster *cluster = &command->cluster;
+    bool found = true;
+    if (key == SCHEDULER)
+        found = (cluster->scheduler = duite_scheduler_find(value));
+    else
+        found = (cluster->mapping = duite_mapping_find(value));
+    if (!found)
+        argp_error(state, "--%s %s: %s", key == SCHEDULER ? "scheduler" : "mapping", value,
+                   duite_message());
+    *(key == SCHEDULER ? &command->scheduler : &command->mapping) = value;
+    return 0;
+}
+
+static error_t parse(int key, char *value, struct argp_state *state)
+{
+    struct command *command = state->input;
+    struct predict_cluster *cluster = &command->cluster;
+    switch (key) {
+    case HOSTS:
+        cluster->hosts = (uint32_t)whole(state, "hosts", value, 1, 1 << 20);
+        return 0;
+    case CORES:
+        cluster->cores = (uint32_t)whole(state, "cores", value, 1, 4096);
+        return 0;
+    case CORE_SPEED:
+        cluster->core_speed = number(state, "core-speed", value);
+        return 0;
+    case LATENCY:
+        cluster->latency = number(state, "latency", value);
+        return 0;
+    case BANDWIDTH:
+        cluster->bandwidth = number(state, "bandwidth", value);
+        return 0;
+    case SWITCH:
+        cluster->capacity = number(state, "switch", value);
+        return 0;
+    case OVERHEAD:
+        cluster->overhead = number(state, "overhead", value);
+        return 0;
+    case SCHEDULER:
+    case MAPPING:
+        return parse_policy(state, key, value);
+    case SEED:
+        cluster->seed = whole(state, "seed", value, 0, UINT64_MAX);
+        return 0;
+    case PAJE:
+        command->paje = value;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (command->file)
+            argp_error(state, "%s: a second trace; one is expected", value);
+        command->file = value;
+        return 0;
+    case ARGP_KEY_NO_ARGS:
+        argp_error(state, "the file of a trace is expected");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp ARGP = {
+    .options = OPTIONS,
+    .parser = parse,
+    .args_doc = "TRACE",
+    .doc = "Says what the run of a trace (duite-cloth --trace) would take on another cluster: the "
+           "main program is run again in virtual time, with the same policies.\v"
+           "Exit codes: 0 done, 1 a file could not be written, 2 the trace or the command line is "
+           "wrong."};
+
+static void complete(struct command *command, const struct trace_run *run)
+{
+    struct predict_cluster *cluster = &command->cluster;
+    const struct trace_header *header = run->rank[0].header;
+    if (!cluster->hosts)
+        cluster->hosts = run->n_ranks;
+    if (!cluster->cores)
+        cluster->cores = header->workers;
+    if (cluster->latency < 0)
+        cluster->latency = header->latency > 0 ? header->latency : 5e-6;
+    if (!cluster->mapping && cluster->hosts != run->n_ranks) {
+        cluster->mapping = duite_mapping_find("metis");
+        command->mapping = "metis";
+    }
+}
+
+static double ratio(double a, double b)
+{
+    return b > 0 ? a / b : 0;
+}
+
+static void print(const struct command *command, const struct predict_result *r)
+{
+    const struct predict_cluster *c = &command->cluster;
+    const double workers = (double)c->hosts * c->cores;
+    const double path = fmax(r->critical_path, r->work / workers);
+    printf("  cluster        %u hosts x %u cores, latency %g s, bandwidth %g bytes/s", c->hosts,
+           c->cores, c->latency, c->bandwidth);
+    if (isfinite(c->capacity))
+        printf(", switch %g bytes/s", c->capacity);
+    printf("\n  policies       scheduler %s, mapping %s\n", command->scheduler, command->mapping);
+    printf("  tasks          %llu, stolen %llu\n", (unsigned long long)r->tasks,
+           (unsigned long long)r->stolen);
+    printf("  makespan       %.6f s\n", r->makespan);
+    printf("  speed-up       %.3f, efficiency %.3f\n", ratio(r->work, r->makespan),
+           ratio(r->work, r->makespan * workers));
+    printf("  idle           %.1f %%\n", 100 * r->idle);
+    printf("  messages       %llu, %llu bytes\n", (unsigned long long)r->messages,
+           (unsigned long long)r->bytes);
+    printf("  lower bound    %.6f s: critical path %.6f s, work %.6f s over %.0f cores\n", path,
+           r->critical_path, r->work, workers);
+    printf("  overhead       %.3g us between two tasks\n", 1e6 * r->overhead);
+    printf("  limited by     %s\n", predict_limit_name(r->limit));
+    printf("  held up by    ");
+    for (int i = 0; i < PREDICT_LIMITS; i++)
+        printf(" %s %.1f %%%s", predict_limit_name((enum predict_limit)i),
+               100 * ratio(r->chain[i], r->makespan), i + 1 < PREDICT_LIMITS ? "," : "\n");
+}
+
+static int write_failed(const char *file)
+{
+    fprintf(stderr, "duite-predict: %s cannot be written: %s\n", file, strerror(errno));
+    return FAILED;
+}
+
+static int work(struct command *command, const struct trace_run *run)
+{
+    struct predict_result result;
+    FILE *paje = command->paje ? fopen(command->paje, "w") : NULL;
+    complete(command, run);
+    if (command->paje && !paje)
+        return write_failed(command->paje);
+    int code = predict(run, &command->cluster, &result, paje) ? BAD_INPUT : 0;
+    if (code)
+        fprintf(stderr, "duite-predict: %s: %s\n", command->file, duite_message());
+    if (paje) {
+        bool fine = !ferror(paje);
+        fine = !fclose(paje) && fine;
+        if (!fine && !code)
+            return write_failed(command->paje);
+    }
+    if (!code)
+        print(command, &result);
+    if (!code && (fflush(stdout) || ferror(stdout)))
+        code = write_failed("standard output");
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    struct command command = {.scheduler = "steal",
+                              .mapping = "of the trace",
+                              .cluster = {.scheduler = duite_scheduler_find("steal"),
+                                          .latency = -1,
+                                          .bandwidth = 1.25e9,
+                                          .capacity = INFINITY,
+                                          .core_speed = 1,
+                                          .overhead = -1,
+                                          .seed = 1}};
+    argp_err_exit_status = BAD_INPUT;
+    if (argp_parse(&ARGP, argc, argv, 0, NULL, &command))
+        return BAD_INPUT;
+    struct trace_run *run;
+    if (trace_read(&run, command.file, false)) {
+        fprintf(stderr, "duite-predict: %s\n", duite_message());
+        return BAD_INPUT;
+    }
+    int code = work(&command, run);
+    trace_run_free(run);
+    return code;
+}

@@ -1,0 +1,273 @@
+/* Dependences as the runtime derives them, from the accesses in fork order: readers wait for the
+ * last writer, a writer for the readers where it overwrites. A value that is read on another host
+ * is one message there, whoever reads it. */
+#include "runtime/predict/graph.h"
+
+#include "runtime/base/memory.h"
+#include "runtime/graph/graph.h"
+
+#include <stdlib.h>
+
+enum { SMALL_SUM = 1024 }; /* bytes: in replays such sums are made on every host */
+
+static bool grow(struct predict_graph *graph, void *array, size_t *capacity, size_t n, size_t size)
+{
+    void **old = array;
+    if (n < *capacity)
+        return true;
+    void *moved = graph->failed ? NULL : base_grow(*old, capacity, n + 1, size);
+    graph->failed |= !moved;
+    if (moved)
+        *old = moved;
+    return moved != NULL;
+}
+
+uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node)
+{
+    if (!grow(graph, &graph->node, &graph->nodes_capacity, graph->n_nodes, sizeof *graph->node))
+        return 0;
+    graph->node[graph->n_nodes] = *node;
+    graph->node[graph->n_nodes].pending = 1;
+    graph->node[graph->n_nodes].edge = PREDICT_NONE;
+    return (uint32_t)graph->n_nodes++;
+}
+
+void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to)
+{
+    if (from == PREDICT_NONE || from == to ||
+        !grow(graph, &graph->edge, &graph->edges_capacity, graph->n_edges, sizeof *graph->edge))
+        return;
+    graph->linked |= from >= graph->round;
+    graph->edge[graph->n_edges] = (struct predict_edge){to, graph->node[from].edge};
+    graph->node[from].edge = (uint32_t)graph->n_edges++;
+    graph->node[to].pending++;
+}
+
+static void push(struct predict_graph *graph, uint32_t *list, uint32_t node, uint32_t host)
+{
+    if (!grow(graph, &graph->link, &graph->links_capacity, graph->n_links, sizeof *graph->link))
+        return;
+    graph->link[graph->n_links] = (struct predict_link){node, host, *list};
+    *list = (uint32_t)graph->n_links++;
+}
+
+/* A node that a round's beginning holds back like any other root. */
+static uint32_t add_own(struct predict_graph *graph, enum predict_kind kind, uint32_t host,
+                        uint32_t what, uint64_t number)
+{
+    double seconds = kind == PREDICT_TASK || kind == PREDICT_EVERYWHERE ? graph->own[what] : 0;
+    return predict_add(graph, &(struct predict_node){.number = number,
+                                                     .kernel = graph->run->n_kernels + what,
+                                                     .host = host,
+                                                     .block = host,
+                                                     .priority = INT32_MAX,
+                                                     .seconds = (float)seconds,
+                                                     .kind = kind});
+}
+
+/* ---- Reading ---- */
+
+static uint32_t send(struct predict_graph *graph, uint32_t object, int host)
+{
+    struct predict_object *o = &graph->object[object];
+    bool all = host == PREDICT_ALL;
+    uint32_t message =
+        add_own(graph, all ? PREDICT_EXCHANGE : PREDICT_MESSAGE, (uint32_t)o->holder, 0, o->bytes);
+    if (graph->failed)
+        return PREDICT_NONE;
+    graph->node[message].block = all ? 0 : (uint32_t)host;
+    graph->linked = false;
+    predict_edge(graph, o->writer, message);
+    predict_hold(graph, message);
+    push(graph, &o->readers, message, (uint32_t)o->holder);
+    return message;
+}
+
+/* The node after which the object's value is on the host, or everywhere; NONE: it always was. */
+static uint32_t fetch(struct predict_graph *graph, uint32_t object, int host)
+{
+    struct predict_object *o = &graph->object[object];
+    if (o->holder == PREDICT_ALL || o->holder == host ||
+        (graph->cluster->hosts == 1 && host == PREDICT_ALL))
+        return o->writer;
+    if (host == PREDICT_ALL) {
+        o->writer = send(graph, object, host);
+        o->holder = PREDICT_ALL;
+        return o->writer;
+    }
+    for (uint32_t i = o->copies; i != PREDICT_NONE; i = graph->link[i].next)
+        if (graph->link[i].host == (uint32_t)host)
+            return graph->link[i].node;
+    uint32_t message = send(graph, object, host);
+    push(graph, &o->copies, message, (uint32_t)host);
+    return message;
+}
+
+/* ---- Writing ---- */
+
+/* `node` makes the next value, on a host or on all. */
+static void overwrite(struct predict_graph *graph, uint32_t node, uint32_t object, int host)
+{
+    struct predict_object *o = &graph->object[object];
+    bool in_place = o->holder == host || o->holder == PREDICT_ALL || host == PREDICT_ALL;
+    if (in_place)
+        predict_edge(graph, o->writer, node);
+    for (uint32_t i = o->readers; i != PREDICT_NONE; i = graph->link[i].next)
+        if (host == PREDICT_ALL || graph->link[i].host == (uint32_t)host)
+            predict_edge(graph, graph->link[i].node, node);
+    o->writer = node;
+    o->holder = host;
+    o->readers = o->copies = PREDICT_NONE;
+}
+
+/* ---- Sums ---- */
+
+/* A piece for each other host that contributes, and its message: in graph->piece by host. */
+static void make_pieces(struct predict_graph *graph, uint32_t object)
+{
+    const struct predict_object *o = &graph->object[object];
+    uint32_t home = (uint32_t)o->home;
+    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
+        graph->piece[graph->link[i].host] = PREDICT_NONE;
+    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
+        uint32_t host = graph->link[i].host;
+        if (host == home)
+            continue;
+        if (graph->piece[host] == PREDICT_NONE)
+            graph->piece[host] = add_own(graph, PREDICT_TASK, host, GRAPH_PIECES, 0);
+        predict_edge(graph, graph->link[i].node, graph->piece[host]);
+    }
+}
+
+/* The nodes that the sum waits for where it is made: pieces of other hosts come by message. */
+static void gather_pieces(struct predict_graph *graph, uint32_t object, uint32_t sum)
+{
+    const struct predict_object *o = &graph->object[object];
+    uint32_t home = (uint32_t)o->home;
+    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
+        uint32_t host = graph->link[i].host;
+        if (host == home)
+            predict_edge(graph, graph->link[i].node, sum);
+        else if (graph->piece[host] != PREDICT_NONE)
+            predict_edge(graph, graph->piece[host], sum);
+        if (host != home)
+            graph->piece[host] = PREDICT_NONE;
+    }
+}
+
+/* The pieces' messages take their places. */
+static void send_pieces(struct predict_graph *graph, uint32_t object)
+{
+    const struct predict_object *o = &graph->object[object];
+    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
+        uint32_t host = graph->link[i].host, piece = graph->piece[host];
+        if (host == (uint32_t)o->home || graph->node[piece].kind == PREDICT_MESSAGE)
+            continue;
+        uint32_t message = add_own(graph, PREDICT_MESSAGE, host, 0, o->bytes);
+        graph->node[message].block = (uint32_t)o->home;
+        predict_edge(graph, piece, message);
+        graph->piece[host] = message;
+    }
+}
+
+/* In a replay: each host sends what it has to all others, and all add it up. */
+static uint32_t exchange_pieces(struct predict_graph *graph, uint32_t object)
+{
+    const struct predict_object *o = &graph->object[object];
+    uint32_t exchange = add_own(graph, PREDICT_EXCHANGE, 0, 0, o->bytes);
+    if (graph->failed)
+        return PREDICT_NONE;
+    graph->node[exchange].block = 1; /* all send */
+    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
+        predict_edge(graph, graph->link[i].node, exchange);
+    return exchange;
+}
+
+static void close_sum(struct predict_graph *graph, uint32_t object)
+{
+    bool all =
+        graph->replays && graph->cluster->hosts > 1 && graph->object[object].bytes <= SMALL_SUM;
+    int home = all ? PREDICT_ALL : graph->object[object].home;
+    uint32_t fetched = fetch(graph, object, home), exchange = PREDICT_NONE;
+    if (all)
+        exchange = exchange_pieces(graph, object);
+    else
+        make_pieces(graph, object);
+    if (!all)
+        send_pieces(graph, object);
+    uint32_t sum = add_own(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, all ? 0 : (uint32_t)home,
+                           graph->replays ? GRAPH_NODE_SUM : GRAPH_COMBINE, 0);
+    if (graph->failed)
+        return;
+    predict_edge(graph, fetched, sum);
+    predict_edge(graph, exchange, sum);
+    if (!all)
+        gather_pieces(graph, object, sum);
+    overwrite(graph, sum, object, home);
+    graph->object[object].leaves = PREDICT_NONE;
+}
+
+/* ---- Uses ---- */
+
+/* A view is gathered where its object is, as a task that reads it. */
+static void gather_view(struct predict_graph *graph, uint32_t view)
+{
+    uint32_t parent = graph->object[view].parent;
+    if (graph->object[parent].leaves != PREDICT_NONE)
+        close_sum(graph, parent);
+    if (graph->failed || graph->object[view].gathered == graph->object[parent].writer)
+        return;
+    const struct predict_object *o = &graph->object[parent];
+    int host = o->holder == PREDICT_ALL ? o->home : o->holder;
+    uint32_t task = add_own(graph, PREDICT_TASK, (uint32_t)host,
+                            graph->replays ? GRAPH_NODE_VIEW : GRAPH_VIEW, 0);
+    if (graph->failed)
+        return;
+    graph->linked = false;
+    predict_use(graph, task, parent, DUITE_R, o->writer);
+    overwrite(graph, task, view, host);
+    predict_hold(graph, task);
+    graph->object[view].gathered = graph->object[parent].writer;
+}
+
+uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mode mode, int host)
+{
+    if (mode == DUITE_CW)
+        return PREDICT_NONE;
+    if (graph->object[object].leaves != PREDICT_NONE)
+        close_sum(graph, object);
+    if (graph->object[object].parent != PREDICT_NONE && !graph->failed)
+        gather_view(graph, object);
+    return mode == DUITE_W || graph->failed ? PREDICT_NONE : fetch(graph, object, host);
+}
+
+void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
+                 uint32_t prepared)
+{
+    const uint32_t at = graph->node[node].host;
+    const int host = graph->node[node].kind == PREDICT_EVERYWHERE ? PREDICT_ALL : (int)at;
+    predict_edge(graph, prepared, node);
+    if (mode == DUITE_CW)
+        push(graph, &graph->object[object].leaves, node, at);
+    else if (mode == DUITE_R)
+        push(graph, &graph->object[object].readers, node, at);
+    else
+        overwrite(graph, node, object, host);
+}
+
+void predict_hold(struct predict_graph *graph, uint32_t node)
+{
+    if (!graph->linked)
+        predict_edge(graph, graph->flag, node);
+}
+
+void predict_graph_free(struct predict_graph *graph)
+{
+    free(graph->node);
+    free(graph->edge);
+    free(graph->op);
+    free(graph->object);
+    free(graph->link);
+    base_free(graph->piece);
+    base_free(graph->began);
+}

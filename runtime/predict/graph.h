@@ -1,0 +1,118 @@
+#ifndef DUITE_PREDICT_GRAPH_H
+#define DUITE_PREDICT_GRAPH_H
+
+#include "runtime/predict/predict.h"
+
+#include <duite.h>
+
+/* The run as a graph: nodes in an order in which no edge points back, and what the main program
+ * does with them. */
+
+#define PREDICT_NONE UINT32_MAX
+
+enum predict_kind {
+    PREDICT_TASK,       /* runs on a worker of its host */
+    PREDICT_EVERYWHERE, /* a replicated task: on all hosts at once, as a worker's time goes */
+    PREDICT_MESSAGE,    /* from `host` to `block`; number: bytes */
+    PREDICT_EXCHANGE,   /* number bytes from each of those that have them to all others */
+    PREDICT_INSTANT     /* takes no time */
+};
+
+struct predict_node {
+    uint64_t number;
+    uint32_t kernel; /* of kernels; beyond them: the runtime's own, by graph_kind */
+    uint32_t host, block;
+    int32_t priority;
+    float seconds, cost;
+    uint32_t pending; /* edges that end here, and 1 for the main program */
+    uint32_t edge;    /* the first of those that begin here, or NONE */
+    uint32_t kind;
+};
+
+struct predict_edge {
+    uint32_t to, next;
+};
+
+/* What the main program does: brings nodes up to `end` into being, `each` seconds apart; then waits
+ * for `node`, or for all nodes so far (NONE), or not at all. */
+struct predict_op {
+    uint32_t end, node;
+    bool waits;
+    double each;
+};
+
+struct predict_object {
+    int home;   /* a host */
+    int holder; /* who has the value; EVERYWHERE: all */
+    uint32_t block;
+    uint32_t writer;                  /* node, or NONE */
+    uint32_t readers, copies, leaves; /* lists in `link` */
+    uint64_t bytes;
+    uint32_t parent;   /* of a view: object; else NONE */
+    uint32_t gathered; /* a view: the writer of its object then */
+};
+
+enum { PREDICT_ALL = -1 }; /* holder */
+
+struct predict_link {
+    uint32_t node, host, next;
+};
+
+struct predict_graph {
+    const struct trace_run *run;
+    const struct predict_cluster *cluster;
+    struct predict_node *node;
+    size_t n_nodes, nodes_capacity;
+    struct predict_edge *edge;
+    size_t n_edges, edges_capacity;
+    struct predict_op *op;
+    size_t n_ops, ops_capacity;
+    struct predict_object *object;
+    size_t n_objects, objects_capacity;
+    struct predict_link *link;
+    size_t n_links, links_capacity;
+    uint32_t *piece; /* by host: this rank's part of a sum that is being closed */
+    uint32_t *began; /* by host: the node that begins or ends a replay there */
+    double own[64];  /* by graph_kind: s of the runtime's own tasks */
+    uint32_t round;  /* the first node of this round of a replay, or NONE */
+    uint32_t flag;   /* the node that decided on this round, or NONE */
+    double overhead; /* s between two tasks */
+    uint64_t n_tasks;
+    bool replays, failed; /* failed: no memory */
+    bool linked;          /* the node that is being made has an edge from its own round */
+};
+
+/* A node that waits for nothing yet. 0 without memory (and graph->failed). */
+uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node);
+/* `to` waits for `from`; NONE is fine. */
+void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to);
+/* Before a node on `host` (PREDICT_ALL: everywhere) is made that uses the object: makes what comes
+ * before it, and returns the node after which the value is there; NONE: it always was, or is not
+ * needed. */
+uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mode mode, int host);
+/* The node uses the object, with what predict_prepare returned. */
+void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
+                 uint32_t prepared);
+/* All edges to the node are there since `linked` was cleared: if nothing of its round of a replay
+ * comes before it, it waits for what decided on the round. */
+void predict_hold(struct predict_graph *graph, uint32_t node);
+
+/* Makes the graph of a trace. Errors as of predict. */
+int predict_build(struct predict_graph *graph);
+void predict_graph_free(struct predict_graph *graph);
+
+/* Runs it. */
+int predict_simulate(struct predict_graph *graph, struct predict_result *result, FILE *paje);
+
+/* Seconds of tasks by their numbers. */
+struct predict_times;
+struct predict_times *predict_times_new(const struct trace_run *run);
+void predict_times_free(struct predict_times *times);
+/* Whether the task ran; and for how long. */
+bool predict_times_find(const struct predict_times *times, uint64_t number, double *seconds);
+/* The mean of the tasks of a kernel; of the runtime's own tasks of a kind; between two tasks. */
+double predict_times_kernel(const struct predict_times *times, uint32_t kernel);
+double predict_times_own(const struct predict_times *times, uint32_t kind);
+double predict_times_gap(const struct predict_times *times);
+
+#endif

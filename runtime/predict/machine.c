@@ -1,0 +1,154 @@
+/* The parts of the machine: queues, the events to come, and the network. */
+#include "runtime/predict/machine.h"
+
+#include "runtime/base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Queues ---- */
+
+static bool room(struct predict_queue *queue)
+{
+    if (queue->n < queue->capacity)
+        return true;
+    size_t larger = queue->capacity ? 2 * queue->capacity : 16;
+    uint32_t *node = malloc(larger * sizeof *node);
+    if (!node)
+        return false;
+    for (size_t i = 0; i < queue->n; i++)
+        node[i] = queue->node[(queue->first + i) & (queue->capacity - 1)];
+    free(queue->node);
+    queue->node = node;
+    queue->first = 0;
+    queue->capacity = larger;
+    return true;
+}
+
+/* The larger priority; of equals the one that was forked first. */
+static bool before(const struct predict_node *nodes, uint32_t a, uint32_t b)
+{
+    if (nodes[a].priority != nodes[b].priority)
+        return nodes[a].priority > nodes[b].priority;
+    return a < b;
+}
+
+static void swap(uint32_t *a, uint32_t *b)
+{
+    uint32_t keep = *a;
+    *a = *b;
+    *b = keep;
+}
+
+bool predict_queue_put(struct predict_queue *queue, const struct predict_node *nodes, uint32_t node)
+{
+    if (!room(queue))
+        return false;
+    size_t at = queue->n++;
+    queue->node[(queue->first + at) & (queue->capacity - 1)] = node;
+    for (; queue->heap && at && before(nodes, queue->node[at], queue->node[(at - 1) / 2]);
+         at = (at - 1) / 2)
+        swap(&queue->node[at], &queue->node[(at - 1) / 2]);
+    return true;
+}
+
+static uint32_t take_highest(struct predict_queue *queue, const struct predict_node *nodes)
+{
+    uint32_t top = queue->node[0], *node = queue->node;
+    node[0] = node[--queue->n];
+    for (size_t at = 0, child; (child = 2 * at + 1) < queue->n; at = child) {
+        child += child + 1 < queue->n && before(nodes, node[child + 1], node[child]);
+        if (before(nodes, node[at], node[child]))
+            break;
+        swap(&node[at], &node[child]);
+    }
+    return top;
+}
+
+uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_node *nodes,
+                            duite_end end)
+{
+    if (!queue->n)
+        return PREDICT_NONE;
+    if (queue->heap)
+        return take_highest(queue, nodes);
+    size_t at = end == DUITE_NEWEST ? queue->first + queue->n - 1 : queue->first;
+    queue->first += end != DUITE_NEWEST;
+    queue->n--;
+    return queue->node[at & (queue->capacity - 1)];
+}
+
+/* ---- Events ---- */
+
+static bool sooner(const struct predict_event *a, const struct predict_event *b)
+{
+    return a->time < b->time || (!(b->time < a->time) && a->order < b->order);
+}
+
+bool predict_event_put(struct predict_events *events, double time, uint32_t node, uint32_t worker)
+{
+    void *moved = base_grow(events->event, &events->capacity, events->n + 1, sizeof *events->event);
+    if (!moved)
+        return false;
+    struct predict_event *event = events->event = moved;
+    struct predict_event new = {time, events->order++, node, worker};
+    size_t at = events->n++;
+    for (; at && sooner(&new, &event[(at - 1) / 2]); at = (at - 1) / 2)
+        event[at] = event[(at - 1) / 2];
+    event[at] = new;
+    return true;
+}
+
+bool predict_event_take(struct predict_events *events, struct predict_event *first)
+{
+    struct predict_event *event = events->event;
+    if (!events->n)
+        return false;
+    *first = event[0];
+    struct predict_event last = event[--events->n];
+    size_t at = 0, child;
+    for (; (child = 2 * at + 1) < events->n; at = child) {
+        child += child + 1 < events->n && sooner(&event[child + 1], &event[child]);
+        if (!sooner(&event[child], &last))
+            break;
+        event[at] = event[child];
+    }
+    event[at] = last;
+    return true;
+}
+
+/* ---- Network ---- */
+
+double predict_message(struct predict_network *network, double now, uint32_t from, uint32_t to,
+                       uint64_t bytes, double *flight)
+{
+    const struct predict_cluster *cluster = network->cluster;
+    double takes = (double)bytes / cluster->bandwidth;
+    double leaves = fmax(now, network->out[from]);
+    network->out[from] = leaves + takes;
+    double passes = fmax(leaves, network->fabric);
+    network->fabric = passes + (double)bytes / cluster->capacity;
+    double comes = fmax(passes + cluster->latency, network->in[to]);
+    network->in[to] = comes + takes;
+    network->messages++;
+    network->bytes += bytes;
+    *flight = cluster->latency;
+    return comes + takes;
+}
+
+double predict_exchange(struct predict_network *network, double now, uint64_t bytes, bool all,
+                        double *flight)
+{
+    const struct predict_cluster *cluster = network->cluster;
+    const uint64_t others = cluster->hosts - 1, messages = others * (all ? cluster->hosts : 1);
+    *flight = 0;
+    if (!others)
+        return now;
+    double takes = (double)(others * bytes) / cluster->bandwidth;
+    double fabric = (double)(messages * bytes) / cluster->capacity;
+    network->messages += messages;
+    network->bytes += messages * bytes;
+    *flight = cluster->latency;
+    return now + cluster->latency + fmax(takes, fabric);
+}

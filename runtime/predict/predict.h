@@ -1,0 +1,57 @@
+#ifndef DUITE_PREDICT_PREDICT_H
+#define DUITE_PREDICT_PREDICT_H
+
+#include "runtime/trace/read.h"
+
+#include <duite_policy.h>
+#include <stdio.h>
+
+/* What a traced run would take on a described cluster: its main program is run again in virtual
+ * time, with the same mapping and the same scheduler's functions, and bodies that take as long as
+ * they were seen to take. */
+
+struct predict_cluster {
+    uint32_t hosts, cores; /* cores of each host: a rank with so many workers */
+    double latency;        /* s, of a message */
+    double bandwidth;      /* bytes/s of a network card: one message out and one in at a time */
+    double capacity;       /* bytes/s of the switch, all messages together; infinite: enough */
+    double core_speed;     /* times that of the traced run */
+    double overhead;       /* s, of the runtime between two tasks; < 0: as it was seen */
+    const duite_scheduler *scheduler;
+    const duite_mapping
+        *mapping; /* NULL: the homes that were traced; as many hosts as ranks then */
+    uint64_t seed;
+};
+
+/* What holds up the last task, and all: seconds along the chain of causes that ends with it. */
+enum predict_limit {
+    PREDICT_WORK,      /* tasks that waited for a worker */
+    PREDICT_PATH,      /* tasks that began when the one before them ended */
+    PREDICT_LATENCY,   /* messages on their way */
+    PREDICT_BANDWIDTH, /* messages in cards and switch, and waiting for them */
+    PREDICT_MAIN,      /* the main program, forking */
+    PREDICT_OVERHEAD,  /* the runtime between tasks */
+    PREDICT_LIMITS
+};
+
+struct predict_result {
+    uint64_t tasks, messages, bytes, stolen;
+    double makespan;      /* s */
+    double work;          /* s in bodies, all workers together */
+    double critical_path; /* s: the longest chain of tasks, if messages and forks took no time */
+    double idle;          /* share of the workers' time without a task */
+    double overhead;      /* s between two tasks, as it was taken to be */
+    double chain[PREDICT_LIMITS];
+    enum predict_limit limit;
+};
+
+/* The names of the limits, for people. */
+const char *predict_limit_name(enum predict_limit limit);
+
+/* `paje`: NULL, or where the predicted run is written as a Paje trace. Deterministic. Errors:
+ * memory; DUITE_E_ARGUMENT for a trace with losses or without a whole program, a mapping that
+ * fails, and a cluster that cannot be. */
+int predict(const struct trace_run *run, const struct predict_cluster *cluster,
+            struct predict_result *result, FILE *paje);
+
+#endif

@@ -1,0 +1,63 @@
+#ifndef DUITE_PREDICT_PROGRAM_H
+#define DUITE_PREDICT_PROGRAM_H
+
+#include "runtime/data/object.h"
+#include "runtime/predict/graph.h"
+
+/* The main program while it is read; shared by program.c and replay.c. */
+
+/* A fork, or (kernel NONE) a set; `object` are places in graph->object, or of a recorded graph in
+ * its list of objects. */
+struct predict_fork {
+    uint64_t number;
+    uint32_t kernel;
+    int at, priority;
+    float cost;
+    size_t n;
+    uint32_t *object;
+};
+
+struct predict_recorded {
+    struct predict_fork *fork;
+    uint32_t *use;
+    size_t n_forks, n_objects, n_calls;
+};
+
+struct predict_program {
+    struct predict_graph *graph;
+    struct predict_times *times;
+    struct data_table table; /* for the mapping */
+    bool maps;
+    size_t at; /* the next word */
+    bool short_of, damaged;
+    int code;
+    uint32_t *slot; /* object by slot of the trace */
+    size_t slots_capacity;
+    duite_object *name; /* by object: in `table` */
+    size_t names_capacity;
+    uint32_t *prepared, *objects; /* of one fork */
+    size_t prepared_capacity, objects_capacity;
+    struct predict_recorded *recorded;
+    size_t n_recorded, recorded_capacity;
+    uint64_t forks, tasks;
+    uint64_t since;  /* ticks: when the main program last went on */
+    size_t first_op; /* since then */
+    uint64_t forked; /* nodes since then, those of replays left out */
+};
+
+uint32_t predict_word(struct predict_program *p);
+uint64_t predict_word2(struct predict_program *p);
+float predict_float(struct predict_program *p);
+uint32_t predict_object_at(struct predict_program *p, uint32_t slot);
+bool predict_room(struct predict_program *p, size_t n);
+void predict_fork(struct predict_program *p, const struct predict_fork *fork);
+void predict_set(struct predict_program *p, uint32_t own);
+
+/* A replay begins, or was brought into being: its nodes take the main program no time. */
+void predict_op_replays(struct predict_program *p, bool begins);
+
+void predict_take_graph(struct predict_program *p, size_t n_objects);
+void predict_replay(struct predict_program *p, size_t n_objects);
+void predict_graphs_free(struct predict_program *p);
+
+#endif

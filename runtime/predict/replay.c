@@ -1,0 +1,191 @@
+/* Replays: to what comes before and after, a replay on a host is one task that reads or writes each
+ * object there; inside, a round begins where dependences allow, or when a flag was read. */
+#include "runtime/predict/program.h"
+
+#include "runtime/base/memory.h"
+
+#include <stdlib.h>
+
+static void forget(struct predict_recorded *recorded)
+{
+    free(recorded->fork);
+    free(recorded->use);
+    *recorded = (struct predict_recorded){0};
+}
+
+static struct predict_recorded *take_place(struct predict_program *p, uint32_t name)
+{
+    enum { MOST = 1 << 20 };
+    p->damaged |= name >= MOST;
+    while (p->n_recorded <= name && !p->damaged) {
+        void *moved =
+            base_grow(p->recorded, &p->recorded_capacity, p->n_recorded + 1, sizeof *p->recorded);
+        p->graph->failed |= !moved;
+        if (!moved)
+            return NULL;
+        p->recorded = moved;
+        p->recorded[p->n_recorded++] = (struct predict_recorded){0};
+    }
+    if (p->damaged)
+        return NULL;
+    forget(&p->recorded[name]);
+    return &p->recorded[name];
+}
+
+/* The uses of all forks lie in one row, which has as many words at most as are left. */
+static bool take_fork(struct predict_program *p, struct predict_recorded *graph, size_t i,
+                      size_t *used)
+{
+    struct predict_fork *fork = &graph->fork[i];
+    *fork = (struct predict_fork){.kernel = predict_word(p), .n = predict_word(p)};
+    fork->at = (int32_t)predict_word(p);
+    fork->priority = (int32_t)predict_word(p);
+    fork->cost = predict_float(p);
+    fork->object = graph->use + *used;
+    if (fork->n > p->graph->run->n_words - p->at ||
+        (fork->kernel != PREDICT_NONE && fork->kernel >= p->graph->run->n_kernels))
+        p->damaged = true;
+    for (size_t k = 0; k < fork->n && !p->damaged; k++) {
+        fork->object[k] = predict_word(p);
+        p->damaged |= fork->object[k] >= graph->n_objects;
+    }
+    p->damaged |= fork->kernel == PREDICT_NONE && fork->n != 1;
+    *used += fork->n;
+    graph->n_calls += fork->kernel != PREDICT_NONE;
+    return !p->damaged && !p->short_of;
+}
+
+void predict_take_graph(struct predict_program *p, size_t n_objects)
+{
+    struct predict_recorded *graph = take_place(p, predict_word(p));
+    for (size_t i = 0; i < n_objects; i++)
+        predict_word(p);
+    size_t n = predict_word(p), used = 0, left = p->graph->run->n_words - p->at;
+    if (!graph || n > left)
+        p->damaged = true;
+    if (p->damaged || p->short_of)
+        return;
+    graph->n_objects = n_objects;
+    graph->fork = malloc((n + 1) * sizeof *graph->fork);
+    graph->use = malloc((left + 1) * sizeof *graph->use);
+    p->graph->failed |= !graph->fork || !graph->use;
+    while (!p->graph->failed && graph->n_forks < n && take_fork(p, graph, graph->n_forks, &used))
+        graph->n_forks++;
+}
+
+void predict_graphs_free(struct predict_program *p)
+{
+    for (size_t i = 0; i < p->n_recorded; i++)
+        forget(&p->recorded[i]);
+    free(p->recorded);
+}
+
+/* Whether the round ran: one of its tasks did. */
+static bool ran(const struct predict_program *p, const struct predict_recorded *recorded,
+                uint64_t first)
+{
+    double seconds;
+    bool found = false;
+    for (uint64_t i = 1; i <= recorded->n_calls && !found; i++)
+        found = predict_times_find(p->times, first + i, &seconds);
+    return found;
+}
+
+/* On each host one node that all its objects wait for, and that waits for them. */
+static void gate(struct predict_program *p, const uint32_t *bound, size_t n)
+{
+    struct predict_graph *graph = p->graph;
+    const uint32_t hosts = graph->cluster->hosts;
+    for (uint32_t h = 0; h < hosts; h++)
+        graph->began[h] = PREDICT_NONE;
+    for (size_t i = 0; i < n && !graph->failed; i++)
+        if (graph->object[bound[i]].leaves != PREDICT_NONE)
+            predict_prepare(graph, bound[i], DUITE_R, graph->object[bound[i]].home);
+    for (size_t i = 0; i < n && !graph->failed; i++) {
+        struct predict_object *o = &graph->object[bound[i]];
+        if (o->holder == PREDICT_ALL || o->parent != PREDICT_NONE)
+            continue;
+        uint32_t host = (uint32_t)o->holder;
+        if (graph->began[host] == PREDICT_NONE)
+            graph->began[host] =
+                predict_add(graph, &(struct predict_node){.host = host, .kind = PREDICT_INSTANT});
+        if (!graph->failed)
+            predict_use(graph, graph->began[host], bound[i], DUITE_RW, o->writer);
+    }
+}
+
+/* The flag is read where the next round begins: everywhere. */
+static void decide(struct predict_graph *graph, uint32_t flag)
+{
+    uint32_t value = predict_prepare(graph, flag, DUITE_R, PREDICT_ALL);
+    uint32_t node = predict_add(graph, &(struct predict_node){.kind = PREDICT_INSTANT});
+    if (graph->failed)
+        return;
+    predict_edge(graph, value, node);
+    graph->flag = node;
+}
+
+static void fork_round(struct predict_program *p, const struct predict_recorded *recorded,
+                       const uint32_t *bound, uint64_t first)
+{
+    struct predict_graph *graph = p->graph;
+    graph->round = (uint32_t)graph->n_nodes;
+    for (size_t i = 0; i < recorded->n_forks && !graph->failed; i++) {
+        struct predict_fork fork = recorded->fork[i];
+        if (!predict_room(p, fork.n))
+            return;
+        for (size_t k = 0; k < fork.n; k++)
+            p->objects[k] = bound[fork.object[k]];
+        fork.object = p->objects;
+        fork.number = first + 1;
+        if (fork.kernel == PREDICT_NONE) {
+            predict_set(p, fork.object[0]);
+        } else {
+            predict_fork(p, &fork);
+            first++;
+        }
+    }
+}
+
+static void rounds(struct predict_program *p, const struct predict_recorded *recorded,
+                   const uint32_t *bound, uint32_t flag, uint64_t most)
+{
+    struct predict_graph *graph = p->graph;
+    bool flagged = flag != PREDICT_NONE;
+    predict_op_replays(p, true);
+    gate(p, bound, recorded->n_objects);
+    graph->replays = true;
+    for (uint64_t i = 0; i < most && !graph->failed; i++) {
+        uint64_t first = p->forks + i * recorded->n_calls;
+        if (i && flagged && !ran(p, recorded, first))
+            break;
+        fork_round(p, recorded, bound, first);
+        if (flagged && !graph->failed)
+            decide(graph, flag);
+    }
+    graph->round = graph->flag = PREDICT_NONE;
+    gate(p, bound, recorded->n_objects);
+    graph->replays = false;
+    predict_op_replays(p, false);
+}
+
+void predict_replay(struct predict_program *p, size_t n_objects)
+{
+    uint32_t name = predict_word(p), flag_slot = predict_word(p);
+    uint64_t most = predict_word2(p);
+    p->forks = predict_word2(p);
+    if (name >= p->n_recorded || p->recorded[name].n_objects != n_objects) {
+        p->damaged = true;
+        return;
+    }
+    const struct predict_recorded *recorded = &p->recorded[name];
+    uint32_t flag = flag_slot ? predict_object_at(p, flag_slot) : PREDICT_NONE;
+    uint32_t *bound = malloc((n_objects + 1) * sizeof *bound);
+    p->graph->failed |= !bound;
+    for (size_t i = 0; bound && i < n_objects; i++)
+        bound[i] = predict_object_at(p, predict_word(p));
+    if (bound && !p->damaged && !p->short_of)
+        rounds(p, recorded, bound, flag, most);
+    p->forks += most * recorded->n_calls;
+    free(bound);
+}

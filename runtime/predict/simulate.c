@@ -14,9 +14,11 @@
 
 enum { IDLE, BUSY, RESERVED }; /* of a worker; the last: it is the main program's */
 
+/* Why a node began, or was ready, when it did: another one was over, and made it ready, or left it
+ * its worker, or let the main program go on, which then brought it into being. */
 struct cause {
-    uint32_t by;  /* the node whose end it waited for, or NONE: the main program */
-    bool worker;  /* ... on its worker */
+    uint32_t by; /* NONE: the beginning */
+    enum { MADE_READY, LEFT_WORKER, FORKED } how;
     float flight; /* s of a message */
 };
 
@@ -42,7 +44,8 @@ struct machine {
     size_t op, cursor; /* of the main program */
     uint64_t over, stolen;
     bool blocked, wanted, failed;
-    uint32_t latest; /* the node that was over last */
+    uint32_t latest;  /* the node that was over last */
+    uint32_t went_on; /* ... when the main program went on last; NONE: it never waited */
 };
 
 static void node_over(struct machine *m, uint32_t node, uint32_t worker);
@@ -61,7 +64,7 @@ static void start(struct machine *m, uint32_t node, uint32_t worker)
     double begin = m->now + (before == PREDICT_NONE ? 0 : m->graph->overhead);
     /* Its worker held it up, if it was ready before that was free. */
     if (before != PREDICT_NONE && m->end[before] >= m->now && m->begin[node] < m->now)
-        m->cause[node] = (struct cause){before, true, 0};
+        m->cause[node] = (struct cause){before, LEFT_WORKER, 0};
     m->begin[node] = begin;
     m->busy += (double)n->seconds;
     m->ran[worker] = node;
@@ -184,7 +187,8 @@ static void count_down(struct machine *m, uint32_t node, uint32_t by, uint32_t w
     struct predict_node *n = &m->graph->node[node];
     if (--n->pending)
         return;
-    m->cause[node] = (struct cause){by, false, 0};
+    m->cause[node] = by == PREDICT_NONE ? (struct cause){m->went_on, FORKED, 0}
+                                        : (struct cause){by, MADE_READY, 0};
     node_ready(m, node, worker);
 }
 
@@ -221,8 +225,10 @@ static void try_to_resume(struct machine *m)
     if (!m->blocked || !may_go_on(m))
         return;
     m->wanted = true;
-    if (m->state[0] != BUSY)
-        resume(m);
+    if (m->state[0] == BUSY)
+        return;
+    m->went_on = m->latest;
+    resume(m);
 }
 
 /* It waits, and its workers work. */
@@ -233,7 +239,8 @@ static void block(struct machine *m)
     for (uint32_t host = 0; host < m->cluster->hosts; host++)
         if (m->state[host * m->cluster->cores] == RESERVED)
             look(m, host * m->cluster->cores);
-    try_to_resume(m);
+    if (may_go_on(m))
+        resume(m); /* it does not wait */
 }
 
 /* Brings one more node into being, or comes to the end of an op. */
@@ -270,6 +277,7 @@ static void free_worker(struct machine *m, uint32_t worker)
         if (node != PREDICT_NONE) /* others take what it would have run */
             m->failed |= !predict_queue_put(&m->queue[0], m->graph->node, node);
         m->state[0] = RESERVED;
+        m->went_on = m->latest;
         resume(m);
         wake(m, 0, 1);
     } else if (taken) {
@@ -357,8 +365,8 @@ static void follow_chain(const struct machine *m, double *chain)
             chain[PREDICT_BANDWIDTH] += all - (double)cause->flight;
         } else {
             double own = fmin(all, (double)node->seconds);
-            chain[cause->worker ? PREDICT_WORK : PREDICT_PATH] += own;
-            chain[cause->by == PREDICT_NONE ? PREDICT_MAIN : PREDICT_OVERHEAD] += all - own;
+            chain[cause->how == LEFT_WORKER ? PREDICT_WORK : PREDICT_PATH] += own;
+            chain[cause->how == FORKED ? PREDICT_MAIN : PREDICT_OVERHEAD] += all - own;
         }
         at = cause->by;
     }
@@ -485,7 +493,8 @@ int predict_simulate(struct predict_graph *graph, struct predict_result *result,
                         .scheduler = graph->cluster->scheduler,
                         .n_workers = graph->cluster->hosts * graph->cluster->cores,
                         .network = {.cluster = graph->cluster},
-                        .latest = PREDICT_NONE};
+                        .latest = PREDICT_NONE,
+                        .went_on = PREDICT_NONE};
     int code = prepare(&m, paje != NULL) ? DUITE_OK : base_no_memory("the prediction");
     if (!code) {
         init(&m);

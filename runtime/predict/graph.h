@@ -23,7 +23,7 @@ struct predict_node {
     uint32_t kernel; /* of kernels; beyond them: the runtime's own, by graph_kind */
     uint32_t host, block;
     int32_t priority;
-    float seconds, cost;
+    float seconds, cost, path;
     uint32_t pending; /* edges that end here, and 1 for the main program */
     uint32_t edge;    /* the first of those that begin here, or NONE */
     uint32_t kind;

@@ -26,11 +26,13 @@ static bool room(struct predict_queue *queue)
     return true;
 }
 
-/* The larger priority; of equals the one that was forked first. */
+/* The larger priority; of equals the longer path; of these the one that was forked first. */
 static bool before(const struct predict_node *nodes, uint32_t a, uint32_t b)
 {
     if (nodes[a].priority != nodes[b].priority)
         return nodes[a].priority > nodes[b].priority;
+    if (nodes[a].path < nodes[b].path || nodes[b].path < nodes[a].path)
+        return nodes[a].path > nodes[b].path;
     return a < b;
 }
 

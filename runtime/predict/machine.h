@@ -4,7 +4,7 @@
 #include "runtime/predict/graph.h"
 
 /* The machine in virtual time: what waits where, and what happens next. Shared by simulate.c,
- * queues.c and network.c. */
+ * conclude.c and machine.c. */
 
 /* Ready tasks of a worker, or that a host shares: a ring, or a heap if they are served by priority.
  */
@@ -49,5 +49,50 @@ double predict_message(struct predict_network *network, double now, uint32_t fro
 /* When all have what one host (or, all: each of them) sends to all others. */
 double predict_exchange(struct predict_network *network, double now, uint64_t bytes, bool all,
                         double *flight);
+
+enum { IDLE, BUSY, RESERVED }; /* of a worker; the last: it is the main program's */
+
+/* Why a node began, or was ready, when it did: another one was over, and made it ready, or left it
+ * its worker, or let the main program go on, which then brought it into being. */
+struct predict_cause {
+    uint32_t by; /* NONE: the beginning */
+    enum { MADE_READY, LEFT_WORKER, FORKED } how;
+    float flight; /* s of a message */
+};
+
+struct predict_machine {
+    struct predict_graph *graph;
+    const struct predict_cluster *cluster;
+    const duite_scheduler *scheduler;
+    uint32_t n_workers;
+    unsigned char *states;
+    size_t stride;
+    duite_near *near; /* by core: all are equally near */
+    unsigned *other, *level;
+    struct predict_queue *queue, *shared; /* by worker; by host */
+    unsigned char *state;                 /* by worker */
+    uint32_t *next;                       /* by worker: chained, or NONE */
+    uint32_t *ran;                        /* by worker: the node it ran last */
+    uint32_t *last;                       /* by host: the worker that ended last */
+    uint32_t *idle;                       /* by host: how many */
+    struct predict_events events;
+    struct predict_network network;
+    double *begin, *end;         /* by node */
+    uint32_t *runs_on;           /* by node, for Paje; NULL: not kept */
+    struct predict_cause *cause; /* by node */
+    double now, main_time, busy;
+    size_t op, cursor; /* of the main program */
+    uint64_t over, stolen;
+    bool blocked, wanted, failed;
+    uint32_t latest;  /* the node that was over last */
+    uint32_t went_on; /* ... when the main program went on last; NONE: it never waited */
+};
+
+/* The task as schedulers see it. */
+duite_ready predict_describe(const struct predict_machine *machine, uint32_t node);
+
+/* What came of a run that is over. Uses `begin` for other things. */
+void predict_conclude(struct predict_machine *machine, struct predict_result *result);
+int predict_write_paje(const struct predict_machine *machine, FILE *file);
 
 #endif

@@ -28,6 +28,11 @@ static int check(const struct trace_run *run, const struct predict_cluster *c)
                           "the homes that were traced are those of %u ranks, not %u hosts: name a "
                           "mapping",
                           run->n_ranks, c->hosts);
+    if (c->mapping && c->mapping->map_tasks)
+        return base_error(DUITE_E_ARGUMENT,
+                          "what mapping %s makes of recorded tasks is not foretold: trace a run "
+                          "with it, and name none",
+                          c->mapping->name);
     return DUITE_OK;
 }
 

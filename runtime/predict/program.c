@@ -4,162 +4,38 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/map/map.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- Words ---- */
 
-static uint32_t word(struct predict_program *p)
+uint32_t predict_word(struct predict_program *p)
 {
     p->short_of |= p->at >= p->graph->run->n_words;
     return p->short_of ? 0 : p->graph->run->word[p->at++];
 }
 
-static uint64_t word2(struct predict_program *p)
+uint64_t predict_word2(struct predict_program *p)
 {
-    uint64_t low = word(p);
-    return low | (uint64_t)word(p) << 32;
+    uint64_t low = predict_word(p);
+    return low | (uint64_t)predict_word(p) << 32;
 }
 
-static double number(struct predict_program *p)
+double predict_number(struct predict_program *p)
 {
-    uint64_t bits = word2(p);
+    uint64_t bits = predict_word2(p);
     double value;
     memcpy(&value, &bits, sizeof value);
     return value;
 }
 
-static float small(struct predict_program *p)
+float predict_float(struct predict_program *p)
 {
-    uint32_t bits = word(p);
+    uint32_t bits = predict_word(p);
     float value;
     memcpy(&value, &bits, sizeof value);
     return value;
-}
-
-/* ---- Objects ---- */
-
-enum { MOST_SLOTS = 1 << 28 };
-
-static uint32_t *slot_of(struct predict_program *p, uint32_t slot)
-{
-    static uint32_t none;
-    if (slot >= MOST_SLOTS) {
-        p->damaged = true;
-        return &none;
-    }
-    size_t before = p->slots_capacity;
-    if (slot >= p->slots_capacity) {
-        void *moved = base_grow(p->slot, &p->slots_capacity, (size_t)slot + 1, sizeof *p->slot);
-        p->graph->failed |= !moved;
-        if (!moved)
-            return &none;
-        p->slot = moved;
-        memset(p->slot + before, 0xff, (p->slots_capacity - before) * sizeof *p->slot);
-    }
-    return &p->slot[slot];
-}
-
-/* The object that a slot names. */
-static uint32_t object(struct predict_program *p, uint32_t slot)
-{
-    uint32_t found = *slot_of(p, slot);
-    p->damaged |= found >= p->graph->n_objects;
-    return found < p->graph->n_objects ? found : 0;
-}
-
-static void make(struct predict_program *p, bool view)
-{
-    struct predict_graph *graph = p->graph;
-    uint32_t slot = word(p), parent = view ? object(p, word(p)) : PREDICT_NONE;
-    uint64_t bytes = word2(p);
-    void *moved = base_grow(graph->object, &graph->objects_capacity, graph->n_objects + 1,
-                            sizeof *graph->object);
-    duite_object *names =
-        base_grow(p->name, &p->names_capacity, graph->n_objects + 1, sizeof *p->name);
-    if (moved)
-        graph->object = moved;
-    if (names)
-        p->name = names;
-    if (!moved || !names) {
-        graph->failed = true;
-        return;
-    }
-    struct predict_object new = {.bytes = bytes,
-                                 .writer = PREDICT_NONE,
-                                 .readers = PREDICT_NONE,
-                                 .copies = PREDICT_NONE,
-                                 .leaves = PREDICT_NONE,
-                                 .parent = parent,
-                                 .gathered = PREDICT_NONE - 1};
-    p->name[graph->n_objects] = DUITE_NO_OBJECT;
-    if (view) {
-        new.home = new.holder = graph->object[parent].home;
-    } else if (p->maps && data_object_new(&p->table, DUITE_BYTE, 1, &p->name[graph->n_objects])) {
-        graph->failed = true;
-    }
-    graph->object[graph->n_objects] = new;
-    *slot_of(p, slot) = (uint32_t)graph->n_objects++;
-}
-
-static void drop(struct predict_program *p)
-{
-    uint32_t slot = word(p);
-    duite_object name = p->name ? p->name[object(p, slot)] : DUITE_NO_OBJECT;
-    if (name.slot)
-        data_object_drop(&p->table, name);
-    *slot_of(p, slot) = PREDICT_NONE;
-}
-
-static void hint(struct predict_program *p, size_t n)
-{
-    uint32_t slot = word(p);
-    double weight = number(p);
-    duite_object *names = malloc((n + 1) * sizeof *names);
-    double *weights = malloc((n + 1) * sizeof *weights);
-    p->graph->failed |= !names || !weights;
-    for (size_t i = 0; i < n && !p->graph->failed && !p->short_of; i++) {
-        uint32_t other = object(p, word(p));
-        weights[i] = number(p);
-        if (p->maps && !p->damaged)
-            names[i] = p->name[other];
-    }
-    if (p->maps && !p->graph->failed && !p->damaged && !p->short_of)
-        p->code = map_hint(&p->table, p->name[object(p, slot)], weight, n, names, weights);
-    free(names);
-    free(weights);
-}
-
-static void follow(struct predict_program *p)
-{
-    uint32_t own = object(p, word(p)), leader = object(p, word(p));
-    if (p->maps && !p->damaged)
-        p->code = map_follow(&p->table, p->name[own], p->name[leader]);
-}
-
-/* What was traced; or, of objects that had none, what the mapping says. */
-static void homes(struct predict_program *p, size_t n)
-{
-    struct predict_graph *graph = p->graph;
-    if (p->maps)
-        p->code = map_settle(&p->table, graph->cluster->mapping, graph->cluster->seed);
-    for (size_t i = 0; i < n && !p->code && !p->short_of; i++) {
-        uint32_t own = object(p, word(p)), home = word(p);
-        if (p->damaged)
-            return;
-        struct predict_object *o = &graph->object[own];
-        const struct data_object *settled = p->maps ? &p->table.object[p->name[own].slot] : NULL;
-        bool moves = o->writer != PREDICT_NONE; /* by migration: not foretold with a mapping */
-        if (settled && moves)
-            continue;
-        p->damaged |= home >= graph->run->n_ranks;
-        o->home = settled ? settled->home : (int)(home % graph->cluster->hosts);
-        o->block = settled ? settled->block : (uint32_t)own;
-        if (!moves)
-            o->holder = o->home;
-    }
 }
 
 /* ---- Tasks ---- */
@@ -253,17 +129,17 @@ bool predict_room(struct predict_program *p, size_t n)
 
 static void fork_one(struct predict_program *p, size_t n, bool told)
 {
-    struct predict_fork fork = {.kernel = word(p), .n = n, .at = -1};
+    struct predict_fork fork = {.kernel = predict_word(p), .n = n, .at = -1};
     if (told) {
-        fork.at = (int32_t)word(p);
-        fork.priority = (int32_t)word(p);
-        fork.cost = small(p);
+        fork.at = (int32_t)predict_word(p);
+        fork.priority = (int32_t)predict_word(p);
+        fork.cost = predict_float(p);
     }
     p->damaged |= fork.kernel >= p->graph->run->n_kernels;
     if (!predict_room(p, n) || p->damaged)
         return;
     for (size_t i = 0; i < n; i++)
-        p->objects[i] = object(p, word(p));
+        p->objects[i] = predict_object_at(p, predict_word(p));
     fork.object = p->objects;
     fork.number = ++p->forks;
     if (!p->damaged && !p->short_of)
@@ -314,9 +190,9 @@ static void op(struct predict_program *p, uint64_t from, uint64_t to, uint32_t n
 
 static void get(struct predict_program *p)
 {
-    uint32_t own = object(p, word(p));
-    int rank = (int32_t)word(p);
-    uint64_t from = word2(p), to = word2(p);
+    uint32_t own = predict_object_at(p, predict_word(p));
+    int rank = (int32_t)predict_word(p);
+    uint64_t from = predict_word2(p), to = predict_word2(p);
     if (p->damaged || p->short_of)
         return;
     int host = rank < 0 ? PREDICT_ALL : rank % (int)p->graph->cluster->hosts;
@@ -326,15 +202,15 @@ static void get(struct predict_program *p)
 
 static void wait(struct predict_program *p)
 {
-    uint64_t from = word2(p), to = word2(p);
+    uint64_t from = predict_word2(p), to = predict_word2(p);
     op(p, from, to, PREDICT_NONE, true);
 }
 
 static void turn(struct predict_program *p, bool on)
 {
-    p->forks = word2(p);
-    word2(p);
-    uint64_t now = word2(p);
+    p->forks = predict_word2(p);
+    predict_word2(p);
+    uint64_t now = predict_word2(p);
     if (!on)
         op(p, now, now, PREDICT_NONE, true);
     p->since = now;
@@ -342,24 +218,24 @@ static void turn(struct predict_program *p, bool on)
 
 static void entry(struct predict_program *p)
 {
-    uint32_t first = word(p);
+    uint32_t first = predict_word(p);
     size_t n = first >> 8;
     switch (first & 0xff) {
     case TRACE_OBJECT:
     case TRACE_VIEW:
-        make(p, (first & 0xff) == TRACE_VIEW);
+        predict_make(p, (first & 0xff) == TRACE_VIEW);
         break;
     case TRACE_FREE:
-        drop(p);
+        predict_drop(p);
         break;
     case TRACE_HINT:
-        hint(p, n);
+        predict_hint(p, n);
         break;
     case TRACE_FOLLOW:
-        follow(p);
+        predict_follow(p);
         break;
     case TRACE_HOMES:
-        homes(p, n);
+        predict_homes(p, n);
         break;
     case TRACE_ON:
     case TRACE_OFF:
@@ -370,7 +246,7 @@ static void entry(struct predict_program *p)
         fork_one(p, n, (first & 0xff) == TRACE_FORKED);
         break;
     case TRACE_SET: {
-        uint32_t own = object(p, word(p));
+        uint32_t own = predict_object_at(p, predict_word(p));
         if (!p->damaged)
             predict_set(p, own);
         break;
@@ -390,26 +266,6 @@ static void entry(struct predict_program *p)
     default:
         p->damaged = true;
     }
-}
-
-uint32_t predict_word(struct predict_program *p)
-{
-    return word(p);
-}
-
-float predict_float(struct predict_program *p)
-{
-    return small(p);
-}
-
-uint64_t predict_word2(struct predict_program *p)
-{
-    return word2(p);
-}
-
-uint32_t predict_object_at(struct predict_program *p, uint32_t slot)
-{
-    return object(p, slot);
 }
 
 /* ---- All of it ---- */

@@ -47,8 +47,19 @@ struct predict_program {
 
 uint32_t predict_word(struct predict_program *p);
 uint64_t predict_word2(struct predict_program *p);
+double predict_number(struct predict_program *p);
 float predict_float(struct predict_program *p);
+
+/* The object that a slot names. */
 uint32_t predict_object_at(struct predict_program *p, uint32_t slot);
+/* Entries of the program; n: their count. */
+void predict_make(struct predict_program *p, bool view);
+void predict_drop(struct predict_program *p);
+void predict_hint(struct predict_program *p, size_t n);
+void predict_follow(struct predict_program *p);
+void predict_homes(struct predict_program *p, size_t n);
+
+/* Room for the objects of a fork. */
 bool predict_room(struct predict_program *p, size_t n);
 void predict_fork(struct predict_program *p, const struct predict_fork *fork);
 void predict_set(struct predict_program *p, uint32_t own);

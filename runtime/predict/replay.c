@@ -4,6 +4,7 @@
 
 #include "runtime/base/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 static void forget(struct predict_recorded *recorded)
@@ -125,6 +126,28 @@ static void decide(struct predict_graph *graph, uint32_t flag)
     graph->flag = node;
 }
 
+/* The longest path from each task of the round to its end, in the seconds that forks said. */
+static void find_paths(struct predict_graph *graph)
+{
+    double said = 0;
+    size_t n = 0;
+    for (size_t i = graph->round; i < graph->n_nodes; i++) {
+        said += (double)graph->node[i].cost;
+        n += graph->node[i].cost > 0;
+    }
+    const double mean = n ? said / (double)n : 1;
+    for (size_t i = graph->n_nodes; i-- > graph->round;) {
+        struct predict_node *node = &graph->node[i];
+        double longest = 0;
+        for (uint32_t e = node->edge; e != PREDICT_NONE; e = graph->edge[e].next)
+            longest = fmax(longest, (double)graph->node[graph->edge[e].to].path);
+        bool program = node->kernel < graph->run->n_kernels && node->number &&
+                       (node->kind == PREDICT_TASK || node->kind == PREDICT_EVERYWHERE);
+        double own = node->cost > 0 ? (double)node->cost : mean;
+        node->path = (float)(longest + (program ? own : 0));
+    }
+}
+
 static void fork_round(struct predict_program *p, const struct predict_recorded *recorded,
                        const uint32_t *bound, uint64_t first)
 {
@@ -145,6 +168,8 @@ static void fork_round(struct predict_program *p, const struct predict_recorded 
             first++;
         }
     }
+    if (graph->cluster->scheduler->paths && !graph->failed)
+        find_paths(graph);
 }
 
 static void rounds(struct predict_program *p, const struct predict_recorded *recorded,

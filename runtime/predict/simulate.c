@@ -6,65 +6,25 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/graph/graph.h"
-#include "runtime/trace/export.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { IDLE, BUSY, RESERVED }; /* of a worker; the last: it is the main program's */
-
-/* Why a node began, or was ready, when it did: another one was over, and made it ready, or left it
- * its worker, or let the main program go on, which then brought it into being. */
-struct cause {
-    uint32_t by; /* NONE: the beginning */
-    enum { MADE_READY, LEFT_WORKER, FORKED } how;
-    float flight; /* s of a message */
-};
-
-struct machine {
-    struct predict_graph *graph;
-    const struct predict_cluster *cluster;
-    const duite_scheduler *scheduler;
-    uint32_t n_workers;
-    unsigned char *states;
-    size_t stride;
-    struct predict_queue *queue, *shared; /* by worker; by host */
-    unsigned char *state;                 /* by worker */
-    uint32_t *next;                       /* by worker: chained, or NONE */
-    uint32_t *ran;                        /* by worker: the node it ran last */
-    uint32_t *last;                       /* by host: the worker that ended last */
-    uint32_t *idle;                       /* by host: how many */
-    struct predict_events events;
-    struct predict_network network;
-    double *begin, *end; /* by node */
-    uint32_t *runs_on;   /* by node, for Paje; NULL: not kept */
-    struct cause *cause; /* by node */
-    double now, main_time, busy;
-    size_t op, cursor; /* of the main program */
-    uint64_t over, stolen;
-    bool blocked, wanted, failed;
-    uint32_t latest;  /* the node that was over last */
-    uint32_t went_on; /* ... when the main program went on last; NONE: it never waited */
-};
-
-static void node_over(struct machine *m, uint32_t node, uint32_t worker);
-
-static void *state_of(const struct machine *m, uint32_t worker)
+static void *state_of(const struct predict_machine *m, uint32_t worker)
 {
     return m->states + worker * m->stride;
 }
 
 /* ---- Workers ---- */
 
-static void start(struct machine *m, uint32_t node, uint32_t worker)
+static void start(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
     const struct predict_node *n = &m->graph->node[node];
     uint32_t before = m->ran[worker];
     double begin = m->now + (before == PREDICT_NONE ? 0 : m->graph->overhead);
     /* Its worker held it up, if it was ready before that was free. */
     if (before != PREDICT_NONE && m->end[before] >= m->now && m->begin[node] < m->now)
-        m->cause[node] = (struct cause){before, LEFT_WORKER, 0};
+        m->cause[node] = (struct predict_cause){before, LEFT_WORKER, 0};
     m->begin[node] = begin;
     m->busy += (double)n->seconds;
     m->ran[worker] = node;
@@ -76,7 +36,7 @@ static void start(struct machine *m, uint32_t node, uint32_t worker)
     m->failed |= !predict_event_put(&m->events, begin + (double)n->seconds, node, worker);
 }
 
-static uint32_t find(struct machine *m, uint32_t worker)
+static uint32_t find(struct predict_machine *m, uint32_t worker)
 {
     const struct predict_node *nodes = m->graph->node;
     const uint32_t cores = m->cluster->cores, host = worker / cores, first = host * cores;
@@ -85,7 +45,7 @@ static uint32_t find(struct machine *m, uint32_t worker)
     uint32_t node = predict_queue_take(&m->queue[worker], nodes, end);
     if (node == PREDICT_NONE)
         node = predict_queue_take(&m->shared[host], nodes, end);
-    for (unsigned attempt = 0; node == PREDICT_NONE; attempt++) {
+    for (unsigned attempt = 0; node == PREDICT_NONE && attempt < 64 + 16 * cores; attempt++) {
         unsigned victim = m->scheduler->victim(state, attempt);
         if (victim >= cores)
             break;
@@ -97,7 +57,7 @@ static uint32_t find(struct machine *m, uint32_t worker)
 }
 
 /* The worker looks for work. */
-static void look(struct machine *m, uint32_t worker)
+static void look(struct predict_machine *m, uint32_t worker)
 {
     uint32_t node = find(m, worker);
     if (node != PREDICT_NONE) {
@@ -109,7 +69,7 @@ static void look(struct machine *m, uint32_t worker)
 }
 
 /* Somebody is to find what lies in `queue`: its owner, or anybody who may. */
-static void wake(struct machine *m, uint32_t host, unsigned queue)
+static void wake(struct predict_machine *m, uint32_t host, unsigned queue)
 {
     const uint32_t cores = m->cluster->cores, first = host * cores;
     unsigned begin = queue < cores ? queue : 0;
@@ -123,26 +83,13 @@ static void wake(struct machine *m, uint32_t host, unsigned queue)
     }
 }
 
-static duite_ready describe(const struct machine *m, uint32_t node)
-{
-    const struct predict_node *n = &m->graph->node[node];
-    const struct trace_run *run = m->graph->run;
-    return (duite_ready){.kernel = n->kernel < run->n_kernels
-                                       ? run->kernel_name[n->kernel]
-                                       : graph_own_name(n->kernel - run->n_kernels),
-                         .number = n->number,
-                         .block = n->block,
-                         .priority = n->priority,
-                         .cost = n->cost};
-}
-
 /* A task may run; worker NONE: no worker of its host made it so. */
-static void task_ready(struct machine *m, uint32_t node, uint32_t worker)
+static void task_ready(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
     const uint32_t cores = m->cluster->cores, host = m->graph->node[node].host;
     bool here = worker != PREDICT_NONE && worker / cores == host;
     void *state = state_of(m, here ? worker : m->last[host]);
-    duite_ready ready = describe(m, node);
+    duite_ready ready = predict_describe(m, node);
     m->begin[node] = m->now; /* until it starts: since when it is ready */
     if (here && m->next[worker] == PREDICT_NONE && m->scheduler->chain(state, &ready)) {
         m->next[worker] = node;
@@ -157,7 +104,7 @@ static void task_ready(struct machine *m, uint32_t node, uint32_t worker)
 
 /* ---- Nodes ---- */
 
-static void node_ready(struct machine *m, uint32_t node, uint32_t worker)
+static void node_ready(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
     const struct predict_node *n = &m->graph->node[node];
     double flight = 0, end = m->now;
@@ -182,20 +129,20 @@ static void node_ready(struct machine *m, uint32_t node, uint32_t worker)
     m->failed |= !predict_event_put(&m->events, end, node, PREDICT_NONE);
 }
 
-static void count_down(struct machine *m, uint32_t node, uint32_t by, uint32_t worker)
+static void count_down(struct predict_machine *m, uint32_t node, uint32_t by, uint32_t worker)
 {
     struct predict_node *n = &m->graph->node[node];
     if (--n->pending)
         return;
-    m->cause[node] = by == PREDICT_NONE ? (struct cause){m->went_on, FORKED, 0}
-                                        : (struct cause){by, MADE_READY, 0};
+    m->cause[node] = by == PREDICT_NONE ? (struct predict_cause){m->went_on, FORKED, 0}
+                                        : (struct predict_cause){by, MADE_READY, 0};
     node_ready(m, node, worker);
 }
 
 /* ---- The main program ---- */
 
 /* Whether what it waits for is there. */
-static bool may_go_on(const struct machine *m)
+static bool may_go_on(const struct predict_machine *m)
 {
     const struct predict_op *op = &m->graph->op[m->op];
     if (!op->waits)
@@ -204,7 +151,7 @@ static bool may_go_on(const struct machine *m)
 }
 
 /* It goes on: its workers are not to be had. On other hosts they end their tasks first. */
-static void resume(struct machine *m)
+static void resume(struct predict_machine *m)
 {
     m->blocked = m->wanted = false;
     m->main_time = m->now;
@@ -220,7 +167,7 @@ static void resume(struct machine *m)
     }
 }
 
-static void try_to_resume(struct machine *m)
+static void try_to_resume(struct predict_machine *m)
 {
     if (!m->blocked || !may_go_on(m))
         return;
@@ -232,7 +179,7 @@ static void try_to_resume(struct machine *m)
 }
 
 /* It waits, and its workers work. */
-static void block(struct machine *m)
+static void block(struct predict_machine *m)
 {
     m->blocked = true;
     m->now = fmax(m->now, m->main_time);
@@ -244,7 +191,7 @@ static void block(struct machine *m)
 }
 
 /* Brings one more node into being, or comes to the end of an op. */
-static void main_step(struct machine *m)
+static void main_step(struct predict_machine *m)
 {
     const struct predict_op *op = &m->graph->op[m->op];
     if (m->cursor < op->end) {
@@ -258,7 +205,7 @@ static void main_step(struct machine *m)
     }
 }
 
-static double main_next(const struct machine *m)
+static double main_next(const struct predict_machine *m)
 {
     if (m->blocked || m->op == m->graph->n_ops)
         return INFINITY;
@@ -268,7 +215,7 @@ static double main_next(const struct machine *m)
 
 /* ---- Events ---- */
 
-static void free_worker(struct machine *m, uint32_t worker)
+static void free_worker(struct predict_machine *m, uint32_t worker)
 {
     uint32_t node = m->next[worker];
     m->next[worker] = PREDICT_NONE;
@@ -292,7 +239,7 @@ static void free_worker(struct machine *m, uint32_t worker)
     }
 }
 
-static void node_over(struct machine *m, uint32_t node, uint32_t worker)
+static void node_over(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
     const struct predict_graph *graph = m->graph;
     m->end[node] = m->now;
@@ -307,7 +254,7 @@ static void node_over(struct machine *m, uint32_t node, uint32_t worker)
     try_to_resume(m);
 }
 
-static int run(struct machine *m)
+static int run(struct predict_machine *m)
 {
     struct predict_event event;
     while (!m->failed) {
@@ -332,104 +279,28 @@ static int run(struct machine *m)
     return DUITE_OK;
 }
 
-/* ---- What came of it ---- */
-
-static double critical_path(const struct predict_graph *graph, double *path)
-{
-    double longest = 0;
-    for (size_t i = 0; i < graph->n_nodes; i++)
-        path[i] = 0;
-    for (size_t i = 0; i < graph->n_nodes; i++) { /* no edge points back */
-        const struct predict_node *node = &graph->node[i];
-        double end = path[i] + (double)node->seconds;
-        longest = fmax(longest, end);
-        for (uint32_t e = node->edge; e != PREDICT_NONE; e = graph->edge[e].next)
-            path[graph->edge[e].to] = fmax(path[graph->edge[e].to], end);
-    }
-    return longest;
-}
-
-/* From the last node back along what each waited for. */
-static void follow_chain(const struct machine *m, double *chain)
-{
-    const struct predict_graph *graph = m->graph;
-    uint32_t at = m->latest;
-    while (at != PREDICT_NONE) {
-        const struct predict_node *node = &graph->node[at];
-        const struct cause *cause = &m->cause[at];
-        double since = cause->by == PREDICT_NONE ? 0 : m->end[cause->by];
-        bool travels = node->kind == PREDICT_MESSAGE || node->kind == PREDICT_EXCHANGE;
-        double all = m->end[at] - since;
-        if (travels) {
-            chain[PREDICT_LATENCY] += (double)cause->flight;
-            chain[PREDICT_BANDWIDTH] += all - (double)cause->flight;
-        } else {
-            double own = fmin(all, (double)node->seconds);
-            chain[cause->how == LEFT_WORKER ? PREDICT_WORK : PREDICT_PATH] += own;
-            chain[cause->how == FORKED ? PREDICT_MAIN : PREDICT_OVERHEAD] += all - own;
-        }
-        at = cause->by;
-    }
-}
-
-static enum predict_limit find_limit(const struct predict_result *result, double workers)
-{
-    enum predict_limit limit = PREDICT_WORK;
-    const double most = 0.8 * result->makespan;
-    if (result->work / workers >= most)
-        return PREDICT_WORK;
-    if (result->critical_path >= most)
-        return PREDICT_PATH;
-    for (int i = 1; i < PREDICT_LIMITS; i++)
-        if (result->chain[i] > result->chain[limit])
-            limit = (enum predict_limit)i;
-    return limit;
-}
-
-static int write_paje(const struct machine *m, FILE *file, double limit)
-{
-    const struct predict_graph *graph = m->graph;
-    struct trace_span *span = base_alloc(graph->n_nodes * sizeof *span + 1);
-    uint32_t *host_of = base_alloc((m->n_workers + 1) * sizeof *host_of);
-    int code = span && host_of ? DUITE_OK : base_no_memory("the predicted run");
-    size_t n = 0;
-    for (uint32_t w = 0; w < m->n_workers && !code; w++)
-        host_of[w] = w / m->cluster->cores;
-    for (uint32_t i = 0; i < graph->n_nodes && !code; i++)
-        if (graph->node[i].kind == PREDICT_TASK)
-            span[n++] =
-                (struct trace_span){m->begin[i], m->end[i], describe(m, i).kernel, m->runs_on[i]};
-    if (!code)
-        code = trace_write_paje_spans(file, span, n, host_of, m->n_workers, limit);
-    base_free(span);
-    base_free(host_of);
-    return code;
-}
-
-static void conclude(struct machine *m, struct predict_result *result)
-{
-    const struct predict_graph *graph = m->graph;
-    double makespan = 0;
-    for (size_t i = 0; i < graph->n_nodes; i++)
-        makespan = fmax(makespan, m->end[i]);
-    const double all = makespan * m->n_workers;
-    *result = (struct predict_result){.tasks = graph->n_tasks,
-                                      .messages = m->network.messages,
-                                      .bytes = m->network.bytes,
-                                      .stolen = m->stolen,
-                                      .makespan = fmax(makespan, m->main_time),
-                                      .overhead = graph->overhead,
-                                      .idle = all > 0 ? 1 - m->busy / all : 0};
-    for (size_t i = 0; i < graph->n_nodes; i++)
-        result->work += (double)graph->node[i].seconds;
-    follow_chain(m, result->chain);
-    result->critical_path = critical_path(graph, m->begin);
-    result->limit = find_limit(result, m->n_workers);
-}
-
 /* ---- Start and stop ---- */
 
-static bool prepare(struct machine *m, bool paje)
+/* What a worker sees of the others of its host: the next numbers first, nobody nearer. */
+static bool see_others(struct predict_machine *m)
+{
+    const size_t cores = m->cluster->cores, others = cores - 1;
+    if (!m->scheduler->look)
+        return true;
+    m->near = base_alloc(cores * sizeof *m->near);
+    m->other = base_alloc((cores * others + 1) * sizeof *m->other);
+    m->level = base_alloc_zero((others + 1) * sizeof *m->level);
+    if (!m->near || !m->other || !m->level)
+        return false;
+    for (size_t w = 0; w < cores; w++) {
+        for (size_t i = 0; i < others; i++)
+            m->other[w * others + i] = (unsigned)((w + 1 + i) % cores);
+        m->near[w] = (duite_near){(unsigned)others, m->other + w * others, m->level};
+    }
+    return true;
+}
+
+static bool prepare(struct predict_machine *m, bool paje)
 {
     const struct predict_graph *graph = m->graph;
     const size_t n = graph->n_nodes, workers = m->n_workers, hosts = m->cluster->hosts;
@@ -450,15 +321,17 @@ static bool prepare(struct machine *m, bool paje)
     m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
     return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->last &&
            m->idle && m->network.out && m->network.in && m->begin && m->end && m->cause &&
-           (m->runs_on || !paje);
+           (m->runs_on || !paje) && see_others(m);
 }
 
-static void init(struct machine *m)
+static void init(struct predict_machine *m)
 {
     const uint32_t cores = m->cluster->cores;
     for (uint32_t w = 0; w < m->n_workers; w++) {
         if (m->scheduler->start)
             m->scheduler->start(state_of(m, w), w % cores, cores, m->cluster->seed);
+        if (m->scheduler->look)
+            m->scheduler->look(state_of(m, w), &m->near[w % cores]);
         m->queue[w].heap = m->scheduler->serve(state_of(m, w)) == DUITE_HIGHEST;
         m->next[w] = m->ran[w] = PREDICT_NONE;
         m->state[w] = w % cores ? IDLE : RESERVED;
@@ -472,38 +345,38 @@ static void init(struct machine *m)
         m->end[i] = -1;
 }
 
-static void stop(struct machine *m)
+static void stop(struct predict_machine *m)
 {
     for (uint32_t w = 0; w < m->n_workers && m->queue; w++)
         free(m->queue[w].node);
     for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
         free(m->shared[h].node);
     free(m->events.event);
-    void *const all[] = {m->states, m->queue, m->shared,      m->state,      m->next,
-                         m->ran,    m->last,  m->network.out, m->network.in, m->begin,
-                         m->end,    m->cause, m->idle,        m->runs_on};
+    void *const all[] = {m->states, m->queue,       m->shared,     m->state, m->next, m->ran,
+                         m->last,   m->network.out, m->network.in, m->begin, m->end,  m->cause,
+                         m->idle,   m->runs_on,     m->near,       m->other, m->level};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         base_free(all[i]);
 }
 
 int predict_simulate(struct predict_graph *graph, struct predict_result *result, FILE *paje)
 {
-    struct machine m = {.graph = graph,
-                        .cluster = graph->cluster,
-                        .scheduler = graph->cluster->scheduler,
-                        .n_workers = graph->cluster->hosts * graph->cluster->cores,
-                        .network = {.cluster = graph->cluster},
-                        .latest = PREDICT_NONE,
-                        .went_on = PREDICT_NONE};
+    struct predict_machine m = {.graph = graph,
+                                .cluster = graph->cluster,
+                                .scheduler = graph->cluster->scheduler,
+                                .n_workers = graph->cluster->hosts * graph->cluster->cores,
+                                .network = {.cluster = graph->cluster},
+                                .latest = PREDICT_NONE,
+                                .went_on = PREDICT_NONE};
     int code = prepare(&m, paje != NULL) ? DUITE_OK : base_no_memory("the prediction");
     if (!code) {
         init(&m);
         code = run(&m);
     }
     if (!code && paje)
-        code = write_paje(&m, paje, m.now);
+        code = predict_write_paje(&m, paje);
     if (!code)
-        conclude(&m, result);
+        predict_conclude(&m, result);
     stop(&m);
     return code;
 }

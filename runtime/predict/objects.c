@@ -1,0 +1,133 @@
+/* Objects of the main program, and their homes: those that were traced, or those that the mapping
+ * gives by the same code as in a run, to objects of a table that has nothing else. */
+#include "runtime/predict/program.h"
+
+#include "runtime/base/memory.h"
+#include "runtime/map/map.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SLOTS = 1 << 28 };
+
+static uint32_t *slot_of(struct predict_program *p, uint32_t slot)
+{
+    static uint32_t none;
+    if (slot >= MOST_SLOTS) {
+        p->damaged = true;
+        return &none;
+    }
+    size_t before = p->slots_capacity;
+    if (slot >= p->slots_capacity) {
+        void *moved = base_grow(p->slot, &p->slots_capacity, (size_t)slot + 1, sizeof *p->slot);
+        p->graph->failed |= !moved;
+        if (!moved)
+            return &none;
+        p->slot = moved;
+        memset(p->slot + before, 0xff, (p->slots_capacity - before) * sizeof *p->slot);
+    }
+    return &p->slot[slot];
+}
+
+/* The object that a slot names. */
+uint32_t predict_object_at(struct predict_program *p, uint32_t slot)
+{
+    uint32_t found = *slot_of(p, slot);
+    p->damaged |= found >= p->graph->n_objects;
+    return found < p->graph->n_objects ? found : 0;
+}
+
+void predict_make(struct predict_program *p, bool view)
+{
+    struct predict_graph *graph = p->graph;
+    uint32_t slot = predict_word(p),
+             parent = view ? predict_object_at(p, predict_word(p)) : PREDICT_NONE;
+    uint64_t bytes = predict_word2(p);
+    void *moved = base_grow(graph->object, &graph->objects_capacity, graph->n_objects + 1,
+                            sizeof *graph->object);
+    duite_object *names =
+        base_grow(p->name, &p->names_capacity, graph->n_objects + 1, sizeof *p->name);
+    if (moved)
+        graph->object = moved;
+    if (names)
+        p->name = names;
+    if (!moved || !names) {
+        graph->failed = true;
+        return;
+    }
+    struct predict_object new = {.bytes = bytes,
+                                 .writer = PREDICT_NONE,
+                                 .readers = PREDICT_NONE,
+                                 .copies = PREDICT_NONE,
+                                 .leaves = PREDICT_NONE,
+                                 .parent = parent,
+                                 .gathered = PREDICT_NONE - 1};
+    p->name[graph->n_objects] = DUITE_NO_OBJECT;
+    if (view) {
+        new.home = new.holder = graph->object[parent].home;
+    } else if (p->maps && data_object_new(&p->table, DUITE_BYTE, 1, &p->name[graph->n_objects])) {
+        graph->failed = true;
+    }
+    graph->object[graph->n_objects] = new;
+    *slot_of(p, slot) = (uint32_t)graph->n_objects++;
+}
+
+void predict_drop(struct predict_program *p)
+{
+    uint32_t slot = predict_word(p);
+    duite_object name = p->name ? p->name[predict_object_at(p, slot)] : DUITE_NO_OBJECT;
+    if (name.slot)
+        data_object_drop(&p->table, name);
+    *slot_of(p, slot) = PREDICT_NONE;
+}
+
+void predict_hint(struct predict_program *p, size_t n)
+{
+    uint32_t slot = predict_word(p);
+    double weight = predict_number(p);
+    duite_object *names = malloc((n + 1) * sizeof *names);
+    double *weights = malloc((n + 1) * sizeof *weights);
+    p->graph->failed |= !names || !weights;
+    for (size_t i = 0; i < n && !p->graph->failed && !p->short_of; i++) {
+        uint32_t other = predict_object_at(p, predict_word(p));
+        weights[i] = predict_number(p);
+        if (p->maps && !p->damaged)
+            names[i] = p->name[other];
+    }
+    if (p->maps && !p->graph->failed && !p->damaged && !p->short_of)
+        p->code =
+            map_hint(&p->table, p->name[predict_object_at(p, slot)], weight, n, names, weights);
+    free(names);
+    free(weights);
+}
+
+void predict_follow(struct predict_program *p)
+{
+    uint32_t own = predict_object_at(p, predict_word(p)),
+             leader = predict_object_at(p, predict_word(p));
+    if (p->maps && !p->damaged)
+        p->code = map_follow(&p->table, p->name[own], p->name[leader]);
+}
+
+/* What was traced; or, of objects that had none, what the mapping says. */
+void predict_homes(struct predict_program *p, size_t n)
+{
+    struct predict_graph *graph = p->graph;
+    if (p->maps)
+        p->code = map_settle(&p->table, graph->cluster->mapping, graph->cluster->seed);
+    for (size_t i = 0; i < n && !p->code && !p->short_of; i++) {
+        uint32_t own = predict_object_at(p, predict_word(p)), home = predict_word(p);
+        if (p->damaged)
+            return;
+        struct predict_object *o = &graph->object[own];
+        const struct data_object *settled = p->maps ? &p->table.object[p->name[own].slot] : NULL;
+        bool moves = o->writer != PREDICT_NONE; /* by migration: not foretold with a mapping */
+        if (settled && moves)
+            continue;
+        p->damaged |= home >= graph->run->n_ranks;
+        o->home = settled ? settled->home : (int)(home % graph->cluster->hosts);
+        o->block = settled ? settled->block : (uint32_t)own;
+        if (!moves)
+            o->holder = o->home;
+    }
+}

@@ -1,4 +1,5 @@
 /* The command line of duite-trace: reads a trace once, and writes each form that is asked for. */
+#include "runtime/predict/predict.h"
 #include "runtime/trace/export.h"
 #include "runtime/trace/sums.h"
 
@@ -11,7 +12,7 @@
 #include <string.h>
 
 enum { FAILED = 1, BAD_INPUT = 2 };
-enum { CHECK = 256, CHROME, CSV, PAJE, PARTIAL, N_FORMS = 3 };
+enum { CHECK = 256, CHROME, CSV, DOT, PAJE, PARTIAL, N_FORMS = 4 };
 
 const char *argp_program_version = "duite-trace (" PACKAGE_STRING ")";
 
@@ -24,6 +25,7 @@ struct command {
 static const struct argp_option OPTIONS[] = {
     {"paje", PAJE, "OUT", 0, "write a Paje trace, which ViTE opens", 1},
     {"chrome", CHROME, "OUT", 0, "write Chrome's JSON, which Perfetto opens", 1},
+    {"dot", DOT, "OUT", 0, "write the tasks and what each waited for, for Graphviz", 1},
     {"csv", CSV, "OUT", 0, "write a line an event", 1},
     {"check", CHECK, NULL, 0, "whether the events add up to what the workers counted", 2},
     {"partial", PARTIAL, NULL, 0, "take what there is of a run that did not come to its end", 2},
@@ -32,7 +34,10 @@ static const struct argp_option OPTIONS[] = {
 static const struct {
     int (*write)(const struct trace_run *run, FILE *file);
     int key;
-} FORMS[N_FORMS] = {{trace_write_paje, PAJE}, {trace_write_chrome, CHROME}, {trace_write_csv, CSV}};
+} FORMS[N_FORMS] = {{trace_write_paje, PAJE},
+                    {trace_write_chrome, CHROME},
+                    {trace_write_csv, CSV},
+                    {predict_write_dot, DOT}};
 
 static error_t parse(int key, char *value, struct argp_state *state)
 {

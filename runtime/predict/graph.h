@@ -97,6 +97,9 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
  * comes before it, it waits for what decided on the round. */
 void predict_hold(struct predict_graph *graph, uint32_t node);
 
+/* Whether both can be. */
+int predict_check(const struct trace_run *run, const struct predict_cluster *cluster);
+
 /* Makes the graph of a trace. Errors as of predict. */
 int predict_build(struct predict_graph *graph);
 void predict_graph_free(struct predict_graph *graph);

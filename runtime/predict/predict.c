@@ -10,7 +10,7 @@ const char *predict_limit_name(enum predict_limit limit)
     return names[limit];
 }
 
-static int check(const struct trace_run *run, const struct predict_cluster *c)
+int predict_check(const struct trace_run *run, const struct predict_cluster *c)
 {
     enum { MOST_WORKERS = 1 << 24 };
     if (run->lost || !run->whole)
@@ -40,7 +40,7 @@ int predict(const struct trace_run *run, const struct predict_cluster *cluster,
             struct predict_result *result, FILE *paje)
 {
     struct predict_graph graph = {.run = run, .cluster = cluster};
-    int code = check(run, cluster);
+    int code = predict_check(run, cluster);
     if (!code)
         code = predict_build(&graph);
     if (!code)

@@ -54,4 +54,8 @@ const char *predict_limit_name(enum predict_limit limit);
 int predict(const struct trace_run *run, const struct predict_cluster *cluster,
             struct predict_result *result, FILE *paje);
 
+/* The tasks, and what each waited for, in the language of Graphviz' dot; the homes are those that
+ * were traced. Errors as of predict. */
+int predict_write_dot(const struct trace_run *run, FILE *file);
+
 #endif

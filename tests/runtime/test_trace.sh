@@ -71,6 +71,13 @@ for trace in two ranks; do
     fi
 done
 
+dot_is_whole() { # nodes are named before edges, which never point back
+    ./duite-trace "$scratch/$1" --dot "$scratch/$1.dot" && awk '
+        /->/ { from = substr($1, 2); to = substr($3, 2); if (from + 0 >= to + 0) { print; bad = 1 } n++ }
+        END { exit bad || n < 100 }' "$scratch/$1.dot" && grep -q 'label="force [0-9]*.nrank [01]' "$scratch/$1.dot"
+}
+ok "dot of two" dot_is_whole two
+
 # ---- Steps ----
 
 ok "the steps 1 and 2 alone" cloth some --threads 2 --trace-steps 1:3
@@ -82,6 +89,34 @@ exits 1 "... which cannot be compared with counters" ./duite-trace --check "$scr
 exits 2 "steps that end before they begin" cloth none --trace-steps 3:1
 exits 2 "steps that are no numbers" cloth none --trace-steps x
 exits 2 "steps without a file" "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --trace-steps 1:2
+
+# ---- Predictions ----
+
+predicted() { # WORDS OPTION...: predicted with these options, with the words in what is said
+    words=$1
+    shift
+    ./duite-predict "$scratch/two" "$@" > "$scratch/said" 2>&1 || { cat "$scratch/said"; return 1; }
+    cat "$scratch/said"
+    grep -q "$words" "$scratch/said"
+}
+ok "predicted where it ran" predicted "1 hosts x 2 cores" --paje "$scratch/predicted.paje"
+ok "... with as many tasks as ran" eval 'predicted "tasks  " && test "$(sed -n "s/  tasks *\([0-9]*\),.*/\1/p" "$scratch/said")" = \
+    "$(./duite-trace "$scratch/two" | sed -n "s/  tasks *\([0-9]*\),.*/\1/p")"'
+paje_of_prediction() { grep -c '^7 ' "$scratch/predicted.paje" && test "$(grep -c '^7 ' "$scratch/predicted.paje")" -gt 100; }
+ok "... and a Paje trace" paje_of_prediction
+ok "predicted on 16 hosts" predicted "limited by" --hosts 16 --cores 4 --latency 1e-5 --bandwidth 1e8 --switch 1e9 --mapping cyclic --scheduler fifo
+same_twice() {
+    predicted "limited by" --hosts 3 --cores 2 && cp "$scratch/said" "$scratch/first" &&
+        predicted "limited by" --hosts 3 --cores 2 && cmp "$scratch/said" "$scratch/first"
+}
+ok "predicted alike twice" same_twice
+ok "predicted from 2 ranks, one of which had guests" eval './duite-predict "$scratch/ranks" && ./duite-predict "$scratch/ranks" --hosts 5'
+ok "predicted from some steps" ./duite-predict "$scratch/some"
+exits 2 "no such scheduler" ./duite-predict "$scratch/two" --scheduler best
+exits 2 "hosts that are no number" ./duite-predict "$scratch/two" --hosts x
+exits 2 "no bandwidth" ./duite-predict "$scratch/two" --bandwidth 0
+exits 2 "more hosts than ranks, and tasks to be seen by the mapping" ./duite-predict "$scratch/two" --hosts 2 --mapping list
+exits 1 "a predicted run that cannot be written" ./duite-predict "$scratch/two" --paje "$scratch/nowhere/paje"
 
 # ---- What is no trace ----
 
@@ -136,6 +171,7 @@ full() { # the disk has room for 32 KiB: the run ends, and says at its end that 
 ok "a disk that fills up costs the rest of the trace" full
 kept() { ./duite-trace "$scratch/full" > "$scratch/said" 2>&1 && cat "$scratch/said" && grep "events or words were lost" "$scratch/said"; }
 ok "what was written before is kept, and the loss counted" kept
+exits 2 "nothing is foretold from what is left" ./duite-predict "$scratch/full"
 
 killed() {
     cloth killed --end 20 & victim=$!

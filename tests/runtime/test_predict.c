@@ -1,0 +1,324 @@
+/* Predictions against schedules worked out by hand. The mapping is block: of two objects the first
+ * lives on host 0, the second on host 1. */
+#include "runtime/map/map.h"
+#include "runtime/predict/predict.h"
+#include "runtime/sched/sched.h"
+#include "tests/runtime/trace_file.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define SLOTS(...) ((const uint32_t[]){__VA_ARGS__})
+#define MS         1e-3
+
+static char path[64];
+
+static struct predict_cluster machine(uint32_t hosts, uint32_t cores)
+{
+    return (struct predict_cluster){.hosts = hosts,
+                                    .cores = cores,
+                                    .latency = 0,
+                                    .bandwidth = 1e12,
+                                    .capacity = INFINITY,
+                                    .core_speed = 1,
+                                    .overhead = 0,
+                                    .scheduler = &sched_fifo,
+                                    .mapping = hosts > 1 ? &map_block : NULL,
+                                    .seed = 1};
+}
+
+static struct trace_run *written(struct trace_file *file)
+{
+    struct trace_run *run;
+    snprintf(path, sizeof path, "test_predict.%d.trace", (int)getpid());
+    ck_assert(trace_file_write(file, path));
+    ck_assert_int_eq(trace_read(&run, path, false), DUITE_OK);
+    unlink(path);
+    return run;
+}
+
+static struct predict_result foretold(struct trace_file *file,
+                                      const struct predict_cluster *cluster)
+{
+    struct predict_result result, again;
+    struct trace_run *run = written(file);
+    ck_assert_msg(!predict(run, cluster, &result, NULL), "%s", duite_message());
+    ck_assert_int_eq(predict(run, cluster, &again, NULL), DUITE_OK);
+    ck_assert_msg(!memcmp(&result, &again, sizeof result), "not the same twice");
+    trace_run_free(run);
+    return result;
+}
+
+static void is(double value, double expected)
+{
+    ck_assert_msg(fabs(value - expected) < 1e-9, "%.12g, not %.12g", value, expected);
+}
+
+/* n objects of so many bytes, recorded from now on. */
+static struct trace_file begun(uint32_t n, uint64_t bytes)
+{
+    struct trace_file file = {0};
+    for (uint32_t slot = 1; slot <= n; slot++)
+        trace_file_object(&file, slot, bytes);
+    trace_file_begin(&file, n);
+    return file;
+}
+
+/* Three tasks in a row: 1 + 2 + 3 ms, however many cores. */
+START_TEST(chain)
+{
+    struct trace_file file = begun(1, 8);
+    for (int i = 1; i <= 3; i++)
+        trace_file_fork(&file, FILE_RW, i * MS, 0, 1, SLOTS(1));
+    const struct predict_cluster four = machine(1, 4);
+    struct predict_result r = foretold(&file, &four);
+    is(r.makespan, 6 * MS);
+    is(r.critical_path, 6 * MS);
+    is(r.idle, 0.75);
+    ck_assert_int_eq(r.limit, PREDICT_PATH);
+    ck_assert_uint_eq(r.tasks, 3);
+    ck_assert_uint_eq(r.messages, 0);
+}
+END_TEST
+
+/* Tasks of 3, 3, 2, 2, 2 ms on two cores, first come, first served: 3 + 2 + 2 and 3 + 2. */
+START_TEST(independent)
+{
+    struct trace_file file = begun(5, 8);
+    const double took[] = {3, 3, 2, 2, 2};
+    for (uint32_t i = 0; i < 5; i++)
+        trace_file_fork(&file, FILE_W, took[i] * MS, 0, 1, SLOTS(i + 1));
+    const struct predict_cluster two = machine(1, 2);
+    struct predict_result r = foretold(&file, &two);
+    is(r.makespan, 7 * MS);
+    is(r.work, 12 * MS);
+    is(r.critical_path, 3 * MS);
+    ck_assert_int_eq(r.limit, PREDICT_WORK);
+}
+END_TEST
+
+/* A writer waits for all readers of what it overwrites, and two readers run at once: 1 + 4 + 1. */
+START_TEST(readers)
+{
+    struct trace_file file = begun(3, 8);
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
+    trace_file_fork(&file, FILE_R_W, 2 * MS, 0, 2, SLOTS(1, 2));
+    trace_file_fork(&file, FILE_R_W, 4 * MS, 0, 2, SLOTS(1, 3));
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
+    const struct predict_cluster two = machine(1, 2);
+    is(foretold(&file, &two).makespan, 6 * MS);
+}
+END_TEST
+
+/* The long one first if it is told to be urgent: 6, not 2 + 2 + 6 on the second core's end. */
+START_TEST(priorities)
+{
+    for (int urgent = 0; urgent < 2; urgent++) {
+        struct trace_file file = begun(4, 8);
+        for (uint32_t i = 0; i < 3; i++)
+            trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(i + 1));
+        trace_file_fork(&file, FILE_W, 6 * MS, urgent, 1, SLOTS(4));
+        struct predict_cluster two = machine(1, 2);
+        two.scheduler = urgent ? &sched_priority : &sched_fifo;
+        /* The main thread forks in no time, then worker 0 serves, and worker 1 was served before:
+         * it has the first task either way. */
+        is(foretold(&file, &two).makespan, urgent ? 6 * MS : 8 * MS);
+    }
+}
+END_TEST
+
+/* 1 ms on host 0, 1,000,000 bytes in 2 ms and 0.5 ms on their way, 1 ms on host 1. */
+START_TEST(message)
+{
+    struct trace_file file = begun(2, 1000000);
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
+    trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(1, 2));
+    struct predict_cluster two = machine(2, 1);
+    two.latency = 0.5 * MS;
+    two.bandwidth = 5e8;
+    struct predict_result r = foretold(&file, &two);
+    is(r.makespan, 4.5 * MS);
+    is(r.critical_path, 2 * MS);
+    is(r.chain[PREDICT_LATENCY], 0.5 * MS);
+    is(r.chain[PREDICT_BANDWIDTH], 2 * MS);
+    is(r.chain[PREDICT_PATH], 2 * MS);
+    ck_assert_uint_eq(r.messages, 1);
+    ck_assert_uint_eq(r.bytes, 1000000);
+}
+END_TEST
+
+/* One message for all who read it there; cards carry one at a time: objects 1 and 2 of host 0 go to
+ * host 1 in 2 ms each, one after the other. */
+START_TEST(cards)
+{
+    struct trace_file file = begun(4, 1000000);
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
+    trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(2));
+    trace_file_fork(&file, FILE_RR_W, 1 * MS, 0, 3, SLOTS(1, 2, 3));
+    trace_file_fork(&file, FILE_RR_W, 1 * MS, 0, 3, SLOTS(1, 2, 4));
+    struct predict_cluster two = machine(2, 2);
+    two.bandwidth = 5e8;
+    struct predict_result r = foretold(&file, &two);
+    ck_assert_uint_eq(r.messages, 2);
+    /* Both tasks on host 0 begin at 0: 2 goes until 2, then 1 until 4; then both readers. */
+    is(r.makespan, 5 * MS);
+    ck_assert_int_eq(r.limit, PREDICT_BANDWIDTH);
+}
+END_TEST
+
+/* The switch carries all: 4 hosts in a ring send at once, 1 ms in cards, 4 ms in a slow switch. */
+START_TEST(fabric)
+{
+    for (int slow = 0; slow < 2; slow++) {
+        struct trace_file file = begun(8, 1000000);
+        for (uint32_t i = 0; i < 4; i++)
+            trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(2 * i + 1));
+        for (uint32_t i = 0; i < 4; i++)
+            trace_file_fork(&file, FILE_R_W, 0, 0, 2, SLOTS(2 * i + 1, (2 * i + 3) % 8 + 1));
+        struct predict_cluster four = machine(4, 1);
+        four.bandwidth = 1e9;
+        four.capacity = slow ? 1e9 : INFINITY;
+        is(foretold(&file, &four).makespan, slow ? 4 * MS : 1 * MS);
+    }
+}
+END_TEST
+
+/* Contributions run at once; who reads the sum waits for them all. */
+START_TEST(sums)
+{
+    struct trace_file file = begun(5, 8);
+    for (uint32_t i = 0; i < 3; i++)
+        trace_file_fork(&file, FILE_R_CW, (i + 1) * MS, 0, 2, SLOTS(i + 1, 4));
+    trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(4, 5));
+    const struct predict_cluster three = machine(1, 3);
+    is(foretold(&file, &three).makespan, 4 * MS);
+}
+END_TEST
+
+/* What is forked after a wait comes after all before it; after a get, after that object. */
+START_TEST(waits)
+{
+    for (int get = 0; get < 2; get++) {
+        struct trace_file file = begun(3, 8);
+        trace_file_fork(&file, FILE_W, 5 * MS, 0, 1, SLOTS(1));
+        trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(2));
+        if (get)
+            trace_file_get(&file, 2);
+        else
+            trace_file_wait(&file);
+        trace_file_fork(&file, FILE_W, 3 * MS, 0, 1, SLOTS(3));
+        const struct predict_cluster two = machine(1, 3);
+        is(foretold(&file, &two).makespan, get ? 5 * MS : 8 * MS);
+    }
+}
+END_TEST
+
+/* A core of twice the speed, and half a millisecond between tasks. */
+START_TEST(speed_and_overhead)
+{
+    struct trace_file file = begun(1, 8);
+    for (int i = 0; i < 4; i++)
+        trace_file_fork(&file, FILE_RW, 2 * MS, 0, 1, SLOTS(1));
+    struct predict_cluster one = machine(1, 1);
+    one.core_speed = 2;
+    one.overhead = 0.5 * MS;
+    struct predict_result r = foretold(&file, &one);
+    is(r.makespan, 4 * MS + 3 * 0.5 * MS);
+    is(r.chain[PREDICT_OVERHEAD], 1.5 * MS);
+}
+END_TEST
+
+/* Replicated: once, everywhere; what it reads goes to all. */
+START_TEST(replicated)
+{
+    struct trace_file file = begun(3, 1000);
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
+    trace_file_fork(&file, FILE_SAME, 1 * MS, 0, 2, SLOTS(1, 2));
+    trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(2, 3));
+    struct predict_cluster three = machine(3, 1);
+    three.latency = 1 * MS;
+    struct predict_result r = foretold(&file, &three);
+    ck_assert_uint_eq(r.messages, 2);
+    ck_assert(r.makespan > 4 * MS && r.makespan < 4.001 * MS);
+}
+END_TEST
+
+/* Every scheduler ends with every task. */
+START_TEST(schedulers)
+{
+    for (size_t k = 0; duite_scheduler_names()[k]; k++) {
+        struct trace_file file = begun(20, 8);
+        for (uint32_t i = 0; i < 200; i++)
+            trace_file_fork(&file, FILE_RR_W, (i % 7) * 0.1 * MS, (int32_t)i % 3, 3,
+                            SLOTS(i % 20 + 1, (i + 3) % 20 + 1, (i + 7) % 20 + 1));
+        struct predict_cluster some = machine(2, 3);
+        some.scheduler = duite_scheduler_find(duite_scheduler_names()[k]);
+        struct predict_result r = foretold(&file, &some);
+        ck_assert_msg(r.makespan >= r.critical_path - 1e-9 && r.makespan >= r.work / 6 - 1e-9,
+                      "%s: sooner than can be", some.scheduler->name);
+        ck_assert_msg(r.makespan <= r.work + 1e-9, "%s: later than one after the other",
+                      some.scheduler->name);
+    }
+}
+END_TEST
+
+static void refused(struct trace_file *file, const struct predict_cluster *cluster, const char *why)
+{
+    struct predict_result result;
+    struct trace_run *run = written(file);
+    ck_assert_int_eq(predict(run, cluster, &result, NULL), DUITE_E_ARGUMENT);
+    ck_assert_msg(strstr(duite_message(), why) != NULL, "%s", duite_message());
+    trace_run_free(run);
+}
+
+START_TEST(refusals)
+{
+    const struct predict_cluster one = machine(1, 1);
+    struct predict_cluster other = machine(2, 1);
+    struct trace_file file = begun(1, 8);
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
+    file.lost = 3;
+    refused(&file, &one, "is not whole (3 events or words are missing)");
+    file = begun(1, 8);
+    refused(&file, &one, "no tasks");
+    file = begun(1, 8);
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(7));
+    refused(&file, &one, "damaged");
+    file = begun(1, 8);
+    trace_file_word(&file, 200);
+    refused(&file, &one, "damaged");
+    file = begun(1, 8);
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
+    other.mapping = NULL;
+    refused(&file, &other, "name a mapping");
+    file = begun(1, 8);
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
+    other = machine(0, 1);
+    refused(&file, &other, "cannot be");
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("predict");
+    TCase *cases = tcase_create("predict");
+    tcase_add_test(cases, chain);
+    tcase_add_test(cases, independent);
+    tcase_add_test(cases, readers);
+    tcase_add_test(cases, priorities);
+    tcase_add_test(cases, message);
+    tcase_add_test(cases, cards);
+    tcase_add_test(cases, fabric);
+    tcase_add_test(cases, sums);
+    tcase_add_test(cases, waits);
+    tcase_add_test(cases, speed_and_overhead);
+    tcase_add_test(cases, replicated);
+    tcase_add_test(cases, schedulers);
+    tcase_add_test(cases, refusals);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

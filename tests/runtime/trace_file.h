@@ -1,0 +1,37 @@
+#ifndef TESTS_RUNTIME_TRACE_FILE_H
+#define TESTS_RUNTIME_TRACE_FILE_H
+
+#include "runtime/trace/format.h"
+
+#include <duite.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+/* A trace of one rank that never ran: tasks and seconds as a test wants them. */
+struct trace_file {
+    uint32_t *word;
+    size_t n_words, words_capacity;
+    struct trace_event *event;
+    size_t n_events, events_capacity;
+    uint64_t forks;
+    uint64_t lost;
+};
+
+/* Kernels of it: the modes of their parameters. */
+enum trace_file_kernel { FILE_W, FILE_RW, FILE_R_W, FILE_RR_W, FILE_R_CW, FILE_SAME, FILE_KERNELS };
+
+/* An object of `slot` (from 1 on), at home where the mapping wants it. */
+void trace_file_object(struct trace_file *file, uint32_t slot, uint64_t bytes);
+/* All objects up to a slot have homes from now on; then steps are recorded. */
+void trace_file_begin(struct trace_file *file, uint32_t n_slots);
+/* A task of so many seconds. */
+void trace_file_fork(struct trace_file *file, enum trace_file_kernel kernel, double seconds,
+                     int32_t priority, size_t n, const uint32_t *slots);
+/* The main program waits for all, or for an object. */
+void trace_file_wait(struct trace_file *file);
+void trace_file_get(struct trace_file *file, uint32_t slot);
+void trace_file_word(struct trace_file *file, uint32_t word);
+/* Writes it, and frees all. False: it could not. */
+bool trace_file_write(struct trace_file *file, const char *path);
+
+#endif

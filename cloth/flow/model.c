@@ -26,6 +26,9 @@ static void free_cloth(struct model_cloth *cloth)
     free(cloth->place);
     free(cloth->mesh_place);
     free(cloth->velocity_place);
+    if (cloth->rest)
+        free(cloth->rest->position);
+    free(cloth->rest);
     mesh_free(&cloth->mesh);
 }
 

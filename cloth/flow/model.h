@@ -15,12 +15,19 @@
 
 struct model_material {
     char *name;
-    double density;              /* kg/m^2, > 0 */
-    double stretch, shear, bend; /* membrane moduli of springs, N/m, >= 0 */
-    double damping_viscous;      /* kg/s a vertex */
-    double damping_mass;         /* 1/s: a force -damping_mass * m * v */
-    double damping_stiffness;    /* s: along each spring, times its k */
-    int both_diagonals;          /* grids: shear springs along both diagonals of a cell */
+    double density; /* kg/m^2, > 0 */
+    enum { MODEL_SPRINGS, MODEL_TRIANGLES } model;
+    double stretch, shear, bend; /* membrane moduli, N/m, >= 0; stretch along the warp; bend: of
+                                    springs only */
+    double weft_excess;          /* the modulus along the weft less that along the warp, N/m */
+    double poisson;              /* triangles: nu12, nu12 nu21 < 1 */
+    bool uncorrected;            /* triangles: with the papers' forces (cloth/physics/triangle.h) */
+    enum { MODEL_NO_BENDING, MODEL_HINGES, MODEL_QUADRATIC } bending; /* besides bend springs */
+    double rigidity[2];       /* N m, of warp and weft, >= 0 */
+    double damping_viscous;   /* kg/s a vertex */
+    double damping_mass;      /* 1/s: a force -damping_mass * m * v */
+    double damping_stiffness; /* s: along each spring, times its k; of strains and angles too */
+    int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
 };
 
 /* A `place` is where the scene says a thing, for messages: "scene.yaml:4:11", or an option; NULL:
@@ -66,7 +73,8 @@ struct model_cost {
 
 struct model_cloth {
     char *name;
-    struct mesh mesh; /* transformed: rest lengths and masses are those of this shape */
+    struct mesh mesh;  /* transformed: rest lengths and masses are those of this shape, */
+    struct mesh *rest; /* unless this is another, which shares all but the positions; or NULL */
     uint32_t material;
     double mass_per_vertex; /* kg, replaces density * area where > 0 */
     double velocity[3];     /* at the start, m/s */
@@ -153,7 +161,8 @@ struct model {
     double tolerance;
     uint32_t max_iterations; /* count: exactly so many */
     enum model_preconditioner preconditioner;
-    enum solve_format format; /* of the matrix */
+    enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */
+    int full_slope; /* the matrix has the whole slope of the forces, which may make it indefinite */
 
     uint32_t grain; /* vertices a block */
 };
@@ -166,6 +175,16 @@ static inline int model_is_implicit(const struct model *model)
 
 /* Its name in scenes. */
 const char *model_integrator_name(enum model_integrator integrator);
+
+/* The shape at rest of a cloth; the modulus along the weft. */
+static inline const struct mesh *model_rest(const struct model_cloth *cloth)
+{
+    return cloth->rest ? cloth->rest : &cloth->mesh;
+}
+static inline double model_weft(const struct model_material *material)
+{
+    return material->stretch + material->weft_excess;
+}
 
 /* Frees what the model owns and clears it. */
 void model_free(struct model *model);

@@ -2,6 +2,8 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/model.c cloth/flow/model.h \
     cloth/flow/run.c cloth/flow/run.h \
     cloth/flow/tables/limit.c \
+    cloth/flow/tables/elements.c cloth/flow/tables/elements.h \
+    cloth/flow/tables/members.c \
     cloth/flow/tables/neighbours.c \
     cloth/flow/tables/picks.c \
     cloth/flow/tables/particles.c \
@@ -14,6 +16,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/cg.c \
     cloth/flow/tasks/deal.c \
     cloth/flow/tasks/energy.c \
+    cloth/flow/tasks/elements.c \
     cloth/flow/tasks/explicit.c \
     cloth/flow/tasks/far.c \
     cloth/flow/tasks/finish.c \

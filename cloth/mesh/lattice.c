@@ -98,7 +98,7 @@ static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j)
         {i + 1 < nx, a + 1, MESH_STRETCH, along * moduli->stretch},
         {i + 2 < nx, a + 2, MESH_BEND, along * moduli->bend},
         {i > 0 && j + 1 < ny, a + nx - 1, MESH_SHEAR, other},
-        {j + 1 < ny, a + nx, MESH_STRETCH, across * moduli->stretch},
+        {j + 1 < ny, a + nx, MESH_STRETCH, across * (moduli->stretch + moduli->weft_excess)},
         {i + 1 < nx && j + 1 < ny, a + nx + 1, MESH_SHEAR, moduli->shear},
         {j + 2 < ny, a + 2 * nx, MESH_BEND, across * moduli->bend},
     };
@@ -121,6 +121,23 @@ static int add_grid(struct builder *builder)
     return code;
 }
 
+/* The modulus along an edge. */
+static int modulus_of(const struct builder *builder, const struct mesh_edge *edge, double *modulus)
+{
+    double a[2], b[2];
+    *modulus = builder->moduli->stretch;
+    if (builder->moduli->weft_excess == 0)
+        return CLOTH_OK;
+    if (!mesh_uv(builder->mesh, edge->a, a) || !mesh_uv(builder->mesh, edge->b, b))
+        return cloth_fail(builder->error, CLOTH_E_INPUT,
+                          "moduli of springs along warp and weft differ, which needs a mesh with "
+                          "uv; a grid, an OBJ file with vt, or one modulus is expected");
+    const double u = (b[0] - a[0]) * (b[0] - a[0]), v = (b[1] - a[1]) * (b[1] - a[1]);
+    if (u + v > 0)
+        *modulus += builder->moduli->weft_excess * (v / (u + v));
+    return CLOTH_OK;
+}
+
 /* All stretch springs, then all bend springs, each in edge order. */
 static int add_edges(struct builder *builder, const struct mesh_edges *edges)
 {
@@ -129,7 +146,10 @@ static int add_edges(struct builder *builder, const struct mesh_edges *edges)
     for (uint32_t e = 0; e < edges->n && !code; e++) {
         const struct mesh_edge *edge = &edges->edge[e];
         double area = edge->opposite[0] == UINT32_MAX ? NO_AREA : edge->area;
-        code = add(builder, edge->a, edge->b, MESH_STRETCH, moduli->stretch, area);
+        double modulus;
+        code = modulus_of(builder, edge, &modulus);
+        if (!code)
+            code = add(builder, edge->a, edge->b, MESH_STRETCH, modulus, area);
     }
     for (uint32_t e = 0; e < edges->n && !code && moduli->bend != 0; e++) {
         const struct mesh_edge *edge = &edges->edge[e];

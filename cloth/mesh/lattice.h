@@ -24,6 +24,8 @@ struct mesh_spring {
 struct mesh_moduli {
     double stretch, shear, bend; /* N/m */
     int both_diagonals;          /* grids only */
+    double weft_excess; /* N/m: of stretch along v, more than along u; between them by the square of
+                           the cosine */
 };
 
 /* To be gone through in order, as often as wanted. The springs of a grid are made as they are
@@ -35,8 +37,8 @@ struct mesh_lattice {
     struct mesh_spring *spring; /* n; NULL: a grid */
 };
 
-/* Errors: CLOTH_E_INPUT for a spring whose length is zero or whose length or stiffness is not
- * finite (names its vertices), CLOTH_E_MEMORY. Local. */
+/* Errors: CLOTH_E_INPUT for weft_excess without uv, a spring whose length is zero or whose length
+ * or stiffness is not finite (names its vertices), CLOTH_E_MEMORY. Local. */
 int mesh_lattice_build(struct mesh_lattice *lattice, const struct mesh *mesh,
                        const struct mesh_moduli *moduli, struct cloth_error *error);
 /* Calls visit(to, spring) for each spring. Local. */

@@ -76,6 +76,10 @@ uint32_t mesh_face(const struct mesh *mesh, uint32_t f, uint32_t room[3], const 
 /* The uv of a vertex; 0 if the mesh has none. */
 int mesh_uv(const struct mesh *mesh, uint32_t v, double uv[2]);
 
+/* The two longest principal axes of the vertices, of length 1, each with its largest component
+ * above 0: u the longer one; of equal ones the earlier coordinate's. */
+void mesh_axes(const struct mesh *mesh, double u[3], double v[3]);
+
 /* Frees what the mesh owns and clears it; a zeroed mesh is fine. */
 void mesh_free(struct mesh *mesh);
 

@@ -14,7 +14,7 @@ int phys_membrane_make(double warp, double weft, double shear, double poisson, d
         !isfinite(warp + weft + shear) || !(damping >= 0) || !isfinite(damping))
         return -1;
     const double c11 = warp / (1 - product), c22 = weft / (1 - product);
-    *membrane = (struct phys_membrane){{c11, poisson * c22, c22, shear}, damping};
+    *membrane = (struct phys_membrane){{c11, poisson * c22, c22, shear}, damping, 0};
     return 0;
 }
 
@@ -32,6 +32,65 @@ int phys_triangle_rest(const double uv[6], double gradient[4], double *area)
         if (!isfinite(gradient[i]))
             return -1;
     return *area > 0 && isfinite(*area) ? 0 : -1;
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double y[3])
+{
+    for (int i = 0; i < 3; i++)
+        y[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+/* R of the map from uv to x, as phys_frame_polar finds it; 0 if it has none. */
+static int directions(const double e[2][3], const double uv[6], double ru[3], double rv[3])
+{
+    double g[4], area, f[2][3], normal[3], turned[2][3];
+    if (phys_triangle_rest(uv, g, &area))
+        return 0;
+    for (int i = 0; i < 3; i++) {
+        f[0][i] = e[0][i] * g[0] + e[1][i] * g[2];
+        f[1][i] = e[0][i] * g[1] + e[1][i] * g[3];
+    }
+    cross(f[0], f[1], normal);
+    const double det = sqrt(dot(normal, normal));
+    for (int i = 0; i < 3; i++)
+        normal[i] /= det;
+    const double trace = sqrt(dot(f[0], f[0]) + dot(f[1], f[1]) + 2 * det);
+    cross(f[1], normal, turned[0]);
+    cross(normal, f[0], turned[1]);
+    for (int i = 0; i < 3; i++) {
+        ru[i] = (f[0][i] + turned[0][i]) / trace;
+        rv[i] = (f[1][i] + turned[1][i]) / trace;
+    }
+    return det > 0 && isfinite(trace);
+}
+
+void phys_triangle_local(const double x[9], const double uv[6], double local[6])
+{
+    double e[2][3], ru[3], rv[3], normal[3];
+    for (int i = 0; i < 3; i++) {
+        e[0][i] = x[3 + i] - x[i];
+        e[1][i] = x[6 + i] - x[i];
+    }
+    if (!directions((const double(*)[3])e, uv, ru, rv)) {
+        const double length = sqrt(dot(e[0], e[0]));
+        cross(e[0], e[1], normal);
+        const double area = sqrt(dot(normal, normal));
+        for (int i = 0; i < 3; i++)
+            ru[i] = length > 0 ? e[0][i] / length : 0;
+        cross(normal, ru, rv);
+        for (int i = 0; i < 3; i++)
+            rv[i] = area > 0 ? rv[i] / area : 0;
+    }
+    local[0] = local[1] = 0;
+    for (int i = 0; i < 2; i++) {
+        local[2 + 2 * i] = dot(e[i], ru);
+        local[3 + 2 * i] = dot(e[i], rv);
+    }
 }
 
 /* Adds -area (P_u g_u + P_v g_v), P = R q + normal k, k the pull along the normal or NULL, to the
@@ -61,7 +120,6 @@ PHYS_KERNEL(phys_triangles_force,
             (const struct phys_triangles *t, const struct phys_sight *sight, phys_vec *f),
             (t, sight, f))
 {
-    const double twisted = t->uncorrected ? 0 : 1;
     for (size_t first = 0; first < t->n; first += PHYS_WIDE) {
         struct phys_four four;
         struct phys_frame frame;
@@ -80,7 +138,7 @@ PHYS_KERNEL(phys_triangles_force,
         phys_frame_stress(&frame, &e, &stress);
         phys_frame_s(&frame, &s);
         phys_frame_twist(&frame, &stress, &s, &c);
-        c *= twisted;
+        c *= frame.corrected;
         phys_frame_untwist(&stress, &c, &q);
         add_forces(t, &four, &frame, &q, NULL, sight->n, f);
     }

@@ -27,6 +27,7 @@
 struct phys_membrane {
     phys_vec modulus; /* C11 C12 C22 C33, N/m; C33 of the shear angle, 2 e_uv */
     double damping;   /* s */
+    int uncorrected;  /* forces as the papers have them */
 };
 
 /* Moduli (N/m) along warp and weft and of shear, Poisson ratio nu12: how much a pull along the warp
@@ -41,8 +42,12 @@ struct phys_triangles {
     const phys_vec *gradient;             /* n: g_1u g_1v g_2u g_2v, 1/m; g_0 = -g_1 - g_2 */
     const double *area;                   /* n: at rest, m^2, > 0 */
     const struct phys_membrane *membrane; /* as many as corners name */
-    int uncorrected;
 };
+
+/* Coordinates along warp and weft of a triangle whose corners lie at x (m; x y z of each): its own
+ * lengths, turned as the directions (u v of each corner, of any size) say; along its first edge
+ * where they say nothing. local: u v of each corner, m, from corner 0. */
+void phys_triangle_local(const double x[9], const double uv[6], double local[6]);
 
 /* Rest shape of a triangle with corners at `uv` (m; u v of each): its gradient and area. 0, or -1
  * if it has no area. */
@@ -69,7 +74,8 @@ double phys_triangles_energy(const struct phys_triangles *triangles,
 double phys_triangles_stretch(const struct phys_triangles *triangles,
                               const struct phys_sight *sight);
 
-/* Adds the torques (N m) that the uncorrected forces leave, of the triangles that count here. */
+/* Adds the torques (N m) that forces leave, or would if they were uncorrected, of the triangles
+ * that count here. */
 void phys_triangles_torque(const struct phys_triangles *triangles, const struct phys_sight *sight,
                            double torque[3]);
 

@@ -18,6 +18,23 @@ void solve_assemble_springs(size_t n, const uint32_t *at, const phys_vec *value,
     }
 }
 
+void solve_assemble_pairs(size_t n, const uint32_t *at, const struct phys_pair *pair, double *sums)
+{
+    for (size_t i = 0; i < n; i++) {
+        if (at[i] == SOLVE_NO_ENTRY)
+            continue;
+        double *sum = sums + SOLVE_NINE * (size_t)(at[i] >> 1);
+        const phys_vec *upper = pair[i].cyclic + 1, *lower = pair[i].cyclic + 2;
+        const phys_vec one = at[i] & 1 ? SOLVE_YZX(*lower) : *upper;
+        const phys_vec two = at[i] & 1 ? SOLVE_ZXY(*upper) : *lower;
+        for (int k = 0; k < 3; k++) {
+            sum[k] += pair[i].cyclic[0][k];
+            sum[3 + k] += one[k];
+            sum[6 + k] += two[k];
+        }
+    }
+}
+
 /* Adds the turn of N to row a, and that of N' to row b, if b is here. */
 static void add_turns(const struct solve_block *block, const struct solve_cut *cut,
                       const void *entry, phys_vec *turn)

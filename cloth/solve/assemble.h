@@ -1,6 +1,7 @@
 #ifndef CLOTH_SOLVE_ASSEMBLE_H
 #define CLOTH_SOLVE_ASSEMBLE_H
 
+#include "cloth/physics/element.h"
 #include "cloth/solve/block.h"
 
 /* The values of the half formats (cloth/solve/format.h), from any elements. Each entry is summed up
@@ -22,6 +23,11 @@ static inline void solve_assemble(double *sum, bool turned, const double n[3][3]
 
 /* Adds n springs (w0 w1 w2 alpha each), of which spring i belongs to entry at[i]. */
 void solve_assemble_springs(size_t n, const uint32_t *at, const phys_vec *value, double *sums);
+
+/* Adds n pairs of elements. at: of each pair twice its entry, and one more where the entry's first
+ * row is the pair's second; SOLVE_NO_ENTRY: none of the pair's rows is here. */
+#define SOLVE_NO_ENTRY 0xffffffffu
+void solve_assemble_pairs(size_t n, const uint32_t *at, const struct phys_pair *pair, double *sums);
 
 /* The values of a block of format SOLVE_HALF or SOLVE_HALF_FLOAT from sums of all its entries.
  * memory: solve_format_doubles of them; for SOLVE_HALF it may be where the sums are. */

@@ -3,7 +3,8 @@
  * that springs put on their diagonal (once, for a spring to a held end), and the largest eigenvalue
  * of M^-1 K is at most the largest of these blocks over their masses. That is Gershgorin's bound by
  * blocks, but for 2 |Kaa| in place of |Kaa| + sum of |Kab|, which does not feel that springs have
- * directions. A chain of equal springs and masses reaches it as it gets longer. */
+ * directions. A chain of equal springs and masses reaches it as it gets longer. Of an element with
+ * n corners that are free, K is at most n times its blocks on the diagonal, likewise. */
 #include "cloth/flow/tables/source.h"
 
 #include "cloth/base/memory.h"
@@ -57,6 +58,77 @@ static void visit(void *to, const struct flow_spring *s)
         add(visitor->block + s->b, 1 + a.free, s, &u, across);
 }
 
+/* The pairs of an element by itself, in a step of 1 s without damping: of K at the start. Returns
+ * whether it has any stiffness. */
+static bool pairs_of(const struct flow_source *source, const struct flow_element *element,
+                     const phys_vec x[4], struct phys_pair pair[PHYS_BEND_PAIRS])
+{
+    const uint32_t corner[1][4] = {{0, 1, 2, element->kind == FLOW_TRIANGLES ? 0 : 3}};
+    const struct model_cloth *cloth = source->model->cloths + element->cloth;
+    const struct model_material *m = source->model->materials + cloth->material;
+    const struct phys_sight sight = {.n = 4, .x = x};
+    const struct phys_step step = {1, 0};
+    const double none = 0;
+    struct phys_membrane membrane;
+    struct flow_rest_of rest;
+    flow_element_rest(&source->elements, element, &rest);
+    const phys_vec vector =
+        element->kind == FLOW_TRIANGLES
+            ? (phys_vec){rest.gradient[0], rest.gradient[1], rest.gradient[2], rest.gradient[3]}
+            : (phys_vec){rest.weight[0], rest.weight[1], rest.weight[2], rest.weight[3]};
+    if (element->kind == FLOW_TRIANGLES &&
+        !phys_membrane_make(m->stretch, model_weft(m), m->shear, m->poisson, 0, &membrane)) {
+        const struct phys_triangles one = {1, corner, &vector, &rest.area, &membrane};
+        phys_triangles_matrix(&one, 0, 1, &step, &sight, pair);
+    } else if (element->kind == FLOW_HINGES) {
+        const struct phys_hinges one = {1, corner, &rest.stiffness, &none, &rest.s};
+        phys_hinges_matrix(&one, 0, 1, &step, &sight, pair);
+    } else {
+        const struct phys_folds one = {1, corner, &vector};
+        phys_folds_matrix(&one, 0, 1, 1, pair);
+    }
+    return element->kind != FLOW_HINGES || rest.stiffness > 0;
+}
+
+/* Adds `times` a pair to the block of one of its corners: N, or as good N', since their sum is
+ * symmetric. */
+static void add_pair(struct block *block, double times, double damping,
+                     const struct phys_pair *pair)
+{
+    const phys_vec *n = pair->cyclic; /* n01 n12 n20; n02 n10 n21 */
+    for (int i = 0; i < 3; i++) {
+        block->stiff[i] += times * n[0][i];
+        block->stiff[3 + i] += times * 0.5 * (n[1][i] + n[2][(i + 1) % 3]);
+        block->damping += times * damping * n[0][i];
+    }
+}
+
+static void visit_element(void *to, const struct flow_element *element)
+{
+    struct visitor *visitor = to;
+    struct flow_particle particle[4];
+    struct phys_pair pair[PHYS_BEND_PAIRS];
+    phys_vec x[4] = {{0}};
+    double times = 0;
+    for (uint32_t i = 0; i < element->corners; i++) {
+        particle_of(visitor, element->corner[i], particle + i);
+        x[i] = particle[i].position;
+        times += particle[i].free;
+    }
+    if (!pairs_of(visitor->source, element, x, pair))
+        return;
+    const struct model *model = visitor->source->model;
+    const double damping =
+        model->materials[model->cloths[element->cloth].material].damping_stiffness;
+    for (uint32_t j = 1, k = 0; j < element->corners; j++)
+        for (uint32_t i = 0; i < j; i++, k++) {
+            if (particle[i].free > 0)
+                add_pair(visitor->block + element->corner[i], times, damping, pair + k);
+            if (particle[j].free > 0)
+                add_pair(visitor->block + element->corner[j], times, damping, pair + k);
+        }
+}
+
 /* The vertex whose block over its mass is largest. */
 static void find(struct visitor *visitor, struct flow_limit *limit)
 {
@@ -91,6 +163,7 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
     if (!visitor.block)
         return CLOTH_E_MEMORY;
     flow_springs_each(&source->springs, visit, &visitor);
+    flow_elements_each(&source->elements, visit_element, &visitor);
     find(&visitor, limit);
     free(visitor.block);
     return CLOTH_OK;

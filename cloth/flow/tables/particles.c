@@ -135,7 +135,7 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
     phys_vec gravity;
     to_vector(model->gravity, &gravity);
     if (!(cloth->mass_per_vertex > 0))
-        mesh_add_mass(&cloth->mesh, material->density, p->mass + first);
+        mesh_add_mass(model_rest(cloth), material->density, p->mass + first);
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
         const uint32_t v = first + i;
         if (cloth->mass_per_vertex > 0)

@@ -75,8 +75,12 @@ void flow_source_forget(struct flow_source *source)
 {
     free(source->side);
     free(source->start);
+    free(source->member);
+    free(source->member_start);
     source->side = NULL;
     source->start = NULL;
+    source->member = NULL;
+    source->member_start = NULL;
 }
 
 int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
@@ -101,7 +105,10 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
     for (uint32_t i = to - from; i > 0; i--) /* each was moved on to the next one's */
         source->start[i] = source->start[i - 1];
     source->start[0] = 0;
-    return CLOTH_OK;
+    const int code = flow_source_collect(source, from, to, error);
+    if (code)
+        flow_source_forget(source);
+    return code;
 }
 
 /* What belongs to a vertex, and the rows that other blocks need. */
@@ -181,20 +188,6 @@ static uint32_t fill_inner(const struct flow_table *t, const struct flow_side *s
     return entries;
 }
 
-/* Where a row of the rim of slot s is among the block's copies. */
-static uint32_t copy_of(const struct flow_table *t, uint32_t s, uint32_t row)
-{
-    uint32_t low = t->copies[s], high = t->copies[s + 1];
-    while (high - low > 1) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (t->copy[middle] <= row)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 /* The cut springs and entries follow, neighbour after neighbour. */
 static void fill_cut(const struct flow_source *source, const struct flow_table *t,
                      const struct flow_side *side, const struct flow_image *image)
@@ -208,7 +201,7 @@ static void fill_cut(const struct flow_source *source, const struct flow_table *
         if (!opens(t, side, i))
             continue;
         image->copy_end[entries][0] = side[i].here - t->first;
-        image->copy_end[entries++][1] = copy_of(t, slots - 1, source->rim[side[i].there]);
+        image->copy_end[entries++][1] = flow_table_copy(t, slots - 1, source->rim[side[i].there]);
     }
     image->cut[slots] = t->n_cut;
     image->cut_entry[slots] = entries;
@@ -256,4 +249,5 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *i
     fill_inner(t, side, &arrays);
     fill_cut(source, t, side + t->n_inner, &arrays);
     fill_sides(source, t, side, &arrays);
+    flow_source_members(source, block, &arrays);
 }

@@ -132,6 +132,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         shape->n_moved = count_moved(source, shape);
     }
     count_watched(source);
+    flow_source_count(source);
     return flow_source_meet(source, error);
 }
 
@@ -141,7 +142,9 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
     *source = (struct flow_source){.model = model};
     int code = flow_particles_make(&source->particles, model, error);
     if (!code)
-        code = flow_springs_make(&source->springs, model, error);
+        code = flow_elements_make(&source->elements, model, error);
+    if (!code)
+        code = flow_springs_make(&source->springs, model, &source->elements, error);
     if (!code)
         code = cut(source, ranks, error);
     if (!code)
@@ -164,6 +167,7 @@ void flow_source_free(struct flow_source *source)
     free(source->rim);
     mesh_blocks_free(&source->blocks);
     flow_springs_free(&source->springs);
+    flow_elements_free(&source->elements);
     flow_particles_free(&source->particles);
     *source = (struct flow_source){0};
 }

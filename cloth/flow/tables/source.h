@@ -2,6 +2,7 @@
 #define CLOTH_FLOW_TABLES_SOURCE_H
 
 #include "cloth/flow/model.h"
+#include "cloth/flow/tables/elements.h"
 #include "cloth/flow/tables/tables.h"
 #include "cloth/mesh/blocks.h"
 #include "cloth/mesh/lattice.h"
@@ -67,11 +68,13 @@ struct flow_spring {
 };
 struct flow_springs {
     const struct model *model;
-    struct mesh_lattice *lattice; /* a cloth */
+    struct mesh_lattice *lattice; /* a cloth; none of one that is made of triangles */
+    const struct flow_elements *elements;
 };
-/* Errors: CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */
+/* The elements, whose joints come after the springs of their cloth, must outlive them. Errors:
+ * CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */
 int flow_springs_make(struct flow_springs *springs, const struct model *model,
-                      struct cloth_error *error);
+                      const struct flow_elements *elements, struct cloth_error *error);
 void flow_springs_each(const struct flow_springs *springs,
                        void (*visit)(void *to, const struct flow_spring *spring), void *to);
 void flow_springs_free(struct flow_springs *springs);
@@ -110,15 +113,18 @@ struct flow_side;
 struct flow_source {
     const struct model *model;
     struct flow_particles particles;
+    struct flow_elements elements;
     struct flow_springs springs;
     struct mesh_blocks blocks;
     uint32_t *rim; /* by place: its number in the rim of its block */
     struct flow_neighbours neighbours;
     struct flow_watched watched;
-    struct flow_table *shape; /* a block: shapes, which point into the neighbours */
-    uint32_t from;            /* the group of blocks whose sides are gathered begins there */
-    struct flow_side *side;   /* all of the group; NULL: none are gathered */
-    size_t *start;            /* a block of the group: where its sides begin */
+    struct flow_table *shape;    /* a block: shapes, which point into the neighbours */
+    uint32_t from;               /* the group of blocks whose sides are gathered begins there */
+    struct flow_side *side;      /* all of the group; NULL: none are gathered */
+    size_t *start;               /* a block of the group: where its sides begin */
+    struct flow_element *member; /* its elements, */
+    size_t *member_start;        /* a block and kind: where they begin */
 };
 
 /* Cuts the model into blocks and finds their shapes. The model must outlive it. Errors: as of the
@@ -126,8 +132,17 @@ struct flow_source {
 int flow_source_make(struct flow_source *source, const struct model *model, int ranks,
                      struct cloth_error *error);
 
-/* Gathers the sides of the springs of the blocks from .. to - 1, in place of those before. Error:
- * CLOTH_E_MEMORY. Local. */
+/* Counts the elements of each block, whose shapes they are added to. Local. */
+void flow_source_count(struct flow_source *source);
+
+/* The part of flow_source_gather, and of flow_source_table, that is about elements. */
+int flow_source_collect(struct flow_source *source, uint32_t from, uint32_t to,
+                        struct cloth_error *error);
+void flow_source_members(const struct flow_source *source, uint32_t block,
+                         const struct flow_image *image);
+
+/* Gathers the sides of the springs, and the elements, of the blocks from .. to - 1, in place of
+ * those before. Error: CLOTH_E_MEMORY. Local. */
 int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
                        struct cloth_error *error);
 

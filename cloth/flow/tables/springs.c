@@ -1,22 +1,26 @@
-/* Springs keep the order of their mesh, cloth after cloth. */
+/* Springs keep the order of their mesh, cloth after cloth, joints of elements after them. */
 #include "cloth/flow/tables/source.h"
 
 #include "cloth/base/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 int flow_springs_make(struct flow_springs *springs, const struct model *model,
-                      struct cloth_error *error)
+                      const struct flow_elements *elements, struct cloth_error *error)
 {
-    *springs = (struct flow_springs){.model = model};
+    *springs = (struct flow_springs){.model = model, .elements = elements};
     springs->lattice = cloth_alloc(model->n_cloths, sizeof *springs->lattice, error);
     int code = springs->lattice ? CLOTH_OK : CLOTH_E_MEMORY;
     for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         const struct model_material *m = model->materials + cloth->material;
-        const struct mesh_moduli moduli = {m->stretch, m->shear, m->bend, m->both_diagonals};
+        const struct mesh_moduli moduli = {m->stretch, m->shear, m->bend, m->both_diagonals,
+                                           m->weft_excess};
         struct cloth_error inner = {0};
-        code = mesh_lattice_build(springs->lattice + c, &cloth->mesh, &moduli, &inner);
+        if (flow_has_triangles(model, cloth))
+            continue;
+        code = mesh_lattice_build(springs->lattice + c, model_rest(cloth), &moduli, &inner);
         if (code == CLOTH_E_INPUT)
             model_fail(cloth->mesh_place, error, "cloth '%.60s': %s", cloth->name, inner.text);
         else if (code)
@@ -46,6 +50,43 @@ static void pass_on(void *context, const struct mesh_spring *s)
     visitor->visit(visitor->to, &spring);
 }
 
+static void join(const struct visitor *visitor, const struct mesh *mesh, uint32_t a, uint32_t b,
+                 double stiffness, unsigned char stretch)
+{
+    const double *p = mesh->position + 3 * (size_t)a, *q = mesh->position + 3 * (size_t)b;
+    const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
+    const double length = sqrt(x * x + y * y + z * z);
+    const struct flow_spring spring = {.a = visitor->first + (a < b ? a : b),
+                                       .b = visitor->first + (a < b ? b : a),
+                                       .stiffness = stiffness,
+                                       .damping = visitor->damping * stiffness,
+                                       .length = length,
+                                       .stretch = stretch && length > 0};
+    visitor->visit(visitor->to, &spring);
+}
+
+/* What the elements of a cloth join, and its edges without triangles, which are springs as in any
+ * cloth. */
+static void each_joint(const struct flow_springs *springs, uint32_t c,
+                       const struct visitor *visitor)
+{
+    const struct model *model = springs->model;
+    const struct model_cloth *cloth = model->cloths + c;
+    const struct mesh *mesh = model_rest(cloth);
+    const struct mesh_edges *edges = springs->elements->edges + c;
+    const bool triangles = flow_has_triangles(model, cloth);
+    for (uint32_t e = 0; e < edges->n; e++) {
+        const struct mesh_edge *edge = edges->edge + e;
+        const bool lone = edge->opposite[0] == UINT32_MAX;
+        if (triangles || !lone)
+            join(visitor, mesh, edge->a, edge->b,
+                 lone ? model->materials[cloth->material].stretch : 0, triangles);
+        if (flow_has_bending(model, cloth) && edge->opposite[1] != UINT32_MAX &&
+            edge->opposite[0] != edge->opposite[1])
+            join(visitor, mesh, edge->opposite[0], edge->opposite[1], 0, 0);
+    }
+}
+
 void flow_springs_each(const struct flow_springs *springs,
                        void (*visit)(void *to, const struct flow_spring *spring), void *to)
 {
@@ -55,6 +96,7 @@ void flow_springs_each(const struct flow_springs *springs,
         const struct model_cloth *cloth = model->cloths + c;
         visitor.damping = model->materials[cloth->material].damping_stiffness;
         mesh_lattice_each(springs->lattice + c, pass_on, &visitor);
+        each_joint(springs, c, &visitor);
         visitor.first += cloth->mesh.n_vertices;
     }
 }

@@ -2,6 +2,8 @@
  * and where they lie follows from the shape alone. */
 #include "cloth/flow/tables/tables.h"
 
+#include <string.h>
+
 enum { LINE = 64 };
 
 /* Where arrays go: base NULL only counts. */
@@ -16,6 +18,20 @@ static void *next(struct room *room, size_t bytes)
     char *here = room->base ? room->base + room->used : NULL;
     room->used += (bytes + LINE - 1) / LINE * LINE;
     return here;
+}
+
+const uint32_t flow_pairs[FLOW_KINDS] = {3, PHYS_BEND_PAIRS, PHYS_BEND_PAIRS};
+
+static void lay_list(const struct flow_table *t, enum flow_kind kind, struct room *room,
+                     struct flow_list *list)
+{
+    const size_t n = t->n_elements[kind];
+    const int numbers = kind == FLOW_TRIANGLES ? 1 : kind == FLOW_HINGES ? 3 : 0;
+    list->corner = next(room, n * sizeof *list->corner);
+    list->at = next(room, flow_pairs[kind] * n * sizeof *list->at);
+    list->vector = next(room, kind == FLOW_HINGES ? 0 : n * sizeof *list->vector);
+    for (int i = 0; i < 3; i++)
+        list->number[i] = next(room, i < numbers ? n * sizeof(double) : 0);
 }
 
 static void lay(const struct flow_table *t, struct room *room, struct flow_image *image)
@@ -45,6 +61,9 @@ static void lay(const struct flow_table *t, struct room *room, struct flow_image
     image->moved = next(room, t->n_moved * sizeof *image->moved);
     image->watched = next(room, t->n_watched * sizeof *image->watched);
     image->stretch = next(room, sides);
+    for (int kind = 0; kind < FLOW_KINDS; kind++)
+        lay_list(t, (enum flow_kind)kind, room, image->list + kind);
+    image->membrane = next(room, t->n_membranes * sizeof *image->membrane);
 }
 
 size_t flow_table_bytes(const struct flow_table *table)
@@ -87,4 +106,19 @@ void flow_table_open(struct flow_table *t, const void *image)
     t->load = arrays.load;
     t->position = arrays.position;
     t->velocity = arrays.velocity;
+    memcpy(t->list, arrays.list, sizeof t->list);
+    t->membrane = arrays.membrane;
+}
+
+uint32_t flow_table_copy(const struct flow_table *t, uint32_t s, uint32_t row)
+{
+    uint32_t low = t->copies[s], high = t->copies[s + 1];
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (t->copy[middle] <= row)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
 }

@@ -58,6 +58,18 @@ static inline const phys_vec *flow_open_matrix(const duite_call *call, struct fl
     return duite_in(call, i, phys_vec) + flow_diagonal_rows(t);
 }
 
+/* Elements of a block (elements.c), in tasks whose parameters are: table, x, v, any one, rims of x,
+ * rims of v. Adds their forces; y -= scale K v. */
+void flow_elements_force(const duite_call *call, const struct flow_table *t, phys_vec *f);
+void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
+                             phys_vec *y);
+/* Adds their part of the matrix of a step of h seconds to the sums of its entries. Parameters:
+ * table, x; rims of x from number `rims` on. */
+void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double h,
+                            size_t rims, double *sums);
+/* Their energy, J, of those that count here; parameters alike. */
+double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims);
+
 /* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are
  * none. */
 static inline void flow_write_rim(const struct flow_table *table, const phys_vec *y, phys_vec *rim)

@@ -16,7 +16,7 @@ enum {
 /* What is told of a block; the neighbours of all blocks follow. */
 struct shape {
     uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_rim, n_held, lowest, highest;
-    uint32_t n_watched, n_moved, n_slots, n_copies;
+    uint32_t n_watched, n_moved, n_slots, n_copies, n_stiff, n_elements[FLOW_KINDS], n_membranes;
     float cost;
 };
 
@@ -51,6 +51,9 @@ static int tell_head(const duite_call *call)
         head->most_rows = larger(t->n, head->most_rows);
         head->most_slots = larger(t->n_slots, head->most_slots);
         head->most_rim = larger(t->n_rim, head->most_rim);
+        head->most_copies = larger(t->n_copies, head->most_copies);
+        for (int kind = 0; kind < FLOW_KINDS; kind++)
+            head->n_elements += t->n_elements[kind];
         head->most_entries = larger(t->n_entries + t->n_cut_entries, head->most_entries);
     }
     return 0;
@@ -89,6 +92,11 @@ static int tell_shared(const duite_call *call)
                                     .highest = t->highest,
                                     .n_slots = t->n_slots,
                                     .n_copies = t->n_copies,
+                                    .n_stiff = t->n_stiff,
+                                    .n_elements = {t->n_elements[FLOW_TRIANGLES],
+                                                   t->n_elements[FLOW_HINGES],
+                                                   t->n_elements[FLOW_FOLDS]},
+                                    .n_membranes = t->n_membranes,
                                     .cost = t->cost};
         to = put(to, &shape, sizeof shape);
     }
@@ -170,10 +178,13 @@ static void unpack(struct flow_state *state)
                                                .highest = shape->highest,
                                                .n_slots = shape->n_slots,
                                                .n_copies = shape->n_copies,
+                                               .n_stiff = shape->n_stiff,
+                                               .n_membranes = shape->n_membranes,
                                                .cost = shape->cost,
                                                .slot = slot,
                                                .copies = copies,
                                                .copy = copy};
+        memcpy(tables->block[b].n_elements, shape->n_elements, sizeof shape->n_elements);
         first += shape->n;
         slot += shape->n_slots;
         copies += shape->n_slots + 1;

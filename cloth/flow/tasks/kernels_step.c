@@ -49,6 +49,9 @@ static void add_inner(const duite_call *call, const struct flow_table *t)
     const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
     phys_vec *f = duite_out(call, 3, phys_vec);
     struct phys_springs springs = flow_table_inner(t);
+    flow_elements_force(call, t, f);
+    if (!t->n_stiff)
+        return;
     phys_springs_force(&springs, x, v, f);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
@@ -107,9 +110,14 @@ static int right_side(const duite_call *call)
     for (uint32_t i = 0; i < t->n; i++)
         f[i] = h * f[i];
     struct phys_springs springs = flow_table_inner(t);
+    flow_elements_stiffness(call, t, h * h, f);
+    if (!t->n_stiff)
+        return 0;
+    springs.full = flow_of(call)->model->full_slope;
     phys_springs_stiffness(&springs, h * h, x, v, f);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
+        springs.full = flow_of(call)->model->full_slope;
         phys_springs_stiffness_cut(&springs, h * h, x, v, duite_in(call, 4 + s, phys_vec),
                                    duite_in(call, 4 + t->n_slots + s, phys_vec), f);
     }
@@ -124,13 +132,14 @@ const duite_kernel flow_implicit = {.name = "acceleration_implicit",
 
 /* Springs from .. to - 1 of a block, whose ends 1 are in x_other. */
 static void assemble_springs(const struct flow_table *t, uint32_t from, uint32_t to, double h,
-                             const phys_vec *x, const phys_vec *x_other, double *sums)
+                             int full, const phys_vec *x, const phys_vec *x_other, double *sums)
 {
     enum { AT_ONCE = 64 };
     phys_vec value[AT_ONCE];
     while (from < to) {
         const uint32_t n = to - from < AT_ONCE ? to - from : AT_ONCE;
-        const struct phys_springs springs = flow_table_springs(t, from, from + n);
+        struct phys_springs springs = flow_table_springs(t, from, from + n);
+        springs.full = full;
         phys_springs_matrix(&springs, h, x, x_other, value);
         solve_assemble_springs(n, t->at + from, value, sums);
         from += n;
@@ -146,10 +155,12 @@ static void assemble(const duite_call *call, const struct flow_table *t, void *v
     const struct solve_cut cut = flow_table_cut_entries(t);
     double *sums = flow->sums ? flow->sums + call->worker * flow->n_sums : values;
     memset(sums, 0, SOLVE_NINE * (t->matrix.row[t->n] + cut.n) * sizeof *sums);
-    assemble_springs(t, 0, t->n_inner, h, x, x, sums);
-    for (uint32_t s = 0; s < t->n_slots; s++)
-        assemble_springs(t, t->n_inner + t->cut[s], t->n_inner + t->cut[s + 1], h, x,
-                         duite_in(call, 3 + s, phys_vec), sums);
+    flow_elements_assemble(call, t, h, 3, sums);
+    if (t->n_stiff)
+        assemble_springs(t, 0, t->n_inner, h, flow->model->full_slope, x, x, sums);
+    for (uint32_t s = 0; t->n_stiff && s < t->n_slots; s++)
+        assemble_springs(t, t->n_inner + t->cut[s], t->n_inner + t->cut[s + 1], h,
+                         flow->model->full_slope, x, duite_in(call, 3 + s, phys_vec), sums);
     solve_assembled(&t->matrix, &cut, sums, values);
 }
 
@@ -169,9 +180,11 @@ static int matrix(const duite_call *call)
         return 0;
     }
     struct phys_springs springs = flow_table_inner(t);
+    springs.full = flow_of(call)->model->full_slope;
     phys_springs_matrix(&springs, h, x, x, value);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
+        springs.full = flow_of(call)->model->full_slope;
         phys_springs_matrix(&springs, h, x, duite_in(call, 3 + s, phys_vec),
                             value + t->n_inner + t->cut[s]);
     }

@@ -43,6 +43,13 @@ static void take(struct flow_state *state)
     flow->n_sums = SOLVE_NINE * (size_t)head->most_entries;
     if (flow->model->format == SOLVE_HALF_FLOAT)
         flow->sums = cloth_alloc(flow->n_clocks * flow->n_sums, sizeof *flow->sums, &flow->trouble);
+    flow->n_copies = 2 * ((size_t)head->most_copies + 1);
+    if (head->n_elements) {
+        flow->copies = aligned_alloc(sizeof *flow->copies,
+                                     flow->n_clocks * flow->n_copies * sizeof *flow->copies);
+        if (!flow->copies)
+            cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for copies of vertices");
+    }
     flow->shared = cloth_alloc(head->shared_bytes, 1, &flow->trouble);
     flow->tables.block = cloth_alloc(head->n_blocks, sizeof *flow->tables.block, &flow->trouble);
     flow->tables.n_blocks = head->n_blocks;
@@ -93,6 +100,7 @@ void flow_memory_free(struct flow_state *state)
     flow_turned_free(flow);
     free(flow->clock);
     free(flow->sums);
+    free(flow->copies);
     free(flow->room);
     free(flow->row);
     free(flow->seen);
@@ -106,6 +114,7 @@ void flow_memory_free(struct flow_state *state)
     XXH64_freeState(state->hash);
     flow->clock = NULL;
     flow->sums = NULL;
+    flow->copies = NULL;
     flow->room = flow->row = flow->seen = NULL;
     state->block = NULL;
     state->parcel = NULL;

@@ -81,6 +81,9 @@ struct flow {
     double *sums;             /* a worker, nine for each of most_entries: room for a matrix while it
                                * is assembled; NULL but in float */
     size_t n_sums;            /* doubles of a worker */
+    phys_vec *copies; /* a worker, two for each of most_copies: what elements see of neighbours
+                       * while a task works on them; NULL: there are no elements */
+    size_t n_copies;  /* of a worker */
     uint32_t *at; /* of each copy of all blocks: its place in what a pass reads of the neighbour */
     struct flow_far_rim *far_rim; /* of far.c */
     uint32_t *far_row;
@@ -152,7 +155,9 @@ struct flow_head {
     uint64_t shared_bytes;                                         /* of what they are told next */
     uint32_t n_vertices, n_triangles, n_blocks, n_slots, n_copies; /* of all blocks */
     uint32_t most_rows, most_slots, most_rim, most_entries;        /* of any block */
-    struct model model; /* pointers mean nothing elsewhere */
+    uint32_t most_copies;
+    uint64_t n_elements; /* of all blocks */
+    struct model model;  /* pointers mean nothing elsewhere */
 };
 
 /* Kernels. Objects in order; "table" (r) is that of the task's block, "rims" are one of each

@@ -18,20 +18,23 @@ struct phys_frame {
     phys_vec det, trace, turn;            /* of S; turn = 1 / trace */
     phys_vec gu[3], gv[3], area;          /* gradients of the corners */
     phys_vec c11, c12, c22, c33, damping; /* moduli, N/m; s */
+    phys_vec corrected;                   /* 1; or 0 of uncorrected forces */
 };
 
 /* Of a membrane each, where corners name them. */
 PHYS_INLINE void phys_frame_moduli(const struct phys_triangles *t, const struct phys_four *four,
                                    struct phys_frame *frame)
 {
-    phys_vec row[PHYS_WIDE], column[PHYS_WIDE], damping = {0};
+    phys_vec row[PHYS_WIDE], column[PHYS_WIDE], damping = {0}, corrected = {0};
     for (int i = 0; i < PHYS_WIDE; i++) {
         const struct phys_membrane *membrane = t->membrane + t->corner[four->at[i]][3];
         row[i] = membrane->modulus;
         damping[i] = membrane->damping;
+        corrected[i] = membrane->uncorrected ? 0 : 1;
     }
     phys_turn(row, column);
     frame->damping = damping;
+    frame->corrected = corrected;
     frame->c11 = column[0];
     frame->c12 = column[1];
     frame->c22 = column[2];

@@ -178,6 +178,38 @@ static int build_places(struct model_cloth *cloth, const struct scene_tree *tree
     return cloth->place && cloth->mesh_place && cloth->velocity_place ? CLOTH_OK : error->code;
 }
 
+/* A shape of its own at rest, from uv. */
+static int build_rest(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                      struct cloth_error *error)
+{
+    const uint32_t n = cloth->mesh.n_vertices;
+    if (!strcmp(scene_tree_text(tree, node, "rest"), "position"))
+        return CLOTH_OK;
+    cloth->rest = scene_build_array(1, sizeof *cloth->rest, error);
+    if (!cloth->rest)
+        return error->code;
+    *cloth->rest = cloth->mesh;
+    cloth->rest->position = scene_build_array(n, 3 * sizeof(double), error);
+    if (!cloth->rest->position)
+        return error->code;
+    for (uint32_t v = 0; v < n; v++)
+        if (!mesh_uv(&cloth->mesh, v, cloth->rest->position + 3 * (size_t)v))
+            return scene_tree_fail(tree, scene_tree_get(tree, node, "rest"), error,
+                                   "rest is uv, but the mesh of cloth '%.60s' has none; a grid, an "
+                                   "OBJ file with vt, or rest: position is expected",
+                                   cloth->name);
+    return CLOTH_OK;
+}
+
+/* Triangles and bending are no springs. */
+static void choose_format(struct model *model, const struct model_cloth *cloth)
+{
+    const struct model_material *material = model->materials + cloth->material;
+    if (model->format == SOLVE_SPRINGS &&
+        (material->model == MODEL_TRIANGLES || material->bending != MODEL_NO_BENDING))
+        model->format = SOLVE_HALF;
+}
+
 static int build_cloth(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
                        struct cloth_error *error)
 {
@@ -192,6 +224,10 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
         code = find_material(cloth, model, tree, node, error);
     if (!code)
         code = scene_build_mesh(&cloth->mesh, tree, node, error);
+    if (!code)
+        code = build_rest(cloth, tree, node, error);
+    if (!code)
+        choose_format(model, cloth);
     if (!code)
         code = build_pins(model, cloth, tree, node, error);
     if (!code)

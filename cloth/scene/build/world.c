@@ -1,6 +1,8 @@
 /* Materials, obstacles, time and solver. Materials keep the order of the file. */
 #include "cloth/scene/build/build.h"
 
+#include "cloth/physics/triangle.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,22 +55,68 @@ static int build_name(struct model *model, const struct scene_tree *tree, struct
     return CLOTH_OK;
 }
 
+/* A number for both, or a list of two. */
+static void pair_of(const struct scene_tree *tree, int map, const char *key, double pair[2])
+{
+    const int node = scene_tree_get(tree, map, key);
+    if (scene_tree_is(tree, node, YAML_SEQUENCE_NODE))
+        scene_tree_vector(tree, node, 2, pair);
+    else
+        pair[0] = pair[1] = scene_tree_number(tree, map, key);
+}
+
+static void build_bending(struct model_material *material, const struct scene_tree *tree, int node)
+{
+    if (!node)
+        return;
+    const bool hinge = !strcmp(scene_tree_text(tree, node, "model"), "hinge");
+    pair_of(tree, node, "rigidity", material->rigidity);
+    material->bending = hinge ? MODEL_HINGES : MODEL_QUADRATIC;
+}
+
+/* What a table of keys cannot check of triangles. */
+static int check_membrane(const struct model_material *material, const struct scene_tree *tree,
+                          int node, struct cloth_error *error)
+{
+    const double warp = material->stretch, weft = model_weft(material), nu = material->poisson;
+    struct phys_membrane membrane;
+    if (!phys_membrane_make(warp, weft, material->shear, nu, material->damping_stiffness,
+                            &membrane))
+        return CLOTH_OK;
+    return scene_tree_fail(tree, scene_tree_get(tree, node, "poisson"), error,
+                           "materials.%.60s.poisson is %g: nu12 nu21 = nu12^2 weft / warp is %g; "
+                           "less than 1 is expected, here a ratio between -%g and %g",
+                           material->name, nu, nu * nu * weft / warp, sqrt(warp / weft),
+                           sqrt(warp / weft));
+}
+
 static int build_material(struct model_material *material, const struct scene_tree *tree,
                           const char *name, int node, struct cloth_error *error)
 {
     int damping = scene_tree_get(tree, node, "damping");
+    double stretch[2];
     *material = (struct model_material){
         .name = scene_build_copy(name, error),
         .density = scene_tree_number(tree, node, "density"),
-        .stretch = scene_tree_number(tree, node, "stretch"),
         .shear = scene_tree_number(tree, node, "shear"),
         .bend = scene_tree_number(tree, node, "bend"),
+        .poisson = scene_tree_number(tree, node, "poisson"),
+        .model = strcmp(scene_tree_text(tree, node, "model"), "springs") ? MODEL_TRIANGLES
+                                                                         : MODEL_SPRINGS,
+        .uncorrected = strcmp(scene_tree_text(tree, node, "forces"), "exact"),
         .damping_viscous = scene_tree_number(tree, damping, "viscous"),
         .damping_mass = scene_tree_number(tree, damping, "mass"),
         .damping_stiffness = scene_tree_number(tree, damping, "stiffness"),
         .both_diagonals = !strcmp(scene_tree_text(tree, node, "diagonals"), "both"),
     };
-    return material->name ? CLOTH_OK : error->code;
+    if (!material->name)
+        return error->code;
+    pair_of(tree, node, "stretch", stretch);
+    material->stretch = stretch[0];
+    material->weft_excess = stretch[1] - stretch[0];
+    build_bending(material, tree, scene_tree_get(tree, node, "bending"));
+    return material->model == MODEL_TRIANGLES ? check_membrane(material, tree, node, error)
+                                              : CLOTH_OK;
 }
 
 static int build_materials(struct model *model, const struct scene_tree *tree,
@@ -200,6 +248,7 @@ static void build_solver(struct model *model, const struct scene_tree *tree)
     model->newton_tolerance = scene_tree_number(tree, newton, "tolerance");
     model->preconditioner = preconditioner_of(scene_tree_text(tree, solver, "preconditioner"));
     model->format = format_of(scene_tree_text(tree, solver, "format"));
+    model->full_slope = !strcmp(scene_tree_text(tree, solver, "jacobian"), "full");
     model->max_iterations = scene_tree_integer(tree, solver, "max_iterations");
     if (scene_tree_get(tree, stop, "count")) {
         model->stop = MODEL_STOP_COUNT;

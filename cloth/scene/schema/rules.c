@@ -104,12 +104,15 @@ static const struct scene_rule cost_keys[] = {
      .about = "the vertices between two corners; else all"},
     {0}};
 
+static const char *const rests[] = {"position", "uv", NULL};
 static const struct scene_rule cloth_keys[] = {
     {"name", SCENE_TEXT, .about = "unique; else cloth1, cloth2, ..."},
     {"mesh", SCENE_ONE_OF, .required = true, .inside = mesh_kinds, .about = "its shape at rest"},
     {"transform", SCENE_MAP, .fallback = "{}", .inside = transform_keys,
      .about = "of the mesh, before lengths and masses are taken"},
     {"material", SCENE_TEXT, .required = true, .about = "a name in materials"},
+    {"rest", SCENE_CHOICE, .fallback = "position", .words = rests,
+     .about = "where the shape at rest is taken from; uv: in m"},
     {"mass_per_vertex", SCENE_NUMBER, "kg", .range = SCENE_POSITIVE,
      .about = "instead of density times area"},
     {"velocity", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
@@ -127,17 +130,35 @@ static const struct scene_rule damping_keys[] = {
      .about = "along a spring, times its stiffness"},
     {0}};
 
+static const char *const models[] = {"springs", "triangles", NULL};
+static const char *const bendings[] = {"hinge", "quadratic", NULL};
+static const char *const exactness[] = {"exact", "uncorrected", NULL};
+static const struct scene_rule not_negative = {.type = SCENE_NUMBER, .range = SCENE_NOT_NEGATIVE};
+static const struct scene_rule bending_keys[] = {
+    {"model", SCENE_CHOICE, .fallback = "hinge", .words = bendings,
+     .about = "quadratic: of cloths that are flat at rest"},
+    {"rigidity", SCENE_NUMBER_OR_LIST, "N m", .required = true, .range = SCENE_NOT_NEGATIVE,
+     .length = 2, .inside = &not_negative, .about = "one, or those of warp and weft"},
+    {0}};
 static const char *const diagonals[] = {"both", "one", NULL};
 
 static const struct scene_rule material_keys[] = {
     {"density", SCENE_NUMBER, "kg/m^2", .required = true, .range = SCENE_POSITIVE,
      .about = "mass of an area"},
-    {"stretch", SCENE_NUMBER, "N/m", .required = true, .range = SCENE_NOT_NEGATIVE,
-     .about = "modulus of springs along edges"},
+    {"model", SCENE_CHOICE, .fallback = "springs", .words = models,
+     .about = "what resists being stretched"},
+    {"stretch", SCENE_NUMBER_OR_LIST, "N/m", .required = true, .range = SCENE_NOT_NEGATIVE,
+     .length = 2, .inside = &not_negative,
+     .about = "modulus along threads or edges; triangles: one, or those of warp and weft"},
     {"shear", SCENE_NUMBER, "N/m", "0", .range = SCENE_NOT_NEGATIVE,
-     .about = "of springs along the diagonals of grids"},
+     .about = "of springs along the diagonals of grids; of triangles"},
+    {"poisson", SCENE_NUMBER, .fallback = "0",
+     .about = "triangles: how much a pull along the warp narrows along the weft"},
+    {"forces", SCENE_CHOICE, .fallback = "exact", .words = exactness,
+     .about = "triangles: uncorrected ones leave a torque, as in the papers"},
     {"bend", SCENE_NUMBER, "N/m", "0", .range = SCENE_NOT_NEGATIVE,
      .about = "of springs over two edges"},
+    {"bending", SCENE_MAP, .inside = bending_keys, .about = "rigidity about edges"},
     {"damping", SCENE_MAP, .fallback = "{}", .inside = damping_keys, .about = "of motion"},
     {"diagonals", SCENE_CHOICE, .fallback = "both", .words = diagonals,
      .about = "shear springs in a cell of a grid"},
@@ -184,6 +205,7 @@ static const struct scene_rule stop_kinds[] = {
     {0}};
 static const char *const preconditioners[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse", NULL};
 static const char *const formats[] = {"springs", "half", "half_float", NULL};
+static const char *const jacobians[] = {"definite", "full", NULL};
 static const struct scene_rule solver_keys[] = {
     {"stop", SCENE_ONE_OF, .fallback = "{mass_norm: 0.01}", .inside = stop_kinds,
      .about = "when conjugate gradients end"},
@@ -191,7 +213,9 @@ static const struct scene_rule solver_keys[] = {
      .about = "of conjugate gradients"},
     {"format", SCENE_CHOICE, .fallback = "springs", .words = formats,
      .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in double "
-              "or float"},
+              "or float; triangles and bending take half for springs"},
+    {"jacobian", SCENE_CHOICE, .fallback = "definite", .words = jacobians,
+     .about = "definite: without what could make the matrix indefinite; full: the whole slope"},
     {"max_iterations", SCENE_INTEGER, .fallback = "10000", .least = 1,
      .about = "a solve that needs more fails"},
     {0}};

@@ -232,6 +232,52 @@ START_TEST(springs_of_no_length)
 }
 END_TEST
 
+/* Vertices 4, 5 and 8 of the 3 x 3 sheet on a line. */
+START_TEST(elements_of_no_area)
+{
+    for (int bends = 0; bends < 2; bends++) {
+        struct setup setup;
+        struct record record = {0};
+        setup_sheet(&setup, 3);
+        setup.model.format = SOLVE_HALF;
+        setup.material.model = bends ? MODEL_SPRINGS : MODEL_TRIANGLES;
+        setup.material.bending = bends ? MODEL_HINGES : MODEL_NO_BENDING;
+        setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
+        for (size_t c = 0; c < 3; c++)
+            setup.cloth.mesh.position[3 * 8 + c] =
+                2 * setup.cloth.mesh.position[3 * 5 + c] - setup.cloth.mesh.position[3 * 4 + c];
+        record_run(&record, &setup.model);
+        says(&record, CLOTH_E_INPUT,
+             bends ? "a.yaml:4:9: a triangle at the edge between vertices 4 and 5 of cloth 'test'"
+                   : "a.yaml:4:9: triangle 7 of cloth 'test' (vertices 4, 8 and 5, ");
+        says(&record, CLOTH_E_INPUT, "has no area at rest; an area above 0 is expected");
+        record_free(&record);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
+START_TEST(bending_that_does_not_suit)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_sheet(&setup, 3);
+    setup.material.name = "felt";
+    setup.material.bending = MODEL_QUADRATIC;
+    setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "a matrix of springs cannot hold triangles or bending; ");
+    record_free(&record);
+    setup.model.format = SOLVE_HALF;
+    setup.cloth.mesh.position[3 * 8 + 1] = 0.1;
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "a.yaml:4:9: cloth 'test' is not flat at the edge between ");
+    says(&record, CLOTH_E_INPUT, "of material 'felt' expects; take model: hinge, or rest: uv");
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
 START_TEST(starts_out_of_bounds)
 {
     struct setup setup;
@@ -352,6 +398,8 @@ int main(void)
     tcase_add_test(cases, masses_beyond_measure);
     tcase_add_test(cases, a_plane_beyond_the_world);
     tcase_add_test(cases, springs_of_no_length);
+    tcase_add_test(cases, elements_of_no_area);
+    tcase_add_test(cases, bending_that_does_not_suit);
     tcase_add_test(cases, starts_out_of_bounds);
     tcase_add_test(cases, vertices_without_faces);
     tcase_add_test(cases, pins_and_loads_that_move_nothing);

@@ -67,7 +67,8 @@ START_TEST(values_out_of_range)
          .error =
              ":10:21: materials.cotton.density is 0; a finite number > 0 (kg/m^2) is expected"},
         {"stretch: 50", "stretch: -1",
-         .error = ":10:35: materials.cotton.stretch is -1; a finite number >= 0 (N/m) is expected"},
+         .error = ":10:35: materials.cotton.stretch is -1; a finite number >= 0 or a list of 2 "
+                  "of them (N/m) is expected"},
         {"mass: 0.1", "mass: -0.1",
          .error = ":10:55: materials.cotton.damping.mass is -0.1; a finite number >= 0 (1/s) is "
                   "expected"},
@@ -100,6 +101,32 @@ START_TEST(values_out_of_range)
 }
 END_TEST
 
+START_TEST(triangles_out_of_range)
+{
+    EXPECT(
+        {"stretch: 50", "stretch: [50, -1], model: triangles",
+         .error = ":10:40: materials.cotton.stretch[1] is -1; a finite number >= 0 is expected"},
+        {"stretch: 50", "stretch: [50], model: triangles",
+         .error = ":10:35: materials.cotton.stretch is a list of 1; a finite number >= 0 or a list "
+                  "of 2 of them (N/m) is expected"},
+        {"stretch: 50", "stretch: 50, model: triangle",
+         .error = ":10:46: materials.cotton.model is triangle; springs or triangles is expected"},
+        {"stretch: 50", "stretch: 50, model: triangles, shear: .nan",
+         .error = ":10:64: materials.cotton.shear is .nan; a finite number >= 0 (N/m) is expected"},
+        {"stretch: 50", "stretch: [50, 200], model: triangles, poisson: 0.5",
+         .error = ":10:73: materials.cotton.poisson is 0.5: nu12 nu21 = nu12^2 weft / warp is 1; "
+                  "less than 1 is expected, here a ratio between -0.5 and 0.5"},
+        {"stretch: 50", "stretch: 50, bending: {rigidity: [1, .nan]}",
+         .error = ":10:63: materials.cotton.bending.rigidity[1] is .nan; a finite number >= 0 is "
+                  "expected"},
+        {"mesh: {grid: {width: 1, height: 2, nx: 4, ny: 3}}",
+         "rest: uv\n    mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], triangles: "
+         "[[0, 1, 2]]}}",
+         .error = ":5:11: rest is uv, but the mesh of cloth 'sheet' has none; a grid, an OBJ file "
+                  "with vt, or rest: position is expected"});
+}
+END_TEST
+
 /* 49 GB at least. */
 START_TEST(grids_larger_than_the_machine)
 {
@@ -124,26 +151,28 @@ START_TEST(what_is_no_number)
         char to[64], error[200];
         snprintf(to, sizeof to, "stretch: %s", not_numbers[i]);
         snprintf(error, sizeof error,
-                 ":10:35: materials.cotton.stretch is %s; a finite number >= 0 (N/m) is expected",
+                 ":10:35: materials.cotton.stretch is %s; a finite number >= 0 or a list of 2 of "
+                 "them (N/m) is expected",
                  not_numbers[i]);
         expect(&(struct wrong){"stretch: 50", to, NULL, error}, 1);
     }
-    EXPECT(
-        {"stretch: 50", "stretch: '50'",
-         .error = ":10:35: materials.cotton.stretch is the text '50'; a finite number >= 0 (N/m) "
-                  "is expected"},
-        {"stretch: 50", "stretch: ",
-         .error =
-             ":10:35: materials.cotton.stretch is empty; a finite number >= 0 (N/m) is expected"},
-        {"nx: 4", "nx: 4.0",
-         .error = ":5:44: cloths[0].mesh.grid.nx is 4.0; a whole number from 2 to 4294967295 is "
-                  "expected"},
-        {"nx: 4", "nx: 4294967296",
-         .error = ":5:44: cloths[0].mesh.grid.nx is 4294967296; a whole number from 2 to "
-                  "4294967295 is expected"},
-        {"vertices: [0, 3]", "vertices: [0, -1]",
-         .error = ":7:27: cloths[0].pins[0].vertices[1] is -1; a whole number from 0 to 4294967295 "
-                  "is expected"});
+    EXPECT({"stretch: 50", "stretch: '50'",
+            .error = ":10:35: materials.cotton.stretch is the text '50'; a finite number >= 0 or a "
+                     "list of 2 of them (N/m) is expected"},
+           {"stretch: 50", "stretch: ",
+            .error =
+                ":10:35: materials.cotton.stretch is empty; a finite number >= 0 or a list of 2 of "
+                "them (N/m) is expected"},
+           {"nx: 4", "nx: 4.0",
+            .error = ":5:44: cloths[0].mesh.grid.nx is 4.0; a whole number from 2 to 4294967295 is "
+                     "expected"},
+           {"nx: 4", "nx: 4294967296",
+            .error = ":5:44: cloths[0].mesh.grid.nx is 4294967296; a whole number from 2 to "
+                     "4294967295 is expected"},
+           {"vertices: [0, 3]", "vertices: [0, -1]",
+            .error =
+                ":7:27: cloths[0].pins[0].vertices[1] is -1; a whole number from 0 to 4294967295 "
+                "is expected"});
 }
 END_TEST
 
@@ -199,8 +228,8 @@ START_TEST(unknown_and_missing_keys)
                      "halving, stretch_growth, stretch_limit, rest"},
            {"stretch: 50", "strech: 50",
             .error = ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
-                     "Allowed: density, stretch, "
-                     "shear, bend, damping, diagonals"},
+                     "Allowed: density, model, stretch, shear, poisson, forces, bend, bending, "
+                     "damping, diagonals"},
            {"vertices: [11]", "vertex: [11]",
             .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, "
                      "nearest, box, edges, force"},
@@ -373,7 +402,7 @@ START_TEST(files_that_are_no_scenes)
                 "materials, obstacles, contact, "
                 "time, integrator, energies, newton, solver, probes, grain");
     expect_text("schema: 1\ncloths: &a [*a]\n", NULL,
-                ":2:9: cloths[0] is a list of 1; a map of name, mesh, transform, material, "
+                ":2:9: cloths[0] is a list of 1; a map of name, mesh, transform, material, rest, "
                 "mass_per_vertex, velocity, "
                 "pins, loads, cost is expected");
 }
@@ -462,6 +491,7 @@ int main(void)
     TCase *cases = tcase_create("errors");
     tcase_add_test(cases, times_out_of_range);
     tcase_add_test(cases, values_out_of_range);
+    tcase_add_test(cases, triangles_out_of_range);
     tcase_add_test(cases, grids_larger_than_the_machine);
     tcase_add_test(cases, what_is_no_number);
     tcase_add_test(cases, wrong_kinds);

@@ -141,6 +141,35 @@ START_TEST(every_other_key)
 }
 END_TEST
 
+START_TEST(triangles_and_bending)
+{
+    struct model model = read_changed(
+        "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
+        "  cotton: {density: 1, model: triangles, stretch: [30, 20], shear: 3, poisson: -0.5,\n"
+        "           forces: uncorrected, bending: {model: quadratic, rigidity: [5, 6]}}\n"
+        "solver: {jacobian: full}\n");
+    const struct model_material *m = model.materials;
+    ck_assert_int_eq(model.format, SOLVE_HALF);
+    ck_assert_int_eq(model.full_slope, 1);
+    ck_assert_int_eq(m->model, MODEL_TRIANGLES);
+    ck_assert_double_eq(m->stretch, 30);
+    ck_assert_double_eq(model_weft(m), 20);
+    ck_assert_double_eq(m->poisson, -0.5);
+    ck_assert(m->uncorrected);
+    ck_assert_int_eq(m->bending, MODEL_QUADRATIC);
+    ck_assert_double_eq(m->rigidity[0], 5);
+    ck_assert_double_eq(m->rigidity[1], 6);
+    model_free(&model);
+    model = read_changed("material: cotton", "rest: uv\n    material: cotton\n"
+                                             "    transform: {scale: 3}");
+    ck_assert_int_eq(model.format, SOLVE_SPRINGS);
+    ck_assert_double_eq(model_rest(model.cloths)->position[3 * 11], 1);
+    ck_assert_double_eq(model_rest(model.cloths)->position[3 * 11 + 1], 2);
+    ck_assert_double_eq(model.cloths[0].mesh.position[3 * 11], 1.5);
+    model_free(&model);
+}
+END_TEST
+
 START_TEST(cloths_of_every_mesh)
 {
     const char *triangle = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
@@ -334,6 +363,7 @@ int main(void)
     tcase_add_test(cases, world_and_time);
     tcase_add_test(cases, cloth_and_material);
     tcase_add_test(cases, every_other_key);
+    tcase_add_test(cases, triangles_and_bending);
     tcase_add_test(cases, cloths_of_every_mesh);
     tcase_add_test(cases, probes_and_rest);
     tcase_add_test(cases, numbers_of_every_form);

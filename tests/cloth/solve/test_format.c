@@ -133,6 +133,23 @@ START_TEST(lost_is_the_sum_of_the_residual)
 }
 END_TEST
 
+/* Pairs of elements, turned or not, add the same nine; those of others nothing. */
+START_TEST(pairs_of_elements)
+{
+    const struct phys_pair pair[3] = {{{{1, 5, 9, 0}, {2, 6, 7, 0}, {3, 4, 8, 0}}},
+                                      {{{9, 9, 9, 0}, {9, 9, 9, 0}, {9, 9, 9, 0}}},
+                                      {{{1, 5, 9, 0}, {2, 6, 7, 0}, {3, 4, 8, 0}}}};
+    const uint32_t at[3] = {2, SOLVE_NO_ENTRY, 1};
+    const double n[3][3] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+    double sums[2 * SOLVE_NINE] = {0}, expected[2 * SOLVE_NINE] = {0};
+    solve_assemble_pairs(3, at, pair, sums);
+    solve_assemble(expected, true, n);
+    solve_assemble(expected + SOLVE_NINE, false, n);
+    for (int k = 0; k < 2 * SOLVE_NINE; k++)
+        ck_assert_double_eq(sums[k], expected[k]);
+}
+END_TEST
+
 /* Turned or not, from either side, nine numbers are the same ones. */
 START_TEST(assembly_from_both_sides)
 {
@@ -169,6 +186,7 @@ int main(void)
     tcase_add_loop_test(cases, what_moves_as_a_whole_keeps_its_momentum, SOLVE_SPRINGS, end);
     tcase_add_loop_test(cases, lost_is_the_sum_of_the_residual, SOLVE_SPRINGS, end);
     tcase_add_test(cases, assembly_from_both_sides);
+    tcase_add_test(cases, pairs_of_elements);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

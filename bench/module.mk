@@ -51,6 +51,13 @@ bench_rivals_starpu_CPPFLAGS = $(AM_CPPFLAGS) $(STARPU_CFLAGS)
 bench_rivals_starpu_CFLAGS = $(RIVAL_CFLAGS)
 bench_rivals_starpu_LDFLAGS =
 bench_rivals_starpu_LDADD = $(STARPU_LIBS)
+check_PROGRAMS += bench/rivals/starpu-graph
+BENCH_RIVALS += bench/rivals/starpu-graph$(EXEEXT)
+bench_rivals_starpu_graph_SOURCES = bench/rivals/starpu_graph.c bench/sweep/graph.c bench/sweep/graph.h
+bench_rivals_starpu_graph_CPPFLAGS = $(AM_CPPFLAGS) $(STARPU_CFLAGS)
+bench_rivals_starpu_graph_CFLAGS = $(RIVAL_CFLAGS)
+bench_rivals_starpu_graph_LDFLAGS =
+bench_rivals_starpu_graph_LDADD = $(STARPU_LIBS) -lm
 endif
 if HAVE_RIVAL_MPI
 check_PROGRAMS += bench/rivals/mpi
@@ -83,6 +90,14 @@ bench_rivals_petsc_LDFLAGS =
 bench_rivals_petsc_LDADD = $(PETSC_LIBS) $(MPI_LIBS) -lm
 endif
 
-bench: bench/duite-bench$(EXEEXT) $(BENCH_RIVALS)
+# Comparisons of policies: graph-run schedules graphs without an application, compare runs products of everything.
+check_PROGRAMS += bench/graph-run bench/compare
+bench_graph_run_SOURCES = bench/sweep/run.c bench/sweep/graph.c bench/sweep/graph.h
+bench_graph_run_LDADD = libduite_core.la -lm
+bench_compare_SOURCES = bench/sweep/compare.c bench/sweep/compare.h bench/sweep/journal.c bench/sweep/page.c bench/sweep/start.c bench/sweep/statistics.c
+bench_compare_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"'
+bench_compare_LDADD = libduite_core.la -lm
+
+bench: bench/duite-bench$(EXEEXT) bench/graph-run$(EXEEXT) bench/compare$(EXEEXT) duite-cloth$(EXEEXT) $(BENCH_RIVALS)
 check_DATA += $(BENCH_RIVALS)
 .PHONY: bench

@@ -1,0 +1,81 @@
+#ifndef BENCH_SWEEP_COMPARE_H
+#define BENCH_SWEEP_COMPARE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* A comparison: the product of some lists, each member run once a round, the members of a round in
+ * an order drawn at random. What was run is in a journal (runs.csv), line by line, so that it can
+ * be taken up where it was interrupted. Strings are the command line's. */
+
+enum { COMPARE_MOST = 24, COMPARE_CONFIGS = 2000, COMPARE_ROUNDS = 1000 };
+
+struct compare_list {
+    const char *item[COMPARE_MOST];
+    size_t n;
+};
+
+/* One run. Times are seconds of a step, or of a round of a graph. */
+struct compare_run {
+    double seconds, bodies; /* bodies: in bodies of tasks, a worker; the rest is outside of them */
+    double stolen, messages, bytes;
+    char hash[20];
+    bool done, fine;
+};
+
+/* Dimensions of the product, in the order in which the last one changes first. */
+enum { SUBJECT, GRAIN, RANKS, THREADS, BALANCE, MAPPING, SCHEDULER, COMPARE_DIMENSIONS };
+extern const char *const compare_dimension[COMPARE_DIMENSIONS];
+
+struct compare_config {
+    const char *value[COMPARE_DIMENSIONS];
+    struct compare_run *run; /* rounds of them */
+    /* From those that are fine: */
+    size_t n;
+    double median, low, high; /* low .. high: 95 % for the median if there are 6 runs, else all */
+    double bodies, outside;   /* medians */
+    double ratio, ratio_low, ratio_high; /* to the fastest of its subject, within rounds */
+    bool fastest, noise;                 /* noise: the difference to it is none */
+};
+
+struct compare {
+    struct compare_list list[COMPARE_DIMENSIONS];
+    struct compare_list sets; /* of scenes */
+    const char *folder, *tasks, *cost, *bytes, *steps;
+    uint64_t seed;
+    size_t rounds;
+    unsigned timeout; /* s, of a run */
+    struct compare_config *config;
+    size_t n;
+    FILE *journal;
+    bool wrong;  /* two runs that should agree have not the same hash */
+    bool failed; /* a run did */
+};
+
+/* Opens the journal and takes over what is there, or begins it with the host and the build. 1, said
+ * on stderr, if it is another comparison's or cannot be written. */
+int compare_journal_open(struct compare *compare);
+/* Appends a run and sees to it that it is on the disk. 1, said on stderr: nothing more can be kept.
+ */
+int compare_journal_add(struct compare *compare, const struct compare_config *config, size_t round);
+void compare_journal_close(struct compare *compare);
+/* The host and the build, a line each after `before`. */
+void compare_describe(FILE *out, const char *before);
+
+/* Starts a run and reads its report; run->done is set in any case. */
+void compare_start(const struct compare *compare, const struct compare_config *config,
+                   struct compare_run *run);
+
+/* Fills in medians, intervals and verdicts. */
+void compare_judge(struct compare *compare);
+/* The median of n values and the interval of its 95 %, of order statistics: the k-th from both ends
+ * with the largest k for which fewer than k of n tosses come out heads with a probability of at
+ * most 2.5 %; of fewer than 6 values all of them. Sorts the values. */
+double compare_median(double *values, size_t n, double *low, double *high);
+
+/* Tables on the terminal; summary.csv, plots (where gnuplot is installed; else a sentence) and
+ * compare.md in the folder. 1, said on stderr, if a file cannot be written. */
+int compare_page(const struct compare *compare);
+
+#endif

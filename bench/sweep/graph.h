@@ -1,0 +1,41 @@
+#ifndef BENCH_SWEEP_GRAPH_H
+#define BENCH_SWEEP_GRAPH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* A graph of tasks to be scheduled without an application: task i works for cost[i] seconds, writes
+ * an object of its own of bytes[i], and reads those of the tasks in its row, all before it. */
+struct sweep_graph {
+    size_t n, n_reads;
+    double *cost;
+    uint32_t *bytes;
+    size_t *start; /* n + 1 */
+    uint32_t *from;
+    size_t capacity, reads_capacity;
+};
+
+enum { SWEEP_MOST_READS = 64 };
+
+/* Fills an empty graph of one of these kinds with about n tasks that cost `cost` seconds on average
+ * and write `bytes` each:
+ *   stencil    rows as long as there are; each task reads its three neighbours of the row before
+ *   tree       a reduction by twos
+ *   cholesky   of tiles: potrf, trsm, syrk, gemm, of 1/3, 1, 1 and 2 units of work
+ *   random     each task reads up to three random ones among the last few rows
+ *   irregular  likewise up to five, and costs are spread over two decades
+ *   chain      one long chain beside short tasks: a graph made for `priority`
+ * 1, said on stderr, without memory or for another kind. */
+int sweep_graph_make(struct sweep_graph *graph, const char *kind, size_t n, double cost,
+                     uint32_t bytes, uint64_t seed);
+/* The kinds, ended by NULL. */
+extern const char *const sweep_graph_kinds[];
+
+/* Files: a line "duite-graph 1", then one a task: cost, bytes, number of reads, the tasks read,
+ * from 0; # begins a comment. 1, said on stderr with the line, if it cannot be read or written. */
+int sweep_graph_read(struct sweep_graph *graph, const char *file);
+int sweep_graph_write(const struct sweep_graph *graph, const char *file);
+
+void sweep_graph_free(struct sweep_graph *graph);
+
+#endif

@@ -1,0 +1,191 @@
+/* runs.csv: comments that say what is compared, where and by which build; a line of names; and a
+ * line for each run, written and synchronised when it is over. A last line that was cut off is
+ * dropped, and the run made again. */
+#include "bench/sweep/compare.h"
+
+#include <config.h>
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/utsname.h>
+#include <time.h>
+#include <unistd.h>
+
+#ifdef __clang__
+#define COMPILER __VERSION__
+#else
+#define COMPILER "gcc " __VERSION__
+#endif
+
+enum { LINE = 1000 };
+
+static void first_line_of(FILE *out, const char *before, const char *key, const char *command)
+{
+    char line[LINE] = "";
+    FILE *in = popen(command, "r");
+    if (in && fgets(line, sizeof line, in))
+        line[strcspn(line, "\n")] = 0;
+    if (in)
+        pclose(in);
+    fprintf(out, "%s%s: %s\n", before, key, line[0] ? line : "unknown");
+}
+
+void compare_describe(FILE *out, const char *before)
+{
+    struct utsname host;
+    if (!uname(&host))
+        fprintf(out, "%shost: %s, %s %s, %s\n", before, host.nodename, host.sysname, host.release,
+                host.machine);
+    fprintf(out, "%scores: %ld\n", before, sysconf(_SC_NPROCESSORS_ONLN));
+    first_line_of(out, before, "processor",
+                  "sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1");
+    first_line_of(out, before, "memory", "sed -n 's/^MemTotal: *//p' /proc/meminfo");
+    first_line_of(out, before, "load", "cut -d ' ' -f 1-3 /proc/loadavg");
+    first_line_of(out, before, "mpi", BENCH_MPIRUN " --version 2> /dev/null | head -n 1");
+    fprintf(out, "%sbuild: %s, %s, %s\n", before, PACKAGE_STRING, COMPILER, BENCH_CFLAGS);
+}
+
+/* What makes runs comparable: all but the number of rounds. */
+static void print_specification(const struct compare *compare, FILE *out)
+{
+    fprintf(out, "# compares:");
+    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+        for (size_t i = 0; i < compare->list[d].n; i++)
+            fprintf(out, "%s%s", i ? "," : " ", compare->list[d].item[i]);
+    for (size_t i = 0; i < compare->sets.n; i++)
+        fprintf(out, " --set %s", compare->sets.item[i]);
+    fprintf(out, " tasks=%s cost=%s bytes=%s steps=%s seed=%" PRIu64 "\n", compare->tasks,
+            compare->cost, compare->bytes, compare->steps, compare->seed);
+}
+
+static void path_of(const struct compare *compare, char *path, size_t size)
+{
+    snprintf(path, size, "%s/runs.csv", compare->folder);
+}
+
+static struct compare_config *find(struct compare *compare, char *const *field)
+{
+    for (size_t i = 0; i < compare->n; i++) {
+        bool same = true;
+        for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+            same = same && !strcmp(compare->config[i].value[d], field[1 + d]);
+        if (same)
+            return &compare->config[i];
+    }
+    return NULL;
+}
+
+/* A run that failed is made again. */
+static void take_line(struct compare *compare, char *line)
+{
+    enum { FIELDS = 1 + COMPARE_DIMENSIONS + 7 };
+    char *field[FIELDS], *rest = line;
+    int n = 0;
+    while (n < FIELDS && (field[n] = strsep(&rest, ",")))
+        n++;
+    struct compare_config *config = n == FIELDS ? find(compare, field) : NULL;
+    size_t round = config ? strtoul(field[0], NULL, 10) : 0;
+    char **figure = field + 1 + COMPARE_DIMENSIONS;
+    if (!config || round >= compare->rounds || strcmp(figure[6], "fine") != 0)
+        return;
+    struct compare_run *run = &config->run[round];
+    *run = (struct compare_run){.seconds = strtod(figure[0], NULL),
+                                .bodies = strtod(figure[1], NULL),
+                                .stolen = strtod(figure[2], NULL),
+                                .messages = strtod(figure[3], NULL),
+                                .bytes = strtod(figure[4], NULL),
+                                .done = true,
+                                .fine = true};
+    snprintf(run->hash, sizeof run->hash, "%s", figure[5]);
+}
+
+/* Takes over whole lines; *whole: bytes up to the end of the last one. */
+static int take_over(struct compare *compare, FILE *in, long *whole)
+{
+    char line[LINE], *wanted = NULL;
+    size_t size, taken = 0;
+    bool same = false;
+    FILE *memory = open_memstream(&wanted, &size);
+    if (!memory)
+        return 1;
+    print_specification(compare, memory);
+    fclose(memory);
+    while (fgets(line, sizeof line, in) && strchr(line, '\n')) {
+        *whole = ftell(in);
+        same = same || !strcmp(line, wanted);
+        line[strcspn(line, "\n")] = 0;
+        take_line(compare, line);
+    }
+    free(wanted);
+    for (size_t i = 0; i < compare->n; i++)
+        for (size_t r = 0; r < compare->rounds; r++)
+            taken += compare->config[i].run[r].done;
+    if (*whole && !same)
+        fprintf(stderr, "compare: %s has another comparison; choose another --output\n",
+                compare->folder);
+    else if (taken)
+        printf("%zu runs are there already\n", taken);
+    return *whole && !same;
+}
+
+static void begin(struct compare *compare)
+{
+    char date[40];
+    time_t now = time(NULL);
+    strftime(date, sizeof date, "%Y-%m-%d %H:%M:%S UTC", gmtime(&now));
+    print_specification(compare, compare->journal);
+    fprintf(compare->journal, "# date: %s\n", date);
+    compare_describe(compare->journal, "# ");
+    fprintf(compare->journal, "round");
+    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+        fprintf(compare->journal, ",%s", compare_dimension[d]);
+    fprintf(compare->journal, ",seconds,seconds_in_bodies,stolen,messages,bytes,hash,status\n");
+}
+
+int compare_journal_open(struct compare *compare)
+{
+    char path[LINE];
+    long whole = 0;
+    path_of(compare, path, sizeof path);
+    FILE *in = fopen(path, "r");
+    int failed = in ? take_over(compare, in, &whole) : 0;
+    if (in)
+        fclose(in);
+    if (failed)
+        return 1;
+    compare->journal = fopen(path, whole ? "r+" : "w");
+    if (compare->journal && whole &&
+        (ftruncate(fileno(compare->journal), whole) || fseek(compare->journal, 0, SEEK_END)))
+        failed = 1;
+    if (compare->journal && !whole)
+        begin(compare);
+    if (!compare->journal || failed || fflush(compare->journal)) {
+        fprintf(stderr, "compare: %s: %s\n", path, strerror(errno));
+        return 1;
+    }
+    return 0;
+}
+
+int compare_journal_add(struct compare *compare, const struct compare_config *config, size_t round)
+{
+    const struct compare_run *run = &config->run[round];
+    FILE *out = compare->journal;
+    fprintf(out, "%zu", round);
+    for (int d = 0; d < COMPARE_DIMENSIONS; d++)
+        fprintf(out, ",%s", config->value[d]);
+    fprintf(out, ",%.9g,%.9g,%.0f,%.0f,%.0f,%s,%s\n", run->seconds, run->bodies, run->stolen,
+            run->messages, run->bytes, run->hash, run->fine ? "fine" : "failed");
+    if (!fflush(out) && !fsync(fileno(out)))
+        return 0;
+    fprintf(stderr, "compare: %s/runs.csv: %s; what was written before is kept\n", compare->folder,
+            strerror(errno));
+    return 1;
+}
+
+void compare_journal_close(struct compare *compare)
+{
+    if (compare->journal)
+        fclose(compare->journal);
+}

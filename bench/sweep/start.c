@@ -1,0 +1,169 @@
+/* A run is a program of its own: duite-cloth for scenes, graph-run for graphs, StarPU's twin of it
+ * for schedulers named starpu:NAME. Its report is a file in the folder, which the next run
+ * overwrites; what it prints goes to run.log there. */
+#include "bench/sweep/compare.h"
+
+#include <libgen.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { WORDS = 120 };
+
+struct line {
+    char *word[WORDS];
+    int n;
+};
+
+static void append(struct line *line, const char *word)
+{
+    if (line->n + 1 < WORDS && word)
+        line->word[line->n++] = strdup(word);
+    line->word[line->n] = NULL;
+}
+
+static void append_pair(struct line *line, const char *option, const char *value)
+{
+    append(line, option);
+    append(line, value);
+}
+
+/* Beside this program, or in the folder above it. */
+static void append_program(struct line *line, const char *name, const char *above)
+{
+    char self[PATH_MAX] = "", path[PATH_MAX + 100];
+    if (readlink("/proc/self/exe", self, sizeof self - 1) < 0)
+        self[0] = 0;
+    snprintf(path, sizeof path, "%s/%s%s", dirname(self), above, name);
+    append(line, path);
+}
+
+static bool is_scene(const char *subject)
+{
+    const char *end = strrchr(subject, '.');
+    return end && (!strcmp(end, ".yaml") || !strcmp(end, ".yml"));
+}
+
+static void append_scene(const struct compare *compare, const struct compare_config *config,
+                         struct line *line)
+{
+    append_program(line, "duite-cloth", "../");
+    append(line, config->value[SUBJECT]);
+    append(line, "--quiet");
+    if (strcmp(config->value[GRAIN], "0") != 0)
+        append_pair(line, "--grain", config->value[GRAIN]);
+    for (size_t i = 0; i < compare->sets.n; i++)
+        append_pair(line, "--set", compare->sets.item[i]);
+}
+
+/* The grain of a graph is a factor of its tasks' cost; their number falls as it grows. */
+static void append_graph(const struct compare *compare, const struct compare_config *config,
+                         struct line *line)
+{
+    char cost[40], tasks[40];
+    double grain = strtod(config->value[GRAIN], NULL);
+    grain = grain > 0 ? grain : 1;
+    snprintf(cost, sizeof cost, "%.9g", strtod(compare->cost, NULL) * grain);
+    snprintf(tasks, sizeof tasks, "%.0f", strtod(compare->tasks, NULL) / grain);
+    append(line, config->value[SUBJECT]);
+    append_pair(line, "--cost", cost);
+    append_pair(line, "--tasks", tasks);
+    append_pair(line, "--bytes", compare->bytes);
+    append_pair(line, "--rounds", compare->steps);
+}
+
+static void make_line(const struct compare *compare, const struct compare_config *config,
+                      const char *report, struct line *line)
+{
+    const char *subject = config->value[SUBJECT];
+    char seconds[20];
+    bool starpu = !strncmp(config->value[SCHEDULER], "starpu:", 7);
+    snprintf(seconds, sizeof seconds, "%u", compare->timeout);
+    append_pair(line, "timeout", "-k");
+    append_pair(line, "5", seconds);
+    if (strcmp(config->value[RANKS], "1") != 0) {
+        append_pair(line, BENCH_MPIRUN, "--oversubscribe");
+        append_pair(line, "--bind-to", "none");
+        append_pair(line, "-n", config->value[RANKS]);
+    }
+    if (is_scene(subject)) {
+        append_scene(compare, config, line);
+    } else {
+        append_program(line, starpu ? "rivals/starpu-graph" : "graph-run", "");
+        append_graph(compare, config, line);
+    }
+    append_pair(line, "--scheduler", config->value[SCHEDULER] + (starpu ? 7 : 0));
+    append_pair(line, "--threads", config->value[THREADS]);
+    append_pair(line, "--report", report);
+    if (starpu)
+        return;
+    append_pair(line, "--mapping", config->value[MAPPING]);
+    append_pair(line, "--balance", config->value[BALANCE]);
+}
+
+static int execute(const struct compare *compare, struct line *line)
+{
+    char log[PATH_MAX];
+    int status = 1;
+    snprintf(log, sizeof log, "%s/run.log", compare->folder);
+    fflush(NULL);
+    pid_t child = fork();
+    if (!child) {
+        if (freopen(log, "w", stdout))
+            dup2(STDOUT_FILENO, STDERR_FILENO);
+        execvp(line->word[0], line->word);
+        _exit(127);
+    }
+    return child < 0 || waitpid(child, &status, 0) < 0 ? 1 : status;
+}
+
+/* The value behind "key": in a flat object; NULL: it is not there. */
+static const char *value_of(const char *text, const char *key)
+{
+    char quoted[60];
+    snprintf(quoted, sizeof quoted, "\"%s\":", key);
+    const char *found = strstr(text, quoted);
+    return found ? found + strlen(quoted) : NULL;
+}
+
+static double number_of(const char *text, const char *key)
+{
+    const char *value = value_of(text, key);
+    return value ? strtod(value, NULL) : 0;
+}
+
+static void read_report(const char *file, struct compare_run *run)
+{
+    char text[20000] = "";
+    FILE *in = fopen(file, "r");
+    size_t n = in ? fread(text, 1, sizeof text - 1, in) : 0;
+    if (in)
+        fclose(in);
+    text[n] = 0;
+    run->seconds = number_of(text, "seconds_per_step");
+    run->bodies = run->seconds * number_of(text, "busy_fraction");
+    run->stolen = number_of(text, "tasks_stolen");
+    run->messages = number_of(text, "messages");
+    run->bytes = number_of(text, "bytes_moved");
+    const char *hash = value_of(text, "state_hash");
+    if (hash)
+        sscanf(hash, " \"%17[0-9a-f]", run->hash);
+    run->fine = run->seconds > 0 && hash;
+}
+
+void compare_start(const struct compare *compare, const struct compare_config *config,
+                   struct compare_run *run)
+{
+    struct line line = {0};
+    char report[PATH_MAX];
+    snprintf(report, sizeof report, "%s/run.json", compare->folder);
+    unlink(report);
+    *run = (struct compare_run){.done = true};
+    make_line(compare, config, report, &line);
+    if (!execute(compare, &line))
+        read_report(report, run);
+    for (int i = 0; i < line.n; i++)
+        free(line.word[i]);
+}

@@ -1,0 +1,84 @@
+/* Medians and their intervals. Differences are taken within a round, whose members ran one after
+ * the other: what the machine does over minutes hits all of them. */
+#include "bench/sweep/compare.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* The largest k with P(fewer than k heads in n tosses) <= 0.025. */
+static size_t rank_of_interval(size_t n)
+{
+    double term = pow(0.5, (double)n), sum = 0;
+    size_t k = 0;
+    while (k < n && sum + term <= 0.025) {
+        sum += term;
+        k++;
+        term *= (double)(n - k + 1) / (double)k;
+    }
+    return k;
+}
+
+double compare_median(double *values, size_t n, double *low, double *high)
+{
+    if (!n)
+        return *low = *high = NAN;
+    qsort(values, n, sizeof *values, compare_doubles);
+    size_t k = rank_of_interval(n);
+    *low = values[k ? k - 1 : 0];
+    *high = values[k ? n - k : n - 1];
+    return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+static void judge_alone(const struct compare *compare, struct compare_config *config)
+{
+    double seconds[COMPARE_ROUNDS], bodies[COMPARE_ROUNDS], outside[COMPARE_ROUNDS], unused[2];
+    config->n = 0;
+    for (size_t r = 0; r < compare->rounds; r++) {
+        const struct compare_run *run = &config->run[r];
+        if (!run->fine)
+            continue;
+        seconds[config->n] = run->seconds;
+        bodies[config->n] = run->bodies;
+        outside[config->n++] = run->seconds - run->bodies;
+    }
+    config->median = compare_median(seconds, config->n, &config->low, &config->high);
+    config->bodies = compare_median(bodies, config->n, &unused[0], &unused[1]);
+    config->outside = compare_median(outside, config->n, &unused[0], &unused[1]);
+}
+
+static void judge_against(const struct compare *compare, struct compare_config *config,
+                          const struct compare_config *fastest)
+{
+    double ratio[COMPARE_ROUNDS];
+    size_t n = 0;
+    for (size_t r = 0; r < compare->rounds; r++)
+        if (config->run[r].fine && fastest->run[r].fine && fastest->run[r].seconds > 0)
+            ratio[n++] = config->run[r].seconds / fastest->run[r].seconds;
+    config->ratio = compare_median(ratio, n, &config->ratio_low, &config->ratio_high);
+    config->fastest = config == fastest;
+    config->noise = !config->fastest && (n < 6 || config->ratio_low <= 1);
+}
+
+void compare_judge(struct compare *compare)
+{
+    for (size_t i = 0; i < compare->n; i++)
+        judge_alone(compare, &compare->config[i]);
+    for (size_t i = 0; i < compare->n; i++) {
+        const struct compare_config *fastest = NULL;
+        for (size_t j = 0; j < compare->n; j++) {
+            const struct compare_config *other = &compare->config[j];
+            if (other->n && other->value[SUBJECT] == compare->config[i].value[SUBJECT] &&
+                (!fastest || other->median < fastest->median))
+                fastest = other;
+        }
+        if (fastest && compare->config[i].n)
+            judge_against(compare, &compare->config[i], fastest);
+    }
+}

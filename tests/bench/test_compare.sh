@@ -1,0 +1,71 @@
+#!/bin/sh
+# bench/compare on tiny graphs and a tiny scene: all files are there, an interrupted comparison goes on, what cannot be is told.
+. "${srcdir:-.}/tests/support/tap.sh"
+plan_later
+
+bin=$PWD/bench
+tiny() { (cd "$scratch" && PATH=${tools:-$PATH} limited "$bin/compare" "$@" --tasks 40 --cost 1e-6 --steps 2 --seed 3); }
+product="stencil irregular --scheduler steal,priority --mapping block,list --ranks 1,2 --threads 1"
+
+first() { # shellcheck disable=SC2086 # a list of options
+    tiny $product --rounds 1 --output c > "$scratch/said" || return 1
+    test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 16 && test "$(wc -l < "$scratch/c/summary.csv")" -gt 16 &&
+        grep -q "^# build: duite" "$scratch/c/runs.csv" && grep -q "seed 3" "$scratch/said" &&
+        grep -q "^## irregular" "$scratch/c/compare.md"
+}
+# The last line is cut off in the middle, and another round asked for.
+again() { # shellcheck disable=SC2086
+    kept=$(head -n 20 "$scratch/c/runs.csv")
+    printf '%s\n0,stencil,0' "$kept" > "$scratch/c/runs.csv"
+    before=$(grep -c ',fine$' "$scratch/c/runs.csv")
+    tiny $product --rounds 2 --output c > "$scratch/said" || return 1
+    grep -qx "$before runs are there already" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 32
+}
+refused() { # STATUS SENTENCE OPTIONS...
+    wanted=$1 sentence=$2
+    shift 2
+    status=0
+    tiny "$@" > "$scratch/said" 2>&1 || status=$?
+    cat "$scratch/said"
+    test $status = "$wanted" && grep -q "$sentence" "$scratch/said"
+}
+wrong() { # shellcheck disable=SC2086
+    sed -i '$s/,[0-9a-f]\{16\},/,0123456789abcdef,/' "$scratch/c/runs.csv"
+    refused 1 "WRONG: .* hash" $product --rounds 3 --output c
+}
+full() {
+    mkdir "$scratch/full" && ln -s /dev/full "$scratch/full/runs.csv" && refused 1 "No space left" tree --output full
+}
+without_plots() {
+    mkdir "$scratch/bin"
+    for tool in timeout sed head cut sh; do ln -s "$(command -v $tool)" "$scratch/bin/"; done
+    tools=$scratch/bin refused 0 "no plots: gnuplot is missing" tree --rounds 1 --output p &&
+        grep -q "There are no plots" "$scratch/p/compare.md"
+}
+hash_of() { (cd "$scratch" && "$bin/graph-run" "$@" --tasks 40 --cost 1e-6 --rounds 1 --threads 1) | sed -n 's/.*hash": "\(.*\)"/\1/p'; }
+graph_file() {
+    hash_of irregular --save g.graph
+    test -n "$(hash_of g.graph)" && test "$(hash_of g.graph)" = "$(hash_of irregular)"
+}
+bad_file() {
+    printf 'duite-graph 1\n1e-6 8 0\n1e-6 8 1 1\n' > "$scratch/bad.graph"
+    ! hash_of bad.graph 2> "$scratch/said" || test -z "$(hash_of bad.graph 2> "$scratch/said")"
+    grep -q "bad.graph:3: .* tasks before it" "$scratch/said"
+}
+scene() {
+    refused 0 "sheet.yaml" "$top/cloth/scenes/sheet.yaml" --set 'cloths[0].mesh.grid.nx=12' --set 'cloths[0].mesh.grid.ny=12' \
+        --set time.end=0.002 --grain 40,70 --rounds 1 --output s && test "$(grep -c ',fine$' "$scratch/s/runs.csv")" = 2
+}
+
+top=$(cd "$srcdir" && pwd)
+ok "a product of graphs" first
+ok "it goes on where it was interrupted" again
+ok "a folder of another comparison" refused 1 "another comparison" stencil --output c
+ok "a wrong result is told" wrong
+ok "a scene over grains" scene
+ok "a graph from a file is the same" graph_file
+ok "a damaged one names its line" bad_file
+ok "a full disk" full
+ok "without gnuplot" without_plots
+ok "an unknown scheduler lists the known ones" refused 2 "known are steal, locality" tree --scheduler best
+ok "an unknown kind of graph fails, and its words are kept" refused 1 "failed; its words are in u/run.log" ring --rounds 1 --output u

@@ -22,7 +22,7 @@ bench_libbench_la_LIBADD = libduite_cloth.la libduite_core.la
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = bench/libbench.la -lm
-EXTRA_DIST += bench/rivals/openmp.c bench/cg/states.yaml
+EXTRA_DIST += bench/experiments bench/rivals/openmp.c bench/cg/states.yaml
 
 OPENMP_FILES = bench/rivals/openmp.c bench/problem.c bench/serve.c
 OPENMP_NEEDS = $(OPENMP_FILES) bench/problem.h bench/serve.h

@@ -114,9 +114,11 @@ static int report(const struct command *command, duite *rt, double seconds, cons
 {
     const duite_options *options = &command->options;
     unsigned workers = duite_threads(rt) * (unsigned)duite_ranks(rt);
+    if (duite_rank(rt))
+        return 0;
     FILE *out = command->report ? fopen(command->report, "w") : stdout;
-    if (!out || duite_rank(rt))
-        return !out;
+    if (!out)
+        return 1;
     fprintf(out,
             "{\n  \"graph\": \"%s\",\n  \"tasks_a_round\": %zu,\n  \"ranks\": %d,\n  \"threads\": "
             "%u,\n  \"scheduler\": \"%s\",\n  \"mapping\": \"%s\",\n  \"balance\": \"%s\",\n",

@@ -8,7 +8,7 @@ tiny() { (cd "$scratch" && PATH=${tools:-$PATH} limited "$bin/compare" "$@" --ta
 product="stencil irregular --scheduler steal,priority --mapping block,list --ranks 1,2 --threads 1"
 
 first() { # shellcheck disable=SC2086 # a list of options
-    tiny $product --rounds 1 --output c > "$scratch/said" || return 1
+    tiny $product --rounds 1 --output c > "$scratch/said" || { cat "$scratch/said" && return 1; }
     test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 16 && test "$(wc -l < "$scratch/c/summary.csv")" -gt 16 &&
         grep -q "^# build: duite" "$scratch/c/runs.csv" && grep -q "seed 3" "$scratch/said" &&
         grep -q "^## irregular" "$scratch/c/compare.md"
@@ -18,7 +18,7 @@ again() { # shellcheck disable=SC2086
     kept=$(head -n 20 "$scratch/c/runs.csv")
     printf '%s\n0,stencil,0' "$kept" > "$scratch/c/runs.csv"
     before=$(grep -c ',fine$' "$scratch/c/runs.csv")
-    tiny $product --rounds 2 --output c > "$scratch/said" || return 1
+    tiny $product --rounds 2 --output c > "$scratch/said" || { cat "$scratch/said" && return 1; }
     grep -qx "$before runs are there already" "$scratch/said" && test "$(grep -c ',fine$' "$scratch/c/runs.csv")" = 32
 }
 refused() { # STATUS SENTENCE OPTIONS...

@@ -36,7 +36,7 @@ static int look(const duite_task_graph *graph, int *home)
                  start[0] == 0 && start[1] == 0 && start[2] == 1 && start[3] == 2 &&
                  graph->from[0] == 0 && graph->bytes[0] == 4 * WIDTH && graph->from[1] == 1 &&
                  graph->bytes[1] == 4 * 3 && !graph->stays[0] && graph->workers[ranks - 1] == 1 &&
-                 graph->byte_seconds > 0 && graph->message_seconds > 0;
+                 graph->byte_seconds >= 0 && graph->message_seconds > 0;
     for (int i = 0; i < 3; i++)
         seen.cost[i] = graph->cost[i];
     home[1] = seen.wrong ? ranks : ranks - 1;

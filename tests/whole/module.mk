@@ -20,3 +20,5 @@ dist_check_SCRIPTS += tests/whole/test_simd.sh
 TESTS += tests/whole/test_simd.sh
 dist_check_SCRIPTS += tests/whole/test_system.sh
 TESTS += tests/whole/test_system.sh
+dist_check_SCRIPTS += tests/whole/test_integrators.sh
+TESTS += tests/whole/test_integrators.sh

@@ -51,13 +51,16 @@ END_TEST
  * with this h: a step that was given up has left nothing. */
 START_TEST(a_halved_run_is_one_with_a_smaller_h)
 {
-    for (int i = MODEL_EXPLICIT_EULER; i <= MODEL_IMPLICIT_EULER; i++) {
+    for (int i = 0; i <= MODEL_INTEGRATORS; i++) { /* the last: Newton steps */
         struct setup setup;
         struct record halved = {0}, small = {0};
         setup_sheet(&setup, 8);
         setup.cloth.velocity[0] = 0.5;
         setup_pin(&setup, 1, (const uint32_t[]){0});
-        setup.model.integrator = (enum model_integrator)i;
+        const bool newton = i == MODEL_INTEGRATORS;
+        setup.model.integrator = newton ? MODEL_BDF2 : (enum model_integrator)i;
+        setup.model.newton_steps = newton ? 5 : 1;
+        setup.model.newton_tolerance = 1e-6;
         setup.model.end = 0.004;
         setup.model.fps = 250;
         setup.model.halving = true;

@@ -1,0 +1,81 @@
+#!/bin/sh
+# Integrators as a user meets them: free fall of each by its own formula, read from probes; Newton steps, energies and warnings.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+cd "$scratch" || exit 99
+
+run() { limited "$DUITE_CLOTH" "$@" --quiet; }
+value() { sed -n "s/^ *\"$1\": *\"\{0,1\}\([^\",]*\).*/\1/p" report.json; }
+
+cat > fall.yaml << 'END'
+schema: 1
+cloths:
+  - mesh: {grid: {width: 1, height: 1, nx: 6, ny: 6}}
+    material: cotton
+    velocity: [0.5, 2, 0]
+materials: {cotton: {density: 0.2, stretch: 500, shear: 100, damping: {stiffness: 0.0001}}}
+time: {h: 0.001, end: 0.5}
+solver: {stop: {relative: 1.0e-13}}
+grain: 9
+probes: [{vertices: [7]}]
+END
+
+falls() { # INTEGRATOR, by awk: what it falls more than g t^2 / 2, in g h^2, after n steps, ARGUMENT...
+    name=$1 more=$2
+    shift 2
+    rm -rf fall
+    run fall.yaml --output fall --set integrator="$name" "$@" || return 1
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "probe1.7.y [m]") y = i; next }
+        { n = NR - 2; h = 0.001; g = 9.81; t = n * h; more = '"$more"'
+          wrong = $y - (2 * t - g * t * t / 2 - g * h * h * more); if (wrong < 0) wrong = -wrong; if (wrong > most) most = wrong }
+        END { print NR - 1 " rows, off by " most " m"; exit !(y && NR == 502 && most < 1e-10) }' fall/probes.csv
+}
+ok "explicit_euler falls" falls explicit_euler '-n / 2' --set 'materials.cotton={density: 0.2, stretch: 1, damping: {stiffness: 0.01}}'
+ok "symplectic_euler falls" falls symplectic_euler 'n / 2'
+ok "verlet falls" falls verlet 0
+ok "rk4 falls" falls rk4 0
+ok "implicit_euler falls" falls implicit_euler 'n / 2'
+ok "bdf2 falls" falls bdf2 '0.75 * (1 - exp(-n * log(3)))'
+
+# ---- Energies: the sum of the columns of the probes against the report
+
+wavers() {
+    rm -rf fall
+    run fall.yaml --output fall --report report.json --set integrator=verlet --set materials.cotton.damping.stiffness=0 \
+        --set 'cloths[0].pins=[{vertices: [0]}]' --set energies=steps --set time.h=0.0005 || return 1
+    grep energy report.json
+    awk -F, -v low="$(value energy_lowest)" -v high="$(value energy_highest)" -v gained="$(value energy_gained)" \
+        'function near(a, b) { return a - b < 1e-12 && b - a < 1e-12 }
+        NR > 1 { sum = $6 + $7 + $8 + $9; if (NR == 2 || sum < least) least = sum; if (NR == 2 || sum > most) most = sum
+                 if (sum - least > rise) rise = sum - least }
+        END { print least, most, rise
+              exit !(near(least, low) && near(most, high) && near(rise, gained) && rise > 0 && rise < 1e-3) }' fall/probes.csv
+}
+ok "energies of the report are those of the probes" wavers
+ok "without energies: steps they are null" eval 'run fall.yaml --report report.json --end 0.002 && test "$(value energy_gained)" = null'
+
+# ---- Newton steps
+
+newton() {
+    run fall.yaml --report report.json --set 'cloths[0].pins=[{vertices: [0]}]' --set time.h=0.02 \
+        --set 'newton={steps: 40, tolerance: 1e-6}' || return 1
+    grep -E 'newton|steps' report.json
+    test "$(value newton_steps)" -gt "$((2 * $(value steps)))" && test "$(value newton_unconverged)" = 0
+}
+ok "Newton steps are counted" newton
+
+# ---- Steps that are too long
+
+warns() { # LIMIT, ARGUMENT...
+    limit=$1
+    shift
+    limited "$DUITE_CLOTH" fall.yaml --quiet --end 0.002 "$@" 2> complained
+    cat complained
+    test "$(grep -c "fall.yaml:[0-9]*:11: .*$limit" complained)" = 1
+}
+ok "verlet is told its limit" warns 'steps of 0.001 s are beyond the limit of verlet, ' --set integrator=verlet \
+    --set 'materials.cotton.stretch=100000'
+ok "explicit_euler without damping has none" warns 'no step is short enough for explicit_euler' --set integrator=explicit_euler \
+    --set materials.cotton.damping.stiffness=0
+ok "implicit steps are not warned of" eval '! warns . --set materials.cotton.stretch=100000'

@@ -3,6 +3,7 @@
 
 #include "cloth/base/error.h"
 #include "cloth/mesh/mesh.h"
+#include "cloth/physics/air.h"
 #include "cloth/physics/motion.h"
 #include "cloth/solve/format.h"
 
@@ -140,6 +141,7 @@ struct model {
     struct model_motion *motions;
     struct phys_key *keys; /* of each motion in ascending order; at time 0 it is no motion */
     double gravity[3];     /* m/s^2 */
+    struct phys_air air;
 
     double h; /* s; time is an integer count of h/1024 */
     char *h_place;
@@ -184,6 +186,11 @@ static inline const struct mesh *model_rest(const struct model_cloth *cloth)
 static inline double model_weft(const struct model_material *material)
 {
     return material->stretch + material->weft_excess;
+}
+
+static inline int model_has_air(const struct model *model)
+{
+    return model->air.density > 0;
 }
 
 /* Frees what the model owns and clears it. */

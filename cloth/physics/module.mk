@@ -1,4 +1,5 @@
 libduite_cloth_la_SOURCES += \
+    cloth/physics/air.c cloth/physics/air.h \
     cloth/physics/bending.h \
     cloth/physics/element.h \
     cloth/physics/fold.c \

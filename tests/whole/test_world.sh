@@ -87,3 +87,35 @@ loads() {
         exit ($16 + 0.125 + 0.5) ^ 2 > 1e-14 || ($17 - 0.25 - 17 * 0.01 * 9.81) ^ 2 > 1e-14 || ($18 + 0.5 + 0.25) ^ 2 > 1e-14 }'
 }
 ok "loads along edges, in boxes and at points" loads
+
+# ---- Air: a level sheet sinks, in the end, with sqrt(2 density g / (rho normal)).
+cat > sheet.yaml << 'END'
+schema: 1
+air: {density: 1.2, normal: 1.25, tangent: 0.5}
+cloths:
+  - mesh: {grid: {width: 1, height: 1, nx: 6, ny: 6}}
+    material: silk
+materials: {silk: {density: 0.06, stretch: 100, shear: 50, damping: {stiffness: 0.001}}}
+time: {h: 0.002, end: 2}
+grain: 9
+solver: {stop: {relative: 1e-12}}
+probes: [{name: all, box: [[-9, -9, -9], [9, 9, 9]], values: [velocity, total]}]
+END
+sinks() { # ARGUMENT...
+    run sheet.yaml --output sink "$@" || return 1
+    tail -n 1 sink/probes.csv | awk -F, '{ want = -sqrt(2 * 0.06 * 9.81 / 1.2 / 1.25)
+        for (i = 0; i < 36; i++) { d = $(11 + 3 * i) - want; if (d < 0) d = -d; if (d > most) most = d }
+        print "off by", most; exit !(most < 1e-6) }'
+}
+ok "a sheet sinks at its terminal velocity" sinks
+ok "with rk4 and a wind along it" sinks --set integrator=rk4 --set air.tangent=0 --set 'air.wind=[3, 0, 1]'
+
+# Held everywhere it carries the wind's pressure, and friction: at the start, when nothing has moved.
+wind() {
+    run sheet.yaml --output wind --end 0.002 --set 'cloths[0].pins=[{box: [[-9, -9, -9], [9, 9, 9]]}]' --set 'air.wind=[3, 2, -4]' || return 1
+    sed -n 2p wind/probes.csv | awk -F, '{ x = 0.6 * 0.5 * 5 * 3; y = 0.6 * 1.25 * 2 * 2 - 0.06 * 9.81; z = -0.6 * 0.5 * 5 * 4
+        print $118, $119, $120; exit !(($118 + x) ^ 2 + ($119 + y) ^ 2 + ($120 + z) ^ 2 < 1e-24) }'
+}
+ok "the wind's force on a sheet that is held" wind
+same() { run sheet.yaml --output a && ranks 3 "$DUITE_CLOTH" sheet.yaml --quiet --output b --threads 2 && cmp a/probes.csv b/probes.csv; }
+ok "air is the same on 3 ranks" same

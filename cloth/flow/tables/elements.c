@@ -117,6 +117,8 @@ void flow_element_rest(const struct flow_elements *elements, const struct flow_e
         triangle_rest(elements, c, corner, rest);
         return;
     }
+    if (element->kind == FLOW_SAILS)
+        return;
     struct phys_bend_rest bend;
     bend_rest(elements, c, corner, &bend);
     const double k = rigidity(elements, c, corner) * bend.shape;
@@ -135,10 +137,10 @@ struct walk {
     uint32_t cloth, first;
 };
 
-static void walk_triangles(const struct walk *walk, const struct mesh *mesh)
+static void walk_triangles(const struct walk *walk, const struct mesh *mesh, enum flow_kind kind)
 {
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {
-        struct flow_element element = {walk->cloth, t, {0}, 3, FLOW_TRIANGLES};
+        struct flow_element element = {walk->cloth, t, {0}, 3, kind};
         mesh_corners(mesh, t, element.corner);
         for (int i = 0; i < 3; i++)
             element.corner[i] += walk->first;
@@ -184,9 +186,11 @@ void flow_elements_each(const struct flow_elements *elements,
         const struct model_cloth *cloth = model->cloths + c;
         walk.cloth = c;
         if (flow_has_triangles(model, cloth))
-            walk_triangles(&walk, &cloth->mesh);
+            walk_triangles(&walk, &cloth->mesh, FLOW_TRIANGLES);
         if (flow_has_bending(model, cloth))
             walk_edges(&walk, elements->edges + c, material_of(model, cloth));
+        if (model_has_air(model))
+            walk_triangles(&walk, &cloth->mesh, FLOW_SAILS);
         walk.first += cloth->mesh.n_vertices;
     }
 }
@@ -250,9 +254,10 @@ static int make_cloth(struct flow_elements *elements, uint32_t c, struct cloth_e
     const struct model *model = elements->model;
     const struct model_cloth *cloth = model->cloths + c;
     struct cloth_error inner = {0};
-    if (!flow_has_triangles(model, cloth) && !flow_has_bending(model, cloth))
+    const bool stiff = flow_has_triangles(model, cloth) || flow_has_bending(model, cloth);
+    if (!stiff && !model_has_air(model))
         return CLOTH_OK;
-    int code = check_format(model, error);
+    int code = stiff ? check_format(model, error) : CLOTH_OK;
     if (code)
         return code;
     mesh_axes(model_rest(cloth), elements->axis[c][0], elements->axis[c][1]);

@@ -4,8 +4,9 @@
 #include "cloth/flow/model.h"
 #include "cloth/flow/tables/tables.h"
 
-/* Elements of all cloths (cloth/physics/element.h): triangles, then the edges that bend, cloth
- * after cloth in the order of their meshes. Each kind is numbered for itself. */
+/* Elements of all cloths (cloth/physics/element.h): triangles, then the edges that bend, then
+ * triangles once more as sails, cloth after cloth in the order of their meshes. Each kind is
+ * numbered for itself. */
 struct flow_element {
     uint32_t cloth, number;      /* of its cloth's triangles or edges */
     uint32_t corner[4], corners; /* vertices of all cloths; how many */

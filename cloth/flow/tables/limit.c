@@ -110,6 +110,8 @@ static void visit_element(void *to, const struct flow_element *element)
     struct phys_pair pair[PHYS_BEND_PAIRS];
     phys_vec x[4] = {{0}};
     double times = 0;
+    if (element->kind == FLOW_SAILS)
+        return;
     for (uint32_t i = 0; i < element->corners; i++) {
         particle_of(visitor, element->corner[i], particle + i);
         x[i] = particle[i].position;

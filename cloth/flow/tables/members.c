@@ -142,7 +142,7 @@ static void fill_corners(const struct flow_source *source, const struct flow_tab
 {
     for (uint32_t i = 0; i < element->corners; i++)
         corner[i] = local_of(source, t, element->corner[i]);
-    for (uint32_t j = 1; j < element->corners; j++)
+    for (uint32_t j = 1; flow_pairs[element->kind] && j < element->corners; j++)
         for (uint32_t i = 0; i < j; i++)
             *at++ = entry_of(t, image, corner[i], corner[j]);
 }
@@ -183,7 +183,7 @@ void flow_source_members(const struct flow_source *source, uint32_t block,
             } else if (kind == FLOW_FOLDS) {
                 list->vector[e] =
                     (phys_vec){rest.weight[0], rest.weight[1], rest.weight[2], rest.weight[3]};
-            } else {
+            } else if (kind == FLOW_HINGES) {
                 list->number[0][e] = rest.stiffness;
                 list->number[1][e] = rest.damping;
                 list->number[2][e] = rest.s;

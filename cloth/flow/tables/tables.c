@@ -20,7 +20,7 @@ static void *next(struct room *room, size_t bytes)
     return here;
 }
 
-const uint32_t flow_pairs[FLOW_KINDS] = {3, PHYS_BEND_PAIRS, PHYS_BEND_PAIRS};
+const uint32_t flow_pairs[FLOW_KINDS] = {3, PHYS_BEND_PAIRS, PHYS_BEND_PAIRS, 0};
 
 static void lay_list(const struct flow_table *t, enum flow_kind kind, struct room *room,
                      struct flow_list *list)
@@ -29,7 +29,8 @@ static void lay_list(const struct flow_table *t, enum flow_kind kind, struct roo
     const int numbers = kind == FLOW_TRIANGLES ? 1 : kind == FLOW_HINGES ? 3 : 0;
     list->corner = next(room, n * sizeof *list->corner);
     list->at = next(room, flow_pairs[kind] * n * sizeof *list->at);
-    list->vector = next(room, kind == FLOW_HINGES ? 0 : n * sizeof *list->vector);
+    list->vector =
+        next(room, kind == FLOW_HINGES || kind == FLOW_SAILS ? 0 : n * sizeof *list->vector);
     for (int i = 0; i < 3; i++)
         list->number[i] = next(room, i < numbers ? n * sizeof(double) : 0);
 }

@@ -16,8 +16,9 @@
  * with them, and a run that comes to them diverged. */
 #define FLOW_BOUND 1e6
 
-/* Elements besides springs, and how many pairs of corners each has. */
-enum flow_kind { FLOW_TRIANGLES, FLOW_HINGES, FLOW_FOLDS, FLOW_KINDS };
+/* Elements besides springs, and how many pairs of corners each has in the matrix. Sails are the
+ * triangles that the air meets (cloth/physics/air.h), which is not in the matrix. */
+enum flow_kind { FLOW_TRIANGLES, FLOW_HINGES, FLOW_FOLDS, FLOW_SAILS, FLOW_KINDS };
 extern const uint32_t flow_pairs[FLOW_KINDS];
 
 /* Those of one kind in a block, all that have a corner there. */
@@ -67,7 +68,7 @@ struct flow_table {
     const unsigned char *stretch; /* counts for the largest stretch */
     struct flow_list list[FLOW_KINDS];
     const struct phys_membrane *membrane; /* n_membranes: by material */
-    struct solve_block matrix;    /* its diagonal: of each step, NULL here */
+    struct solve_block matrix;            /* its diagonal: of each step, NULL here */
     struct solve_held held;
     const double *mass, *drag, *free; /* kg; kg/s, viscous + mass damping; 1 or 0 where held */
     const phys_vec *load, *position, *velocity; /* N, gravity included; m, m/s, at the start */

@@ -79,25 +79,25 @@ static int tell_shared(const duite_call *call)
     to = put(to, model->motions, model->n_motions * sizeof *model->motions);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
-        const struct shape shape = {.n = t->n,
-                                    .n_inner = t->n_inner,
-                                    .n_cut = t->n_cut,
-                                    .n_entries = t->n_entries,
-                                    .n_cut_entries = t->n_cut_entries,
-                                    .n_rim = t->n_rim,
-                                    .n_held = t->n_held,
-                                    .n_watched = t->n_watched,
-                                    .n_moved = t->n_moved,
-                                    .lowest = t->lowest,
-                                    .highest = t->highest,
-                                    .n_slots = t->n_slots,
-                                    .n_copies = t->n_copies,
-                                    .n_stiff = t->n_stiff,
-                                    .n_elements = {t->n_elements[FLOW_TRIANGLES],
-                                                   t->n_elements[FLOW_HINGES],
-                                                   t->n_elements[FLOW_FOLDS]},
-                                    .n_membranes = t->n_membranes,
-                                    .cost = t->cost};
+        const struct shape shape = {
+            .n = t->n,
+            .n_inner = t->n_inner,
+            .n_cut = t->n_cut,
+            .n_entries = t->n_entries,
+            .n_cut_entries = t->n_cut_entries,
+            .n_rim = t->n_rim,
+            .n_held = t->n_held,
+            .n_watched = t->n_watched,
+            .n_moved = t->n_moved,
+            .lowest = t->lowest,
+            .highest = t->highest,
+            .n_slots = t->n_slots,
+            .n_copies = t->n_copies,
+            .n_stiff = t->n_stiff,
+            .n_elements = {t->n_elements[FLOW_TRIANGLES], t->n_elements[FLOW_HINGES],
+                           t->n_elements[FLOW_FOLDS], t->n_elements[FLOW_SAILS]},
+            .n_membranes = t->n_membranes,
+            .cost = t->cost};
         to = put(to, &shape, sizeof shape);
     }
     const struct flow_neighbours *all = &source->neighbours;

@@ -48,6 +48,8 @@ void flow_elements_force(const duite_call *call, const struct flow_table *t, phy
     phys_triangles_force(&triangles, &sight, f);
     phys_hinges_force(&hinges, &sight, f);
     phys_folds_force(&folds, &sight, f);
+    phys_air_force(&flow_of(call)->model->air, t->n_elements[FLOW_SAILS],
+                   (const uint32_t(*)[4])t->list[FLOW_SAILS].corner, &sight, f);
 }
 
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
@@ -104,6 +106,7 @@ static void pairs_of(const struct flow_table *t, enum flow_kind kind, uint32_t f
         phys_hinges_matrix(&hinges, from, to, step, sight, pair);
         break;
     case FLOW_FOLDS:
+    case FLOW_SAILS:
     case FLOW_KINDS:
         phys_folds_matrix(&folds, from, to, step->h, pair);
         break;
@@ -118,7 +121,7 @@ void flow_elements_assemble(const duite_call *call, const struct flow_table *t, 
     if (!has_elements(t))
         return;
     const struct phys_sight sight = look_still(call, t, rims);
-    for (int kind = 0; kind < FLOW_KINDS; kind++)
+    for (int kind = 0; kind < FLOW_SAILS; kind++)
         for (uint32_t from = 0; from < t->n_elements[kind]; from += AT_ONCE) {
             const uint32_t left = t->n_elements[kind] - from, n = left < AT_ONCE ? left : AT_ONCE;
             pairs_of(t, (enum flow_kind)kind, from, from + n, &step, &sight, pair);

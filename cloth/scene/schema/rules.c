@@ -176,6 +176,16 @@ static const struct scene_rule obstacle_kinds[] = {
     {0}};
 static const struct scene_rule obstacle = {.type = SCENE_ONE_OF, .inside = obstacle_kinds};
 
+static const struct scene_rule air_keys[] = {
+    {"density", SCENE_NUMBER, "kg/m^3", "1.2", .range = SCENE_POSITIVE, .about = "of the air"},
+    {"wind", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     .about = "the same everywhere"},
+    {"normal", SCENE_NUMBER, .fallback = "1.2", .range = SCENE_NOT_NEGATIVE,
+     .about = "coefficient of the drag across a triangle"},
+    {"tangent", SCENE_NUMBER, .fallback = "0.01", .range = SCENE_NOT_NEGATIVE,
+     .about = "of the friction along it"},
+    {0}};
+
 static const struct scene_rule rest_keys[] = {
     {"speed", SCENE_NUMBER, "m/s", "0.001", .range = SCENE_POSITIVE,
      .about = "no vertex is faster"},
@@ -237,6 +247,7 @@ static const struct scene_rule scene_keys[] = {
     {"name", SCENE_TEXT, .about = "of the scene; else the file's name"},
     {"gravity", SCENE_LIST, "m/s^2", .fallback = "[0, -9.81, 0]", .length = 3, .inside = &number,
      .about = "+y is up"},
+    {"air", SCENE_MAP, .inside = air_keys, .about = "drag and wind on triangles; else there is none"},
     {"cloths", SCENE_LIST, .required = true, .filled = true, .inside = &cloth,
      .about = "what moves"},
     {"materials", SCENE_NAMED, .required = true, .inside = &material, .about = "NAME is yours"},

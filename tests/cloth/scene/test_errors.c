@@ -217,7 +217,7 @@ START_TEST(unknown_and_missing_keys)
 {
     EXPECT({"time:", "tiem:",
             .error = ":12:1: tiem is not a key of the scene; did you mean 'time'? Allowed: schema, "
-                     "name, gravity, cloths, "
+                     "name, gravity, air, cloths, "
                      "materials, obstacles, contact, time, integrator, energies, newton, solver, "
                      "probes, grain"},
            {"h: 0.001", "h: 0.001, dt: 1",
@@ -398,7 +398,7 @@ START_TEST(files_that_are_no_scenes)
         "schema: 1\nname: \303\244\377b\n", NULL,
         ":2:8: not readable as text: invalid leading UTF-8 octet; a scene is YAML in UTF-8");
     expect_text("a: &a [*a]\n", NULL,
-                ":1:1: a is not a key of the scene; allowed: schema, name, gravity, cloths, "
+                ":1:1: a is not a key of the scene; allowed: schema, name, gravity, air, cloths, "
                 "materials, obstacles, contact, "
                 "time, integrator, energies, newton, solver, probes, grain");
     expect_text("schema: 1\ncloths: &a [*a]\n", NULL,

@@ -1,0 +1,61 @@
+/* A triangle's force depends on its corners alone, in their order: blocks that share it find the
+ * same bits. */
+#include "cloth/physics/air.h"
+
+#include <math.h>
+
+struct corner {
+    phys_vec x, v;
+};
+
+PHYS_INLINE struct corner corner_of(const struct phys_sight *sight, uint32_t i)
+{
+    if (i < sight->n)
+        return (struct corner){sight->x[i], sight->v[i]};
+    return (struct corner){sight->x_copy[i - sight->n], sight->v_copy[i - sight->n]};
+}
+
+PHYS_INLINE double length_of(const phys_vec *a)
+{
+    return sqrt(phys_dot(a, a));
+}
+
+/* Twice the area times the normal. */
+PHYS_INLINE void cross(const phys_vec *a, const phys_vec *b, phys_vec *c)
+{
+    *c = (phys_vec){(*a)[1] * (*b)[2] - (*a)[2] * (*b)[1], (*a)[2] * (*b)[0] - (*a)[0] * (*b)[2],
+                    (*a)[0] * (*b)[1] - (*a)[1] * (*b)[0], 0};
+}
+
+/* A third of the force on a triangle. */
+static void push(const struct phys_air *air, const struct corner c[3], phys_vec *third)
+{
+    const phys_vec wind = {air->wind[0], air->wind[1], air->wind[2], 0};
+    const phys_vec u = wind - (c[0].v + c[1].v + c[2].v) / 3;
+    const phys_vec a = c[1].x - c[0].x, b = c[2].x - c[0].x;
+    phys_vec normal;
+    cross(&a, &b, &normal);
+    const double twice = length_of(&normal);
+    *third = (phys_vec){0};
+    if (!(twice > 0))
+        return;
+    normal /= twice;
+    const phys_vec across = phys_dot(&u, &normal) * normal, along = u - across;
+    *third = air->density * twice / 12 *
+             (air->normal * length_of(&across) * across + air->tangent * length_of(&along) * along);
+}
+
+void phys_air_force(const struct phys_air *air, size_t n, const uint32_t (*corner)[4],
+                    const struct phys_sight *sight, phys_vec *f)
+{
+    for (size_t e = 0; e < n; e++) {
+        struct corner c[3];
+        phys_vec third;
+        for (int i = 0; i < 3; i++)
+            c[i] = corner_of(sight, corner[e][i]);
+        push(air, c, &third);
+        for (int i = 0; i < 3; i++)
+            if (corner[e][i] < sight->n)
+                f[corner[e][i]] += third;
+    }
+}

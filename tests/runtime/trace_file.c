@@ -142,5 +142,6 @@ bool trace_file_write(struct trace_file *file, const char *path)
     free(file->word);
     free(file->event);
     *file = (struct trace_file){0};
-    return !ferror(out) & !fclose(out);
+    const bool written = !ferror(out);
+    return !fclose(out) && written;
 }

@@ -43,6 +43,14 @@ extern const struct serve_run cg_make_runs[];
 
 /* ---- Ours ---- */
 
+/* Iterations to an error, of a state and a solver (the session's settings): found once. */
+struct cg_needed {
+    char settings[200];
+    double error;
+    uint32_t iterations;
+};
+enum { CG_NEEDED = 64 };
+
 struct cg_session {
     struct state state;
     struct states_plan plan;
@@ -54,9 +62,9 @@ struct cg_session {
     enum model_stop stop; /* the scene's, which is the default one */
     double tolerance;
     uint32_t most;
-    uint32_t needed; /* iterations to the error that was asked for last, */
-    double error;    /* of this state and solver; 0: none was */
-    double p95;      /* of the frames that ran last; 0: was told, or none ran */
+    struct cg_needed needed[CG_NEEDED]; /* those before are forgotten when it is full */
+    size_t n_needed;
+    double p95; /* of the frames that ran last; 0: was told, or none ran */
 };
 
 /* Runs a model from its start to its end on a runtime of its own; `system` (its context: `context`)

@@ -68,7 +68,6 @@ static int end(struct cg_session *s, int code)
     flow_free(s->flow);
     s->flow = NULL;
     states_plan_free(&s->plan);
-    s->error = 0;
     return code;
 }
 
@@ -117,20 +116,28 @@ static void stop_by_default(struct cg_session *s)
     stop_by(s, s->stop, s->tolerance, s->most);
 }
 
+static void settings_of(struct serve_request *request, char *settings, size_t size)
+{
+    char state[40], scheduler[40], solver[16], format[16];
+    const unsigned threads = (unsigned)serve_number(request, "threads");
+    serve_word(request, "state", state, sizeof state);
+    serve_word(request, "scheduler", scheduler, sizeof scheduler);
+    serve_word(request, "solver", solver, sizeof solver);
+    serve_word(request, "format", format, sizeof format);
+    snprintf(settings, size, "%s %u %s %s %s", state, threads, scheduler, solver, format);
+}
+
 /* solver=plain or jacobi: that preconditioner; format=half or half_float: that format; without the
  * words the default ones. */
 static int ready(struct cg_session *s, struct serve_request *request)
 {
-    char settings[sizeof s->settings], scheduler[40], solver[16], format[16];
+    char settings[sizeof s->settings], solver[16], format[16];
     const struct model *model = &s->plan.model;
-    const unsigned threads = (unsigned)serve_number(request, "threads");
     const uint64_t quick = serve_number(request, "quick");
     int code = state_ready(&s->state, request);
-    serve_word(request, "scheduler", scheduler, sizeof scheduler);
+    settings_of(request, settings, sizeof settings);
     serve_word(request, "solver", solver, sizeof solver);
     serve_word(request, "format", format, sizeof format);
-    snprintf(settings, sizeof settings, "%s %u %s %s %s", s->state.name, threads, scheduler, solver,
-             format);
     if (code || !strcmp(settings, s->settings))
         return code;
     code = end(s, code);
@@ -254,8 +261,8 @@ static int cg(void *context, struct serve_request *request, double *value)
     return code;
 }
 
-/* The least number of iterations after which the error is small enough. */
-static int find_needed(struct cg_session *s, double wanted)
+/* The least number of iterations after which the error is small enough; of many, to a hundredth. */
+static int search(struct cg_session *s, double wanted, uint32_t *needed)
 {
     enum { MOST = 40000 };
     double error = INFINITY;
@@ -269,7 +276,7 @@ static int find_needed(struct cg_session *s, double wanted)
         else
             break;
     }
-    while (!code && high - low > 1) {
+    while (!code && high - low > 1 + high / 100) {
         const uint32_t middle = low + (high - low) / 2;
         stop_after(s, middle);
         code = error_of(s, &error);
@@ -278,35 +285,57 @@ static int find_needed(struct cg_session *s, double wanted)
         else
             high = middle;
     }
-    s->needed = high;
-    s->error = wanted;
+    *needed = high;
     if (!code && high >= MOST)
         code = serve_fail("%s does not come to an error of %g", s->state.name, wanted);
     return code;
 }
 
+/* 0: it was not found yet. */
+static uint32_t known(const struct cg_session *s, const char *settings, double wanted)
+{
+    for (size_t i = 0; i < CG_NEEDED && i < s->n_needed; i++)
+        if (!strcmp(s->needed[i].settings, settings) && !(s->needed[i].error < wanted) &&
+            !(s->needed[i].error > wanted))
+            return s->needed[i].iterations;
+    return 0;
+}
+
+static int find_needed(struct cg_session *s, double wanted, uint32_t *needed)
+{
+    struct cg_needed *new = s->needed + s->n_needed % CG_NEEDED;
+    const int code = search(s, wanted, needed);
+    if (code)
+        return code;
+    *new = (struct cg_needed){.error = wanted, .iterations = *needed};
+    memcpy(new->settings, s->settings, sizeof new->settings);
+    s->n_needed++;
+    return 0;
+}
+
 /* Seconds of a whole solve to an error (error=, millionths, in the mass norm). what=iterations: how
- * many it took. */
+ * many it takes, which is found once. */
 static int solve(void *context, struct serve_request *request, double *value)
 {
     struct cg_session *s = context;
     const double wanted = 1e-6 * (double)serve_number(request, "error");
-    char what[16];
+    char what[16], settings[sizeof s->settings];
     double error = 0;
     serve_word(request, "what", what, sizeof what);
-    int code = ready(s, request);
-    if (!code && (s->error < wanted || s->error > wanted))
-        code = find_needed(s, wanted);
-    stop_after(s, s->needed);
-    if (!code)
-        code = time_solve(s, value);
+    settings_of(request, settings, sizeof settings);
+    uint32_t needed = known(s, settings, wanted);
+    const bool counts = !strcmp(what, "iterations");
+    int code = counts && needed ? 0 : ready(s, request);
+    if (!code && !needed)
+        code = find_needed(s, wanted, &needed);
+    *value = needed;
+    if (code || counts)
+        return code;
+    stop_after(s, needed);
+    code = time_solve(s, value);
     if (!code)
         code = error_of(s, &error);
-    if (!code && error > wanted)
-        code = serve_fail("wrong answer: an error of %g", error);
-    if (!strcmp(what, "iterations"))
-        *value = s->needed;
-    return code;
+    return !code && error > wanted ? serve_fail("wrong answer: an error of %g", error) : code;
 }
 
 /* The error that the default stop leaves. */

@@ -22,3 +22,5 @@ dist_check_SCRIPTS += tests/whole/test_system.sh
 TESTS += tests/whole/test_system.sh
 dist_check_SCRIPTS += tests/whole/test_integrators.sh
 TESTS += tests/whole/test_integrators.sh
+dist_check_SCRIPTS += tests/whole/test_materials.sh
+TESTS += tests/whole/test_materials.sh

@@ -310,6 +310,9 @@ static int conclude(const struct run *run)
     uint64_t workers = run->threads, peak = 1024 * (uint64_t)usage.ru_maxrss; /* Linux counts KiB */
     MPI_Allreduce(MPI_IN_PLACE, &workers, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
     MPI_Allreduce(MPI_IN_PLACE, &peak, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    double path = NAN, bound = NAN;
+    if (run->rank == 0 && run->options->trace)
+        duite_trace_bounds(run->options->trace, &path, &bound); /* else it has none */
     if (run->rank == 0) {
         const struct summary summary = {.options = run->options,
                                         .model = &run->model,
@@ -317,7 +320,9 @@ static int conclude(const struct run *run)
                                         .ranks = run->ranks,
                                         .threads = run->threads,
                                         .workers = workers,
-                                        .memory_bytes = peak};
+                                        .memory_bytes = peak,
+                                        .critical_path = path,
+                                        .lower_bound = bound};
         if (run->report.stopped)
             say_stopped(run);
         if (run->model.rest.speed > 0 && !run->report.stopped && isnan(run->report.rest_seconds))

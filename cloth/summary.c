@@ -191,7 +191,7 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_integer(json, "tasks_placed", counters->placed);
     output_report_integer(json, "tasks_stolen", counters->stolen);
     output_report_integer(json, "tasks_chained", counters->chained);
-    output_report_null(json, "graphs_recorded");
+    output_report_integer(json, "graphs_recorded", counters->graphs_recorded);
     output_report_integer(json, "messages", counters->messages);
     output_report_integer(json, "bytes_moved", counters->bytes);
     output_report_integer(json, "delegated_tasks", counters->delegated);
@@ -200,8 +200,8 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_number(json, "idle_fraction", ratio(counters->idle, total));
     output_report_number(json, "overhead_ns_per_task", ratio(overhead, (double)counters->tasks));
     output_report_number(json, "communication_hidden_fraction", hidden_fraction(summary));
-    output_report_null(json, "critical_path_seconds");
-    output_report_null(json, "lower_bound_seconds");
+    output_report_number(json, "critical_path_seconds", summary->critical_path);
+    output_report_number(json, "lower_bound_seconds", summary->lower_bound);
     output_report_integer(json, "steps_halved", summary->report->steps_halved);
     output_report_integer(json, "peak_memory_bytes", summary->memory_bytes);
 }

@@ -12,9 +12,10 @@ struct summary {
     const struct model *model;
     const struct flow_report *report;
     int ranks;
-    unsigned threads;      /* of rank 0 */
-    uint64_t workers;      /* of all ranks together */
-    uint64_t memory_bytes; /* the largest resident size that any rank had */
+    unsigned threads;                  /* of rank 0 */
+    uint64_t workers;                  /* of all ranks together */
+    uint64_t memory_bytes;             /* the largest resident size that any rank had */
+    double critical_path, lower_bound; /* s, of what was traced; not a number: nothing was */
 };
 
 /* A table for people. */

@@ -4,6 +4,10 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/predict/predict.h"
+#include "runtime/sched/sched.h"
+
+#include <math.h>
 
 int traced_open(duite *rt, const duite_options *options)
 {
@@ -74,4 +78,30 @@ int duite_trace_end(duite *rt)
 {
     int code = program_enter(rt, "duite_trace_end");
     return code ? code : traced_end(rt, "duite_trace_end");
+}
+
+int duite_trace_bounds(const char *trace, double *critical_path, double *lower_bound)
+{
+    struct trace_run *run;
+    struct predict_result result;
+    if (!trace || !critical_path || !lower_bound)
+        return base_error(DUITE_E_ARGUMENT, "duite_trace_bounds: no %s",
+                          trace ? "place for the bounds" : "trace");
+    int code = trace_read(&run, trace, false);
+    if (code)
+        return code;
+    const struct predict_cluster cluster = {.hosts = run->n_ranks,
+                                            .cores = 1,
+                                            .bandwidth = INFINITY,
+                                            .capacity = INFINITY,
+                                            .core_speed = 1,
+                                            .scheduler = &sched_steal};
+    code = predict(run, &cluster, &result, NULL);
+    if (!code) {
+        *critical_path = result.critical_path;
+        *lower_bound =
+            fmax(result.critical_path, result.work / trace_first_worker(run, run->n_ranks));
+    }
+    trace_run_free(run);
+    return code;
 }

@@ -65,7 +65,7 @@ void predict_make(struct predict_program *p, bool view)
     p->name[graph->n_objects] = DUITE_NO_OBJECT;
     if (view) {
         new.home = new.holder = graph->object[parent].home;
-    } else if (p->maps && data_object_new(&p->table, DUITE_BYTE, 1, &p->name[graph->n_objects])) {
+    } else if (data_object_new(&p->table, DUITE_BYTE, 1, &p->name[graph->n_objects])) {
         graph->failed = true;
     }
     graph->object[graph->n_objects] = new;
@@ -91,10 +91,10 @@ void predict_hint(struct predict_program *p, size_t n)
     for (size_t i = 0; i < n && !p->graph->failed && !p->short_of; i++) {
         uint32_t other = predict_object_at(p, predict_word(p));
         weights[i] = predict_number(p);
-        if (p->maps && !p->damaged)
+        if (!p->damaged)
             names[i] = p->name[other];
     }
-    if (p->maps && !p->graph->failed && !p->damaged && !p->short_of)
+    if (!p->graph->failed && !p->damaged && !p->short_of)
         p->code =
             map_hint(&p->table, p->name[predict_object_at(p, slot)], weight, n, names, weights);
     free(names);
@@ -105,29 +105,49 @@ void predict_follow(struct predict_program *p)
 {
     uint32_t own = predict_object_at(p, predict_word(p)),
              leader = predict_object_at(p, predict_word(p));
-    if (p->maps && !p->damaged)
+    if (!p->damaged)
         p->code = map_follow(&p->table, p->name[own], p->name[leader]);
+}
+
+/* Blocks with homes that were traced: numbered on their host in the order in which they came there.
+ * `block`: their number among all. */
+static uint32_t number_there(struct predict_program *p, uint32_t block, int host)
+{
+    void *moved = base_grow(p->block, &p->blocks_capacity, (size_t)block + 1, sizeof *p->block);
+    p->graph->failed |= !moved;
+    if (!moved)
+        return 0;
+    p->block = moved;
+    while (p->n_blocks <= block)
+        p->block[p->n_blocks++] = PREDICT_NONE;
+    if (p->block[block] == PREDICT_NONE)
+        p->block[block] = p->blocks_on[host]++;
+    return p->block[block];
+}
+
+static void give_home(struct predict_program *p, uint32_t own, uint32_t traced)
+{
+    struct predict_object *o = &p->graph->object[own];
+    const struct data_object *settled = &p->table.object[p->name[own].slot];
+    const bool maps = p->graph->cluster->mapping;
+    const bool moves = o->writer != PREDICT_NONE; /* by migration: a mapping does not see it */
+    p->damaged |= traced >= p->graph->run->n_ranks || settled->home < 0;
+    if (p->damaged || (maps && moves))
+        return;
+    o->home = maps ? settled->home : (int)traced;
+    o->block = maps ? settled->block : number_there(p, settled->block, o->home);
+    if (!moves)
+        o->holder = o->home;
 }
 
 /* What was traced; or, of objects that had none, what the mapping says. */
 void predict_homes(struct predict_program *p, size_t n)
 {
-    struct predict_graph *graph = p->graph;
-    if (p->maps)
-        p->code = map_settle(&p->table, graph->cluster->mapping, graph->cluster->seed);
-    for (size_t i = 0; i < n && !p->code && !p->short_of; i++) {
+    const struct predict_cluster *cluster = p->graph->cluster;
+    p->code = map_settle(&p->table, cluster->mapping, cluster->seed);
+    for (size_t i = 0; i < n && !p->code && !p->short_of && !p->damaged; i++) {
         uint32_t own = predict_object_at(p, predict_word(p)), home = predict_word(p);
-        if (p->damaged)
-            return;
-        struct predict_object *o = &graph->object[own];
-        const struct data_object *settled = p->maps ? &p->table.object[p->name[own].slot] : NULL;
-        bool moves = o->writer != PREDICT_NONE; /* by migration: not foretold with a mapping */
-        if (settled && moves)
-            continue;
-        p->damaged |= home >= graph->run->n_ranks;
-        o->home = settled ? settled->home : (int)(home % graph->cluster->hosts);
-        o->block = settled ? settled->block : (uint32_t)own;
-        if (!moves)
-            o->holder = o->home;
+        if (!p->damaged && p->name[own].slot)
+            give_home(p, own, home);
     }
 }

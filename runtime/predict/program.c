@@ -292,14 +292,14 @@ static bool prepare(struct predict_program *p)
 {
     struct predict_graph *graph = p->graph;
     const uint32_t hosts = graph->cluster->hosts;
-    p->maps = graph->cluster->mapping != NULL;
     p->times = predict_times_new(graph->run);
     graph->piece = base_alloc(hosts * sizeof *graph->piece);
     graph->began = base_alloc(hosts * sizeof *graph->began);
     graph->round = PREDICT_NONE;
     graph->flag = PREDICT_NONE;
     if (!p->times || !graph->piece || !graph->began ||
-        (p->maps && data_table_start(&p->table, (int)hosts)))
+        !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
+        data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1))
         return false;
     for (uint32_t kind = 0; kind < sizeof graph->own / sizeof graph->own[0]; kind++)
         graph->own[kind] = predict_times_own(p->times, kind) / graph->cluster->core_speed;
@@ -314,8 +314,9 @@ int predict_build(struct predict_graph *graph)
     struct predict_program p = {.graph = graph};
     int code = prepare(&p) ? walk(&p) : base_no_memory("the graph of a trace");
     graph->n_tasks = p.tasks;
-    if (p.maps)
-        data_table_stop(&p.table);
+    data_table_stop(&p.table);
+    base_free(p.blocks_on);
+    free(p.block);
     predict_times_free(p.times);
     predict_graphs_free(&p);
     free(p.slot);

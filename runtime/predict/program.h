@@ -26,9 +26,11 @@ struct predict_recorded {
 struct predict_program {
     struct predict_graph *graph;
     struct predict_times *times;
-    struct data_table table; /* for the mapping */
-    bool maps;
-    size_t at; /* the next word */
+    struct data_table table; /* for the mapping; of one rank if there is none */
+    uint32_t *block;         /* on their hosts, by their numbers in `table`: see number_there */
+    size_t n_blocks, blocks_capacity;
+    uint32_t *blocks_on; /* by host: how many */
+    size_t at;           /* the next word */
     bool short_of, damaged;
     int code;
     uint32_t *slot; /* object by slot of the trace */

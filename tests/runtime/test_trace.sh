@@ -30,6 +30,16 @@ ok "traced on 2 ranks" eval 'limited "${MPIRUN:-mpirun}" --oversubscribe --bind-
     --set "cloths[0].pins=[]" --grain 100 --end 0.004 --threads 2 --balance scatter --quiet --trace "$scratch/ranks"'
 ok "events of 2 ranks add up, messages and delegated tasks too" ./duite-trace --check "$scratch/ranks"
 
+bounds() { # positive; the path not above the bound, the bound not above the run
+    sed -n 's/.*"critical_path_seconds": \(.*\),/path \1/p; s/.*"lower_bound_seconds": \(.*\),/bound \1/p
+        s/.*"graphs_recorded": \(.*\),/graphs \1/p' "$scratch/two.json" | tee "$scratch/bounds"
+    limit=$(./duite-trace "$scratch/two" | sed -n 's/  time *\(.*\) s/\1/p')
+    awk -v limit="$limit" '{ v[$1] = $2 } END { exit !(v["path"] > 0 && v["bound"] >= v["path"] && v["bound"] <= limit && v["graphs"] > 0) }' \
+        "$scratch/bounds"
+}
+ok "the report has critical path and lower bound" bounds
+ok "... which are null without a trace" grep '"lower_bound_seconds": null' "$scratch/plain.json"
+
 bound_is_told() {
     ./duite-trace "$scratch/ranks" | sed -n 's/.*agree within \(.*\) us/\1/p' | awk '{ exit !($1 > 0 && $1 < 1e5) }'
 }

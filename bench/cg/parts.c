@@ -129,7 +129,7 @@ static void fill_springs(const struct maker *m, struct part *part, uint32_t n,
     for (size_t i = n_inner; i < n_sides; i++)
         end[i - n_inner][0] = side[i].here;
     part->matrix =
-        (struct solve_block){n, part->owned[0], part->owned[1], row, column, SOLVE_SPRINGS};
+        (struct solve_block){n, part->owned[0], part->owned[1], row, column, SOLVE_SPRINGS, NULL};
     part->cut.n = n_sides - n_inner;
     part->cut.end = (const uint32_t(*)[2])end;
 }

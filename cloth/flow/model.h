@@ -116,6 +116,10 @@ enum model_integrator {
     MODEL_BDF2 /* begins with implicit Euler, also after contact or a change of h */
 };
 enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
+enum model_contact {
+    MODEL_CONTACT_PROJECT, /* vertices below a plane are put onto it after the step */
+    MODEL_CONTACT_FILTER   /* the solve of implicit Euler keeps them there; so, what is left */
+};
 enum model_stop {
     MODEL_STOP_RELATIVE,
     MODEL_STOP_ABSOLUTE,
@@ -142,6 +146,7 @@ struct model {
     struct phys_key *keys; /* of each motion in ascending order; at time 0 it is no motion */
     double gravity[3];     /* m/s^2 */
     struct phys_air air;
+    enum model_contact contact;
 
     double h; /* s; time is an integer count of h/1024 */
     char *h_place;
@@ -173,6 +178,13 @@ struct model {
 static inline int model_is_implicit(const struct model *model)
 {
     return model->integrator >= MODEL_IMPLICIT_EULER;
+}
+
+/* Whether its solves are filtered by contact. */
+static inline int model_is_filtered(const struct model *model)
+{
+    return model->integrator == MODEL_IMPLICIT_EULER && model->newton_steps <= 1 &&
+           model->contact == MODEL_CONTACT_FILTER && model->n_planes;
 }
 
 /* Its name in scenes. */

@@ -42,8 +42,9 @@ const duite_kernel *const *flow_kernels(void)
         &flow_residual, &flow_matrix, &flow_begin, &flow_pack, &flow_start, &flow_pass,
         &flow_scalars, &flow_velocity_dv, &flow_velocity_a, &flow_position, &flow_collide,
         &flow_keep, &flow_restore, &flow_status, &flow_frame, &flow_stretch, &flow_drive,
-        &flow_place, &flow_watch_block, &flow_probe, &flow_row, &flow_energy, &flow_level,
-        &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
+        &flow_touch, &flow_contact, &flow_hold, &flow_place, &flow_watch_block, &flow_probe,
+        &flow_row, &flow_energy, &flow_level, &flow_seconds, &flow_tell, &flow_system_part,
+        &flow_system_save,
         /* With one */
         &flow_basis, &flow_basis_copies, &flow_couple, &flow_factor_coarse, &flow_factor,
         &flow_start_turned, &flow_begin_coarse, &flow_pass_turned, &flow_scalars_turned,

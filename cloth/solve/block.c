@@ -110,6 +110,8 @@ PHYS_INLINE void end_row(const struct solve_block *block, enum solve_format form
         q -= cross;
     }
     q *= block->free[a] * three;
+    if (block->filter)
+        solve_filter(block->filter + a, &q);
     rows->q[a] = q;
     sum[SOLVE_PQ] += p * q;
     sum[SOLVE_RQ] += (turned ? turned->z : rows->r)[a] * q;

@@ -10,8 +10,8 @@
 /* One block of rows of the matrix of an implicit step, A = diagonal + entries, in any format
  * (cloth/solve/format.h). Entries with both ends in the block are stored once, in rows by their
  * lower end; an entry whose other end is in another block is known to both, each for its own row.
- * In half storage two rows have one entry at most; of springs, each is one. With S = diag(free) the
- * system is S A S dv = S b (Baraff & Witkin 1998). */
+ * In half storage two rows have one entry at most; of springs, each is one. The system is S A S dv
+ * = S b (Baraff & Witkin 1998), S = free times the filter of each row. */
 struct solve_block {
     size_t n;               /* rows */
     const double *diagonal; /* n: mass + h (drag), kg, > 0 */
@@ -19,7 +19,18 @@ struct solve_block {
     const uint32_t *row;    /* n + 1: the inner entries of row a are row[a] .. row[a + 1] - 1 */
     const uint32_t *column; /* row[n]: the higher end of each inner entry, ascending in a row */
     enum solve_format format;
+    const phys_vec *filter; /* n: rows of S that are more than free (solve_filter); NULL: none */
 };
+
+/* A row's part of S: c I + (1 - 2 c) d d', c and d given as d0 d1 d2 c. All is free: 0 0 0 1; held
+ * in a plane: its normal, 1; on a line: its direction, 0; at a point: 0 0 0 0. Directions have
+ * length 1. */
+PHYS_INLINE void solve_filter(const phys_vec *filter, phys_vec *y)
+{
+    const phys_vec three = {1, 1, 1, 0}, d = *filter * three;
+    const double c = (*filter)[3];
+    *y = c * *y + ((1 - 2 * c) * phys_dot(&d, y)) * d;
+}
 
 /* Entries into other blocks, whose values follow those of the inner ones: `own` the row here,
  * `other` the row in an array of copies. The rim is the rows that they end at here. */

@@ -16,6 +16,10 @@ enum { SOLVE_COARSE = 9, SOLVE_COUPLING = SOLVE_COARSE * SOLVE_COARSE };
 /* Row a of P: 1 u v 0 for each of x, y and z; zero where the row is held. */
 void solve_basis(size_t n, const double *free, const phys_vec *position, phys_vec *basis);
 
+/* Takes the axes out of the basis of n rows that their filters (cloth/solve/block.h) hold; where
+ * these are not along axes, the rows. Lane 3 of a row says which: 1 for x, 2 for y, 4 for z. */
+void solve_basis_filter(size_t n, const phys_vec *filter, phys_vec *basis);
+
 /* The diagonal block that inner entries and the diagonal make, row by row, own[3 k + c][3 l + d]:
  * function k along axis c. */
 void solve_couple(const struct solve_block *block, const void *values, const phys_vec *basis,

@@ -79,6 +79,21 @@ void solve_basis(size_t n, const double *free, const phys_vec *position, phys_ve
     }
 }
 
+void solve_basis_filter(size_t n, const phys_vec *filter, phys_vec *basis)
+{
+    for (size_t a = 0; a < n; a++) {
+        int along = 0, missing = 0;
+        for (int c = 0; c < 3; c++) {
+            along += fabs(filter[a][c]) > 0;
+            missing |= (filter[a][3] > 0) == (fabs(filter[a][c]) > 0) ? 1 << c : 0;
+        }
+        if (along > 1)
+            basis[a] = (phys_vec){0};
+        else
+            basis[a][3] = missing;
+    }
+}
+
 /* ---- The matrix ---- */
 
 /* to += factor m. */
@@ -86,6 +101,51 @@ PHYS_INLINE void add(struct solve_symmetric *to, double factor, const struct sol
 {
     to->diagonal += factor * m->diagonal;
     to->beside += factor * m->beside;
+}
+
+/* Whether axis c of a row is in the space. */
+PHYS_INLINE double has(const phys_vec *basis, int c)
+{
+    return ((int)(*basis)[3] >> c & 1) == 0;
+}
+
+/* phi of a row, function by function and axis by axis. */
+static void spread_out(const phys_vec *basis, double g[3][3])
+{
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+            g[k][c] = (*basis)[k] * has(basis, c);
+}
+
+/* Adds sign times g' (columns) h. */
+static void add_filtered(double sign, double g[3][3], const struct solve_columns *columns,
+                         double h[3][3], double *matrix)
+{
+    for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++)
+            for (int c = 0; c < 3; c++)
+                for (int d = 0; d < 3; d++)
+                    matrix[SOLVE_COARSE * (3 * k + c) + 3 * l + d] +=
+                        sign * g[k][c] * columns->c[d][c] * h[l][d];
+}
+
+/* What an entry adds between rows a and b of which axes are missing. */
+static void couple_filtered(const phys_vec *a, const phys_vec *b, const struct solve_symmetric *m,
+                            const phys_vec *turn, double *matrix)
+{
+    const struct solve_symmetric none = {{0}, {0}};
+    struct solve_columns columns, turns;
+    double ga[3][3], gb[3][3], g[3][3];
+    spread_out(a, ga);
+    spread_out(b, gb);
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+            g[k][c] = ga[k][c] - gb[k][c];
+    solve_columns_of(m, &columns);
+    solve_entry_columns(&none, turn, &turns);
+    add_filtered(1, g, &columns, g, matrix);
+    add_filtered(1, gb, &turns, ga, matrix);
+    add_filtered(-1, ga, &turns, gb, matrix);
 }
 
 /* Adds phi phi' times m: of functions 00 01 02 11 12 22. */
@@ -144,25 +204,29 @@ PHYS_INLINE void couple(const struct solve_block *block, enum solve_format forma
                         const void *values, const phys_vec *basis, double own[SOLVE_COUPLING])
 {
     const void *entry = solve_values_of(format, block->n, values).entry;
-    const phys_vec three = {1, 1, 1, 0};
     struct solve_symmetric sum[6] = {{{0}, {0}}};
     phys_vec turns[3] = {{0}};
+    memset(own, 0, SOLVE_COUPLING * sizeof *own);
     for (size_t a = 0; a < block->n; a++) {
         const double d = block->diagonal[a];
         struct solve_symmetric mass = {{0}, {0}};
-        mass.diagonal += d * three;
+        for (int c = 0; c < 3; c++)
+            mass.diagonal[c] = d * has(basis + a, c);
         add_square(sum, basis + a, &mass);
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
             const phys_vec *other = basis + block->column[i], phi = basis[a] - *other;
             struct solve_symmetric m = {{0}, {0}};
             phys_vec w;
             solve_entry_of(format, entry, i, &m, &w);
+            if (basis[a][3] + (*other)[3] > 0) {
+                couple_filtered(basis + a, other, &m, &w, own);
+                continue;
+            }
             add_square(sum, &phi, &m);
             if (format != SOLVE_SPRINGS)
                 add_turns(turns, basis + a, other, &w);
         }
     }
-    memset(own, 0, SOLVE_COUPLING * sizeof *own);
     put_squares(sum, own);
     for (int k = 0; k < 3 && format != SOLVE_SPRINGS; k++) {
         const int first = k == 2, last = k ? 2 : 1;
@@ -184,6 +248,22 @@ PHYS_KERNEL(solve_couple,
         couple(block, SOLVE_HALF_FLOAT, values, basis, own);
 }
 
+/* The same for an entry into another block. */
+static void couple_cut_filtered(const phys_vec *a, const phys_vec *b,
+                                const struct solve_symmetric *m, const phys_vec *turn, double *own,
+                                double *beside)
+{
+    const phys_vec none = {0};
+    struct solve_columns columns;
+    double ga[3][3], gb[3][3];
+    spread_out(a, ga);
+    spread_out(b, gb);
+    solve_entry_columns(m, &none, &columns);
+    add_filtered(1, ga, &columns, ga, own);
+    solve_entry_columns(m, turn, &columns);
+    add_filtered(-1, ga, &columns, gb, beside);
+}
+
 PHYS_KERNEL(solve_couple_cut,
             (const struct solve_block *block, const void *values, size_t from, size_t n,
              const uint32_t (*end)[2], const phys_vec *basis, const phys_vec *other_basis,
@@ -193,11 +273,16 @@ PHYS_KERNEL(solve_couple_cut,
     const void *entry = solve_values_of(block->format, block->n, values).entry;
     struct solve_symmetric square[6] = {{{0}, {0}}}, sum[9] = {{{0}, {0}}};
     phys_vec turns[9] = {{0}};
+    memset(beside, 0, SOLVE_COUPLING * sizeof *beside);
     for (size_t i = 0; i < n; i++) {
         const phys_vec phi = basis[end[i][0]], other = other_basis[end[i][1]];
         struct solve_symmetric m = {{0}, {0}};
         phys_vec w;
         solve_entry_of(block->format, entry, from + i, &m, &w);
+        if (phi[3] + other[3] > 0) {
+            couple_cut_filtered(&phi, &other, &m, &w, own, beside);
+            continue;
+        }
         add_square(square, &phi, &m);
         for (int k = 0; k < 3; k++)
             for (int l = 0; l < 3; l++) {
@@ -206,7 +291,6 @@ PHYS_KERNEL(solve_couple_cut,
             }
     }
     put_squares(square, own);
-    memset(beside, 0, SOLVE_COUPLING * sizeof *beside);
     for (int k = 0; k < 3; k++)
         for (int l = 0; l < 3; l++) {
             put(sum + 3 * k + l, -1, k, l, beside);
@@ -234,7 +318,10 @@ PHYS_KERNEL(solve_restrict,
 /* y += P x of one row, wherever a row or its copy is. */
 PHYS_INLINE void lift(const phys_vec *basis, const phys_vec x[3], phys_vec *y)
 {
-    *y += (*basis)[0] * x[0] + (*basis)[1] * x[1] + (*basis)[2] * x[2];
+    phys_vec lifted = (*basis)[0] * x[0] + (*basis)[1] * x[1] + (*basis)[2] * x[2];
+    for (int c = 0; c < 3 && (*basis)[3] > 0; c++)
+        lifted[c] *= has(basis, c);
+    *y += lifted;
 }
 
 PHYS_INLINE void motions(const double x[SOLVE_COARSE], phys_vec motion[3])

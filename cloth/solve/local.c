@@ -37,6 +37,42 @@ PHYS_INLINE void add(struct solve_symmetric *to, const struct solve_symmetric *m
     to->beside += m->beside;
 }
 
+/* m = S m. */
+PHYS_INLINE void filter_left(const phys_vec *filter, struct solve_columns *m)
+{
+    for (int k = 0; k < 3; k++)
+        solve_filter(filter, m->c + k);
+}
+
+/* m = m S. */
+PHYS_INLINE void filter_right(const phys_vec *filter, struct solve_columns *m)
+{
+    const phys_vec d = {(*filter)[0], (*filter)[1], (*filter)[2], 0};
+    const double c = (*filter)[3];
+    phys_vec y;
+    solve_columns_times(m, &d, &y);
+    for (int k = 0; k < 3; k++)
+        m->c[k] = c * m->c[k] + ((1 - 2 * c) * d[k]) * y;
+}
+
+/* m = S m S + t (I - S), t as large as m is. */
+PHYS_INLINE void filter_diagonal(const phys_vec *filter, struct solve_symmetric *m)
+{
+    const double t = (m->diagonal[0] + m->diagonal[1] + m->diagonal[2]) / 3;
+    const phys_vec d = {(*filter)[0], (*filter)[1], (*filter)[2], 0};
+    const double c = (*filter)[3], across = t * (1 - c), along = t * (1 - 2 * c);
+    struct solve_columns columns;
+    if (c > 0 && phys_dot(&d, &d) <= 0)
+        return;
+    solve_columns_of(m, &columns);
+    filter_left(filter, &columns);
+    filter_right(filter, &columns);
+    m->diagonal = (phys_vec){columns.c[0][0], columns.c[1][1], columns.c[2][2], 0} +
+                  (phys_vec){across, across, across, 0} - along * d * d;
+    m->beside =
+        (phys_vec){columns.c[1][0], columns.c[2][1], columns.c[0][2], 0} - along * d * SOLVE_YZX(d);
+}
+
 /* The blocks on the diagonal of B. */
 PHYS_INLINE void gather(const struct solve_block *block, const struct solve_cut *cut,
                         const void *values, struct solve_symmetric *sum)
@@ -62,6 +98,8 @@ PHYS_INLINE void gather(const struct solve_block *block, const struct solve_cut 
     for (size_t a = 0; a < block->n; a++)
         if (block->free[a] == 0)
             sum[a] = (struct solve_symmetric){{1, 1, 1, 0}, {0}};
+        else if (block->filter)
+            filter_diagonal(block->filter + a, sum + a);
 }
 
 /* A row's block may be singular in what rounding leaves of a stiff spring: then a larger diagonal
@@ -94,6 +132,10 @@ PHYS_INLINE void spread(const struct solve_block *block, const void *values,
             const double sign = -block->free[a] * block->free[block->column[i]];
             for (int k = 0; k < 3; k++)
                 t[i].c[k] *= sign;
+            if (block->filter) {
+                filter_left(block->filter + a, t + i);
+                filter_right(block->filter + block->column[i], t + i);
+            }
         }
 }
 

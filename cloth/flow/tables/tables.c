@@ -99,7 +99,8 @@ void flow_table_open(struct flow_table *t, const void *image)
     t->stretch = arrays.stretch;
     t->cut_entry = arrays.cut_entry;
     t->at = arrays.at;
-    t->matrix = (struct solve_block){t->n, NULL, arrays.free, arrays.row, arrays.column, t->format};
+    t->matrix =
+        (struct solve_block){t->n, NULL, arrays.free, arrays.row, arrays.column, t->format, NULL};
     t->held = (struct solve_held){*arrays.n_held, (const uint32_t(*)[2])arrays.held};
     t->mass = arrays.mass;
     t->drag = arrays.drag;

@@ -44,7 +44,8 @@ static inline struct flow_table flow_table_of(const duite_call *call)
 int flow_check(const duite_call *call, const struct flow_table *table, const phys_vec *y,
                const char *what, size_t i);
 
-/* The matrix of a step as its object has it: the diagonal, then the values of the springs. */
+/* The matrix of a step as its object has it: the diagonal, the filter if there is one, then the
+ * values of the entries. */
 static inline size_t flow_diagonal_rows(const struct flow_table *t)
 {
     return ((size_t)t->n + 3) / 4;
@@ -54,8 +55,11 @@ static inline size_t flow_diagonal_rows(const struct flow_table *t)
 static inline const phys_vec *flow_open_matrix(const duite_call *call, struct flow_table *t,
                                                size_t i)
 {
+    const phys_vec *filter = duite_in(call, i, phys_vec) + flow_diagonal_rows(t);
+    const bool filtered = model_is_filtered(flow_of(call)->model);
     t->matrix.diagonal = duite_in(call, i, double);
-    return duite_in(call, i, phys_vec) + flow_diagonal_rows(t);
+    t->matrix.filter = filtered ? filter : NULL;
+    return filtered ? filter + t->n : filter;
 }
 
 /* Elements of a block (elements.c), in tasks whose parameters are: table, x, v, any one, rims of x,

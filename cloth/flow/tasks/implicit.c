@@ -28,8 +28,12 @@ static int fork_force(struct flow_state *state, struct flow_args args)
 /* The matrix at x, and the solve's begin. */
 static int fork_system(struct flow_state *state, struct flow_args args)
 {
-    const int code = flow_fork_all(state, &flow_matrix, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)),
-                                   FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_NO_RIM);
+    int code = flow_fork_all(state, &flow_matrix, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)),
+                             FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_NO_RIM);
+    if (!code && model_is_filtered(state->flow->model))
+        code = flow_fork_all(state, &flow_hold, args,
+                             FLOW_OBJECTS(FLOW_AT(filter), FLOW_AT(f), FLOW_AT(a)), FLOW_NOTHING,
+                             FLOW_NO_RIM, FLOW_NO_RIM);
     return code ? code : flow_cg_start(state);
 }
 
@@ -37,7 +41,12 @@ static int fork_system(struct flow_state *state, struct flow_args args)
 static int linearise(struct flow_state *state)
 {
     const struct flow_args args = flow_attempt_args(state);
+    const bool filtered = model_is_filtered(state->flow->model);
     int code = fork_force(state, args);
+    if (!code && filtered)
+        code = flow_fork_all(state, &flow_contact, args,
+                             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f), FLOW_AT(filter)),
+                             FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
     if (!code)
         code = flow_fork_all(state, &flow_implicit, args,
                              FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)), FLOW_NOTHING,

@@ -129,7 +129,6 @@ const duite_kernel flow_implicit = {.name = "acceleration_implicit",
                                     .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW},
                                     .rest = DUITE_R,
                                     .args_size = ARGS};
-
 /* Springs from .. to - 1 of a block, whose ends 1 are in x_other. */
 static void assemble_springs(const struct flow_table *t, uint32_t from, uint32_t to, double h,
                              int full, const phys_vec *x, const phys_vec *x_other, double *sums)
@@ -171,6 +170,8 @@ static int matrix(const duite_call *call)
     const phys_vec *x = duite_in(call, 1, phys_vec);
     double *diagonal = duite_out(call, 2, double);
     phys_vec *value = duite_out(call, 2, phys_vec) + flow_diagonal_rows(t);
+    if (model_is_filtered(flow_of(call)->model))
+        value += t->n; /* the filter's place */
     for (uint32_t i = 0; i < t->n; i++)
         diagonal[i] = t->mass[i] + h * t->drag[i];
     for (size_t i = t->n; i < 4 * flow_diagonal_rows(t); i++)
@@ -197,11 +198,22 @@ const duite_kernel flow_matrix = {.name = "matrix",
                                   .rest = DUITE_R,
                                   .args_size = ARGS};
 
+/* What a filtered solve lost: entries to held rows and rows in contact do not cancel. */
+static void sum_rows(size_t n, const phys_vec *r, double sum[3])
+{
+    for (size_t a = 0; a < n; a++)
+        for (int c = 0; c < 3; c++)
+            sum[c] += r[a][c];
+}
+
 void flow_note_solve(const duite_call *call, const struct flow_table *t,
                      const struct flow_solved *solved, double *status)
 {
     const struct solve_scalars *scalars = solved->scalars;
-    solve_lost(&t->matrix, &t->held, solved->value, solved->b, solved->dv, status + FLOW_LOST);
+    if (t->matrix.filter)
+        sum_rows(t->n, solved->r, status + FLOW_LOST);
+    else
+        solve_lost(&t->matrix, &t->held, solved->value, solved->b, solved->dv, status + FLOW_LOST);
     const struct solve_norms norms = solve_norms(t->n, t->matrix.diagonal, solved->dv, solved->r);
     status[FLOW_SIZE] = norms.size;
     status[FLOW_RESIDUAL] = norms.bound;

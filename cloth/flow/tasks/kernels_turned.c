@@ -22,18 +22,23 @@ static enum solve_local local_of(const duite_call *call)
     return flow_local(flow_of(call));
 }
 
-/* ---- What does not change during a run ---- */
+/* ---- What does not change during a run, but for contact ---- */
 
 static int basis(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     phys_vec *rows = duite_out(call, 1, phys_vec);
     solve_basis(t->n, t->free, t->position, rows);
+    if (call->n_params > 3)
+        solve_basis_filter(t->n, duite_in(call, 3, phys_vec), rows);
     flow_write_rim(t, rows, duite_out(call, 2, phys_vec));
     return 0;
 }
-const duite_kernel flow_basis = {
-    .name = "basis", .body = basis, .access = {DUITE_R, DUITE_W, DUITE_W}, .args_size = ARGS};
+const duite_kernel flow_basis = {.name = "basis",
+                                 .body = basis,
+                                 .access = {DUITE_R, DUITE_W, DUITE_W},
+                                 .rest = DUITE_R,
+                                 .args_size = ARGS};
 
 static int basis_copies(const duite_call *call)
 {

@@ -28,9 +28,13 @@ static void make_block(duite *rt, const struct flow_table *t, struct flow_object
     duite_follow(rt, o->table, o->x);
 }
 
-static void make_implicit(duite *rt, const struct flow_table *t, struct flow_objects *o)
+static void make_implicit(duite *rt, const struct flow_table *t, bool filtered,
+                          struct flow_objects *o)
 {
-    make_numbers(rt, 4 * flow_diagonal_rows(t) + flow_table_doubles(t), o->x, &o->a);
+    const size_t filter = filtered ? 4 * (size_t)t->n : 0;
+    make_numbers(rt, 4 * flow_diagonal_rows(t) + filter + flow_table_doubles(t), o->x, &o->a);
+    if (filtered)
+        make(rt, t->n, o->x, &o->filter);
     make(rt, t->n, o->x, &o->dv);
     make(rt, t->n, o->x, &o->r);
     make(rt, t->n, o->x, &o->p);
@@ -47,7 +51,7 @@ static void make_integrator(struct flow_state *state, const struct flow_table *t
     const struct model *model = state->flow->model;
     const bool runge = model->integrator == MODEL_RK4;
     if (model_is_implicit(model))
-        make_implicit(state->rt, t, o);
+        make_implicit(state->rt, t, model_is_filtered(model), o);
     if (model->integrator == MODEL_BDF2 || (model_is_implicit(model) && model->newton_steps > 1)) {
         make(state->rt, t->n, o->x, &o->base_x);
         make(state->rt, t->n, o->x, &o->base_v);
@@ -138,21 +142,37 @@ int flow_objects_free(struct flow_state *state)
     }
     for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
         const struct flow_objects *o = state->block + b;
-        const duite_object all[] = {o->x,         o->v,
-                                    o->f,         o->a,
-                                    o->dv,        o->r,
-                                    o->p,         o->q,
-                                    o->copies,    o->rim_x,
-                                    o->rim_v,     o->rim_q[0],
-                                    o->rim_q[1],  o->kept_x,
-                                    o->kept_v,    o->z,
-                                    o->s,         o->factor,
-                                    o->part,      o->basis,
-                                    o->rim_basis, o->basis_copies,
-                                    o->coupling,  o->x0,
-                                    o->v0,        o->sum_x,
-                                    o->sum_v,     o->felt,
-                                    o->seen,      o->table};
+        const duite_object all[] = {o->x,
+                                    o->v,
+                                    o->f,
+                                    o->a,
+                                    o->dv,
+                                    o->r,
+                                    o->p,
+                                    o->q,
+                                    o->copies,
+                                    o->rim_x,
+                                    o->rim_v,
+                                    o->rim_q[0],
+                                    o->rim_q[1],
+                                    o->kept_x,
+                                    o->filter,
+                                    o->kept_v,
+                                    o->z,
+                                    o->s,
+                                    o->factor,
+                                    o->part,
+                                    o->basis,
+                                    o->rim_basis,
+                                    o->basis_copies,
+                                    o->coupling,
+                                    o->x0,
+                                    o->v0,
+                                    o->sum_x,
+                                    o->sum_v,
+                                    o->felt,
+                                    o->seen,
+                                    o->table};
         const int failed = release(state->rt, sizeof all / sizeof *all, all);
         const duite_object steps[] = {o->base_x, o->base_v, o->last_x, o->last_v};
         const int too = release(state->rt, sizeof steps / sizeof *steps, steps);

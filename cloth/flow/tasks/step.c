@@ -51,7 +51,7 @@ int flow_initialise(struct flow_state *state)
                               FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
                               FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
     state->settled_forces = false;
-    return code ? code : flow_turned_initialise(state);
+    return code || model_is_filtered(state->flow->model) ? code : flow_turned_initialise(state);
 }
 
 int flow_stretch_fork(struct flow_state *state, duite_object stretch)
@@ -89,15 +89,26 @@ static int restore(struct flow_state *state)
                     FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
 }
 
-/* Pins that move get their velocities before the forces: such a step does not begin before the one
- * before it is accepted. */
-static int drive(struct flow_state *state)
+/* Velocities that change before the forces: such a step does not begin before the one before it is
+ * accepted. */
+static bool is_driven(const struct model *model)
 {
-    const int code = state->flow->model->halving ? keep(state) : DUITE_OK;
-    return code ? code : flow_pins_drive(state);
+    return model->n_motions || model_is_filtered(model);
 }
 
-/* The part of the attempt that, but for pins that move, leaves x and v as they are. */
+static int drive(struct flow_state *state)
+{
+    const struct model *model = state->flow->model;
+    int code = model->halving ? keep(state) : DUITE_OK;
+    if (!code && model->n_motions)
+        code = flow_pins_drive(state);
+    if (!code && model_is_filtered(model))
+        code = fork_all(state, &flow_touch, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_v)),
+                        FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+    return code;
+}
+
+/* The part of the attempt that leaves x and v as they are, unless it is driven. */
 static int begin_step(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
@@ -105,7 +116,7 @@ static int begin_step(struct flow_state *state)
     int code = duite_trace_step(state->rt, state->attempt.begin / FLOW_TICKS);
     if (!code)
         code = duite_set(state->rt, state->status[state->attempt.parity], nothing);
-    if (!code && model->n_motions)
+    if (!code && is_driven(model))
         code = drive(state);
     if (code)
         return code;
@@ -118,7 +129,7 @@ static int end_step(struct flow_state *state)
     const struct model *model = state->flow->model;
     const duite_object status = state->status[state->attempt.parity];
     const struct flow_args args = flow_attempt_args(state);
-    int code = model->halving && !model->n_motions ? keep(state) : DUITE_OK;
+    int code = model->halving && !is_driven(model) ? keep(state) : DUITE_OK;
     if (!code)
         code = model_is_implicit(model) ? flow_implicit_end(state) : flow_explicit_end(state);
     if (!code && model->n_motions)
@@ -253,7 +264,7 @@ static int settle_beside(struct flow_state *state, bool *begun)
     const struct flow_attempt next = next_attempt(state);
     int code = DUITE_OK;
     *begun = !before.forked || (before.length == FLOW_TICKS && !state->stopping &&
-                                !state->resting && !state->flow->model->n_motions);
+                                !state->resting && !is_driven(state->flow->model));
     *begun = *begun && next.begin < state->grid.end;
     if (*begun) {
         state->attempt = next;

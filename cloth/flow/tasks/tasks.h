@@ -187,6 +187,8 @@ extern const duite_kernel flow_correct; /* table, r b, r a, r dv, r r, r base x,
                                            x, w rim of v, w rim of x, r scalars, cw status */
 extern const duite_kernel flow_shift; /* table, r dv, r base x, rw v, w x, w rim of v, w rim of x */
 extern const duite_kernel flow_residual; /* table, r base v, r v, r dv, rw f: b, cw slope */
+extern const duite_kernel flow_contact;  /* table, r x, r v, r f, w filter */
+extern const duite_kernel flow_hold;     /* table, r filter, rw f: b, rw a */
 extern const duite_kernel flow_matrix;   /* table, r x, w a; rims of x. a: flow_open_matrix */
 extern const duite_kernel flow_begin;    /* w scalars */
 extern const duite_kernel flow_start;    /* table, r f, w dv, w r, w p, w q, w copies, w rim of q */
@@ -196,7 +198,7 @@ extern const duite_kernel flow_pack; /* r rim of q, w far rim */
 extern const duite_kernel flow_scalars; /* r sums, r scalars, w next scalars */
 /* The same with a preconditioner (turned.c, kernels_turned.c); s takes the place of q. "coarse":
  * only with a coarse part. */
-extern const duite_kernel flow_basis;        /* table, w basis, w rim of it */
+extern const duite_kernel flow_basis; /* table, w basis, w rim of it; with contact r filter */
 extern const duite_kernel flow_basis_copies; /* table, w basis of the copies; rims of basis */
 extern const duite_kernel flow_couple; /* table, r a, r basis, r that of the copies, w coupling */
 extern const duite_kernel flow_factor_coarse; /* w coarse factor; coupling of all blocks */
@@ -216,6 +218,7 @@ extern const duite_kernel
 extern const duite_kernel flow_velocity_a; /* table, r f, rw v, w rim of v, cw status */
 extern const duite_kernel flow_position;   /* table, r v, rw x, w rim of x, cw status */
 extern const duite_kernel flow_collide; /* table, rw x, rw v, w rim of x, w rim of v, cw status */
+extern const duite_kernel flow_touch;   /* table, r x, rw v, w rim of v */
 extern const duite_kernel flow_keep;    /* r x, r v, w kept x, w kept v */
 extern const duite_kernel flow_restore; /* table, r kept x, r kept v, w x, w v, w rims of both */
 extern const duite_kernel flow_status;  /* cw status: on rank 0, whether a stop was asked for */
@@ -243,6 +246,7 @@ struct flow_objects {
                                         */
     duite_object base_x, base_v, last_x, last_v; /* Newton steps, BDF2: struct phys_states */
     duite_object kept_x, kept_v;                 /* before the step, where it may be given up */
+    duite_object filter;                         /* of the solve, with contact in it */
     /* With a preconditioner; copies has z for r, rim_q s for q. */
     duite_object z, s, factor, part;
     duite_object basis, rim_basis, basis_copies, coupling; /* with a coarse part */
@@ -380,7 +384,8 @@ int flow_turned_prepare(struct flow_state *state);
 void flow_turned_free(struct flow *flow);
 /* Objects of a preconditioner. A failure is returned by the next get. */
 void flow_turned_make(struct flow_state *state);
-/* Forks of a preconditioned solve: once a run; in each step before the solve; pass `from` (0, 1) of
+/* Forks of a preconditioned solve: what its coarse space is, once a run, or with contact in the
+ * solve in each step; in each step before the solve; pass `from` (0, 1) of
  * a recorded round. */
 int flow_turned_initialise(struct flow_state *state);
 int flow_turned_start(struct flow_state *state);

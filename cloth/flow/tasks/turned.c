@@ -107,11 +107,13 @@ int flow_turned_initialise(struct flow_state *state)
 {
     struct flow_args args = {0};
     const uint32_t n = flow_is_coarse(state->flow) ? state->flow->tables.n_blocks : 0;
+    const size_t objects = model_is_filtered(state->flow->model) ? 3 : 2;
     int code = DUITE_OK;
     for (; args.block < n && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
-        code = flow_fork(state, &flow_basis, &args, 2, (duite_object[]){o->basis, o->rim_basis},
-                         FLOW_NO_RIM, FLOW_NO_RIM);
+        code = flow_fork(state, &flow_basis, &args, objects,
+                         (duite_object[]){o->basis, o->rim_basis, o->filter}, FLOW_NO_RIM,
+                         FLOW_NO_RIM);
     }
     for (args.block = 0; args.block < n && !code; args.block++)
         code = flow_fork(state, &flow_basis_copies, &args, 1,
@@ -161,7 +163,9 @@ int flow_turned_start(struct flow_state *state)
     const struct flow_tables *tables = &state->flow->tables;
     const bool coarse = flow_is_coarse(state->flow);
     struct flow_args args = flow_attempt_args(state);
-    int code = coarse ? fork_coarse(state, args) : DUITE_OK;
+    int code = model_is_filtered(state->flow->model) ? flow_turned_initialise(state) : DUITE_OK;
+    if (!code && coarse)
+        code = fork_coarse(state, args);
     for (; args.block < tables->n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
         const duite_object factor[] = {o->a, o->factor, state->status[state->attempt.parity]};

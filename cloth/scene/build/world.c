@@ -282,6 +282,8 @@ int scene_build_world(struct model *model, const struct scene_tree *tree, struct
     scene_tree_vector(tree, scene_tree_get(tree, 1, "gravity"), 3, model->gravity);
     build_air(model, tree);
     build_solver(model, tree);
+    if (!strcmp(scene_tree_text(tree, 1, "contact"), "filter"))
+        model->contact = MODEL_CONTACT_FILTER;
     int code = build_name(model, tree, error);
     if (!code)
         code = build_time(model, tree, error);

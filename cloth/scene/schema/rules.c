@@ -230,7 +230,7 @@ static const struct scene_rule solver_keys[] = {
      .about = "a solve that needs more fails"},
     {0}};
 
-static const char *const contacts[] = {"project", NULL};
+static const char *const contacts[] = {"project", "filter", NULL};
 static const char *const integrators[] = {"implicit_euler", "explicit_euler", "symplectic_euler",
                                           "verlet", "rk4", "bdf2", NULL};
 static const char *const energies[] = {"ends", "steps", NULL};

@@ -197,8 +197,8 @@ START_TEST(wrong_kinds)
         {"gravity: [0, -9.81, 0]", "integrator: rk5",
          .error = ":2:13: integrator is rk5; implicit_euler or explicit_euler or "
                   "symplectic_euler or verlet or rk4 or bdf2 is expected"},
-        {"gravity: [0, -9.81, 0]", "contact: filter",
-         .error = ":2:10: contact is filter; project is expected"},
+        {"gravity: [0, -9.81, 0]", "contact: filtre",
+         .error = ":2:10: contact is filtre; project or filter is expected"},
         {"[{vertices: [0, 3]}]", "[]\n    loads: []",
          .error = ":9:5: loads is twice in cloths[0]; each key is allowed once"},
         {"pins: [{vertices: [0, 3]}]", "pins: [{}]",

@@ -36,8 +36,10 @@ static void place(struct system *s, uint32_t a, double x, double y)
 static void clear(struct system *s)
 {
     const enum solve_format format = s->format;
+    const bool filtered = s->filtered;
     memset(s, 0, sizeof *s);
     s->format = format;
+    s->filtered = filtered;
 }
 
 void system_chain(struct system *s, uint32_t n, double stiffness)
@@ -129,6 +131,48 @@ static void make_dense(struct system *s)
     }
 }
 
+/* S A S + I - S. */
+static void filter_dense(struct system *s)
+{
+    for (uint32_t a = 0; a < s->n; a++)
+        for (uint32_t i = 0; i < 3 * s->n; i++) {
+            double *row[3] = {s->dense[3 * a] + i, s->dense[3 * a + 1] + i,
+                              s->dense[3 * a + 2] + i};
+            phys_vec y = {*row[0], *row[1], *row[2], 0};
+            solve_filter(s->filter + a, &y);
+            for (int c = 0; c < 3; c++)
+                *row[c] = y[c];
+        }
+    for (uint32_t a = 0; a < s->n; a++)
+        for (uint32_t i = 0; i < 3 * s->n; i++) {
+            double *row = s->dense[i] + 3 * a;
+            phys_vec y = {row[0], row[1], row[2], 0};
+            solve_filter(s->filter + a, &y);
+            for (int c = 0; c < 3; c++)
+                row[c] = y[c];
+        }
+    for (uint32_t a = 0; a < s->n; a++)
+        for (uint32_t c = 0; c < 3; c++) {
+            phys_vec y = {0};
+            y[c] = 1;
+            solve_filter(s->filter + a, &y);
+            for (uint32_t d = 0; d < 3; d++)
+                s->dense[3 * a + d][3 * a + c] += (d == c) - y[d];
+        }
+}
+
+void system_filter(struct system *s, bool oblique)
+{
+    static const double axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (uint32_t a = 0; a < s->n; a++) {
+        const double *n = axis[a % 3];
+        const phys_vec along = {n[0], n[1], n[2], a % 2}, askew = {0.6, 0, -0.8, a % 2};
+        s->filter[a] = oblique && a % 5 < 2 ? askew : along;
+        if (a % 4 == 3)
+            s->filter[a] = (phys_vec){0, 0, 0, a % 8 > 3};
+    }
+}
+
 /* ---- Blocks ---- */
 
 static uint32_t copy_of(const struct system_block *b, uint32_t row)
@@ -196,7 +240,8 @@ static void cut_block(struct system *s, struct system_block *b, uint32_t first, 
         if (seen[a])
             b->copy[b->n_copies++] = a;
     cut_entries(s, b, n, sums);
-    b->matrix = (struct solve_block){n, b->diagonal, b->free, b->row, b->column, s->format};
+    b->matrix = (struct solve_block){n, b->diagonal, b->free, b->row, b->column, s->format, NULL};
+    b->matrix.filter = s->filtered ? s->filter + first : NULL;
     b->cut.end = (const uint32_t(*)[2])b->end;
     b->cut.rim = b->rim;
     if (s->format != SOLVE_SPRINGS)
@@ -207,6 +252,8 @@ void system_cut(struct system *s, uint32_t n_blocks)
 {
     s->n_blocks = n_blocks;
     make_dense(s);
+    if (s->filtered)
+        filter_dense(s);
     for (uint32_t b = 0; b < n_blocks; b++) {
         const uint32_t first = b * s->n / n_blocks;
         cut_block(s, s->block + b, first, (b + 1) * s->n / n_blocks - first);
@@ -217,8 +264,11 @@ void system_cut(struct system *s, uint32_t n_blocks)
 
 void system_draw_rows(const struct system *s, phys_vec *y)
 {
-    for (uint32_t a = 0; a < s->n; a++)
+    for (uint32_t a = 0; a < s->n; a++) {
         y[a] = s->free[a] * (phys_vec){system_draw(), system_draw(), system_draw(), 0};
+        if (s->filtered)
+            solve_filter(s->filter + a, y + a);
+    }
 }
 
 void system_multiply(const struct system *s, const phys_vec *x, phys_vec *y)

@@ -28,6 +28,8 @@ struct system {
     phys_vec value[SYSTEM_SPRINGS], position[SYSTEM_ROWS];
     phys_vec turn[SYSTEM_SPRINGS]; /* in half storage added to the spring's N as [turn]x */
     double diagonal[SYSTEM_ROWS], free[SYSTEM_ROWS];
+    bool filtered;                /* stays what it was */
+    phys_vec filter[SYSTEM_ROWS]; /* if so */
     struct system_block block[SYSTEM_BLOCKS];
     double dense[3 * SYSTEM_ROWS][3 * SYSTEM_ROWS]; /* S A S + I - S */
 };
@@ -45,9 +47,13 @@ void system_turn(struct system *system, double size);
  * as they shall be. */
 void system_cut(struct system *system, uint32_t n_blocks);
 
+/* Holds rows in planes, on lines and at points; oblique: not only along axes. */
+void system_filter(struct system *system, bool oblique);
+
 /* Between -1 and 1. */
 double system_draw(void);
-void system_draw_rows(const struct system *system, phys_vec *y); /* zero in held rows */
+void system_draw_rows(const struct system *system, phys_vec *y); /* zero where rows are
+                                                                 held */
 /* y = A x; x = A^-1 y by Gauss' elimination. */
 void system_multiply(const struct system *system, const phys_vec *x, phys_vec *y);
 void system_solve(const struct system *system, const phys_vec *y, phys_vec *x);

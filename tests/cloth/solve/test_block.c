@@ -99,8 +99,8 @@ static void build(void)
             if (h->n_cut > before)
                 h->rim[h->n_rim++] = (uint32_t)a;
         }
-        h->block =
-            (struct solve_block){ROWS, h->diagonal, h->free, h->row, h->column, SOLVE_SPRINGS};
+        h->block = (struct solve_block){ROWS,      h->diagonal,   h->free, h->row,
+                                        h->column, SOLVE_SPRINGS, NULL};
         h->cut = (struct solve_cut){h->n_cut, (const uint32_t(*)[2])h->end, h->n_rim, h->rim};
         h->hold.at = (const uint32_t(*)[2])h->held;
     }

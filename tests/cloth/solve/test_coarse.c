@@ -26,6 +26,8 @@ static void make_sheet(uint32_t nx, uint32_t ny, uint32_t n_blocks, int hold)
     system_turn(&sys, 2);
     for (uint32_t a = 0; a < sys.n && hold; a++)
         sys.free[a] = rand() % hold != 0;
+    if (sys.filtered)
+        system_filter(&sys, false);
     system_cut(&sys, n_blocks);
     two_level_make(&level, &sys);
 }
@@ -47,7 +49,8 @@ static void check_coupling(uint32_t b, uint32_t other, const double *matrix)
 START_TEST(matrix_is_of_the_filtered_system)
 {
     srand(1);
-    sys.format = (enum solve_format)_i;
+    sys.format = (enum solve_format)(_i % 3);
+    sys.filtered = _i > 2;
     for (int hold = 0; hold < 9; hold += 4) {
         make_sheet(8, 8, 5, hold);
         for (uint32_t b = 0; b < sys.n_blocks; b++) {
@@ -67,7 +70,8 @@ END_TEST
 START_TEST(what_it_spans_is_solved_at_once)
 {
     srand(2);
-    sys.format = (enum solve_format)_i;
+    sys.format = (enum solve_format)(_i % 3);
+    sys.filtered = _i > 2;
     for (uint32_t n_blocks = 1; n_blocks <= SYSTEM_BLOCKS; n_blocks++) {
         make_sheet(8, 8, n_blocks, n_blocks % 2 ? 6 : 0);
         phys_vec x[SYSTEM_ROWS] = {{0}}, y[SYSTEM_ROWS], back[SYSTEM_ROWS] = {{0}};
@@ -83,7 +87,7 @@ START_TEST(what_it_spans_is_solved_at_once)
         for (uint32_t a = 0; a < sys.n; a++)
             for (int i = 0; i < 3; i++)
                 ck_assert_double_eq_tol(back[a][i], x[a][i], 1e-9);
-        ck_assert_uint_eq(level.dropped, 0);
+        ck_assert(level.dropped == 0 || sys.filtered); /* few rows may be left of a block's */
         two_level_free(&level);
     }
 }
@@ -274,10 +278,8 @@ int main(void)
 {
     Suite *suite = suite_create("coarse");
     TCase *cases = tcase_create("coarse");
-    tcase_add_loop_test(cases, matrix_is_of_the_filtered_system, SOLVE_SPRINGS,
-                        SOLVE_HALF_FLOAT + 1);
-    tcase_add_loop_test(cases, what_it_spans_is_solved_at_once, SOLVE_SPRINGS,
-                        SOLVE_HALF_FLOAT + 1);
+    tcase_add_loop_test(cases, matrix_is_of_the_filtered_system, 0, 6);
+    tcase_add_loop_test(cases, what_it_spans_is_solved_at_once, 0, 6);
     tcase_add_test(cases, basis_has_every_affine_motion_of_a_flat_block);
     tcase_add_test(cases, columns_that_add_nothing);
     tcase_add_test(cases, sparse_factor_of_every_graph);

@@ -126,8 +126,8 @@ static void check(size_t n, uint32_t far, int rim)
     make(&whole, n, far, rim);
     wanted = whole;
     expect(&wanted, 0.3, 0.7, right);
-    const struct solve_block block = {n,         whole.diagonal, whole.free,
-                                      whole.row, whole.column,   SOLVE_SPRINGS};
+    const struct solve_block block = {
+        n, whole.diagonal, whole.free, whole.row, whole.column, SOLVE_SPRINGS, NULL};
     const struct solve_rows rows = {whole.dv, whole.r, whole.p, whole.q};
     solve_pass(&block, &whole.cut, whole.value, whole.other, 0.3, 0.7, &rows, dots);
     compare("dv", whole.dv, wanted.dv, n);

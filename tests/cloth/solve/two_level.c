@@ -62,6 +62,8 @@ void two_level_make(struct two_level *level, const struct system *system)
     for (uint32_t b = 0; b < system->n_blocks; b++) {
         const struct system_block *block = system->block + b;
         solve_basis(block->matrix.n, block->free, block->position, level->basis + block->first);
+        if (block->matrix.filter)
+            solve_basis_filter(block->matrix.n, block->matrix.filter, level->basis + block->first);
     }
     for (uint32_t b = 0; b < system->n_blocks; b++)
         couple(level, b);

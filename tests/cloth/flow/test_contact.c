@@ -1,0 +1,169 @@
+/* Contact in the solve: what lies on planes stays on them, slides along them as if they were not
+ * there, and is let go when forces pull it off; what falls onto them lands without being stretched.
+ */
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+
+static void runs(struct record *record, const struct model *model)
+{
+    record_run(record, model);
+    ck_assert_msg(record->code == 0, "%s", record->error.text);
+}
+
+/* A sheet on the plane y = 0, with contact in the solve. */
+static void setup_floor(struct setup *setup, uint32_t n)
+{
+    setup_sheet(setup, n);
+    setup->plane = (struct model_plane){.normal = {0, 1, 0}};
+    setup->model.n_planes = 1;
+    setup->model.contact = MODEL_CONTACT_FILTER;
+}
+
+/* Turns the start, the plane and gravity about the z axis, by cos and sin. */
+static void tilt(struct setup *setup, double cosine, double sine)
+{
+    double *vectors[] = {setup->plane.normal, setup->plane.point, setup->model.gravity};
+    for (size_t i = 0; i < 3; i++) {
+        const double x = vectors[i][0], y = vectors[i][1];
+        vectors[i][0] = cosine * x - sine * y;
+        vectors[i][1] = sine * x + cosine * y;
+    }
+    for (size_t v = 0; v < setup->cloth.mesh.n_vertices; v++) {
+        double *p = setup->cloth.mesh.position + 3 * v, x = p[0], y = p[1];
+        p[0] = cosine * x - sine * y;
+        p[1] = sine * x + cosine * y;
+    }
+}
+
+/* Implicit Euler under a constant force along the plane: a h^2 n (n + 1) / 2 after n steps. With
+ * every preconditioner, planes along the axes and askew, every vertex in contact. */
+START_TEST(slides_as_a_whole)
+{
+    for (int kind = 0; kind < 10; kind++) {
+        struct setup setup;
+        struct record record = {0};
+        const double cosine = kind % 2 ? 0.8 : 1, sine = kind % 2 ? 0.6 : 0;
+        setup_floor(&setup, 7);
+        setup.model.gravity[0] = 3;
+        setup.model.gravity[2] = -2;
+        setup.model.preconditioner = (enum model_preconditioner)(kind / 2);
+        setup.model.tolerance = 1e-10;
+        tilt(&setup, cosine, sine);
+        runs(&record, &setup.model);
+        for (size_t v = 0; v < 49; v++) {
+            const double along = 3 * 1e-6 * 55;
+            ck_assert_double_eq_tol(record_at(&record, 10, v, 0) - record_at(&record, 0, v, 0),
+                                    cosine * along, 1e-12);
+            ck_assert_double_eq_tol(record_at(&record, 10, v, 1) - record_at(&record, 0, v, 1),
+                                    sine * along, 1e-12);
+            ck_assert_double_eq_tol(record_at(&record, 10, v, 2) - record_at(&record, 0, v, 2),
+                                    -2 * 1e-6 * 55, 1e-12);
+        }
+        record_free(&record);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
+/* Two walls and a floor: it can move along their line only, then nowhere. */
+START_TEST(planes_that_meet)
+{
+    for (uint32_t walls = 1; walls < 3; walls++) {
+        static const struct model_plane planes[] = {
+            {.normal = {0, 1, 0}}, {.normal = {0, 0.6, 0.8}}, {.normal = {-0.8, 0.6, 0}}};
+        struct setup setup;
+        struct record record = {0};
+        setup_floor(&setup, 3);
+        mesh_free(&setup.cloth.mesh);
+        struct cloth_error error = {0};
+        /* A short edge in the corner, along x. */
+        static const double vertices[] = {0, 0, 0, -0.01, 0, 0};
+        static const uint32_t edge[] = {0, 1};
+        ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 2, vertices, 1, edge, 0, NULL, &error), 0);
+        setup.cloth.mass_per_vertex = 0.1;
+        setup.model.grain = 1;
+        setup.model.planes = (struct model_plane *)(uintptr_t)planes;
+        setup.model.n_planes = 1 + walls;
+        setup.model.gravity[0] = 1;
+        setup.model.gravity[2] = -4;
+        runs(&record, &setup.model);
+        const double moved = record_at(&record, 10, 0, 0) - record_at(&record, 0, 0, 0);
+        ck_assert_double_eq_tol(moved, walls == 1 ? 1e-6 * 55 : 0, 1e-9);
+        for (size_t c = 1; c < 3; c++)
+            ck_assert_double_eq_tol(record_at(&record, 10, 0, c), 0, 1e-12);
+        record_free(&record);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
+/* A load lifts one corner: it is let go, and takes its neighbours along. */
+START_TEST(is_let_go)
+{
+    struct setup setup;
+    struct record record = {0};
+    setup_floor(&setup, 7);
+    setup.model.end = 0.1;
+    setup.model.fps = 100;
+    setup_load(&setup, 0, 0, 1, 0);
+    runs(&record, &setup.model);
+    ck_assert_double_gt(record_at(&record, 10, 0, 1), 0.01);
+    ck_assert_double_gt(record_at(&record, 10, 1, 1), 0.001);
+    ck_assert_double_eq_tol(record_at(&record, 10, 48, 1), 0, 1e-12);
+    record_free(&record);
+    setup_free(&setup);
+}
+END_TEST
+
+/* A tilted sheet falls: nothing is ever below the floor, and long steps stretch it less than where
+ * vertices are put onto the floor after the step. */
+START_TEST(lands)
+{
+    double most[2];
+    for (int filter = 0; filter < 2; filter++) {
+        struct setup setup;
+        struct record record = {0};
+        setup_floor(&setup, 12);
+        setup.model.contact = filter ? MODEL_CONTACT_FILTER : MODEL_CONTACT_PROJECT;
+        setup.model.preconditioner = MODEL_IC0_COARSE;
+        setup.material.stretch = setup.material.shear = 2000;
+        setup.model.h = 0.02;
+        setup.model.end = 0.4;
+        setup.model.fps = 50;
+        setup.model.planes = &setup.plane;
+        setup.plane.point[1] = 0;
+        for (size_t v = 0; v < 144; v++) {
+            double *p = setup.cloth.mesh.position + 3 * v, x = p[0];
+            p[0] = 0.8 * x;
+            p[1] = 0.6 * x + 0.5;
+        }
+        runs(&record, &setup.model);
+        most[filter] = 0;
+        for (size_t k = 0; k < record.frames; k++)
+            for (size_t v = 0; v < 144; v++) {
+                ck_assert_double_ge(record_at(&record, k, v, 1), -1e-12);
+                double square = 0;
+                for (size_t c = 0; c < 3 && v % 12; c++)
+                    square += pow(record_at(&record, k, v, c) - record_at(&record, k, v - 1, c), 2);
+                most[filter] = fmax(most[filter], sqrt(square) * 11);
+            }
+        record_free(&record);
+        setup_free(&setup);
+    }
+    ck_assert_double_lt(most[1], most[0]);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("contact");
+    TCase *cases = tcase_create("contact");
+    tcase_add_test(cases, slides_as_a_whole);
+    tcase_add_test(cases, planes_that_meet);
+    tcase_add_test(cases, is_let_go);
+    tcase_add_test(cases, lands);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -32,11 +32,11 @@ pendulum() { # ARGUMENT...: integrator and the error that is allowed, against th
         END { print n " rows, error " most / (u / w) " of the amplitude, pin off by " off
             exit !(n == 2001 && most < allowed * u / w && off < 1e-15) }' swing/probes.csv
 }
-ok "a pendulum on a pin that begins to move, rk4" pendulum 0.002
+ok "a pendulum on a pin that begins to move, rk4" pendulum 0.001
 for integrator in verlet symplectic_euler; do
-    ok "with $integrator" pendulum 0.02 --set integrator=$integrator
+    ok "with $integrator" pendulum 0.001 --set integrator=$integrator
 done
-ok "with implicit_euler" pendulum 0.02 --set integrator=implicit_euler --set time.h=0.0001 --set 'solver.stop={relative: 1e-10}' \
+ok "with implicit_euler" pendulum 0.001 --set integrator=implicit_euler --set time.h=0.0001 --set 'solver.stop={relative: 1e-10}' \
     --set time.end=0.2
 
 # ---- Pins that turn: a quarter turn about the y axis through (1, 0, 0) by keys of an eighth, there and back.
@@ -50,6 +50,16 @@ turning() {
         END { exit bad || n != 3 }' turn/probes.csv
 }
 ok "a pin that turns" turning
+
+# Both vertices moved by t^2 / 2 from step to step: their pins push with m a, half of it in the first step, which begins at rest.
+pushed() {
+    run pendulum.yaml --output push --end 0.006 --set 'gravity=[0, 0, 0]' --set 'probes[0].values=[total]' --set \
+        'cloths[0].pins[0]={vertices: [0, 1], motion: {times: [0, 0.002, 0.004, 0.006],
+        translate: [[0, 0, 0], [2e-6, 0, 0], [8e-6, 0, 0], [18e-6, 0, 0]]}}' || return 1
+    awk -F, 'NR > 1 { want = $1 == 0 ? 0 : $1 == 1 ? 0.1 : 0.2; print $10; if (($10 - want) ^ 2 > 1e-20) bad = 1 } END { exit bad || NR != 5 }' \
+        push/probes.csv
+}
+ok "pins that speed up push with m a" pushed
 
 # ---- A chain between two pins at rest. With H and V the pulls at its left end and W the weight of a vertex, link i pulls by
 # (H, V_i), V_i = V - i W, has the length l (1 + T_i / k), and all of them together lead to the right end.

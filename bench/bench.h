@@ -40,6 +40,6 @@ struct bench {
 /* The case of cg that solves a saved system. */
 extern const char *const bench_cg_saved;
 
-extern const struct bench bench_tasks, bench_ranks, bench_cg;
+extern const struct bench bench_tasks, bench_ranks, bench_cg, bench_compare;
 
 #endif

@@ -13,6 +13,8 @@ bench_libbench_la_SOURCES = bench/bench.h bench/measure.c bench/measure.h \
 	bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/twin.c \
 	bench/cg/bench.c bench/cg/cg.h bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c \
 	bench/cg/system.c \
+	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/predict.h \
+	tests/runtime/trace_file.c tests/runtime/trace_file.h \
 	$(BENCH_STATE) $(BENCH_SHARED)
 bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \
 	-DBENCH_HOSTS='"$(abs_top_srcdir)/tests/cluster/hosts.sh"' \

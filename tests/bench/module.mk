@@ -14,3 +14,5 @@ dist_check_SCRIPTS += tests/bench/test_bench.sh tests/bench/test_cg.sh tests/ben
 TESTS += tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_compare.sh tests/bench/test_experiments.sh tests/bench/test_ranks.sh
 dist_check_SCRIPTS += tests/bench/test_experiments_long.sh
 LONG_TESTS += tests/bench/test_experiments_long.sh
+dist_check_SCRIPTS += tests/bench/test_predict.sh
+TESTS += tests/bench/test_predict.sh

@@ -91,6 +91,7 @@ static const struct {
                            [FILE_R_W] = {"r_w", {DUITE_R, DUITE_W}, 0},
                            [FILE_RR_W] = {"rr_w", {DUITE_R, DUITE_R, DUITE_W}, 0},
                            [FILE_R_CW] = {"r_cw", {DUITE_R, DUITE_CW}, 0},
+                           [FILE_RR_RW] = {"rr_rw", {DUITE_R, DUITE_R, DUITE_RW}, 0},
                            [FILE_SAME] = {"same", {DUITE_R, DUITE_W}, 1}};
 
 static void write_kernels(FILE *out)

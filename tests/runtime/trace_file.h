@@ -18,7 +18,16 @@ struct trace_file {
 };
 
 /* Kernels of it: the modes of their parameters. */
-enum trace_file_kernel { FILE_W, FILE_RW, FILE_R_W, FILE_RR_W, FILE_R_CW, FILE_SAME, FILE_KERNELS };
+enum trace_file_kernel {
+    FILE_W,
+    FILE_RW,
+    FILE_R_W,
+    FILE_RR_W,
+    FILE_R_CW,
+    FILE_SAME,
+    FILE_RR_RW,
+    FILE_KERNELS
+};
 
 /* An object of `slot` (from 1 on), at home where the mapping wants it. */
 void trace_file_object(struct trace_file *file, uint32_t slot, uint64_t bytes);

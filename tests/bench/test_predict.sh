@@ -1,0 +1,14 @@
+#!/bin/sh
+# duite-bench compare runs in tiny sizes, and has its figures.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless bench/duite-bench
+plan_later
+
+rows() { # each metric with a number
+    limited bench/duite-bench compare --quick --repeats 1 > "$scratch/said" 2>&1 || { cat "$scratch/said"; return 1; }
+    cat "$scratch/said"
+    for metric in trace_slowdown predict_1e6_seconds predict_1e6_bytes predict_error_median predict_error_worst; do
+        grep -q "^$metric: [0-9]" "$scratch/said" || return 1
+    done
+}
+ok "traces and predictions are measured" rows

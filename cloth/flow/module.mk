@@ -38,6 +38,6 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/objects.c \
     cloth/flow/tasks/step.c \
     cloth/flow/tasks/system.c \
-    cloth/flow/tasks/tasks.h \
+    cloth/flow/tasks/kernels.h cloth/flow/tasks/tasks.h \
     cloth/flow/tasks/turned.c \
     cloth/flow/tasks/watch.c

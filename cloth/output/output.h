@@ -85,15 +85,15 @@ int output_system_open(const char *folder, struct cloth_error *error);
 /* Writes a system for other solvers, in Matrix Market form (Boisvert, Pozo & Remington 1996), into
  * a folder that is there: matrix.mtx (S A S + I - S: symmetric, its lower triangle, one entry a
  * place, column by column), and as arrays rhs.mtx (S b), solution.mtx (dv), mass.mtx (of each
- * unknown; 0 where held), position.mtx (after the step). Unknown 3 i + c is component c of vertex i,
- * both from 0. Files of these names are replaced. Errors as of output_open. Local. */
+ * unknown; 0 where held), position.mtx (after the step). Unknown 3 i + c is component c of vertex
+ * i, both from 0. Files of these names are replaced. Errors as of output_open. Local. */
 int output_system(const char *folder, const struct solve_system *system, struct cloth_error *error);
 
 /* Reads such a system back, as pairs of blocks, to be freed by solve_system_free: S A S of it is
  * that of the files, to rounding. It has one vertex more, the last, which is held: to it are tied
- * vertices whose diagonal block is more than their pairs and a multiple of I make. Entries may be in
- * any order. h, v and what was at held vertices are zero. Errors: CLOTH_E_INPUT, which name file and
- * line, CLOTH_E_IO, CLOTH_E_MEMORY. Local. */
+ * vertices whose diagonal block is more than their pairs and a multiple of I make. Entries may be
+ * in any order. h, v and what was at held vertices are zero. Errors: CLOTH_E_INPUT, which name file
+ * and line, CLOTH_E_IO, CLOTH_E_MEMORY. Local. */
 int output_system_read(const char *folder, struct solve_system *system, struct cloth_error *error);
 
 /* A flat JSON object, written whole or not at all (a temporary name, then renamed). Keys in the

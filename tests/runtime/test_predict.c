@@ -170,6 +170,19 @@ START_TEST(cards)
 }
 END_TEST
 
+/* One card sends to two hosts: 2 ms, then 2 ms more. */
+START_TEST(sender)
+{
+    struct trace_file file = begun(3, 1000000);
+    trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(1));
+    trace_file_fork(&file, FILE_R_W, 0, 0, 2, SLOTS(1, 2));
+    trace_file_fork(&file, FILE_R_W, 0, 0, 2, SLOTS(1, 3));
+    struct predict_cluster three = machine(3, 1);
+    three.bandwidth = 5e8;
+    is(foretold(&file, &three).makespan, 4 * MS);
+}
+END_TEST
+
 /* The switch carries all: 4 hosts in a ring send at once, 1 ms in cards, 4 ms in a slow switch. */
 START_TEST(fabric)
 {
@@ -312,6 +325,7 @@ int main(void)
     tcase_add_test(cases, priorities);
     tcase_add_test(cases, message);
     tcase_add_test(cases, cards);
+    tcase_add_test(cases, sender);
     tcase_add_test(cases, fabric);
     tcase_add_test(cases, sums);
     tcase_add_test(cases, waits);

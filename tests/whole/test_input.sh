@@ -57,7 +57,7 @@ changed back 'h: 0.001' 'h: -0.001'
 refused "a step back" "back.yaml:8:11: time.h is -0.001; a finite number > 0 (s) is expected" back.yaml
 changed nan 'stretch: 500' 'stretch: .nan'
 refused "a stiffness that is no number" \
-    "nan.yaml:7:35: materials.cotton.stretch is .nan; a finite number >= 0 (N/m) is expected" nan.yaml
+    "nan.yaml:7:35: materials.cotton.stretch is .nan; a finite number >= 0 or a list of 2 of them (N/m) is expected" nan.yaml
 changed pin '\[0, 7\]' '[0, 64]'
 refused "a pin outside the mesh" \
     "pin.yaml:5:27: vertex 64 is outside the mesh of cloth 'cloth1', which has 64 vertices; 0 to 63 are allowed" pin.yaml

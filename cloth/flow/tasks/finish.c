@@ -192,6 +192,11 @@ static int count(struct flow_state *state)
     now->idle -= before->idle;
     now->renamed -= before->renamed;
     now->graphs_recorded -= before->graphs_recorded;
+    now->delegated -= before->delegated;
+    now->migrated -= before->migrated;
+    now->awaited -= before->awaited;
+    now->exposed -= before->exposed;
+    now->stolen_far -= before->stolen_far;
     return code;
 }
 

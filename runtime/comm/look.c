@@ -2,16 +2,32 @@
  * changed. */
 #include "runtime/comm/internal.h"
 
+#include <time.h>
+
 uint64_t comm_movement(struct comm *comm)
 {
     return atomic_load_explicit(&comm->messages, memory_order_relaxed) +
            atomic_load_explicit(&comm->came, memory_order_relaxed);
 }
 
+/* Whoever polls has the lock for microseconds, or as long as its thread has no core. One that
+ * stands still inside MPI keeps it: then nobody can look. */
+static bool lock_soon(struct comm *comm)
+{
+    enum { TRIES = 100 };
+    const struct timespec pause = {.tv_nsec = 1000000};
+    for (int i = 0; i < TRIES; i++) {
+        if (comm_try_lock(comm))
+            return true;
+        nanosleep(&pause, NULL);
+    }
+    return false;
+}
+
 void comm_look(struct comm *comm, const struct comm_looker *looker)
 {
     comm_arrivals_look(&comm->arrivals, looker->awaited, looker->context);
-    if (!comm_try_lock(comm))
+    if (!lock_soon(comm))
         return;
     for (int i = 0; i < comm->sends.n; i++) {
         const struct graph_task *task = comm->sends.what[i];

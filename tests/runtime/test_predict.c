@@ -7,6 +7,7 @@
 #include "tests/support/unit.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,7 +49,9 @@ static struct predict_result foretold(struct trace_file *file,
     struct trace_run *run = written(file);
     ck_assert_msg(!predict(run, cluster, &result, NULL), "%s", duite_message());
     ck_assert_int_eq(predict(run, cluster, &again, NULL), DUITE_OK);
-    ck_assert_msg(!memcmp(&result, &again, sizeof result), "not the same twice");
+    ck_assert_msg(!memcmp(&result, &again, offsetof(struct predict_result, limit)) &&
+                      result.limit == again.limit, /* what is behind it is padding */
+                  "not the same twice");
     trace_run_free(run);
     return result;
 }

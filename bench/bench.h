@@ -35,6 +35,7 @@ struct bench {
      * it is. 1, said on stderr, if it cannot be made. NULL: nothing is needed. */
     int (*prepare)(const struct bench_options *options,
                    void (*say)(const char *key, const char *text));
+    void (*finish)(void); /* at the end, also of a run that failed; NULL: there is nothing to do */
 };
 
 /* The case of cg that solves a saved system. */

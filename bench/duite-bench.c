@@ -276,6 +276,8 @@ static int run(const struct command *command, struct measure *measure)
             report_all(measure, verdicts);
         measure_free(measure);
     }
+    if (command->bench->finish)
+        command->bench->finish();
     if (!failed)
         conclude(verdicts);
     return report_finish(&report, failed ? NULL : command->json) || failed;

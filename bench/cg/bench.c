@@ -119,4 +119,5 @@ const struct bench bench_cg = {
     TARGETS,
     TARGET_THREADS,
     serve_cg,
-    prepare};
+    prepare,
+    NULL};

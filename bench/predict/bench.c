@@ -1,6 +1,13 @@
 /* The bench "compare": what traces cost, and what predictions are worth. */
 #include "bench/predict/predict.h"
 
+#include <errno.h>
+#include <ftw.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
 static const struct bench_case *const CASES[] = {&predict_trace, &predict_many, &predict_errors,
                                                  NULL};
 
@@ -10,11 +17,51 @@ static const struct measure_target TARGETS[] = {
     {"predict_error_worst", 0.25, false},     {0}};
 enum { TARGET_THREADS = 2, MANY = 1000000, FEW = 10000 };
 
+/* ---- The folder of the traces: the processes that are measured know it by the environment ---- */
+
+#define FOLDER "DUITE_BENCH_TRACES"
+
+char *predict_path(const char *name)
+{
+    const char *folder = getenv(FOLDER);
+    char *path = NULL;
+    return !folder || asprintf(&path, "%s/%s", folder, name) < 0 ? NULL : path;
+}
+
+static int make_folder(void)
+{
+    const char *temporary = getenv("TMPDIR");
+    char *folder = NULL;
+    if (asprintf(&folder, "%s/duite-traces.XXXXXX", temporary ? temporary : "/tmp") < 0)
+        return serve_no_memory();
+    const bool made = mkdtemp(folder) && !setenv(FOLDER, folder, 1);
+    const int code = made ? 0 : serve_fail("no folder %s for traces: %s", folder, strerror(errno));
+    free(folder);
+    return code;
+}
+
+static int remove_one(const char *path, const struct stat *status, int kind, struct FTW *where)
+{
+    (void)status, (void)kind, (void)where;
+    return remove(path);
+}
+
+static void finish(void)
+{
+    const char *folder = getenv(FOLDER);
+    if (folder && nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS))
+        fprintf(stderr, "duite-bench: %s cannot be removed: %s\n", folder, strerror(errno));
+}
+
 static int prepare(const struct bench_options *options,
                    void (*say)(const char *key, const char *text))
 {
-    say("trace_many", options->quick ? "10000 tasks" : "1000000 tasks");
-    return predict_make_many(options->quick ? FEW : MANY);
+    const int code = make_folder() || predict_make_many(options->quick ? FEW : MANY);
+    if (code)
+        fprintf(stderr, "duite-bench: %s\n", serve_failure());
+    else
+        say("trace_many", options->quick ? "10000 tasks" : "1000000 tasks");
+    return code;
 }
 
 static int serve_predict(const struct bench *bench)
@@ -29,4 +76,4 @@ const struct bench bench_compare = {
     "compare",      "what a trace costs, and predictions against runs",
     CASES,          TARGETS,
     TARGET_THREADS, serve_predict,
-    prepare};
+    prepare,        finish};

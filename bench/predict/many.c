@@ -8,21 +8,11 @@
 #include "runtime/sched/sched.h"
 #include "tests/runtime/trace_file.h"
 
-#include "bench/program.h"
-
-#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { OBJECTS = 1000, MANY = 1000000, FEW = 10000 };
-
-char *predict_path(const char *name)
-{
-    char folder[PATH_MAX], *path = NULL;
-    program_folder(folder, sizeof folder);
-    return asprintf(&path, "%s/%s", folder, name) < 0 ? NULL : path;
-}
 
 int predict_make_many(uint32_t tasks)
 {

@@ -6,7 +6,8 @@
 
 /* Shared by the cases of the bench "compare". Each case is a file. */
 
-/* A file beside the program, of this name. NULL without memory; the caller frees it. */
+/* A file of this name in the folder of the run's traces, which lives as long as the bench. NULL
+ * without memory; the caller frees it. */
 char *predict_path(const char *name);
 
 /* The trace of a million tasks, or of fewer: where it is, and how it is made. 0, or what serve_fail

@@ -132,4 +132,5 @@ const struct bench bench_ranks = {"ranks",
                                   TARGETS,
                                   TARGET_THREADS,
                                   serve_ranks,
+                                  NULL,
                                   NULL};

@@ -229,10 +229,8 @@ static int serve_tasks(const struct bench *bench)
     return status;
 }
 
-const struct bench bench_tasks = {"tasks",
-                                  "what a task costs: stencil, chain, independent, ...",
-                                  CASES,
-                                  TARGETS,
-                                  TARGET_THREADS,
-                                  serve_tasks,
-                                  NULL};
+const struct bench bench_tasks = {
+    "tasks",        "what a task costs: stencil, chain, independent, ...",
+    CASES,          TARGETS,
+    TARGET_THREADS, serve_tasks,
+    NULL,           NULL};

@@ -11,4 +11,11 @@ rows() { # each metric with a number
         grep -q "^$metric: [0-9]" "$scratch/said" || return 1
     done
 }
+
+none_left() { # the traces of the rows above
+    ls -A "$scratch/temporary" > "$scratch/left" && cat "$scratch/left" && test ! -s "$scratch/left"
+}
+mkdir "$scratch/temporary"
+export TMPDIR="$scratch/temporary"
 ok "traces and predictions are measured" rows
+ok "traces are removed at the end" none_left

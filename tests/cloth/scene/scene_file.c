@@ -3,6 +3,7 @@
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -85,4 +86,27 @@ int scene_read_text(struct model *model, const char *text, size_t n_sets,
 {
     scene_write_file("scene.yaml", text, strlen(text));
     return scene_read(model, scene_path(), n_sets, sets, error);
+}
+
+void scene_expect_error(const char *text, const char *set, const char *error)
+{
+    struct model model;
+    struct cloth_error got = {0};
+    const struct scene_set sets[] = {{.text = set}};
+    int code = scene_read_text(&model, text, set ? 1 : 0, sets, &got);
+    size_t path = strlen(scene_path());
+    bool in_file = strncmp(got.text, scene_path(), path) == 0;
+    ck_assert_str_eq(in_file ? got.text + path : got.text, error);
+    ck_assert_int_eq(code, CLOTH_E_INPUT);
+    model_free(&model);
+}
+
+void scene_expect_errors(const struct scene_wrong *wrong, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        char *text = wrong[i].from ? scene_changed(scene_right, wrong[i].from, wrong[i].to)
+                                   : strdup(scene_right);
+        scene_expect_error(text, wrong[i].set, wrong[i].error);
+        free(text);
+    }
 }

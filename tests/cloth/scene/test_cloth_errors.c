@@ -1,0 +1,236 @@
+/* Cloths, materials, meshes, pins, loads, motions and probes that cannot be made: each has its own
+ * sentence, as in test_errors.c. */
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+START_TEST(values_out_of_range)
+{
+    EXPECT(
+        {"density: 0.2", "density: 0",
+         .error =
+             ":10:21: materials.cotton.density is 0; a finite number > 0 (kg/m^2) is expected"},
+        {"stretch: 50", "stretch: -1",
+         .error = ":10:35: materials.cotton.stretch is -1; a finite number >= 0 or a list of 2 "
+                  "of them (N/m) is expected"},
+        {"mass: 0.1", "mass: -0.1",
+         .error = ":10:55: materials.cotton.damping.mass is -0.1; a finite number >= 0 (1/s) is "
+                  "expected"},
+        {"nx: 4", "nx: 1",
+         .error =
+             ":5:44: cloths[0].mesh.grid.nx is 1; a whole number from 2 to 4294967295 is expected"},
+        {"nx: 4, ny: 3", "nx: 65536, ny: 65536",
+         .error = ":5:44: nx times ny is 4294967296; at most 2^31 vertices are possible"},
+        {"schema: 1", "schema: 1\ngrain: 0",
+         .error = ":2:8: grain is 0; a whole number from 1 to 4294967295 is expected"},
+        {"schema: 1", "schema: 1\nsolver: {stop: {relative: 0}}",
+         .error = ":2:27: solver.stop.relative is 0; a finite number > 0 and < 1 is expected"},
+        {"schema: 1", "schema: 1\nsolver: {stop: {count: 0}}",
+         .error = ":2:24: solver.stop.count is 0; a whole number from 1 to 4294967295 is expected"},
+        {"normal: [0, 3, 4]", "normal: [0, 0, 0]",
+         .error = ":11:49: the normal of a plane is zero; a direction is expected"},
+        {"material: cotton", "material: cotton\n    transform: {rotate: [0, 0, 0, 0]}",
+         .error = ":7:25: the quaternion [w, x, y, z] has no direction; its length must be neither "
+                  "zero nor huge"},
+        {"material: cotton", "material: cotton\n    transform: {scale: 0}",
+         .error = ":7:24: cloths[0].transform.scale is 0; a finite number > 0 or a list of 3 of "
+                  "them is expected"},
+        {"material: cotton", "material: cotton\n    transform: {scale: [1, 1, -1]}",
+         .error = ":7:31: cloths[0].transform.scale[2] is -1; a finite number > 0 is expected"},
+        {"material: cotton", "material: cotton\n    mass_per_vertex: 0",
+         .error = ":7:22: cloths[0].mass_per_vertex is 0; a finite number > 0 (kg) is expected"},
+        {"material: cotton", "material: cotton\n    cost: {factor: 0.5}",
+         .error =
+             ":7:20: cloths[0].cost.factor is 0.5; a whole number from 1 to 1000 is expected"});
+}
+END_TEST
+
+START_TEST(triangles_out_of_range)
+{
+    EXPECT(
+        {"stretch: 50", "stretch: [50, -1], model: triangles",
+         .error = ":10:40: materials.cotton.stretch[1] is -1; a finite number >= 0 is expected"},
+        {"stretch: 50", "stretch: [50], model: triangles",
+         .error = ":10:35: materials.cotton.stretch is a list of 1; a finite number >= 0 or a list "
+                  "of 2 of them (N/m) is expected"},
+        {"stretch: 50", "stretch: 50, model: triangle",
+         .error = ":10:46: materials.cotton.model is triangle; springs or triangles is expected"},
+        {"stretch: 50", "stretch: 50, model: triangles, shear: .nan",
+         .error = ":10:64: materials.cotton.shear is .nan; a finite number >= 0 (N/m) is expected"},
+        {"stretch: 50", "stretch: [50, 200], model: triangles, poisson: 0.5",
+         .error = ":10:73: materials.cotton.poisson is 0.5: nu12 nu21 = nu12^2 weft / warp is 1; "
+                  "less than 1 is expected, here a ratio between -0.5 and 0.5"},
+        {"stretch: 50", "stretch: 50, bending: {rigidity: [1, .nan]}",
+         .error = ":10:63: materials.cotton.bending.rigidity[1] is .nan; a finite number >= 0 is "
+                  "expected"},
+        {"mesh: {grid: {width: 1, height: 2, nx: 4, ny: 3}}",
+         "rest: uv\n    mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], triangles: "
+         "[[0, 1, 2]]}}",
+         .error = ":5:11: rest is uv, but the mesh of cloth 'sheet' has none; a grid, an OBJ file "
+                  "with vt, or rest: position is expected"});
+}
+END_TEST
+
+START_TEST(grids_larger_than_the_machine)
+{
+    const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    if (memory > 4.8e10)
+        return;
+    char error[200];
+    snprintf(error, sizeof error,
+             ":5:44: nx times ny is 324000000 vertices, which take 49 GB of memory or more; this "
+             "machine has %.0f GB",
+             memory / 1e9);
+    scene_expect_errors(&(struct scene_wrong){"nx: 4, ny: 3", "nx: 18000, ny: 18000", NULL, error},
+                        1);
+}
+END_TEST
+
+START_TEST(names_and_indices)
+{
+    EXPECT({"material: cotton", "material: coton",
+            .error = ":6:15: there is no material 'coton'; did you mean 'cotton'? Allowed: cotton"},
+           {"material: cotton", "material: silk",
+            .error = ":6:15: there is no material 'silk'; allowed: cotton"},
+           {"materials:\n",
+            "  - {name: sheet, mesh: {grid: {width: 1, height: 1, nx: 2, ny: 2}}, material: "
+            "cotton}\nmaterials:\n",
+            .error = ":9:12: a second cloth is named 'sheet'; names must differ"},
+           {"vertices: [0, 3]", "vertices: [0, 12]",
+            .error = ":7:27: vertex 12 is outside the mesh of cloth 'sheet', which has 12 "
+                     "vertices; 0 to 11 are allowed"},
+           {"vertices: [11]", "vertices: [99]",
+            .error = ":8:25: vertex 99 is outside the mesh of cloth 'sheet', which has 12 "
+                     "vertices; 0 to 11 are allowed"},
+           {"vertices: [11]", "vertices: [11, 4, 11]",
+            .error = ":8:32: vertex 11 stands twice in one load; to load it twice, write another "
+                     "load or a larger force"},
+           {"material: cotton",
+            "material: cotton\n    cost: {factor: 3, box: [[9, 9, 9], [8, 8, 8]]}",
+            .error = ":7:28: the box holds no vertex of cloth 'sheet'; it is meant for positions "
+                     "after the transform"},
+           {"{vertices: [0, 3]}", "{box: [[9, 9, 9], [8, 8, 8]]}",
+            .error = ":7:18: the box holds no vertex of cloth 'sheet'; it is meant for positions "
+                     "after the transform"});
+}
+END_TEST
+
+#define MOTION(text) "{vertices: [0, 3]}", "{vertices: [0, 3], motion: {" text "}}"
+
+START_TEST(loads_that_cannot_be_made)
+{
+    EXPECT({"vertices: [11]", "edges: [[0, 99]]",
+            .error = ":8:26: vertex 99 is outside the mesh of cloth 'sheet', which has 12 "
+                     "vertices; 0 to 11 are allowed"},
+           {"vertices: [11]", "edges: [[3, 3]]",
+            .error = ":8:26: an edge of a load joins vertex 3 to itself; two vertices are "
+                     "expected"},
+           {"vertices: [11], ", "",
+            .error = ":8:13: cloths[0].loads[0] has no vertices or nearest or box or edges; one of "
+                     "them is expected"});
+}
+END_TEST
+
+START_TEST(motions_that_cannot_be_made)
+{
+    EXPECT(
+        {MOTION("times: [0, 1, 1], translate: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]"),
+         .error =
+             ":7:54: the time 1 of a motion does not come after 1, the one before it; times in "
+             "ascending order are expected"},
+        {MOTION("times: [0, 1], translate: [[0, 0, 0]]"),
+         .error = ":7:66: translate of a motion has 1 entries, but there are 2 times; as many are "
+                  "expected"},
+        {MOTION("times: [0, 1], rotate: [[1, 0, 0, 0], [0, 0, 0, 0]]"),
+         .error = ":7:78: a rotation of a motion is zero; a quaternion [w, x, y, z] that is not is "
+                  "expected"},
+        {MOTION("times: [0, 1], rotate: [[1, 0, 0, 0], [0, 2, 0, 0]]"),
+         .error = ":7:78: a rotation of a motion is half a turn from the one before, so that its "
+                  "way is open; smaller ones are expected"},
+        {MOTION("times: [0, 1], translate: [[0, 1, 0], [0, 0, 0]]"),
+         .error = ":7:39: a motion does not begin where the vertices start; at time 0 no shift and "
+                  "no rotation are expected"},
+        {MOTION("times: [], translate: []"),
+         .error = ":7:47: cloths[0].pins[0].motion.times is an empty list; a non-empty list of "
+                  "numbers (s) is expected"});
+}
+END_TEST
+
+#define PROBE(text) "\ntime: {h", "\nprobes: [" text "]\ntime: {h"
+
+START_TEST(probes_that_tell_nothing)
+{
+    EXPECT(
+        {PROBE("{name: a}"),
+         .error = ":12:10: probes[0] has no vertices or nearest or box; one of them is expected"},
+        {PROBE("{vertices: [0], nearest: [0, 0, 0]}"),
+         .error = ":12:26: probes[0] has both vertices and nearest; one of vertices or nearest or "
+                  "box is expected"},
+        {PROBE("{vertices: [12]}"),
+         .error =
+             ":12:22: vertex 12 is outside the mesh of cloth 'sheet', which has 12 vertices; 0 "
+             "to 11 are allowed"},
+        {PROBE("{vertices: [1, 1]}"), .error = ":12:25: vertex 1 stands twice in one probe"},
+        {PROBE("{vertices: [1], name: 'a,b'}"),
+         .error = ":12:32: the name of a probe is 'a,b'; at most 60 letters, digits, _ and - are "
+                  "expected"},
+        {PROBE("{vertices: [1], name: probe2}, {vertices: [1]}"),
+         .error = ":12:41: a second probe is named 'probe2'; names must differ"},
+        {PROBE("{vertices: [1], cloth: shet}"),
+         .error = ":12:33: there is no cloth 'shet'; did you mean 'sheet'? Allowed: sheet"},
+        {PROBE("{vertices: [1], values: [total, mass]}"),
+         .error = ":12:42: probes[0].values[1] is mass; position or velocity or reaction or total "
+                  "is expected"},
+        {PROBE("{vertices: [1], values: [total, total]}"),
+         .error = ":12:42: total stands twice in the values of a probe"},
+        {"end: 0.1", "end: 0.1, rest: {speed: 0}",
+         .error = ":12:42: time.rest.speed is 0; a finite number > 0 (m/s) is expected"});
+}
+END_TEST
+
+START_TEST(meshes_that_cannot_be_used)
+{
+    struct model model;
+    struct cloth_error error = {0};
+    char *text =
+        scene_changed(scene_right, "grid: {width: 1, height: 2, nx: 4, ny: 3}", "file: a.obj");
+    ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "scene.yaml:5:18: mesh: "));
+    ck_assert_ptr_nonnull(strstr(error.text, "a.obj"));
+    model_free(&model);
+    error = (struct cloth_error){0};
+    scene_write_file("a.obj", "v 0 0 0\nv nan 0 0\n", 18);
+    ck_assert_int_eq(scene_read(&model, scene_path(), 0, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "scene.yaml:5:18: mesh: "));
+    ck_assert_ptr_nonnull(strstr(error.text, "a.obj:2"));
+    model_free(&model);
+    free(text);
+    text = scene_changed(scene_right, "grid: {width: 1, height: 2, nx: 4, ny: 3}",
+                         "inline: {vertices: [[0, 0, 0]], edges: [[0, 7]]}");
+    error = (struct cloth_error){0};
+    ck_assert_int_eq(scene_read_text(&model, text, 0, NULL, &error), CLOTH_E_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.text, "scene.yaml:5:20: mesh: "));
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("cloth errors");
+    TCase *cases = tcase_create("errors");
+    tcase_add_test(cases, values_out_of_range);
+    tcase_add_test(cases, triangles_out_of_range);
+    tcase_add_test(cases, grids_larger_than_the_machine);
+    tcase_add_test(cases, names_and_indices);
+    tcase_add_test(cases, loads_that_cannot_be_made);
+    tcase_add_test(cases, motions_that_cannot_be_made);
+    tcase_add_test(cases, probes_that_tell_nothing);
+    tcase_add_test(cases, meshes_that_cannot_be_used);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -1,4 +1,6 @@
-/* Principal axes by Jacobi's rotations, in a fixed order: + - * / and sqrt only. */
+/* Principal axes of a mesh: those of its second moments. What the moments have beside the diagonal
+ * below 1e-15 of their size is rounding. */
+#include "cloth/base/axes.h"
 #include "cloth/mesh/mesh.h"
 
 #include <math.h>
@@ -19,51 +21,22 @@ static void moments(const struct mesh *mesh, double m[3][3])
                     (mesh->position[3 * v + i] - mean[i]) * (mesh->position[3 * v + j] - mean[j]);
 }
 
-/* Turns rows and columns p and q of m so that m[p][q] becomes 0; the same columns of `axis`. */
-static void turn(double m[3][3], double axis[3][3], int p, int q)
-{
-    if (fabs(m[p][q]) <= 1e-15 * (m[p][p] + m[q][q]))
-        return;
-    const double d = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-    const double t = (d < 0 ? -1 : 1) / (fabs(d) + sqrt(d * d + 1));
-    const double c = 1 / sqrt(t * t + 1), s = t * c;
-    for (int i = 0; i < 3; i++) {
-        const double a = m[i][p], b = m[i][q];
-        m[i][p] = c * a - s * b;
-        m[i][q] = s * a + c * b;
-    }
-    for (int i = 0; i < 3; i++) {
-        const double a = m[p][i], b = m[q][i];
-        m[p][i] = c * a - s * b;
-        m[q][i] = s * a + c * b;
-    }
-    for (int i = 0; i < 3; i++) {
-        const double a = axis[i][p], b = axis[i][q];
-        axis[i][p] = c * a - s * b;
-        axis[i][q] = s * a + c * b;
-    }
-}
-
-/* The axis as column k, its largest component above 0. */
-static void take(double axis[3][3], int k, double to[3])
+/* An axis, its largest component above 0. */
+static void take(const double axis[3], double to[3])
 {
     int largest = 0;
     for (int i = 1; i < 3; i++)
-        if (fabs(axis[i][k]) > fabs(axis[largest][k]) * (1 + 1e-9))
+        if (fabs(axis[i]) > fabs(axis[largest]) * (1 + 1e-9))
             largest = i;
     for (int i = 0; i < 3; i++)
-        to[i] = axis[largest][k] < 0 ? -axis[i][k] : axis[i][k];
+        to[i] = axis[largest] < 0 ? -axis[i] : axis[i];
 }
 
 void mesh_axes(const struct mesh *mesh, double u[3], double v[3])
 {
-    double m[3][3], axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double m[3][3], axis[3][3];
     moments(mesh, m);
-    for (int sweep = 0; sweep < 12; sweep++) {
-        turn(m, axis, 0, 1);
-        turn(m, axis, 0, 2);
-        turn(m, axis, 1, 2);
-    }
+    cloth_axes(1e-15 * (m[0][0] + m[1][1] + m[2][2]), m, axis);
     int least = 2; /* of equals the last; the two others keep their order unless the later is longer
                     */
     for (int k = 1; k >= 0; k--)
@@ -75,6 +48,6 @@ void mesh_axes(const struct mesh *mesh, double u[3], double v[3])
         first = second;
         second = other;
     }
-    take(axis, first, u);
-    take(axis, second, v);
+    take(axis[first], u);
+    take(axis[second], v);
 }

@@ -2,6 +2,7 @@
  * adds (phi_a - phi_b)(phi_a - phi_b)' times K, phi the rows of P, and (phi_b phi_a' - phi_a
  * phi_b') times [w]x, since those of a row come to nothing; the sums go over symmetric 3 x 3
  * blocks, six for one block, nine for two, and over vectors w, three and nine. */
+#include "cloth/base/axes.h"
 #include "cloth/solve/coarse.h"
 #include "cloth/solve/matrix3.h"
 
@@ -10,47 +11,18 @@
 
 /* ---- The basis ---- */
 
-/* One turn of Jacobi's method for eigenvalues: makes entry (i, j) of the symmetric m zero. */
-static void turn(double m[3][3], double axes[3][3], int i, int j)
-{
-    if (fabs(m[i][j]) <= 1e-300)
-        return;
-    const double theta = (m[j][j] - m[i][i]) / (2 * m[i][j]);
-    const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
-    const double c = 1 / sqrt(t * t + 1), s = t * c;
-    for (int k = 0; k < 3; k++) {
-        const double a = m[k][i], b = m[k][j];
-        m[k][i] = c * a - s * b;
-        m[k][j] = s * a + c * b;
-    }
-    for (int k = 0; k < 3; k++) {
-        const double a = m[i][k], b = m[j][k];
-        m[i][k] = c * a - s * b;
-        m[j][k] = s * a + c * b;
-    }
-    for (int k = 0; k < 3; k++) {
-        const double a = axes[i][k], b = axes[j][k];
-        axes[i][k] = c * a - s * b;
-        axes[j][k] = s * a + c * b;
-    }
-}
-
 /* The two axes of a cloud of points in which it is largest, each divided by its extent; zero if
  * there is none. */
 static void axes_of(size_t n, const phys_vec *position, const phys_vec *centre, phys_vec axis[2])
 {
-    double m[3][3] = {{0}}, axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double m[3][3] = {{0}}, axes[3][3];
     for (size_t a = 0; a < n; a++) {
         const phys_vec d = position[a] - *centre;
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
                 m[i][j] += d[i] * d[j] / (double)n;
     }
-    for (int sweep = 0; sweep < 12; sweep++) {
-        turn(m, axes, 0, 1);
-        turn(m, axes, 0, 2);
-        turn(m, axes, 1, 2);
-    }
+    cloth_axes(1e-300, m, axes);
     int order[3] = {0, 1, 2};
     for (int i = 0; i < 2; i++)
         for (int j = i + 1; j < 3; j++)

@@ -1,0 +1,41 @@
+/* The order of turns is fixed, so that all ranks find the same bits. */
+#include "cloth/base/axes.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Makes entry (i, j) of m zero. */
+static void turn(double small, double m[3][3], double axes[3][3], int i, int j)
+{
+    if (fabs(m[i][j]) <= small)
+        return;
+    const double theta = (m[j][j] - m[i][i]) / (2 * m[i][j]);
+    const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+    const double c = 1 / sqrt(t * t + 1), s = t * c;
+    for (int k = 0; k < 3; k++) {
+        const double a = m[k][i], b = m[k][j];
+        m[k][i] = c * a - s * b;
+        m[k][j] = s * a + c * b;
+    }
+    for (int k = 0; k < 3; k++) {
+        const double a = m[i][k], b = m[j][k];
+        m[i][k] = c * a - s * b;
+        m[j][k] = s * a + c * b;
+    }
+    for (int k = 0; k < 3; k++) {
+        const double a = axes[i][k], b = axes[j][k];
+        axes[i][k] = c * a - s * b;
+        axes[j][k] = s * a + c * b;
+    }
+}
+
+void cloth_axes(double small, double m[3][3], double axes[3][3])
+{
+    const double start[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    memcpy(axes, start, sizeof start);
+    for (int sweep = 0; sweep < 12; sweep++) {
+        turn(small, m, axes, 0, 1);
+        turn(small, m, axes, 0, 2);
+        turn(small, m, axes, 1, 2);
+    }
+}

@@ -1,0 +1,6 @@
+if HAVE_CHECK
+check_PROGRAMS += tests/cloth/base/test_axes
+tests_cloth_base_test_axes_SOURCES = tests/cloth/base/test_axes.c
+tests_cloth_base_test_axes_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/base/test_axes
+endif

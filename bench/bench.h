@@ -41,6 +41,6 @@ struct bench {
 /* The case of cg that solves a saved system. */
 extern const char *const bench_cg_saved;
 
-extern const struct bench bench_tasks, bench_ranks, bench_cg, bench_compare;
+extern const struct bench bench_tasks, bench_ranks, bench_cg, bench_physics, bench_compare;
 
 #endif

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct bench *const BENCHES[] = {&bench_tasks, &bench_ranks, &bench_cg,
+static const struct bench *const BENCHES[] = {&bench_tasks, &bench_ranks, &bench_cg, &bench_physics,
                                               &bench_compare};
 enum { N_BENCHES = sizeof BENCHES / sizeof *BENCHES, MOST_ONLY = 32 };
 

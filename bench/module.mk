@@ -13,6 +13,7 @@ bench_libbench_la_SOURCES = bench/bench.h bench/measure.c bench/measure.h \
 	bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/twin.c \
 	bench/cg/bench.c bench/cg/cg.h bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c \
 	bench/cg/system.c \
+	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
 	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/predict.h \
 	tests/runtime/trace_file.c tests/runtime/trace_file.h \
 	$(BENCH_STATE) $(BENCH_SHARED)

@@ -67,6 +67,11 @@ struct cg_session {
     double p95; /* of the frames that ran last; 0: was told, or none ran */
 };
 
+/* Makes a model ready: rank 0 cuts it, the others join. Starts a runtime for its tasks as the
+ * request wants it (threads=, scheduler=). 0, or what serve_fail returns. */
+int cg_make_flow(const struct model *model, struct flow **flow);
+int cg_start_runtime(struct serve_request *request, struct flow *flow, duite **rt);
+
 /* Runs a model from its start to its end on a runtime of its own; `system` (its context: `context`)
  * is given the last step's. 0, or what serve_fail returns. */
 int cg_run(const struct model *model, struct serve_request *request,

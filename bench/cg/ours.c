@@ -12,7 +12,7 @@
 
 /* ---- Runtimes ---- */
 
-static int start_runtime(struct serve_request *request, struct flow *flow, duite **rt)
+int cg_start_runtime(struct serve_request *request, struct flow *flow, duite **rt)
 {
     char scheduler[40];
     serve_word(request, "scheduler", scheduler, sizeof scheduler);
@@ -24,8 +24,7 @@ static int start_runtime(struct serve_request *request, struct flow *flow, duite
     return tasks_code(duite_start(rt, &options));
 }
 
-/* Rank 0 cuts the model, the others join. */
-static int make_flow(const struct model *model, struct flow **flow)
+int cg_make_flow(const struct model *model, struct flow **flow)
 {
     const char *rank = getenv("OMPI_COMM_WORLD_RANK"); /* MPI may not have begun */
     struct cloth_error error = {0};
@@ -41,9 +40,9 @@ int cg_run(const struct model *model, struct serve_request *request,
     struct flow_report report;
     struct flow *flow = NULL;
     duite *rt = NULL;
-    int code = make_flow(model, &flow);
+    int code = cg_make_flow(model, &flow);
     if (!code)
-        code = start_runtime(request, flow, &rt);
+        code = cg_start_runtime(request, flow, &rt);
     if (!code && flow_run(flow, rt, output, progress, &report, &error))
         code = serve_fail("%s", error.text);
     if (rt && duite_stop(&rt) && !code)
@@ -158,9 +157,9 @@ static int ready(struct cg_session *s, struct serve_request *request)
     s->most = model->max_iterations;
     stop_after(s, 2);
     if (!code)
-        code = make_flow(model, &s->flow);
+        code = cg_make_flow(model, &s->flow);
     if (!code)
-        code = start_runtime(request, s->flow, &s->rt);
+        code = cg_start_runtime(request, s->flow, &s->rt);
     if (!code)
         code = begin(s);
     if (!code && saved)

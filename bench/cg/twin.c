@@ -165,13 +165,17 @@ static double sweep(long n, int threads, double *a, double *b, double *c)
     return (serve_seconds() - begin) / SWEEPS;
 }
 
+/* Of so many bytes=, or those of an iteration on a state=. */
 static int triad(void *context, struct serve_request *request, double *value)
 {
     struct twin *twin = context;
-    const int code = state_ready(&twin->state, request);
+    char bytes[20];
+    serve_word(request, "bytes", bytes, sizeof bytes);
+    const int code = *bytes ? 0 : state_ready(&twin->state, request);
     if (code)
         return code;
-    const long n = (long)(state_bytes(&twin->state) / (3 * sizeof(double)));
+    const double size = *bytes ? strtod(bytes, NULL) : state_bytes(&twin->state);
+    const long n = (long)(size / (3 * sizeof(double)));
     double *a = aligned_alloc(64, ((size_t)n + 8) / 8 * 64 * 3);
     if (!a)
         return serve_no_memory();

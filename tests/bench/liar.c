@@ -35,9 +35,13 @@ static int answer(void *context, struct serve_request *request, double *value)
 
 int main(void)
 {
-    static const struct serve_run runs[] = {{"cg", answer},          {"stencil", answer},
-                                            {"chain", answer},       {"independent", answer},
-                                            {"granularity", answer}, {0}};
+    static const struct serve_run runs[] = {{"cg", answer},
+                                            {"stencil", answer},
+                                            {"chain", answer},
+                                            {"independent", answer},
+                                            {"granularity", answer},
+                                            {"triad", answer},
+                                            {0}};
     const struct serve_run *const all[] = {runs, NULL};
     char *role = getenv("LIAR");
     if (!role || !*role)

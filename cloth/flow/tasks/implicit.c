@@ -25,20 +25,26 @@ static int fork_force(struct flow_state *state, struct flow_args args)
                          FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
 }
 
-/* The matrix at x, and the solve's begin. */
+/* The matrix at x. */
+static int fork_matrix(struct flow_state *state, struct flow_args args)
+{
+    const int code = flow_fork_all(state, &flow_matrix, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)),
+                                   FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_NO_RIM);
+    if (code || !model_is_filtered(state->flow->model))
+        return code;
+    return flow_fork_all(state, &flow_hold, args,
+                         FLOW_OBJECTS(FLOW_AT(filter), FLOW_AT(f), FLOW_AT(a)), FLOW_NOTHING,
+                         FLOW_NO_RIM, FLOW_NO_RIM);
+}
+
+/* The same, and the solve's begin. */
 static int fork_system(struct flow_state *state, struct flow_args args)
 {
-    int code = flow_fork_all(state, &flow_matrix, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)),
-                             FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_NO_RIM);
-    if (!code && model_is_filtered(state->flow->model))
-        code = flow_fork_all(state, &flow_hold, args,
-                             FLOW_OBJECTS(FLOW_AT(filter), FLOW_AT(f), FLOW_AT(a)), FLOW_NOTHING,
-                             FLOW_NO_RIM, FLOW_NO_RIM);
+    const int code = fork_matrix(state, args);
     return code ? code : flow_cg_start(state);
 }
 
-/* The system of a step of implicit Euler, linearised where it begins. */
-static int linearise(struct flow_state *state)
+int flow_assemble(struct flow_state *state)
 {
     const struct flow_args args = flow_attempt_args(state);
     const bool filtered = model_is_filtered(state->flow->model);
@@ -51,7 +57,14 @@ static int linearise(struct flow_state *state)
         code = flow_fork_all(state, &flow_implicit, args,
                              FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)), FLOW_NOTHING,
                              FLOW_RIM(rim_x), FLOW_RIM(rim_v));
-    return code ? code : fork_system(state, args);
+    return code ? code : fork_matrix(state, args);
+}
+
+/* The system of a step of implicit Euler, and its solve's begin. */
+static int linearise(struct flow_state *state)
+{
+    const int code = flow_assemble(state);
+    return code ? code : flow_cg_start(state);
 }
 
 static int fork_move(struct flow_state *state)

@@ -348,6 +348,9 @@ int flow_explicit_end(struct flow_state *state);
 /* The same of an implicit one. */
 int flow_implicit_begin(struct flow_state *state);
 int flow_implicit_end(struct flow_state *state);
+/* Forks what makes the system of a step of implicit Euler, linearised where it begins: its right
+ * side f, its matrix a. */
+int flow_assemble(struct flow_state *state);
 /* When the status of a step is known: adds what its Newton steps noted. Then, when it is accepted
  * or not: what the next step may build on, and the report. */
 void flow_implicit_status(const struct flow_state *state, double status[FLOW_STATUS]);

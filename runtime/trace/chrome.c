@@ -1,7 +1,11 @@
-/* Events in the Trace Event Format: times in microseconds, a process a rank, a thread a worker. */
+/* Events in the Trace Event Format: times in microseconds, a process a rank, a thread a worker. As
+ * Perfetto takes them: no process or thread is 0 (that is its idle thread, which swallows others),
+ * no time is below 0 (such events are dropped), and what lies in or after something in the trace
+ * does so in whole nanoseconds, too (spans that overlap are dropped). */
 #include "runtime/trace/export.h"
 
 #include <inttypes.h>
+#include <math.h>
 
 void trace_each(const struct trace_run *run, void (*visit)(void *, const struct trace_seen *),
                 void *context)
@@ -9,10 +13,13 @@ void trace_each(const struct trace_run *run, void (*visit)(void *, const struct 
     for (uint32_t r = 0; r < run->n_ranks; r++)
         for (size_t p = 0; p < run->rank[r].n_pieces; p++) {
             const struct trace_piece *piece = &run->rank[r].piece[p];
-            for (size_t i = 0; i < piece->n; i++)
-                visit(context, &(struct trace_seen){&piece->event[i], r, piece->worker,
-                                                    trace_when(run, r, piece->event[i].begin),
-                                                    trace_lasts(run, r, piece->event[i].took)});
+            for (size_t i = 0; i < piece->n; i++) {
+                const struct trace_event *event = &piece->event[i];
+                visit(context, &(struct trace_seen){event, r, piece->worker,
+                                                    trace_when(run, r, event->begin),
+                                                    trace_when(run, r, event->begin + event->took),
+                                                    trace_lasts(run, r, event->took)});
+            }
         }
 }
 
@@ -64,39 +71,67 @@ static bool lasts(const struct trace_event *event)
     return event->kind <= TRACE_IDLE || event->kind == TRACE_MIGRATE || event->kind == TRACE_FLUSH;
 }
 
+static void put_nanoseconds(FILE *file, const char *key, int64_t t)
+{
+    fprintf(file, ",\"%s\":%" PRId64 ".%03" PRId64, key, t / 1000, t % 1000);
+}
+
+static int64_t nanoseconds(double seconds)
+{
+    return seconds > 0 ? llrint(1e9 * seconds) : 0;
+}
+
+/* Threads are numbered through all ranks. */
+static void put_ids(FILE *file, const struct trace_run *run, uint32_t rank, uint32_t worker)
+{
+    fprintf(file, "\"pid\":%" PRIu32 ",\"tid\":%" PRIu32, rank + 1,
+            trace_first_worker(run, rank) + worker + 1);
+}
+
 static void put(void *context, const struct trace_seen *seen)
 {
     const struct writer *writer = context;
     FILE *file = writer->file;
+    const int64_t begin = nanoseconds(seen->begin), end = nanoseconds(seen->end);
     fputs(",\n{\"name\":", file);
     trace_put_json(file, trace_event_name(writer->run, seen->event));
-    fprintf(file, ",\"cat\":\"%s\",\"pid\":%" PRIu32 ",\"tid\":%" PRIu32 ",\"ts\":%.3f",
-            trace_kind_name(seen->event->kind), seen->rank, seen->worker, 1e6 * seen->begin);
-    if (lasts(seen->event))
-        fprintf(file, ",\"ph\":\"X\",\"dur\":%.3f", 1e6 * seen->took);
-    else
+    fprintf(file, ",\"cat\":\"%s\",", trace_kind_name(seen->event->kind));
+    put_ids(file, writer->run, seen->rank, seen->worker);
+    put_nanoseconds(file, "ts", begin);
+    if (lasts(seen->event)) {
+        fputs(",\"ph\":\"X\"", file);
+        put_nanoseconds(file, "dur", end - begin);
+    } else {
         fputs(",\"ph\":\"i\",\"s\":\"t\"", file);
+    }
     fputs(",\"args\":{", file);
     put_args(file, seen->event);
     fputs("}}", file);
 }
 
+/* The name of a process or thread, and its place among them. */
+static void put_name(FILE *file, const struct trace_run *run, uint32_t rank, uint32_t worker,
+                     bool process)
+{
+    const char *what = process ? "process" : "thread";
+    fprintf(file, "%s{\"name\":\"%s_name\",\"ph\":\"M\",", rank || worker || !process ? ",\n" : "",
+            what);
+    put_ids(file, run, rank, worker);
+    fprintf(file, ",\"args\":{\"name\":\"%s %" PRIu32 "\"}},\n", process ? "rank" : "worker",
+            process ? rank : worker);
+    fprintf(file, "{\"name\":\"%s_sort_index\",\"ph\":\"M\",", what);
+    put_ids(file, run, rank, worker);
+    fprintf(file, ",\"args\":{\"sort_index\":%" PRIu32 "}}", process ? rank : worker);
+}
+
 int trace_write_chrome(const struct trace_run *run, FILE *file)
 {
-    const char *comma = "";
     fputs("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n", file);
-    for (uint32_t r = 0; r < run->n_ranks; r++)
-        for (uint32_t w = 0; w < run->rank[r].header->workers; w++) {
-            fprintf(file,
-                    "%s{\"name\":\"process_name\",\"ph\":\"M\",\"pid\":%" PRIu32 ",\"tid\":%" PRIu32
-                    ",\"args\":{\"name\":\"rank %" PRIu32 "\"}},\n",
-                    comma, r, w, r);
-            fprintf(file,
-                    "{\"name\":\"thread_name\",\"ph\":\"M\",\"pid\":%" PRIu32 ",\"tid\":%" PRIu32
-                    ",\"args\":{\"name\":\"worker %" PRIu32 "\"}}",
-                    r, w, w);
-            comma = ",\n";
-        }
+    for (uint32_t r = 0; r < run->n_ranks; r++) {
+        put_name(file, run, r, 0, true);
+        for (uint32_t w = 0; w < run->rank[r].header->workers; w++)
+            put_name(file, run, r, w, false);
+    }
     trace_each(run, put, &(struct writer){run, file});
     fputs("\n]}\n", file);
     return 0;

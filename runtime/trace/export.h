@@ -31,7 +31,8 @@ int trace_write_csv(const struct trace_run *run, FILE *file);
 struct trace_seen {
     const struct trace_event *event;
     uint32_t rank, worker;
-    double begin, took; /* s */
+    double begin, end; /* s; as aligned, so nothing overlaps that did not */
+    double took;       /* s of its own clock */
 };
 void trace_each(const struct trace_run *run,
                 void (*visit)(void *context, const struct trace_seen *), void *context);

@@ -59,7 +59,7 @@ static void put_name(FILE *file, const char *name)
 /* Each name once; its color goes round. */
 static void put_values(FILE *file, const struct trace_span *span, size_t n)
 {
-    static const char *const colors[] = {"0.12 0.47 0.71", "1.00 0.50 0.05", "0.17 0.63 0.17",
+    static const char *const colors[] = {"0.12 0.47 0.71", "0.99 0.50 0.05", "0.17 0.63 0.17",
                                          "0.84 0.15 0.16", "0.58 0.40 0.74", "0.55 0.34 0.29",
                                          "0.89 0.47 0.76", "0.74 0.74 0.13", "0.09 0.75 0.81"};
     const char *known[1 << 9]; /* names differ by their places; more than these share a color */
@@ -158,7 +158,7 @@ static void add(void *context, const struct trace_seen *seen)
     bool lasts = kind <= TRACE_IDLE || kind == TRACE_MIGRATE || kind == TRACE_FLUSH;
     spans->span[spans->n++] =
         (struct trace_span){.begin = seen->begin,
-                            .end = lasts ? seen->begin + seen->took : seen->begin - 1,
+                            .end = lasts ? seen->end : seen->begin - 1,
                             .name = trace_event_name(spans->run, seen->event),
                             .worker = trace_first_worker(spans->run, seen->rank) + seen->worker};
 }

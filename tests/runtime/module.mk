@@ -76,7 +76,9 @@ dist_check_SCRIPTS += tests/runtime/test_migrate.sh tests/runtime/test_migrate_l
 TESTS += tests/runtime/test_migrate.sh
 LONG_TESTS += tests/runtime/test_migrate_long.sh
 dist_check_SCRIPTS += tests/runtime/test_trace.sh
+dist_check_SCRIPTS += tests/runtime/test_vite.sh
 TESTS += tests/runtime/test_trace.sh
+TESTS += tests/runtime/test_vite.sh
 
 if HAVE_CHECK
 AHEAD_TESTS = tests/runtime/test_window tests/runtime/test_rename

@@ -63,13 +63,32 @@ paje_is_whole() { # times in order, each pop after a push of its own worker, non
         $1 == 8 { if (--depth[$4] < 0) { print "nothing to pop: " $0; bad = 1 } }
         END { for (w in depth) if (depth[w]) { print "left open: " w; bad = 1 } exit bad || n < 100 }' "$scratch/$1.paje"
 }
-chrome_is_json() {
+chrome_is_json() { # as Perfetto takes it: no process or thread 0, no time below 0, spans of a thread nested or apart, all named
     ./duite-trace "$scratch/$1" --chrome "$scratch/$1.json" && python3 -c '
 import json, sys
+from collections import defaultdict
 events = json.load(open(sys.argv[1]))["traceEvents"]
+ranks = int(sys.argv[2])
 tasks = [e for e in events if e.get("cat") == "task"]
-assert len(tasks) > 100 and all(e["ph"] == "X" and e["dur"] >= 0 and e["ts"] > -1e6 for e in tasks)
-assert {e["pid"] for e in tasks} == set(range(int(sys.argv[2])))' "$scratch/$1.json" "$2"
+assert len(tasks) > 100 and all(e["ph"] == "X" for e in tasks)
+assert {e["pid"] for e in tasks} <= set(range(1, ranks + 1))
+named = {(e["pid"], e["tid"]): e["args"]["name"] for e in events if e["name"] == "thread_name"}
+assert len(named) == 2 * ranks and len({t for p, t in named}) == len(named) and min(t for p, t in named) > 0
+assert {e["pid"]: e["args"]["name"] for e in events if e["name"] == "process_name"} == {r + 1: "rank %d" % r for r in range(ranks)}
+spans = defaultdict(list)
+for e in events:
+    assert (e["pid"], e["tid"]) in named and e["ph"] in "MXi", e
+    assert e["ph"] == "M" or e["ts"] >= 0 and e.get("dur", 0) >= 0, e
+    if e["ph"] == "X":
+        begin = round(1000 * e["ts"])
+        spans[e["tid"]].append((begin, -begin - round(1000 * e["dur"])))
+for row in spans.values():
+    open_until = []
+    for begin, end in sorted(row):
+        while open_until and open_until[-1] <= begin:
+            open_until.pop()
+        assert not open_until or -end <= open_until[-1], (begin, -end, open_until)
+        open_until.append(-end)' "$scratch/$1.json" "$2"
 }
 for trace in two ranks; do
     ok "CSV of $trace" csv_is_whole $trace

@@ -12,7 +12,7 @@
 #include <string.h>
 
 enum { FAILED = 1, BAD_INPUT = 2 };
-enum { CHECK = 256, CHROME, CSV, DOT, PAJE, PARTIAL, N_FORMS = 4 };
+enum { CHECK = 256, CHROME, CSV, DOT, GRAPH, PAJE, PARTIAL, N_FORMS = 5 };
 
 const char *argp_program_version = "duite-trace (" PACKAGE_STRING ")";
 
@@ -26,6 +26,10 @@ static const struct argp_option OPTIONS[] = {
     {"paje", PAJE, "OUT", 0, "write a Paje trace, which ViTE opens", 1},
     {"chrome", CHROME, "OUT", 0, "write Chrome's JSON, which Perfetto opens", 1},
     {"dot", DOT, "OUT", 0, "write the tasks and what each waited for, for Graphviz", 1},
+    {"graph", GRAPH, "OUT", 0,
+     "write the tasks and what each read as a graph, which bench/graph-run and bench/compare "
+     "schedule without the program",
+     1},
     {"csv", CSV, "OUT", 0, "write a line an event", 1},
     {"check", CHECK, NULL, 0, "whether the events add up to what the workers counted", 2},
     {"partial", PARTIAL, NULL, 0, "take what there is of a run that did not come to its end", 2},
@@ -37,7 +41,8 @@ static const struct {
 } FORMS[N_FORMS] = {{trace_write_paje, PAJE},
                     {trace_write_chrome, CHROME},
                     {trace_write_csv, CSV},
-                    {predict_write_dot, DOT}};
+                    {predict_write_dot, DOT},
+                    {predict_write_graph, GRAPH}};
 
 static error_t parse(int key, char *value, struct argp_state *state)
 {

@@ -28,6 +28,7 @@ struct command {
     struct work *work;
     uint64_t **values;
     starpu_data_handle_t *handle;
+    struct starpu_data_descr *data; /* of the task that is being submitted */
 };
 
 static uint64_t *values_of(void *buffer)
@@ -59,8 +60,9 @@ static struct starpu_codelet codelet = {
 static int submit(const struct command *command, size_t i)
 {
     const struct sweep_graph *graph = &command->graph;
-    struct starpu_data_descr data[SWEEP_MOST_READS + 1] = {{command->handle[i], STARPU_W}};
+    struct starpu_data_descr *data = command->data;
     int n = 1;
+    data[0] = (struct starpu_data_descr){command->handle[i], STARPU_W};
     for (size_t k = graph->start[i]; k < graph->start[i + 1]; k++)
         data[n++] = (struct starpu_data_descr){command->handle[graph->from[k]], STARPU_R};
     return starpu_task_insert(&codelet, STARPU_DATA_MODE_ARRAY, data, n, STARPU_CL_ARGS_NFREE,
@@ -84,9 +86,10 @@ static bool prepare(struct command *command)
     command->work = calloc(graph->n, sizeof *command->work);
     command->values = calloc(graph->n, sizeof *command->values);
     command->handle = calloc(graph->n, sizeof(starpu_data_handle_t));
+    command->data = calloc(sweep_graph_most_reads(graph) + 1, sizeof *command->data);
     for (size_t i = 0; i < graph->n; i++) {
         size_t count = graph->bytes[i] < 8 ? 1 : graph->bytes[i] / 8;
-        if (!command->work || !command->values || !command->handle ||
+        if (!command->work || !command->values || !command->handle || !command->data ||
             !(command->values[i] = calloc(count, 8)))
             return false;
         command->work[i] = (struct work){(uint64_t)(graph->cost[i] * TURNS_A_SECOND), i,

@@ -16,6 +16,7 @@ void sweep_graph_free(struct sweep_graph *graph)
     free(graph->bytes);
     free(graph->start);
     free(graph->from);
+    free(graph->place);
     *graph = (struct sweep_graph){0};
 }
 
@@ -33,6 +34,7 @@ static bool room(struct sweep_graph *graph, size_t reads)
         size_t more = 2 * graph->capacity + 64;
         if (!grow(&graph->cost, more, sizeof *graph->cost) ||
             !grow(&graph->bytes, more, sizeof *graph->bytes) ||
+            !grow(&graph->place, more, sizeof *graph->place) ||
             !grow(&graph->start, more, sizeof *graph->start))
             return false;
         graph->capacity = more;
@@ -62,8 +64,18 @@ static void add(struct sweep_graph *graph, double cost, uint32_t bytes, size_t n
             graph->from[graph->n_reads++] = (uint32_t)reads[k];
     }
     graph->cost[graph->n] = cost;
+    graph->place[graph->n] = SWEEP_NO_PLACE;
     graph->bytes[graph->n++] = bytes;
     graph->start[graph->n] = graph->n_reads;
+}
+
+size_t sweep_graph_most_reads(const struct sweep_graph *graph)
+{
+    size_t most = 0;
+    for (size_t i = 0; i < graph->n; i++)
+        if (most < graph->start[i + 1] - graph->start[i])
+            most = graph->start[i + 1] - graph->start[i];
+    return most;
 }
 
 /* ---- Kinds ---- */
@@ -185,33 +197,68 @@ int sweep_graph_make(struct sweep_graph *graph, const char *kind, size_t n, doub
 
 /* ---- Files ---- */
 
+static bool take_number(const char **line, uint64_t below, uint64_t *value)
+{
+    char *end;
+    const char *text = *line + strspn(*line, " ");
+    *value = strtoull(text, &end, 10);
+    *line = end;
+    return *text >= '0' && *text <= '9' && *value < below;
+}
+
+static bool take_cost(const char **line, double *cost)
+{
+    char *end;
+    *cost = strtod(*line, &end);
+    bool fine = end != *line && *cost >= 0 && *cost < 3600;
+    *line = end;
+    return fine;
+}
+
+/* What stands at the end of a line. */
+static bool take_place(const char *line, uint64_t below, uint32_t *place)
+{
+    uint64_t number = SWEEP_NO_PLACE;
+    line += strspn(line, " ");
+    if (*line == '@' && (line++, !take_number(&line, below, &number)))
+        return false;
+    *place = (uint32_t)number;
+    return line[strspn(line, " \n")] == 0;
+}
+
 static int read_task(struct sweep_graph *graph, const char *line)
 {
     double cost;
-    unsigned bytes, n, at, task;
-    int64_t reads[SWEEP_MOST_READS];
-    int used;
-    if (sscanf(line, "%lf %u %u%n", &cost, &bytes, &n, &used) != 3 || n > SWEEP_MOST_READS ||
-        !(cost >= 0 && cost < 3600))
+    uint64_t bytes, n, task;
+    uint32_t place = SWEEP_NO_PLACE;
+    /* A task reads each of those before it once at most. */
+    if (!take_cost(&line, &cost) || !take_number(&line, (uint64_t)1 << 32, &bytes) ||
+        !take_number(&line, graph->n + 1, &n))
         return 1;
-    for (at = 0; at < n; at++) {
-        line += used;
-        if (sscanf(line, "%u%n", &task, &used) != 1 || task >= graph->n)
-            return 1;
-        reads[at] = task;
+    int64_t *reads = malloc((n + 1) * sizeof *reads);
+    bool fine = reads != NULL;
+    for (size_t i = 0; i < n && fine; i++) {
+        fine = take_number(&line, graph->n, &task);
+        reads[i] = (int64_t)task;
     }
+    fine = fine && take_place(line, graph->n + 1, &place);
     size_t before = graph->n;
-    add(graph, cost, bytes, n, reads);
-    return graph->n == before;
+    if (fine)
+        add(graph, cost, (uint32_t)bytes, n, reads);
+    free(reads);
+    if (graph->n == before)
+        return 1;
+    graph->place[before] = place;
+    return 0;
 }
 
 int sweep_graph_read(struct sweep_graph *graph, const char *file)
 {
-    char line[2000] = "";
-    size_t number = 1;
+    char *line = NULL;
+    size_t number = 1, room = 0;
     FILE *in = fopen(file, "r");
-    bool fine = in && fgets(line, sizeof line, in) && !strcmp(line, "duite-graph 1\n");
-    while (fine && fgets(line, sizeof line, in)) {
+    bool fine = in && getline(&line, &room, in) > 0 && !strcmp(line, "duite-graph 1\n");
+    while (fine && getline(&line, &room, in) > 0) {
         number++;
         fine = strchr(line, '\n') && (line[0] == '#' || !read_task(graph, line));
     }
@@ -220,7 +267,9 @@ int sweep_graph_read(struct sweep_graph *graph, const char *file)
     else if (!fine || !graph->n)
         fprintf(stderr, "%s:%zu: %s\n", file, number,
                 number == 1 ? "no graph of version 1, or an empty one"
-                            : "cost, bytes, number of reads and tasks before it are expected");
+                            : "cost, bytes, number of reads, tasks before it, and maybe @ and a "
+                              "place are expected");
+    free(line);
     if (in)
         fclose(in);
     return !fine || !graph->n;
@@ -236,6 +285,8 @@ int sweep_graph_write(const struct sweep_graph *graph, const char *file)
                 graph->start[i + 1] - graph->start[i]);
         for (size_t k = graph->start[i]; k < graph->start[i + 1]; k++)
             fprintf(out, " %u", (unsigned)graph->from[k]);
+        if (graph->place[i] != SWEEP_NO_PLACE)
+            fprintf(out, " @ %u", (unsigned)graph->place[i]);
         fputc('\n', out);
     }
     bool whole = out && !ferror(out);

@@ -12,10 +12,14 @@ struct sweep_graph {
     uint32_t *bytes;
     size_t *start; /* n + 1 */
     uint32_t *from;
+    uint32_t *place; /* <= i, or SWEEP_NO_PLACE: tasks of one place stay on one rank */
     size_t capacity, reads_capacity;
 };
 
-enum { SWEEP_MOST_READS = 64 };
+#define SWEEP_NO_PLACE UINT32_MAX
+
+/* The most that a task reads. */
+size_t sweep_graph_most_reads(const struct sweep_graph *graph);
 
 /* Fills an empty graph of one of these kinds with about n tasks that cost `cost` seconds on average
  * and write `bytes` each:
@@ -32,7 +36,8 @@ int sweep_graph_make(struct sweep_graph *graph, const char *kind, size_t n, doub
 extern const char *const sweep_graph_kinds[];
 
 /* Files: a line "duite-graph 1", then one a task: cost, bytes, number of reads, the tasks read,
- * from 0; # begins a comment. 1, said on stderr with the line, if it cannot be read or written. */
+ * from 0; at its end maybe @ and its place, numbered from 0 as they come; # begins a comment. 1,
+ * said on stderr with the line, if it cannot be read or written. */
 int sweep_graph_read(struct sweep_graph *graph, const char *file);
 int sweep_graph_write(const struct sweep_graph *graph, const char *file);
 

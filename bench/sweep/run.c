@@ -65,19 +65,63 @@ static int build(duite *rt, void *context)
 {
     const struct command *command = context;
     const struct sweep_graph *graph = &command->graph;
-    int code = 0;
+    duite_object *objects = malloc((sweep_graph_most_reads(graph) + 1) * sizeof *objects);
+    int code = objects ? 0 : DUITE_E_MEMORY;
     for (size_t i = 0; i < graph->n && !code; i++) {
-        duite_object objects[SWEEP_MOST_READS + 1] = {command->object[i]};
+        objects[0] = command->object[i];
         const struct work args = {(uint64_t)(graph->cost[i] * TURNS_A_SECOND), i};
         size_t n = 1;
         for (size_t k = graph->start[i]; k < graph->start[i + 1]; k++)
             objects[n++] = command->object[graph->from[k]];
         code = duite_fork_with(rt, &(duite_how){.cost = graph->cost[i]}, &WORK, &args, n, objects);
     }
+    free(objects);
     return code;
 }
 
 /* ---- The run ---- */
+
+/* What the hints can say: tasks that read one another are neighbours, and weigh what they cost. */
+static int hint(const struct command *command, duite *rt)
+{
+    const struct sweep_graph *graph = &command->graph;
+    const size_t most = sweep_graph_most_reads(graph) + 1;
+    duite_object *neighbours = malloc(most * sizeof *neighbours);
+    double *bytes = malloc(most * sizeof *bytes);
+    int code = neighbours && bytes ? 0 : DUITE_E_MEMORY;
+    for (size_t i = 0; i < graph->n && !code; i++) {
+        size_t n = 0;
+        for (size_t k = graph->start[i]; k < graph->start[i + 1]; k++, n++) {
+            neighbours[n] = command->object[graph->from[k]];
+            bytes[n] = graph->bytes[graph->from[k]];
+        }
+        code = duite_hint(rt, command->object[i], graph->cost[i], n, neighbours, bytes);
+    }
+    free(neighbours);
+    free(bytes);
+    return code;
+}
+
+/* Those of one place follow the first of them. */
+static int follow(const struct command *command, duite *rt)
+{
+    const struct sweep_graph *graph = &command->graph;
+    int code = 0;
+    size_t *first = calloc(graph->n, sizeof *first); /* plus 1 */
+    if (!first)
+        return DUITE_E_MEMORY;
+    for (size_t i = 0; i < graph->n && !code; i++) {
+        uint32_t place = graph->place[i];
+        if (place == SWEEP_NO_PLACE)
+            continue;
+        if (first[place])
+            code = duite_follow(rt, command->object[i], command->object[first[place] - 1]);
+        else
+            first[place] = i + 1;
+    }
+    free(first);
+    return code;
+}
 
 /* Integers, an even number of them: sixty-four bits at a time. */
 static int make_objects(struct command *command, duite *rt)
@@ -88,19 +132,9 @@ static int make_objects(struct command *command, duite *rt)
         size_t count = 2 * (graph->bytes[i] < 8 ? 1 : graph->bytes[i] / 8);
         code = duite_new(rt, DUITE_I32, count, &command->object[i]);
     }
-    /* What the hints can say: tasks that read one another are neighbours, and weigh what they cost.
-     */
-    for (size_t i = 0; i < graph->n && !code; i++) {
-        duite_object neighbours[SWEEP_MOST_READS];
-        double bytes[SWEEP_MOST_READS];
-        size_t n = 0;
-        for (size_t k = graph->start[i]; k < graph->start[i + 1]; k++, n++) {
-            neighbours[n] = command->object[graph->from[k]];
-            bytes[n] = graph->bytes[graph->from[k]];
-        }
-        code = duite_hint(rt, command->object[i], graph->cost[i], n, neighbours, bytes);
-    }
-    return code;
+    if (!code)
+        code = hint(command, rt);
+    return code ? code : follow(command, rt);
 }
 
 static double per_worker(double sum, unsigned workers, double seconds)

@@ -32,15 +32,31 @@ uint32_t predict_add(struct predict_graph *graph, const struct predict_node *nod
     return (uint32_t)graph->n_nodes++;
 }
 
-void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to)
+static void join(struct predict_graph *graph, uint32_t from, uint32_t to, bool reads)
 {
     if (from == PREDICT_NONE || from == to ||
         !grow(graph, &graph->edge, &graph->edges_capacity, graph->n_edges, sizeof *graph->edge))
         return;
     graph->linked |= from >= graph->round;
-    graph->edge[graph->n_edges] = (struct predict_edge){to, graph->node[from].edge};
+    graph->edge[graph->n_edges] = (struct predict_edge){to, graph->node[from].edge, reads};
     graph->node[from].edge = (uint32_t)graph->n_edges++;
     graph->node[to].pending++;
+}
+
+void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to)
+{
+    join(graph, from, to, false);
+}
+
+/* The value of an object, after `from`. */
+static void join_reader(struct predict_graph *graph, uint32_t from, uint32_t to, uint32_t object)
+{
+    struct predict_object *o = &graph->object[object];
+    join(graph, from, to, true);
+    if (from == PREDICT_NONE || o->shown || graph->node[from].block == graph->node[to].block)
+        return;
+    o->shown = true;
+    graph->node[from].shown += (float)o->bytes;
 }
 
 static void push(struct predict_graph *graph, uint32_t *list, uint32_t node, uint32_t host)
@@ -117,6 +133,7 @@ static void overwrite(struct predict_graph *graph, uint32_t node, uint32_t objec
             predict_edge(graph, graph->link[i].node, node);
     o->writer = node;
     o->holder = host;
+    o->shown = false;
     o->readers = o->copies = PREDICT_NONE;
 }
 
@@ -139,6 +156,15 @@ static void make_pieces(struct predict_graph *graph, uint32_t object)
     }
 }
 
+/* Each contributor has a value of its own. */
+static void join_contribution(struct predict_graph *graph, uint32_t from, uint32_t sum,
+                              uint32_t object)
+{
+    join(graph, from, sum, true);
+    if (graph->node[from].block != graph->node[sum].block)
+        graph->node[from].shown += (float)graph->object[object].bytes;
+}
+
 /* The nodes that the sum waits for where it is made: pieces of other hosts come by message. */
 static void gather_pieces(struct predict_graph *graph, uint32_t object, uint32_t sum)
 {
@@ -147,7 +173,7 @@ static void gather_pieces(struct predict_graph *graph, uint32_t object, uint32_t
     for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
         uint32_t host = graph->link[i].host;
         if (host == home)
-            predict_edge(graph, graph->link[i].node, sum);
+            join_contribution(graph, graph->link[i].node, sum, object);
         else if (graph->piece[host] != PREDICT_NONE)
             predict_edge(graph, graph->piece[host], sum);
         if (host != home)
@@ -199,7 +225,7 @@ static void close_sum(struct predict_graph *graph, uint32_t object)
                            graph->replays ? GRAPH_NODE_SUM : GRAPH_COMBINE, 0);
     if (graph->failed)
         return;
-    predict_edge(graph, fetched, sum);
+    join_reader(graph, fetched, sum, object);
     predict_edge(graph, exchange, sum);
     if (!all)
         gather_pieces(graph, object, sum);
@@ -246,7 +272,7 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
 {
     const uint32_t at = graph->node[node].host;
     const int host = graph->node[node].kind == PREDICT_EVERYWHERE ? PREDICT_ALL : (int)at;
-    predict_edge(graph, prepared, node);
+    join_reader(graph, prepared, node, object);
     if (mode == DUITE_CW)
         push(graph, &graph->object[object].leaves, node, at);
     else if (mode == DUITE_R)
@@ -258,7 +284,7 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
 void predict_hold(struct predict_graph *graph, uint32_t node)
 {
     if (!graph->linked)
-        predict_edge(graph, graph->flag, node);
+        join(graph, graph->flag, node, true);
 }
 
 void predict_graph_free(struct predict_graph *graph)

@@ -27,10 +27,12 @@ struct predict_node {
     uint32_t pending; /* edges that end here, and 1 for the main program */
     uint32_t edge;    /* the first of those that begin here, or NONE */
     uint32_t kind;
+    float shown; /* bytes that it writes and tasks of other blocks read */
 };
 
 struct predict_edge {
     uint32_t to, next;
+    bool reads; /* what the one writes; else `to` only comes later */
 };
 
 /* What the main program does: brings nodes up to `end` into being, `each` seconds apart; then waits
@@ -50,6 +52,7 @@ struct predict_object {
     uint64_t bytes;
     uint32_t parent;   /* of a view: object; else NONE */
     uint32_t gathered; /* a view: the writer of its object then */
+    bool shown;        /* counted among what its writer shows */
 };
 
 enum { PREDICT_ALL = -1 }; /* holder */
@@ -78,6 +81,7 @@ struct predict_graph {
     uint32_t flag;   /* the node that decided on this round, or NONE */
     double overhead; /* s between two tasks */
     uint64_t n_tasks;
+    bool plain;           /* tasks and what they read alone: replays have no gates */
     bool replays, failed; /* failed: no memory */
     bool linked;          /* the node that is being made has an edge from its own round */
 };

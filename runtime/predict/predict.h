@@ -58,4 +58,9 @@ int predict(const struct trace_run *run, const struct predict_cluster *cluster,
  * were traced. Errors as of predict. */
 int predict_write_dot(const struct trace_run *run, FILE *file);
 
+/* The same tasks for schedulers that know nothing of the program: lines of bench/sweep/graph.h,
+ * whose costs are the seconds of the bodies. A task that ran on every rank is one task; what the
+ * main program waited for is left out. Errors as of predict. */
+int predict_write_graph(const struct trace_run *run, FILE *file);
+
 #endif

@@ -102,7 +102,7 @@ static void gate(struct predict_program *p, const uint32_t *bound, size_t n)
     for (size_t i = 0; i < n && !graph->failed; i++)
         if (graph->object[bound[i]].leaves != PREDICT_NONE)
             predict_prepare(graph, bound[i], DUITE_R, graph->object[bound[i]].home);
-    for (size_t i = 0; i < n && !graph->failed; i++) {
+    for (size_t i = 0; i < n && !graph->failed && !graph->plain; i++) {
         struct predict_object *o = &graph->object[bound[i]];
         if (o->holder == PREDICT_ALL || o->parent != PREDICT_NONE)
             continue;
@@ -119,6 +119,10 @@ static void gate(struct predict_program *p, const uint32_t *bound, size_t n)
 static void decide(struct predict_graph *graph, uint32_t flag)
 {
     uint32_t value = predict_prepare(graph, flag, DUITE_R, PREDICT_ALL);
+    if (graph->plain) {
+        graph->flag = value;
+        return;
+    }
     uint32_t node = predict_add(graph, &(struct predict_node){.kind = PREDICT_INSTANT});
     if (graph->failed)
         return;

@@ -47,6 +47,13 @@ graph_file() {
     hash_of irregular --save g.graph
     test -n "$(hash_of g.graph)" && test "$(hash_of g.graph)" = "$(hash_of irregular)"
 }
+of_a_trace() { # its blocks stay together, so that two ranks send what blocks show each other
+    "$DUITE_CLOTH" "$top/cloth/scenes/sheet.yaml" --set 'cloths[0].mesh.grid.nx=12' --set 'cloths[0].mesh.grid.ny=12' --grain 40 \
+        --end 0.002 --threads 1 --quiet --trace "$scratch/t" && ./duite-trace "$scratch/t" --graph "$scratch/t.graph" &&
+        (cd "$scratch" && "$bin/graph-run" t.graph --rounds 1 --threads 1 && ranks 2 "$bin/graph-run" t.graph --rounds 1 --threads 1) > "$scratch/said"
+    cat "$scratch/said"
+    test "$(sed -n 's/.*hash": "\(.*\)"/\1/p' "$scratch/said" | sort -u | wc -l)" = 1 && grep -q '"messages": [1-9]' "$scratch/said"
+}
 bad_file() {
     printf 'duite-graph 1\n1e-6 8 0\n1e-6 8 1 1\n' > "$scratch/bad.graph"
     ! hash_of bad.graph 2> "$scratch/said" || test -z "$(hash_of bad.graph 2> "$scratch/said")"
@@ -64,6 +71,7 @@ ok "a folder of another comparison" refused 1 "another comparison" stencil --out
 ok "a wrong result is told" wrong
 ok "a scene over grains" scene
 ok "a graph from a file is the same" graph_file
+ok "... and so is that of a trace, on any number of ranks" of_a_trace
 ok "a damaged one names its line" bad_file
 ok "a full disk" full
 ok "without gnuplot" without_plots

@@ -107,6 +107,17 @@ dot_is_whole() { # nodes are named before edges, which never point back
 }
 ok "dot of two" dot_is_whole two
 
+graph_is_whole() { # a line a task, which reads earlier ones, each once; costs are the seconds in bodies; other blocks are read, too
+    ./duite-trace "$scratch/two" --graph "$scratch/two.graph" && awk -F, '$3 == "task" || $3 == "runtime" { s += $6 - $7 } END { print s }' \
+        "$scratch/two.csv" > "$scratch/seconds" && awk -v wanted="$(cat "$scratch/seconds")" '
+        NR == 1 { bad = $0 != "duite-graph 1"; next }
+        { at = NR - 2; cost += $1; split("", seen); place[at] = $(NF - 1) == "@" ? $NF : -1 }
+        { for (k = 4; k < 4 + $3; k++) { if ($k >= at || $k in seen) { print; bad = 1 } seen[$k] = 1; others += $2 > 0 && place[$k] != place[at] } }
+        NF != 3 + $3 + 2 * (place[at] >= 0) { print; bad = 1 }
+        END { print cost, "of", wanted, NR - 1, others; exit bad || cost > 1.05 * wanted || cost < 0.8 * wanted || NR < 101 || !others }' "$scratch/two.graph"
+}
+ok "a graph for schedulers of two" graph_is_whole
+
 # ---- Steps ----
 
 ok "the steps 1 and 2 alone" cloth some --threads 2 --trace-steps 1:3

@@ -84,6 +84,11 @@ void summary_print(FILE *file, const struct summary *summary)
         fprintf(file,
                 "  error of dv      %.3e of it at most in a step, in the mass norm (estimate)\n",
                 report->mass_norm_error);
+        if (report->cg_restarts)
+            fprintf(file,
+                    "  CG restarts      %" PRIu64
+                    ", where the true residual was larger than its recurrence said\n",
+                    report->cg_restarts);
         if (report->factors_shifted)
             fprintf(file,
                     "  IC(0)            made with a shift %" PRIu64
@@ -161,6 +166,7 @@ static void add_solver(struct output_report *json, const struct summary *summary
         output_report_null(json, "cg_iterations_max");
     output_report_number(json, "mass_norm_error", report->mass_norm_error);
     output_report_number(json, "momentum_lost", report->momentum_lost);
+    output_report_integer(json, "cg_restarts", report->cg_restarts);
     output_report_integer(json, "factors_shifted", report->factors_shifted);
     output_report_integer(json, "newton_steps", report->newton_steps);
     output_report_integer(json, "newton_unconverged", report->newton_unconverged);

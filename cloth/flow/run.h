@@ -34,6 +34,7 @@ struct flow_report {
     double
         mass_norm_error; /* largest error of a step's dv, as conjugate gradients estimate it in the
                           * norm of A, against dv in the mass norm; NaN for an explicit run */
+    uint64_t cg_restarts; /* of solves that the true residual refused, in the steps made */
     uint64_t
         factors_shifted; /* blocks times steps whose IC(0) needed a shift, or gave way to SSOR */
     double max_stretch;  /* largest length / rest length of any stretch spring at the end */

@@ -220,6 +220,19 @@ PHYS_KERNEL(solve_pass,
     pass_of(block, cut, values, p_other, alpha, beta, rows, NULL, dots);
 }
 
+/* A pass with dv for r and without factors: p = dv, q = S A dv, and nothing else changes. */
+void solve_residual(const struct solve_block *block, const struct solve_cut *cut,
+                    const void *values, const phys_vec *b, const phys_vec *dv_other,
+                    const struct solve_rows *rows, double dots[SOLVE_DOTS])
+{
+    const struct solve_rows of_dv = {.dv = rows->r, .r = rows->dv, .p = rows->p, .q = rows->q};
+    solve_pass(block, cut, values, dv_other, 0, 0, &of_dv, dots);
+    solve_renew(block->n, block->free, block->diagonal, b, rows->q, rows->r, dots);
+    const struct solve_norms norms = solve_norms(block->n, block->diagonal, rows->dv, rows->r);
+    dots[SOLVE_SIZE] = norms.size;
+    dots[SOLVE_BOUND] = norms.bound;
+}
+
 /* In the sum over the free rows of A, column b is the diagonal of row b, its turn, and N' of its
  * entries to held rows. */
 void solve_lost(const struct solve_block *block, const struct solve_held *held, const void *memory,

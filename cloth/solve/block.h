@@ -64,6 +64,12 @@ void solve_pass_turned(const struct solve_block *block, const struct solve_cut *
                        const struct solve_rows *rows, const struct solve_turned *turned,
                        double dots[SOLVE_DOTS]);
 
+/* SOLVE_CHECK: r = S (b - A dv), of dv as it is; dv_other: that of the copies. p becomes dv, q
+ * becomes S A dv. Writes r.r, the drift, and the norms of both. */
+void solve_residual(const struct solve_block *block, const struct solve_cut *cut,
+                    const void *values, const phys_vec *b, const phys_vec *dv_other,
+                    const struct solve_rows *rows, double dots[SOLVE_DOTS]);
+
 /* Adds the sum over the free rows of b - A dv to lost[3] (kg m/s), for a dv that is zero where
  * particles are held. The entries between free rows cancel in this sum, wherever their ends are;
  * those to held ends remain. They are given by their free row and their place among the values. */

@@ -6,7 +6,8 @@
 
 struct solve_scalars solve_scalars_start(double step)
 {
-    return (struct solve_scalars){.phase = SOLVE_ON, .alpha = 1, .step = step, .stride = 1};
+    return (struct solve_scalars){
+        .phase = SOLVE_ON, .alpha = 1, .wanted = -1, .step = step, .stride = 1};
 }
 
 /* A residual is rubbish when its square is less than this part of the first one: what is left is
@@ -98,32 +99,81 @@ static int fail(int code, struct solve_scalars *after)
     return code;
 }
 
+/* A residual may be so much larger than its recurrence, squares. */
+#define ALIKE 4
+
+/* A restart that leaves more than this part of what the last check refused is the last one. */
+#define HELPS 0.25
+
+/* Whether the true residual is what it was taken for. */
+static int judge(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
+                 struct solve_scalars *after)
+{
+    const double size = stop->tolerance * stop->tolerance * dots[SOLVE_SIZE];
+    const double left = stop->mass_norm ? dots[SOLVE_DRIFT] : dots[SOLVE_RR];
+    after->drift = dots[SOLVE_DRIFT];
+    after->phase = SOLVE_DONE;
+    if (small_enough(left, stop->mass_norm ? size : ALIKE * after->wanted))
+        return SOLVE_OK;
+    const bool helps = after->restarts == 0 || left < HELPS * after->refused;
+    after->refused = left;
+    if (!helps || after->restarts == SOLVE_RESTARTS)
+        return fail(SOLVE_STALLED, after);
+    after->phase = SOLVE_AGAIN;
+    after->restarts += 1;
+    after->spent += after->iterations;
+    after->iterations = after->energy = 0;
+    after->stride = 1;
+    return SOLVE_OK;
+}
+
+/* dv is good enough by r. One that is nothing is as it was taken to be. */
+static int arrive(const struct solve_stop *stop, struct solve_scalars *after)
+{
+    const bool known = after->iterations + after->restarts == 0;
+    after->phase = stop->confirm && !known ? SOLVE_SHOW : SOLVE_DONE;
+    return SOLVE_OK;
+}
+
+/* What follows a pass of SOLVE_ON. */
+static int iterate(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
+                   struct solve_scalars *after)
+{
+    if (after->iterations == 0)
+        after->first = after->square;
+    if (after->wanted < 0)
+        after->wanted = wanted(stop, after->square);
+    if (reached(stop, after))
+        return arrive(stop, after);
+    if (solve_scalars_iterations(after) == stop->most)
+        return fail(stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED, after);
+    after->iterations += 1;
+    after->phase = stop->count && after->iterations == stop->most ? SOLVE_LAST : SOLVE_ON;
+    const int code = next_factors(dots, after);
+    remember(after->alpha * dots[SOLVE_RZ], after);
+    return fail(code, after);
+}
+
 int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                        const struct solve_scalars *before, struct solve_scalars *after)
 {
     *after = *before;
     if (before->phase == SOLVE_DONE)
         return SOLVE_OK;
+    if (before->phase == SOLVE_SHOW || before->phase == SOLVE_AGAIN) { /* sum nothing */
+        after->phase = before->phase == SOLVE_SHOW ? SOLVE_CHECK : SOLVE_ON;
+        after->alpha = 1;
+        after->beta = 0;
+        return SOLVE_OK;
+    }
     after->square = dots[SOLVE_RR];
-    after->curvature = dots[SOLVE_PQ];
     after->size = dots[SOLVE_SIZE];
     after->bound = dots[SOLVE_BOUND];
+    if (before->phase == SOLVE_CHECK)
+        return judge(stop, dots, after);
+    after->curvature = dots[SOLVE_PQ];
     after->phase = SOLVE_DONE;
-    if (before->phase == SOLVE_LAST)
-        return SOLVE_OK;
-    if (before->iterations == 0) {
-        after->first = after->square;
-        after->wanted = wanted(stop, after->square);
-    }
-    if (reached(stop, after))
-        return SOLVE_OK;
-    if (before->iterations == stop->most)
-        return fail(stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED, after);
-    after->iterations = before->iterations + 1;
-    after->phase = stop->count && after->iterations == stop->most ? SOLVE_LAST : SOLVE_ON;
-    const int code = next_factors(dots, after);
-    remember(after->alpha * dots[SOLVE_RZ], after);
-    return fail(code, after);
+    return before->phase == SOLVE_LAST ? SOLVE_OK : iterate(stop, dots, after);
 }
 
 PHYS_KERNEL_OF(struct solve_norms, solve_norms,
@@ -166,6 +216,33 @@ PHYS_KERNEL_OF(double, solve_finish,
     return phys_lanes(&dot);
 }
 
+PHYS_KERNEL(solve_renew,
+            (size_t n, const double *restrict free, const double *restrict diagonal,
+             const phys_vec *restrict b, const phys_vec *restrict q, phys_vec *restrict r,
+             double dots[SOLVE_DOTS]),
+            (n, free, diagonal, b, q, r, dots))
+{
+    phys_vec square = {0}, drift = {0};
+    for (size_t a = 0; a < n; a++) {
+        const phys_vec before = r[a];
+        r[a] = free[a] * b[a] - q[a];
+        square += r[a] * r[a];
+        drift += ((r[a] - before) * (r[a] - before)) / diagonal[a];
+    }
+    dots[SOLVE_RR] = phys_lanes(&square);
+    dots[SOLVE_DRIFT] = phys_lanes(&drift);
+}
+
+PHYS_KERNEL(solve_again,
+            (size_t n, phys_vec *restrict r, phys_vec *restrict p, phys_vec *restrict q),
+            (n, r, p, q))
+{
+    for (size_t a = 0; a < n; a++)
+        q[a] = -r[a];
+    memset(r, 0, n * sizeof *r);
+    memset(p, 0, n * sizeof *p);
+}
+
 PHYS_KERNEL(solve_advance_copies,
             (size_t n, double alpha, double beta, const double *restrict q,
              const uint32_t *restrict at, phys_vec *restrict r, phys_vec *restrict p),
@@ -175,6 +252,14 @@ PHYS_KERNEL(solve_advance_copies,
         const double *row = q + 3 * (size_t)at[i];
         const phys_vec value = {row[0], row[1], row[2], 0};
         solve_turn(alpha, beta, &value, r + i, p + i);
+    }
+}
+
+void solve_unpack(size_t n, const double *packed, const uint32_t *at, phys_vec *y)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double *row = packed + 3 * (size_t)at[i];
+        y[i] = (phys_vec){row[0], row[1], row[2], 0};
     }
 }
 

@@ -26,9 +26,17 @@
  * and alpha = r.z / p.q, beta = (r.z - 2 alpha z.q + alpha^2 q.s) / r.z: one reduction again, which
  * may carry what a coarse part of M^-1 needs of q. Without one z is r and s is q. */
 
+/* r is what the recurrence makes of the residual: rounding takes it away from S (b - A dv), and a
+ * solve that ends by r alone may be wrong and not know. So who wants that confirmed (`confirm`) has
+ * two passes more: one shows dv to the neighbours (SOLVE_SHOW), one has q = S A dv, and with it the
+ * true residual, which takes the place of r (SOLVE_CHECK). Where that is not as small as it was
+ * taken to be, the solve goes on from dv (SOLVE_AGAIN), some times, while that helps. */
+
 /* What a pass sums. RQ is z.q, QQ is q.s; SIZE and BOUND are those of solve_norms, which only a
- * stop in the mass norm needs. */
+ * stop in the mass norm needs. DRIFT, in SOLVE_CHECK, is d.D^-1 d of the difference d of the true
+ * residual and r. */
 enum { SOLVE_RR, SOLVE_PQ, SOLVE_RQ, SOLVE_QQ, SOLVE_RZ, SOLVE_SIZE, SOLVE_BOUND, SOLVE_DOTS };
+enum { SOLVE_DRIFT = SOLVE_PQ };
 
 /* A residual with r.r below this ((kg m/s)^2) is zero: p.Ap is about r.r times a mass, and would
  * underflow before r.r does. */
@@ -39,6 +47,8 @@ struct solve_stop {
     bool count;     /* after exactly `most` iterations, without a look at the residual */
     bool relative;  /* tolerance is against |S b|, else absolute (kg m/s) */
     bool mass_norm; /* tolerance is of the error against dv, both in the mass norm */
+    bool confirm;   /* by the true residual, which may be twice as large as the tolerance says; with
+                     * mass_norm its difference from r, in D^-1, may be as large as the error */
     double tolerance;
     uint32_t most; /* a solve that needs more iterations has failed */
 };
@@ -54,19 +64,30 @@ struct solve_stop {
  * estimated is the error of m iterations ago; dv has a smaller one. */
 
 /* What the next pass does. Numbers are doubles: the structure is a shared object. */
-enum { SOLVE_DONE, SOLVE_LAST /* dv and r only */, SOLVE_ON };
+enum {
+    SOLVE_DONE,
+    SOLVE_LAST,  /* dv and r only */
+    SOLVE_ON,    /* all of a pass */
+    SOLVE_SHOW,  /* neighbours get dv for q */
+    SOLVE_CHECK, /* solve_residual */
+    SOLVE_AGAIN  /* solve_again */
+};
 enum { SOLVE_PAST = 64 };
 struct solve_scalars {
     double phase; /* first: not zero while there is something to do */
     double alpha, beta;
-    double iterations;  /* that dv has had after the next pass; at the end: those of the solve */
-    double wanted;      /* (kg m/s)^2: r.r at which to stop */
+    double iterations;  /* that dv has had after the next pass since the solve began (again) */
+    double spent;       /* before that */
+    double restarts;    /* how often it began again */
+    double wanted;      /* (kg m/s)^2: r.r at which to stop; negative: not known yet */
     double square;      /* r.r of the last pass */
     double curvature;   /* p.q of the last pass */
     double outcome;     /* of the solve: SOLVE_OK ..., below */
     double step, last;  /* the caller's */
     double first;       /* r.r of the first pass */
     double size, bound; /* dv.D dv, r.D^-1 r of the last pass */
+    double drift;       /* SOLVE_DRIFT of the last check, kg m^2/s^2 */
+    double refused;     /* by the last check: r.r, or with mass_norm the drift */
     double energy;      /* sum of alpha r.z over all iterations, (kg m^2/s^2) */
     double stride;      /* past[i] is what it was after i stride iterations, i > 0 */
     double past[SOLVE_PAST];
@@ -77,14 +98,23 @@ enum { SOLVE_SCALARS = sizeof(struct solve_scalars) / sizeof(double) };
 struct solve_scalars solve_scalars_start(double step);
 
 /* From the dots of a pass, what the next one does. Returns SOLVE_OK; or why there is none: p.Ap is
- * not positive, or so many iterations were not enough. `after` says in any case with what numbers,
- * and keeps the outcome. */
-enum { SOLVE_OK, SOLVE_BREAKDOWN, SOLVE_NOT_CONVERGED };
+ * not positive; so many iterations were not enough; or the true residual stays above what was asked
+ * for. `after` says in any case with what numbers, and keeps the outcome. */
+enum { SOLVE_OK, SOLVE_BREAKDOWN, SOLVE_NOT_CONVERGED, SOLVE_STALLED };
 int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                        const struct solve_scalars *before, struct solve_scalars *after);
 
+/* Passes besides the iterations that a solve has at most. */
+enum { SOLVE_RESTARTS = 3, SOLVE_EXTRA = 1 + 4 * (1 + SOLVE_RESTARTS) };
+
 /* An upper estimate of the square of the error of dv in the mass norm; bound: r.D^-1 r. */
 double solve_scalars_error(const struct solve_scalars *scalars, double bound);
+
+/* Iterations of the whole solve. */
+static inline double solve_scalars_iterations(const struct solve_scalars *scalars)
+{
+    return scalars->spent + scalars->iterations;
+}
 
 /* dv.D dv and r.D^-1 r of n rows; r is zero in held ones. */
 struct solve_norms {
@@ -111,10 +141,21 @@ PHYS_INLINE void solve_turn(double alpha, double beta, const phys_vec *q, phys_v
 double solve_finish(size_t n, double alpha, const phys_vec *q, const phys_vec *p, phys_vec *dv,
                     phys_vec *r);
 
+/* r = S b - q, with q = S A dv. Writes r.r and the drift from what r was. */
+void solve_renew(size_t n, const double *free, const double *diagonal, const phys_vec *b,
+                 const phys_vec *q, phys_vec *r, double dots[SOLVE_DOTS]);
+
+/* What begins a solve again from dv: with the true residual in r, vectors as solve_start leaves
+ * them, but for dv. */
+void solve_again(size_t n, phys_vec *r, phys_vec *p, phys_vec *q);
+
 /* r and p of copies of another block's rows: n rows, row i has its q in q[3 at[i]] and the two
  * numbers behind it. */
 void solve_advance_copies(size_t n, double alpha, double beta, const double *q, const uint32_t *at,
                           phys_vec *r, phys_vec *p);
+
+/* Those rows alone: y[i] has the three numbers from packed[3 at[i]] on. */
+void solve_unpack(size_t n, const double *packed, const uint32_t *at, phys_vec *y);
 
 /* Rows at[0] .. at[n - 1] of q, three numbers each, for the neighbours. */
 void solve_pack(size_t n, const uint32_t *at, const phys_vec *q, double *packed);

@@ -84,6 +84,29 @@ static inline void flow_write_rim(const struct flow_table *table, const phys_vec
         rim[0] = (phys_vec){0};
 }
 
+/* A rim of the solve: three numbers a row; one, which nobody reads, if there are no rows. */
+static inline void flow_pack_rim(const struct flow_table *t, const phys_vec *y, double *rim)
+{
+    solve_pack(t->n_rim, t->rim, y, rim);
+    if (!t->n_rim)
+        rim[0] = 0;
+}
+
+/* What passes of a solve have in common, with a preconditioner and without (check.c). */
+struct flow_pass {
+    const struct flow_table *table;
+    const void *value; /* of the matrix */
+    const phys_vec *b;
+    struct solve_rows rows;
+    phys_vec *copies;  /* r or z of the copies, then p */
+    double *rim;       /* of this block */
+    size_t neighbours; /* parameters from here on: the rims of others */
+};
+/* SOLVE_SHOW; SOLVE_CHECK, with what it sums; SOLVE_AGAIN but for rims and what a preconditioner
+ * makes. Nothing in other phases. */
+void flow_pass_confirm(const duite_call *call, double phase, const struct flow_pass *pass,
+                       double dots[SOLVE_DOTS]);
+
 /* What a solve left of a block. */
 struct flow_solved {
     const void *value; /* of the matrix */

@@ -18,7 +18,7 @@ static int fork_pass(struct flow_state *state, int from)
         const struct flow_table *t = tables->block + args.block;
         const duite_object *q = state->far.read[from] + (t->slot - tables->slot);
         const duite_object own[] = {
-            o->table,     state->scalars[from], o->a, o->dv, o->r, o->p, o->q, o->copies,
+            o->table,     state->scalars[from], o->a, o->f, o->dv, o->r, o->p, o->q, o->copies,
             o->rim_q[to], state->sums[from]};
         size_t n = 0;
         for (; n < sizeof own / sizeof *own; n++)
@@ -72,8 +72,8 @@ int flow_cg_start(struct flow_state *state)
 
 int flow_cg_iterate(struct flow_state *state)
 {
-    /* One pass more than there are iterations. */
-    const uint64_t rounds = (uint64_t)state->flow->model->max_iterations / 2 + 1;
+    const uint64_t passes = (uint64_t)state->flow->model->max_iterations + SOLVE_EXTRA;
+    const uint64_t rounds = (passes + 1) / 2;
     return duite_replay_while(state->rt, state->solve, state->scalars[0], rounds);
 }
 

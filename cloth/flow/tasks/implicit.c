@@ -144,9 +144,10 @@ static int newton_step(struct flow_state *state, struct flow_args args, double s
 /* Of all Newton steps together; the last one's errors count. */
 static void sum_up(double all[FLOW_STATUS], const double last[FLOW_STATUS])
 {
-    const double iterations = all[FLOW_ITERATIONS];
+    const double iterations = all[FLOW_ITERATIONS], restarts = all[FLOW_RESTARTS];
     memcpy(all, last, FLOW_STATUS * sizeof *all);
     all[FLOW_ITERATIONS] += iterations;
+    all[FLOW_RESTARTS] += restarts;
 }
 
 /* Newton steps until the last one is small, or there were enough. The first system is made. */

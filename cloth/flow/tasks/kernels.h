@@ -35,9 +35,10 @@ extern const duite_kernel flow_hold;     /* table, r filter, rw f: b, rw a */
 extern const duite_kernel flow_matrix;   /* table, r x, w a; rims of x. a: flow_open_matrix */
 extern const duite_kernel flow_begin;    /* w scalars */
 extern const duite_kernel flow_start;    /* table, r f, w dv, w r, w p, w q, w copies, w rim of q */
-extern const duite_kernel flow_pass; /* table, r scalars, r a, rw dv, rw r, rw p, rw q, rw copies,
-                                        rw   rim of q, cw sums; the other rims of q, or far ones */
-extern const duite_kernel flow_pack; /* r rim of q, w far rim */
+extern const duite_kernel
+    flow_pass; /* table, r scalars, r a, r b, rw dv, rw r, rw p, rw q, rw copies,
+                  rw   rim of q, cw sums; the other rims of q, or far ones */
+extern const duite_kernel flow_pack;    /* r rim of q, w far rim */
 extern const duite_kernel flow_scalars; /* r sums, r scalars, w next scalars */
 /* The same with a preconditioner (turned.c, kernels_turned.c); s takes the place of q. "coarse":
  * only with a coarse part. */
@@ -50,8 +51,8 @@ extern const duite_kernel flow_start_turned; /* table, r f, r factor, w dv, w r,
                                                 w copies, w rim of s, w part; coarse: basis */
 extern const duite_kernel flow_begin_coarse; /* w scalars, w motion, r coarse factor; all parts */
 extern const duite_kernel
-    flow_pass_turned; /* table, r scalars, r a, rw dv, rw r, rw p, rw q, rw z, rw s, rw copies, rw
-                         rim of s, rw part, r factor; the other rims of s, or far ones; coarse:
+    flow_pass_turned; /* table, r scalars, r a, r b, rw dv, rw r, rw p, rw q, rw z, rw s, rw copies,
+                         rw rim of s, rw part, r factor; the other rims of s, or far ones; coarse:
                          basis, that of the copies, motion */
 extern const duite_kernel flow_scalars_turned; /* w next scalars, r scalars; all parts */
 extern const duite_kernel flow_scalars_coarse; /* w next scalars, w next motion, r scalars, r coarse

@@ -18,14 +18,6 @@ const duite_kernel flow_begin = {.name = "cg_begin",
                                  .args_size = sizeof(struct flow_args),
                                  .replicated = 1};
 
-/* Three numbers a row; one, which nobody reads, if there are no rows. */
-static void write_rim(const struct flow_table *t, const phys_vec *q, double *rim)
-{
-    solve_pack(t->n_rim, t->rim, q, rim);
-    if (!t->n_rim)
-        rim[0] = 0;
-}
-
 static int start(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
@@ -33,7 +25,7 @@ static int start(const duite_call *call)
     solve_start(t->n, t->free, duite_in(call, 1, phys_vec), duite_out(call, 2, phys_vec),
                 duite_out(call, 3, phys_vec), duite_out(call, 4, phys_vec), q);
     memset(duite_out(call, 6, phys_vec), 0, duite_count(call, 6) * sizeof(double));
-    write_rim(t, q, duite_out(call, 7, double));
+    flow_pack_rim(t, q, duite_out(call, 7, double));
     return 0;
 }
 FLOW_TIMED(start, FLOW_CG)
@@ -43,7 +35,7 @@ const duite_kernel flow_start = {
     .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W},
     .args_size = sizeof(struct flow_args)};
 
-enum { SCALARS = 1, A, DV, R, P, Q, COPIES, RIM, SUMS, NEIGHBOURS }; /* parameters of a pass */
+enum { SCALARS = 1, A, B, DV, R, P, Q, COPIES, RIM, SUMS, NEIGHBOURS }; /* parameters of a pass */
 
 static void advance_copies(const duite_call *call, const struct flow_table *t,
                            const struct solve_scalars *scalars)
@@ -57,38 +49,56 @@ static void advance_copies(const duite_call *call, const struct flow_table *t,
     }
 }
 
+static void advance(const duite_call *call, const struct solve_scalars *scalars,
+                    const struct flow_pass *pass, double dots[SOLVE_DOTS])
+{
+    const struct flow_table *t = pass->table;
+    const struct solve_cut cut = flow_table_cut_entries(t);
+    advance_copies(call, t, scalars);
+    solve_pass(&t->matrix, &cut, pass->value, pass->copies + t->n_copies, scalars->alpha,
+               scalars->beta, &pass->rows, dots);
+    flow_add_norms(call, &t->matrix, &pass->rows, dots);
+    flow_pack_rim(t, pass->rows.q, pass->rim);
+}
+
 static int pass(const duite_call *call)
 {
     struct flow_table table = flow_table_of(call), *t = &table;
-    const phys_vec *value = flow_open_matrix(call, t, A);
     const struct solve_scalars *scalars = duite_in(call, SCALARS, struct solve_scalars);
-    const struct solve_cut cut = flow_table_cut_entries(t);
-    const struct solve_rows rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
-                                    duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)};
-    double dots[SOLVE_DOTS] = {0}, *sums = duite_out(call, SUMS, double);
+    const struct flow_pass pass = {
+        .table = t,
+        .value = flow_open_matrix(call, t, A),
+        .b = duite_in(call, B, phys_vec),
+        .rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
+                 duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)},
+        .copies = duite_out(call, COPIES, phys_vec),
+        .rim = duite_out(call, RIM, double),
+        .neighbours = NEIGHBOURS};
+    double dots[SOLVE_DOTS] = {0};
     if (scalars->phase == SOLVE_LAST)
-        sums[SOLVE_RR] = solve_finish(t->n, scalars->alpha, rows.q, rows.p, rows.dv, rows.r);
-    if (scalars->phase != SOLVE_ON)
-        return 0;
-    advance_copies(call, t, scalars);
-    solve_pass(&t->matrix, &cut, value, duite_in(call, COPIES, phys_vec) + t->n_copies,
-               scalars->alpha, scalars->beta, &rows, dots);
-    flow_add_norms(call, &t->matrix, &rows, dots);
-    memcpy(sums, dots, flow_dots(flow_of(call)->model) * sizeof *sums);
-    write_rim(t, rows.q, duite_out(call, RIM, double));
+        dots[SOLVE_RR] =
+            solve_finish(t->n, scalars->alpha, pass.rows.q, pass.rows.p, pass.rows.dv, pass.rows.r);
+    else if (scalars->phase == SOLVE_ON)
+        advance(call, scalars, &pass, dots);
+    else
+        flow_pass_confirm(call, scalars->phase, &pass, dots);
+    if (scalars->phase == SOLVE_AGAIN)
+        flow_pack_rim(t, pass.rows.q, pass.rim);
+    memcpy(duite_out(call, SUMS, double), dots, flow_dots(flow_of(call)->model) * sizeof *dots);
     return 0;
 }
 FLOW_TIMED(pass, FLOW_CG)
 const duite_kernel flow_pass = {.name = "cg_pass",
                                 .body = pass_timed,
-                                .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW, DUITE_RW,
-                                           DUITE_RW, DUITE_RW, DUITE_RW, DUITE_CW},
+                                .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW,
+                                           DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_CW},
                                 .rest = DUITE_R,
                                 .args_size = sizeof(struct flow_args)};
 
 static struct solve_stop stop_of(const struct model *model)
 {
     return (struct solve_stop){.count = model->stop == MODEL_STOP_COUNT,
+                               .confirm = model->stop != MODEL_STOP_COUNT,
                                .relative = model->stop == MODEL_STOP_RELATIVE,
                                .mass_norm = model->stop == MODEL_STOP_MASS_NORM,
                                .tolerance = model->tolerance,
@@ -103,14 +113,24 @@ static int not_converged(const duite_call *call, const struct solve_scalars *now
                           "%.0f iterations, %g was asked for; allow more iterations, a larger "
                           "tolerance or a smaller h",
                           flow_step_number(now->step),
-                          sqrt(solve_scalars_error(now, now->bound) / now->size), now->iterations,
-                          flow_of(call)->model->tolerance);
+                          sqrt(solve_scalars_error(now, now->bound) / now->size),
+                          solve_scalars_iterations(now), flow_of(call)->model->tolerance);
     return duite_fail(call, FLOW_NOT_CONVERGED,
                       "step %.0f: conjugate gradients stopped at a residual of %g after %.0f "
                       "iterations, %g was asked for; allow more iterations, a larger tolerance "
                       "or a smaller h",
-                      flow_step_number(now->step), sqrt(now->square), now->iterations,
+                      flow_step_number(now->step), sqrt(now->square), solve_scalars_iterations(now),
                       sqrt(now->wanted));
+}
+
+static int stalled(const duite_call *call, const struct solve_scalars *now)
+{
+    return duite_fail(
+        call, FLOW_NOT_CONVERGED,
+        "step %.0f: conjugate gradients come to no residual below %g, begun anew %.0f "
+        "times: that is what rounding leaves of this matrix; allow a larger "
+        "tolerance, or take a smaller h or softer materials",
+        flow_step_number(now->step), sqrt(now->square), now->restarts);
 }
 
 /* Of what is the same on every rank, the model too. */
@@ -123,6 +143,8 @@ int flow_next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
         return 0;
     if (outcome == SOLVE_NOT_CONVERGED)
         return not_converged(call, after);
+    if (outcome == SOLVE_STALLED)
+        return stalled(call, after);
     if (outcome == SOLVE_BREAKDOWN)
         return duite_fail(call, FLOW_INDEFINITE,
                           "step %.0f: conjugate gradients broke down (p.Ap = %g, r.r = %g): the "

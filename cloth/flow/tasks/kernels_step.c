@@ -220,8 +220,10 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
     status[FLOW_WRONG] = scalars->outcome != SOLVE_OK;
     if (flow_args_of(call)->block != 0)
         return;
-    status[FLOW_ITERATIONS] = scalars->iterations;
-    status[FLOW_ERROR] = solve_scalars_error(scalars, INFINITY);
+    const double error = sqrt(solve_scalars_error(scalars, INFINITY)) + sqrt(scalars->drift);
+    status[FLOW_ITERATIONS] = solve_scalars_iterations(scalars);
+    status[FLOW_ERROR] = error * error;
+    status[FLOW_RESTARTS] = scalars->restarts;
 }
 
 /* v += dv, and what the solve took and lost of the momentum. A solve that failed in a step that

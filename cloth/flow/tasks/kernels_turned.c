@@ -120,14 +120,6 @@ const duite_kernel flow_factor = {.name = "factor",
 
 /* ---- The solve ---- */
 
-/* Three numbers a row; one, which nobody reads, if there are no rows. */
-static void write_rim(const struct flow_table *t, const phys_vec *s, double *rim)
-{
-    solve_pack(t->n_rim, t->rim, s, rim);
-    if (!t->n_rim)
-        rim[0] = 0;
-}
-
 /* s = M^-1 q but for the coarse part, of which the part has the right side. */
 static void turn(const duite_call *call, const struct flow_table *t, const double *factor,
                  const phys_vec *rows, const phys_vec *q, phys_vec *s, double *part)
@@ -150,7 +142,7 @@ static int start(const duite_call *call)
     memset(part, 0, FLOW_PART * sizeof *part);
     turn(call, t, duite_in(call, 2, double), is_coarse(call) ? duite_in(call, 12, phys_vec) : NULL,
          q, s, part);
-    write_rim(t, s, duite_out(call, 10, double));
+    flow_pack_rim(t, s, duite_out(call, 10, double));
     return 0;
 }
 FLOW_TIMED(start, FLOW_CG)
@@ -164,7 +156,7 @@ const duite_kernel flow_start_turned = {.name = "cg_start_turned",
 
 /* Parameters of a pass; behind the neighbours, with a coarse part, basis, that of the copies, and
  * motion. */
-enum { SCALARS = 1, A, DV, R, P, Q, Z, S, COPIES, RIM, PART, FACTOR, NEIGHBOURS };
+enum { SCALARS = 1, A, B, DV, R, P, Q, Z, S, COPIES, RIM, PART, FACTOR, NEIGHBOURS };
 enum { BASIS, BASIS_COPIES, MOTION };
 
 static const void *coarse_in(const duite_call *call, const struct flow_table *t, uint32_t which)
@@ -194,49 +186,76 @@ static void advance_copies(const duite_call *call, const struct flow_table *t,
     }
 }
 
-static void advance(const duite_call *call, const struct flow_table *t,
-                    const struct solve_scalars *scalars, const phys_vec *value,
-                    const struct solve_rows *rows)
+/* s of the new q, as neighbours see it. */
+static void turn_and_show(const duite_call *call, const struct flow_pass *pass)
+{
+    const struct flow_table *t = pass->table;
+    phys_vec *s = duite_out(call, S, phys_vec);
+    turn(call, t, duite_in(call, FACTOR, double),
+         is_coarse(call) ? coarse_in(call, t, BASIS) : NULL, pass->rows.q, s,
+         duite_out(call, PART, double));
+    flow_pack_rim(t, s, pass->rim);
+}
+
+static void advance(const duite_call *call, const struct solve_scalars *scalars,
+                    const struct flow_pass *pass)
 {
     const struct flow *flow = flow_of(call);
+    const struct flow_table *t = pass->table;
     const struct solve_cut cut = flow_table_cut_entries(t);
-    const phys_vec *span = is_coarse(call) ? coarse_in(call, t, BASIS) : NULL;
     phys_vec *s = duite_out(call, S, phys_vec);
     double *part = duite_out(call, PART, double);
     const struct solve_turned turned = {duite_out(call, Z, phys_vec), s};
-    if (span)
-        solve_prolong(t->n, span,
+    if (is_coarse(call))
+        solve_prolong(t->n, coarse_in(call, t, BASIS),
                       (const double *)coarse_in(call, t, MOTION) +
                           solve_coarse_at(&flow->pattern, flow_args_of(call)->block),
                       s);
     advance_copies(call, t, scalars);
-    solve_pass_turned(&t->matrix, &cut, value, duite_in(call, COPIES, phys_vec) + t->n_copies,
-                      scalars->alpha, scalars->beta, rows, &turned, part);
-    turn(call, t, duite_in(call, FACTOR, double), span, rows->q, s, part);
-    flow_add_norms(call, &t->matrix, rows, part);
-    write_rim(t, s, duite_out(call, RIM, double));
+    solve_pass_turned(&t->matrix, &cut, pass->value, pass->copies + t->n_copies, scalars->alpha,
+                      scalars->beta, &pass->rows, &turned, part);
+    turn_and_show(call, pass);
+    flow_add_norms(call, &t->matrix, &pass->rows, part);
+}
+
+/* r is the right side of a solve that begins. */
+static void again(const duite_call *call, const struct flow_pass *pass)
+{
+    memset(duite_out(call, Z, phys_vec), 0, pass->table->n * sizeof(phys_vec));
+    turn_and_show(call, pass);
 }
 
 static int pass(const duite_call *call)
 {
     struct flow_table table = flow_table_of(call), *t = &table;
-    const phys_vec *value = flow_open_matrix(call, t, A);
     const struct solve_scalars *scalars = duite_in(call, SCALARS, struct solve_scalars);
-    const struct solve_rows rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
-                                    duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)};
+    const struct flow_pass pass = {
+        .table = t,
+        .value = flow_open_matrix(call, t, A),
+        .b = duite_in(call, B, phys_vec),
+        .rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
+                 duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)},
+        .copies = duite_out(call, COPIES, phys_vec),
+        .rim = duite_out(call, RIM, double),
+        .neighbours = NEIGHBOURS};
+    double *part = duite_out(call, PART, double);
     if (scalars->phase == SOLVE_LAST)
-        duite_out(call, PART, double)[SOLVE_RR] =
-            solve_finish(t->n, scalars->alpha, rows.q, rows.p, rows.dv, rows.r);
-    if (scalars->phase == SOLVE_ON)
-        advance(call, t, scalars, value, &rows);
+        part[SOLVE_RR] =
+            solve_finish(t->n, scalars->alpha, pass.rows.q, pass.rows.p, pass.rows.dv, pass.rows.r);
+    else if (scalars->phase == SOLVE_ON)
+        advance(call, scalars, &pass);
+    else
+        flow_pass_confirm(call, scalars->phase, &pass, part);
+    if (scalars->phase == SOLVE_AGAIN)
+        again(call, &pass);
     return 0;
 }
 FLOW_TIMED(pass, FLOW_CG)
 const duite_kernel flow_pass_turned = {.name = "cg_pass_turned",
                                        .body = pass_timed,
-                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW,
+                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW,
                                                   DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW,
-                                                  DUITE_RW, DUITE_RW, DUITE_R},
+                                                  DUITE_RW, DUITE_RW, DUITE_RW, DUITE_R},
                                        .rest = DUITE_R,
                                        .args_size = ARGS};
 
@@ -291,7 +310,7 @@ static int scalars_coarse(const duite_call *call)
     const struct solve_scalars *before = duite_in(call, 2, struct solve_scalars);
     double dots[SOLVE_DOTS] = {0}, *motion = duite_out(call, 1, double);
     sum_parts(call, 4, dots);
-    if (before->phase == SOLVE_ON)
+    if (before->phase == SOLVE_ON || before->phase == SOLVE_AGAIN)
         dots[SOLVE_QQ] += solve_motion(call, duite_in(call, 3, double), 4, motion);
     else
         memset(motion, 0, flow_motion_doubles(flow_of(call)) * sizeof *motion);

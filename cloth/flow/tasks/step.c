@@ -188,6 +188,7 @@ static void note(struct flow_state *state, const double status[FLOW_STATUS])
     const double error = sqrt(fmin(status[FLOW_ERROR], status[FLOW_RESIDUAL]) / status[FLOW_SIZE]);
     if (status[FLOW_SIZE] > 0 && error > report->mass_norm_error)
         report->mass_norm_error = error;
+    report->cg_restarts += (uint64_t)status[FLOW_RESTARTS];
     report->factors_shifted += (uint64_t)status[FLOW_SHIFTED];
     state->stopping = state->stopping || status[FLOW_STOP] > 0;
     tell_progress(state, iterations);

@@ -121,7 +121,9 @@ enum {
     FLOW_LOST = 0, /* three: sum of b - A dv over free rows */
     FLOW_STOP = 3,
     FLOW_ITERATIONS,
-    FLOW_ERROR,    /* square of the error of dv by the terms of the solve (cloth/solve/cg.h), */
+    FLOW_RESTARTS, /* of solves, when the true residual refused their dv */
+    FLOW_ERROR,    /* square of the error of dv by the terms of the solve (cloth/solve/cg.h) and its
+                    * drift, */
     FLOW_SIZE,     /* dv.D dv and */
     FLOW_RESIDUAL, /* r.D^-1 r, D the masses */
     FLOW_SHIFTED,  /* factors of blocks that were made with a shift or are of SSOR */

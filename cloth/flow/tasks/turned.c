@@ -188,7 +188,7 @@ static int fork_block(struct flow_state *state, const struct flow_args *args, in
     const struct flow_table *t = tables->block + args->block;
     const duite_object *s = state->far.read[from] + (t->slot - tables->slot);
     const duite_object own[] = {
-        o->table,  state->scalars[from], o->a,    o->dv,    o->r, o->p, o->q, o->z, o->s,
+        o->table,  state->scalars[from], o->a,    o->f,     o->dv, o->r, o->p, o->q, o->z, o->s,
         o->copies, o->rim_q[1 - from],   o->part, o->factor};
     const duite_object coarse[] = {o->basis, o->basis_copies, state->motion[from]};
     size_t n = 0;

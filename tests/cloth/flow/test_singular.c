@@ -95,6 +95,41 @@ START_TEST(stiff_beside_soft)
 }
 END_TEST
 
+/* A matrix so stiff that rounding takes the recurrence away from the residual: the solve begins
+ * again and gets what was asked for, or says that no solve can. */
+START_TEST(rounding_is_noticed)
+{
+    static const double tolerance[] = {3e-6, 1e-9};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        struct record record = {.threads = 2};
+        setup_sheet(&setup, 8);
+        setup.material.stretch = 1e12;
+        setup.material.shear = 2500;
+        setup.material.bend = 0;
+        setup.material.damping_stiffness = 0.015;
+        setup.model.h = 0.01;
+        setup.model.end = 0.05;
+        setup.model.stop = MODEL_STOP_MASS_NORM;
+        setup.model.tolerance = tolerance[i];
+        setup.model.preconditioner = (enum model_preconditioner)_i;
+        setup_pin(&setup, 3, (const uint32_t[]){0, 7, 60});
+        record_run(&record, &setup.model);
+        if (i == 0) {
+            ck_assert_msg(record.code == 0, "%s", record.error.text);
+            ck_assert_uint_gt(record.report.cg_restarts, 0);
+            ck_assert_double_le(record.report.mass_norm_error, 2 * tolerance[0]);
+        } else {
+            ck_assert_int_eq(record.code, CLOTH_E_RUN);
+            ck_assert_msg(strstr(record.error.text, "what rounding leaves") != NULL, "%s",
+                          record.error.text);
+        }
+        record_free(&record);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
 /* The whole slope of springs in compression: the matrix is indefinite. That is said, or a shorter
  * step, in which the masses prevail, goes on. */
 START_TEST(compressed_and_not_clamped)
@@ -142,6 +177,7 @@ int main(void)
     tcase_add_loop_test(cases, held_blocks, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
     tcase_add_loop_test(cases, pieces_that_fall, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
     tcase_add_loop_test(cases, stiff_beside_soft, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
+    tcase_add_loop_test(cases, rounding_is_noticed, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
     tcase_add_loop_test(cases, compressed_and_not_clamped, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -60,21 +60,43 @@ static double entry(int i)
 }
 
 struct run {
-    phys_vec dv[N], r[N], p[N], q[N];
+    phys_vec b[N], dv[N], r[N], p[N], q[N];
+    double free[N];
     struct solve_scalars scalars;
 };
 
 static void start(struct run *run, double size)
 {
-    double free[N];
-    phys_vec b[N];
-    for (int i = 0; i < N; i++) {
-        free[i] = i % 5 != 0;
-        b[i] = (phys_vec){size, size * sin(i), size / (i + 1), 0};
-    }
     memset(run, 0x55, sizeof *run);
+    for (int i = 0; i < N; i++) {
+        run->free[i] = i % 5 != 0;
+        run->b[i] = (phys_vec){size, size * sin(i), size / (i + 1), 0};
+    }
     run->scalars = solve_scalars_start(11);
-    solve_start(N, free, b, run->dv, run->r, run->p, run->q);
+    solve_start(N, run->free, run->b, run->dv, run->r, run->p, run->q);
+}
+
+/* With masses of 1. */
+static void add_norms(const struct run *run, double dots[SOLVE_DOTS])
+{
+    double mass[N];
+    for (int i = 0; i < N; i++)
+        mass[i] = 1;
+    const struct solve_norms norms = solve_norms(N, mass, run->dv, run->r);
+    dots[SOLVE_SIZE] = norms.size;
+    dots[SOLVE_BOUND] = norms.bound;
+}
+
+/* A pass that confirms. */
+static void confirm(struct run *run, double dots[SOLVE_DOTS])
+{
+    double mass[N];
+    for (int i = 0; i < N; i++) {
+        mass[i] = 1;
+        run->q[i] = run->free[i] * entry(i) * run->dv[i];
+    }
+    solve_renew(N, run->free, mass, run->b, run->q, run->r, dots);
+    add_norms(run, dots);
 }
 
 /* A pass. Returns what solve_scalars_next does. */
@@ -82,8 +104,15 @@ static int pass(struct run *run, const struct solve_stop *stop, double sign)
 {
     const struct solve_scalars now = run->scalars;
     double dots[SOLVE_DOTS] = {0};
+    if (now.phase == SOLVE_CHECK)
+        confirm(run, dots);
+    if (now.phase == SOLVE_AGAIN)
+        solve_again(N, run->r, run->p, run->q);
+    if (now.phase != SOLVE_ON && now.phase != SOLVE_LAST)
+        return solve_scalars_next(stop, dots, &now, &run->scalars);
     dots[SOLVE_RR] = solve_finish(N, now.alpha, run->q, run->p, run->dv, run->r);
     dots[SOLVE_RZ] = dots[SOLVE_RR];
+    add_norms(run, dots);
     for (int i = 0; i < N; i++) {
         run->p[i] = run->r[i] + now.beta * run->p[i];
         run->q[i] = sign * entry(i) * run->p[i];
@@ -165,6 +194,75 @@ START_TEST(every_way_to_stop)
 }
 END_TEST
 
+/* Solves with a confirmation; before pass `at` the recurrence loses the residual, in which r gets
+ * something by mistake, or in every check where `at` is negative. */
+static int lie(struct run *run, const struct solve_stop *stop, int at)
+{
+    int code = SOLVE_OK;
+    start(run, 1);
+    for (int i = 0; run->scalars.phase != SOLVE_DONE && !code; i++) {
+        if (at > 0 ? i == at : run->scalars.phase == SOLVE_CHECK)
+            run->r[7][1] += 0.5;
+        if (at < 0 && run->scalars.phase == SOLVE_CHECK)
+            run->b[7][1] = 3 - run->b[7][1];
+        code = pass(run, stop, 1);
+    }
+    return code;
+}
+
+static const struct solve_stop CONFIRMED[] = {
+    {.relative = true, .confirm = true, .tolerance = 1e-6, .most = 100},
+    {.confirm = true, .tolerance = 1e-6, .most = 100},
+    {.mass_norm = true, .confirm = true, .tolerance = 1e-3, .most = 100}};
+
+/* Two passes more, the same dv, and the true residual in r. */
+START_TEST(what_is_right_is_confirmed)
+{
+    struct run run, alone;
+    struct solve_stop stop = CONFIRMED[_i];
+    ck_assert_int_eq(lie(&run, &stop, 1000), SOLVE_OK);
+    stop.confirm = false;
+    ck_assert_int_eq(solve(&alone, &stop, 1), SOLVE_OK);
+    ck_assert_int_eq(memcmp(run.dv, alone.dv, sizeof run.dv), 0);
+    ck_assert_double_eq(run.scalars.restarts, 0);
+    ck_assert_double_eq(solve_scalars_iterations(&run.scalars), alone.scalars.iterations);
+    ck_assert_double_le(run.scalars.drift, 1e-28);
+    for (int i = 0; i < N; i++)
+        for (int c = 0; c < 3; c++)
+            ck_assert_double_eq_tol(run.r[i][c],
+                                    run.free[i] * (run.b[i][c] - entry(i) * run.dv[i][c]), 1e-15);
+}
+END_TEST
+
+/* The solve goes on from dv and gets there. */
+START_TEST(what_is_wrong_is_found)
+{
+    struct run run;
+    ck_assert_int_eq(lie(&run, CONFIRMED + _i, 3), SOLVE_OK);
+    ck_assert_double_eq(run.scalars.restarts, 1);
+    ck_assert_double_gt(run.scalars.spent, 3);
+    ck_assert_double_eq_tol(entry(7) * run.dv[7][1], sin(7), 1e-2);
+    struct solve_stop stop = CONFIRMED[_i];
+    stop.confirm = false; /* which would not have been */
+    ck_assert_int_eq(lie(&run, &stop, 3), SOLVE_OK);
+    ck_assert_double_gt(fabs(entry(7) * run.dv[7][1] - sin(7)), 0.4);
+    stop.confirm = true;
+    stop.most = (uint32_t)run.scalars.iterations;
+    ck_assert_int_eq(lie(&run, &stop, 3), SOLVE_NOT_CONVERGED);
+}
+END_TEST
+
+/* A residual that no restart makes smaller. */
+START_TEST(what_stays_wrong_is_said)
+{
+    struct run run;
+    ck_assert_int_eq(lie(&run, CONFIRMED + _i, -1), SOLVE_STALLED);
+    ck_assert_double_eq(run.scalars.outcome, SOLVE_STALLED);
+    ck_assert_double_eq(run.scalars.phase, SOLVE_DONE);
+    ck_assert_double_eq(run.scalars.restarts, 1);
+}
+END_TEST
+
 /* Nothing on the right side, or so little that its square is nothing. */
 START_TEST(nothing_to_solve)
 {
@@ -207,6 +305,9 @@ int main(void)
     tcase_add_test(cases, factors_are_those_of_two_reductions);
     tcase_add_test(cases, the_residual_is_true);
     tcase_add_test(cases, every_way_to_stop);
+    tcase_add_loop_test(cases, what_is_right_is_confirmed, 0, 3);
+    tcase_add_loop_test(cases, what_is_wrong_is_found, 0, 3);
+    tcase_add_loop_test(cases, what_stays_wrong_is_said, 0, 3);
     tcase_add_test(cases, nothing_to_solve);
     tcase_add_test(cases, breakdowns);
     suite_add_tcase(suite, cases);

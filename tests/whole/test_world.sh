@@ -127,5 +127,12 @@ wind() {
         print $118, $119, $120; exit !(($118 + x) ^ 2 + ($119 + y) ^ 2 + ($120 + z) ^ 2 < 1e-24) }'
 }
 ok "the wind's force on a sheet that is held" wind
+# A load along an edge counts its length at rest, which uv may say.
+edge_at_rest() {
+    run sheet.yaml --output edge --end 0.002 --set 'cloths[0].pins=[{box: [[-9, -9, -9], [9, 9, 9]]}]' --set 'cloths[0].rest=uv' \
+        --set 'cloths[0].transform={scale: 2}' --set 'cloths[0].loads=[{edges: [[0, 1]], force: [1, 0, 0]}]' || return 1
+    tail -n 1 edge/probes.csv | awk -F, '{ print $118; exit !(($118 + 0.2) ^ 2 < 1e-24) }'
+}
+ok "a load along an edge, by its length at rest" edge_at_rest
 same() { run sheet.yaml --output a && ranks 3 "$DUITE_CLOTH" sheet.yaml --quiet --output b --threads 2 && cmp a/probes.csv b/probes.csv; }
 ok "air is the same on 3 ranks" same

@@ -90,7 +90,7 @@ static void add_load(void *to, uint32_t vertex)
 static int load_edges(struct loader *loader, const struct model_load *load,
                       struct cloth_error *error)
 {
-    const struct mesh *mesh = &loader->cloth->mesh;
+    const struct mesh *mesh = model_rest(loader->cloth);
     phys_vec a, b, force;
     to_vector(load->force, &force);
     for (uint32_t i = 0; i < load->n_edges; i++) {

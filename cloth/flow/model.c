@@ -19,6 +19,12 @@ static void free_cloth(struct model_cloth *cloth)
         free_pick(&cloth->loads[i].pick);
         free(cloth->loads[i].edges);
     }
+    for (uint32_t i = 0; i < cloth->n_masses; i++)
+        free_pick(&cloth->masses[i].pick);
+    for (uint32_t i = 0; i < cloth->n_starts; i++)
+        free_pick(&cloth->starts[i].pick);
+    free(cloth->masses);
+    free(cloth->starts);
     free(cloth->pins);
     free(cloth->loads);
     free(cloth->name);

@@ -72,6 +72,21 @@ struct model_cost {
     double box[2][3]; /* lower and upper corner, after the transform; may be infinite */
 };
 
+/* More mass, on each of the picked vertices. */
+struct model_mass {
+    struct model_pick pick; /* a vertex that stands twice gets it twice */
+    double mass;            /* kg, > 0 */
+};
+
+/* How the picked vertices start, if not where the mesh has them: x -> about + rotate(scale * (x -
+ * about)) + translate; then v, or what it was before, + spin x (x - about). */
+struct model_start {
+    struct model_pick pick;
+    struct mesh_transform transform;
+    double about[3], spin[3], velocity[3]; /* m, rad/s, m/s */
+    bool has_velocity;
+};
+
 struct model_cloth {
     char *name;
     struct mesh mesh;  /* transformed: rest lengths and masses are those of this shape, */
@@ -81,9 +96,11 @@ struct model_cloth {
     double velocity[3];     /* at the start, m/s */
     double *start;          /* n_vertices x 6: where they start (m) and how fast (m/s), the shape of
                                the mesh notwithstanding; NULL: at the mesh, with `velocity` */
-    uint32_t n_pins, n_loads;
+    uint32_t n_pins, n_loads, n_masses, n_starts;
     struct model_pin *pins;
     struct model_load *loads;
+    struct model_mass *masses;
+    struct model_start *starts; /* one after the other, from that start */
     struct model_cost cost;
     char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
 };

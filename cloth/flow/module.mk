@@ -7,6 +7,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tables/neighbours.c \
     cloth/flow/tables/picks.c \
     cloth/flow/tables/particles.c \
+    cloth/flow/tables/starts.c \
     cloth/flow/tables/sides.c \
     cloth/flow/tables/source.c cloth/flow/tables/source.h \
     cloth/flow/tables/springs.c \

@@ -18,6 +18,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/mesh.c \
 	cloth/scene/build/cloth.c \
 	cloth/scene/build/load.c \
+	cloth/scene/build/start.c \
 	cloth/scene/build/motion.c \
 	cloth/scene/build/probe.c
 EXTRA_DIST += docs/scene.md

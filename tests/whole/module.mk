@@ -24,3 +24,5 @@ dist_check_SCRIPTS += tests/whole/test_integrators.sh
 TESTS += tests/whole/test_integrators.sh
 dist_check_SCRIPTS += tests/whole/test_materials.sh
 TESTS += tests/whole/test_materials.sh
+dist_check_SCRIPTS += tests/whole/test_closed_forms.sh
+TESTS += tests/whole/test_closed_forms.sh

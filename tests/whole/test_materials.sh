@@ -1,23 +1,8 @@
 #!/bin/sh
 # Materials against closed forms, through scenes and probes alone. Errors are printed; docs/physics.md has a table of them.
 . "${srcdir:-.}/tests/support/tap.sh"
-skip_unless "$DUITE_CLOTH"
+. "$srcdir/tests/support/probes.sh"
 plan_later
-cd "$scratch" || exit 99
-export OMPI_MCA_odls_base_sigkill_timeout=0
-
-run() { limited "$DUITE_CLOTH" "$@" --threads 1 --quiet; }
-last() { # COLUMN...: of the last row of out/probes.csv
-    awk -F, -v names="$*" 'NR == 1 { n = split(names, name, " "); for (i = 1; i <= NF; i++) { split($i, w, " "); at[w[1]] = i } next }
-        END { for (k = 1; k <= n; k++) printf "%s ", $at[name[k]]; print "" }' out/probes.csv
-}
-# near WHAT FOUND EXPECTED MOST: says the relative error, fails beyond MOST
-near() {
-    awk -v what="$1" -v a="$2" -v b="$3" -v most="$4" 'BEGIN { e = a / b - 1; e = e < 0 ? -e : e
-        printf "# %s: %.8g, closed form %.8g, error %.2g\n", what, a, b, e; exit !(e <= most) }' >&3
-}
-exec 3>&1
-less() { awk -v OFMT=%.12g -v a="$1" -v b="$2" 'BEGIN { print a - b }'; }
 
 # ---- Membranes: 1 m x 0.6 m of 5 x 4 vertices, pulled at its edges ----
 sheet() { # LOADS
@@ -40,7 +25,7 @@ END
 sheet '{vertices: [4, 19], force: [2, 0, 0]}, {vertices: [9, 14], force: [4, 0, 0]}, {vertices: [0, 15], force: [-2, 0, 0]},
     {vertices: [5, 10], force: [-4, 0, 0]}' > warp.yaml
 uniaxial() { # 12 N over 0.6 m: a strain of 0.02, and of -0.4 x 0.02 across
-    run warp.yaml --output out || return 1
+    run warp.yaml || return 1
     # shellcheck disable=SC2046
     set -- $(last p.0.x p.4.x p.0.z p.15.z)
     near "uniaxial stretch, length" "$(less "$2" "$1")" 1.02 1e-9 &&
@@ -53,7 +38,7 @@ sheet '{vertices: [4, 19], force: [0, 0, 0.2]}, {vertices: [9, 14], force: [0, 0
     {vertices: [5, 10], force: [0, 0, -0.4]}, {vertices: [15, 19], force: [0.25, 0, 0]}, {vertices: [16, 17, 18], force: [0.5, 0, 0]},
     {vertices: [0, 4], force: [-0.25, 0, 0]}, {vertices: [1, 2, 3], force: [-0.5, 0, 0]}' > shear.yaml
 sheared() { # S_uv = 2 / (2 G): the diagonals are |S (1, 0.6)| and |S (1, -0.6)|
-    run shear.yaml --output out || return 1
+    run shear.yaml || return 1
     # shellcheck disable=SC2046
     set -- $(last p.0.x p.0.z p.19.x p.19.z p.4.x p.4.z p.15.x p.15.z)
     near "shear, long diagonal" "$(echo "$@" | awk -v OFMT=%.12g '{ print sqrt(($3 - $1) ^ 2 + ($4 - $2) ^ 2) }')" \
@@ -81,7 +66,7 @@ END
 }
 hanging() { # NAME MATERIAL
     strip "$2" > strip.yaml
-    run strip.yaml --output out || return 1
+    run strip.yaml || return 1
     # shellcheck disable=SC2046
     set -- "$1" $(last p.1.y p.61.y)
     near "hanging strip, $1" "$(less "$(less "$2" "$3")" 2)" "$(awk 'BEGIN { print 0.2 * 9.81 * 4 / (2 * 100) }')" 2e-4
@@ -120,7 +105,7 @@ elastica() { # LOAD q L^3 / D: deflection over L, by Runge-Kutta from the clamp,
 }
 deflection() { # COLUMNS DENSITY SETTINGS
     beam "$1" "$2" "$3" > beam.yaml
-    run beam.yaml --output out || return 1
+    run beam.yaml || return 1
     last "p.$((2 * $1 + 1)).y"
 }
 bent() { # NAME MODEL LOAD MOST: two meshes, the error and its order
@@ -139,7 +124,7 @@ ok "a clamped strip that bends far" bent "clamped strip, large, hinges" hinge 8 
 # ---- Its first frequency: 3.5160 / (2 pi L^2) sqrt(D / density), from the lowest points of its tip under a sudden weight ----
 frequency() {
     beam 16 6.5e-5 'bending: {rigidity: 1.0e-3}' > beam.yaml
-    run beam.yaml --output out --set integrator=bdf2 --set time.h=5e-4 --set time.end=0.6 --set materials.m.damping.mass=0 || return 1
+    run beam.yaml --set integrator=bdf2 --set time.h=5e-4 --set time.end=0.6 --set materials.m.damping.mass=0 || return 1
     found=$(awk -F, -v name="p.33.y" 'NR == 1 { for (i = 1; i <= NF; i++) { split($i, w, " "); if (w[1] == name) at = i } next }
         NR > 3 && before < older && before <= $at && before < -0.005 && $2 > last + 0.05 { if (!n++) first = $2; last = $2 } { older = before; before = $at }
         END { print (n - 1) / (last - first) }' out/probes.csv)

@@ -128,6 +128,36 @@ static int loads(struct flow_particles *p, uint32_t first, const struct model_cl
     return code;
 }
 
+/* A mass and the vertices that it is added to. */
+struct weigher {
+    struct flow_particles *particles;
+    uint32_t first; /* vertex of the cloth */
+    double mass;
+};
+
+static void add_mass(void *to, uint32_t vertex)
+{
+    const struct weigher *weigher = to;
+    weigher->particles->mass[weigher->first + vertex] += weigher->mass;
+}
+
+static int more_masses(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
+                       struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < cloth->n_masses && !code; i++) {
+        struct weigher weigher = {p, first, cloth->masses[i].mass};
+        const struct flow_picking picking = {.pick = &cloth->masses[i].pick,
+                                             .cloth = cloth,
+                                             .used = p->used + first,
+                                             .what = "a mass",
+                                             .visit = add_mass,
+                                             .to = &weigher};
+        code = flow_pick(&picking, error);
+    }
+    return code;
+}
+
 static int masses(struct flow_particles *p, uint32_t first, const struct model *model,
                   const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -136,10 +166,13 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
     to_vector(model->gravity, &gravity);
     if (!(cloth->mass_per_vertex > 0))
         mesh_add_mass(model_rest(cloth), material->density, p->mass + first);
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices && cloth->mass_per_vertex > 0; i++)
+        p->mass[first + i] = cloth->mass_per_vertex;
+    const int code = more_masses(p, first, cloth, error);
+    if (code)
+        return code;
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
         const uint32_t v = first + i;
-        if (cloth->mass_per_vertex > 0)
-            p->mass[v] = cloth->mass_per_vertex;
         if (p->used[v] && p->mass[v] > 0 && !(p->mass[v] >= LEAST_MASS && p->mass[v] <= MOST_MASS))
             return model_fail(
                 cloth->place, error,
@@ -179,21 +212,6 @@ static int check_start(const struct model_cloth *cloth, struct cloth_error *erro
     return CLOTH_OK;
 }
 
-/* The same of a start of its own. */
-static int check_own_start(const struct model_cloth *cloth, struct cloth_error *error)
-{
-    for (size_t i = 0; cloth->start && i < 2 * (size_t)cloth->mesh.n_vertices; i++) {
-        phys_vec y;
-        to_vector(cloth->start + 3 * i, &y);
-        if (phys_diverged(1, FLOW_BOUND, &y) == 0)
-            return model_fail(cloth->place, error,
-                              "vertex %zu of cloth '%.60s' starts with a position or velocity that "
-                              "is no number, or not below %g along each axis",
-                              i / 2, cloth->name, FLOW_BOUND);
-    }
-    return CLOTH_OK;
-}
-
 static int cloth_particles(struct flow_particles *p, uint32_t first, const struct model *model,
                            const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -205,7 +223,7 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     }
     int code = check_start(cloth, error);
     if (!code)
-        code = check_own_start(cloth, error);
+        code = flow_starts_make(p, first, cloth, error);
     if (!code)
         code = masses(p, first, model, cloth, error);
     if (!code)
@@ -237,15 +255,20 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
 {
     *particles = (struct flow_particles){0};
     size_t n = 0;
-    bool loaded = false;
+    bool loaded = false, starts = false;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         n += model->cloths[c].mesh.n_vertices;
         loaded = loaded || model->cloths[c].n_loads;
+        starts = starts || model->cloths[c].start || model->cloths[c].n_starts;
     }
     if (n >= UINT32_MAX)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%zu vertices are too many; at most 4294967294 are possible", n);
     int code = allocate(particles, (uint32_t)n, loaded, model->n_motions, error);
+    if (!code && starts) {
+        particles->start = cloth_alloc(n, sizeof *particles->start, error);
+        code = particles->start ? CLOTH_OK : CLOTH_E_MEMORY;
+    }
     uint32_t first = 0;
     for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
         code = cloth_particles(particles, first, model, model->cloths + c, error);
@@ -270,8 +293,8 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
     particle->free = moves ? 1 : 0;
     to_vector(cloth->mesh.position + 3 * (size_t)(vertex - first), &particle->position);
     to_vector(moves ? cloth->velocity : (const double[3]){0}, &particle->velocity);
-    if (cloth->start) {
-        const double *start = cloth->start + 6 * (size_t)(vertex - first);
+    if (particles->start) {
+        const double *start = particles->start[vertex];
         to_vector(start, &particle->position);
         to_vector(moves ? start + 3 : (const double[3]){0}, &particle->velocity);
     }
@@ -288,5 +311,6 @@ void flow_particles_free(struct flow_particles *particles)
     free(particles->mass);
     free(particles->motion);
     free(particles->load);
+    free(particles->start);
     *particles = (struct flow_particles){0};
 }

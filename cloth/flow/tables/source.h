@@ -27,6 +27,7 @@ struct flow_particles {
     uint32_t *motion;                       /* number from 1, 0: none; NULL: there are none */
     double *mass;                           /* kg */
     phys_vec *load;                         /* N, gravity included; NULL: gravity alone */
+    double (*start)[6];                     /* m, m/s; NULL: all start where the meshes have them */
 };
 
 /* Errors: CLOTH_E_INPUT for pins and loads outside their mesh, boxes without a vertex, starts
@@ -34,6 +35,12 @@ struct flow_particles {
 int flow_particles_make(struct flow_particles *particles, const struct model *model,
                         struct cloth_error *error);
 void flow_particles_free(struct flow_particles *particles);
+
+/* Where the vertices of a cloth, the first of which is `first`, start and how fast, as the part of
+ * flow_particles_make that is about it; after `used`. Does nothing unless particles->start. Local.
+ */
+int flow_starts_make(struct flow_particles *particles, uint32_t first,
+                     const struct model_cloth *cloth, struct cloth_error *error);
 
 /* A part of the scene that picks vertices, and what becomes of each. */
 struct flow_picking {

@@ -23,6 +23,12 @@ int scene_build_probes(struct model *model, const struct scene_tree *tree,
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error);
 
+/* Refuses a vertex that stands twice in the list of the pick that the map `node` makes. seen: an
+ * entry for each vertex of the mesh, the number of the last pick that named it; number: of this
+ * one, from 1; what: "one load", and what to do. */
+int scene_build_once(const struct model_pick *pick, const struct scene_tree *tree, int node,
+                     uint32_t *seen, uint32_t number, const char *what, struct cloth_error *error);
+
 /* That the mesh of the cloth has no vertex of this number. */
 int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
                           const struct scene_tree *tree, int node, struct cloth_error *error);
@@ -30,6 +36,14 @@ int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
 /* The loads of a cloth that has its mesh and name. */
 int scene_build_loads(struct model_cloth *cloth, const struct scene_tree *tree, int node,
                       struct cloth_error *error);
+
+/* The masses and starts of a cloth that has its mesh and name. */
+int scene_build_starts(struct model_cloth *cloth, const struct scene_tree *tree, int node,
+                       struct cloth_error *error);
+
+/* The keys scale, rotate and translate of a map. */
+int scene_build_transform(struct mesh_transform *transform, const struct scene_tree *tree, int node,
+                          struct cloth_error *error);
 
 /* The motion of a pin, added to the model's. */
 int scene_build_motion(struct model *model, struct model_pin *pin, const struct scene_tree *tree,

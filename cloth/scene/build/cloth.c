@@ -85,6 +85,20 @@ int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int
     return build_box(pick->box, tree, scene_tree_get(tree, node, "box"), cloth, error);
 }
 
+int scene_build_once(const struct model_pick *pick, const struct scene_tree *tree, int node,
+                     uint32_t *seen, uint32_t number, const char *what, struct cloth_error *error)
+{
+    const int list = scene_tree_get(tree, node, "vertices");
+    for (uint32_t i = 0; i < pick->n_vertices; i++) {
+        const uint32_t vertex = pick->vertices[i];
+        if (seen[vertex] == number)
+            return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
+                                   "vertex %u stands twice in %s", vertex, what);
+        seen[vertex] = number;
+    }
+    return CLOTH_OK;
+}
+
 static int build_pins(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
                       int node, struct cloth_error *error)
 {
@@ -232,6 +246,8 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
         code = build_pins(model, cloth, tree, node, error);
     if (!code)
         code = build_cost(cloth, tree, node, error);
+    if (!code)
+        code = scene_build_starts(cloth, tree, node, error);
     return code ? code : scene_build_loads(cloth, tree, node, error);
 }
 

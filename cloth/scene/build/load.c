@@ -4,21 +4,6 @@
 
 #include <stdlib.h>
 
-static int check_twice(const struct model_load *load, const struct scene_tree *tree, int list,
-                       uint32_t *seen, uint32_t number, struct cloth_error *error)
-{
-    for (uint32_t i = 0; i < load->pick.n_vertices; i++) {
-        const uint32_t vertex = load->pick.vertices[i];
-        if (seen[vertex] == number)
-            return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
-                                   "vertex %u stands twice in one load; to load it twice, write "
-                                   "another load or a larger force",
-                                   vertex);
-        seen[vertex] = number;
-    }
-    return CLOTH_OK;
-}
-
 static int build_edges(struct model_load *load, const struct scene_tree *tree, int list,
                        const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -55,8 +40,11 @@ static int build_load(struct model_load *load, const struct scene_tree *tree, in
         return load->pick.place ? build_edges(load, tree, edges, cloth, error) : error->code;
     }
     const int code = scene_build_pick(&load->pick, tree, node, cloth, error);
-    const int vertices = scene_tree_get(tree, node, "vertices");
-    return code ? code : check_twice(load, tree, vertices, seen, number, error);
+    if (code)
+        return code;
+    return scene_build_once(&load->pick, tree, node, seen, number,
+                            "one load; to load it twice, write another load or a larger force",
+                            error);
 }
 
 int scene_build_loads(struct model_cloth *cloth, const struct scene_tree *tree, int node,

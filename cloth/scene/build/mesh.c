@@ -101,8 +101,8 @@ static int build_inline(struct mesh *mesh, const struct scene_tree *tree, int no
     return code;
 }
 
-static int transform_of(struct mesh_transform *transform, const struct scene_tree *tree, int node,
-                        struct cloth_error *error)
+int scene_build_transform(struct mesh_transform *transform, const struct scene_tree *tree, int node,
+                          struct cloth_error *error)
 {
     int scale = scene_tree_get(tree, node, "scale"), rotate = scene_tree_get(tree, node, "rotate");
     if (scene_tree_is(tree, scale, YAML_SEQUENCE_NODE))
@@ -129,7 +129,8 @@ int scene_build_mesh(struct mesh *mesh, const struct scene_tree *tree, int cloth
     struct mesh_transform transform;
     yaml_node_pair_t kind = scene_tree_pair(tree, scene_tree_get(tree, cloth, "mesh"), 0);
     const char *name = scene_tree_scalar(tree, kind.key);
-    int code = transform_of(&transform, tree, scene_tree_get(tree, cloth, "transform"), error);
+    int code =
+        scene_build_transform(&transform, tree, scene_tree_get(tree, cloth, "transform"), error);
     if (code)
         return code;
     if (!strcmp(name, "grid"))

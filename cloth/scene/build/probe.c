@@ -87,19 +87,6 @@ static int build_values(struct model_probe *probe, const struct scene_tree *tree
     return CLOTH_OK;
 }
 
-/* A vertex that stands twice would be two columns of one name. */
-static int check_twice(const struct model_probe *probe, const struct scene_tree *tree, int list,
-                       uint32_t *seen, uint32_t number, struct cloth_error *error)
-{
-    for (uint32_t i = 0; i < probe->pick.n_vertices; i++) {
-        if (seen[probe->pick.vertices[i]] == number)
-            return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
-                                   "vertex %u stands twice in one probe", probe->pick.vertices[i]);
-        seen[probe->pick.vertices[i]] = number;
-    }
-    return CLOTH_OK;
-}
-
 static int build_probe(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
                        uint32_t *seen, struct cloth_error *error)
 {
@@ -109,8 +96,8 @@ static int build_probe(struct model *model, uint32_t i, const struct scene_tree 
         code = find_cloth(probe, model, tree, node, error);
     if (!code)
         code = scene_build_pick(&probe->pick, tree, node, model->cloths + probe->cloth, error);
-    if (!code)
-        code = check_twice(probe, tree, scene_tree_get(tree, node, "vertices"), seen, i + 1, error);
+    if (!code) /* it would be two columns of one name */
+        code = scene_build_once(&probe->pick, tree, node, seen, i + 1, "one probe", error);
     return code ? code : build_values(probe, tree, scene_tree_get(tree, node, "values"), error);
 }
 

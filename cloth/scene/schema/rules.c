@@ -97,6 +97,40 @@ static const struct scene_rule load_keys[] = {
     {0}};
 static const struct scene_rule load = {.type = SCENE_MAP, .inside = load_keys};
 
+static const struct scene_rule mass_keys[] = {
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
+     .about = "in the mesh's numbering"},
+    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number,
+     .about = "the vertex nearest to a point"},
+    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
+     .about = "all vertices in the box between two corners"},
+    {"mass", SCENE_NUMBER, "kg", .required = true, .range = SCENE_POSITIVE,
+     .about = "more, at each of the vertices"},
+    {0}};
+static const struct scene_rule mass = {.type = SCENE_MAP, .inside = mass_keys};
+
+static const struct scene_rule start_keys[] = {
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
+     .about = "in the mesh's numbering"},
+    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number,
+     .about = "the vertex nearest to a point"},
+    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
+     .about = "all vertices in the box between two corners"},
+    {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3,
+     .inside = &positive, .about = "first: a factor, or one for each axis"},
+    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number,
+     .about = "then: a quaternion [w, x, y, z]"},
+    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     .about = "last: a shift"},
+    {"about", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     .about = "the point that is scaled, rotated and spun about"},
+    {"velocity", SCENE_LIST, "m/s", .length = 3, .inside = &number,
+     .about = "instead of what it was before"},
+    {"spin", SCENE_LIST, "rad/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     .about = "added: the velocity of a rigid turn about the point"},
+    {0}};
+static const struct scene_rule start = {.type = SCENE_MAP, .inside = start_keys};
+
 static const struct scene_rule cost_keys[] = {
     {"factor", SCENE_INTEGER, .required = true, .least = 1, .most = 1000,
      .about = "tasks of these blocks take so many times as long"},
@@ -119,6 +153,9 @@ static const struct scene_rule cloth_keys[] = {
      .about = "at the start"},
     {"pins", SCENE_LIST, .fallback = "[]", .inside = &pin, .about = "vertices held, or moved"},
     {"loads", SCENE_LIST, .fallback = "[]", .inside = &load, .about = "forces on vertices"},
+    {"masses", SCENE_LIST, .fallback = "[]", .inside = &mass, .about = "more mass of vertices"},
+    {"start", SCENE_LIST, .fallback = "[]", .inside = &start,
+     .about = "how vertices start, where that is not the mesh's shape"},
     {"cost", SCENE_MAP, .inside = cost_keys, .about = "time lost on purpose, to try balancers"},
     {0}};
 static const struct scene_rule cloth = {.type = SCENE_MAP, .inside = cloth_keys};

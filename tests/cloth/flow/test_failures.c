@@ -297,6 +297,23 @@ START_TEST(starts_out_of_bounds)
         says(&record, CLOTH_E_INPUT, "a.yaml:4:9: vertex 7 of cloth 'test' starts at (0, ");
         record_free(&record);
     }
+    setup.cloth.mesh.position[3 * 7 + 1] = 0;
+    struct model_start starts[2] = {{.pick = {.n_vertices = 1, .vertices = (uint32_t[]){2}}},
+                                    {.pick = {.kind = MODEL_PICK_BOX,
+                                              .box = {{-9, -9, -9}, {9, 9, 9}},
+                                              .place = (char[]){"a.yaml:7:9"}}}};
+    starts[0].transform = starts[1].transform = mesh_identity;
+    starts[1].spin[1] = 2e6;
+    setup.cloth.starts = starts;
+    setup.cloth.n_starts = 2;
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "a.yaml:7:9: vertex 8 of cloth 'test' starts at (0.5, 0, 0.5) m ");
+    says(&record, CLOTH_E_INPUT, "velocity (1e+06, 0, -1e+06) m/s; less than 1e+06 along");
+    record_free(&record);
+    starts[0].pick.vertices[0] = 9;
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT, "a start of cloth 'test' names vertex 9; its mesh has");
+    record_free(&record);
     setup_free(&setup);
 }
 END_TEST

@@ -135,6 +135,36 @@ START_TEST(loads_that_cannot_be_made)
 }
 END_TEST
 
+#define MORE(text) "material: cotton", "material: cotton\n    " text
+
+START_TEST(starts_and_masses_that_cannot_be_made)
+{
+    EXPECT({MORE("masses: [{vertices: [1], mass: 0}]"),
+            .error = ":7:36: cloths[0].masses[0].mass is 0; a finite number > 0 (kg) is expected"},
+           {MORE("masses: [{vertices: [1]}]"),
+            .error = ":7:14: cloths[0].masses[0].mass is missing; a finite number > 0 (kg) is "
+                     "expected"},
+           {MORE("masses: [{vertices: [1, 1], mass: 1}]"),
+            .error = ":7:29: vertex 1 stands twice in one mass"},
+           {MORE("start: [{spin: [1, 0, 0]}]"),
+            .error = ":7:13: cloths[0].start[0] has no vertices or nearest or box; one of them is "
+                     "expected"},
+           {MORE("start: [{vertices: [1, 2, 1]}]"),
+            .error = ":7:31: vertex 1 stands twice in one start"},
+           {MORE("start: [{vertices: [12]}]"),
+            .error = ":7:25: vertex 12 is outside the mesh of cloth 'sheet', which has 12 "
+                     "vertices; 0 to 11 are allowed"},
+           {MORE("start: [{vertices: [1], scale: 0}]"),
+            .error = ":7:36: cloths[0].start[0].scale is 0; a finite number > 0 or a list of 3 of "
+                     "them is expected"},
+           {MORE("start: [{vertices: [1], rotate: [0, 0, 0, 0]}]"),
+            .error = ":7:37: the quaternion [w, x, y, z] has no direction; its length must be "
+                     "neither zero nor huge"},
+           {MORE("start: [{vertices: [1], spin: [0, .nan, 0]}]"),
+            .error = ":7:39: cloths[0].start[0].spin[1] is .nan; a finite number is expected"});
+}
+END_TEST
+
 START_TEST(motions_that_cannot_be_made)
 {
     EXPECT(
@@ -228,6 +258,7 @@ int main(void)
     tcase_add_test(cases, grids_larger_than_the_machine);
     tcase_add_test(cases, names_and_indices);
     tcase_add_test(cases, loads_that_cannot_be_made);
+    tcase_add_test(cases, starts_and_masses_that_cannot_be_made);
     tcase_add_test(cases, motions_that_cannot_be_made);
     tcase_add_test(cases, probes_that_tell_nothing);
     tcase_add_test(cases, meshes_that_cannot_be_used);

@@ -165,7 +165,7 @@ START_TEST(files_that_are_no_scenes)
         "schema: 1\ncloths: &a [*a]\n", NULL,
         ":2:9: cloths[0] is a list of 1; a map of name, mesh, transform, material, rest, "
         "mass_per_vertex, velocity, "
-        "pins, loads, cost is expected");
+        "pins, loads, masses, start, cost is expected");
 }
 END_TEST
 

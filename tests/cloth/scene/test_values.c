@@ -211,6 +211,34 @@ START_TEST(cloths_of_every_mesh)
 }
 END_TEST
 
+START_TEST(starts_and_masses)
+{
+    struct model model = read_changed(
+        "material: cotton",
+        "material: cotton\n    masses: [{vertices: [3, 5], mass: 0.25}]\n"
+        "    start: [{nearest: [0, 0, 9]}, {box: [[1, 1, 1], [-1, -1, -1]], scale: 2,\n"
+        "             rotate: [0, 2, 0, 0], translate: [1, 2, 3], about: [4, 5, 6],\n"
+        "             velocity: [0, 0, 0], spin: [7, 8, 9]}]");
+    const struct model_cloth *cloth = model.cloths;
+    ck_assert_uint_eq(cloth->n_masses, 1);
+    ck_assert_double_eq(cloth->masses[0].mass, 0.25);
+    ck_assert_uint_eq(cloth->masses[0].pick.vertices[1], 5);
+    ck_assert_uint_eq(cloth->n_starts, 2);
+    const struct model_start *plain = cloth->starts, *full = cloth->starts + 1;
+    ck_assert_int_eq(plain->pick.kind, MODEL_PICK_NEAREST);
+    same_place(plain->pick.place, ":8:13");
+    ck_assert(!plain->has_velocity && full->has_velocity);
+    same_vector(plain->transform.scale, 1, 1, 1);
+    same_vector(plain->spin, 0, 0, 0);
+    same_vector(full->transform.scale, 2, 2, 2);
+    ck_assert_double_eq(full->transform.rotate[1], 2);
+    same_vector(full->transform.translate, 1, 2, 3);
+    same_vector(full->about, 4, 5, 6);
+    same_vector(full->spin, 7, 8, 9);
+    model_free(&model);
+}
+END_TEST
+
 START_TEST(probes_and_rest)
 {
     struct model model;
@@ -365,6 +393,7 @@ int main(void)
     tcase_add_test(cases, every_other_key);
     tcase_add_test(cases, triangles_and_bending);
     tcase_add_test(cases, cloths_of_every_mesh);
+    tcase_add_test(cases, starts_and_masses);
     tcase_add_test(cases, probes_and_rest);
     tcase_add_test(cases, numbers_of_every_form);
     tcase_add_test(cases, sets_change_values);

@@ -86,6 +86,11 @@ static int open_system(const struct run *run, struct cloth_error *error)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: a step has one system of its own by implicit_euler with "
                           "newton.steps 1 only");
+    if (model_is_filtered(model))
+        return cloth_fail(
+            error, CLOTH_E_INPUT,
+            "--save-system: the files know held vertices only, no contact: filter and "
+            "no pins to lines or planes");
     if (model->end / model->h + 0.5 < 1)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: the scene ends before its first step");

@@ -51,6 +51,7 @@ void model_free(struct model *model)
     free(model->probes);
     free(model->motions);
     free(model->keys);
+    free(model->guides);
     free(model->materials);
     free(model->cloths);
     free(model->planes);

@@ -44,10 +44,19 @@ struct model_pick {
     char *place;
 };
 
-/* Holds vertices where they start, or moves them from there. */
+/* Holds vertices where they start, or moves them from there; or leaves them free along a guide. */
 struct model_pin {
     struct model_pick pick;
-    uint32_t motion; /* number of the model's motion, from 1; 0: it does not move */
+    uint32_t
+        motion; /* number of the model's motion, from 1; 0: it does not move, or its guide does */
+    uint32_t guide; /* number of the model's guide, from 1; 0: it holds points */
+};
+
+/* Through each vertex that it has, where it starts: a line, or a plane. */
+struct model_guide {
+    enum { MODEL_LINE, MODEL_PLANE } kind;
+    uint32_t motion;     /* that it takes part in, from 1; 0: none */
+    double direction[3]; /* of the line, or normal to the plane; of length 1 */
 };
 
 /* Key frames first .. first + n - 1 of the model's, about a point (m). */
@@ -161,7 +170,9 @@ struct model {
     uint32_t n_motions, n_keys;
     struct model_motion *motions;
     struct phys_key *keys; /* of each motion in ascending order; at time 0 it is no motion */
-    double gravity[3];     /* m/s^2 */
+    uint32_t n_guides;
+    struct model_guide *guides;
+    double gravity[3]; /* m/s^2 */
     struct phys_air air;
     enum model_contact contact;
 
@@ -197,11 +208,23 @@ static inline int model_is_implicit(const struct model *model)
     return model->integrator >= MODEL_IMPLICIT_EULER;
 }
 
-/* Whether its solves are filtered by contact. */
-static inline int model_is_filtered(const struct model *model)
+/* Whether its solves know of planes. */
+static inline int model_solves_contact(const struct model *model)
 {
     return model->integrator == MODEL_IMPLICIT_EULER && model->newton_steps <= 1 &&
            model->contact == MODEL_CONTACT_FILTER && model->n_planes;
+}
+
+/* Whether its solves are filtered by more than points: by contact or guides. */
+static inline int model_is_filtered(const struct model *model)
+{
+    return model_solves_contact(model) || (model_is_implicit(model) && model->n_guides);
+}
+
+/* Whether pins have a part in the velocities that a step begins with. */
+static inline int model_is_driven(const struct model *model)
+{
+    return model->n_motions || model->n_guides;
 }
 
 /* Its name in scenes. */

@@ -14,6 +14,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tables/watched.c \
     cloth/flow/tables/tables.c cloth/flow/tables/tables.h \
     cloth/flow/tasks/bodies.h \
+    cloth/flow/tasks/guides.h \
     cloth/flow/tasks/cg.c \
     cloth/flow/tasks/deal.c \
     cloth/flow/tasks/energy.c \

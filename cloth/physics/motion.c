@@ -63,12 +63,35 @@ void phys_pose_direction(const struct phys_pose *pose, const phys_vec *from, phy
     *to = turned;
 }
 
+void phys_pose_direction_back(const struct phys_pose *pose, const phys_vec *from, phys_vec *to)
+{
+    const phys_vec d = *from;
+    phys_vec turned = {0};
+    for (int i = 0; i < 3; i++)
+        turned[i] = pose->turn[0][i] * d[0] + pose->turn[1][i] * d[1] + pose->turn[2][i] * d[2];
+    *to = turned;
+}
+
+static void offsets(const struct phys_pose *pose, phys_vec *about, phys_vec *shift)
+{
+    *about = (phys_vec){pose->about[0], pose->about[1], pose->about[2], 0};
+    *shift = (phys_vec){pose->translate[0], pose->translate[1], pose->translate[2], 0};
+}
+
 void phys_pose_point(const struct phys_pose *pose, const phys_vec *from, phys_vec *to)
 {
-    const phys_vec about = {pose->about[0], pose->about[1], pose->about[2], 0};
-    const phys_vec shift = {pose->translate[0], pose->translate[1], pose->translate[2], 0};
+    phys_vec about, shift, turned;
+    offsets(pose, &about, &shift);
     const phys_vec arm = *from - about;
-    phys_vec turned;
     phys_pose_direction(pose, &arm, &turned);
     *to = turned + about + shift;
+}
+
+void phys_pose_back(const struct phys_pose *pose, const phys_vec *from, phys_vec *to)
+{
+    phys_vec about, shift, turned;
+    offsets(pose, &about, &shift);
+    const phys_vec arm = *from - shift - about;
+    phys_pose_direction_back(pose, &arm, &turned);
+    *to = turned + about;
 }

@@ -25,5 +25,8 @@ void phys_pose_at(size_t n, const struct phys_key *keys, const double about[3], 
 /* Where a point that begins at x0 is then; what becomes of a direction. to may be from. */
 void phys_pose_point(const struct phys_pose *pose, const phys_vec *from, phys_vec *to);
 void phys_pose_direction(const struct phys_pose *pose, const phys_vec *from, phys_vec *to);
+/* Back from there. */
+void phys_pose_back(const struct phys_pose *pose, const phys_vec *from, phys_vec *to);
+void phys_pose_direction_back(const struct phys_pose *pose, const phys_vec *from, phys_vec *to);
 
 #endif

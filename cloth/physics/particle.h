@@ -23,6 +23,10 @@ void phys_advance(size_t n, double scale, const phys_vec *d, phys_vec *y);
 size_t phys_plane(size_t n, const double point[3], const double normal[3], const double *free,
                   phys_vec *x, phys_vec *v);
 
+/* The same of one particle that leaves the plane along a way with way.normal = 1. */
+size_t phys_plane_along(const double point[3], const double normal[3], const phys_vec *way,
+                        phys_vec *x, phys_vec *v);
+
 /* Sum of m v.v / 2 (J), rows in order; widens *most to the largest v.v (m^2/s^2). mass: kg. */
 double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *most);
 

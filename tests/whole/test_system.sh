@@ -74,6 +74,8 @@ refused() { # SENTENCE ARGUMENT...
 }
 ok "a step of several systems has none of its own" refused "by implicit_euler with newton.steps 1 only" --save-system none \
     --set newton.steps=2
+ok "what lines and planes take away the files cannot say" refused "no pins to lines or planes" --save-system none \
+    --set 'cloths[0].pins=[{vertices: [0], to: line, direction: [0, 1, 0]}]'
 ok "explicit runs have no system" refused "an explicit integrator solves no system" --save-system none --set integrator=explicit_euler
 ok "and leave no folder" test ! -e none
 : > file

@@ -28,31 +28,49 @@ PHYS_INLINE void to_vector(const double *x, phys_vec *y)
 struct holder {
     struct flow_particles *particles;
     uint32_t first; /* vertex of the cloth */
+    const struct model *model;
     const struct model_cloth *cloth;
     const struct model_pin *pin;
     uint32_t torn; /* a vertex that another pin moves in another way, or holds; UINT32_MAX: none */
 };
 
+/* Whether two guides, by number, hold alike; both may be none. */
+static bool alike(const struct model_guide *guides, uint32_t a, uint32_t b)
+{
+    const struct model_guide *one = guides + a - 1, *other = guides + b - 1;
+    if (a == b || !a || !b)
+        return a == b;
+    bool same = one->kind == other->kind && one->motion == other->motion;
+    for (int i = 0; i < 3; i++)
+        same = same && one->direction[i] - other->direction[i] == 0;
+    return same;
+}
+
 static void hold(void *to, uint32_t vertex)
 {
     struct holder *holder = to;
     struct flow_particles *p = holder->particles;
-    const uint32_t v = holder->first + vertex;
-    if (!p->used[v] && p->free[v] != 0)
+    const uint32_t v = holder->first + vertex, motion = holder->pin->motion;
+    const uint32_t guide = holder->pin->guide, guided = p->guide ? p->guide[v] : 0;
+    const bool held = p->free[v] == 0 || guided;
+    if (!p->used[v] && !held)
         note(&p->pinned, holder->cloth, vertex, holder->pin->pick.place);
-    if (p->motion && p->free[v] == 0 && p->motion[v] != holder->pin->motion)
+    if (held &&
+        ((p->motion && p->motion[v] != motion) || !alike(holder->model->guides, guided, guide)))
         holder->torn = vertex;
     if (p->motion)
-        p->motion[v] = holder->pin->motion;
-    p->free[v] = 0;
+        p->motion[v] = motion;
+    if (p->guide)
+        p->guide[v] = guide;
+    p->free[v] = guide ? 1 : 0;
 }
 
-static int pins(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
-                struct cloth_error *error)
+static int pins(struct flow_particles *p, uint32_t first, const struct model *model,
+                const struct model_cloth *cloth, struct cloth_error *error)
 {
     int code = CLOTH_OK;
     for (uint32_t i = 0; i < cloth->n_pins && !code; i++) {
-        struct holder holder = {p, first, cloth, cloth->pins + i, UINT32_MAX};
+        struct holder holder = {p, first, model, cloth, cloth->pins + i, UINT32_MAX};
         const struct flow_picking picking = {.pick = &cloth->pins[i].pick,
                                              .cloth = cloth,
                                              .used = p->used + first,
@@ -62,8 +80,8 @@ static int pins(struct flow_particles *p, uint32_t first, const struct model_clo
         code = flow_pick(&picking, error);
         if (!code && holder.torn != UINT32_MAX)
             code = model_fail(cloth->pins[i].pick.place, error,
-                              "vertex %u of cloth '%.60s' is held by two pins that do not move "
-                              "alike; one is expected",
+                              "vertex %u of cloth '%.60s' is held by two pins that do not hold "
+                              "and move alike; one is expected",
                               holder.torn, cloth->name);
     }
     return code;
@@ -229,19 +247,21 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     if (!code)
         code = loads(p, first, cloth, error);
     if (!code)
-        code = pins(p, first, cloth, error);
+        code = pins(p, first, model, cloth, error);
     return code;
 }
 
-static int allocate(struct flow_particles *p, uint32_t n, bool loaded, bool moved,
+static int allocate(struct flow_particles *p, uint32_t n, bool loaded, const struct model *model,
                     struct cloth_error *error)
 {
+    const bool moved = model->n_motions, guided = model->n_guides;
     p->n = n;
     p->used = cloth_alloc(n, 1, error);
     p->free = cloth_alloc(n, 1, error);
     p->mass = cloth_alloc(n, sizeof *p->mass, error);
     p->motion = moved ? cloth_alloc(n, sizeof *p->motion, error) : NULL;
-    if (!p->used || !p->free || !p->mass || (moved && !p->motion))
+    p->guide = guided ? cloth_alloc(n, sizeof *p->guide, error) : NULL;
+    if (!p->used || !p->free || !p->mass || (moved && !p->motion) || (guided && !p->guide))
         return CLOTH_E_MEMORY;
     if (!loaded)
         return CLOTH_OK;
@@ -264,7 +284,7 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     if (n >= UINT32_MAX)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%zu vertices are too many; at most 4294967294 are possible", n);
-    int code = allocate(particles, (uint32_t)n, loaded, model->n_motions, error);
+    int code = allocate(particles, (uint32_t)n, loaded, model, error);
     if (!code && starts) {
         particles->start = cloth_alloc(n, sizeof *particles->start, error);
         code = particles->start ? CLOTH_OK : CLOTH_E_MEMORY;
@@ -280,6 +300,15 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     if (code)
         flow_particles_free(particles);
     return code;
+}
+
+/* What a guide leaves of a velocity. */
+static void hold_velocity(const struct model_guide *guide, phys_vec *v)
+{
+    phys_vec filter;
+    to_vector(guide->direction, &filter);
+    filter[3] = guide->kind == MODEL_PLANE;
+    solve_filter(&filter, v);
 }
 
 void flow_particle_of(const struct flow_particles *particles, const struct model *model,
@@ -298,6 +327,8 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
         to_vector(start, &particle->position);
         to_vector(moves ? start + 3 : (const double[3]){0}, &particle->velocity);
     }
+    if (particles->guide && particles->guide[vertex])
+        hold_velocity(model->guides + particles->guide[vertex] - 1, &particle->velocity);
     to_vector(model->gravity, &particle->load);
     particle->load *= particle->mass;
     if (particles->load)
@@ -310,6 +341,7 @@ void flow_particles_free(struct flow_particles *particles)
     free(particles->free);
     free(particles->mass);
     free(particles->motion);
+    free(particles->guide);
     free(particles->load);
     free(particles->start);
     *particles = (struct flow_particles){0};

@@ -134,16 +134,16 @@ static void fill_rows(const struct flow_source *source, const struct flow_table 
     }
 }
 
-static void fill_moved(const struct flow_source *source, const struct flow_table *t,
-                       const struct flow_image *image)
+/* The n rows of a block that have a number, and these. */
+static void fill_numbered(const struct flow_source *source, const struct flow_table *t,
+                          const uint32_t *number, uint32_t n, uint32_t (*to)[2])
 {
-    uint32_t n = 0;
-    for (uint32_t i = 0; n < t->n_moved; i++) {
-        const uint32_t motion = source->particles.motion[source->blocks.vertex[t->first + i]];
-        if (!motion)
+    for (uint32_t i = 0, k = 0; k < n; i++) {
+        const uint32_t here = number[source->blocks.vertex[t->first + i]];
+        if (!here)
             continue;
-        image->moved[n][0] = i;
-        image->moved[n++][1] = motion;
+        to[k][0] = i;
+        to[k++][1] = here;
     }
 }
 
@@ -245,7 +245,8 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *i
     qsort(side, (size_t)t->n_inner + t->n_cut, sizeof *side, compare_sides);
     fill_rows(source, t, &arrays);
     fill_watched(source, t, &arrays);
-    fill_moved(source, t, &arrays);
+    fill_numbered(source, t, source->particles.motion, t->n_moved, arrays.moved);
+    fill_numbered(source, t, source->particles.guide, t->n_guided, arrays.guided);
     fill_inner(t, side, &arrays);
     fill_cut(source, t, side + t->n_inner, &arrays);
     fill_sides(source, t, side, &arrays);

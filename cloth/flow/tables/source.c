@@ -106,12 +106,13 @@ static void count_watched(struct flow_source *source)
     }
 }
 
-/* How many vertices of a block pins move. */
-static uint32_t count_moved(const struct flow_source *source, const struct flow_table *shape)
+/* How many vertices of a block have a number: that of a motion, or of a guide. */
+static uint32_t count_numbered(const struct flow_source *source, const struct flow_table *shape,
+                               const uint32_t *number)
 {
     uint32_t n = 0;
-    for (uint32_t i = 0; source->particles.motion && i < shape->n; i++)
-        n += source->particles.motion[source->blocks.vertex[shape->first + i]] != 0;
+    for (uint32_t i = 0; number && i < shape->n; i++)
+        n += number[source->blocks.vertex[shape->first + i]] != 0;
     return n;
 }
 
@@ -129,7 +130,8 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         shape->n = blocks->start[b + 1] - blocks->start[b];
         find_range(blocks, shape);
         find_cost(source, shape);
-        shape->n_moved = count_moved(source, shape);
+        shape->n_moved = count_numbered(source, shape, source->particles.motion);
+        shape->n_guided = count_numbered(source, shape, source->particles.guide);
     }
     count_watched(source);
     flow_source_count(source);

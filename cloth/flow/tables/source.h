@@ -24,7 +24,7 @@ struct flow_particles {
     uint32_t n;
     struct flow_odd unused, pinned, loaded; /* that no face or edge uses: all; pinned; loaded */
     unsigned char *used, *free;             /* free: 0 where a pin holds */
-    uint32_t *motion;                       /* number from 1, 0: none; NULL: there are none */
+    uint32_t *motion, *guide;               /* number from 1, 0: none; NULL: there are none */
     double *mass;                           /* kg */
     phys_vec *load;                         /* N, gravity included; NULL: gravity alone */
     double (*start)[6];                     /* m, m/s; NULL: all start where the meshes have them */

@@ -60,6 +60,7 @@ static void lay(const struct flow_table *t, struct room *room, struct flow_image
     image->at = next(room, t->format == SOLVE_SPRINGS ? 0 : sides * sizeof *image->at);
     image->n_held = next(room, sizeof *image->n_held);
     image->moved = next(room, t->n_moved * sizeof *image->moved);
+    image->guided = next(room, t->n_guided * sizeof *image->guided);
     image->watched = next(room, t->n_watched * sizeof *image->watched);
     image->stretch = next(room, sides);
     for (int kind = 0; kind < FLOW_KINDS; kind++)
@@ -91,6 +92,7 @@ void flow_table_open(struct flow_table *t, const void *image)
     t->rim = arrays.rim;
     t->watched = arrays.watched;
     t->moved = (const uint32_t(*)[2])arrays.moved;
+    t->guided = (const uint32_t(*)[2])arrays.guided;
     t->end = (const uint32_t(*)[2])arrays.end;
     t->copy_end = (const uint32_t(*)[2])arrays.copy_end;
     t->stiffness = arrays.stiffness;

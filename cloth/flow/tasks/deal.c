@@ -16,7 +16,8 @@ enum {
 /* What is told of a block; the neighbours of all blocks follow. */
 struct shape {
     uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_rim, n_held, lowest, highest;
-    uint32_t n_watched, n_moved, n_slots, n_copies, n_stiff, n_elements[FLOW_KINDS], n_membranes;
+    uint32_t n_watched, n_moved, n_guided, n_slots, n_copies, n_stiff, n_elements[FLOW_KINDS],
+        n_membranes;
     float cost;
 };
 
@@ -44,6 +45,7 @@ static int tell_head(const duite_call *call)
     head->shared_bytes = flow->model->n_planes * sizeof *flow->model->planes +
                          flow->model->n_keys * sizeof *flow->model->keys +
                          flow->model->n_motions * sizeof *flow->model->motions +
+                         flow->model->n_guides * sizeof *flow->model->guides +
                          head->n_blocks * (sizeof(struct shape) + sizeof(uint32_t)) +
                          (2 * (uint64_t)head->n_slots + head->n_copies) * sizeof(uint32_t);
     for (uint32_t b = 0; b < head->n_blocks; b++) {
@@ -76,6 +78,7 @@ static int tell_shared(const duite_call *call)
     const struct model *model = flow->model;
     to = put(to, model->planes, model->n_planes * sizeof *model->planes);
     to = put(to, model->keys, model->n_keys * sizeof *model->keys);
+    to = put(to, model->guides, model->n_guides * sizeof *model->guides);
     to = put(to, model->motions, model->n_motions * sizeof *model->motions);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
@@ -89,6 +92,7 @@ static int tell_shared(const duite_call *call)
             .n_held = t->n_held,
             .n_watched = t->n_watched,
             .n_moved = t->n_moved,
+            .n_guided = t->n_guided,
             .lowest = t->lowest,
             .highest = t->highest,
             .n_slots = t->n_slots,
@@ -140,6 +144,7 @@ int flow_share_head(struct flow_state *state)
     flow->told.probes = NULL;
     flow->told.keys = NULL;
     flow->told.motions = NULL;
+    flow->told.guides = NULL;
     flow->model = &flow->told;
     flow->n_steps = head->n_steps;
     flow->partition_hash = head->partition_hash;
@@ -154,7 +159,8 @@ static void unpack(struct flow_state *state)
     struct flow_tables *tables = &flow->tables;
     flow->told.planes = flow->shared;
     flow->told.keys = (void *)(flow->told.planes + flow->model->n_planes);
-    flow->told.motions = (void *)(flow->told.keys + flow->model->n_keys);
+    flow->told.guides = (void *)(flow->told.keys + flow->model->n_keys);
+    flow->told.motions = (void *)(flow->told.guides + flow->model->n_guides);
     const struct shape *shape = (const void *)(flow->told.motions + flow->model->n_motions);
     const uint32_t *slot = (const void *)(shape + tables->n_blocks);
     const uint32_t *copies = slot + state->head.n_slots;
@@ -174,6 +180,7 @@ static void unpack(struct flow_state *state)
                                                .n_held = shape->n_held,
                                                .n_watched = shape->n_watched,
                                                .n_moved = shape->n_moved,
+                                               .n_guided = shape->n_guided,
                                                .lowest = shape->lowest,
                                                .highest = shape->highest,
                                                .n_slots = shape->n_slots,

@@ -64,7 +64,7 @@ static int verlet(struct flow_state *state)
         code = fork_position(state, FLOW_AT(v0));
     if (!code)
         code = fork_force(state, &flow_force_free);
-    state->settled_forces = !model->n_planes && !model->n_motions;
+    state->settled_forces = !model->n_planes && !model_is_driven(model);
     return code ? code
                 : flow_fork_all(state, &flow_kick_second, args,
                                 FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(v0), FLOW_AT(v), FLOW_AT(rim_v)),

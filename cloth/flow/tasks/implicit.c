@@ -44,15 +44,22 @@ static int fork_system(struct flow_state *state, struct flow_args args)
     return code ? code : flow_cg_start(state);
 }
 
+/* What the solves of a step are filtered by, from x, v and f. */
+static int fork_filter(struct flow_state *state, struct flow_args args)
+{
+    return model_is_filtered(state->flow->model)
+               ? flow_fork_all(state, &flow_contact, args,
+                               FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f), FLOW_AT(filter)),
+                               FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM)
+               : DUITE_OK;
+}
+
 int flow_assemble(struct flow_state *state)
 {
     const struct flow_args args = flow_attempt_args(state);
-    const bool filtered = model_is_filtered(state->flow->model);
     int code = fork_force(state, args);
-    if (!code && filtered)
-        code = flow_fork_all(state, &flow_contact, args,
-                             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f), FLOW_AT(filter)),
-                             FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+    if (!code)
+        code = fork_filter(state, args);
     if (!code)
         code = flow_fork_all(state, &flow_implicit, args,
                              FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)), FLOW_NOTHING,
@@ -239,6 +246,8 @@ static int bdf2(struct flow_state *state)
                              FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
     if (!code)
         code = get_slope(state, args, &slope);
+    if (!code)
+        code = fork_filter(state, args);
     if (!code)
         code = fork_system(state, args);
     return code ? code : finish(state, args);

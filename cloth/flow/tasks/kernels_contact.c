@@ -1,9 +1,10 @@
-/* Contact in the solve. A vertex that lies on a plane, or comes to it in the step by the velocity
- * it has, is held along the normal by the filter of the solve. Before the forces its velocity along
- * the normal is made the one that ends the step on the plane, so that they and the right side see
- * it (b - A z of Ascher & Boxerman 2003, with the change z made beforehand, as for pins). One that
- * lies there is let go when the forces on it pull it off. */
-#include "cloth/flow/tasks/bodies.h"
+/* Guides and contact in the solve. A row that a guide holds is filtered by it. A vertex that lies
+ * on a plane, or comes to it in the step by the velocity it has, is held along the normal by the
+ * filter of the solve. Before the forces its velocity along the normal is made the one that ends
+ * the step on the plane, so that they and the right side see it (b - A z of Ascher & Boxerman 2003,
+ * with the change z made beforehand, as for pins). One that lies there is let go when the forces on
+ * it pull it off. */
+#include "cloth/flow/tasks/guides.h"
 
 /* m: so near a vertex lies on a plane. */
 static const double ON = 1e-7;
@@ -27,6 +28,14 @@ static enum meeting meet(const struct model_plane *plane, double h, const phys_v
     return *speed <= *due * (1 - 1e-9) ? LANDS : APART;
 }
 
+/* Whether a row can leave a plane with the normal *way, which becomes the way along which it does.
+ */
+static bool can_leave(struct flow_pins *pins, uint32_t row, phys_vec *way)
+{
+    const phys_vec *filter = flow_pins_filter(pins, row);
+    return pins->table->free[row] != 0 && (!filter || flow_guide_way(filter, way));
+}
+
 static int touch(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
@@ -35,12 +44,14 @@ static int touch(const duite_call *call)
     phys_vec *v = duite_out(call, 2, phys_vec);
     for (uint32_t p = 0; p < model->n_planes; p++) {
         const double *n = model->planes[p].normal;
-        const phys_vec up = {n[0], n[1], n[2], 0};
+        struct flow_pins pins;
+        flow_pins_begin(call, t, &pins);
         for (uint32_t i = 0; i < t->n; i++) {
+            phys_vec way = {n[0], n[1], n[2], 0};
             double speed, due;
-            if (t->free[i] != 0 &&
+            if (can_leave(&pins, i, &way) &&
                 meet(model->planes + p, flow_args_of(call)->h, x + i, v + i, &speed, &due))
-                v[i] += (due - speed) * up;
+                v[i] += (due - speed) * way;
         }
     }
     flow_write_rim(t, v, duite_out(call, 3, phys_vec));
@@ -66,28 +77,42 @@ static void hold_along(const phys_vec *up, phys_vec *filter)
         *filter = (phys_vec){0};
 }
 
+/* Holds the rows that a plane holds. */
+static void hold_rows(const duite_call *call, const struct flow_table *t,
+                      const struct model_plane *plane, phys_vec *filter)
+{
+    const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
+    const phys_vec *f = duite_in(call, 3, phys_vec);
+    const phys_vec up = {plane->normal[0], plane->normal[1], plane->normal[2], 0};
+    struct flow_pins pins;
+    flow_pins_begin(call, t, &pins);
+    for (uint32_t i = 0; i < t->n; i++) {
+        double speed, due;
+        phys_vec way = up;
+        if (!can_leave(&pins, i, &way))
+            continue;
+        const enum meeting how = meet(plane, flow_args_of(call)->h, x + i, v + i, &speed, &due);
+        if (how == LANDS || (how == LIES && phys_dot(f + i, &way) <= 0))
+            hold_along(&up, filter + i);
+    }
+}
+
 static int contact(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     const struct model *model = flow_of(call)->model;
-    const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
-    const phys_vec *f = duite_in(call, 3, phys_vec);
     phys_vec *filter = duite_out(call, 4, phys_vec);
+    struct flow_pins pins;
+    struct flow_guide guide;
+    flow_pins_begin(call, t, &pins);
     for (uint32_t i = 0; i < t->n; i++)
         filter[i] = (phys_vec){0, 0, 0, 1};
-    for (uint32_t p = 0; p < model->n_planes; p++) {
-        const double *n = model->planes[p].normal;
-        const phys_vec up = {n[0], n[1], n[2], 0};
-        for (uint32_t i = 0; i < t->n; i++) {
-            double speed, due;
-            const enum meeting how =
-                t->free[i] != 0
-                    ? meet(model->planes + p, flow_args_of(call)->h, x + i, v + i, &speed, &due)
-                    : APART;
-            if (how == LANDS || (how == LIES && phys_dot(f + i, &up) <= 0))
-                hold_along(&up, filter + i);
-        }
+    for (uint32_t i = 0; i < t->n_guided; i++) {
+        flow_pins_guide(&pins, i, &guide);
+        filter[t->guided[i][0]] = guide.filter;
     }
+    for (uint32_t p = 0; model_solves_contact(model) && p < model->n_planes; p++)
+        hold_rows(call, t, model->planes + p, filter);
     return 0;
 }
 FLOW_TIMED(contact, FLOW_COLLIDE)
@@ -102,8 +127,10 @@ static int hold(const duite_call *call)
     const struct flow_table table = flow_table_of(call), *t = &table;
     const phys_vec *filter = duite_in(call, 1, phys_vec);
     phys_vec *b = duite_out(call, 2, phys_vec);
-    for (uint32_t i = 0; i < t->n; i++)
+    for (uint32_t i = 0; i < t->n; i++) {
         solve_filter(filter + i, b + i);
+        solve_filter(filter + i, b + i); /* once leaves a rounding of what it takes away */
+    }
     memcpy(duite_out(call, 3, phys_vec) + flow_diagonal_rows(t), filter, t->n * sizeof *filter);
     return 0;
 }

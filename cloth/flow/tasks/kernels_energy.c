@@ -1,6 +1,6 @@
 /* Energies of a block; a spring between two blocks gives half of its own to each. Sums are
  * contributions, so that they are the same for any ranks and threads. */
-#include "cloth/flow/tasks/bodies.h"
+#include "cloth/flow/tasks/guides.h"
 
 #include "cloth/physics/energy.h"
 #include "cloth/physics/particle.h"
@@ -40,6 +40,7 @@ static int level(const duite_call *call)
     const phys_vec *v = duite_in(call, 1, phys_vec);
     phys_vec *f = duite_out(call, 2, phys_vec);
     phys_accelerate(t->n, t->mass, t->free, f);
+    flow_guides_filter(call, t, f);
     for (uint32_t i = 0; i < t->n; i++)
         f[i] = v[i] + 0.5 * flow_args_of(call)->h * f[i];
     return 0;

@@ -1,6 +1,6 @@
 /* Stages of explicit steps (cloth/physics/stage.h). A body writes the rows of its own block only;
  * whoever moves a row writes the rim that neighbours read. */
-#include "cloth/flow/tasks/bodies.h"
+#include "cloth/flow/tasks/guides.h"
 
 #include "cloth/physics/stage.h"
 
@@ -14,7 +14,9 @@ static int kick_first(const duite_call *call)
     const phys_vec *f = duite_in(call, 1, phys_vec);
     phys_vec *v = duite_out(call, 2, phys_vec), *middle = duite_out(call, 4, phys_vec);
     phys_kick(t->n, half, 1, t->mass, t->drag, t->free, f, v, middle);
+    flow_guides_keep(call, t, v, middle);
     phys_kick(t->n, half, 0, t->mass, t->drag, t->free, f, middle, v);
+    flow_guides_keep(call, t, middle, v);
     flow_write_rim(t, v, duite_out(call, 3, phys_vec));
     return 0;
 }
@@ -27,9 +29,11 @@ const duite_kernel flow_kick_first = {.name = "kick_first",
 static int kick_second(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *middle = duite_in(call, 2, phys_vec);
     phys_vec *v = duite_out(call, 3, phys_vec);
     phys_kick(t->n, 0.5 * flow_args_of(call)->h, 0, t->mass, t->drag, t->free,
-              duite_in(call, 1, phys_vec), duite_in(call, 2, phys_vec), v);
+              duite_in(call, 1, phys_vec), middle, v);
+    flow_guides_keep(call, t, middle, v);
     flow_write_rim(t, v, duite_out(call, 4, phys_vec));
     return flow_check(call, t, v, "velocity", 5);
 }

@@ -1,11 +1,26 @@
 /* Bodies of implicit steps that have bases (cloth/physics/implicit.h): those of more than one
  * Newton step, and those by BDF2. args.h is the t of the step. */
-#include "cloth/flow/tasks/bodies.h"
+#include "cloth/flow/tasks/guides.h"
 
 #include "cloth/physics/implicit.h"
 #include "cloth/physics/particle.h"
 
 #define ARGS sizeof(struct flow_args)
+
+/* Along what a guide holds a row goes where its v says, as one that is held whole does. */
+static void hold_bases(const duite_call *call, const struct flow_table *t,
+                       const struct phys_states *s)
+{
+    struct flow_pins pins;
+    struct flow_guide guide;
+    flow_pins_begin(call, t, &pins);
+    for (uint32_t i = 0; i < t->n_guided; i++) {
+        const uint32_t row = t->guided[i][0];
+        const phys_vec held = s->x[row] + flow_args_of(call)->h / 2 * s->v[row];
+        flow_pins_guide(&pins, i, &guide);
+        flow_guide_keep(&guide, &held, s->base_x + row);
+    }
+}
 
 /* The bases of BDF2, and x where v would lead. */
 static int predict(const duite_call *call)
@@ -20,6 +35,7 @@ static int predict(const duite_call *call)
                                        .base_x = duite_out(call, 5, phys_vec),
                                        .base_v = duite_out(call, 6, phys_vec)};
     phys_bdf2_bases(t->n, h, t->free, &states);
+    hold_bases(call, t, &states);
     phys_place(t->n, h, states.base_x, states.v, x);
     flow_write_rim(t, x, duite_out(call, 7, phys_vec));
     return 0;

@@ -1,6 +1,6 @@
 /* A body writes the rows of its own block only, in an order that the block's table gives; what it
  * needs of neighbours it finds in their rims, one object a neighbour and vector, in slot order. */
-#include "cloth/flow/tasks/bodies.h"
+#include "cloth/flow/tasks/guides.h"
 
 #include "cloth/physics/particle.h"
 #include "cloth/solve/assemble.h"
@@ -92,6 +92,7 @@ static int acceleration(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     phys_accelerate(t->n, t->mass, t->free, duite_out(call, 1, phys_vec));
+    flow_guides_filter(call, t, duite_out(call, 1, phys_vec));
     return 0;
 }
 FLOW_TIMED(acceleration, FLOW_ACCELERATION)
@@ -278,6 +279,28 @@ const duite_kernel flow_position = {.name = "position",
                                     .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
                                     .args_size = ARGS};
 
+/* Rows that a guide holds leave a plane along it. Returns how many rows of the block met it. */
+static size_t meet(const duite_call *call, const struct flow_table *t,
+                   const struct model_plane *plane, phys_vec *x, phys_vec *v)
+{
+    const double *point = plane->point, *normal = plane->normal;
+    struct flow_pins pins;
+    struct flow_guide guide;
+    uint32_t from = 0;
+    size_t touched = 0;
+    flow_pins_begin(call, t, &pins);
+    for (uint32_t i = 0; i < t->n_guided; i++) {
+        const uint32_t row = t->guided[i][0];
+        phys_vec way = {normal[0], normal[1], normal[2], 0};
+        touched += phys_plane(row - from, point, normal, t->free + from, x + from, v + from);
+        from = row + 1;
+        flow_pins_guide(&pins, i, &guide);
+        if (flow_guide_way(&guide.filter, &way))
+            touched += phys_plane_along(point, normal, &way, x + row, v + row);
+    }
+    return touched + phys_plane(t->n - from, point, normal, t->free + from, x + from, v + from);
+}
+
 static int collide(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
@@ -285,8 +308,7 @@ static int collide(const duite_call *call)
     phys_vec *x = duite_out(call, 1, phys_vec), *v = duite_out(call, 2, phys_vec);
     double *status = duite_out(call, 5, double);
     for (uint32_t i = 0; i < model->n_planes; i++)
-        status[FLOW_TOUCHED] += (double)phys_plane(t->n, model->planes[i].point,
-                                                   model->planes[i].normal, t->free, x, v);
+        status[FLOW_TOUCHED] += (double)meet(call, t, model->planes + i, x, v);
     flow_write_rim(t, x, duite_out(call, 3, phys_vec));
     flow_write_rim(t, v, duite_out(call, 4, phys_vec));
     return flow_check(call, t, x, "position", 5);

@@ -1,7 +1,7 @@
 /* What a run tells of itself after each step and what decides whether it rests. Nothing of the
  * state is changed. Rows of the table of probes are written by rank 0, one after the other, as
  * frames are: each row's task holds the token. */
-#include "cloth/flow/tasks/bodies.h"
+#include "cloth/flow/tasks/guides.h"
 
 #include "cloth/physics/particle.h"
 
@@ -37,18 +37,32 @@ const duite_kernel flow_watch_block = {.name = "watch",
                                        .args_size = ARGS};
 
 /* m a - f of a row that is held, a the acceleration that its pin gives it. */
-static void reaction(const duite_call *call, const struct flow_table *t, uint32_t row,
-                     const phys_vec *force, phys_vec *pull)
+static void reaction_of_held(const duite_call *call, const struct flow_table *t, uint32_t row,
+                             const phys_vec *force, phys_vec *pull)
 {
-    const struct model *model = flow_of(call)->model;
-    *pull = (phys_vec){0};
-    if (t->free[row] != 0)
-        return;
+    phys_vec a = {0};
     for (uint32_t i = 0; i < t->n_moved; i++)
         if (t->moved[i][0] == row)
-            flow_due_acceleration(model, t->moved[i][1], flow_args_of(call)->time,
-                                  t->position + row, pull);
-    *pull = t->mass[row] * *pull - *force;
+            flow_due_acceleration(call, t->moved[i][1], t->position + row, &a);
+    *pull = t->mass[row] * a - *force;
+}
+
+/* (I - S) (m a - f) of one that a guide leaves free in part; else nothing. */
+static void reaction_of_guided(const duite_call *call, const struct flow_table *t, uint32_t row,
+                               const phys_vec *force, phys_vec *pull)
+{
+    const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
+    struct flow_pins pins;
+    flow_pins_begin(call, t, &pins);
+    const phys_vec *filter = flow_pins_filter(&pins, row);
+    *pull = (phys_vec){0};
+    if (!filter)
+        return;
+    phys_vec a, along;
+    flow_guide_acceleration(call, t->guided[pins.next][1], x + row, v + row, &a);
+    *pull = along = t->mass[row] * a - *force;
+    solve_filter(filter, &along);
+    *pull -= along;
 }
 
 static int probe(const duite_call *call)
@@ -60,7 +74,10 @@ static int probe(const duite_call *call)
     for (uint32_t i = 0; i < t->n_watched; i++, to += FLOW_SEEN) {
         const uint32_t row = t->watched[i];
         phys_vec pull;
-        reaction(call, t, row, force + row, &pull);
+        if (t->free[row] != 0)
+            reaction_of_guided(call, t, row, force + row, &pull);
+        else
+            reaction_of_held(call, t, row, force + row, &pull);
         for (int c = 0; c < 3; c++) {
             to[c] = x[row][c];
             to[3 + c] = v[row][c];

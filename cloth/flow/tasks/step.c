@@ -93,16 +93,16 @@ static int restore(struct flow_state *state)
  * accepted. */
 static bool is_driven(const struct model *model)
 {
-    return model->n_motions || model_is_filtered(model);
+    return model_is_driven(model) || model_is_filtered(model);
 }
 
 static int drive(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
     int code = model->halving ? keep(state) : DUITE_OK;
-    if (!code && model->n_motions)
+    if (!code && model_is_driven(model))
         code = flow_pins_drive(state);
-    if (!code && model_is_filtered(model))
+    if (!code && model_solves_contact(model))
         code = fork_all(state, &flow_touch, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_v)),
                         FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
     return code;
@@ -132,7 +132,7 @@ static int end_step(struct flow_state *state)
     int code = model->halving && !is_driven(model) ? keep(state) : DUITE_OK;
     if (!code)
         code = model_is_implicit(model) ? flow_implicit_end(state) : flow_explicit_end(state);
-    if (!code && model->n_motions)
+    if (!code && model_is_driven(model))
         code = flow_pins_place(state);
     if (!code && model->n_planes)
         code = fork_all(state, &flow_collide,
@@ -239,6 +239,8 @@ static int settle(struct flow_state *state)
     if (refused)
         return refuse(state, &verdict);
     state->attempt.forked = false;
+    state->length_before = state->length;
+    state->length = attempt.length;
     state->longest = verdict.after;
     flow_grid_accept(&state->grid, flow_verdict_calm(&verdict));
     note(state, status);

@@ -113,6 +113,7 @@ struct flow_args {
     uint32_t stage;  /* of a step by RK4 */
     double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */
     double time;     /* s: of a frame; at the end of the step */
+    double before;   /* s: of a row of probes: length of the step before */
     double part;     /* of dv */
 };
 
@@ -222,6 +223,8 @@ struct flow_state {
     duite_object peaks[2], energy, energies[2]; /* energies: of steps */
     duite_object trial, slope;                  /* of a Newton step: status, slope */
     struct flow_newton newton;
+    uint32_t length; /* ticks of the last step accepted, and of the one before it; 0: none yet */
+    uint32_t length_before;
     uint32_t smooth; /* ticks of the step before, if contact had no part in it; else 0 */
     duite_object coarse, motion[2]; /* with a coarse part: its factor and its part of s */
     struct flow_head head;
@@ -394,10 +397,6 @@ int flow_far_pack(struct flow_state *state, uint32_t block, int to);
 /* Fork what moves the pins of a step: before its forces, and when x has moved. */
 int flow_pins_drive(struct flow_state *state);
 int flow_pins_place(struct flow_state *state);
-/* In a body: the acceleration that a motion gives a vertex that starts there in the step that ends
- * at a time, from the places at its ends and one step before. */
-void flow_due_acceleration(const struct model *model, uint32_t motion, double time,
-                           const phys_vec *start, phys_vec *a);
 
 /* Objects of what is watched. A failure is returned by the next get. */
 void flow_watch_make(struct flow_state *state);

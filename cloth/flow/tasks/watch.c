@@ -71,7 +71,13 @@ static int fork_row(struct flow_state *state)
     int64_t token;
     const uint64_t steps = state->report->steps;
     const unsigned at = state->attempt.parity;
-    struct flow_args args = {.frame = steps, .time = flow_time(state)};
+    const double tick = state->flow->model->h / FLOW_TICKS;
+    const uint32_t length = state->length ? state->length : FLOW_TICKS;
+    struct flow_args args = {.frame = steps,
+                             .time = flow_time(state),
+                             .h = length * tick,
+                             .before =
+                                 (state->length_before ? state->length_before : length) * tick};
     int code = steps ? duite_get(state->rt, state->token, &token) : DUITE_OK;
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
         if (state->flow->tables.block[args.block].n_watched)

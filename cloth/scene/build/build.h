@@ -45,9 +45,14 @@ int scene_build_starts(struct model_cloth *cloth, const struct scene_tree *tree,
 int scene_build_transform(struct mesh_transform *transform, const struct scene_tree *tree, int node,
                           struct cloth_error *error);
 
-/* The motion of a pin, added to the model's. */
-int scene_build_motion(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
-                       int node, struct cloth_error *error);
+/* What a pin holds its vertices to, and how it moves: motions and guides are added to the model's.
+ */
+int scene_build_hold(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
+                     int node, struct cloth_error *error);
+
+/* A direction, made of length 1; what: "the normal of a plane". */
+int scene_build_direction(double direction[3], const char *what, const struct scene_tree *tree,
+                          int node, struct cloth_error *error);
 
 /* That there is no `what` of this name, with those that there are. names: n strings. */
 int scene_build_no_such(const char *what, const char *name, const char *const *names, size_t n,

@@ -110,10 +110,10 @@ static int build_pins(struct model *model, struct model_cloth *cloth, const stru
     cloth->n_pins = (uint32_t)n;
     int code = CLOTH_OK;
     for (size_t i = 0; !code && i < n; i++) {
-        int pin = scene_tree_item(tree, list, i), motion = scene_tree_get(tree, pin, "motion");
+        int pin = scene_tree_item(tree, list, i);
         code = scene_build_pick(&cloth->pins[i].pick, tree, pin, cloth, error);
-        if (!code && motion)
-            code = scene_build_motion(model, &cloth->pins[i], tree, motion, error);
+        if (!code)
+            code = scene_build_hold(model, &cloth->pins[i], tree, pin, error);
     }
     return code;
 }

@@ -1,9 +1,11 @@
-/* How pins move. Keys of all motions stand in one array of the model, in the order of the pins. */
+/* What pins hold to, and how they move. Keys of all motions stand in one array of the model, in the
+ * order of the pins; so do guides. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/yaml/scalar.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Makes room for one more motion with n more keys. */
 static int grow(struct model *model, size_t n, struct cloth_error *error)
@@ -98,8 +100,9 @@ static int check_begin(const struct phys_key *keys, size_t n, const double about
                            "and no rotation are expected");
 }
 
-int scene_build_motion(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
-                       int node, struct cloth_error *error)
+/* A motion, which becomes the model's last. */
+static int build_motion(struct model *model, const struct scene_tree *tree, int node,
+                        struct cloth_error *error)
 {
     const int times = scene_tree_get(tree, node, "times");
     const int translate = scene_tree_get(tree, node, "translate");
@@ -130,6 +133,76 @@ int scene_build_motion(struct model *model, struct model_pin *pin, const struct 
     if (code)
         return code;
     model->n_keys += (uint32_t)n;
-    pin->motion = ++model->n_motions;
+    model->n_motions++;
     return CLOTH_OK;
+}
+
+int scene_build_direction(double direction[3], const char *what, const struct scene_tree *tree,
+                          int node, struct cloth_error *error)
+{
+    double largest = 0, square = 0;
+    scene_tree_vector(tree, node, 3, direction);
+    for (int i = 0; i < 3; i++)
+        largest = fmax(largest, fabs(direction[i]));
+    if (largest <= 0)
+        return scene_tree_fail(tree, node, error, "%s is zero; a direction is expected", what);
+    for (int i = 0; i < 3; i++) {
+        direction[i] /= largest; /* so that the squares neither overflow nor vanish */
+        square += direction[i] * direction[i];
+    }
+    for (int i = 0; i < 3; i++)
+        direction[i] /= sqrt(square);
+    return CLOTH_OK;
+}
+
+/* A guide has a direction or a normal, a point neither. */
+static int check_hold(const char *to, const struct scene_tree *tree, int node,
+                      struct cloth_error *error)
+{
+    static const char *const keys[] = {"direction", "normal"}, *const of[] = {"line", "plane"};
+    for (int i = 0; i < 2; i++) {
+        const int key = scene_tree_get(tree, node, keys[i]), wanted = !strcmp(to, of[i]);
+        if (wanted && !key)
+            return scene_tree_fail(tree, node, error,
+                                   "a pin to a %s has no %s; a list of 3 numbers is expected", to,
+                                   keys[i]);
+        if (!wanted && key)
+            return scene_tree_fail(tree, key, error,
+                                   "a pin to a %s has a %s, which is that of a %s; to: %s is "
+                                   "expected with it",
+                                   to, keys[i], of[i], of[i]);
+    }
+    return CLOTH_OK;
+}
+
+static int build_guide(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
+                       int node, struct cloth_error *error)
+{
+    const char *to = scene_tree_text(tree, node, "to");
+    const bool line = !strcmp(to, "line");
+    struct model_guide *guides = realloc(model->guides, (model->n_guides + 1) * sizeof *guides);
+    if (!guides)
+        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    model->guides = guides;
+    struct model_guide *guide = guides + model->n_guides;
+    *guide = (struct model_guide){.kind = line ? MODEL_LINE : MODEL_PLANE, .motion = pin->motion};
+    pin->motion = 0;
+    pin->guide = ++model->n_guides;
+    return scene_build_direction(guide->direction,
+                                 line ? "the direction of a pin" : "the normal of a pin", tree,
+                                 scene_tree_get(tree, node, line ? "direction" : "normal"), error);
+}
+
+int scene_build_hold(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
+                     int node, struct cloth_error *error)
+{
+    const char *to = scene_tree_text(tree, node, "to");
+    const int motion = scene_tree_get(tree, node, "motion");
+    int code = check_hold(to, tree, node, error);
+    if (!code && motion)
+        code = build_motion(model, tree, motion, error);
+    if (code)
+        return code;
+    pin->motion = motion ? model->n_motions : 0;
+    return strcmp(to, "point") ? build_guide(model, pin, tree, node, error) : CLOTH_OK;
 }

@@ -140,22 +140,9 @@ static int build_materials(struct model *model, const struct scene_tree *tree,
 static int build_plane(struct model_plane *plane, const struct scene_tree *tree, int node,
                        struct cloth_error *error)
 {
-    int normal = scene_tree_get(tree, node, "normal");
     scene_tree_vector(tree, scene_tree_get(tree, node, "point"), 3, plane->point);
-    scene_tree_vector(tree, normal, 3, plane->normal);
-    double largest = 0, square = 0;
-    for (int i = 0; i < 3; i++)
-        largest = fmax(largest, fabs(plane->normal[i]));
-    if (largest <= 0)
-        return scene_tree_fail(tree, normal, error,
-                               "the normal of a plane is zero; a direction is expected");
-    for (int i = 0; i < 3; i++) {
-        plane->normal[i] /= largest; /* so that the squares neither overflow nor vanish */
-        square += plane->normal[i] * plane->normal[i];
-    }
-    for (int i = 0; i < 3; i++)
-        plane->normal[i] /= sqrt(square);
-    return CLOTH_OK;
+    return scene_build_direction(plane->normal, "the normal of a plane", tree,
+                                 scene_tree_get(tree, node, "normal"), error);
 }
 
 static int build_obstacles(struct model *model, const struct scene_tree *tree,

@@ -55,6 +55,7 @@ static const struct scene_rule motion_keys[] = {
      .about = "the point that is rotated about"},
     {0}};
 
+static const char *const guides[] = {"point", "line", "plane", NULL};
 static const struct scene_rule pin_keys[] = {
     {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
      .about = "in the mesh's numbering"},
@@ -62,7 +63,14 @@ static const struct scene_rule pin_keys[] = {
      .about = "the vertex nearest to a point"},
     {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
      .about = "all vertices in the box between two corners"},
-    {"motion", SCENE_MAP, .inside = motion_keys, .about = "of the vertices, by key frames"},
+    {"to", SCENE_CHOICE, .fallback = "point", .words = guides,
+     .about = "where they are held: each at a point, or on a line or plane through it"},
+    {"direction", SCENE_LIST, .length = 3, .inside = &number,
+     .about = "of the line, of any length but 0"},
+    {"normal", SCENE_LIST, .length = 3, .inside = &number,
+     .about = "to the plane, of any length but 0"},
+    {"motion", SCENE_MAP, .inside = motion_keys,
+     .about = "of the vertices, or of their lines or planes, by key frames"},
     {0}};
 static const struct scene_rule pin = {.type = SCENE_MAP, .inside = pin_keys};
 

@@ -119,6 +119,26 @@ START_TEST(names_and_indices)
 }
 END_TEST
 
+START_TEST(pins_that_hold_to_nothing)
+{
+    EXPECT({"{vertices: [0, 3]}", "{vertices: [0, 3], to: lines}",
+            .error = ":7:35: cloths[0].pins[0].to is lines; point or line or plane is expected"},
+           {"{vertices: [0, 3]}", "{vertices: [0, 3], to: line}",
+            .error = ":7:12: a pin to a line has no direction; a list of 3 numbers is expected"},
+           {"{vertices: [0, 3]}", "{vertices: [0, 3], to: line, normal: [0, 1, 0]}",
+            .error = ":7:12: a pin to a line has no direction; a list of 3 numbers is expected"},
+           {"{vertices: [0, 3]}", "{vertices: [0, 3], direction: [0, 1, 0]}",
+            .error =
+                ":7:42: a pin to a point has a direction, which is that of a line; to: line is "
+                "expected with it"},
+           {"{vertices: [0, 3]}", "{vertices: [0, 3], to: plane, normal: [0, 0, 0]}",
+            .error = ":7:50: the normal of a pin is zero; a direction is expected"},
+           {"{vertices: [0, 3]}", "{vertices: [0, 3], to: plane, normal: [0, 1]}",
+            .error = ":7:50: cloths[0].pins[0].normal is a list of 2; a list of 3 numbers is "
+                     "expected"});
+}
+END_TEST
+
 #define MOTION(text) "{vertices: [0, 3]}", "{vertices: [0, 3], motion: {" text "}}"
 
 START_TEST(loads_that_cannot_be_made)
@@ -260,6 +280,7 @@ int main(void)
     tcase_add_test(cases, loads_that_cannot_be_made);
     tcase_add_test(cases, starts_and_masses_that_cannot_be_made);
     tcase_add_test(cases, motions_that_cannot_be_made);
+    tcase_add_test(cases, pins_that_hold_to_nothing);
     tcase_add_test(cases, probes_that_tell_nothing);
     tcase_add_test(cases, meshes_that_cannot_be_used);
     suite_add_tcase(suite, cases);

@@ -1,0 +1,222 @@
+/* Pins to lines and planes against closed forms: where all vertices have the same guide, their
+ * centre moves as a free particle under the part of the forces that the guide leaves, whatever is
+ * between them; none leaves its guide, at rest, on the move or on the floor. */
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+
+enum { N = 6, VERTICES = N * N, STEPS = 10 };
+
+/* A sheet of which every vertex has the guide, in blocks of eight. */
+struct guided {
+    struct setup setup;
+    struct model_guide guide;
+};
+
+static void setup_guided(struct guided *g, int kind, double x, double y, double z)
+{
+    uint32_t all[VERTICES];
+    for (uint32_t v = 0; v < VERTICES; v++)
+        all[v] = v;
+    setup_sheet(&g->setup, N);
+    setup_pin(&g->setup, VERTICES, all);
+    g->guide = (struct model_guide){.direction = {x, y, z}};
+    g->guide.kind = kind == MODEL_LINE ? MODEL_LINE : MODEL_PLANE;
+    g->setup.pin.guide = 1;
+    g->setup.model.guides = &g->guide;
+    g->setup.model.n_guides = 1;
+    g->setup.model.tolerance = 1e-13;
+}
+
+static void runs(struct record *record, const struct model *model)
+{
+    record_run(record, model);
+    ck_assert_msg(record->code == 0, "%s", record->error.text);
+}
+
+/* How far a unit of acceleration leads in n steps, in h^2. */
+static double way(enum model_integrator integrator, double n)
+{
+    switch (integrator) {
+    case MODEL_EXPLICIT_EULER:
+        return n * (n - 1) / 2;
+    case MODEL_VERLET:
+    case MODEL_RK4:
+        return n * n / 2;
+    case MODEL_BDF2:
+        return n * n / 2 + 0.75 * (1 - pow(3, -n));
+    default:
+        return n * (n + 1) / 2;
+    }
+}
+
+/* y = S y of a guide. */
+static void filter(const struct model_guide *guide, double y[3])
+{
+    double dot = 0;
+    for (int i = 0; i < 3; i++)
+        dot += guide->direction[i] * y[i];
+    for (int i = 0; i < 3; i++)
+        y[i] = (guide->kind == MODEL_LINE ? 0 : y[i]) +
+               (guide->kind == MODEL_LINE ? 1 : -1) * dot * guide->direction[i];
+}
+
+/* The centre falls as it should, and every vertex is on its guide, which moved by `shift`. */
+static void check_fall(const struct guided *g, const struct record *r, const double shift[3])
+{
+    const struct model *model = &g->setup.model;
+    double mass[VERTICES] = {0}, centre[3] = {0}, total = 0;
+    double due[3] = {0.5 * g->setup.cloth.n_loads, -9.81 + 0.25 * g->setup.cloth.n_loads, 0};
+    mesh_add_mass(&g->setup.cloth.mesh, g->setup.material.density, mass);
+    filter(&g->guide, due);
+    for (size_t v = 0; v < VERTICES; v++) {
+        double moved[3], along[3];
+        for (size_t c = 0; c < 3; c++)
+            along[c] = moved[c] = record_at(r, STEPS, v, c) - record_at(r, 0, v, c) - shift[c];
+        filter(&g->guide, along);
+        for (size_t c = 0; c < 3; c++) {
+            ck_assert_double_eq_tol(moved[c], along[c], 5e-16);
+            centre[c] += mass[v] * along[c];
+        }
+        total += mass[v];
+    }
+    for (size_t c = 0; c < 3; c++)
+        ck_assert_double_eq_tol(centre[c] / total, due[c] * 1e-6 * way(model->integrator, STEPS),
+                                1e-15);
+}
+
+/* With a load on a corner, so that something is between them; all preconditioners, one Newton step
+ * or several. */
+static void fall(int kind)
+{
+    for (int i = 0; i < MODEL_INTEGRATORS; i++)
+        for (int way = 0; way < (i < MODEL_IMPLICIT_EULER ? 1 : 6); way++) {
+            static const double none[3] = {0};
+            struct guided g;
+            struct record record = {0};
+            setup_guided(&g, kind, 0.48, 0.64, -0.6);
+            g.setup.model.integrator = (enum model_integrator)i;
+            g.setup.model.preconditioner = (enum model_preconditioner)(way % 5);
+            g.setup.model.newton_steps = way == 5 ? 20 : 1;
+            g.setup.model.newton_tolerance = 1e-10;
+            setup_load(&g.setup, 5, 0.1, 0.05, 0); /* of 0.2 kg */
+            runs(&record, &g.setup.model);
+            check_fall(&g, &record, none);
+            record_free(&record);
+            setup_free(&g.setup);
+        }
+}
+
+START_TEST(falls_along_a_line)
+{
+    fall(MODEL_LINE);
+}
+END_TEST
+
+START_TEST(falls_in_a_plane)
+{
+    fall(MODEL_PLANE);
+}
+END_TEST
+
+/* Guides that move by 0.3 m/s across themselves take their vertices along and do not slow them. */
+START_TEST(guides_that_move)
+{
+    for (int i = 0; i < 2 * MODEL_INTEGRATORS; i++) {
+        static struct phys_key keys[] = {{.rotate = {1}},
+                                         {.time = 1, .translate = {0.3}, .rotate = {1}}};
+        static struct model_motion motion = {.n = 2};
+        static const double shift[3] = {0.3 * 0.01};
+        struct guided g;
+        struct record record = {0};
+        if (i % 2)
+            setup_guided(&g, MODEL_LINE, 0, 1, 0);
+        else
+            setup_guided(&g, MODEL_PLANE, 1, 0, 0);
+        g.setup.model.integrator = (enum model_integrator)(i / 2);
+        g.setup.model.n_motions = 1;
+        g.setup.model.motions = &motion;
+        g.setup.model.n_keys = 2;
+        g.setup.model.keys = keys;
+        g.guide.motion = 1;
+        runs(&record, &g.setup.model);
+        check_fall(&g, &record, shift);
+        record_free(&record);
+        setup_free(&g.setup);
+    }
+}
+END_TEST
+
+/* The side of the sheet that is on the floor cannot go on along its lines, the others do. */
+START_TEST(guides_meet_the_floor)
+{
+    for (int i = 0; i <= MODEL_INTEGRATORS; i++) {
+        struct guided g;
+        struct record record = {0};
+        setup_guided(&g, MODEL_LINE, 0.6, -0.8, 0);
+        g.setup.model.integrator = (enum model_integrator)(i < MODEL_INTEGRATORS ? i : 4);
+        if (i == MODEL_INTEGRATORS)
+            g.setup.model.contact = MODEL_CONTACT_FILTER;
+        g.setup.model.n_planes = 1;
+        g.setup.plane = (struct model_plane){{0.5, 0, 0}, {-0.8, 0.6, 0}};
+        g.setup.cloth.velocity[1] = -1; /* of which the lines leave 0.8 m/s */
+        runs(&record, &g.setup.model);
+        for (size_t v = 0; v < VERTICES; v++) {
+            const double dx = record_at(&record, STEPS, v, 0) - record_at(&record, 0, v, 0);
+            const double dy = record_at(&record, STEPS, v, 1) - record_at(&record, 0, v, 1);
+            const double above = -0.8 * (record_at(&record, STEPS, v, 0) - 0.5) +
+                                 0.6 * record_at(&record, STEPS, v, 1);
+            ck_assert_double_eq_tol(0.8 * dx + 0.6 * dy, 0, 1e-15);
+            if (record_at(&record, 0, v, 0) < 0.4)
+                ck_assert_double_gt(dx, 0.003);
+            else
+                ck_assert_double_eq_tol(above, 0, 1e-15);
+        }
+        record_free(&record);
+        setup_free(&g.setup);
+    }
+}
+END_TEST
+
+/* Two pins may say the same of a vertex, and not two things. */
+START_TEST(two_pins_on_a_vertex)
+{
+    for (int i = 0; i < 4; i++) {
+        struct guided g;
+        struct record record = {0};
+        struct model_guide guides[2];
+        setup_guided(&g, MODEL_LINE, 0, 1, 0);
+        struct model_pin pins[2] = {g.setup.pin, g.setup.pin};
+        guides[0] = guides[1] = g.guide;
+        pins[1].guide = i == 3 ? 0 : 2;
+        guides[1].kind = i == 1 ? MODEL_PLANE : MODEL_LINE;
+        guides[1].direction[2] = i == 2 ? 0.1 : 0;
+        g.setup.model.n_guides = 2;
+        g.setup.model.guides = guides;
+        g.setup.cloth.pins = pins;
+        g.setup.cloth.n_pins = 2;
+        record_run(&record, &g.setup.model);
+        ck_assert_int_eq(record.code, i ? CLOTH_E_INPUT : CLOTH_OK);
+        if (i)
+            ck_assert_str_eq(record.error.text,
+                             "vertex 35 of cloth 'test' is held by two pins that do not hold and "
+                             "move alike; one is expected");
+        record_free(&record);
+        setup_free(&g.setup);
+    }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("guides");
+    TCase *cases = tcase_create("guides");
+    tcase_add_test(cases, falls_along_a_line);
+    tcase_add_test(cases, falls_in_a_plane);
+    tcase_add_test(cases, guides_that_move);
+    tcase_add_test(cases, guides_meet_the_floor);
+    tcase_add_test(cases, two_pins_on_a_vertex);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -1,11 +1,15 @@
 /* A factor is, for each row, the inverse of a 3 x 3 block (struct solve_symmetric), and behind them
- * for IC(0), for each inner entry, its block of T. The same T stands on both sides of E, so M is
- * exactly symmetric and as definite as E. T in float takes half the bytes and is slower: what is
- * converted is in the cache of the core anyway. */
+ * for IC(0), for each inner entry, its block of T, transposed: what a row gives to those behind it
+ * are multiples of columns of T', by its own three numbers, and what it takes from them is summed
+ * up over its entries before lanes are. The same T stands on both sides of E, so M is exactly
+ * symmetric and as definite as E. It is made in double and kept in float, in the first half of its
+ * memory: a solve reads it from far more often than it is made, and half the bytes are read in less
+ * time. */
 #include "cloth/solve/local.h"
 #include "cloth/solve/matrix3.h"
 
 #include <stdbool.h>
+#include <string.h>
 
 /* A pivot below this part of its row's diagonal is rounding. */
 #define LEAST 1e-9
@@ -13,15 +17,21 @@
 /* Those of B are not below its masses; what IC(0) leaves so far below is as good as nothing. */
 #define LEAST_OF_MASS 1e-3
 
-struct factor {
-    struct solve_symmetric *inverse; /* n */
-    struct solve_columns *t;         /* row[n] */
+struct rounded {
+    float c[3][4];
 };
 
-static struct factor factor_of(const struct solve_block *block, double *memory)
+struct factor {
+    struct solve_symmetric *inverse; /* n */
+    struct solve_columns *t;         /* row[n]: T', by columns, while they are made; then */
+    struct rounded *rounded;
+};
+
+PHYS_INLINE struct factor factor_of(const struct solve_block *block, double *memory)
 {
     struct solve_symmetric *inverse = (struct solve_symmetric *)(void *)memory;
-    return (struct factor){inverse, (struct solve_columns *)(void *)(inverse + block->n)};
+    return (struct factor){inverse, (struct solve_columns *)(void *)(inverse + block->n),
+                           (struct rounded *)(void *)(inverse + block->n)};
 }
 
 size_t solve_local_doubles(size_t n, size_t entries, enum solve_local kind)
@@ -118,7 +128,7 @@ PHYS_INLINE void invert_surely(struct solve_symmetric *m)
     *m = inverse;
 }
 
-/* The inner entries of B: zero where an end is held. */
+/* The inner entries of B, transposed: zero where an end is held. */
 PHYS_INLINE void spread(const struct solve_block *block, const void *values,
                         struct solve_columns *t)
 {
@@ -128,38 +138,46 @@ PHYS_INLINE void spread(const struct solve_block *block, const void *values,
             struct solve_symmetric m = {{0}, {0}};
             phys_vec turn;
             solve_entry_of(block->format, entry, i, &m, &turn);
+            turn = -turn; /* of N' */
             solve_entry_columns(&m, &turn, t + i);
             const double sign = -block->free[a] * block->free[block->column[i]];
             for (int k = 0; k < 3; k++)
                 t[i].c[k] *= sign;
             if (block->filter) {
-                filter_left(block->filter + a, t + i);
-                filter_right(block->filter + block->column[i], t + i);
+                filter_left(block->filter + block->column[i], t + i);
+                filter_right(block->filter + a, t + i);
             }
         }
 }
 
-/* t = inverse t. */
+/* t = t inverse. */
 PHYS_INLINE void scale(const struct solve_symmetric *inverse, struct solve_columns *t)
 {
-    for (int k = 0; k < 3; k++) {
-        const phys_vec column = t->c[k];
-        solve_times(inverse, &column, t->c + k);
-    }
+    const phys_vec *d = &inverse->diagonal, *e = &inverse->beside;
+    const phys_vec x = t->c[0], y = t->c[1], z = t->c[2];
+    t->c[0] = (*d)[0] * x + (*e)[0] * y + (*e)[2] * z;
+    t->c[1] = (*e)[0] * x + (*d)[1] * y + (*e)[1] * z;
+    t->c[2] = (*e)[2] * x + (*e)[1] * y + (*d)[2] * z;
 }
 
-/* b -= t' w, where that is symmetric. */
+/* b -= T' W of one entry, which is symmetric. t, w: T' and W', by columns. */
 PHYS_INLINE void reduce_diagonal(const struct solve_columns *t, const struct solve_columns *w,
                                  struct solve_symmetric *b)
 {
-    struct solve_columns m;
-    for (int k = 0; k < 3; k++)
-        solve_columns_turned(t, w->c + k, m.c + k);
-    b->diagonal -= (phys_vec){m.c[0][0], m.c[1][1], m.c[2][2], 0};
-    b->beside -= (phys_vec){m.c[1][0], m.c[2][1], m.c[2][0], 0};
+    const phys_vec x = w->c[0], y = w->c[1], z = w->c[2];
+    b->diagonal -= t->c[0] * x + t->c[1] * y + t->c[2] * z;
+    b->beside -= t->c[0] * SOLVE_YZX(x) + t->c[1] * SOLVE_YZX(y) + t->c[2] * SOLVE_YZX(z);
 }
 
-/* The entry of (b, c) -= t' w, if it is in the pattern. */
+/* Column k of W' T. */
+PHYS_INLINE void reduce_column(const struct solve_columns *w, const struct solve_columns *t, int k,
+                               phys_vec *column)
+{
+    *column -= t->c[0][k] * w->c[0] + t->c[1][k] * w->c[1] + t->c[2][k] * w->c[2];
+}
+
+/* The entry of (b, c), transposed, -= W' T, if it is in the pattern; W' is of (a, c), T' of (a, b).
+ */
 PHYS_INLINE void reduce_beside(const struct solve_block *block, uint32_t b, uint32_t c,
                                const struct solve_columns *w, const struct solve_columns *t,
                                struct solve_columns *all)
@@ -169,24 +187,18 @@ PHYS_INLINE void reduce_beside(const struct solve_block *block, uint32_t b, uint
         i++;
     if (i == block->row[b + 1] || block->column[i] != c)
         return;
-    for (int k = 0; k < 3; k++) {
-        phys_vec product;
-        solve_columns_turned(t, w->c + k, &product);
-        all[i].c[k] -= product;
-    }
+    reduce_column(w, t, 0, all[i].c);
+    reduce_column(w, t, 1, all[i].c + 1);
+    reduce_column(w, t, 2, all[i].c + 2);
 }
 
-/* Takes row a out of the rows behind it. pivot: its block of E. */
-PHYS_INLINE void eliminate(const struct solve_block *block, size_t a,
-                           const struct solve_symmetric *pivot, struct factor *f)
+/* Takes row a out of the rows behind it. */
+PHYS_INLINE void eliminate(const struct solve_block *block, size_t a, struct factor *f)
 {
     const uint32_t from = block->row[a], to = block->row[a + 1];
-    for (uint32_t i = from; i < to; i++)
-        scale(f->inverse + a, f->t + i);
     for (uint32_t i = from; i < to; i++) {
-        struct solve_columns w;
-        for (int k = 0; k < 3; k++)
-            solve_times(pivot, f->t[i].c + k, w.c + k);
+        const struct solve_columns w = f->t[i];
+        scale(f->inverse + a, f->t + i);
         reduce_diagonal(f->t + i, &w, f->inverse + block->column[i]);
         for (uint32_t j = from; j < i; j++)
             reduce_beside(block, block->column[j], block->column[i], &w, f->t + j, f->t);
@@ -207,7 +219,7 @@ PHYS_INLINE bool factorise(const struct solve_block *block, const struct solve_c
         const phys_vec whole = {d, d, d, 0};
         if (!solve_invert(&pivot, &whole, LEAST_OF_MASS, f->inverse + a))
             return false;
-        eliminate(block, a, &pivot, f);
+        eliminate(block, a, f);
     }
     return true;
 }
@@ -225,6 +237,19 @@ PHYS_INLINE void over_relax(const struct solve_block *block, const struct solve_
     }
 }
 
+/* What is written lies before what is still to be read. */
+PHYS_INLINE void round_off(const struct solve_block *block, struct factor *f)
+{
+    for (size_t i = 0; i < block->row[block->n]; i++) {
+        const struct solve_columns t = f->t[i];
+        struct rounded rounded;
+        for (int k = 0; k < 3; k++)
+            for (int c = 0; c < 4; c++)
+                rounded.c[k][c] = (float)t.c[k][c];
+        memcpy(f->rounded + i, &rounded, sizeof rounded);
+    }
+}
+
 PHYS_KERNEL_OF(int, solve_local_factor,
                (const struct solve_block *block, const struct solve_cut *cut, const void *values,
                 enum solve_local kind, double *factor),
@@ -238,11 +263,20 @@ PHYS_KERNEL_OF(int, solve_local_factor,
             invert_surely(f.inverse + a);
         return 0;
     }
-    for (int i = 0; i < SOLVE_SSOR; i++)
-        if (factorise(block, cut, values, shift[i], &f))
-            return i;
-    over_relax(block, cut, values, &f);
-    return SOLVE_SSOR;
+    int tried = 0;
+    while (tried < SOLVE_SSOR && !factorise(block, cut, values, shift[tried], &f))
+        tried++;
+    if (tried == SOLVE_SSOR)
+        over_relax(block, cut, values, &f);
+    round_off(block, &f);
+    return tried;
+}
+
+PHYS_INLINE void widen(const struct rounded *t, phys_vec *x, phys_vec *y, phys_vec *z)
+{
+    solve_widen(t->c[0], x);
+    solve_widen(t->c[1], y);
+    solve_widen(t->c[2], z);
 }
 
 /* s = (I + T')^-1 q, then E^-1 of it; a row is final when all before it are. */
@@ -251,9 +285,9 @@ PHYS_INLINE void forward(const struct solve_block *block, const struct factor *f
     for (size_t a = 0; a < block->n; a++) {
         const phys_vec own = s[a];
         for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
-            phys_vec y;
-            solve_columns_turned(f->t + i, &own, &y);
-            s[block->column[i]] -= y;
+            phys_vec x, y, z;
+            widen(f->rounded + i, &x, &y, &z);
+            s[block->column[i]] -= own[0] * x + own[1] * y + own[2] * z;
         }
         solve_times(f->inverse + a, &own, s + a);
     }
@@ -265,14 +299,18 @@ PHYS_INLINE double backward(const struct solve_block *block, const struct factor
 {
     phys_vec dot = {0};
     for (size_t a = block->n; a-- > 0;) {
-        phys_vec sum = s[a];
+        phys_vec sum_x = {0}, sum_y = {0}, sum_z = {0}, sum;
         for (uint32_t i = block->row[a + 1]; i-- > block->row[a];) { /* the latest last */
-            phys_vec y;
-            solve_columns_times(f->t + i, s + block->column[i], &y);
-            sum -= y;
+            const phys_vec other = s[block->column[i]];
+            phys_vec x, y, z;
+            widen(f->rounded + i, &x, &y, &z);
+            sum_x += x * other;
+            sum_y += y * other;
+            sum_z += z * other;
         }
-        s[a] = sum;
-        dot += q[a] * sum;
+        solve_lanes_of(&sum_x, &sum_y, &sum_z, &sum);
+        s[a] -= sum;
+        dot += q[a] * s[a];
     }
     return phys_lanes(&dot);
 }
@@ -282,9 +320,7 @@ PHYS_KERNEL_OF(double, solve_local_apply,
                 const phys_vec *q, phys_vec *s),
                (block, kind, factor, q, s))
 {
-    const struct solve_symmetric *inverse = (const struct solve_symmetric *)(const void *)factor;
-    const struct factor f = {(struct solve_symmetric *)(uintptr_t)inverse,
-                             (struct solve_columns *)(uintptr_t)(inverse + block->n)};
+    const struct factor f = factor_of(block, (double *)(uintptr_t)factor);
     if (kind == SOLVE_IC0) {
         for (size_t a = 0; a < block->n; a++)
             s[a] = q[a];

@@ -10,7 +10,8 @@
 enum solve_local {
     SOLVE_JACOBI, /* the inverses of the 3 x 3 blocks on the diagonal */
     SOLVE_IC0 /* (I + T') E (I + T), the incomplete Cholesky factorisation in 3 x 3 blocks on the
-               * pattern of B (Meijerink & van der Vorst 1977), exact where that has no fill */
+               * pattern of B (Meijerink & van der Vorst 1977), exact where that has no fill but for
+               * T in float */
 };
 
 /* Doubles that a factor takes, of so many rows and inner entries. */

@@ -39,19 +39,23 @@ PHYS_INLINE void solve_times(const struct solve_symmetric *m, const phys_vec *v,
     *y = m->diagonal * *v + m->beside * SOLVE_YZX(*v) + SOLVE_ZXY(m->beside) * SOLVE_ZXY(*v);
 }
 
-/* m v, m' v. */
+/* m v. */
 PHYS_INLINE void solve_columns_times(const struct solve_columns *m, const phys_vec *v, phys_vec *y)
 {
     *y = (*v)[0] * m->c[0] + (*v)[1] * m->c[1] + (*v)[2] * m->c[2];
 }
-PHYS_INLINE void solve_columns_turned(const struct solve_columns *m, const phys_vec *v, phys_vec *y)
+
+/* The sums of the lanes of three vectors: m' v, when each column of m is multiplied by v. */
+PHYS_INLINE void solve_lanes_of(const phys_vec *a, const phys_vec *b, const phys_vec *c,
+                                phys_vec *sums)
 {
-    const phys_vec a = m->c[0] * *v, b = m->c[1] * *v, c = m->c[2] * *v, none = {0};
+    const phys_vec none = {0};
     const phys_vec ab =
-        __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    const phys_vec c0 =
-        __builtin_shufflevector(c, none, 0, 4, 2, 6) + __builtin_shufflevector(c, none, 1, 5, 3, 7);
-    *y = __builtin_shufflevector(ab, c0, 0, 1, 4, 5) + __builtin_shufflevector(ab, c0, 2, 3, 6, 7);
+        __builtin_shufflevector(*a, *b, 0, 4, 2, 6) + __builtin_shufflevector(*a, *b, 1, 5, 3, 7);
+    const phys_vec c0 = __builtin_shufflevector(*c, none, 0, 4, 2, 6) +
+                        __builtin_shufflevector(*c, none, 1, 5, 3, 7);
+    *sums =
+        __builtin_shufflevector(ab, c0, 0, 1, 4, 5) + __builtin_shufflevector(ab, c0, 2, 3, 6, 7);
 }
 
 /* The columns of a symmetric one. */

@@ -155,10 +155,10 @@ START_TEST(every_preconditioner_solves)
 }
 END_TEST
 
-/* A chain in one block: IC(0) is exact. */
+/* A chain in one block: IC(0) is exact but for its T in float. */
 START_TEST(a_chain_at_once)
 {
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-12, .most = 1};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-5, .most = 1};
     phys_vec b[SYSTEM_ROWS];
     static struct run run;
     srand(2);

@@ -81,43 +81,60 @@ PHYS_INLINE double has(const phys_vec *basis, int c)
     return ((int)(*basis)[3] >> c & 1) == 0;
 }
 
-/* phi of a row, function by function and axis by axis. */
-static void spread_out(const phys_vec *basis, double g[3][3])
+/* phi of a row, a function at a time, without the axes that are missing. */
+PHYS_INLINE void spread_out(const phys_vec *basis, phys_vec g[3])
 {
+    const phys_vec axes = {has(basis, 0), has(basis, 1), has(basis, 2), 0};
     for (int k = 0; k < 3; k++)
-        for (int c = 0; c < 3; c++)
-            g[k][c] = (*basis)[k] * has(basis, c);
+        g[k] = (*basis)[k] * axes;
 }
 
+/* Sums over entries with ends of which axes are missing: rows of function k by column d of function
+ * l, an axis a lane. */
+struct filtered {
+    phys_vec c[3][3][3];
+};
+
 /* Adds sign times g' (columns) h. */
-static void add_filtered(double sign, double g[3][3], const struct solve_columns *columns,
-                         double h[3][3], double *matrix)
+PHYS_INLINE void add_filtered(double sign, const phys_vec g[3], const struct solve_columns *columns,
+                              const phys_vec h[3], struct filtered *sum)
 {
     for (int k = 0; k < 3; k++)
-        for (int l = 0; l < 3; l++)
-            for (int c = 0; c < 3; c++)
-                for (int d = 0; d < 3; d++)
-                    matrix[SOLVE_COARSE * (3 * k + c) + 3 * l + d] +=
-                        sign * g[k][c] * columns->c[d][c] * h[l][d];
+        for (int d = 0; d < 3; d++) {
+            const phys_vec rows = sign * g[k] * columns->c[d];
+            for (int l = 0; l < 3; l++)
+                sum->c[k][d][l] += h[l][d] * rows;
+        }
+}
+
+static void put_filtered(const struct filtered *sum, double *matrix)
+{
+    for (int k = 0; k < 3; k++)
+        for (int d = 0; d < 3; d++)
+            for (int l = 0; l < 3; l++)
+                for (int c = 0; c < 3; c++)
+                    matrix[SOLVE_COARSE * (3 * k + c) + 3 * l + d] += sum->c[k][d][l][c];
 }
 
 /* What an entry adds between rows a and b of which axes are missing. */
-static void couple_filtered(const phys_vec *a, const phys_vec *b, const struct solve_symmetric *m,
-                            const phys_vec *turn, double *matrix)
+PHYS_INLINE void couple_filtered(enum solve_format format, const phys_vec *a, const phys_vec *b,
+                                 const struct solve_symmetric *m, const phys_vec *turn,
+                                 struct filtered *sum)
 {
     const struct solve_symmetric none = {{0}, {0}};
-    struct solve_columns columns, turns;
-    double ga[3][3], gb[3][3], g[3][3];
+    struct solve_columns columns;
+    phys_vec ga[3], gb[3], g[3];
     spread_out(a, ga);
     spread_out(b, gb);
     for (int k = 0; k < 3; k++)
-        for (int c = 0; c < 3; c++)
-            g[k][c] = ga[k][c] - gb[k][c];
+        g[k] = ga[k] - gb[k];
     solve_columns_of(m, &columns);
-    solve_entry_columns(&none, turn, &turns);
-    add_filtered(1, g, &columns, g, matrix);
-    add_filtered(1, gb, &turns, ga, matrix);
-    add_filtered(-1, ga, &turns, gb, matrix);
+    add_filtered(1, g, &columns, g, sum);
+    if (format == SOLVE_SPRINGS)
+        return;
+    solve_entry_columns(&none, turn, &columns);
+    add_filtered(1, gb, &columns, ga, sum);
+    add_filtered(-1, ga, &columns, gb, sum);
 }
 
 /* Adds phi phi' times m: of functions 00 01 02 11 12 22. */
@@ -177,6 +194,7 @@ PHYS_INLINE void couple(const struct solve_block *block, enum solve_format forma
 {
     const void *entry = solve_values_of(format, block->n, values).entry;
     struct solve_symmetric sum[6] = {{{0}, {0}}};
+    struct filtered filtered = {{{{{0}}}}};
     phys_vec turns[3] = {{0}};
     memset(own, 0, SOLVE_COUPLING * sizeof *own);
     for (size_t a = 0; a < block->n; a++) {
@@ -191,7 +209,7 @@ PHYS_INLINE void couple(const struct solve_block *block, enum solve_format forma
             phys_vec w;
             solve_entry_of(format, entry, i, &m, &w);
             if (basis[a][3] + (*other)[3] > 0) {
-                couple_filtered(basis + a, other, &m, &w, own);
+                couple_filtered(format, basis + a, other, &m, &w, &filtered);
                 continue;
             }
             add_square(sum, &phi, &m);
@@ -200,6 +218,7 @@ PHYS_INLINE void couple(const struct solve_block *block, enum solve_format forma
         }
     }
     put_squares(sum, own);
+    put_filtered(&filtered, own);
     for (int k = 0; k < 3 && format != SOLVE_SPRINGS; k++) {
         const int first = k == 2, last = k ? 2 : 1;
         put_turn(turns + k, 1, first, last, own);
@@ -221,16 +240,15 @@ PHYS_KERNEL(solve_couple,
 }
 
 /* The same for an entry into another block. */
-static void couple_cut_filtered(const phys_vec *a, const phys_vec *b,
-                                const struct solve_symmetric *m, const phys_vec *turn, double *own,
-                                double *beside)
+PHYS_INLINE void couple_cut_filtered(const phys_vec *a, const phys_vec *b,
+                                     const struct solve_symmetric *m, const phys_vec *turn,
+                                     struct filtered *own, struct filtered *beside)
 {
-    const phys_vec none = {0};
     struct solve_columns columns;
-    double ga[3][3], gb[3][3];
+    phys_vec ga[3], gb[3];
     spread_out(a, ga);
     spread_out(b, gb);
-    solve_entry_columns(m, &none, &columns);
+    solve_columns_of(m, &columns);
     add_filtered(1, ga, &columns, ga, own);
     solve_entry_columns(m, turn, &columns);
     add_filtered(-1, ga, &columns, gb, beside);
@@ -244,6 +262,7 @@ PHYS_KERNEL(solve_couple_cut,
 {
     const void *entry = solve_values_of(block->format, block->n, values).entry;
     struct solve_symmetric square[6] = {{{0}, {0}}}, sum[9] = {{{0}, {0}}};
+    struct filtered filtered = {{{{{0}}}}}, filtered_beside = {{{{{0}}}}};
     phys_vec turns[9] = {{0}};
     memset(beside, 0, SOLVE_COUPLING * sizeof *beside);
     for (size_t i = 0; i < n; i++) {
@@ -252,7 +271,7 @@ PHYS_KERNEL(solve_couple_cut,
         phys_vec w;
         solve_entry_of(block->format, entry, from + i, &m, &w);
         if (phi[3] + other[3] > 0) {
-            couple_cut_filtered(&phi, &other, &m, &w, own, beside);
+            couple_cut_filtered(&phi, &other, &m, &w, &filtered, &filtered_beside);
             continue;
         }
         add_square(square, &phi, &m);
@@ -263,6 +282,8 @@ PHYS_KERNEL(solve_couple_cut,
             }
     }
     put_squares(square, own);
+    put_filtered(&filtered, own);
+    put_filtered(&filtered_beside, beside);
     for (int k = 0; k < 3; k++)
         for (int l = 0; l < 3; l++) {
             put(sum + 3 * k + l, -1, k, l, beside);

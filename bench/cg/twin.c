@@ -78,7 +78,7 @@ static int solve_part(const struct solve *s, uint32_t thread, uint32_t threads)
 {
     const struct parts *parts = &s->twin->parts;
     const uint32_t first = parts->n * thread / threads, end = parts->n * (thread + 1) / threads;
-    struct solve_scalars now = solve_scalars_start(0), next;
+    struct solve_scalars now = solve_scalars_start(0, SOLVE_ON), next;
     int code = SOLVE_OK;
     for (uint32_t p = first; p < end; p++)
         start(parts->part + p);

@@ -286,7 +286,7 @@ int sheet_solve(struct sheet *s, uint32_t count)
 {
     const uint32_t n = sheet_tables(s)->n_blocks;
     const struct solve_stop stop = {.count = true, .most = count};
-    struct solve_scalars scalars = solve_scalars_start(0);
+    struct solve_scalars scalars = solve_scalars_start(0, SOLVE_ON);
     if (s->answered == count)
         return 0;
     double(*sum)[SOLVE_DOTS] = malloc(n * sizeof *sum);

@@ -188,7 +188,7 @@ static int solve(struct twin *twin, uint32_t count, struct solve_scalars *scalar
 {
     const struct solve_stop stop = {.count = true, .most = count};
     int code = expect_rows(twin);
-    *scalars = solve_scalars_start(0);
+    *scalars = solve_scalars_start(0, SOLVE_ON);
     for (uint32_t b = twin->first[twin->rank]; b < twin->first[twin->rank + 1]; b++)
         sheet_start(twin->sheet, b);
     if (!code)

@@ -152,6 +152,12 @@ enum model_stop {
     MODEL_STOP_COUNT,
     MODEL_STOP_MASS_NORM
 };
+enum model_guess {
+    MODEL_GUESS_AUTO, /* as PREVIOUS in steps shorter than MODEL_GUESS_BELOW, else as ZERO */
+    MODEL_GUESS_ZERO,
+    MODEL_GUESS_PREVIOUS /* from the best multiple of the last step's dv; of one linear step only */
+};
+#define MODEL_GUESS_BELOW 0.01 /* s */
 enum model_preconditioner {
     MODEL_PLAIN,     /* none */
     MODEL_JACOBI,    /* inverses of the 3 x 3 blocks on the diagonal */
@@ -195,6 +201,7 @@ struct model {
                              count: no test; mass_norm: the error of dv <= tolerance |dv| */
     double tolerance;
     uint32_t max_iterations; /* count: exactly so many */
+    enum model_guess guess;  /* of dv */
     enum model_preconditioner preconditioner;
     enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */
     int full_slope; /* the matrix has the whole slope of the forces, which may make it indefinite */

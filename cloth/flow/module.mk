@@ -26,7 +26,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/grid.c cloth/flow/tasks/grid.h \
     cloth/flow/tasks/implicit.c \
     cloth/flow/tasks/kernels_cg.c \
-    cloth/flow/tasks/kernels_check.c \
+    cloth/flow/tasks/kernels_beside.c \
     cloth/flow/tasks/kernels_contact.c \
     cloth/flow/tasks/kernels_energy.c \
     cloth/flow/tasks/kernels_explicit.c \

@@ -39,7 +39,7 @@ const duite_kernel *const *flow_kernels(void)
         &flow_tell_head, &flow_tell_shared, &flow_table_make, &flow_table_keep, &flow_collect,
         &flow_ready, &flow_initial, &flow_force, &flow_force_free, &flow_explicit, &flow_kick_first,
         &flow_kick_second, &flow_runge, &flow_implicit, &flow_predict, &flow_correct, &flow_shift,
-        &flow_residual, &flow_matrix, &flow_begin, &flow_pack, &flow_start, &flow_pass,
+        &flow_residual, &flow_matrix, &flow_begin, &flow_pack, &flow_start, &flow_guess, &flow_pass,
         &flow_scalars, &flow_velocity_dv, &flow_velocity_a, &flow_position, &flow_collide,
         &flow_keep, &flow_restore, &flow_status, &flow_frame, &flow_stretch, &flow_drive,
         &flow_touch, &flow_contact, &flow_hold, &flow_place, &flow_watch_block, &flow_probe,

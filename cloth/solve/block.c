@@ -233,6 +233,21 @@ void solve_residual(const struct solve_block *block, const struct solve_cut *cut
     dots[SOLVE_BOUND] = norms.bound;
 }
 
+void solve_open(const struct solve_block *block, const struct solve_cut *cut, const void *values,
+                const phys_vec *guess_other, const struct solve_rows *rows, double dots[SOLVE_DOTS])
+{
+    const struct solve_rows of_dv = {.dv = rows->r, .r = rows->dv, .p = rows->p, .q = rows->q};
+    phys_vec square = {0}, along = {0};
+    solve_pass(block, cut, values, guess_other, 0, 0, &of_dv, dots);
+    for (size_t a = 0; a < block->n; a++) {
+        square += rows->r[a] * rows->r[a];
+        along += rows->r[a] * rows->p[a];
+        rows->dv[a] = (phys_vec){0};
+    }
+    dots[SOLVE_RR] = phys_lanes(&square);
+    dots[SOLVE_RQ] = phys_lanes(&along);
+}
+
 /* In the sum over the free rows of A, column b is the diagonal of row b, its turn, and N' of its
  * entries to held rows. */
 void solve_lost(const struct solve_block *block, const struct solve_held *held, const void *memory,

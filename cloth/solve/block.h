@@ -70,6 +70,12 @@ void solve_residual(const struct solve_block *block, const struct solve_cut *cut
                     const void *values, const phys_vec *b, const phys_vec *dv_other,
                     const struct solve_rows *rows, double dots[SOLVE_DOTS]);
 
+/* SOLVE_OPEN, after solve_start_guess: p is the guess, q = S A p, dv = 0. guess_other: of the
+ * copies. Writes r.r, p.q, and p.r as RQ. */
+void solve_open(const struct solve_block *block, const struct solve_cut *cut, const void *values,
+                const phys_vec *guess_other, const struct solve_rows *rows,
+                double dots[SOLVE_DOTS]);
+
 /* Adds the sum over the free rows of b - A dv to lost[3] (kg m/s), for a dv that is zero where
  * particles are held. The entries between free rows cancel in this sum, wherever their ends are;
  * those to held ends remain. They are given by their free row and their place among the values. */

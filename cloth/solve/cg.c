@@ -1,13 +1,13 @@
 /* The vectors of a solve and its factors. Rows are worked on one by one, ascending. */
-#include "cloth/solve/cg.h"
+#include "cloth/solve/block.h"
 
 #include <math.h>
 #include <string.h>
 
-struct solve_scalars solve_scalars_start(double step)
+struct solve_scalars solve_scalars_start(double step, double phase)
 {
     return (struct solve_scalars){
-        .phase = SOLVE_ON, .alpha = 1, .wanted = -1, .step = step, .stride = 1};
+        .phase = phase, .alpha = 1, .wanted = -1, .step = step, .stride = 1};
 }
 
 /* A residual is rubbish when its square is less than this part of the first one: what is left is
@@ -120,10 +120,21 @@ static int judge(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
     if (!helps || after->restarts == SOLVE_RESTARTS)
         return fail(SOLVE_STALLED, after);
     after->phase = SOLVE_AGAIN;
+    after->alpha = 0;
     after->restarts += 1;
     after->spent += after->iterations;
     after->iterations = after->energy = 0;
     after->stride = 1;
+    return SOLVE_OK;
+}
+
+/* How much of a guess to take. */
+static int open(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
+                struct solve_scalars *after)
+{
+    after->wanted = wanted(stop, dots[SOLVE_RR]);
+    after->alpha = dots[SOLVE_PQ] > 0 ? dots[SOLVE_RQ] / dots[SOLVE_PQ] : 0;
+    after->phase = SOLVE_AGAIN;
     return SOLVE_OK;
 }
 
@@ -171,6 +182,8 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
     after->bound = dots[SOLVE_BOUND];
     if (before->phase == SOLVE_CHECK)
         return judge(stop, dots, after);
+    if (before->phase == SOLVE_OPEN)
+        return open(stop, dots, after);
     after->curvature = dots[SOLVE_PQ];
     after->phase = SOLVE_DONE;
     return before->phase == SOLVE_LAST ? SOLVE_OK : iterate(stop, dots, after);
@@ -200,6 +213,22 @@ PHYS_KERNEL(solve_start,
     memset(dv, 0, n * sizeof *dv);
     memset(r, 0, n * sizeof *r);
     memset(p, 0, n * sizeof *p);
+}
+
+PHYS_KERNEL(solve_start_guess,
+            (size_t n, const double *restrict free, const phys_vec *restrict filter,
+             const phys_vec *restrict b, double part, phys_vec *restrict dv, phys_vec *restrict r,
+             phys_vec *restrict p, phys_vec *restrict q),
+            (n, free, filter, b, part, dv, r, p, q))
+{
+    for (size_t a = 0; a < n; a++) {
+        dv[a] = (part * free[a]) * dv[a];
+        r[a] = free[a] * b[a];
+    }
+    for (size_t a = 0; a < n && filter; a++)
+        solve_filter(filter + a, dv + a);
+    memset(p, 0, n * sizeof *p);
+    memset(q, 0, n * sizeof *q);
 }
 
 PHYS_KERNEL_OF(double, solve_finish,

@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Conjugate gradients on S A dv = S b from dv = 0, with one reduction an iteration. A pass over all
- * rows ends an iteration and begins the next one:
+/* Conjugate gradients on S A dv = S b, from dv = 0 or a guess, with one reduction an iteration. A
+ * pass over all rows ends an iteration and begins the next one:
  *
  *     dv += alpha p,  r -= alpha q,  p = r + beta p,  q = S A p,  and the dots r.r, p.q, r.q, q.q
  *
@@ -31,6 +31,11 @@
  * two passes more: one shows dv to the neighbours (SOLVE_SHOW), one has q = S A dv, and with it the
  * true residual, which takes the place of r (SOLVE_CHECK). Where that is not as small as it was
  * taken to be, the solve goes on from dv (SOLVE_AGAIN), some times, while that helps. */
+
+/* A solve may begin with a guess g instead of dv = 0, for a pass and a half more: it has q = S A g
+ * first (SOLVE_OPEN), then begins again (SOLVE_AGAIN) from dv = alpha g with alpha = g.b / g.q, the
+ * multiple of g that is nearest to the solution in the norm of A. So it is never farther from it
+ * than dv = 0 is (Fischer 1998, of one vector). */
 
 /* What a pass sums. RQ is z.q, QQ is q.s; SIZE and BOUND are those of solve_norms, which only a
  * stop in the mass norm needs. DRIFT, in SOLVE_CHECK, is d.D^-1 d of the difference d of the true
@@ -70,7 +75,8 @@ enum {
     SOLVE_ON,    /* all of a pass */
     SOLVE_SHOW,  /* neighbours get dv for q */
     SOLVE_CHECK, /* solve_residual */
-    SOLVE_AGAIN  /* solve_again */
+    SOLVE_AGAIN, /* dv += alpha p, r -= alpha q, then solve_again */
+    SOLVE_OPEN   /* solve_open: the first one of a solve with a guess */
 };
 enum { SOLVE_PAST = 64 };
 struct solve_scalars {
@@ -94,8 +100,8 @@ struct solve_scalars {
 };
 enum { SOLVE_SCALARS = sizeof(struct solve_scalars) / sizeof(double) };
 
-/* Before the first pass; `last` is zero. */
-struct solve_scalars solve_scalars_start(double step);
+/* Before the first pass, with a guess if that is SOLVE_OPEN, not SOLVE_ON; `last` is zero. */
+struct solve_scalars solve_scalars_start(double step, double phase);
 
 /* From the dots of a pass, what the next one does. Returns SOLVE_OK; or why there is none: p.Ap is
  * not positive; so many iterations were not enough; or the true residual stays above what was asked
@@ -105,7 +111,7 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
                        const struct solve_scalars *before, struct solve_scalars *after);
 
 /* Passes besides the iterations that a solve has at most. */
-enum { SOLVE_RESTARTS = 3, SOLVE_EXTRA = 1 + 4 * (1 + SOLVE_RESTARTS) };
+enum { SOLVE_RESTARTS = 3, SOLVE_EXTRA = 3 + 4 * (1 + SOLVE_RESTARTS) };
 
 /* An upper estimate of the square of the error of dv in the mass norm; bound: r.D^-1 r. */
 double solve_scalars_error(const struct solve_scalars *scalars, double bound);
@@ -144,6 +150,11 @@ double solve_finish(size_t n, double alpha, const phys_vec *q, const phys_vec *p
 /* r = S b - q, with q = S A dv. Writes r.r and the drift from what r was. */
 void solve_renew(size_t n, const double *free, const double *diagonal, const phys_vec *b,
                  const phys_vec *q, phys_vec *r, double dots[SOLVE_DOTS]);
+
+/* Before the first pass with a guess, which is in dv: it becomes S times its multiple by `part`; r
+ * = S b, p = q = 0. filter: that of the matrix (cloth/solve/block.h), or NULL. */
+void solve_start_guess(size_t n, const double *free, const phys_vec *filter, const phys_vec *b,
+                       double part, phys_vec *dv, phys_vec *r, phys_vec *p, phys_vec *q);
 
 /* What begins a solve again from dv: with the true residual in r, vectors as solve_start leaves
  * them, but for dv. */

@@ -66,7 +66,7 @@ START_TEST(the_residual_is_what_is_left)
         const struct flow_table *t = tables->block + b;
         solve_pack(t->n_rim, t->rim, s->q + t->first, s->rim[0] + sheet_rim(s, b));
     }
-    const struct solve_scalars scalars = solve_scalars_start(0);
+    const struct solve_scalars scalars = solve_scalars_start(0, SOLVE_ON);
     for (uint32_t b = 0; b < tables->n_blocks; b++) {
         double dots[SOLVE_DOTS];
         sheet_pass(s, b, &scalars, 0, dots);

@@ -92,7 +92,7 @@ static inline void flow_pack_rim(const struct flow_table *t, const phys_vec *y, 
         rim[0] = 0;
 }
 
-/* What passes of a solve have in common, with a preconditioner and without (check.c). */
+/* What passes of a solve have in common, with a preconditioner and without (kernels_beside.c). */
 struct flow_pass {
     const struct flow_table *table;
     const void *value; /* of the matrix */
@@ -102,10 +102,10 @@ struct flow_pass {
     double *rim;       /* of this block */
     size_t neighbours; /* parameters from here on: the rims of others */
 };
-/* SOLVE_SHOW; SOLVE_CHECK, with what it sums; SOLVE_AGAIN but for rims and what a preconditioner
- * makes. Nothing in other phases. */
-void flow_pass_confirm(const duite_call *call, double phase, const struct flow_pass *pass,
-                       double dots[SOLVE_DOTS]);
+/* SOLVE_SHOW; SOLVE_CHECK and SOLVE_OPEN, with what they sum; SOLVE_AGAIN but for rims and what a
+ * preconditioner makes. Nothing in other phases. */
+void flow_pass_beside(const duite_call *call, const struct solve_scalars *scalars,
+                      const struct flow_pass *pass, double dots[SOLVE_DOTS]);
 
 /* What a solve left of a block. */
 struct flow_solved {
@@ -137,7 +137,8 @@ static inline size_t flow_dots(const struct model *model)
 static inline struct solve_scalars flow_begin_scalars(const duite_call *call)
 {
     const struct flow_args *args = flow_args_of(call);
-    struct solve_scalars scalars = solve_scalars_start(args->begin);
+    struct solve_scalars scalars =
+        solve_scalars_start(args->begin, args->guess != 0 ? SOLVE_OPEN : SOLVE_ON);
     scalars.last = args->last;
     return scalars;
 }

@@ -56,18 +56,37 @@ static int fork_start(struct flow_state *state, struct flow_args args)
     int code = DUITE_FORK(state->rt, &flow_begin, &args, state->scalars[0]);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
-        code = DUITE_FORK(state->rt, &flow_start, &args, o->table, o->f, o->dv, o->r, o->p, o->q,
-                          o->copies, o->rim_q[0]);
+        code = args.guess != 0 ? flow_cg_guess(state, &args)
+                               : DUITE_FORK(state->rt, &flow_start, &args, o->table, o->f, o->dv,
+                                            o->r, o->p, o->q, o->copies, o->rim_q[0]);
         if (!code)
             code = flow_far_pack(state, args.block, 0);
     }
     return code;
 }
 
+int flow_cg_guess(struct flow_state *state, const struct flow_args *args)
+{
+    const struct flow_objects *o = state->block + args->block;
+    return DUITE_FORK(state->rt, &flow_guess, args, o->table, o->f, o->a, o->dv, o->r, o->p, o->q,
+                      o->rim_q[0]);
+}
+
+/* dv of the step before, as it is in a step of this length. */
+static double guess_of(const struct flow_state *state)
+{
+    const struct model *model = state->flow->model;
+    const double h = model->h * state->attempt.length / FLOW_TICKS;
+    const bool wanted = model->guess == MODEL_GUESS_PREVIOUS ||
+                        (model->guess == MODEL_GUESS_AUTO && h < MODEL_GUESS_BELOW);
+    return wanted && state->guessed ? (double)state->attempt.length / state->guessed : 0;
+}
+
 int flow_cg_start(struct flow_state *state)
 {
-    return flow_is_turned(state->flow) ? flow_turned_start(state)
-                                       : fork_start(state, flow_attempt_args(state));
+    struct flow_args args = flow_attempt_args(state);
+    args.guess = guess_of(state);
+    return flow_is_turned(state->flow) ? flow_turned_start(state, args) : fork_start(state, args);
 }
 
 int flow_cg_iterate(struct flow_state *state)
@@ -79,6 +98,7 @@ int flow_cg_iterate(struct flow_state *state)
 
 int flow_cg(struct flow_state *state)
 {
+    state->guessed = 0;
     const int code = flow_cg_start(state);
     return code ? code : flow_cg_iterate(state);
 }

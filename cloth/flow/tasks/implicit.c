@@ -78,6 +78,7 @@ static int fork_move(struct flow_state *state)
 {
     const struct flow_args args = flow_attempt_args(state);
     int code = flow_cg_iterate(state);
+    state->guessed = state->attempt.length;
     if (!code)
         code = flow_fork_all(state, &flow_velocity_dv, args,
                              FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(a), FLOW_AT(dv), FLOW_AT(r),

@@ -35,6 +35,7 @@ extern const duite_kernel flow_hold;     /* table, r filter, rw f: b, rw a */
 extern const duite_kernel flow_matrix;   /* table, r x, w a; rims of x. a: flow_open_matrix */
 extern const duite_kernel flow_begin;    /* w scalars */
 extern const duite_kernel flow_start;    /* table, r f, w dv, w r, w p, w q, w copies, w rim of q */
+extern const duite_kernel flow_guess;    /* table, r b, r a, rw dv, w r, w p, w q, w rim of q */
 extern const duite_kernel
     flow_pass; /* table, r scalars, r a, r b, rw dv, rw r, rw p, rw q, rw copies,
                   rw   rim of q, cw sums; the other rims of q, or far ones */

@@ -81,7 +81,7 @@ static int pass(const duite_call *call)
     else if (scalars->phase == SOLVE_ON)
         advance(call, scalars, &pass, dots);
     else
-        flow_pass_confirm(call, scalars->phase, &pass, dots);
+        flow_pass_beside(call, scalars, &pass, dots);
     if (scalars->phase == SOLVE_AGAIN)
         flow_pack_rim(t, pass.rows.q, pass.rim);
     memcpy(duite_out(call, SUMS, double), dots, flow_dots(flow_of(call)->model) * sizeof *dots);

@@ -245,7 +245,7 @@ static int pass(const duite_call *call)
     else if (scalars->phase == SOLVE_ON)
         advance(call, scalars, &pass);
     else
-        flow_pass_confirm(call, scalars->phase, &pass, part);
+        flow_pass_beside(call, scalars, &pass, part);
     if (scalars->phase == SOLVE_AGAIN)
         again(call, &pass);
     return 0;

@@ -153,6 +153,7 @@ static int end_step(struct flow_state *state)
 int flow_step(struct flow_state *state)
 {
     state->attempt.length = FLOW_TICKS;
+    state->guessed = 0;
     const int code = begin_step(state);
     return code ? code : end_step(state);
 }
@@ -212,6 +213,7 @@ static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
 static int refuse(struct flow_state *state, const struct flow_verdict *verdict)
 {
     state->attempt.forked = state->settled_forces = false;
+    state->guessed = 0; /* dv is of a step that failed */
     if (!state->flow->model->halving || !flow_grid_halve(&state->grid))
         return give_up(state, verdict);
     return restore(state);

@@ -115,6 +115,7 @@ struct flow_args {
     double time;     /* s: of a frame; at the end of the step */
     double before;   /* s: of a row of probes: length of the step before */
     double part;     /* of dv */
+    double guess;    /* a solve begins with dv times this; 0: from nothing */
 };
 
 /* Indices into the status of a step, F64, zero before the step and summed by its tasks. */
@@ -225,6 +226,8 @@ struct flow_state {
     struct flow_newton newton;
     uint32_t length; /* ticks of the last step accepted, and of the one before it; 0: none yet */
     uint32_t length_before;
+    uint32_t
+        guessed; /* ticks of the step that left dv, if the next solve may begin with it; else 0 */
     uint32_t smooth; /* ticks of the step before, if contact had no part in it; else 0 */
     duite_object coarse, motion[2]; /* with a coarse part: its factor and its part of s */
     struct flow_head head;
@@ -317,7 +320,7 @@ void flow_turned_make(struct flow_state *state);
  * solve in each step; in each step before the solve; pass `from` (0, 1) of
  * a recorded round. */
 int flow_turned_initialise(struct flow_state *state);
-int flow_turned_start(struct flow_state *state);
+int flow_turned_start(struct flow_state *state, struct flow_args args);
 int flow_turned_pass(struct flow_state *state, int from);
 
 /* In a body: what solve_scalars_next makes of these dots under the model's stop, or its failure. */
@@ -366,7 +369,7 @@ static inline bool flow_is_judged(const struct model *model)
 {
     return model->stretch_growth > 0 || model->stretch_limit > 0;
 }
-/* Forks a step of length h whole, which nobody judges. */
+/* Forks a step of length h whole, which nobody judges and whose solve has no guess. */
 int flow_step(struct flow_state *state);
 /* All steps from the start on, with their frames; ends early if a stop was agreed. */
 int flow_steps(struct flow_state *state);
@@ -381,8 +384,11 @@ static inline double flow_time(const struct flow_state *state)
 struct flow_args flow_attempt_args(const struct flow_state *state);
 /* Records a round of the solve; once a run, when its objects are made. */
 int flow_cg_record(struct flow_state *state);
-/* Forks what a solve for dv begins with, which reads f and a; then its iterations; both. */
+/* Forks what a solve for dv begins with, which reads f and a; then its iterations; both, without a
+ * guess. */
 int flow_cg_start(struct flow_state *state);
+/* Its vectors of one block, where it begins with a guess. */
+int flow_cg_guess(struct flow_state *state, const struct flow_args *args);
 int flow_cg_iterate(struct flow_state *state);
 int flow_cg(struct flow_state *state);
 

@@ -149,7 +149,7 @@ static size_t add_parts(struct flow_state *state, size_t n)
 
 static int fork_begin(struct flow_state *state, struct flow_args args)
 {
-    if (!flow_is_coarse(state->flow))
+    if (!flow_is_coarse(state->flow) || args.guess != 0)
         return DUITE_FORK(state->rt, &flow_begin, &args, state->scalars[0]);
     args.block = 0;
     state->refs[0] = state->scalars[0];
@@ -158,23 +158,31 @@ static int fork_begin(struct flow_state *state, struct flow_args args)
     return duite_fork(state->rt, &flow_begin_coarse, &args, add_parts(state, 3), state->refs);
 }
 
-int flow_turned_start(struct flow_state *state)
+/* Vectors of a block. */
+static int fork_vectors(struct flow_state *state, const struct flow_args *args)
+{
+    const struct flow_objects *o = state->block + args->block;
+    const duite_object start[] = {o->f, o->factor, o->dv,     o->r,        o->p,    o->q,
+                                  o->z, o->s,      o->copies, o->rim_q[0], o->part, o->basis};
+    if (args->guess != 0)
+        return flow_cg_guess(state, args);
+    return flow_fork(state, &flow_start_turned, args, flow_is_coarse(state->flow) ? 12 : 11, start,
+                     FLOW_NO_RIM, FLOW_NO_RIM);
+}
+
+int flow_turned_start(struct flow_state *state, struct flow_args args)
 {
     const struct flow_tables *tables = &state->flow->tables;
     const bool coarse = flow_is_coarse(state->flow);
-    struct flow_args args = flow_attempt_args(state);
     int code = model_is_filtered(state->flow->model) ? flow_turned_initialise(state) : DUITE_OK;
     if (!code && coarse)
         code = fork_coarse(state, args);
     for (; args.block < tables->n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
         const duite_object factor[] = {o->a, o->factor, state->status[state->attempt.parity]};
-        const duite_object start[] = {o->f, o->factor, o->dv,     o->r,        o->p,    o->q,
-                                      o->z, o->s,      o->copies, o->rim_q[0], o->part, o->basis};
         code = flow_fork(state, &flow_factor, &args, 3, factor, FLOW_NO_RIM, FLOW_NO_RIM);
         if (!code)
-            code = flow_fork(state, &flow_start_turned, &args, coarse ? 12 : 11, start, FLOW_NO_RIM,
-                             FLOW_NO_RIM);
+            code = fork_vectors(state, &args);
         if (!code)
             code = flow_far_pack(state, args.block, 0);
     }

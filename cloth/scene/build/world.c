@@ -225,6 +225,13 @@ static enum solve_format format_of(const char *word)
     return strcmp(word, "half_float") ? SOLVE_SPRINGS : SOLVE_HALF_FLOAT;
 }
 
+static enum model_guess guess_of(const char *word)
+{
+    if (!strcmp(word, "previous"))
+        return MODEL_GUESS_PREVIOUS;
+    return strcmp(word, "zero") ? MODEL_GUESS_AUTO : MODEL_GUESS_ZERO;
+}
+
 static void build_solver(struct model *model, const struct scene_tree *tree)
 {
     int newton = scene_tree_get(tree, 1, "newton");
@@ -234,6 +241,7 @@ static void build_solver(struct model *model, const struct scene_tree *tree)
     model->newton_steps = scene_tree_integer(tree, newton, "steps");
     model->newton_tolerance = scene_tree_number(tree, newton, "tolerance");
     model->preconditioner = preconditioner_of(scene_tree_text(tree, solver, "preconditioner"));
+    model->guess = guess_of(scene_tree_text(tree, solver, "guess"));
     model->format = format_of(scene_tree_text(tree, solver, "format"));
     model->full_slope = !strcmp(scene_tree_text(tree, solver, "jacobian"), "full");
     model->max_iterations = scene_tree_integer(tree, solver, "max_iterations");

@@ -261,9 +261,12 @@ static const struct scene_rule stop_kinds[] = {
 static const char *const preconditioners[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse", NULL};
 static const char *const formats[] = {"springs", "half", "half_float", NULL};
 static const char *const jacobians[] = {"definite", "full", NULL};
+static const char *const guesses[] = {"auto", "zero", "previous", NULL};
 static const struct scene_rule solver_keys[] = {
     {"stop", SCENE_ONE_OF, .fallback = "{mass_norm: 0.01}", .inside = stop_kinds,
      .about = "when conjugate gradients end"},
+    {"guess", SCENE_CHOICE, .fallback = "auto", .words = guesses,
+     .about = "of the change of velocity: nothing, or that of the step before"},
     {"preconditioner", SCENE_CHOICE, .fallback = "ic0_coarse", .words = preconditioners,
      .about = "of conjugate gradients"},
     {"format", SCENE_CHOICE, .fallback = "springs", .words = formats,

@@ -102,6 +102,48 @@ START_TEST(formats_move_alike)
 }
 END_TEST
 
+static uint64_t iterations_of(struct setup *setup, enum model_guess guess, double h,
+                              struct record *record)
+{
+    *record = (struct record){.threads = 2};
+    setup->model.guess = guess;
+    setup->model.h = h;
+    setup->model.end = 10 * h;
+    record_run(record, &setup->model);
+    ck_assert_msg(record->code == 0, "%s", record->error.text);
+    return record->report.cg_iterations_total;
+}
+
+/* A solve that begins where the last one ended moves alike in fewer iterations, held, filtered and
+ * driven rows included; where steps are long it begins from nothing. */
+START_TEST(starts_move_alike)
+{
+    struct setup setup;
+    struct record zero, previous, automatic;
+    setup_stiff(&setup, 14);
+    setup.model.preconditioner = (enum model_preconditioner)_i;
+    setup.model.tolerance = 1e-8;
+    setup.model.contact = MODEL_CONTACT_FILTER;
+    setup.model.n_planes = 1;
+    setup.plane = (struct model_plane){{0, -1e-4, 0}, {0, 1, 0}};
+    const uint64_t many = iterations_of(&setup, MODEL_GUESS_ZERO, 0.001, &zero);
+    const uint64_t few = iterations_of(&setup, MODEL_GUESS_PREVIOUS, 0.001, &previous);
+    ck_assert_uint_lt(few, many);
+    ck_assert_double_le(farthest(&zero, &previous), 1e-6);
+    ck_assert_uint_eq(iterations_of(&setup, MODEL_GUESS_AUTO, 0.001, &automatic), few);
+    ck_assert_uint_eq(automatic.report.state_hash, previous.report.state_hash);
+    record_free(&zero);
+    record_free(&previous);
+    record_free(&automatic);
+    iterations_of(&setup, MODEL_GUESS_ZERO, 0.01, &zero);
+    iterations_of(&setup, MODEL_GUESS_AUTO, 0.01, &automatic);
+    ck_assert_uint_eq(automatic.report.state_hash, zero.report.state_hash);
+    record_free(&zero);
+    record_free(&automatic);
+    setup_free(&setup);
+}
+END_TEST
+
 START_TEST(one_block)
 {
     struct setup setup;
@@ -248,6 +290,7 @@ int main(void)
     TCase *cases = tcase_create("solvers");
     tcase_add_test(cases, a_sheet_moves_alike);
     tcase_add_test(cases, formats_move_alike);
+    tcase_add_loop_test(cases, starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
     tcase_add_test(cases, one_block);
     tcase_add_test(cases, held_blocks);
     tcase_add_test(cases, all_held);

@@ -265,7 +265,7 @@ static double iterate(const phys_vec *b, phys_vec *dv, uint32_t count)
     struct vectors x;
     double dots[SOLVE_DOTS] = {0};
     const struct solve_stop stop = {.count = true, .most = count};
-    struct solve_scalars scalars = solve_scalars_start(0);
+    struct solve_scalars scalars = solve_scalars_start(0, SOLVE_ON);
     memset(&x, 0x55, sizeof x);
     for (int at = 0; at < N; at += ROWS)
         solve_start(ROWS, half[at / ROWS].free, b + at, x.dv + at, x.r + at, x.p + at, x.q + at);

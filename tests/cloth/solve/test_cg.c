@@ -72,7 +72,7 @@ static void start(struct run *run, double size)
         run->free[i] = i % 5 != 0;
         run->b[i] = (phys_vec){size, size * sin(i), size / (i + 1), 0};
     }
-    run->scalars = solve_scalars_start(11);
+    run->scalars = solve_scalars_start(11, SOLVE_ON);
     solve_start(N, run->free, run->b, run->dv, run->r, run->p, run->q);
 }
 

@@ -94,12 +94,46 @@ static int pass(struct run *run, enum kind kind, const struct solve_stop *stop)
     return solve_scalars_next(stop, dots, &before.scalars, &run->scalars);
 }
 
-static int solve(struct run *run, enum kind kind, const phys_vec *b, const struct solve_stop *stop)
+/* The two passes that begin from a guess. */
+static void open(struct run *run, const phys_vec *b, const phys_vec *guess,
+                 const struct solve_stop *stop)
+{
+    double dots[SOLVE_DOTS] = {0}, own[SOLVE_DOTS];
+    phys_vec copies[SYSTEM_SPRINGS], whole[SYSTEM_ROWS];
+    memcpy(run->dv, guess, sys.n * sizeof *guess);
+    solve_start_guess(sys.n, sys.free, sys.filtered ? sys.filter : NULL, b, -0.5, run->dv, run->r,
+                      run->p, run->q);
+    memcpy(whole, run->dv, sizeof whole);
+    for (uint32_t k = 0; k < sys.n_blocks; k++) {
+        const struct system_block *block = sys.block + k;
+        const uint32_t at = block->first;
+        const struct solve_rows rows = {run->dv + at, run->r + at, run->p + at, run->q + at};
+        for (uint32_t i = 0; i < block->n_copies; i++)
+            copies[i] = whole[block->copy[i]];
+        solve_open(&block->matrix, &block->cut, block->value, copies, &rows, own);
+        for (int i = 0; i < SOLVE_DOTS; i++)
+            dots[i] += own[i];
+    }
+    for (int i = 0; i < 2; i++) {
+        const struct solve_scalars now = run->scalars;
+        ck_assert_int_eq(solve_scalars_next(stop, dots, &now, &run->scalars), SOLVE_OK);
+        if (i == 0)
+            solve_finish(sys.n, run->scalars.alpha, run->q, run->p, run->dv, run->r);
+    }
+    solve_again(sys.n, run->r, run->p, run->q);
+}
+
+/* guess: may be NULL. */
+static int solve_from(struct run *run, enum kind kind, const phys_vec *b, const phys_vec *guess,
+                      const struct solve_stop *stop)
 {
     memset(run, 0, sizeof *run);
     prepare(kind);
-    run->scalars = solve_scalars_start(0);
-    solve_start(sys.n, sys.free, b, run->dv, run->r, run->p, run->q);
+    run->scalars = solve_scalars_start(0, guess ? SOLVE_OPEN : SOLVE_ON);
+    if (guess)
+        open(run, b, guess, stop);
+    else
+        solve_start(sys.n, sys.free, b, run->dv, run->r, run->p, run->q);
     if (kind != NONE)
         turn(kind, run->q, run->s);
     int code = SOLVE_OK;
@@ -107,6 +141,11 @@ static int solve(struct run *run, enum kind kind, const phys_vec *b, const struc
         code = pass(run, kind, stop);
     two_level_free(&level);
     return code;
+}
+
+static int solve(struct run *run, enum kind kind, const phys_vec *b, const struct solve_stop *stop)
+{
+    return solve_from(run, kind, b, NULL, stop);
 }
 
 static double distance(const phys_vec *x, const phys_vec *y)
@@ -199,14 +238,18 @@ START_TEST(error_in_the_mass_norm)
     srand(4);
     for (int k = 0; k < 30; k++) {
         const struct solve_stop stop = {.mass_norm = true, .tolerance = 0.01, .most = 2000};
-        phys_vec b[SYSTEM_ROWS], x[SYSTEM_ROWS], e[SYSTEM_ROWS];
+        phys_vec b[SYSTEM_ROWS], x[SYSTEM_ROWS], e[SYSTEM_ROWS], guess[SYSTEM_ROWS];
         static struct run run;
         system_sheet(&sys, 8, 8, pow(10, k % 6));
         sys.free[0] = sys.free[7] = 0;
         system_cut(&sys, 4);
         system_draw_rows(&sys, b);
         system_solve(&sys, b, x);
-        ck_assert_int_eq(solve(&run, (enum kind)(k % KINDS), b, &stop), SOLVE_OK);
+        system_draw_rows(&sys, e);
+        for (uint32_t a = 0; a < sys.n; a++)
+            guess[a] = x[a] + 0.1 * e[a];
+        ck_assert_int_eq(
+            solve_from(&run, (enum kind)(k % KINDS), b, k % 4 < 2 ? guess : NULL, &stop), SOLVE_OK);
         for (uint32_t a = 0; a < sys.n; a++)
             e[a] = run.dv[a] - x[a];
         const double error = solve_norms(sys.n, sys.diagonal, e, run.r).size;
@@ -215,6 +258,36 @@ START_TEST(error_in_the_mass_norm)
         ck_assert_double_le(error, solve_scalars_error(&run.scalars, run.scalars.bound) * 1.0001 +
                                        1e-16 * size);
     }
+}
+END_TEST
+
+/* A guess: of any length a right one needs no iteration; a wrong one is taken as far as it is
+ * right, and in a filtered system it is filtered. */
+START_TEST(guesses)
+{
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-9, .most = 2000};
+    static const double factor_of[] = {1, -3, 0};
+    phys_vec b[SYSTEM_ROWS], x[SYSTEM_ROWS], e[SYSTEM_ROWS], guess[SYSTEM_ROWS];
+    static struct run run;
+    srand(6);
+    sys.filtered = _i > 0;
+    system_sheet(&sys, 8, 8, 1000);
+    system_filter(&sys, true);
+    sys.free[7] = _i == 0;
+    system_cut(&sys, 4);
+    system_draw_rows(&sys, b);
+    system_solve(&sys, b, x);
+    for (enum kind kind = NONE; kind < KINDS; kind++)
+        for (int i = 0; i < 3; i++) {
+            system_draw_rows(&sys, e);
+            for (uint32_t a = 0; a < sys.n; a++)
+                guess[a] = factor_of[i] * x[a] + (i == 2) * e[a];
+            guess[7] += (phys_vec){sys.free[7] == 0, 0, 0, 0};
+            ck_assert_int_eq(solve_from(&run, kind, b, guess, &stop), SOLVE_OK);
+            ck_assert_double_lt(distance(run.dv, x), 1e-6);
+            ck_assert_int_eq(run.scalars.iterations == 0, i < 2);
+        }
+    sys.filtered = false;
 }
 END_TEST
 
@@ -263,6 +336,7 @@ int main(void)
     tcase_add_test(cases, a_chain_at_once);
     tcase_add_test(cases, rigid_and_affine_motion);
     tcase_add_test(cases, error_in_the_mass_norm);
+    tcase_add_loop_test(cases, guesses, 0, 2);
     tcase_add_test(cases, on_and_on);
     tcase_add_test(cases, nothing_to_solve);
     suite_add_tcase(suite, cases);

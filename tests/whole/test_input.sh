@@ -68,8 +68,8 @@ ok "a load that names a vertex twice" says 1 \
 changed mass 'grid: {width.*ny: 8}' 'inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}'
 sed -i 's/    pins.*/    pins: []/' mass.yaml
 refused "a vertex without mass" \
-    "mass.yaml:3:5: vertex 0 of cloth 'cloth1' has no mass: its triangles have no area, or it has edges only; give$(
-    ) mass_per_vertex" mass.yaml --grain 1
+    "mass.yaml:3:5: mass_per_vertex is missing: only edges use vertex 0 of cloth 'cloth1', which have no area to take a$(
+    ) mass from; a finite number > 0 (kg) is expected" mass.yaml --grain 1
 chain='cloths[0].mesh.inline.vertices=[[0, 0, 0], [0, 0, 0]]'
 ok "an edge of no length" says 1 \
     "mass.yaml:3:20: cloth 'cloth1': vertices 0 and 1 (counted from 0) are 0 m apart; vertices that a spring joins need$(

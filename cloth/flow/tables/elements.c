@@ -207,8 +207,8 @@ static int check_triangles(const struct flow_elements *elements, uint32_t c,
         mesh_corners(&cloth->mesh, t, corner);
         if (triangle_rest(elements, c, corner, &rest))
             return model_fail(cloth->mesh_place, error,
-                              "triangle %u of cloth '%.60s' (vertices %u, %u and %u, all counted "
-                              "from 0) has no area at rest; an area above 0 is expected",
+                              "mesh: triangle %u of cloth '%.60s' (vertices %u, %u and %u, all "
+                              "counted from 0) has no area at rest; an area above 0 is expected",
                               t, cloth->name, corner[0], corner[1], corner[2]);
     }
     return CLOTH_OK;
@@ -226,16 +226,18 @@ static int check_edges(const struct flow_elements *elements, uint32_t c, struct 
         if (!bends(edge))
             continue;
         if (bend_rest(elements, c, corner, &rest))
-            return model_fail(cloth->mesh_place, error,
-                              "a triangle at the edge between vertices %u and %u of cloth '%.60s' "
-                              "(counted from 0) has no area at rest; an area above 0 is expected",
-                              edge->a, edge->b, cloth->name);
+            return model_fail(
+                cloth->mesh_place, error,
+                "mesh: a triangle at the edge between vertices %u and %u of cloth "
+                "'%.60s' (counted from 0) has no area at rest; an area above 0 is expected",
+                edge->a, edge->b, cloth->name);
         if (material->bending == MODEL_QUADRATIC && !(fabs(rest.s) <= flat))
-            return model_fail(cloth->mesh_place, error,
-                              "cloth '%.60s' is not flat at the edge between vertices %u and %u "
-                              "(counted from 0), as bending: {model: quadratic} of material "
-                              "'%.60s' expects; take model: hinge, or rest: uv",
-                              cloth->name, edge->a, edge->b, material->name);
+            return model_fail(
+                cloth->mesh_place, error,
+                "mesh: cloth '%.60s' is not flat at the edge between vertices %u and %u "
+                "(counted from 0), as bending: {model: quadratic} of material "
+                "'%.60s' expects; take model: hinge, or rest: uv",
+                cloth->name, edge->a, edge->b, material->name);
     }
     return CLOTH_OK;
 }

@@ -176,6 +176,26 @@ static int more_masses(struct flow_particles *p, uint32_t first, const struct mo
     return code;
 }
 
+/* That none of its triangles, if it has any, gives a vertex a mass. */
+static int no_mass(const struct model_cloth *cloth, uint32_t vertex, struct cloth_error *error)
+{
+    for (uint32_t t = 0; t < cloth->mesh.n_triangles; t++) {
+        uint32_t corner[3];
+        mesh_corners(&cloth->mesh, t, corner);
+        if (corner[0] == vertex || corner[1] == vertex || corner[2] == vertex)
+            return model_fail(cloth->mesh_place, error,
+                              "mesh: triangle %u of cloth '%.60s' (vertices %u, %u and %u, all "
+                              "counted from 0) has no area at rest, so that vertex %u has no mass; "
+                              "an area above 0 is expected, or mass_per_vertex",
+                              t, cloth->name, corner[0], corner[1], corner[2], vertex);
+    }
+    return model_fail(
+        cloth->place, error,
+        "mass_per_vertex is missing: only edges use vertex %u of cloth '%.60s', which "
+        "have no area to take a mass from; a finite number > 0 (kg) is expected",
+        vertex, cloth->name);
+}
+
 static int masses(struct flow_particles *p, uint32_t first, const struct model *model,
                   const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -197,10 +217,7 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
                 "vertex %u of cloth '%.60s' has a mass of %g kg; %g to %g is expected", i,
                 cloth->name, p->mass[v], LEAST_MASS, MOST_MASS);
         if (p->used[v] && !(p->mass[v] > 0))
-            return model_fail(cloth->place, error,
-                              "vertex %u of cloth '%.60s' has no mass: its triangles have no area, "
-                              "or it has edges only; give mass_per_vertex",
-                              i, cloth->name);
+            return no_mass(cloth, i, error);
         if (p->load)
             p->load[v] = p->mass[v] * gravity;
     }

@@ -27,9 +27,9 @@ static int build_times(struct phys_key *keys, const struct scene_tree *tree, int
         scene_scalar_number(scene_tree_scalar(tree, scene_tree_item(tree, list, i)), &keys[i].time);
         if (i && !(keys[i].time > keys[i - 1].time))
             return scene_tree_fail(tree, scene_tree_item(tree, list, i), error,
-                                   "the time %g of a motion does not come after %g, the one before "
-                                   "it; times in ascending order are expected",
-                                   keys[i].time, keys[i - 1].time);
+                                   "motion.times[%zu] is %g, which does not come after %g, the one "
+                                   "before it; times in ascending order are expected",
+                                   i, keys[i].time, keys[i - 1].time);
     }
     return CLOTH_OK;
 }

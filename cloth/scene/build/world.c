@@ -83,7 +83,14 @@ static int check_membrane(const struct model_material *material, const struct sc
     if (!phys_membrane_make(warp, weft, material->shear, nu, material->damping_stiffness,
                             &membrane))
         return CLOTH_OK;
-    return scene_tree_fail(tree, scene_tree_get(tree, node, "poisson"), error,
+    const int place = scene_tree_get(tree, node, "poisson");
+    if (!(warp > 0) || !(weft > 0))
+        return scene_tree_fail(
+            tree, place, error,
+            "materials.%.60s.poisson is %g, but stretch is %g along the %s; 0 is "
+            "expected here",
+            material->name, nu, 0.0, warp > 0 ? "weft" : "warp");
+    return scene_tree_fail(tree, place, error,
                            "materials.%.60s.poisson is %g: nu12 nu21 = nu12^2 weft / warp is %g; "
                            "less than 1 is expected, here a ratio between -%g and %g",
                            material->name, nu, nu * nu * weft / warp, sqrt(warp / weft),

@@ -177,8 +177,21 @@ START_TEST(no_mass)
     setup.cloth.mass_per_vertex = 0;
     setup.cloth.place = (char[]){"a.yaml:3:5"};
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "a.yaml:3:5: vertex 0 of cloth 'test' has no mass");
-    says(&record, CLOTH_E_INPUT, "mass_per_vertex");
+    says(&record, CLOTH_E_INPUT, "a.yaml:3:5: mass_per_vertex is missing: only edges use vertex 0");
+    says(&record, CLOTH_E_INPUT, "; a finite number > 0 (kg) is expected");
+    record_free(&record);
+    setup_free(&setup);
+    setup_sheet(&setup, 2); /* 0, 2 and 3 on a line */
+    setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
+    for (int c = 0; c < 3; c++)
+        setup.cloth.mesh.position[6 + c] = 2 * setup.cloth.mesh.position[9 + c];
+    for (int c = 0; c < 3; c++)
+        setup.cloth.mesh.position[c] = 0;
+    record_run(&record, &setup.model);
+    says(&record, CLOTH_E_INPUT,
+         "a.yaml:4:9: mesh: triangle 0 of cloth 'test' (vertices 0, 2 and 3, ");
+    says(&record, CLOTH_E_INPUT,
+         "has no area at rest, so that vertex 2 has no mass; an area above");
     record_free(&record);
     setup_free(&setup);
 }
@@ -248,8 +261,9 @@ START_TEST(elements_of_no_area)
                 2 * setup.cloth.mesh.position[3 * 5 + c] - setup.cloth.mesh.position[3 * 4 + c];
         record_run(&record, &setup.model);
         says(&record, CLOTH_E_INPUT,
-             bends ? "a.yaml:4:9: a triangle at the edge between vertices 4 and 5 of cloth 'test'"
-                   : "a.yaml:4:9: triangle 7 of cloth 'test' (vertices 4, 8 and 5, ");
+             bends ? "a.yaml:4:9: mesh: a triangle at the edge between vertices 4 and 5 of cloth "
+                     "'test'"
+                   : "a.yaml:4:9: mesh: triangle 7 of cloth 'test' (vertices 4, 8 and 5, ");
         says(&record, CLOTH_E_INPUT, "has no area at rest; an area above 0 is expected");
         record_free(&record);
         setup_free(&setup);
@@ -271,7 +285,7 @@ START_TEST(bending_that_does_not_suit)
     setup.model.format = SOLVE_HALF;
     setup.cloth.mesh.position[3 * 8 + 1] = 0.1;
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "a.yaml:4:9: cloth 'test' is not flat at the edge between ");
+    says(&record, CLOTH_E_INPUT, "a.yaml:4:9: mesh: cloth 'test' is not flat at the edge between ");
     says(&record, CLOTH_E_INPUT, "of material 'felt' expects; take model: hinge, or rest: uv");
     record_free(&record);
     setup_free(&setup);

@@ -64,6 +64,9 @@ START_TEST(triangles_out_of_range)
         {"stretch: 50", "stretch: [50, 200], model: triangles, poisson: 0.5",
          .error = ":10:73: materials.cotton.poisson is 0.5: nu12 nu21 = nu12^2 weft / warp is 1; "
                   "less than 1 is expected, here a ratio between -0.5 and 0.5"},
+        {"stretch: 50", "stretch: [0, 5], model: triangles, poisson: 0.5",
+         .error = ":10:70: materials.cotton.poisson is 0.5, but stretch is 0 along the warp; 0 is "
+                  "expected here"},
         {"stretch: 50", "stretch: 50, bending: {rigidity: [1, .nan]}",
          .error = ":10:63: materials.cotton.bending.rigidity[1] is .nan; a finite number >= 0 is "
                   "expected"},
@@ -189,9 +192,9 @@ START_TEST(motions_that_cannot_be_made)
 {
     EXPECT(
         {MOTION("times: [0, 1, 1], translate: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]"),
-         .error =
-             ":7:54: the time 1 of a motion does not come after 1, the one before it; times in "
-             "ascending order are expected"},
+         .error = ":7:54: motion.times[2] is 1, which does not come after 1, the one before it; "
+                  "times in "
+                  "ascending order are expected"},
         {MOTION("times: [0, 1], translate: [[0, 0, 0]]"),
          .error = ":7:66: translate of a motion has 1 entries, but there are 2 times; as many are "
                   "expected"},

@@ -103,7 +103,11 @@ void summary_print(FILE *file, const struct summary *summary)
                 "tasks\n",
                 report->counters.messages, 1e-6 * (double)report->counters.bytes,
                 100 * hidden_fraction(summary));
-    fprintf(file, "  largest stretch  %.6f times the length at rest\n", report->max_stretch);
+    fprintf(file, "  largest stretch  %.6f times the length at rest at the end",
+            report->max_stretch);
+    if (!isnan(report->stretch_highest))
+        fprintf(file, ", %.6f at most", report->stretch_highest);
+    fputc('\n', file);
     fprintf(file, "  state hash       %016" PRIx64 "\n", report->state_hash);
     if (summary->options->output)
         fprintf(file, "  frames           %" PRIu64 " in %s\n", report->frames,
@@ -224,6 +228,7 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
     add_energies(json, summary->report);
     add_runtime(json, summary);
     output_report_number(json, "max_stretch", summary->report->max_stretch);
+    output_report_number(json, "stretch_highest", summary->report->stretch_highest);
     add_hash(json, "state_hash", summary->report->state_hash);
     code = output_report_write(json, path, error);
     output_report_free(json);

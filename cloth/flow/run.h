@@ -32,12 +32,14 @@ struct flow_report {
     double momentum_lost; /* largest |sum of b - A dv over the vertices not held| of a step, kg m/s,
                            * of the dv that the step used; NaN for an explicit run */
     double
-        mass_norm_error; /* largest error of a step's dv, as conjugate gradients estimate it in the
-                          * norm of A, against dv in the mass norm; NaN for an explicit run */
+        mass_norm_error;  /* largest error of a step's dv, as conjugate gradients estimate it in the
+                           * norm of A, against dv in the mass norm; NaN for an explicit run */
     uint64_t cg_restarts; /* of solves that the true residual refused, in the steps made */
     uint64_t
-        factors_shifted; /* blocks times steps whose IC(0) needed a shift, or gave way to SSOR */
-    double max_stretch;  /* largest length / rest length of any stretch spring at the end */
+        factors_shifted;    /* blocks times steps whose IC(0) needed a shift, or gave way to SSOR */
+    double max_stretch;     /* largest length / rest length of any stretch spring at the end */
+    double stretch_highest; /* the largest of these at the start and after any step; NaN where steps
+                               are not judged by it (model: stretch_growth, stretch_limit) */
     struct flow_energy start, end;        /* of all vertices */
     double energy_lowest, energy_highest, /* of their sum, at the start and after each step; */
         energy_gained; /* the most that it rose above an earlier one; NaN but with energy_steps */

@@ -28,3 +28,5 @@ dist_check_SCRIPTS += tests/whole/test_materials.sh
 TESTS += tests/whole/test_materials.sh
 dist_check_SCRIPTS += tests/whole/test_closed_forms.sh
 TESTS += tests/whole/test_closed_forms.sh
+dist_check_SCRIPTS += tests/whole/test_stretch_limits_long.sh
+LONG_TESTS += tests/whole/test_stretch_limits_long.sh

@@ -244,6 +244,8 @@ static int settle(struct flow_state *state)
     state->length_before = state->length;
     state->length = attempt.length;
     state->longest = verdict.after;
+    if (state->longest > state->report->stretch_highest)
+        state->report->stretch_highest = state->longest;
     flow_grid_accept(&state->grid, flow_verdict_calm(&verdict));
     note(state, status);
     code = flow_energy_note(state);
@@ -287,10 +289,14 @@ static int settle_beside(struct flow_state *state, bool *begun)
 
 static int first_stretch(struct flow_state *state)
 {
+    state->report->stretch_highest = NAN;
     if (!flow_is_judged(state->flow->model))
         return DUITE_OK;
-    const int code = flow_stretch_fork(state, state->stretch[0]);
-    return code ? code : duite_get(state->rt, state->stretch[0], &state->longest);
+    int code = flow_stretch_fork(state, state->stretch[0]);
+    if (!code)
+        code = duite_get(state->rt, state->stretch[0], &state->longest);
+    state->report->stretch_highest = state->longest;
+    return code;
 }
 
 static int watch_start(struct flow_state *state)

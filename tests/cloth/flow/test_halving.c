@@ -224,6 +224,29 @@ START_TEST(an_explicit_run_that_is_unstable)
 }
 END_TEST
 
+/* A weight that falls into its spring and comes back up: the spring is longest on the way. */
+START_TEST(the_largest_stretch_of_a_run)
+{
+    for (int judged = 0; judged < 2; judged++) {
+        struct setup setup;
+        struct record record = {0};
+        setup_weight(&setup);
+        setup.material.damping_stiffness = 0;
+        setup.model.integrator = MODEL_VERLET;
+        setup.model.stretch_limit = judged ? 1.1 : 0;
+        setup.model.end = 0.314; /* 2 pi sqrt(m / k) */
+        runs(&record, &setup.model);
+        ck_assert_double_eq_tol(record.report.max_stretch, 1, 1e-5);
+        if (judged)
+            ck_assert_double_eq_tol(record.report.stretch_highest, 1 + 2 * 0.981 / 40, 1e-5);
+        else
+            ck_assert_double_nan(record.report.stretch_highest);
+        record_free(&record);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("halving");
@@ -235,6 +258,7 @@ int main(void)
     tcase_add_test(cases, a_solve_that_converges_in_a_shorter_step);
     tcase_add_test(cases, no_step_is_short_enough);
     tcase_add_test(cases, an_explicit_run_that_is_unstable);
+    tcase_add_test(cases, the_largest_stretch_of_a_run);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -94,7 +94,8 @@ int cg_system_plan(struct states_plan *plan, const struct solve_system *s, bool 
 struct room {
     struct flow_table *table;
     void **image;
-    double *values, *sums, *rows; /* of the largest block; values: as the object has them */
+    struct phys_pair *sums;
+    double *values, *rows; /* of the largest block; values: as the object has them */
 };
 
 static void room_free(struct room *room, uint32_t n)
@@ -136,7 +137,7 @@ static int room_make(const struct cg_session *s, struct room *room)
     room->table = calloc(n, sizeof *room->table);
     room->image = calloc(n, sizeof *room->image);
     room->values = aligned_alloc(32, (values + 3) / 4 * 4 * sizeof(double));
-    room->sums = calloc(entries, SOLVE_NINE * sizeof *room->sums);
+    room->sums = aligned_alloc(32, entries * sizeof *room->sums);
     room->rows = calloc(rows, 4 * sizeof *room->rows);
     if (!room->table || !room->image || !room->values || !room->sums || !room->rows)
         return serve_no_memory();
@@ -147,7 +148,7 @@ static int room_make(const struct cg_session *s, struct room *room)
 }
 
 /* Adds N of the pair of two vertices, if the system has it; the model has no other. */
-static void add_pair(const struct solve_system *s, uint32_t a, uint32_t b, double *sum)
+static void add_pair(const struct solve_system *s, uint32_t a, uint32_t b, struct phys_pair *sum)
 {
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
     size_t from = 0, to = s->n_pairs;
@@ -170,16 +171,15 @@ static void assemble(const struct cg_session *s, const struct room *room, uint32
     const struct solve_system *y = &s->state.system;
     const size_t inner = t->matrix.row[t->n];
     const struct solve_cut cut = flow_table_cut_entries(t);
-    memset(room->sums, 0, SOLVE_NINE * (inner + cut.n) * sizeof *room->sums);
+    memset(room->sums, 0, (inner + cut.n) * sizeof *room->sums);
     for (uint32_t a = 0; a < t->n; a++)
         for (size_t i = t->matrix.row[a]; i < t->matrix.row[a + 1]; i++)
-            add_pair(y, t->vertex[a], t->vertex[t->matrix.column[i]], room->sums + SOLVE_NINE * i);
+            add_pair(y, t->vertex[a], t->vertex[t->matrix.column[i]], room->sums + i);
     for (uint32_t k = 0; k < t->n_slots; k++)
         for (size_t i = t->cut_entry[k]; i < t->cut_entry[k + 1]; i++) {
             const struct flow_table *other = room->table + t->slot[k];
             const uint32_t row = other->rim[t->copy[cut.end[i][1]]];
-            add_pair(y, t->vertex[cut.end[i][0]], other->vertex[row],
-                     room->sums + SOLVE_NINE * (inner + i));
+            add_pair(y, t->vertex[cut.end[i][0]], other->vertex[row], room->sums + inner + i);
         }
     solve_assembled(&t->matrix, &cut, room->sums, room->values + 4 * flow_diagonal_rows(t));
 }

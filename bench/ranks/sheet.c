@@ -169,7 +169,7 @@ void sheet_free(struct sheet *s)
     *s = (struct sheet){0};
 }
 
-/* b and the matrix of a block, as the bodies force, right_side and matrix make them; x and v of the
+/* b and the matrix of a block, as the body of flow_system makes them; x and v of the
  * rims are in place of their objects. */
 static void make_block(struct sheet *s, const struct flow_table *t, const phys_vec *rim_x,
                        const phys_vec *rim_v)
@@ -180,22 +180,14 @@ static void make_block(struct sheet *s, const struct flow_table *t, const phys_v
     phys_vec *b = s->b + t->first, *value = s->value + s->value_start[t - all->block];
     struct phys_springs springs = flow_table_inner(t);
     phys_outside(t->n, t->load, t->drag, v, b);
-    phys_springs_force(&springs, x, v, b);
-    for (uint32_t i = 0; i < t->n_slots; i++) {
-        const size_t at = s->rim_start[t->slot[i]];
-        springs = flow_table_cut(t, i);
-        phys_springs_force_cut(&springs, x, v, rim_x + at, rim_v + at, b);
-    }
     for (uint32_t i = 0; i < t->n; i++)
         b[i] = h * b[i];
-    springs = flow_table_inner(t);
-    phys_springs_stiffness(&springs, h * h, x, v, b);
-    phys_springs_matrix(&springs, h, x, x, value);
+    phys_springs_system(&springs, h, h, x, v, b, value);
     for (uint32_t i = 0; i < t->n_slots; i++) {
         const size_t at = s->rim_start[t->slot[i]];
         springs = flow_table_cut(t, i);
-        phys_springs_stiffness_cut(&springs, h * h, x, v, rim_x + at, rim_v + at, b);
-        phys_springs_matrix(&springs, h, x, rim_x + at, value + t->n_inner + t->cut[i]);
+        phys_springs_system_cut(&springs, h, h, x, v, rim_x + at, rim_v + at, b,
+                                value + t->n_inner + t->cut[i]);
     }
 }
 

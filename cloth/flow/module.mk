@@ -34,7 +34,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/kernels_pins.c \
     cloth/flow/tasks/kernels_report.c \
     cloth/flow/tasks/kernels_state.c \
-    cloth/flow/tasks/kernels_step.c \
+    cloth/flow/tasks/kernels_step.c cloth/flow/tasks/kernels_system.c \
     cloth/flow/tasks/kernels_turned.c \
     cloth/flow/tasks/kernels_watch.c \
     cloth/flow/tasks/memory.c \

@@ -59,7 +59,7 @@ void phys_hinges_stiffness(const struct phys_hinges *hinges, int full, double sc
                            const struct phys_sight *sight, phys_vec *y);
 void phys_hinges_matrix(const struct phys_hinges *hinges, size_t from, size_t to,
                         const struct phys_step *step, const struct phys_sight *sight,
-                        struct phys_pair *pair);
+                        const uint32_t *at, struct phys_pair *pair);
 double phys_hinges_energy(const struct phys_hinges *hinges, const struct phys_sight *sight);
 
 void phys_folds_force(const struct phys_folds *folds, const struct phys_sight *sight, phys_vec *f);

@@ -108,12 +108,15 @@ PHYS_INLINE void changes(const struct phys_hinge *h, int j, struct phys_wide cha
     }
 }
 
-/* The block of corners i and j, with a minus. change: of corner j; NULL: left out. */
+/* The block of corners i and j, with a minus, turned where at says so. change: by moves of
+ * corner j; NULL: left out. */
 PHYS_INLINE void write_block(const struct phys_four *four, const struct phys_hinge *h,
                              const struct factors *factors, struct phys_wide (*change)[4], int i,
-                             int j, struct phys_pair *pair)
+                             int j, const uint32_t *at, struct phys_pair *pair)
 {
-    phys_vec n[3][3];
+    phys_vec n[3][3], cyclic[3][3];
+    phys_mask turned;
+    phys_turned(four, at, PHYS_BEND_PAIRS, &turned);
     for (int c = 0; c < 3; c++) {
         const phys_vec pull = -factors->slope * h->slope[j].c[c];
         for (int r = 0; r < 3; r++) {
@@ -122,40 +125,47 @@ PHYS_INLINE void write_block(const struct phys_four *four, const struct phys_hin
                 n[r][c] -= factors->change * change[c][i].c[r];
         }
     }
-    phys_write_pairs(four, n, PHYS_BEND_PAIRS, pair);
+    for (int r = 0; r < 3; r++) {
+        const int c = (r + 1) % 3;
+        cyclic[0][r] = n[r][r];
+        phys_choose(&turned, &n[c][r], &n[r][c], &cyclic[1][r]);
+        phys_choose(&turned, &n[r][c], &n[c][r], &cyclic[2][c]);
+    }
+    phys_write_pairs(four, cyclic, PHYS_BEND_PAIRS, pair);
 }
 
 PHYS_INLINE void matrix(const struct phys_hinges *hinges, size_t from, size_t to,
                         const struct phys_step *step, int full, const struct phys_sight *sight,
-                        struct phys_pair *pair)
+                        const uint32_t *at, struct phys_pair *pair)
 {
     for (size_t first = from; first < to; first += PHYS_WIDE) {
         struct phys_four four;
         struct phys_hinge h;
         struct factors factors;
         struct phys_wide change[3][4];
-        struct phys_pair *at = pair + PHYS_BEND_PAIRS * (first - from);
+        size_t k = PHYS_BEND_PAIRS * (first - from);
         phys_four_from(first, to, &four);
         phys_hinge_make(&four, hinges->corner, sight, &h);
         factors_of(hinges, &four, &h, full, step->h * step->h, step->h, &factors);
         for (int j = 1; j < 4; j++) {
             if (full)
                 changes(&h, j, change);
-            for (int i = 0; i < j; i++)
-                write_block(&four, &h, &factors, full ? change : NULL, i, j, at++);
+            for (int i = 0; i < j; i++, k++)
+                write_block(&four, &h, &factors, full ? change : NULL, i, j, at ? at + k : NULL,
+                            pair + k);
         }
     }
 }
 
 PHYS_KERNEL(phys_hinges_matrix,
             (const struct phys_hinges *hinges, size_t from, size_t to, const struct phys_step *step,
-             const struct phys_sight *sight, struct phys_pair *pair),
-            (hinges, from, to, step, sight, pair))
+             const struct phys_sight *sight, const uint32_t *at, struct phys_pair *pair),
+            (hinges, from, to, step, sight, at, pair))
 {
     if (step->full)
-        matrix(hinges, from, to, step, 1, sight, pair);
+        matrix(hinges, from, to, step, 1, sight, at, pair);
     else
-        matrix(hinges, from, to, step, 0, sight, pair);
+        matrix(hinges, from, to, step, 0, sight, at, pair);
 }
 
 PHYS_KERNEL_OF(double, phys_hinges_energy,

@@ -1,115 +1,242 @@
 /* A spring's values depend on the difference of its ends only, and swapping the ends changes signs
- * but no other bit. */
+ * but no other bit. Springs are worked on in order, four at a time. */
 #include "cloth/physics/spring.h"
+
+#include "cloth/physics/detail/lanes.h"
 
 #include <math.h>
 
-/* Direction u from a to b and length l of a spring. */
-PHYS_INLINE double direction(const phys_vec *xa, const phys_vec *xb, phys_vec *u)
+/* ---- Four springs at once (detail/lanes.h) ---- */
+
+struct four_springs {
+    phys_vec k, c, rest;    /* N/m, kg/s, m */
+    phys_vec length;        /* m */
+    phys_vec inverse;       /* of the length, or 0 */
+    struct phys_wide u, dv; /* direction from end 0 to end 1; difference of speeds, m/s */
+};
+
+/* The order of phys_dot, to the same bits. */
+PHYS_INLINE void dot(const struct phys_wide *a, const struct phys_wide *b, phys_vec *y)
 {
-    const phys_vec d = *xb - *xa;
-    const double l = sqrt(phys_dot(&d, &d));
-    *u = l > 0 ? d * (1 / l) : d;
-    return l;
+    *y = (a->c[0] * b->c[0] + a->c[2] * b->c[2]) + a->c[1] * b->c[1];
+}
+
+/* y of end 1 minus y of end 0. */
+PHYS_INLINE void differences(const struct phys_springs *s, const struct phys_four *four,
+                             const phys_vec *own, const phys_vec *other, struct phys_wide *d)
+{
+    phys_vec row[PHYS_WIDE], column[PHYS_WIDE];
+    PHYS_UNROLL
+    for (int i = 0; i < PHYS_WIDE; i++)
+        row[i] = other[s->end[four->at[i]][1]] - own[s->end[four->at[i]][0]];
+    phys_turn(row, column);
+    PHYS_UNROLL
+    for (int i = 0; i < 3; i++)
+        d->c[i] = column[i];
+}
+
+/* All but dv. */
+PHYS_INLINE void four_make(const struct phys_springs *s, const struct phys_four *four,
+                           const phys_vec *x, const phys_vec *x_other, struct four_springs *springs)
+{
+    phys_vec square;
+    struct phys_wide d;
+    differences(s, four, x, x_other, &d);
+    dot(&d, &d, &square);
+    phys_sqrt(&square, &springs->length);
+    phys_inverse(&springs->length, &springs->inverse);
+    phys_wide_scale(&springs->inverse, &d, &springs->u);
+    phys_take_numbers(four, s->stiffness, &springs->k);
+    phys_take_numbers(four, s->damping, &springs->c);
+    phys_take_numbers(four, s->length, &springs->rest);
 }
 
 /* Share t of the stiffness that acts across a spring. */
-PHYS_INLINE double transverse(const struct phys_springs *s, size_t i, double l)
+PHYS_INLINE void transverse(const struct four_springs *springs, int full, phys_vec *t)
 {
-    const double rest = s->length[i];
-    return l > rest || (s->full && l > 0) ? 1 - rest / l : 0;
+    const phys_vec one = {1, 1, 1, 1};
+    const phys_vec share = one - springs->rest * springs->inverse, none = {0};
+    const phys_mask longer = springs->length > (full ? none : springs->rest);
+    phys_choose(&longer, &share, &none, t);
 }
 
-/* The pull on a of spring i. */
-PHYS_INLINE void pull(const struct phys_springs *s, size_t i, const phys_vec *xa,
-                      const phys_vec *xb, const phys_vec *va, const phys_vec *vb, phys_vec *f)
+/* k (l - L) + c (u . dv), the pull along u. */
+PHYS_INLINE void pull_of(const struct four_springs *springs, const phys_vec *speed, phys_vec *pull)
 {
-    phys_vec u;
-    const double l = direction(xa, xb, &u);
-    const phys_vec dv = *vb - *va;
-    *f = (s->stiffness[i] * (l - s->length[i]) + s->damping[i] * phys_dot(&u, &dv)) * u;
+    *pull = springs->k * (springs->length - springs->rest) + springs->c * *speed;
 }
 
-void phys_springs_force(const struct phys_springs *springs, const phys_vec *x, const phys_vec *v,
-                        phys_vec *f)
+/* Adds to the rows of end 0 and, unless it is elsewhere, takes from those of end 1. */
+PHYS_INLINE void add_rows(const struct phys_springs *s, const struct phys_four *four, int cut,
+                          const struct phys_wide *add, phys_vec *y)
 {
-    for (size_t i = 0; i < springs->n; i++) {
-        const uint32_t a = springs->end[i][0], b = springs->end[i][1];
-        phys_vec t;
-        pull(springs, i, x + a, x + b, v + a, v + b, &t);
-        f[a] += t;
-        f[b] -= t;
+    const phys_vec column[PHYS_WIDE] = {add->c[0], add->c[1], add->c[2], {0}};
+    phys_vec row[PHYS_WIDE];
+    phys_turn(column, row);
+    PHYS_UNROLL
+    for (size_t i = 0; i < four->valid; i++) {
+        y[s->end[four->at[i]][0]] += row[i];
+        if (!cut)
+            y[s->end[four->at[i]][1]] -= row[i];
     }
 }
 
-void phys_springs_force_cut(const struct phys_springs *springs, const phys_vec *x,
-                            const phys_vec *v, const phys_vec *x_other, const phys_vec *v_other,
-                            phys_vec *f)
+/* Where the ends of springs are: end 1 in arrays of another block, or in the same. */
+struct where {
+    const phys_vec *x, *v, *x_other, *v_other;
+    int cut;
+};
+
+/* ---- Forces ---- */
+
+PHYS_INLINE void force_four(const struct phys_springs *s, size_t first, size_t end,
+                            const struct where *at, phys_vec *f)
 {
-    for (size_t i = 0; i < springs->n; i++) {
-        const uint32_t a = springs->end[i][0], b = springs->end[i][1];
-        phys_vec t;
-        pull(springs, i, x + a, x_other + b, v + a, v_other + b, &t);
-        f[a] += t;
+    struct phys_four four;
+    struct four_springs springs;
+    struct phys_wide add;
+    phys_vec speed, pull;
+    phys_four_from(first, end, &four);
+    four_make(s, &four, at->x, at->x_other, &springs);
+    differences(s, &four, at->v, at->v_other, &springs.dv);
+    dot(&springs.u, &springs.dv, &speed);
+    pull_of(&springs, &speed, &pull);
+    phys_wide_scale(&pull, &springs.u, &add);
+    add_rows(s, &four, at->cut, &add, f);
+}
+
+PHYS_INLINE void force_all(const struct phys_springs *s, const struct where *at, phys_vec *f)
+{
+    const size_t whole = s->n - s->n % PHYS_WIDE;
+    for (size_t i = 0; i < whole; i += PHYS_WIDE)
+        force_four(s, i, i + PHYS_WIDE, at, f);
+    if (whole < s->n)
+        force_four(s, whole, s->n, at, f);
+}
+
+PHYS_KERNEL(phys_springs_force,
+            (const struct phys_springs *springs, const phys_vec *x, const phys_vec *v, phys_vec *f),
+            (springs, x, v, f))
+{
+    const struct where at = {x, v, x, v, 0};
+    force_all(springs, &at, f);
+}
+
+PHYS_KERNEL(phys_springs_force_cut,
+            (const struct phys_springs *springs, const phys_vec *x, const phys_vec *v,
+             const phys_vec *x_other, const phys_vec *v_other, phys_vec *f),
+            (springs, x, v, x_other, v_other, f))
+{
+    const struct where at = {x, v, x_other, v_other, 1};
+    force_all(springs, &at, f);
+}
+
+/* ---- Matrix and right side ---- */
+
+/* What the matrix is made of: h^2 k t; h^2 k (1 - t). */
+struct stiff {
+    phys_vec across, along;
+};
+
+PHYS_INLINE void stiff_of(const struct four_springs *springs, int full, double h,
+                          struct stiff *stiff)
+{
+    const phys_vec one = {1, 1, 1, 1}, k = h * h * springs->k;
+    phys_vec t;
+    transverse(springs, full, &t);
+    stiff->across = k * t;
+    stiff->along = k * (one - t);
+}
+
+PHYS_INLINE void write_values(const struct phys_four *four, const struct four_springs *springs,
+                              const struct stiff *stiff, double h, phys_vec *value)
+{
+    const phys_vec square = stiff->along + h * springs->c;
+    phys_vec row[PHYS_WIDE], column[PHYS_WIDE], size;
+    phys_sqrt(&square, &size);
+    PHYS_UNROLL
+    for (int i = 0; i < 3; i++)
+        column[i] = size * springs->u.c[i];
+    column[3] = stiff->across;
+    phys_turn(column, row);
+    PHYS_UNROLL
+    for (size_t i = 0; i < four->valid; i++)
+        value[i] = row[i];
+}
+
+PHYS_INLINE void system_four(const struct phys_springs *s, size_t first, size_t end, double h,
+                             double push, const struct where *at, phys_vec *b, phys_vec *value)
+{
+    struct phys_four four;
+    struct four_springs springs;
+    struct stiff stiff;
+    struct phys_wide add;
+    phys_vec speed, pull;
+    phys_four_from(first, end, &four);
+    four_make(s, &four, at->x, at->x_other, &springs);
+    stiff_of(&springs, s->full, h, &stiff);
+    write_values(&four, &springs, &stiff, h, value);
+    differences(s, &four, at->v, at->v_other, &springs.dv);
+    dot(&springs.u, &springs.dv, &speed);
+    pull_of(&springs, &speed, &pull);
+    pull = push * pull + stiff.along * speed;
+    phys_wide_mix(&pull, &springs.u, &stiff.across, &springs.dv, &add);
+    add_rows(s, &four, at->cut, &add, b);
+}
+
+PHYS_INLINE void system_all(const struct phys_springs *s, double h, double push,
+                            const struct where *at, phys_vec *b, phys_vec *value)
+{
+    const size_t whole = s->n - s->n % PHYS_WIDE;
+    for (size_t i = 0; i < whole; i += PHYS_WIDE)
+        system_four(s, i, i + PHYS_WIDE, h, push, at, b, value + i);
+    if (whole < s->n)
+        system_four(s, whole, s->n, h, push, at, b, value + whole);
+}
+
+PHYS_KERNEL(phys_springs_system,
+            (const struct phys_springs *springs, double h, double push, const phys_vec *x,
+             const phys_vec *v, phys_vec *b, phys_vec *value),
+            (springs, h, push, x, v, b, value))
+{
+    const struct where at = {x, v, x, v, 0};
+    system_all(springs, h, push, &at, b, value);
+}
+
+PHYS_KERNEL(phys_springs_system_cut,
+            (const struct phys_springs *springs, double h, double push, const phys_vec *x,
+             const phys_vec *v, const phys_vec *x_other, const phys_vec *v_other, phys_vec *b,
+             phys_vec *value),
+            (springs, h, push, x, v, x_other, v_other, b, value))
+{
+    const struct where at = {x, v, x_other, v_other, 1};
+    system_all(springs, h, push, &at, b, value);
+}
+
+PHYS_KERNEL(phys_springs_matrix,
+            (const struct phys_springs *springs, double h, const phys_vec *x,
+             const phys_vec *x_other, phys_vec *value),
+            (springs, h, x, x_other, value))
+{
+    for (size_t i = 0; i < springs->n; i += PHYS_WIDE) {
+        struct phys_four four;
+        struct four_springs some;
+        struct stiff stiff;
+        phys_four_from(i, springs->n, &four);
+        four_make(springs, &four, x, x_other, &some);
+        stiff_of(&some, springs->full, h, &stiff);
+        write_values(&four, &some, &stiff, h, value + i);
     }
 }
 
-/* scale K d of spring i, K = k t I + k (1 - t) u u'. */
-PHYS_INLINE void stiff(const struct phys_springs *s, size_t i, double scale, const phys_vec *xa,
-                       const phys_vec *xb, const phys_vec *d, phys_vec *y)
-{
-    phys_vec u;
-    const double t = transverse(s, i, direction(xa, xb, &u));
-    const double k = scale * s->stiffness[i];
-    *y = k * t * *d + k * (1 - t) * phys_dot(&u, d) * u;
-}
-
-void phys_springs_stiffness(const struct phys_springs *springs, double scale, const phys_vec *x,
-                            const phys_vec *v, phys_vec *y)
-{
-    for (size_t i = 0; i < springs->n; i++) {
-        const uint32_t a = springs->end[i][0], b = springs->end[i][1];
-        const phys_vec d = v[a] - v[b];
-        phys_vec t;
-        stiff(springs, i, scale, x + a, x + b, &d, &t);
-        y[a] -= t;
-        y[b] += t;
-    }
-}
-
-void phys_springs_stiffness_cut(const struct phys_springs *springs, double scale, const phys_vec *x,
-                                const phys_vec *v, const phys_vec *x_other, const phys_vec *v_other,
-                                phys_vec *y)
-{
-    for (size_t i = 0; i < springs->n; i++) {
-        const uint32_t a = springs->end[i][0], b = springs->end[i][1];
-        const phys_vec d = v[a] - v_other[b];
-        phys_vec t;
-        stiff(springs, i, scale, x + a, x_other + b, &d, &t);
-        y[a] -= t;
-    }
-}
-
-void phys_springs_matrix(const struct phys_springs *springs, double h, const phys_vec *x,
-                         const phys_vec *x_other, phys_vec *value)
-{
-    for (size_t i = 0; i < springs->n; i++) {
-        phys_vec u;
-        const double l = direction(x + springs->end[i][0], x_other + springs->end[i][1], &u);
-        const double t = transverse(springs, i, l);
-        const double k = h * h * springs->stiffness[i];
-        value[i] = sqrt(k * (1 - t) + h * springs->damping[i]) * u; /* w w' */
-        value[i][3] = k * t;                                        /* alpha */
-    }
-}
+/* ---- Stretch ---- */
 
 void phys_springs_range(const struct phys_springs *springs, const unsigned char *chosen,
                         const phys_vec *x, const phys_vec *x_other, double range[2])
 {
     for (size_t i = 0; i < springs->n; i++) {
-        phys_vec u;
-        const double l = direction(x + springs->end[i][0], x_other + springs->end[i][1], &u);
-        const double stretch = l / springs->length[i];
+        const phys_vec d = x_other[springs->end[i][1]] - x[springs->end[i][0]];
+        const double stretch = sqrt(phys_dot(&d, &d)) / springs->length[i];
         if (chosen[i] && stretch < range[0])
             range[0] = stretch;
         if (chosen[i] && stretch > range[1])

@@ -35,19 +35,19 @@ void phys_springs_force_cut(const struct phys_springs *springs, const phys_vec *
                             const phys_vec *v, const phys_vec *x_other, const phys_vec *v_other,
                             phys_vec *f);
 
-/* y_a -= scale K (v_a - v_b), y_b += the same: scale times what the stiffness adds to the forces in
- * a unit of time. */
-void phys_springs_stiffness(const struct phys_springs *springs, double scale, const phys_vec *x,
-                            const phys_vec *v, phys_vec *y);
-void phys_springs_stiffness_cut(const struct phys_springs *springs, double scale, const phys_vec *x,
-                                const phys_vec *v, const phys_vec *x_other, const phys_vec *v_other,
-                                phys_vec *y);
-
 /* The springs' part of the matrix of an implicit step of h seconds, h c u u' + h^2 K = alpha I + w
  * w', for each spring as four doubles w0 w1 w2 alpha (value: n; kg). end 1 is looked up in x_other,
  * which is x where both ends are here. */
 void phys_springs_matrix(const struct phys_springs *springs, double h, const phys_vec *x,
                          const phys_vec *x_other, phys_vec *value);
+
+/* The same, and the right side of that step: b += push f - h^2 K v, with push h (s), or 0 where the
+ * forces are in b. */
+void phys_springs_system(const struct phys_springs *springs, double h, double push,
+                         const phys_vec *x, const phys_vec *v, phys_vec *b, phys_vec *value);
+void phys_springs_system_cut(const struct phys_springs *springs, double h, double push,
+                             const phys_vec *x, const phys_vec *v, const phys_vec *x_other,
+                             const phys_vec *v_other, phys_vec *b, phys_vec *value);
 
 /* The largest l / L of those springs whose `chosen` byte (n) is not zero; 0 if there are none. */
 double phys_springs_stretch(const struct phys_springs *springs, const unsigned char *chosen,

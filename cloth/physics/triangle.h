@@ -57,13 +57,17 @@ int phys_triangle_rest(const double uv[6], double gradient[4], double *area);
 void phys_triangles_force(const struct phys_triangles *triangles, const struct phys_sight *sight,
                           phys_vec *f);
 
-/* y -= scale K v: scale times what the stiffness adds to the forces in a unit of time. */
-void phys_triangles_stiffness(const struct phys_triangles *triangles, int full, double scale,
-                              const struct phys_sight *sight, phys_vec *y);
-
-/* The triangles from .. to - 1: pairs (0, 1), (0, 2), (1, 2) of each, 3 (to - from) of them. */
+/* The triangles from .. to - 1: pairs (0, 1), (0, 2), (1, 2) of each, 3 (to - from) of them. at: of
+ * each of these pairs, with bit 0 set where N' is wanted in place of N; NULL: nowhere. */
 void phys_triangles_matrix(const struct phys_triangles *triangles, size_t from, size_t to,
                            const struct phys_step *step, const struct phys_sight *sight,
+                           const uint32_t *at, struct phys_pair *pair);
+
+/* The same, and the right side of that step: b += push f - h^2 K v (n rows), with push h (s), or 0
+ * where the forces are in b. */
+void phys_triangles_system(const struct phys_triangles *triangles, size_t from, size_t to,
+                           const struct phys_step *step, double push,
+                           const struct phys_sight *sight, const uint32_t *at, phys_vec *b,
                            struct phys_pair *pair);
 
 /* Energy (J) of the triangles that count here: those whose corner 0 is one of the n rows. */

@@ -6,38 +6,37 @@
 
 #include <string.h>
 
-void solve_assemble_springs(size_t n, const uint32_t *at, const phys_vec *value, double *sums)
+PHYS_KERNEL(solve_assemble_springs,
+            (size_t n, const uint32_t *at, const phys_vec *value, struct phys_pair *sums),
+            (n, at, value, sums))
 {
     for (size_t i = 0; i < n; i++) {
-        double *sum = sums + SOLVE_NINE * (size_t)at[i];
-        const double x = value[i][0], y = value[i][1], z = value[i][2], alpha = value[i][3];
-        const double nine[SOLVE_NINE] = {x * x + alpha, y * y + alpha, z * z + alpha, x * y, y * z,
-                                         z * x,         z * x,         x * y,         y * z};
-        for (int k = 0; k < SOLVE_NINE; k++)
-            sum[k] += nine[k];
+        struct solve_symmetric m;
+        struct phys_pair *sum = sums + at[i];
+        solve_spring(value + i, &m);
+        sum->cyclic[0] += m.diagonal;
+        sum->cyclic[1] += m.beside;
+        sum->cyclic[2] += SOLVE_ZXY(m.beside);
     }
 }
 
-void solve_assemble_pairs(size_t n, const uint32_t *at, const struct phys_pair *pair, double *sums)
+PHYS_KERNEL(solve_assemble_pairs,
+            (size_t n, const uint32_t *at, const struct phys_pair *pair, struct phys_pair *sums),
+            (n, at, pair, sums))
 {
     for (size_t i = 0; i < n; i++) {
         if (at[i] == SOLVE_NO_ENTRY)
             continue;
-        double *sum = sums + SOLVE_NINE * (size_t)(at[i] >> 1);
-        const phys_vec *upper = pair[i].cyclic + 1, *lower = pair[i].cyclic + 2;
-        const phys_vec one = at[i] & 1 ? SOLVE_YZX(*lower) : *upper;
-        const phys_vec two = at[i] & 1 ? SOLVE_ZXY(*upper) : *lower;
-        for (int k = 0; k < 3; k++) {
-            sum[k] += pair[i].cyclic[0][k];
-            sum[3 + k] += one[k];
-            sum[6 + k] += two[k];
-        }
+        struct phys_pair *sum = sums + (at[i] >> 1);
+        sum->cyclic[0] += pair[i].cyclic[0];
+        sum->cyclic[1] += pair[i].cyclic[1];
+        sum->cyclic[2] += pair[i].cyclic[2];
     }
 }
 
 /* Adds the turn of N to row a, and that of N' to row b, if b is here. */
-static void add_turns(const struct solve_block *block, const struct solve_cut *cut,
-                      const void *entry, phys_vec *turn)
+PHYS_INLINE void add_turns(const struct solve_block *block, const struct solve_cut *cut,
+                           const void *entry, phys_vec *turn)
 {
     struct solve_symmetric symmetric;
     const size_t inner = block->row[block->n];
@@ -54,20 +53,44 @@ static void add_turns(const struct solve_block *block, const struct solve_cut *c
     }
 }
 
-void solve_assembled(const struct solve_block *block, const struct solve_cut *cut,
-                     const double *sums, double *memory)
+/* Four numbers are written of each three: the fourth, a zero, is where the next three begin, or the
+ * one behind all. */
+PHYS_INLINE void write_doubles(size_t n, const struct phys_pair *sums, double *value)
 {
-    const size_t n = SOLVE_NINE * (block->row[block->n] + cut->n);
+    value[SOLVE_NINE * n] = 0;
+    for (size_t i = 0; i < n; i++) {
+        PHYS_UNROLL
+        for (size_t k = 0; k < 3; k++)
+            *(solve_four *)(void *)(value + SOLVE_NINE * i + 3 * k) = sums[i].cyclic[k];
+    }
+}
+
+PHYS_INLINE void write_floats(size_t n, const struct phys_pair *sums, float *value)
+{
+    value[SOLVE_NINE * n] = 0;
+    for (size_t i = 0; i < n; i++) {
+        PHYS_UNROLL
+        for (size_t k = 0; k < 3; k++) {
+            const phys_vec *a = sums[i].cyclic + k;
+            *(solve_four_floats *)(void *)(value + SOLVE_NINE * i + 3 * k) =
+                (solve_four_floats){(float)(*a)[0], (float)(*a)[1], (float)(*a)[2], (float)(*a)[3]};
+        }
+    }
+}
+
+PHYS_KERNEL(solve_assembled,
+            (const struct solve_block *block, const struct solve_cut *cut,
+             const struct phys_pair *sums, double *memory),
+            (block, cut, sums, memory))
+{
+    const size_t n = block->row[block->n] + cut->n;
     if (block->format == SOLVE_HALF) {
-        memmove(memory, sums, n * sizeof *memory);
-        memory[n] = 0;
+        write_doubles(n, sums, memory);
         return;
     }
     phys_vec *turn = (phys_vec *)(void *)memory;
     float *value = (float *)(void *)(turn + block->n);
-    for (size_t i = 0; i < n; i++)
-        value[i] = (float)sums[i];
-    value[n] = 0;
+    write_floats(n, sums, value);
     memset(turn, 0, block->n * sizeof *turn);
     add_turns(block, cut, value, turn);
 }

@@ -5,33 +5,36 @@
 #include "cloth/solve/block.h"
 
 /* The values of the half formats (cloth/solve/format.h), from any elements. Each entry is summed up
- * in nine doubles, all in zero at first; an element of any number of vertices adds its -A_ab to the
- * entry of each two of them, in an order that the block's table gives: sums of a cut entry are the
- * same on both sides if both add in the same order. When all have been added, the values are made
- * of the sums. Pure functions. */
+ * as a pair (cloth/physics/element.h), all in zero at first; an element of any number of vertices
+ * adds its -A_ab to the entry of each two of them, in an order that the block's table gives: sums
+ * of a cut entry are the same on both sides if both add in the same order. When all have been
+ * added, the values are made of the sums. Pure functions. */
 
-/* Adds N to the nine of an entry whose first row is that of N, or, turned, whose second is. */
-static inline void solve_assemble(double *sum, bool turned, const double n[3][3])
+/* Adds N to an entry whose first row is that of N, or, turned, whose second is. */
+static inline void solve_assemble(struct phys_pair *sum, bool turned, const double n[3][3])
 {
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
-        sum[i] += n[i][i];
-        sum[3 + i] += turned ? n[j][i] : n[i][j];
-        sum[6 + i] += turned ? n[k][i] : n[i][k];
+        sum->cyclic[0][i] += n[i][i];
+        sum->cyclic[1][i] += turned ? n[j][i] : n[i][j];
+        sum->cyclic[2][i] += turned ? n[k][i] : n[i][k];
     }
 }
 
 /* Adds n springs (w0 w1 w2 alpha each), of which spring i belongs to entry at[i]. */
-void solve_assemble_springs(size_t n, const uint32_t *at, const phys_vec *value, double *sums);
+void solve_assemble_springs(size_t n, const uint32_t *at, const phys_vec *value,
+                            struct phys_pair *sums);
 
 /* Adds n pairs of elements. at: of each pair twice its entry, and one more where the entry's first
- * row is the pair's second; SOLVE_NO_ENTRY: none of the pair's rows is here. */
+ * row is the pair's second: such a pair is there turned, as who makes pairs is told by the same
+ * numbers; SOLVE_NO_ENTRY: none of the pair's rows is here. */
 #define SOLVE_NO_ENTRY 0xffffffffu
-void solve_assemble_pairs(size_t n, const uint32_t *at, const struct phys_pair *pair, double *sums);
+void solve_assemble_pairs(size_t n, const uint32_t *at, const struct phys_pair *pair,
+                          struct phys_pair *sums);
 
 /* The values of a block of format SOLVE_HALF or SOLVE_HALF_FLOAT from sums of all its entries.
- * memory: solve_format_doubles of them; for SOLVE_HALF it may be where the sums are. */
+ * memory: solve_format_doubles of them. */
 void solve_assembled(const struct solve_block *block, const struct solve_cut *cut,
-                     const double *sums, double *memory);
+                     const struct phys_pair *sums, double *memory);
 
 #endif

@@ -79,10 +79,10 @@ static bool pairs_of(const struct flow_source *source, const struct flow_element
     if (element->kind == FLOW_TRIANGLES &&
         !phys_membrane_make(m->stretch, model_weft(m), m->shear, m->poisson, 0, &membrane)) {
         const struct phys_triangles one = {1, corner, &vector, &rest.area, &membrane};
-        phys_triangles_matrix(&one, 0, 1, &step, &sight, pair);
+        phys_triangles_matrix(&one, 0, 1, &step, &sight, NULL, pair);
     } else if (element->kind == FLOW_HINGES) {
         const struct phys_hinges one = {1, corner, &rest.stiffness, &none, &rest.s};
-        phys_hinges_matrix(&one, 0, 1, &step, &sight, pair);
+        phys_hinges_matrix(&one, 0, 1, &step, &sight, NULL, pair);
     } else {
         const struct phys_folds one = {1, corner, &vector};
         phys_folds_matrix(&one, 0, 1, 1, pair);

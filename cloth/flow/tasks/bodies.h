@@ -62,16 +62,27 @@ static inline const phys_vec *flow_open_matrix(const duite_call *call, struct fl
     return filtered ? filter + t->n : filter;
 }
 
-/* Elements of a block (elements.c), in tasks whose parameters are: table, x, v, any one, rims of x,
- * rims of v. Adds their forces; y -= scale K v. */
-void flow_elements_force(const duite_call *call, const struct flow_table *t, phys_vec *f);
+/* Elements of a block (elements.c). What they see in a task of which x and v are parameters 1 and
+ * 2, rims of x come from parameter `rims` on, those of v behind them; or without v. One at a time
+ * on a worker, until its task ends. */
+bool flow_has_elements(const struct flow_table *t);
+struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t,
+                                    size_t rims);
+struct phys_sight flow_elements_see_still(const duite_call *call, const struct flow_table *t,
+                                          size_t rims);
+/* Adds their forces; those of all but triangles. */
+void flow_elements_force(const duite_call *call, const struct flow_table *t,
+                         const struct phys_sight *sight, phys_vec *f);
+void flow_elements_bend(const duite_call *call, const struct flow_table *t,
+                        const struct phys_sight *sight, phys_vec *f);
+/* y -= scale K v of all but triangles. */
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
-                             phys_vec *y);
-/* Adds their part of the matrix of a step of h seconds to the sums of its entries. Parameters:
- * table, x; rims of x from number `rims` on. */
-void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double h,
-                            size_t rims, double *sums);
-/* Their energy, J, of those that count here; parameters alike. */
+                             const struct phys_sight *sight, phys_vec *y);
+/* Adds their part of the matrix to the sums of its entries and, unless b is NULL, what triangles
+ * add to the right side with it (phys_triangles_system). */
+void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double push,
+                            const struct phys_sight *sight, phys_vec *b, struct phys_pair *sums);
+/* Their energy, J, of those that count here; x is parameter 1. */
 double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims);
 
 /* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are

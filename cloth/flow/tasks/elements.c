@@ -5,7 +5,7 @@
 
 #include "cloth/solve/assemble.h"
 
-static bool has_elements(const struct flow_table *t)
+bool flow_has_elements(const struct flow_table *t)
 {
     bool has = false;
     for (int kind = 0; kind < FLOW_KINDS; kind++)
@@ -25,50 +25,8 @@ static const phys_vec *copy_rims(const duite_call *call, const struct flow_table
     return copy;
 }
 
-/* x and v are parameters 1 and 2, their rims come from parameter 4 on. */
-static struct phys_sight look(const duite_call *call, const struct flow_table *t)
-{
-    const struct flow *flow = flow_of(call);
-    phys_vec *room = flow->copies + call->worker * flow->n_copies;
-    return (struct phys_sight){.n = t->n,
-                               .x = duite_in(call, 1, phys_vec),
-                               .v = duite_in(call, 2, phys_vec),
-                               .x_copy = copy_rims(call, t, 4, room),
-                               .v_copy = copy_rims(call, t, 4 + t->n_slots, room + t->n_copies)};
-}
-
-void flow_elements_force(const duite_call *call, const struct flow_table *t, phys_vec *f)
-{
-    if (!has_elements(t))
-        return;
-    const struct phys_sight sight = look(call, t);
-    const struct phys_triangles triangles = flow_table_triangles(t);
-    const struct phys_hinges hinges = flow_table_hinges(t);
-    const struct phys_folds folds = flow_table_folds(t);
-    phys_triangles_force(&triangles, &sight, f);
-    phys_hinges_force(&hinges, &sight, f);
-    phys_folds_force(&folds, &sight, f);
-    phys_air_force(&flow_of(call)->model->air, t->n_elements[FLOW_SAILS],
-                   (const uint32_t(*)[4])t->list[FLOW_SAILS].corner, &sight, f);
-}
-
-void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
-                             phys_vec *y)
-{
-    const int full = flow_of(call)->model->full_slope;
-    if (!has_elements(t))
-        return;
-    const struct phys_sight sight = look(call, t);
-    const struct phys_triangles triangles = flow_table_triangles(t);
-    const struct phys_hinges hinges = flow_table_hinges(t);
-    const struct phys_folds folds = flow_table_folds(t);
-    phys_triangles_stiffness(&triangles, full, scale, &sight, y);
-    phys_hinges_stiffness(&hinges, full, scale, &sight, y);
-    phys_folds_stiffness(&folds, scale, &sight, y);
-}
-
-/* The same without speeds; rims of x from parameter `rims` on. */
-static struct phys_sight look_still(const duite_call *call, const struct flow_table *t, size_t rims)
+struct phys_sight flow_elements_see_still(const duite_call *call, const struct flow_table *t,
+                                          size_t rims)
 {
     const struct flow *flow = flow_of(call);
     phys_vec *room = flow->copies + call->worker * flow->n_copies;
@@ -76,11 +34,49 @@ static struct phys_sight look_still(const duite_call *call, const struct flow_ta
         .n = t->n, .x = duite_in(call, 1, phys_vec), .x_copy = copy_rims(call, t, rims, room)};
 }
 
+struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t, size_t rims)
+{
+    const struct flow *flow = flow_of(call);
+    phys_vec *room = flow->copies + call->worker * flow->n_copies + t->n_copies;
+    struct phys_sight sight = flow_elements_see_still(call, t, rims);
+    sight.v = duite_in(call, 2, phys_vec);
+    sight.v_copy = copy_rims(call, t, rims + t->n_slots, room);
+    return sight;
+}
+
+void flow_elements_bend(const duite_call *call, const struct flow_table *t,
+                        const struct phys_sight *sight, phys_vec *f)
+{
+    const struct phys_hinges hinges = flow_table_hinges(t);
+    const struct phys_folds folds = flow_table_folds(t);
+    phys_hinges_force(&hinges, sight, f);
+    phys_folds_force(&folds, sight, f);
+    phys_air_force(&flow_of(call)->model->air, t->n_elements[FLOW_SAILS],
+                   (const uint32_t(*)[4])t->list[FLOW_SAILS].corner, sight, f);
+}
+
+void flow_elements_force(const duite_call *call, const struct flow_table *t,
+                         const struct phys_sight *sight, phys_vec *f)
+{
+    const struct phys_triangles triangles = flow_table_triangles(t);
+    phys_triangles_force(&triangles, sight, f);
+    flow_elements_bend(call, t, sight, f);
+}
+
+void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
+                             const struct phys_sight *sight, phys_vec *y)
+{
+    const struct phys_hinges hinges = flow_table_hinges(t);
+    const struct phys_folds folds = flow_table_folds(t);
+    phys_hinges_stiffness(&hinges, flow_of(call)->model->full_slope, scale, sight, y);
+    phys_folds_stiffness(&folds, scale, sight, y);
+}
+
 double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims)
 {
-    if (!has_elements(t))
+    if (!flow_has_elements(t))
         return 0;
-    const struct phys_sight sight = look_still(call, t, rims);
+    const struct phys_sight sight = flow_elements_see_still(call, t, rims);
     const struct phys_triangles triangles = flow_table_triangles(t);
     const struct phys_hinges hinges = flow_table_hinges(t);
     const struct phys_folds folds = flow_table_folds(t);
@@ -88,44 +84,53 @@ double flow_elements_energy(const duite_call *call, const struct flow_table *t, 
            phys_folds_energy(&folds, &sight);
 }
 
-enum { AT_ONCE = 32 }; /* elements, whose pairs stay in the nearest cache */
+/* What is assembled of elements. */
+struct assembly {
+    const struct flow_table *t;
+    struct phys_step step;
+    double push;
+    const struct phys_sight *sight;
+    phys_vec *b; /* NULL: the matrix alone */
+};
 
 /* Elements from .. to - 1 of one kind. */
-static void pairs_of(const struct flow_table *t, enum flow_kind kind, uint32_t from, uint32_t to,
-                     const struct phys_step *step, const struct phys_sight *sight,
-                     struct phys_pair *pair)
+static void pairs_of(const struct assembly *a, enum flow_kind kind, uint32_t from, uint32_t to,
+                     const uint32_t *at, struct phys_pair *pair)
 {
-    const struct phys_triangles triangles = flow_table_triangles(t);
-    const struct phys_hinges hinges = flow_table_hinges(t);
-    const struct phys_folds folds = flow_table_folds(t);
+    const struct phys_triangles triangles = flow_table_triangles(a->t);
+    const struct phys_hinges hinges = flow_table_hinges(a->t);
+    const struct phys_folds folds = flow_table_folds(a->t);
     switch (kind) {
     case FLOW_TRIANGLES:
-        phys_triangles_matrix(&triangles, from, to, step, sight, pair);
+        if (a->b)
+            phys_triangles_system(&triangles, from, to, &a->step, a->push, a->sight, at, a->b,
+                                  pair);
+        else
+            phys_triangles_matrix(&triangles, from, to, &a->step, a->sight, at, pair);
         break;
     case FLOW_HINGES:
-        phys_hinges_matrix(&hinges, from, to, step, sight, pair);
+        phys_hinges_matrix(&hinges, from, to, &a->step, a->sight, at, pair);
         break;
     case FLOW_FOLDS:
     case FLOW_SAILS:
     case FLOW_KINDS:
-        phys_folds_matrix(&folds, from, to, step->h, pair);
+        phys_folds_matrix(&folds, from, to, a->step.h, pair);
         break;
     }
 }
 
-void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double h,
-                            size_t rims, double *sums)
+void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double push,
+                            const struct phys_sight *sight, phys_vec *b, struct phys_pair *sums)
 {
-    const struct phys_step step = {h, flow_of(call)->model->full_slope};
+    enum { AT_ONCE = 32 }; /* elements, whose pairs stay in the nearest cache */
+    const struct assembly assembly = {
+        t, {flow_args_of(call)->h, flow_of(call)->model->full_slope}, push, sight, b};
     struct phys_pair pair[AT_ONCE * PHYS_BEND_PAIRS];
-    if (!has_elements(t))
-        return;
-    const struct phys_sight sight = look_still(call, t, rims);
     for (int kind = 0; kind < FLOW_SAILS; kind++)
         for (uint32_t from = 0; from < t->n_elements[kind]; from += AT_ONCE) {
             const uint32_t left = t->n_elements[kind] - from, n = left < AT_ONCE ? left : AT_ONCE;
-            pairs_of(t, (enum flow_kind)kind, from, from + n, &step, &sight, pair);
-            solve_assemble_pairs(flow_pairs[kind] * (size_t)n,
-                                 t->list[kind].at + flow_pairs[kind] * (size_t)from, pair, sums);
+            const uint32_t *at = t->list[kind].at + flow_pairs[kind] * (size_t)from;
+            pairs_of(&assembly, (enum flow_kind)kind, from, from + n, at, pair);
+            solve_assemble_pairs(flow_pairs[kind] * (size_t)n, at, pair, sums);
         }
 }

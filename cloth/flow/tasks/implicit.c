@@ -25,22 +25,21 @@ static int fork_force(struct flow_state *state, struct flow_args args)
                          FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
 }
 
-/* The matrix at x. */
-static int fork_matrix(struct flow_state *state, struct flow_args args)
+/* Holds what is in contact. */
+static int fork_hold(struct flow_state *state, struct flow_args args)
 {
-    const int code = flow_fork_all(state, &flow_matrix, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)),
-                                   FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_NO_RIM);
-    if (code || !model_is_filtered(state->flow->model))
-        return code;
     return flow_fork_all(state, &flow_hold, args,
                          FLOW_OBJECTS(FLOW_AT(filter), FLOW_AT(f), FLOW_AT(a)), FLOW_NOTHING,
                          FLOW_NO_RIM, FLOW_NO_RIM);
 }
 
-/* The same, and the solve's begin. */
+/* The matrix at x where f is the right side, and the solve's begin. */
 static int fork_system(struct flow_state *state, struct flow_args args)
 {
-    const int code = fork_matrix(state, args);
+    int code = flow_fork_all(state, &flow_matrix, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)),
+                             FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_NO_RIM);
+    if (!code && model_is_filtered(state->flow->model))
+        code = fork_hold(state, args);
     return code ? code : flow_cg_start(state);
 }
 
@@ -54,17 +53,27 @@ static int fork_filter(struct flow_state *state, struct flow_args args)
                : DUITE_OK;
 }
 
-int flow_assemble(struct flow_state *state)
+/* The filter goes by the forces. */
+static int assemble_held(struct flow_state *state, struct flow_args args)
 {
-    const struct flow_args args = flow_attempt_args(state);
     int code = fork_force(state, args);
     if (!code)
         code = fork_filter(state, args);
     if (!code)
-        code = flow_fork_all(state, &flow_implicit, args,
-                             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)), FLOW_NOTHING,
-                             FLOW_RIM(rim_x), FLOW_RIM(rim_v));
-    return code ? code : fork_matrix(state, args);
+        code = flow_fork_all(state, &flow_system_rest, args,
+                             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f), FLOW_AT(a)),
+                             FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    return code ? code : fork_hold(state, args);
+}
+
+int flow_assemble(struct flow_state *state)
+{
+    const struct flow_args args = flow_attempt_args(state);
+    if (model_is_filtered(state->flow->model))
+        return assemble_held(state, args);
+    return flow_fork_all(state, &flow_system_all, args,
+                         FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f), FLOW_AT(a)), FLOW_NOTHING,
+                         FLOW_RIM(rim_x), FLOW_RIM(rim_v));
 }
 
 /* The system of a step of implicit Euler, and its solve's begin. */

@@ -23,7 +23,8 @@ extern const duite_kernel flow_kick_second; /* table, r f, r v of the half step,
 extern const duite_kernel flow_runge; /* table, r f: acceleration, rw x, rw v, rw x0, rw v0, rw
                                          sum_x, rw sum_v, w rim of x, w rim of v, cw status */
 extern const duite_kernel
-    flow_implicit; /* table, r x, r v, rw f: right-hand side; rims of x, rims of v */
+    flow_system_all; /* table, r x, r v, w f: right-hand side, w a; rims of x, rims of v */
+extern const duite_kernel flow_system_rest; /* the same where f has the forces: rw f */
 extern const duite_kernel flow_predict; /* table, rw x, r v, rw last x, rw last v, w base x, w base
                                            v, w rim of x */
 extern const duite_kernel flow_correct; /* table, r b, r a, r dv, r r, r base x, r base v, rw v, w

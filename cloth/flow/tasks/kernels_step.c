@@ -3,7 +3,6 @@
 #include "cloth/flow/tasks/guides.h"
 
 #include "cloth/physics/particle.h"
-#include "cloth/solve/assemble.h"
 
 #include <math.h>
 #include <string.h>
@@ -49,7 +48,10 @@ static void add_inner(const duite_call *call, const struct flow_table *t)
     const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
     phys_vec *f = duite_out(call, 3, phys_vec);
     struct phys_springs springs = flow_table_inner(t);
-    flow_elements_force(call, t, f);
+    if (flow_has_elements(t)) {
+        const struct phys_sight sight = flow_elements_see(call, t, 4);
+        flow_elements_force(call, t, &sight, f);
+    }
     if (!t->n_stiff)
         return;
     phys_springs_force(&springs, x, v, f);
@@ -100,104 +102,6 @@ const duite_kernel flow_explicit = {.name = "acceleration_explicit",
                                     .body = acceleration_timed,
                                     .access = {DUITE_R, DUITE_RW},
                                     .args_size = ARGS};
-
-/* f -> b = h (f - h K v), the right-hand side of the step (Baraff & Witkin 1998, equation 16). */
-static int right_side(const duite_call *call)
-{
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    const double h = flow_args_of(call)->h;
-    const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
-    phys_vec *f = duite_out(call, 3, phys_vec);
-    for (uint32_t i = 0; i < t->n; i++)
-        f[i] = h * f[i];
-    struct phys_springs springs = flow_table_inner(t);
-    flow_elements_stiffness(call, t, h * h, f);
-    if (!t->n_stiff)
-        return 0;
-    springs.full = flow_of(call)->model->full_slope;
-    phys_springs_stiffness(&springs, h * h, x, v, f);
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        springs = flow_table_cut(t, s);
-        springs.full = flow_of(call)->model->full_slope;
-        phys_springs_stiffness_cut(&springs, h * h, x, v, duite_in(call, 4 + s, phys_vec),
-                                   duite_in(call, 4 + t->n_slots + s, phys_vec), f);
-    }
-    return 0;
-}
-FLOW_TIMED(right_side, FLOW_ACCELERATION)
-const duite_kernel flow_implicit = {.name = "acceleration_implicit",
-                                    .body = right_side_timed,
-                                    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW},
-                                    .rest = DUITE_R,
-                                    .args_size = ARGS};
-/* Springs from .. to - 1 of a block, whose ends 1 are in x_other. */
-static void assemble_springs(const struct flow_table *t, uint32_t from, uint32_t to, double h,
-                             int full, const phys_vec *x, const phys_vec *x_other, double *sums)
-{
-    enum { AT_ONCE = 64 };
-    phys_vec value[AT_ONCE];
-    while (from < to) {
-        const uint32_t n = to - from < AT_ONCE ? to - from : AT_ONCE;
-        struct phys_springs springs = flow_table_springs(t, from, from + n);
-        springs.full = full;
-        phys_springs_matrix(&springs, h, x, x_other, value);
-        solve_assemble_springs(n, t->at + from, value, sums);
-        from += n;
-    }
-}
-
-/* In half storage. */
-static void assemble(const duite_call *call, const struct flow_table *t, void *values)
-{
-    const struct flow *flow = flow_of(call);
-    const double h = flow_args_of(call)->h;
-    const phys_vec *x = duite_in(call, 1, phys_vec);
-    const struct solve_cut cut = flow_table_cut_entries(t);
-    double *sums = flow->sums ? flow->sums + call->worker * flow->n_sums : values;
-    memset(sums, 0, SOLVE_NINE * (t->matrix.row[t->n] + cut.n) * sizeof *sums);
-    flow_elements_assemble(call, t, h, 3, sums);
-    if (t->n_stiff)
-        assemble_springs(t, 0, t->n_inner, h, flow->model->full_slope, x, x, sums);
-    for (uint32_t s = 0; t->n_stiff && s < t->n_slots; s++)
-        assemble_springs(t, t->n_inner + t->cut[s], t->n_inner + t->cut[s + 1], h,
-                         flow->model->full_slope, x, duite_in(call, 3 + s, phys_vec), sums);
-    solve_assembled(&t->matrix, &cut, sums, values);
-}
-
-static int matrix(const duite_call *call)
-{
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    const double h = flow_args_of(call)->h;
-    const phys_vec *x = duite_in(call, 1, phys_vec);
-    double *diagonal = duite_out(call, 2, double);
-    phys_vec *value = duite_out(call, 2, phys_vec) + flow_diagonal_rows(t);
-    if (model_is_filtered(flow_of(call)->model))
-        value += t->n; /* the filter's place */
-    for (uint32_t i = 0; i < t->n; i++)
-        diagonal[i] = t->mass[i] + h * t->drag[i];
-    for (size_t i = t->n; i < 4 * flow_diagonal_rows(t); i++)
-        diagonal[i] = 0;
-    if (t->format != SOLVE_SPRINGS) {
-        assemble(call, t, value);
-        return 0;
-    }
-    struct phys_springs springs = flow_table_inner(t);
-    springs.full = flow_of(call)->model->full_slope;
-    phys_springs_matrix(&springs, h, x, x, value);
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        springs = flow_table_cut(t, s);
-        springs.full = flow_of(call)->model->full_slope;
-        phys_springs_matrix(&springs, h, x, duite_in(call, 3 + s, phys_vec),
-                            value + t->n_inner + t->cut[s]);
-    }
-    return 0;
-}
-FLOW_TIMED(matrix, FLOW_MATRIX)
-const duite_kernel flow_matrix = {.name = "matrix",
-                                  .body = matrix_timed,
-                                  .access = {DUITE_R, DUITE_R, DUITE_W},
-                                  .rest = DUITE_R,
-                                  .args_size = ARGS};
 
 /* What a filtered solve lost: entries to held rows and rows in contact do not cancel. */
 static void sum_rows(size_t n, const phys_vec *r, double sum[3])

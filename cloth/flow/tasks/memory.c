@@ -29,6 +29,14 @@ static void take_room(struct flow_state *state)
         cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for a hash");
 }
 
+static void take_sums(struct flow *flow)
+{
+    flow->sums =
+        aligned_alloc(sizeof(phys_vec), flow->n_clocks * flow->n_sums * sizeof *flow->sums);
+    if (!flow->sums)
+        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for the entries of a matrix");
+}
+
 static void take(struct flow_state *state)
 {
     struct flow *flow = state->flow;
@@ -40,9 +48,9 @@ static void take(struct flow_state *state)
         memset(flow->clock, 0, flow->n_clocks * sizeof *flow->clock);
     else
         cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for %u clocks", flow->n_clocks);
-    flow->n_sums = SOLVE_NINE * (size_t)head->most_entries;
-    if (flow->model->format == SOLVE_HALF_FLOAT)
-        flow->sums = cloth_alloc(flow->n_clocks * flow->n_sums, sizeof *flow->sums, &flow->trouble);
+    flow->n_sums = head->most_entries;
+    if (flow->model->format != SOLVE_SPRINGS && head->most_entries)
+        take_sums(flow);
     flow->n_copies = 2 * ((size_t)head->most_copies + 1);
     if (head->n_elements) {
         flow->copies = aligned_alloc(sizeof *flow->copies,

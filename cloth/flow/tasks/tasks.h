@@ -79,9 +79,9 @@ struct flow {
     /* Of the run that is on. */
     unsigned n_clocks;
     struct flow_clock *clock; /* a worker */
-    double *sums;             /* a worker, nine for each of most_entries: room for a matrix while it
-                               * is assembled; NULL but in float */
-    size_t n_sums;            /* doubles of a worker */
+    struct phys_pair *sums;   /* a worker, most_entries: room for a matrix while it is assembled in
+                               * half storage; else NULL */
+    size_t n_sums;            /* of a worker */
     phys_vec *copies; /* a worker, two for each of most_copies: what elements see of neighbours
                        * while a task works on them; NULL: there are no elements */
     size_t n_copies;  /* of a worker */

@@ -28,6 +28,7 @@ PHYS_INLINE void phys_choose(const phys_mask *mask, const phys_vec *a, const phy
 PHYS_INLINE void phys_sqrt(const phys_vec *a, phys_vec *y)
 {
     phys_vec root = *a;
+    PHYS_UNROLL
     for (int i = 0; i < PHYS_WIDE; i++)
         root[i] = sqrt(root[i]);
     *y = root;
@@ -69,6 +70,7 @@ PHYS_INLINE void phys_wide_cross(const struct phys_wide *a, const struct phys_wi
 PHYS_INLINE void phys_wide_from(const struct phys_wide *a, const struct phys_wide *b,
                                 struct phys_wide *y)
 {
+    PHYS_UNROLL
     for (int i = 0; i < 3; i++)
         y->c[i] = a->c[i] - b->c[i];
 }
@@ -77,12 +79,14 @@ PHYS_INLINE void phys_wide_from(const struct phys_wide *a, const struct phys_wid
 PHYS_INLINE void phys_wide_mix(const phys_vec *p, const struct phys_wide *a, const phys_vec *q,
                                const struct phys_wide *b, struct phys_wide *y)
 {
+    PHYS_UNROLL
     for (int i = 0; i < 3; i++)
         y->c[i] = *p * a->c[i] + *q * b->c[i];
 }
 
 PHYS_INLINE void phys_wide_scale(const phys_vec *p, const struct phys_wide *a, struct phys_wide *y)
 {
+    PHYS_UNROLL
     for (int i = 0; i < 3; i++)
         y->c[i] = *p * a->c[i];
 }
@@ -116,6 +120,7 @@ struct phys_four {
 PHYS_INLINE void phys_four_from(size_t first, size_t end, struct phys_four *four)
 {
     four->valid = end - first < PHYS_WIDE ? end - first : PHYS_WIDE;
+    PHYS_UNROLL
     for (size_t i = 0; i < PHYS_WIDE; i++)
         four->at[i] = first + (i < four->valid ? i : four->valid - 1);
 }
@@ -126,9 +131,11 @@ PHYS_INLINE void phys_gather(const struct phys_four *four, const uint32_t (*corn
                              struct phys_wide *y)
 {
     phys_vec row[PHYS_WIDE], column[PHYS_WIDE];
+    PHYS_UNROLL
     for (int i = 0; i < PHYS_WIDE; i++)
         row[i] = *phys_at(n, own, copy, corner[four->at[i]][k]);
     phys_turn(row, column);
+    PHYS_UNROLL
     for (int i = 0; i < 3; i++)
         y->c[i] = column[i];
 }
@@ -138,6 +145,7 @@ PHYS_INLINE void phys_gather_rows(const struct phys_four *four, const phys_vec *
                                   phys_vec column[PHYS_WIDE])
 {
     phys_vec row[PHYS_WIDE];
+    PHYS_UNROLL
     for (int i = 0; i < PHYS_WIDE; i++)
         row[i] = list[four->at[i]];
     phys_turn(row, column);
@@ -146,9 +154,19 @@ PHYS_INLINE void phys_gather_rows(const struct phys_four *four, const phys_vec *
 PHYS_INLINE void phys_gather_numbers(const struct phys_four *four, const double *list, phys_vec *y)
 {
     phys_vec number = {0};
+    PHYS_UNROLL
     for (int i = 0; i < PHYS_WIDE; i++)
         number[i] = list[four->at[i]];
     *y = number;
+}
+
+/* The same of consecutive elements: one load where all four are there. */
+PHYS_INLINE void phys_take_numbers(const struct phys_four *four, const double *list, phys_vec *y)
+{
+    if (four->valid == PHYS_WIDE)
+        __builtin_memcpy(y, list + four->at[0], sizeof *y);
+    else
+        phys_gather_numbers(four, list, y);
 }
 
 /* Adds to corner k of the four elements, where it is one of the n rows. */
@@ -158,19 +176,40 @@ PHYS_INLINE void phys_scatter(const struct phys_four *four, const uint32_t (*cor
     const phys_vec column[PHYS_WIDE] = {add->c[0], add->c[1], add->c[2], {0}};
     phys_vec row[PHYS_WIDE];
     phys_turn(column, row);
+    PHYS_UNROLL
     for (size_t i = 0; i < four->valid; i++)
         if (corner[four->at[i]][k] < n)
             y[corner[four->at[i]][k]] += row[i];
 }
 
-/* Four matrices n[row][column] as a pair each, of elements that have `stride` pairs. */
-PHYS_INLINE void phys_write_pairs(const struct phys_four *four, phys_vec n[3][3], size_t stride,
-                                  struct phys_pair *pair)
+/* Which pairs are wanted turned: bit 0 of at[stride * i]. at NULL: none. */
+PHYS_INLINE void phys_turned(const struct phys_four *four, const uint32_t *at, size_t stride,
+                             phys_mask *turned)
 {
+    uint32_t bit[PHYS_WIDE] = {0};
+    PHYS_UNROLL
+    for (size_t i = 0; at && i < PHYS_WIDE; i++)
+        bit[i] = at[stride * (four->at[i] - four->at[0])] & 1;
+    *turned = -(phys_mask){bit[0], bit[1], bit[2], bit[3]};
+}
+
+/* -a where the mask is set. */
+PHYS_INLINE void phys_negate(const phys_mask *mask, phys_vec *a)
+{
+    const phys_vec minus = {-0.0, -0.0, -0.0, -0.0};
+    *a = (phys_vec)((phys_mask)*a ^ (*mask & (phys_mask)minus));
+}
+
+/* Four pairs, each as its lanes have it, of elements that have `stride` pairs. */
+PHYS_INLINE void phys_write_pairs(const struct phys_four *four, phys_vec cyclic[3][3],
+                                  size_t stride, struct phys_pair *pair)
+{
+    PHYS_UNROLL
     for (int k = 0; k < 3; k++) {
-        const phys_vec column[PHYS_WIDE] = {n[0][k], n[1][(k + 1) % 3], n[2][(k + 2) % 3], {0}};
+        const phys_vec column[PHYS_WIDE] = {cyclic[k][0], cyclic[k][1], cyclic[k][2], {0}};
         phys_vec row[PHYS_WIDE];
         phys_turn(column, row);
+        PHYS_UNROLL
         for (size_t i = 0; i < four->valid; i++)
             pair[stride * i].cyclic[k] = row[i];
     }
@@ -181,6 +220,7 @@ PHYS_INLINE void phys_write_pairs(const struct phys_four *four, phys_vec n[3][3]
 PHYS_INLINE double phys_sum_own(const struct phys_four *four, const uint32_t (*corner)[4],
                                 uint32_t n, const phys_vec *number, double sum)
 {
+    PHYS_UNROLL
     for (size_t i = 0; i < four->valid; i++)
         if (corner[four->at[i]][0] < n)
             sum += (*number)[i];

@@ -12,33 +12,51 @@ struct phys_plane2 {
     phys_vec uu, uv, vu, vv;
 };
 
-struct phys_frame {
-    struct phys_wide ru, rv, normal;
-    phys_vec suu, suv, svv;               /* S */
-    phys_vec det, trace, turn;            /* of S; turn = 1 / trace */
-    phys_vec gu[3], gv[3], area;          /* gradients of the corners */
-    phys_vec c11, c12, c22, c33, damping; /* moduli, N/m; s */
+/* Of a membrane each: as good as always of the same as the four before. */
+struct phys_moduli {
+    uint32_t of[PHYS_WIDE];               /* number of the membrane; at first none's */
+    phys_vec c11, c12, c22, c33, damping; /* N/m; s */
     phys_vec corrected;                   /* 1; or 0 of uncorrected forces */
 };
+#define PHYS_NO_MODULI                                                                             \
+    {                                                                                              \
+        .of = { UINT32_MAX }                                                                       \
+    }
 
-/* Of a membrane each, where corners name them. */
-PHYS_INLINE void phys_frame_moduli(const struct phys_triangles *t, const struct phys_four *four,
-                                   struct phys_frame *frame)
+struct phys_frame {
+    struct phys_wide ru, rv, normal;
+    phys_vec suu, suv, svv;       /* S */
+    phys_vec det, across;         /* of S; 1 / det, 0 where that is 0 */
+    phys_vec trace, turn;         /* of S; 1 / trace, or 0 */
+    phys_vec gu[3], gv[3], area;  /* gradients of the corners */
+    const struct phys_moduli *of; /* of the membranes */
+};
+
+PHYS_INLINE void phys_moduli_take(const struct phys_triangles *t, const struct phys_four *four,
+                                  struct phys_moduli *moduli)
 {
-    phys_vec row[PHYS_WIDE], column[PHYS_WIDE], damping = {0}, corrected = {0};
+    uint32_t of[PHYS_WIDE], others = 0;
+    PHYS_UNROLL
     for (int i = 0; i < PHYS_WIDE; i++) {
-        const struct phys_membrane *membrane = t->membrane + t->corner[four->at[i]][3];
+        of[i] = t->corner[four->at[i]][3];
+        others |= of[i] ^ moduli->of[i];
+    }
+    if (!others)
+        return;
+    phys_vec row[PHYS_WIDE], column[PHYS_WIDE];
+    PHYS_UNROLL
+    for (int i = 0; i < PHYS_WIDE; i++) {
+        const struct phys_membrane *membrane = t->membrane + of[i];
+        moduli->of[i] = of[i];
         row[i] = membrane->modulus;
-        damping[i] = membrane->damping;
-        corrected[i] = membrane->uncorrected ? 0 : 1;
+        moduli->damping[i] = membrane->damping;
+        moduli->corrected[i] = membrane->uncorrected ? 0 : 1;
     }
     phys_turn(row, column);
-    frame->damping = damping;
-    frame->corrected = corrected;
-    frame->c11 = column[0];
-    frame->c12 = column[1];
-    frame->c22 = column[2];
-    frame->c33 = column[3];
+    moduli->c11 = column[0];
+    moduli->c12 = column[1];
+    moduli->c22 = column[2];
+    moduli->c33 = column[3];
 }
 
 /* F_u and F_v of rows of the corners: of positions, velocities or anything else. */
@@ -60,7 +78,7 @@ PHYS_INLINE void phys_frame_slope(const struct phys_triangles *t, const struct p
 PHYS_INLINE void phys_frame_polar(const struct phys_wide *fu, const struct phys_wide *fv,
                                   struct phys_frame *frame)
 {
-    phys_vec uu, uv, vv, square, inverse;
+    phys_vec uu, uv, vv, square;
     struct phys_wide across, turned;
     phys_wide_dot(fu, fu, &uu);
     phys_wide_dot(fu, fv, &uv);
@@ -68,8 +86,8 @@ PHYS_INLINE void phys_frame_polar(const struct phys_wide *fu, const struct phys_
     phys_wide_cross(fu, fv, &across);
     phys_wide_dot(&across, &across, &square);
     phys_sqrt(&square, &frame->det);
-    phys_inverse(&frame->det, &inverse);
-    phys_wide_scale(&inverse, &across, &frame->normal);
+    phys_inverse(&frame->det, &frame->across);
+    phys_wide_scale(&frame->across, &across, &frame->normal);
     square = uu + vv + 2 * frame->det;
     phys_sqrt(&square, &frame->trace);
     phys_inverse(&frame->trace, &frame->turn);
@@ -77,27 +95,32 @@ PHYS_INLINE void phys_frame_polar(const struct phys_wide *fu, const struct phys_
     frame->suv = uv * frame->turn;
     frame->svv = (vv + frame->det) * frame->turn;
     phys_wide_cross(fv, &frame->normal, &turned); /* R = (F + cof F) / tr S */
+    PHYS_UNROLL
     for (int i = 0; i < 3; i++)
         frame->ru.c[i] = (fu->c[i] + turned.c[i]) * frame->turn;
     phys_wide_cross(&frame->normal, fu, &turned);
+    PHYS_UNROLL
     for (int i = 0; i < 3; i++)
         frame->rv.c[i] = (fv->c[i] + turned.c[i]) * frame->turn;
 }
 
 PHYS_INLINE void phys_frame_make(const struct phys_triangles *t, const struct phys_four *four,
-                                 const struct phys_sight *sight, struct phys_frame *frame)
+                                 const struct phys_sight *sight, struct phys_moduli *moduli,
+                                 struct phys_frame *frame)
 {
     phys_vec g[PHYS_WIDE];
     struct phys_wide fu, fv;
     phys_gather_rows(four, t->gradient, g);
+    PHYS_UNROLL
     for (int i = 1; i < 3; i++) {
         frame->gu[i] = g[2 * i - 2];
         frame->gv[i] = g[2 * i - 1];
     }
     frame->gu[0] = -frame->gu[1] - frame->gu[2];
     frame->gv[0] = -frame->gv[1] - frame->gv[2];
-    phys_gather_numbers(four, t->area, &frame->area);
-    phys_frame_moduli(t, four, frame);
+    phys_take_numbers(four, t->area, &frame->area);
+    phys_moduli_take(t, four, moduli);
+    frame->of = moduli;
     phys_frame_slope(t, four, frame, sight->n, sight->x, sight->x_copy, &fu, &fv);
     phys_frame_polar(&fu, &fv, frame);
 }
@@ -106,9 +129,10 @@ PHYS_INLINE void phys_frame_make(const struct phys_triangles *t, const struct ph
 PHYS_INLINE void phys_frame_stress(const struct phys_frame *f, const struct phys_plane2 *e,
                                    struct phys_plane2 *t)
 {
-    t->uu = f->c11 * e->uu + f->c12 * e->vv;
-    t->vv = f->c12 * e->uu + f->c22 * e->vv;
-    t->uv = t->vu = 2 * f->c33 * e->uv;
+    const struct phys_moduli *c = f->of;
+    t->uu = c->c11 * e->uu + c->c12 * e->vv;
+    t->vv = c->c12 * e->uu + c->c22 * e->vv;
+    t->uv = t->vu = 2 * c->c33 * e->uv;
 }
 
 /* S - I. */
@@ -156,6 +180,31 @@ PHYS_INLINE void phys_frame_untwist(const struct phys_plane2 *t, const phys_vec 
                                     struct phys_plane2 *q)
 {
     *q = (struct phys_plane2){t->uu, t->uv + *c, t->vu - *c, t->vv};
+}
+
+/* Adds -area (P_u g_u + P_v g_v), P = R q + normal k, k the pull along the normal or NULL, to the
+ * rows of the corners. */
+PHYS_INLINE void phys_frame_push(const struct phys_triangles *t, const struct phys_four *four,
+                                 const struct phys_frame *f, const struct phys_plane2 *q,
+                                 const phys_vec *along, uint32_t n, phys_vec *y)
+{
+    struct phys_wide pu, pv, first = {{{0}}};
+    phys_wide_mix(&q->uu, &f->ru, &q->vu, &f->rv, &pu);
+    phys_wide_mix(&q->uv, &f->ru, &q->vv, &f->rv, &pv);
+    PHYS_UNROLL
+    for (int i = 0; along && i < 3; i++) {
+        pu.c[i] += along[0] * f->normal.c[i];
+        pv.c[i] += along[1] * f->normal.c[i];
+    }
+    PHYS_UNROLL
+    for (int k = 1; k < 3; k++) {
+        const phys_vec gu = -f->area * f->gu[k], gv = -f->area * f->gv[k];
+        struct phys_wide add;
+        phys_wide_mix(&gu, &pu, &gv, &pv, &add);
+        phys_wide_from(&first, &add, &first);
+        phys_scatter(four, t->corner, k, n, &add, y);
+    }
+    phys_scatter(four, t->corner, 0, n, &first, y);
 }
 
 #endif

@@ -114,8 +114,8 @@ static void hinge_stiffness(const void *of, int full, double scale, const struct
 static void hinge_matrix(const void *of, const struct phys_step *step,
                          const struct phys_sight *sight, struct phys_pair *pair)
 {
-    phys_hinges_matrix(of, 0, 1, step, sight, pair);
-    phys_hinges_matrix(of, 1, BENDS, step, sight, pair + PHYS_BEND_PAIRS);
+    phys_hinges_matrix(of, 0, 1, step, sight, NULL, pair);
+    phys_hinges_matrix(of, 1, BENDS, step, sight, NULL, pair + PHYS_BEND_PAIRS);
 }
 static double fold_energy(const void *of, const struct phys_sight *sight)
 {
@@ -266,7 +266,7 @@ START_TEST(collapsed_hinges_stay_finite)
         phys_vec f[4] = {{0}};
         struct phys_pair pair[PHYS_BEND_PAIRS];
         phys_hinges_force(&hinge, &sight, f);
-        phys_hinges_matrix(&hinge, 0, 1, &step, &sight, pair);
+        phys_hinges_matrix(&hinge, 0, 1, &step, &sight, NULL, pair);
         for (int c = 0; c < 16; c++)
             ck_assert(isfinite(f[c / 4][c % 4]));
         for (int c = 0; c < 12 * PHYS_BEND_PAIRS; c++)

@@ -130,6 +130,14 @@ START_TEST(matrix_is_the_slope_of_the_force)
 }
 END_TEST
 
+/* y -= h^2 K v. */
+static void take_stiffness(const struct phys_springs *s, double h, const phys_vec *x,
+                           const phys_vec *v, phys_vec *y)
+{
+    phys_vec value[SPRINGS];
+    phys_springs_system(s, h, 0, x, v, y, value);
+}
+
 START_TEST(stiffness_times_velocity_is_the_slope_of_the_force)
 {
     const double e = 1e-6;
@@ -145,10 +153,28 @@ START_TEST(stiffness_times_velocity_is_the_slope_of_the_force)
     }
     phys_springs_force(&s, more, speeds, f[0]);
     phys_springs_force(&s, less, speeds, f[1]);
-    phys_springs_stiffness(&s, 2, places, speeds, y);
+    take_stiffness(&s, 2, places, speeds, y);
     for (int i = 0; i < N; i++)
         for (int c = 0; c < 3; c++)
-            ck_assert_double_eq_tol(y[i][c], 2 * (f[0][i][c] - f[1][i][c]) / (2 * e), 1e-6);
+            ck_assert_double_eq_tol(y[i][c], 4 * (f[0][i][c] - f[1][i][c]) / (2 * e), 1e-6);
+}
+END_TEST
+
+/* All of it at once: the matrix to the bit, push times the force, h^2 K v. */
+START_TEST(system_is_force_stiffness_and_matrix)
+{
+    const double h = 0.3, push = 0.7;
+    struct phys_springs s = tangle(damping, _i ? longer : shorter);
+    phys_vec f[N] = {{0}}, y[N] = {{0}}, b[N] = {{0}}, value[SPRINGS], both[SPRINGS];
+    s.full = _i == 2;
+    phys_springs_force(&s, places, speeds, f);
+    phys_springs_matrix(&s, h, places, places, value);
+    take_stiffness(&s, h, places, speeds, y);
+    phys_springs_system(&s, h, push, places, speeds, b, both);
+    ck_assert_mem_eq(both, value, sizeof value);
+    for (int i = 0; i < N; i++)
+        for (int c = 0; c < 4; c++)
+            ck_assert_double_eq_tol(b[i][c], push * f[i][c] + y[i][c], 1e-13);
 }
 END_TEST
 
@@ -166,9 +192,9 @@ START_TEST(compression_drops_the_transverse_term)
     ck_assert_double_eq(value[3], 0);
     ck_assert_double_eq_tol(value[0] * value[0], 1, 1e-15);
     ck_assert_double_eq(value[1], 0);
-    phys_springs_stiffness(&s, 1, x, v, y);
+    take_stiffness(&s, 1, x, v, y);
     ck_assert_double_eq(y[0][1], 0);
-    phys_springs_stiffness(&s, 1, x, along, y);
+    take_stiffness(&s, 1, x, along, y);
     ck_assert_double_eq_tol(y[0][0], 100, 1e-12);
 }
 END_TEST
@@ -202,15 +228,19 @@ START_TEST(cut_springs_are_exact_opposites)
         phys_springs_force(&here, places, speeds, whole);
         phys_springs_force_cut(&here, places, speeds, places, speeds, f);
         phys_springs_force_cut(&there, places, speeds, places, speeds, f);
-        phys_springs_stiffness_cut(&here, 0.3, places, speeds, places, speeds, g);
-        phys_springs_stiffness_cut(&there, 0.3, places, speeds, places, speeds, g);
+        phys_vec value[3];
+        phys_springs_system_cut(&here, 0.3, 0.3, places, speeds, places, speeds, g, value);
+        phys_springs_system_cut(&there, 0.3, 0.3, places, speeds, places, speeds, g, value + 1);
         for (int d = 0; d < 3; d++) {
             ck_assert(f[0][d] != 0 && f[0][d] == -f[1][d] && f[0][d] == whole[0][d]);
             ck_assert(g[0][d] != 0 && g[0][d] == -g[1][d]);
         }
         phys_vec whole_g[2] = {{0}};
-        phys_springs_stiffness(&here, 0.3, places, speeds, whole_g);
+        phys_springs_system(&here, 0.3, 0.3, places, speeds, whole_g, value + 2);
         ck_assert_mem_eq(whole_g, g, sizeof g);
+        for (int d = 0; d < 3; d++)
+            ck_assert(value[0][d] == -value[1][d] && value[0][d] == value[2][d]);
+        ck_assert(value[0][3] == value[1][3] && value[0][3] == value[2][3]);
     }
 }
 END_TEST
@@ -248,6 +278,7 @@ int main(void)
     tcase_add_test(cases, damping_acts_along_the_spring_only);
     tcase_add_loop_test(cases, matrix_is_the_slope_of_the_force, 0, 2);
     tcase_add_loop_test(cases, stiffness_times_velocity_is_the_slope_of_the_force, 0, 2);
+    tcase_add_loop_test(cases, system_is_force_stiffness_and_matrix, 0, 3);
     tcase_add_test(cases, compression_drops_the_transverse_term);
     tcase_add_test(cases, ends_at_one_place_pull_nowhere);
     tcase_add_test(cases, cut_springs_are_exact_opposites);

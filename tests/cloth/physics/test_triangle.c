@@ -87,14 +87,17 @@ static void force(const void *of, const struct phys_sight *sight, phys_vec *f)
 static void stiffness(const void *of, int full, double scale, const struct phys_sight *sight,
                       phys_vec *y)
 {
-    phys_triangles_stiffness(of, full, scale, sight, y);
+    const struct phys_step step = {sqrt(scale), full};
+    struct phys_pair pair[3 * TRIANGLES];
+    phys_triangles_system(of, 0, TRIANGLES, &step, 0, sight, NULL, y, pair);
 }
 static void matrix(const void *of, const struct phys_step *step, const struct phys_sight *sight,
                    struct phys_pair *pair)
 {
     const struct phys_triangles *t = of;
-    phys_triangles_matrix(t, 0, 5, step, sight, pair); /* in two parts, neither a multiple of 4 */
-    phys_triangles_matrix(t, 5, t->n, step, sight, pair + 15);
+    phys_triangles_matrix(t, 0, 5, step, sight, NULL,
+                          pair); /* in two parts, neither a multiple of 4 */
+    phys_triangles_matrix(t, 5, t->n, step, sight, NULL, pair + 15);
 }
 
 static struct elements model_of(const struct sheet *s)
@@ -171,6 +174,41 @@ START_TEST(blocks_find_the_same_bits)
 }
 END_TEST
 
+/* All of it at once, in two parts: the matrix to the bit, push times the force, h^2 K v; pairs
+ * turned where that is wanted. */
+START_TEST(system_is_force_stiffness_and_matrix)
+{
+    const struct phys_step step = {0.3, _i};
+    const double push = 0.7;
+    uint32_t at[3 * TRIANGLES];
+    struct sheet s;
+    struct elements_state state;
+    struct phys_pair pair[3 * TRIANGLES], both[3 * TRIANGLES];
+    phys_vec f[VERTICES] = {{0}}, y[VERTICES] = {{0}}, b[VERTICES] = {{0}};
+    make_sheet(&s, 0.1);
+    shaken(&s, 0.05, &state);
+    s.membrane[1].uncorrected = 1;
+    const struct phys_sight sight = {VERTICES, state.x, state.v, NULL, NULL};
+    for (uint32_t i = 0; i < 3 * TRIANGLES; i++)
+        at[i] = 2 * i + (i % 7 < 3);
+    matrix(&s.triangles, &step, &sight, pair);
+    forces(&s, &state, f);
+    stiffness(&s.triangles, _i, 0.3 * 0.3, &sight, y);
+    phys_triangles_system(&s.triangles, 0, 6, &step, push, &sight, at, b, both);
+    phys_triangles_system(&s.triangles, 6, TRIANGLES, &step, push, &sight, at + 18, b, both + 18);
+    for (int i = 0; i < 3 * TRIANGLES; i++)
+        for (int c = 0; c < 9; c++) {
+            const int row = c % 3, k = c / 3, column = (row + k) % 3;
+            const double n =
+                at[i] & 1 ? pair[i].cyclic[(3 - k) % 3][column] : pair[i].cyclic[k][row];
+            ck_assert_double_eq_tol(both[i].cyclic[k][row], n, at[i] & 1 ? 1e-12 : 1e-300);
+        }
+    for (int i = 0; i < VERTICES; i++)
+        for (int c = 0; c < 4; c++)
+            ck_assert_double_eq_tol(b[i][c], push * f[i][c] + y[i][c], 1e-11);
+}
+END_TEST
+
 /* At rest the reduced matrix leaves nothing out. */
 START_TEST(reduced_is_full_at_rest)
 {
@@ -182,8 +220,8 @@ START_TEST(reduced_is_full_at_rest)
     make_sheet(&s, 0.2);
     place(&s, &fu, &fv, &state);
     const struct phys_sight sight = {VERTICES, state.x, state.v, NULL, NULL};
-    phys_triangles_matrix(&s.triangles, 0, TRIANGLES, &reduced, &sight, a);
-    phys_triangles_matrix(&s.triangles, 0, TRIANGLES, &full, &sight, b);
+    phys_triangles_matrix(&s.triangles, 0, TRIANGLES, &reduced, &sight, NULL, a);
+    phys_triangles_matrix(&s.triangles, 0, TRIANGLES, &full, &sight, NULL, b);
     for (int i = 0; i < 3 * TRIANGLES; i++)
         for (int c = 0; c < 3; c++)
             for (int r = 0; r < 3; r++)
@@ -203,7 +241,7 @@ static double across(const struct sheet *s, const phys_vec *fu, const phys_vec *
     for (int i = 0; i < VERTICES; i++)
         state.v[i] = (phys_vec){0, 0, state.v[i][2], 0};
     const struct phys_sight sight = {VERTICES, state.x, state.v, NULL, NULL};
-    phys_triangles_stiffness(&s->triangles, full, 1, &sight, y);
+    stiffness(&s->triangles, full, 1, &sight, y);
     for (int i = 0; i < VERTICES; i++)
         sum -= y[i][2] * state.v[i][2];
     return sum;
@@ -362,7 +400,7 @@ START_TEST(collapsed_triangles_stay_finite)
         forces(&s, &state, f);
         const struct phys_sight sight = {VERTICES, state.x, state.v, NULL, NULL};
         for (int full = 0; full < 2; full++) {
-            phys_triangles_matrix(&s.triangles, 0, TRIANGLES, step + full, &sight, pair);
+            phys_triangles_matrix(&s.triangles, 0, TRIANGLES, step + full, &sight, NULL, pair);
             for (int i = 0; i < 3 * TRIANGLES; i++)
                 for (int c = 0; c < 12; c++)
                     ck_assert(isfinite(pair[i].cyclic[c / 4][c % 4]));
@@ -398,6 +436,7 @@ int main(void)
     TCase *slopes = tcase_create("slopes"), *forms = tcase_create("closed forms");
     tcase_add_test(slopes, force_is_the_slope_of_the_energy);
     tcase_add_test(slopes, matrix_is_the_slope_of_the_force);
+    tcase_add_loop_test(slopes, system_is_force_stiffness_and_matrix, 0, 2);
     tcase_add_test(slopes, momentum_is_kept);
     tcase_add_test(slopes, rigid_motion_gives_no_force);
     tcase_add_test(slopes, blocks_find_the_same_bits);

@@ -185,7 +185,7 @@ static uint32_t copy_of(const struct system_block *b, uint32_t row)
 
 /* Adds spring i of the whole to entry `at`, of which the second end may be here. */
 static void add_entry(const struct system *s, uint32_t i, uint32_t at, bool turned,
-                      struct system_block *b, double *sums)
+                      struct system_block *b, struct phys_pair *sums)
 {
     if (s->format == SOLVE_SPRINGS) {
         b->value[at] = s->value[i];
@@ -194,11 +194,12 @@ static void add_entry(const struct system *s, uint32_t i, uint32_t at, bool turn
     const phys_vec *t = s->turn + i;
     double turn[3][3] = {{0, -(*t)[2], (*t)[1]}, {(*t)[2], 0, -(*t)[0]}, {-(*t)[1], (*t)[0], 0}};
     solve_assemble_springs(1, &at, s->value + i, sums);
-    solve_assemble(sums + SOLVE_NINE * at, turned, (const double(*)[3])turn);
+    solve_assemble(sums + at, turned, (const double(*)[3])turn);
 }
 
 /* Entries between rows of the block and of others, behind the inner ones. */
-static void cut_entries(struct system *s, struct system_block *b, uint32_t n, double *sums)
+static void cut_entries(struct system *s, struct system_block *b, uint32_t n,
+                        struct phys_pair *sums)
 {
     for (uint32_t i = 0; i < s->n_springs; i++) {
         const uint32_t x = s->end[i][0] - b->first, y = s->end[i][1] - b->first;
@@ -214,7 +215,7 @@ static void cut_entries(struct system *s, struct system_block *b, uint32_t n, do
 static void cut_block(struct system *s, struct system_block *b, uint32_t first, uint32_t n)
 {
     bool seen[SYSTEM_ROWS] = {0}, rim[SYSTEM_ROWS] = {0};
-    double sums[SOLVE_NINE * SYSTEM_SPRINGS] = {0};
+    struct phys_pair sums[SYSTEM_SPRINGS] = {{{{0}}}};
     uint32_t inner = 0;
     *b = (struct system_block){.first = first};
     memcpy(b->diagonal, s->diagonal + first, n * sizeof *b->diagonal);

@@ -133,20 +133,22 @@ START_TEST(lost_is_the_sum_of_the_residual)
 }
 END_TEST
 
-/* Pairs of elements, turned or not, add the same nine; those of others nothing. */
+/* Pairs of elements, as who makes them was told to turn them, add what they are; those of others
+ * nothing. */
 START_TEST(pairs_of_elements)
 {
     const struct phys_pair pair[3] = {{{{1, 5, 9, 0}, {2, 6, 7, 0}, {3, 4, 8, 0}}},
                                       {{{9, 9, 9, 0}, {9, 9, 9, 0}, {9, 9, 9, 0}}},
-                                      {{{1, 5, 9, 0}, {2, 6, 7, 0}, {3, 4, 8, 0}}}};
+                                      {{{1, 5, 9, 0}, {4, 8, 3, 0}, {7, 2, 6, 0}}}};
     const uint32_t at[3] = {2, SOLVE_NO_ENTRY, 1};
     const double n[3][3] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
-    double sums[2 * SOLVE_NINE] = {0}, expected[2 * SOLVE_NINE] = {0};
+    struct phys_pair sums[2] = {{{{0}}}}, expected[2] = {{{{0}}}};
     solve_assemble_pairs(3, at, pair, sums);
     solve_assemble(expected, true, n);
-    solve_assemble(expected + SOLVE_NINE, false, n);
-    for (int k = 0; k < 2 * SOLVE_NINE; k++)
-        ck_assert_double_eq(sums[k], expected[k]);
+    solve_assemble(expected + 1, false, n);
+    for (int k = 0; k < 24; k++)
+        ck_assert_double_eq(sums[k / 12].cyclic[k / 4 % 3][k % 4],
+                            expected[k / 12].cyclic[k / 4 % 3][k % 4]);
 }
 END_TEST
 
@@ -156,14 +158,14 @@ START_TEST(assembly_from_both_sides)
     const double n[3][3] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
     const double here[SOLVE_NINE] = {1, 5, 9, 2, 6, 7, 3, 4, 8};
     const double there[SOLVE_NINE] = {1, 5, 9, 4, 8, 3, 7, 2, 6};
-    double sum[SOLVE_NINE] = {0};
-    solve_assemble(sum, false, n);
+    struct phys_pair sum = {{{0}}};
+    solve_assemble(&sum, false, n);
     for (int k = 0; k < SOLVE_NINE; k++)
-        ck_assert_double_eq(sum[k], here[k]);
-    memset(sum, 0, sizeof sum);
-    solve_assemble(sum, true, n);
+        ck_assert_double_eq(sum.cyclic[k / 3][k % 3], here[k]);
+    memset(&sum, 0, sizeof sum);
+    solve_assemble(&sum, true, n);
     for (int k = 0; k < SOLVE_NINE; k++)
-        ck_assert_double_eq(sum[k], there[k]);
+        ck_assert_double_eq(sum.cyclic[k / 3][k % 3], there[k]);
     const phys_vec d = {1, -2, 0.5, 0};
     phys_vec y, turned;
     double memory[SOLVE_NINE + 1] = {0};

@@ -215,6 +215,7 @@ static void conclude(struct measure_metric *metric, size_t rounds, double *value
 {
     size_t n = 0;
     metric->median = metric->low = metric->high = NAN;
+    metric->rounds = rounds;
     metric->missing = subject_missing(metric->of->shape.kind);
     if (!metric->missing && metric->against)
         metric->missing = subject_missing(metric->against->shape.kind);

@@ -39,6 +39,7 @@ struct measure_metric {
     double (*value)(const struct measure_metric *metric, size_t round);
     const struct measure_series *of, *against; /* against: NULL if it is no ratio */
     size_t n;                                  /* series in a row from `of`, and from `against` */
+    size_t rounds; /* when it is computed: all of them, with their samples */
     double scale;
     const char *missing;                 /* why it was not measured, or NULL */
     double median, low, high;            /* NAN if not reached or not measured */

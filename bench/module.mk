@@ -14,7 +14,7 @@ bench_libbench_la_SOURCES = bench/bench.h bench/measure.c bench/measure.h \
 	bench/cg/bench.c bench/cg/cg.h bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c \
 	bench/cg/system.c \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
-	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/predict.h \
+	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h bench/predict/sheet.c bench/sweep/median.c bench/sweep/compare.h \
 	tests/runtime/trace_file.c tests/runtime/trace_file.h \
 	$(BENCH_STATE) $(BENCH_SHARED)
 bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \
@@ -97,7 +97,7 @@ endif
 check_PROGRAMS += bench/graph-run bench/compare
 bench_graph_run_SOURCES = bench/sweep/run.c bench/sweep/graph.c bench/sweep/graph.h
 bench_graph_run_LDADD = libduite_core.la -lm
-bench_compare_SOURCES = bench/sweep/compare.c bench/sweep/compare.h bench/sweep/journal.c bench/sweep/page.c bench/sweep/start.c bench/sweep/statistics.c
+bench_compare_SOURCES = bench/sweep/compare.c bench/sweep/compare.h bench/sweep/journal.c bench/sweep/median.c bench/sweep/page.c bench/sweep/start.c bench/sweep/statistics.c
 bench_compare_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"'
 bench_compare_LDADD = libduite_core.la -lm
 

@@ -13,12 +13,14 @@
 
 enum { FAILED = 1, BAD_INPUT = 2 };
 enum {
-    BANDWIDTH = 256,
+    BALANCE = 256,
+    BANDWIDTH,
     CORES,
     CORE_SPEED,
     HOSTS,
     LATENCY,
     MAPPING,
+    MESSAGE,
     OVERHEAD,
     PAJE,
     SCHEDULER,
@@ -29,7 +31,7 @@ enum {
 const char *argp_program_version = "duite-predict (" PACKAGE_STRING ")";
 
 struct command {
-    const char *file, *paje, *scheduler, *mapping;
+    const char *file, *paje, *scheduler, *mapping, *balance;
     struct predict_cluster cluster;
 };
 
@@ -42,6 +44,8 @@ static const struct argp_option OPTIONS[] = {
      1},
     {"bandwidth", BANDWIDTH, "BYTES/S", 0, "of a network card (default: 1.25e9, 10 Gbit/s)", 1},
     {"switch", SWITCH, "BYTES/S", 0, "of all messages together (default: enough)", 1},
+    {"message", MESSAGE, "SECONDS", 0,
+     "of a core, to send, to take or to look for a message (default: 5e-7)", 1},
     {"overhead", OVERHEAD, "SECONDS", 0, "between two tasks (default: as it was traced)", 1},
     {"scheduler", SCHEDULER, "NAME", 0, "as of duite-cloth (default: steal)", 2},
     {"mapping", MAPPING, "NAME", 0,
@@ -49,6 +53,7 @@ static const struct argp_option OPTIONS[] = {
      "else "
      "metis)",
      2},
+    {"balance", BALANCE, "NAME", 0, "as of duite-cloth: none or migrate (default: none)", 2},
     {"seed", SEED, "N", 0, "of what is random in them (default: 1)", 2},
     {"paje", PAJE, "OUT", 0, "write the predicted run as a Paje trace", 3},
     {0}};
@@ -79,15 +84,20 @@ static error_t parse_policy(struct argp_state *state, int key, const char *value
 {
     struct command *command = state->input;
     struct predict_cluster *cluster = &command->cluster;
+    const char *option = "scheduler", **name = &command->scheduler;
     bool found = true;
-    if (key == SCHEDULER)
+    if (key == SCHEDULER) {
         found = (cluster->scheduler = duite_scheduler_find(value));
-    else
+    } else if (key == MAPPING) {
+        option = "mapping", name = &command->mapping;
         found = (cluster->mapping = duite_mapping_find(value));
+    } else {
+        option = "balance", name = &command->balance;
+        found = (cluster->balance = duite_balancer_find(value));
+    }
     if (!found)
-        argp_error(state, "--%s %s: %s", key == SCHEDULER ? "scheduler" : "mapping", value,
-                   duite_message());
-    *(key == SCHEDULER ? &command->scheduler : &command->mapping) = value;
+        argp_error(state, "--%s %s: %s", option, value, duite_message());
+    *name = value;
     return 0;
 }
 
@@ -114,11 +124,15 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case SWITCH:
         cluster->capacity = number(state, "switch", value);
         return 0;
+    case MESSAGE:
+        cluster->message = number(state, "message", value);
+        return 0;
     case OVERHEAD:
         cluster->overhead = number(state, "overhead", value);
         return 0;
     case SCHEDULER:
     case MAPPING:
+    case BALANCE:
         return parse_policy(state, key, value);
     case SEED:
         cluster->seed = whole(state, "seed", value, 0, UINT64_MAX);
@@ -178,7 +192,8 @@ static void print(const struct command *command, const struct predict_result *r)
            c->cores, c->latency, c->bandwidth);
     if (isfinite(c->capacity))
         printf(", switch %g bytes/s", c->capacity);
-    printf("\n  policies       scheduler %s, mapping %s\n", command->scheduler, command->mapping);
+    printf("\n  policies       scheduler %s, mapping %s, balance %s\n", command->scheduler,
+           command->mapping, command->balance);
     printf("  tasks          %llu, stolen %llu\n", (unsigned long long)r->tasks,
            (unsigned long long)r->stolen);
     printf("  makespan       %.6f s\n", r->makespan);
@@ -187,6 +202,8 @@ static void print(const struct command *command, const struct predict_result *r)
     printf("  idle           %.1f %%\n", 100 * r->idle);
     printf("  messages       %llu, %llu bytes\n", (unsigned long long)r->messages,
            (unsigned long long)r->bytes);
+    if (r->migrated)
+        printf("  migrated       %llu objects\n", (unsigned long long)r->migrated);
     printf("  lower bound    %.6f s: critical path %.6f s, work %.6f s over %.0f cores\n", path,
            r->critical_path, r->work, workers);
     printf("  overhead       %.3g us between two tasks\n", 1e6 * r->overhead);
@@ -230,12 +247,14 @@ int main(int argc, char **argv)
 {
     struct command command = {.scheduler = "steal",
                               .mapping = "of the trace",
+                              .balance = "none",
                               .cluster = {.scheduler = duite_scheduler_find("steal"),
                                           .latency = -1,
                                           .bandwidth = 1.25e9,
                                           .capacity = INFINITY,
                                           .core_speed = 1,
                                           .overhead = -1,
+                                          .message = 5e-7,
                                           .seed = 1}};
     argp_err_exit_status = BAD_INPUT;
     if (argp_parse(&ARGP, argc, argv, 0, NULL, &command))

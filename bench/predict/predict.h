@@ -3,6 +3,7 @@
 
 #include "bench/bench.h"
 #include "bench/ranks/sheet.h"
+#include "runtime/predict/predict.h"
 
 /* Shared by the cases of the bench "compare". Each case is a file. */
 
@@ -15,9 +16,23 @@ char *predict_path(const char *name);
 #define PREDICT_MANY "predict-many.trace"
 int predict_make_many(uint32_t tasks);
 
-/* The trace that predictions of the sheet start from. */
-#define PREDICT_SHEET "predict-sheet.trace"
+/* A run of the sheet. Mappings are those of duite_mapping_find, and "lopsided". */
+struct predict_config {
+    unsigned ranks, threads;
+    const char *scheduler, *mapping, *balance;
+};
 
-extern const struct bench_case predict_trace, predict_many, predict_errors;
+/* Its series. trace: "no"; "wall": there is one, and the time is that which the run tells; "run":
+ * the time is that of the trace; "kept": the same, and the trace of each round is kept. */
+struct measure_series *predict_series(struct measure *measure, const struct bench_options *options,
+                                      const struct predict_config *config, const char *trace);
+extern const struct serve_run predict_sheet_runs[];
+
+/* The trace that was kept in this round; NULL: it cannot be read. And the seconds that are foretold
+ * from it; NAN: they are not. */
+struct trace_run *predict_read_sheet(size_t round);
+double predict_foretold(const struct trace_run *run, const struct predict_config *config);
+
+extern const struct bench_case predict_trace, predict_many, predict_errors, predict_order;
 
 #endif

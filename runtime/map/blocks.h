@@ -41,6 +41,9 @@ struct map_traffic {
 /* Adds what a record's forks carry in so many rounds. Errors: memory. */
 int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks,
                     const struct graph_record *record, double rounds);
+/* Adds that a task which runs for one block reads so many bytes of another. False without memory.
+ */
+bool map_traffic_read(struct map_traffic *traffic, uint32_t own, uint32_t other, double bytes);
 /* Nothing more is added: makes the rows of it, each neighbour once. Errors: memory. */
 int map_traffic_end(struct map_traffic *traffic, const struct map_blocks *blocks);
 void map_traffic_free(struct map_traffic *traffic);

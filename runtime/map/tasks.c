@@ -44,6 +44,22 @@ static void guess(struct graph_tasks *tasks)
             tasks->cost[i] = known > 0 ? sum / known : GUESSED_SECONDS;
 }
 
+int map_tasks_complete(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
+{
+    struct graph_tasks *all = &tasks->tasks;
+    if (!share_out(tasks, n_blocks, seconds))
+        return base_no_memory("the tasks of a recorded graph");
+    guess(all);
+    tasks->graph = (duite_task_graph){.n = all->n,
+                                      .cost = all->cost,
+                                      .block = tasks->block,
+                                      .start = all->start,
+                                      .from = all->from,
+                                      .bytes = all->bytes,
+                                      .n_blocks = n_blocks};
+    return DUITE_OK;
+}
+
 int map_tasks_find(struct map_tasks *tasks, const struct graph_record *record,
                    const struct map_blocks *blocks, const double *seconds)
 {
@@ -59,17 +75,7 @@ int map_tasks_find(struct map_tasks *tasks, const struct graph_record *record,
         tasks->block[i] = all->owner[i] == GRAPH_NOBODY
                               ? DUITE_NO_BLOCK
                               : blocks->of[record->object[all->owner[i]].bound.slot];
-    if (!share_out(tasks, blocks->n, seconds))
-        return base_no_memory("the tasks of a recorded graph");
-    guess(all);
-    tasks->graph = (duite_task_graph){.n = all->n,
-                                      .cost = all->cost,
-                                      .block = tasks->block,
-                                      .start = all->start,
-                                      .from = all->from,
-                                      .bytes = all->bytes,
-                                      .n_blocks = blocks->n};
-    return DUITE_OK;
+    return map_tasks_complete(tasks, blocks->n, seconds);
 }
 
 void map_tasks_free(struct map_tasks *tasks)

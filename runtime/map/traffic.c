@@ -19,6 +19,12 @@ static bool add_edge(struct map_traffic *traffic, uint32_t from, uint32_t to, do
     return true;
 }
 
+bool map_traffic_read(struct map_traffic *traffic, uint32_t own, uint32_t other, double bytes)
+{
+    return other == own || own == MAP_NO_BLOCK || other == MAP_NO_BLOCK ||
+           (add_edge(traffic, own, other, bytes) && add_edge(traffic, other, own, bytes));
+}
+
 int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks,
                     const struct graph_record *record, double rounds)
 {
@@ -32,12 +38,9 @@ int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks
         uint32_t own = blocks->of[record->object[owner].bound.slot];
         for (uint32_t k = 0; k < fork->n && fine; k++) {
             uint32_t slot = record->object[record->use[fork->first + k]].bound.slot;
-            uint32_t other = blocks->of[slot];
-            if (other != own && own != MAP_NO_BLOCK && other != MAP_NO_BLOCK &&
-                graph_recorded_mode(record->graph, fork, k) != DUITE_W) {
-                double bytes = rounds * (double)objects[slot].room;
-                fine = add_edge(traffic, own, other, bytes) && add_edge(traffic, other, own, bytes);
-            }
+            if (graph_recorded_mode(record->graph, fork, k) != DUITE_W)
+                fine = map_traffic_read(traffic, own, blocks->of[slot],
+                                        rounds * (double)objects[slot].room);
         }
     }
     return fine ? DUITE_OK : base_no_memory("the blocks of objects");

@@ -105,6 +105,7 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result)
                                       .messages = m->network.messages,
                                       .bytes = m->network.bytes,
                                       .stolen = m->stolen,
+                                      .migrated = graph->migrated,
                                       .makespan = fmax(makespan, m->main_time),
                                       .overhead = graph->overhead,
                                       .idle = all > 0 ? 1 - m->busy / all : 0};

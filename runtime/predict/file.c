@@ -108,7 +108,7 @@ static void put(const struct predict_graph *graph, struct rows *rows, FILE *file
             continue;
         size_t n = count_row(rows, line);
         fprintf(file, "%.9g %.0f %zu", (double)node->seconds,
-                fmin((double)node->shown, (double)UINT32_MAX), n);
+                fmin((double)graph->shown[i], (double)UINT32_MAX), n);
         for (size_t k = 0; k < n; k++)
             fprintf(file, " %" PRIu32, rows->reads[rows->start[line] + k]);
         put_place(graph, rows, node->block, file);

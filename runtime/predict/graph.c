@@ -9,11 +9,13 @@
 #include <stdlib.h>
 
 enum { SMALL_SUM = 1024 }; /* bytes: in replays such sums are made on every host */
+#define MOST_NODE  0x7fffffffu /* as many bits as there are for them */
+#define MOST_PHASE 0x1fffffffu
 
 static bool grow(struct predict_graph *graph, void *array, size_t *capacity, size_t n, size_t size)
 {
     void **old = array;
-    if (n < *capacity)
+    if (n < *capacity && !graph->failed)
         return true;
     void *moved = graph->failed ? NULL : base_grow(*old, capacity, n + 1, size);
     graph->failed |= !moved;
@@ -24,8 +26,15 @@ static bool grow(struct predict_graph *graph, void *array, size_t *capacity, siz
 
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node)
 {
+    graph->failed |= graph->n_nodes >= MOST_NODE;
     if (!grow(graph, &graph->node, &graph->nodes_capacity, graph->n_nodes, sizeof *graph->node))
         return 0;
+    if (graph->plain) {
+        if (!grow(graph, &graph->shown, &graph->shown_capacity, graph->n_nodes,
+                  sizeof *graph->shown))
+            return 0;
+        graph->shown[graph->n_nodes] = 0;
+    }
     graph->node[graph->n_nodes] = *node;
     graph->node[graph->n_nodes].pending = 1;
     graph->node[graph->n_nodes].edge = PREDICT_NONE;
@@ -37,8 +46,17 @@ static void join(struct predict_graph *graph, uint32_t from, uint32_t to, bool r
     if (from == PREDICT_NONE || from == to ||
         !grow(graph, &graph->edge, &graph->edges_capacity, graph->n_edges, sizeof *graph->edge))
         return;
-    graph->linked |= from >= graph->round;
-    graph->edge[graph->n_edges] = (struct predict_edge){to, graph->node[from].edge, reads};
+    if (from >= graph->round) {
+        struct predict_node *after = &graph->node[to];
+        const struct predict_node *before = &graph->node[from];
+        const bool travels = before->kind == PREDICT_MESSAGE || before->kind == PREDICT_EXCHANGE;
+        const uint32_t phase = (uint32_t)before->phase + travels;
+        if ((uint32_t)after->phase < phase)
+            after->phase = phase & MOST_PHASE;
+        graph->linked = true;
+    }
+    graph->edge[graph->n_edges] =
+        (struct predict_edge){to & MOST_NODE, reads, graph->node[from].edge};
     graph->node[from].edge = (uint32_t)graph->n_edges++;
     graph->node[to].pending++;
 }
@@ -53,10 +71,11 @@ static void join_reader(struct predict_graph *graph, uint32_t from, uint32_t to,
 {
     struct predict_object *o = &graph->object[object];
     join(graph, from, to, true);
-    if (from == PREDICT_NONE || o->shown || graph->node[from].block == graph->node[to].block)
+    if (!graph->plain || from == PREDICT_NONE || o->shown ||
+        graph->node[from].block == graph->node[to].block)
         return;
     o->shown = true;
-    graph->node[from].shown += (float)o->bytes;
+    graph->shown[from] += (float)o->bytes;
 }
 
 static void push(struct predict_graph *graph, uint32_t *list, uint32_t node, uint32_t host)
@@ -95,6 +114,7 @@ static uint32_t send(struct predict_graph *graph, uint32_t object, int host)
     graph->linked = false;
     predict_edge(graph, o->writer, message);
     predict_hold(graph, message);
+    graph->node[message].priority = predict_packets(graph, message);
     push(graph, &o->readers, message, (uint32_t)o->holder);
     return message;
 }
@@ -161,8 +181,8 @@ static void join_contribution(struct predict_graph *graph, uint32_t from, uint32
                               uint32_t object)
 {
     join(graph, from, sum, true);
-    if (graph->node[from].block != graph->node[sum].block)
-        graph->node[from].shown += (float)graph->object[object].bytes;
+    if (graph->plain && graph->node[from].block != graph->node[sum].block)
+        graph->shown[from] += (float)graph->object[object].bytes;
 }
 
 /* The nodes that the sum waits for where it is made: pieces of other hosts come by message. */
@@ -192,6 +212,7 @@ static void send_pieces(struct predict_graph *graph, uint32_t object)
         uint32_t message = add_own(graph, PREDICT_MESSAGE, host, 0, o->bytes);
         graph->node[message].block = (uint32_t)o->home;
         predict_edge(graph, piece, message);
+        graph->node[message].priority = predict_packets(graph, message);
         graph->piece[host] = message;
     }
 }
@@ -206,6 +227,7 @@ static uint32_t exchange_pieces(struct predict_graph *graph, uint32_t object)
     graph->node[exchange].block = 1; /* all send */
     for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
         predict_edge(graph, graph->link[i].node, exchange);
+    graph->node[exchange].priority = predict_packets(graph, exchange);
     return exchange;
 }
 
@@ -281,6 +303,19 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
         overwrite(graph, node, object, host);
 }
 
+/* Where it was, there is a copy. */
+void predict_rehome(struct predict_graph *graph, uint32_t object, int host)
+{
+    struct predict_object *o = &graph->object[object];
+    const uint32_t before = (uint32_t)o->holder, writer = o->writer;
+    o->home = host;
+    if (o->holder == PREDICT_ALL || o->holder == host)
+        return;
+    o->writer = fetch(graph, object, host);
+    o->holder = host;
+    push(graph, &o->copies, writer, before);
+}
+
 void predict_hold(struct predict_graph *graph, uint32_t node)
 {
     if (!graph->linked)
@@ -290,10 +325,12 @@ void predict_hold(struct predict_graph *graph, uint32_t node)
 void predict_graph_free(struct predict_graph *graph)
 {
     free(graph->node);
+    free(graph->shown);
     free(graph->edge);
     free(graph->op);
     free(graph->object);
     free(graph->link);
     base_free(graph->piece);
     base_free(graph->began);
+    free(graph->packet);
 }

@@ -22,17 +22,18 @@ struct predict_node {
     uint64_t number;
     uint32_t kernel; /* of kernels; beyond them: the runtime's own, by graph_kind */
     uint32_t host, block;
-    int32_t priority;
+    int32_t priority; /* of messages: packets that it adds */
     float seconds, cost, path;
     uint32_t pending; /* edges that end here, and 1 for the main program */
     uint32_t edge;    /* the first of those that begin here, or NONE */
-    uint32_t kind;
-    float shown; /* bytes that it writes and tasks of other blocks read */
+    uint32_t kind : 3;
+    uint32_t phase : 29; /* of a replay's round: messages on the longest path to it, at most */
 };
 
 struct predict_edge {
-    uint32_t to, next;
-    bool reads; /* what the one writes; else `to` only comes later */
+    uint32_t to : 31;
+    uint32_t reads : 1; /* what the one writes; else `to` only comes later */
+    uint32_t next;
 };
 
 /* What the main program does: brings nodes up to `end` into being, `each` seconds apart; then waits
@@ -66,6 +67,8 @@ struct predict_graph {
     const struct predict_cluster *cluster;
     struct predict_node *node;
     size_t n_nodes, nodes_capacity;
+    float *shown; /* plain: by node, bytes that it writes and tasks of other blocks read */
+    size_t shown_capacity;
     struct predict_edge *edge;
     size_t n_edges, edges_capacity;
     struct predict_op *op;
@@ -74,13 +77,16 @@ struct predict_graph {
     size_t n_objects, objects_capacity;
     struct predict_link *link;
     size_t n_links, links_capacity;
+    uint64_t *packet; /* of this round: phase, from, to of each, plus 1; a power of two */
+    size_t n_packets, packets_capacity;
     uint32_t *piece; /* by host: this rank's part of a sum that is being closed */
     uint32_t *began; /* by host: the node that begins or ends a replay there */
     double own[64];  /* by graph_kind: s of the runtime's own tasks */
     uint32_t round;  /* the first node of this round of a replay, or NONE */
     uint32_t flag;   /* the node that decided on this round, or NONE */
-    double overhead; /* s between two tasks */
-    uint64_t n_tasks;
+    double overhead; /* s between two tasks, */
+    double look;     /* and of that a look for messages, now and then */
+    uint64_t n_tasks, migrated;
     bool plain;           /* tasks and what they read alone: replays have no gates */
     bool replays, failed; /* failed: no memory */
     bool linked;          /* the node that is being made has an edge from its own round */
@@ -97,9 +103,16 @@ uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mod
 /* The node uses the object, with what predict_prepare returned. */
 void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
                  uint32_t prepared);
+/* The object has another home from now on: its value goes there. */
+void predict_rehome(struct predict_graph *graph, uint32_t object, int host);
 /* All edges to the node are there since `linked` was cleared: if nothing of its round of a replay
  * comes before it, it waits for what decided on the round. */
 void predict_hold(struct predict_graph *graph, uint32_t node);
+
+/* A round of a replay begins: no packet of it is on its way. */
+void predict_packets_clear(struct predict_graph *graph);
+/* Of a message whose edges to it are there: how many packets it adds to those of the round. */
+int32_t predict_packets(struct predict_graph *graph, uint32_t message);
 
 /* Whether both can be. */
 int predict_check(const struct trace_run *run, const struct predict_cluster *cluster);

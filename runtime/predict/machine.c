@@ -122,10 +122,12 @@ bool predict_event_take(struct predict_events *events, struct predict_event *fir
 
 /* ---- Network ---- */
 
-double predict_message(struct predict_network *network, double now, uint32_t from, uint32_t to,
-                       uint64_t bytes, double *flight)
+double predict_message(struct predict_network *network, double now,
+                       const struct predict_node *message, double *flight)
 {
     const struct predict_cluster *cluster = network->cluster;
+    const uint32_t from = message->host, to = message->block;
+    const uint64_t bytes = message->number;
     double takes = (double)bytes / cluster->bandwidth;
     double leaves = fmax(now, network->out[from]);
     network->out[from] = leaves + takes;
@@ -133,24 +135,25 @@ double predict_message(struct predict_network *network, double now, uint32_t fro
     network->fabric = passes + (double)bytes / cluster->capacity;
     double comes = fmax(passes + cluster->latency, network->in[to]);
     network->in[to] = comes + takes;
-    network->messages++;
+    network->messages += (uint64_t)message->priority;
     network->bytes += bytes;
     *flight = cluster->latency;
     return comes + takes;
 }
 
-double predict_exchange(struct predict_network *network, double now, uint64_t bytes, bool all,
-                        double *flight)
+double predict_exchange(struct predict_network *network, double now,
+                        const struct predict_node *message, double *flight)
 {
     const struct predict_cluster *cluster = network->cluster;
-    const uint64_t others = cluster->hosts - 1, messages = others * (all ? cluster->hosts : 1);
+    const uint64_t others = cluster->hosts - 1, bytes = message->number;
+    const uint64_t all = others * (message->block ? cluster->hosts : 1);
     *flight = 0;
     if (!others)
         return now;
     double takes = (double)(others * bytes) / cluster->bandwidth;
-    double fabric = (double)(messages * bytes) / cluster->capacity;
-    network->messages += messages;
-    network->bytes += messages * bytes;
+    double fabric = (double)(all * bytes) / cluster->capacity;
+    network->messages += (uint64_t)message->priority;
+    network->bytes += all * bytes;
     *flight = cluster->latency;
     return now + cluster->latency + fmax(takes, fabric);
 }

@@ -44,11 +44,11 @@ struct predict_network {
     uint64_t messages, bytes;
 };
 /* When a message that is ready now has arrived; *flight: how much of that is latency. */
-double predict_message(struct predict_network *network, double now, uint32_t from, uint32_t to,
-                       uint64_t bytes, double *flight);
+double predict_message(struct predict_network *network, double now,
+                       const struct predict_node *message, double *flight);
 /* When all have what one host (or, all: each of them) sends to all others. */
-double predict_exchange(struct predict_network *network, double now, uint64_t bytes, bool all,
-                        double *flight);
+double predict_exchange(struct predict_network *network, double now,
+                        const struct predict_node *message, double *flight);
 
 enum { IDLE, BUSY, RESERVED }; /* of a worker; the last: it is the main program's */
 
@@ -77,6 +77,10 @@ struct predict_machine {
     uint32_t *idle;                       /* by host: how many */
     struct predict_events events;
     struct predict_network network;
+    double *looked;              /* by worker: when it looked for messages */
+    double *handled;             /* by host: s that messages take of its cores from now on, */
+    double handled_by_all;       /* of each host: to be added, */
+    double *paid;                /* by host: as far as this was */
     double *begin, *end;         /* by node */
     uint32_t *runs_on;           /* by node, for Paje; NULL: not kept */
     struct predict_cause *cause; /* by node */

@@ -28,11 +28,17 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
                           "the homes that were traced are those of %u ranks, not %u hosts: name a "
                           "mapping",
                           run->n_ranks, c->hosts);
-    if (c->mapping && c->mapping->map_tasks)
+    if (!(c->message >= 0))
+        return base_error(DUITE_E_ARGUMENT, "the cost of a message is a number >= 0");
+    if (c->balance && (c->balance->victim || c->balance->place))
         return base_error(DUITE_E_ARGUMENT,
-                          "what mapping %s makes of recorded tasks is not foretold: trace a run "
-                          "with it, and name none",
-                          c->mapping->name);
+                          "tasks that the balancer %s sends to other ranks are not foretold: take "
+                          "none, or migrate",
+                          c->balance->name);
+    if (c->balance && c->balance->migrate && !c->mapping)
+        return base_error(DUITE_E_ARGUMENT,
+                          "the balancer %s moves what a mapping placed: name a mapping",
+                          c->balance->name);
     return DUITE_OK;
 }
 

@@ -17,9 +17,11 @@ struct predict_cluster {
     double capacity;       /* bytes/s of the switch, all messages together; infinite: enough */
     double core_speed;     /* times that of the traced run */
     double overhead;       /* s, of the runtime between two tasks; < 0: as it was seen */
+    double message;        /* s of a core, to send, to take or to look for a message */
     const duite_scheduler *scheduler;
     const duite_mapping
         *mapping; /* NULL: the homes that were traced; as many hosts as ranks then */
+    const duite_balancer *balance; /* NULL: none; one that moves blocks needs a mapping */
     uint64_t seed;
 };
 
@@ -35,9 +37,9 @@ enum predict_limit {
 };
 
 struct predict_result {
-    uint64_t tasks, messages, bytes, stolen;
-    double makespan;      /* s */
-    double work;          /* s in bodies, all workers together */
+    uint64_t tasks, messages, bytes, stolen, migrated; /* migrated: objects */
+    double makespan;                                   /* s */
+    double work;                                       /* s in bodies, all workers together */
     double critical_path; /* s: the longest chain of tasks, if messages and forks took no time */
     double idle;          /* share of the workers' time without a task */
     double overhead;      /* s between two tasks, as it was taken to be */

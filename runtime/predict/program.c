@@ -40,7 +40,7 @@ float predict_float(struct predict_program *p)
 
 /* ---- Tasks ---- */
 
-static duite_mode mode_of(const struct trace_kernel *kernel, size_t i)
+duite_mode predict_mode(const struct trace_kernel *kernel, size_t i)
 {
     static const duite_mode same[] = {DUITE_NONE, DUITE_R, DUITE_W,  DUITE_RW, DUITE_CW,
                                       DUITE_R,    DUITE_W, DUITE_RW, DUITE_CW};
@@ -48,56 +48,72 @@ static duite_mode mode_of(const struct trace_kernel *kernel, size_t i)
     return mode < sizeof same / sizeof same[0] ? same[mode] : DUITE_R;
 }
 
-/* The owner rule; `at` or everywhere. */
-static int place(struct predict_program *p, const struct predict_fork *fork, uint32_t *block)
+/* What is written first, or else read first. */
+uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
+                       const uint32_t *objects)
 {
-    const struct predict_graph *graph = p->graph;
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
     uint32_t own = PREDICT_NONE;
     for (size_t i = 0; i < fork->n; i++) {
-        duite_mode mode = mode_of(kernel, i);
+        duite_mode mode = predict_mode(kernel, i);
         bool writes = mode == DUITE_W || mode == DUITE_RW;
         if (writes || (mode == DUITE_R && own == PREDICT_NONE))
-            own = fork->object[i];
+            own = objects[i];
         if (writes)
             break;
     }
-    *block = own == PREDICT_NONE ? (uint32_t)fork->number : graph->object[own].block;
-    if (kernel->replicated)
+    return own;
+}
+
+/* The owner rule; `at` or everywhere. */
+static int place(const struct predict_graph *graph, const struct predict_fork *fork, uint32_t own)
+{
+    if (graph->run->kernel[fork->kernel].replicated)
         return PREDICT_ALL;
     if (fork->at >= 0)
         return fork->at % (int)graph->cluster->hosts;
     return own == PREDICT_NONE ? 0 : graph->object[own].home;
 }
 
+static void stay(struct predict_program *p, uint32_t own)
+{
+    uint32_t slot = own == PREDICT_NONE ? 0 : p->name[own].slot;
+    if (slot)
+        p->table.object[slot].stays = true;
+}
+
 void predict_fork(struct predict_program *p, const struct predict_fork *fork)
 {
     struct predict_graph *graph = p->graph;
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    uint32_t block;
-    int host = place(p, fork, &block);
+    const uint32_t own = predict_owner(graph, fork, fork->object);
+    const int host = place(graph, fork, own);
+    const bool all = host == PREDICT_ALL, follows = !all && fork->at < 0;
     double seconds;
     if (!predict_times_find(p->times, fork->number, &seconds))
         seconds = predict_times_kernel(p->times, fork->kernel);
+    seconds /= graph->cluster->core_speed;
     for (size_t i = 0; i < fork->n; i++)
-        p->prepared[i] = predict_prepare(graph, fork->object[i], mode_of(kernel, i), host);
-    bool all = host == PREDICT_ALL;
+        p->prepared[i] = predict_prepare(graph, fork->object[i], predict_mode(kernel, i), host);
     uint32_t node = predict_add(
-        graph, &(struct predict_node){.number = fork->number,
-                                      .kernel = fork->kernel,
-                                      .host = all ? 0 : (uint32_t)host,
-                                      .block = block,
-                                      .priority = fork->priority,
-                                      .cost = fork->cost,
-                                      .seconds = (float)(seconds / graph->cluster->core_speed),
-                                      .kind = all && graph->cluster->hosts > 1 ? PREDICT_EVERYWHERE
-                                                                               : PREDICT_TASK});
+        graph, &(struct predict_node){
+                   .number = fork->number,
+                   .kernel = fork->kernel,
+                   .host = all ? 0 : (uint32_t)host,
+                   .block = own == PREDICT_NONE ? (uint32_t)fork->number : graph->object[own].block,
+                   .priority = fork->priority,
+                   .cost = fork->cost,
+                   .seconds = (float)seconds,
+                   .kind = all && graph->cluster->hosts > 1 ? PREDICT_EVERYWHERE : PREDICT_TASK});
     if (graph->failed)
         return;
     graph->linked = false;
     for (size_t i = 0; i < fork->n; i++)
-        predict_use(graph, node, fork->object[i], mode_of(kernel, i), p->prepared[i]);
+        predict_use(graph, node, fork->object[i], predict_mode(kernel, i), p->prepared[i]);
     predict_hold(graph, node);
+    if (kernel->stays && follows)
+        stay(p, own);
+    predict_spend(p, follows ? own : PREDICT_NONE, host, seconds);
     p->tasks++;
 }
 
@@ -168,6 +184,13 @@ static struct predict_op *add_op(struct predict_program *p, bool forked)
 void predict_op_replays(struct predict_program *p, bool begins)
 {
     add_op(p, begins);
+}
+
+void predict_op_wait(struct predict_program *p)
+{
+    struct predict_op *last = add_op(p, true);
+    if (last)
+        last->waits = true;
 }
 
 /* It forked until `from`, and waits until `to`: each fork takes its share of the time. */
@@ -299,13 +322,17 @@ static bool prepare(struct predict_program *p)
     graph->flag = PREDICT_NONE;
     if (!p->times || !graph->piece || !graph->began ||
         !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
-        data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1))
+        data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
+        !predict_moves_start(p))
         return false;
     for (uint32_t kind = 0; kind < sizeof graph->own / sizeof graph->own[0]; kind++)
         graph->own[kind] = predict_times_own(p->times, kind) / graph->cluster->core_speed;
     graph->overhead = graph->cluster->overhead < 0
                           ? predict_times_gap(p->times) / graph->cluster->core_speed
                           : graph->cluster->overhead;
+    /* What ranks did between tasks has it already. */
+    const bool seen = graph->cluster->overhead < 0 && graph->run->n_ranks > 1;
+    graph->look = hosts > 1 && !seen ? graph->cluster->message : 0;
     return true;
 }
 
@@ -314,6 +341,7 @@ int predict_build(struct predict_graph *graph)
     struct predict_program p = {.graph = graph};
     int code = prepare(&p) ? walk(&p) : base_no_memory("the graph of a trace");
     graph->n_tasks = p.tasks;
+    predict_moves_stop(&p);
     data_table_stop(&p.table);
     base_free(p.blocks_on);
     free(p.block);

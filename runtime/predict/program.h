@@ -21,6 +21,18 @@ struct predict_recorded {
     struct predict_fork *fork;
     uint32_t *use;
     size_t n_forks, n_objects, n_calls;
+    uint64_t replays, map_at; /* so far; the number of those before the mapping is asked again */
+    uint64_t rounds;          /* since the balancer looked last */
+    uint32_t *bound;          /* n_objects: of the last replay, this one among them; or NULL */
+};
+
+/* Homes that change: what a balancer is told, see runtime/migrate.c. Seconds since it looked. */
+struct predict_moves {
+    double *spent; /* by slot of `table`: in bodies of tasks that ran for it */
+    size_t spent_capacity;
+    double *other; /* by host: in other bodies */
+    uint64_t replays, due, looked;
+    void *state; /* of the balancer */
 };
 
 struct predict_program {
@@ -41,6 +53,7 @@ struct predict_program {
     size_t prepared_capacity, objects_capacity;
     struct predict_recorded *recorded;
     size_t n_recorded, recorded_capacity;
+    struct predict_moves moves;
     uint64_t forks, tasks;
     uint64_t since;  /* ticks: when the main program last went on */
     size_t first_op; /* since then */
@@ -66,11 +79,32 @@ bool predict_room(struct predict_program *p, size_t n);
 void predict_fork(struct predict_program *p, const struct predict_fork *fork);
 void predict_set(struct predict_program *p, uint32_t own);
 
+/* The modes of a kernel's parameters; and the object that a task runs for, by the owner rule, or
+ * NONE. */
+duite_mode predict_mode(const struct trace_kernel *kernel, size_t i);
+uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
+                       const uint32_t *objects);
+
+/* The main program waits for all. */
+void predict_op_wait(struct predict_program *p);
 /* A replay begins, or was brought into being: its nodes take the main program no time. */
 void predict_op_replays(struct predict_program *p, bool begins);
 
 void predict_take_graph(struct predict_program *p, size_t n_objects);
 void predict_replay(struct predict_program *p, size_t n_objects);
+/* A round of a recorded graph as mappings see it; place: by object of the record, its block or
+ * DUITE_NO_BLOCK. All but the costs is there; map_tasks_free is due. False without memory. */
+struct map_tasks;
+bool predict_round(const struct predict_program *p, const struct predict_recorded *recorded,
+                   const uint32_t *place, struct map_tasks *tasks);
+
+/* A task took so long for the object (NONE: for none) on a host (ALL: on each). */
+void predict_spend(struct predict_program *p, uint32_t object, int host, double seconds);
+bool predict_moves_start(struct predict_program *p);
+void predict_moves_stop(struct predict_program *p);
+/* At the beginning of a replay: homes change, if it is time. */
+void predict_move(struct predict_program *p, struct predict_recorded *recorded);
+
 void predict_graphs_free(struct predict_program *p);
 
 #endif

@@ -11,6 +11,7 @@ static void forget(struct predict_recorded *recorded)
 {
     free(recorded->fork);
     free(recorded->use);
+    free(recorded->bound);
     *recorded = (struct predict_recorded){0};
 }
 
@@ -157,6 +158,7 @@ static void fork_round(struct predict_program *p, const struct predict_recorded 
 {
     struct predict_graph *graph = p->graph;
     graph->round = (uint32_t)graph->n_nodes;
+    predict_packets_clear(graph);
     for (size_t i = 0; i < recorded->n_forks && !graph->failed; i++) {
         struct predict_fork fork = recorded->fork[i];
         if (!predict_room(p, fork.n))
@@ -176,10 +178,11 @@ static void fork_round(struct predict_program *p, const struct predict_recorded 
         find_paths(graph);
 }
 
-static void rounds(struct predict_program *p, const struct predict_recorded *recorded,
-                   const uint32_t *bound, uint32_t flag, uint64_t most)
+static void rounds(struct predict_program *p, struct predict_recorded *recorded, uint32_t flag,
+                   uint64_t most)
 {
     struct predict_graph *graph = p->graph;
+    const uint32_t *bound = recorded->bound;
     bool flagged = flag != PREDICT_NONE;
     predict_op_replays(p, true);
     gate(p, bound, recorded->n_objects);
@@ -189,6 +192,7 @@ static void rounds(struct predict_program *p, const struct predict_recorded *rec
         if (i && flagged && !ran(p, recorded, first))
             break;
         fork_round(p, recorded, bound, first);
+        recorded->rounds++;
         if (flagged && !graph->failed)
             decide(graph, flag);
     }
@@ -207,14 +211,17 @@ void predict_replay(struct predict_program *p, size_t n_objects)
         p->damaged = true;
         return;
     }
-    const struct predict_recorded *recorded = &p->recorded[name];
+    struct predict_recorded *recorded = &p->recorded[name];
     uint32_t flag = flag_slot ? predict_object_at(p, flag_slot) : PREDICT_NONE;
     uint32_t *bound = malloc((n_objects + 1) * sizeof *bound);
     p->graph->failed |= !bound;
     for (size_t i = 0; bound && i < n_objects; i++)
         bound[i] = predict_object_at(p, predict_word(p));
-    if (bound && !p->damaged && !p->short_of)
-        rounds(p, recorded, bound, flag, most);
+    free(recorded->bound);
+    recorded->bound = bound;
+    if (bound && !p->damaged && !p->short_of) {
+        predict_move(p, recorded);
+        rounds(p, recorded, flag, most);
+    }
     p->forks += most * recorded->n_calls;
-    free(bound);
 }

@@ -10,9 +10,40 @@
 #include <math.h>
 #include <stdlib.h>
 
+#define LOOK_SECONDS 5e-6 /* between two looks for messages of a worker that has tasks */
+
 static void *state_of(const struct predict_machine *m, uint32_t worker)
 {
     return m->states + worker * m->stride;
+}
+
+/* ---- What messages take of the cores: the next task of the host is later by that ---- */
+
+static void handle(struct predict_machine *m, const struct predict_node *message)
+{
+    const double each = m->cluster->message * (double)message->priority;
+    if (message->kind == PREDICT_MESSAGE) {
+        m->handled[message->host] += each;
+        m->handled[message->block] += each;
+    } else if (message->block) {
+        m->handled_by_all += 2 * each / m->cluster->hosts;
+    } else {
+        m->handled[message->host] += each;
+        m->handled_by_all += each / m->cluster->hosts;
+    }
+}
+
+/* A worker begins something: what is left to do of messages, and a look for more now and then. */
+static double pay(struct predict_machine *m, uint32_t worker, uint32_t host)
+{
+    double seconds = m->handled[host] + m->handled_by_all - m->paid[host];
+    m->handled[host] = 0;
+    m->paid[host] = m->handled_by_all;
+    if (m->graph->look > 0 && m->now - m->looked[worker] >= LOOK_SECONDS) {
+        m->looked[worker] = m->now;
+        seconds += m->graph->look;
+    }
+    return seconds;
 }
 
 /* ---- Workers ---- */
@@ -22,6 +53,7 @@ static void start(struct predict_machine *m, uint32_t node, uint32_t worker)
     const struct predict_node *n = &m->graph->node[node];
     uint32_t before = m->ran[worker];
     double begin = m->now + (before == PREDICT_NONE ? 0 : m->graph->overhead);
+    begin += pay(m, worker, n->host);
     /* Its worker held it up, if it was ready before that was free. */
     if (before != PREDICT_NONE && m->end[before] >= m->now && m->begin[node] < m->now)
         m->cause[node] = (struct predict_cause){before, LEFT_WORKER, 0};
@@ -117,10 +149,12 @@ static void node_ready(struct predict_machine *m, uint32_t node, uint32_t worker
         end = m->now + m->graph->overhead + (double)n->seconds;
         break;
     case PREDICT_MESSAGE:
-        end = predict_message(&m->network, m->now, n->host, n->block, n->number, &flight);
+        end = predict_message(&m->network, m->now, n, &flight);
+        handle(m, n);
         break;
     case PREDICT_EXCHANGE:
-        end = predict_exchange(&m->network, m->now, n->number, n->block != 0, &flight);
+        end = predict_exchange(&m->network, m->now, n, &flight);
+        handle(m, n);
         break;
     default:
         break;
@@ -313,6 +347,9 @@ static bool prepare(struct predict_machine *m, bool paje)
     m->ran = base_alloc(workers * sizeof *m->ran);
     m->last = base_alloc(hosts * sizeof *m->last);
     m->idle = base_alloc(hosts * sizeof *m->idle);
+    m->looked = base_alloc_zero(workers * sizeof *m->looked);
+    m->handled = base_alloc_zero(hosts * sizeof *m->handled);
+    m->paid = base_alloc_zero(hosts * sizeof *m->paid);
     m->network.out = base_alloc_zero(hosts * sizeof(double));
     m->network.in = base_alloc_zero(hosts * sizeof(double));
     m->begin = base_alloc(n * sizeof *m->begin + 1);
@@ -320,8 +357,8 @@ static bool prepare(struct predict_machine *m, bool paje)
     m->cause = base_alloc_zero(n * sizeof *m->cause + 1);
     m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
     return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->last &&
-           m->idle && m->network.out && m->network.in && m->begin && m->end && m->cause &&
-           (m->runs_on || !paje) && see_others(m);
+           m->idle && m->looked && m->handled && m->paid && m->network.out && m->network.in &&
+           m->begin && m->end && m->cause && (m->runs_on || !paje) && see_others(m);
 }
 
 static void init(struct predict_machine *m)
@@ -352,9 +389,10 @@ static void stop(struct predict_machine *m)
     for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
         free(m->shared[h].node);
     free(m->events.event);
-    void *const all[] = {m->states, m->queue,       m->shared,     m->state, m->next, m->ran,
-                         m->last,   m->network.out, m->network.in, m->begin, m->end,  m->cause,
-                         m->idle,   m->runs_on,     m->near,       m->other, m->level};
+    void *const all[] = {m->states, m->queue, m->shared,      m->state,      m->next,
+                         m->ran,    m->last,  m->network.out, m->network.in, m->begin,
+                         m->end,    m->cause, m->idle,        m->runs_on,    m->near,
+                         m->other,  m->level, m->looked,      m->handled,    m->paid};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         base_free(all[i]);
 }

@@ -282,6 +282,81 @@ START_TEST(schedulers)
 }
 END_TEST
 
+/* ---- Replays ---- */
+
+/* Tasks on host 0 write the objects 1 and 2, two on host 1 read both, and each of them its own
+ * object before: one packet a round, and none for what is read where it is written. */
+START_TEST(packets)
+{
+    static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
+                                                   {FILE_W, 1 * MS, 0, 1, {1}},
+                                                   {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 2}},
+                                                   {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 3}}};
+    struct trace_file file = begun(4, 1000);
+    trace_file_graph(&file, 4, 4, nodes);
+    trace_file_replay(&file, 4, 4, nodes, 5);
+    struct predict_cluster two = machine(2, 1);
+    two.message = 0.1 * MS;
+    struct predict_result r = foretold(&file, &two);
+    ck_assert_uint_eq(r.messages, 5);
+    ck_assert_uint_eq(r.bytes, 10 * 1000);
+    /* Host 1: waits for two writers, then ten tasks. A packet each round, taken and looked for; on
+     * the way to its tenth task it looks ten times and takes five packets. */
+    ck_assert_msg(r.makespan > (2 + 10 + 1) * MS && r.makespan < (2 + 10 + 2) * MS, "%.9g s",
+                  r.makespan);
+}
+END_TEST
+
+/* Costs of 3, 1, 1 and 1: block gives 4 and 2 a round, the mapping that sees them 3 and 3. The
+ * values of what moves go along. */
+START_TEST(mappings)
+{
+    for (int told = 0; told < 2; told++) {
+        struct trace_file_node nodes[4];
+        for (uint32_t i = 0; i < 4; i++) {
+            const double seconds = i ? 1 * MS : 3 * MS;
+            nodes[i] =
+                (struct trace_file_node){FILE_RW, seconds, told ? (float)seconds : 0, 1, {i}};
+        }
+        struct trace_file file = begun(4, 1000);
+        for (uint32_t i = 0; i < 4; i++)
+            trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(i + 1));
+        trace_file_graph(&file, 4, 4, nodes);
+        for (int i = 0; i < 3; i++)
+            trace_file_replay(&file, 4, 4, nodes, 1);
+        struct predict_cluster two = machine(2, 1);
+        two.mapping = told ? &map_taskgraph : &map_list;
+        struct predict_result r = foretold(&file, &two);
+        /* Told: at once. Else as block in the first replay, where all are thought alike. */
+        ck_assert_msg(fabs(r.makespan - (told ? 9 : 10) * MS) < 1e-6, "%.9g s", r.makespan);
+    }
+}
+END_TEST
+
+/* Objects of 3 ms on host 0, of 1 ms on host 1: 6 ms a replay, 4 when some have moved. */
+START_TEST(migration)
+{
+    double makespan[2];
+    for (int moves = 0; moves < 2; moves++) {
+        struct trace_file_node nodes[8];
+        for (uint32_t i = 0; i < 8; i++)
+            nodes[i] = (struct trace_file_node){FILE_RW, (i < 4 ? 3 : 1) * MS, 0, 1, {i}};
+        struct trace_file file = begun(8, 1000);
+        trace_file_graph(&file, 8, 8, nodes);
+        for (int i = 0; i < 10; i++)
+            trace_file_replay(&file, 8, 8, nodes, 1);
+        struct predict_cluster two = machine(2, 1);
+        two.balance = duite_balancer_find(moves ? "migrate" : "none");
+        struct predict_result r = foretold(&file, &two);
+        makespan[moves] = r.makespan;
+        ck_assert((r.migrated > 0) == moves);
+        ck_assert(fabs(r.work - 160 * MS) < 1e-6); /* of floats */
+    }
+    ck_assert(fabs(makespan[0] - 120 * MS) < 1e-6);
+    ck_assert_msg(makespan[1] < 100 * MS && makespan[1] >= 80 * MS, "%.9g s", makespan[1]);
+}
+END_TEST
+
 static void refused(struct trace_file *file, const struct predict_cluster *cluster, const char *why)
 {
     struct predict_result result;
@@ -315,6 +390,16 @@ START_TEST(refusals)
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
     other = machine(0, 1);
     refused(&file, &other, "cannot be");
+    file = begun(1, 8);
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
+    other = machine(2, 1);
+    other.balance = duite_balancer_find("delegate");
+    refused(&file, &other, "are not foretold");
+    file = begun(1, 8);
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
+    other = one;
+    other.balance = duite_balancer_find("migrate");
+    refused(&file, &other, "name a mapping");
 }
 END_TEST
 
@@ -335,6 +420,9 @@ int main(void)
     tcase_add_test(cases, speed_and_overhead);
     tcase_add_test(cases, replicated);
     tcase_add_test(cases, schedulers);
+    tcase_add_test(cases, packets);
+    tcase_add_test(cases, mappings);
+    tcase_add_test(cases, migration);
     tcase_add_test(cases, refusals);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

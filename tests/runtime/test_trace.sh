@@ -145,6 +145,10 @@ ok "... with as many tasks as ran" eval 'predicted "tasks  " && test "$(sed -n "
 paje_of_prediction() { grep -c '^7 ' "$scratch/predicted.paje" && test "$(grep -c '^7 ' "$scratch/predicted.paje")" -gt 100; }
 ok "... and a Paje trace" paje_of_prediction
 ok "predicted on 16 hosts" predicted "limited by" --hosts 16 --cores 4 --latency 1e-5 --bandwidth 1e8 --switch 1e9 --mapping cyclic --scheduler fifo
+for mapping in list taskgraph; do
+    ok "predicted with the mapping $mapping, which sees the tasks" predicted "  migrated " --hosts 3 --cores 2 --mapping $mapping
+done
+ok "predicted with blocks that move" predicted "balance migrate" --hosts 3 --cores 2 --mapping random --balance migrate
 same_twice() {
     predicted "limited by" --hosts 3 --cores 2 && cp "$scratch/said" "$scratch/first" &&
         predicted "limited by" --hosts 3 --cores 2 && cmp "$scratch/said" "$scratch/first"
@@ -155,7 +159,8 @@ ok "predicted from some steps" ./duite-predict "$scratch/some"
 exits 2 "no such scheduler" ./duite-predict "$scratch/two" --scheduler best
 exits 2 "hosts that are no number" ./duite-predict "$scratch/two" --hosts x
 exits 2 "no bandwidth" ./duite-predict "$scratch/two" --bandwidth 0
-exits 2 "more hosts than ranks, and tasks to be seen by the mapping" ./duite-predict "$scratch/two" --hosts 2 --mapping list
+exits 2 "tasks that go elsewhere" ./duite-predict "$scratch/two" --hosts 2 --balance delegate
+exits 2 "blocks that move without a mapping" ./duite-predict "$scratch/ranks" --balance migrate
 exits 1 "a predicted run that cannot be written" ./duite-predict "$scratch/two" --paje "$scratch/nowhere/paje"
 
 # ---- What is no trace ----

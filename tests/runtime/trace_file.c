@@ -48,8 +48,7 @@ void trace_file_begin(struct trace_file *file, uint32_t n_slots)
         put_long(file, 0);
 }
 
-void trace_file_fork(struct trace_file *file, enum trace_file_kernel kernel, double seconds,
-                     int32_t priority, size_t n, const uint32_t *slots)
+static void put_event(struct trace_file *file, enum trace_file_kernel kernel, double seconds)
 {
     const struct trace_event event = {.took = (uint64_t)(1e9 * seconds + 0.5),
                                       .number = ++file->forks,
@@ -57,6 +56,12 @@ void trace_file_fork(struct trace_file *file, enum trace_file_kernel kernel, dou
                                       .kind = TRACE_TASK};
     file->event = room(file->event, &file->events_capacity, file->n_events, sizeof event);
     file->event[file->n_events++] = event;
+}
+
+void trace_file_fork(struct trace_file *file, enum trace_file_kernel kernel, double seconds,
+                     int32_t priority, size_t n, const uint32_t *slots)
+{
+    put_event(file, kernel, seconds);
     trace_file_word(file, TRACE_FORKED | (uint32_t)n << 8);
     trace_file_word(file, kernel);
     trace_file_word(file, UINT32_MAX); /* no rank is named */
@@ -64,6 +69,42 @@ void trace_file_fork(struct trace_file *file, enum trace_file_kernel kernel, dou
     trace_file_word(file, 0);
     for (size_t i = 0; i < n; i++)
         trace_file_word(file, slots[i]);
+}
+
+void trace_file_graph(struct trace_file *file, uint32_t n_objects, uint32_t n,
+                      const struct trace_file_node *nodes)
+{
+    trace_file_word(file, TRACE_GRAPH | n_objects << 8);
+    trace_file_word(file, 0);
+    for (uint32_t slot = 1; slot <= n_objects; slot++)
+        trace_file_word(file, slot);
+    trace_file_word(file, n);
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t cost;
+        memcpy(&cost, &nodes[i].cost, sizeof cost);
+        trace_file_word(file, nodes[i].kernel);
+        trace_file_word(file, nodes[i].n);
+        trace_file_word(file, UINT32_MAX); /* no rank is named */
+        trace_file_word(file, 0);
+        trace_file_word(file, cost);
+        for (uint32_t k = 0; k < nodes[i].n; k++)
+            trace_file_word(file, nodes[i].place[k]);
+    }
+}
+
+void trace_file_replay(struct trace_file *file, uint32_t n_objects, uint32_t n,
+                       const struct trace_file_node *nodes, uint32_t rounds)
+{
+    trace_file_word(file, TRACE_REPLAY | n_objects << 8);
+    trace_file_word(file, 0);
+    trace_file_word(file, 0); /* no flag */
+    put_long(file, rounds);
+    put_long(file, file->forks);
+    for (uint32_t slot = 1; slot <= n_objects; slot++)
+        trace_file_word(file, slot);
+    for (uint32_t round = 0; round < rounds; round++)
+        for (uint32_t i = 0; i < n; i++)
+            put_event(file, nodes[i].kernel, nodes[i].seconds);
 }
 
 void trace_file_wait(struct trace_file *file)

@@ -36,6 +36,17 @@ void trace_file_begin(struct trace_file *file, uint32_t n_slots);
 /* A task of so many seconds. */
 void trace_file_fork(struct trace_file *file, enum trace_file_kernel kernel, double seconds,
                      int32_t priority, size_t n, const uint32_t *slots);
+/* A recorded graph on the objects 1 .. n_objects (places from 0), and so many rounds of it. */
+struct trace_file_node {
+    enum trace_file_kernel kernel;
+    double seconds;
+    float cost; /* that its fork says; 0: it does not */
+    uint32_t n, place[3];
+};
+void trace_file_graph(struct trace_file *file, uint32_t n_objects, uint32_t n,
+                      const struct trace_file_node *nodes);
+void trace_file_replay(struct trace_file *file, uint32_t n_objects, uint32_t n,
+                       const struct trace_file_node *nodes, uint32_t rounds);
 /* The main program waits for all, or for an object. */
 void trace_file_wait(struct trace_file *file);
 void trace_file_get(struct trace_file *file, uint32_t slot);

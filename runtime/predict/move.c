@@ -1,0 +1,295 @@
+/* Homes that change at the beginning of a replay: by a mapping that sees the tasks of the graph, or
+ * by a balancer that sees what tasks took for each block, asked when and how runtime/migrate.c asks
+ * them. What a run measures is here what the trace says; the time since the last look is that of
+ * the host with most to do a core. */
+#include "runtime/predict/program.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/map/blocks.h"
+#include "runtime/map/tasks.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct move {
+    struct predict_program *p;
+    struct map_blocks blocks;
+    struct map_traffic traffic;
+    double *seconds; /* by block */
+    size_t *bytes;
+    unsigned char *stays;
+    int *home;
+    unsigned *workers; /* by host */
+};
+
+bool predict_moves_start(struct predict_program *p)
+{
+    const struct predict_cluster *cluster = p->graph->cluster;
+    const duite_balancer *balance = cluster->balance;
+    p->moves.due = 1;
+    p->moves.other = base_alloc_zero(cluster->hosts * sizeof *p->moves.other);
+    if (!balance || !balance->migrate)
+        return p->moves.other != NULL;
+    p->moves.state = base_alloc_zero(balance->state_size + 1);
+    if (p->moves.state && balance->start)
+        balance->start(p->moves.state, 0, (int)cluster->hosts, 0, cluster->seed);
+    return p->moves.other && p->moves.state;
+}
+
+void predict_moves_stop(struct predict_program *p)
+{
+    free(p->moves.spent);
+    base_free(p->moves.other);
+    base_free(p->moves.state);
+}
+
+void predict_spend(struct predict_program *p, uint32_t object, int host, double seconds)
+{
+    struct predict_moves *moves = &p->moves;
+    uint32_t slot = object == PREDICT_NONE ? 0 : p->name[object].slot;
+    for (uint32_t h = 0; h < p->graph->cluster->hosts && host == PREDICT_ALL; h++)
+        moves->other[h] += seconds;
+    if (!slot && host != PREDICT_ALL)
+        moves->other[host] += seconds;
+    if (!slot)
+        return;
+    size_t before = moves->spent_capacity;
+    double *spent =
+        base_grow(moves->spent, &moves->spent_capacity, (size_t)slot + 1, sizeof *spent);
+    p->graph->failed |= !spent;
+    if (!spent)
+        return;
+    moves->spent = spent;
+    for (size_t i = before; i < moves->spent_capacity; i++)
+        spent[i] = 0;
+    spent[slot] += seconds;
+}
+
+/* ---- What is told ---- */
+
+static bool begin(struct move *m)
+{
+    struct predict_program *p = m->p;
+    if (map_blocks_find(&p->table, &m->blocks))
+        return false;
+    const size_t n = m->blocks.n + 1, hosts = p->graph->cluster->hosts;
+    m->seconds = base_alloc_zero(n * sizeof *m->seconds);
+    m->bytes = base_alloc_zero(n * sizeof *m->bytes);
+    m->stays = base_alloc_zero(n);
+    m->home = base_alloc(n * sizeof *m->home);
+    m->workers = base_alloc(hosts * sizeof *m->workers);
+    if (!m->seconds || !m->bytes || !m->stays || !m->home || !m->workers)
+        return false;
+    for (size_t h = 0; h < hosts; h++)
+        m->workers[h] = p->graph->cluster->cores;
+    for (size_t b = 0; b < m->blocks.n; b++) {
+        m->home[b] = m->blocks.block[b].home;
+        m->stays[b] = m->blocks.block[b].stays;
+    }
+    return true;
+}
+
+static void release(struct move *m)
+{
+    map_blocks_free(&m->blocks);
+    map_traffic_free(&m->traffic);
+    base_free(m->seconds);
+    base_free(m->bytes);
+    base_free(m->stays);
+    base_free(m->home);
+    base_free(m->workers);
+}
+
+/* The block of an object of the main program; of a view none. */
+static uint32_t block_of(const struct move *m, uint32_t object)
+{
+    uint32_t slot = m->p->name[object].slot;
+    return slot ? m->blocks.of[slot] : MAP_NO_BLOCK;
+}
+
+static void weigh(struct move *m)
+{
+    const struct predict_moves *moves = &m->p->moves;
+    for (uint32_t slot = 0; slot < m->p->table.n_slots && slot < moves->spent_capacity; slot++)
+        if (m->blocks.of[slot] != MAP_NO_BLOCK)
+            m->seconds[m->blocks.of[slot]] += moves->spent[slot];
+    for (size_t i = 0; i < m->p->slots_capacity; i++) {
+        uint32_t object = m->p->slot[i];
+        if (object < m->p->graph->n_objects && block_of(m, object) != MAP_NO_BLOCK)
+            m->bytes[block_of(m, object)] += m->p->graph->object[object].bytes;
+    }
+}
+
+/* On the host where most is to be done a core. */
+static double passed(const struct move *m)
+{
+    const uint32_t hosts = m->p->graph->cluster->hosts;
+    double most = 0;
+    for (uint32_t h = 0; h < hosts; h++) {
+        double sum = m->p->moves.other[h];
+        for (size_t b = 0; b < m->blocks.n; b++)
+            sum += m->blocks.block[b].home == (int)h ? m->seconds[b] : 0;
+        most = fmax(most, sum / m->workers[h]);
+    }
+    return most;
+}
+
+static bool add_traffic(struct move *m, const struct predict_recorded *recorded)
+{
+    const struct predict_graph *graph = m->p->graph;
+    bool fine = true;
+    for (size_t i = 0; i < recorded->n_forks && recorded->bound && fine; i++) {
+        const struct predict_fork *fork = &recorded->fork[i];
+        const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
+        if (fork->kernel == PREDICT_NONE || fork->at >= 0 || kernel->replicated)
+            continue;
+        uint32_t own = predict_owner(graph, fork, fork->object);
+        for (size_t k = 0; k < fork->n && fine && own != PREDICT_NONE; k++) {
+            uint32_t object = recorded->bound[fork->object[k]];
+            if (predict_mode(kernel, k) != DUITE_W)
+                fine = map_traffic_read(
+                    &m->traffic, block_of(m, recorded->bound[own]), block_of(m, object),
+                    (double)recorded->rounds * (double)graph->object[object].bytes);
+        }
+    }
+    return fine;
+}
+
+/* ---- Asking ---- */
+
+static int ask_balancer(struct move *m)
+{
+    struct predict_program *p = m->p;
+    const struct predict_cluster *cluster = p->graph->cluster;
+    struct predict_moves *moves = &p->moves;
+    bool fine = true;
+    for (size_t i = 0; i < p->n_recorded && fine; i++)
+        fine = add_traffic(m, &p->recorded[i]);
+    int code =
+        fine ? map_traffic_end(&m->traffic, &m->blocks) : base_no_memory("the blocks of objects");
+    if (code)
+        return code;
+    const duite_blocks blocks = {.graph = {.n = m->blocks.n,
+                                           .weight = m->seconds,
+                                           .start = m->traffic.start,
+                                           .neighbour = m->traffic.neighbour,
+                                           .edge_weight = m->traffic.bytes},
+                                 .bytes = m->bytes,
+                                 .stays = m->stays,
+                                 .n_ranks = (int)cluster->hosts,
+                                 .other = moves->other,
+                                 .workers = m->workers,
+                                 .byte_seconds = 1 / cluster->bandwidth,
+                                 .seconds = passed(m),
+                                 .replays = moves->replays,
+                                 .since = moves->replays - moves->looked,
+                                 .mapping = cluster->mapping,
+                                 .seed = cluster->seed};
+    uint64_t next = cluster->balance->migrate(moves->state, &blocks, m->home);
+    moves->due = next ? moves->replays + next : UINT64_MAX;
+    return DUITE_OK;
+}
+
+static int ask_mapping(struct move *m, struct predict_recorded *recorded)
+{
+    const struct predict_cluster *cluster = m->p->graph->cluster;
+    uint32_t *place = base_alloc((recorded->n_objects + 1) * sizeof *place);
+    struct map_tasks tasks = {0};
+    for (size_t i = 0; i < recorded->n_objects && place; i++)
+        place[i] = block_of(m, recorded->bound[i]);
+    int code = place && predict_round(m->p, recorded, place, &tasks)
+                   ? map_tasks_complete(&tasks, m->blocks.n, m->seconds)
+                   : base_no_memory("the tasks of a recorded graph");
+    tasks.graph.stays = m->stays;
+    tasks.graph.n_ranks = (int)cluster->hosts;
+    tasks.graph.workers = m->workers;
+    tasks.graph.byte_seconds = 1 / cluster->bandwidth;
+    tasks.graph.message_seconds = cluster->latency;
+    tasks.graph.seed = cluster->seed;
+    if (!code)
+        code = cluster->mapping->map_tasks(&tasks.graph, m->home);
+    recorded->map_at = tasks.guessed && !recorded->replays ? 1 : UINT64_MAX;
+    m->p->moves.due += m->p->moves.due == m->p->moves.replays;
+    map_tasks_free(&tasks);
+    base_free(place);
+    return code;
+}
+
+/* ---- Moving ---- */
+
+static int check(const struct move *m)
+{
+    const struct predict_cluster *cluster = m->p->graph->cluster;
+    for (size_t b = 0; b < m->blocks.n; b++) {
+        int from = m->blocks.block[b].home, to = m->home[b];
+        if (to != from && (to < 0 || to >= (int)cluster->hosts || m->stays[b]))
+            return base_error(
+                DUITE_E_ARGUMENT, "%s moves a block to a rank that there is not, or one that stays",
+                cluster->balance && cluster->balance->migrate ? cluster->balance->name
+                                                              : cluster->mapping->name);
+    }
+    return DUITE_OK;
+}
+
+/* A block that moves gets a number that nobody had before at its new home. */
+static void move_all(struct move *m)
+{
+    struct predict_program *p = m->p;
+    struct predict_graph *graph = p->graph;
+    for (size_t b = 0; b < m->blocks.n; b++)
+        if (m->home[b] != m->blocks.block[b].home)
+            m->blocks.block[b].number = p->table.blocks[m->home[b]]++;
+    for (size_t i = 0; i < p->slots_capacity && !graph->failed; i++) {
+        uint32_t object = p->slot[i];
+        uint32_t block = object < graph->n_objects ? block_of(m, object) : MAP_NO_BLOCK;
+        if (block == MAP_NO_BLOCK || m->home[block] == m->blocks.block[block].home)
+            continue;
+        struct data_object *own = &p->table.object[p->name[object].slot];
+        own->home = m->home[block];
+        own->block = graph->object[object].block = m->blocks.block[block].number;
+        predict_rehome(graph, object, own->home);
+        graph->migrated++;
+    }
+    for (size_t i = 0; i < p->slots_capacity; i++)
+        if (p->slot[i] < graph->n_objects && graph->object[p->slot[i]].parent != PREDICT_NONE)
+            graph->object[p->slot[i]].home = graph->object[graph->object[p->slot[i]].parent].home;
+}
+
+/* Nothing that was measured counts again. */
+static void look_anew(struct predict_program *p)
+{
+    for (size_t i = 0; i < p->moves.spent_capacity; i++)
+        p->moves.spent[i] = 0;
+    for (uint32_t h = 0; h < p->graph->cluster->hosts; h++)
+        p->moves.other[h] = 0;
+    for (size_t i = 0; i < p->n_recorded; i++)
+        p->recorded[i].rounds = 0;
+    p->moves.looked = p->moves.replays;
+}
+
+void predict_move(struct predict_program *p, struct predict_recorded *recorded)
+{
+    const struct predict_cluster *cluster = p->graph->cluster;
+    struct predict_moves *moves = &p->moves;
+    bool maps =
+        cluster->mapping && cluster->mapping->map_tasks && recorded->replays == recorded->map_at;
+    bool due = cluster->balance && cluster->balance->migrate && moves->replays == moves->due;
+    if (cluster->hosts > 1 && (maps || due)) {
+        struct move m = {.p = p};
+        predict_op_wait(p);
+        p->graph->failed |= !begin(&m);
+        if (!p->graph->failed) {
+            weigh(&m);
+            p->code = maps ? ask_mapping(&m, recorded) : ask_balancer(&m);
+        }
+        if (!p->graph->failed && !p->code)
+            p->code = check(&m);
+        if (!p->graph->failed && !p->code)
+            move_all(&m);
+        look_anew(p);
+        release(&m);
+    }
+    recorded->replays++;
+    moves->replays++;
+}

@@ -248,8 +248,7 @@ END_TEST
 /* As many tasks as one likes, and the memory of fifty. */
 START_TEST(memory)
 {
-    const int quick = getenv("DUITE_QUICK") != NULL;
-    const struct args args = {.n = quick ? 20000 : 500000};
+    const struct args args = {.n = unit_quick() ? 20000 : 500000};
 
     end();
     start(1 + (unsigned)_i);

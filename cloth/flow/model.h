@@ -150,7 +150,8 @@ enum model_stop {
     MODEL_STOP_RELATIVE,
     MODEL_STOP_ABSOLUTE,
     MODEL_STOP_COUNT,
-    MODEL_STOP_MASS_NORM
+    MODEL_STOP_MASS_NORM,
+    MODEL_STOP_NORMALISED
 };
 enum model_guess {
     MODEL_GUESS_AUTO, /* as PREVIOUS in steps shorter than MODEL_GUESS_BELOW, else as ZERO */
@@ -198,7 +199,9 @@ struct model {
     bool energy_steps; /* the report tells of energies after each step */
 
     enum model_stop stop; /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s);
-                             count: no test; mass_norm: the error of dv <= tolerance |dv| */
+                             count: no test; mass_norm: the error of dv <= tolerance |dv|;
+                             normalised: (h / l) sqrt(r.D^-1 r / m) <= tolerance, of all free
+                             vertices, m their mass, l the mean length of edges at rest */
     double tolerance;
     uint32_t max_iterations; /* count: exactly so many */
     enum model_guess guess;  /* of dv */
@@ -232,6 +235,12 @@ static inline int model_is_filtered(const struct model *model)
 static inline int model_is_driven(const struct model *model)
 {
     return model->n_motions || model->n_guides;
+}
+
+/* Whether its solves stop by norms of the masses. */
+static inline int model_stops_by_norms(const struct model *model)
+{
+    return model->stop == MODEL_STOP_MASS_NORM || model->stop == MODEL_STOP_NORMALISED;
 }
 
 /* Its name in scenes. */

@@ -137,6 +137,7 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
         return code;
     flow->n_vertices = flow->source.particles.n;
     flow->partition_hash = flow->source.blocks.hash;
+    flow->inertia = flow_source_inertia(&flow->source);
     warn(flow, &flow->source.particles);
     flow_turned_choose(flow, flow->source.blocks.n_blocks);
     if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||

@@ -63,11 +63,19 @@ static void remember(double term, struct solve_scalars *after)
         after->past[at] = after->energy;
 }
 
+/* What r.D^-1 r may be. */
+static double normalised(const struct solve_stop *stop, const struct solve_scalars *now)
+{
+    return stop->tolerance * stop->tolerance * now->unit;
+}
+
 /* Whether dv is good enough. */
 static bool reached(const struct solve_stop *stop, const struct solve_scalars *now)
 {
     if (stop->count)
         return false;
+    if (stop->normalised)
+        return small_enough(now->square, 0) || now->bound <= normalised(stop, now);
     if (!stop->mass_norm || now->square < SOLVE_NOTHING)
         return small_enough(now->square, stop->mass_norm ? 0 : now->wanted);
     return isfinite(now->square) &&
@@ -109,11 +117,17 @@ static int fail(int code, struct solve_scalars *after)
 static int judge(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                  struct solve_scalars *after)
 {
-    const double size = stop->tolerance * stop->tolerance * dots[SOLVE_SIZE];
-    const double left = stop->mass_norm ? dots[SOLVE_DRIFT] : dots[SOLVE_RR];
+    double left = dots[SOLVE_RR], most = ALIKE * after->wanted;
+    if (stop->mass_norm) {
+        left = dots[SOLVE_DRIFT];
+        most = stop->tolerance * stop->tolerance * dots[SOLVE_SIZE];
+    } else if (stop->normalised) {
+        left = dots[SOLVE_BOUND];
+        most = ALIKE * normalised(stop, after);
+    }
     after->drift = dots[SOLVE_DRIFT];
     after->phase = SOLVE_DONE;
-    if (small_enough(left, stop->mass_norm ? size : ALIKE * after->wanted))
+    if (small_enough(left, most))
         return SOLVE_OK;
     const bool helps = after->restarts == 0 || left < HELPS * after->refused;
     after->refused = left;

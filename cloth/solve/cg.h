@@ -37,9 +37,9 @@
  * multiple of g that is nearest to the solution in the norm of A. So it is never farther from it
  * than dv = 0 is (Fischer 1998, of one vector). */
 
-/* What a pass sums. RQ is z.q, QQ is q.s; SIZE and BOUND are those of solve_norms, which only a
- * stop in the mass norm needs. DRIFT, in SOLVE_CHECK, is d.D^-1 d of the difference d of the true
- * residual and r. */
+/* What a pass sums. RQ is z.q, QQ is q.s; SIZE and BOUND are those of solve_norms, which only
+ * stops by norms need (mass_norm, normalised). DRIFT, in SOLVE_CHECK, is d.D^-1 d of the difference
+ * d of the true residual and r. */
 enum { SOLVE_RR, SOLVE_PQ, SOLVE_RQ, SOLVE_QQ, SOLVE_RZ, SOLVE_SIZE, SOLVE_BOUND, SOLVE_DOTS };
 enum { SOLVE_DRIFT = SOLVE_PQ };
 
@@ -49,14 +49,21 @@ enum { SOLVE_DRIFT = SOLVE_PQ };
 
 /* When to stop. */
 struct solve_stop {
-    bool count;     /* after exactly `most` iterations, without a look at the residual */
-    bool relative;  /* tolerance is against |S b|, else absolute (kg m/s) */
-    bool mass_norm; /* tolerance is of the error against dv, both in the mass norm */
-    bool confirm;   /* by the true residual, which may be twice as large as the tolerance says; with
-                     * mass_norm its difference from r, in D^-1, may be as large as the error */
+    bool count;      /* after exactly `most` iterations, without a look at the residual */
+    bool relative;   /* tolerance is against |S b|, else absolute (kg m/s) */
+    bool normalised; /* tolerance is against sqrt(r.D^-1 r / unit), below */
+    bool mass_norm;  /* tolerance is of the error against dv, both in the mass norm */
+    bool confirm; /* by the true residual, which may be twice as large as the tolerance says; with
+                   * mass_norm its difference from r, in D^-1, may be as large as the error */
     double tolerance;
     uint32_t most; /* a solve that needs more iterations has failed */
 };
+
+/* A residual of no unit (Zara 2001 asks for one that is normalised by time step, masses and
+ * distances): with D the masses, r.D^-1 r is the square of the velocity that r is, times the mass;
+ * it is measured by unit = m (l/h)^2, m the mass of all free rows, l a distance of the mesh. So the
+ * root, e = (h / l) sqrt(r.D^-1 r / m), is how far r moves a row in the step, root mean square by
+ * mass, against l; and as A >= D, dv errs by no more than that. */
 
 /* The error of dv, and when it is small. The mass norm is |y|^2 = y.D y, D the diagonal that A has
  * besides springs: masses, kg, with h times the drag. A - D is positive semidefinite. So the error
@@ -86,6 +93,7 @@ struct solve_scalars {
     double spent;       /* before that */
     double restarts;    /* how often it began again */
     double wanted;      /* (kg m/s)^2: r.r at which to stop; negative: not known yet */
+    double unit;        /* kg m^2/s^2: the caller's, of a normalised residual */
     double square;      /* r.r of the last pass */
     double curvature;   /* p.q of the last pass */
     double outcome;     /* of the solve: SOLVE_OK ..., below */

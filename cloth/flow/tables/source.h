@@ -186,6 +186,10 @@ int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
 /* The longest step, s, in which an integrator does not let it grow; infinite for implicit ones. */
 double flow_limit_of(const struct flow_limit *limit, enum model_integrator integrator);
 
+/* What measures residuals, kg m^2: the mass of all vertices that no pin holds times the square of
+ * the mean length at rest of all edges that can be stretched; 0 where there are none. Local. */
+double flow_source_inertia(const struct flow_source *source);
+
 /* The cloth of a vertex, and its first vertex; looked for from the last one found. */
 struct flow_cloths {
     uint32_t cloth, first;

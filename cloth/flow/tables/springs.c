@@ -108,3 +108,27 @@ void flow_springs_free(struct flow_springs *springs)
     free(springs->lattice);
     *springs = (struct flow_springs){0};
 }
+
+struct lengths {
+    double sum;
+    uint64_t n;
+};
+
+static void add_length(void *to, const struct flow_spring *spring)
+{
+    struct lengths *lengths = to;
+    lengths->sum += spring->stretch ? spring->length : 0;
+    lengths->n += spring->stretch;
+}
+
+double flow_source_inertia(const struct flow_source *source)
+{
+    const struct flow_particles *particles = &source->particles;
+    struct lengths lengths = {0};
+    double mass = 0;
+    flow_springs_each(&source->springs, add_length, &lengths);
+    for (uint32_t v = 0; v < particles->n; v++)
+        mass += particles->used[v] && particles->free[v] ? particles->mass[v] : 0;
+    const double mean = lengths.n ? lengths.sum / (double)lengths.n : 0;
+    return mass * mean * mean;
+}

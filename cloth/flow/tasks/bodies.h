@@ -137,11 +137,11 @@ static inline void flow_put_double(unsigned char *bytes, double value)
         bytes[i] = (unsigned char)(bits >> (8 * i));
 }
 
-/* How many of the dots a pass without preconditioner sums: r.z is r.r there, and the rest is for a
- * stop in the mass norm alone. */
+/* How many of the dots a pass without preconditioner sums: r.z is r.r there, and the rest is for
+ * stops by norms. */
 static inline size_t flow_dots(const struct model *model)
 {
-    return model->stop == MODEL_STOP_MASS_NORM ? SOLVE_DOTS : SOLVE_RZ;
+    return model_stops_by_norms(model) ? SOLVE_DOTS : SOLVE_RZ;
 }
 
 /* The scalars before a solve. */
@@ -151,14 +151,15 @@ static inline struct solve_scalars flow_begin_scalars(const duite_call *call)
     struct solve_scalars scalars =
         solve_scalars_start(args->begin, args->guess != 0 ? SOLVE_OPEN : SOLVE_ON);
     scalars.last = args->last;
+    scalars.unit = flow_of(call)->inertia / (args->h * args->h);
     return scalars;
 }
 
-/* Adds what a stop in the mass norm asks for to the dots of a pass. */
+/* Adds what stops by norms ask for to the dots of a pass. */
 static inline void flow_add_norms(const duite_call *call, const struct solve_block *block,
                                   const struct solve_rows *rows, double dots[SOLVE_DOTS])
 {
-    if (flow_of(call)->model->stop != MODEL_STOP_MASS_NORM)
+    if (!model_stops_by_norms(flow_of(call)->model))
         return;
     const struct solve_norms norms = solve_norms(block->n, block->diagonal, rows->dv, rows->r);
     dots[SOLVE_SIZE] = norms.size;

@@ -101,26 +101,30 @@ static struct solve_stop stop_of(const struct model *model)
                                .confirm = model->stop != MODEL_STOP_COUNT,
                                .relative = model->stop == MODEL_STOP_RELATIVE,
                                .mass_norm = model->stop == MODEL_STOP_MASS_NORM,
+                               .normalised = model->stop == MODEL_STOP_NORMALISED,
                                .tolerance = model->tolerance,
                                .most = model->max_iterations};
 }
 
 static int not_converged(const duite_call *call, const struct solve_scalars *now)
 {
-    if (flow_of(call)->model->stop == MODEL_STOP_MASS_NORM)
-        return duite_fail(call, FLOW_NOT_CONVERGED,
-                          "step %.0f: conjugate gradients stopped at an error of %g of dv after "
-                          "%.0f iterations, %g was asked for; allow more iterations, a larger "
-                          "tolerance or a smaller h",
-                          flow_step_number(now->step),
-                          sqrt(solve_scalars_error(now, now->bound) / now->size),
-                          solve_scalars_iterations(now), flow_of(call)->model->tolerance);
-    return duite_fail(call, FLOW_NOT_CONVERGED,
-                      "step %.0f: conjugate gradients stopped at a residual of %g after %.0f "
-                      "iterations, %g was asked for; allow more iterations, a larger tolerance "
-                      "or a smaller h",
-                      flow_step_number(now->step), sqrt(now->square), solve_scalars_iterations(now),
-                      sqrt(now->wanted));
+    const struct model *model = flow_of(call)->model;
+    const char *what = "a residual";
+    double left = sqrt(now->square), wanted = sqrt(now->wanted);
+    if (model_stops_by_norms(model))
+        wanted = model->tolerance;
+    if (model->stop == MODEL_STOP_NORMALISED) {
+        what = "a normalised residual";
+        left = sqrt(now->bound / now->unit);
+    } else if (model->stop == MODEL_STOP_MASS_NORM) {
+        what = "an error of dv";
+        left = sqrt(solve_scalars_error(now, now->bound) / now->size);
+    }
+    return duite_fail(
+        call, FLOW_NOT_CONVERGED,
+        "step %.0f: conjugate gradients stopped at %s of %g after %.0f iterations, %g was "
+        "asked for; allow more iterations, a larger tolerance or a smaller h",
+        flow_step_number(now->step), what, left, solve_scalars_iterations(now), wanted);
 }
 
 static int stalled(const duite_call *call, const struct solve_scalars *now)

@@ -64,6 +64,7 @@ struct flow {
     struct model told;         /* without names, materials, cloths */
     uint32_t n_vertices, n_triangles;
     uint64_t n_steps, partition_hash;
+    double inertia;            /* kg m^2: flow_source_inertia */
     struct flow_tables tables; /* shapes */
     void *shared;              /* planes, key frames, slots and copies that the above point to */
 
@@ -157,6 +158,7 @@ enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
 /* What all ranks are told before anything else. */
 struct flow_head {
     uint64_t n_steps, partition_hash;
+    double inertia;
     uint64_t shared_bytes;                                         /* of what they are told next */
     uint32_t n_vertices, n_triangles, n_blocks, n_slots, n_copies; /* of all blocks */
     uint32_t most_rows, most_slots, most_rim, most_entries;        /* of any block */

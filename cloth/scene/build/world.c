@@ -258,6 +258,9 @@ static void build_solver(struct model *model, const struct scene_tree *tree)
     } else if (scene_tree_get(tree, stop, "absolute")) {
         model->stop = MODEL_STOP_ABSOLUTE;
         model->tolerance = scene_tree_number(tree, stop, "absolute");
+    } else if (scene_tree_get(tree, stop, "normalised")) {
+        model->stop = MODEL_STOP_NORMALISED;
+        model->tolerance = scene_tree_number(tree, stop, "normalised");
     } else if (scene_tree_get(tree, stop, "mass_norm")) {
         model->stop = MODEL_STOP_MASS_NORM;
         model->tolerance = scene_tree_number(tree, stop, "mass_norm");

@@ -256,6 +256,8 @@ static const struct scene_rule stop_kinds[] = {
     {"absolute", SCENE_NUMBER, "kg m/s", .range = SCENE_POSITIVE, .about = "residual"},
     {"mass_norm", SCENE_NUMBER, .range = SCENE_FRACTION,
      .about = "error of the change of velocity against it, by mass"},
+    {"normalised", SCENE_NUMBER, .range = SCENE_POSITIVE,
+     .about = "distance that the residual moves vertices in the step, against that of neighbours"},
     {"count", SCENE_INTEGER, .least = 1, .about = "so many iterations, no test"},
     {0}};
 static const char *const preconditioners[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse", NULL};

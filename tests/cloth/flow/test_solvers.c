@@ -144,6 +144,83 @@ START_TEST(starts_move_alike)
 }
 END_TEST
 
+/* By hand: flat and at rest all have b = h m g, so the residual is h g all over before the first
+ * iteration and moves all by h h g, while neighbours along rows and columns are 0.25 m apart; a
+ * vertex that is held has no part in it. */
+START_TEST(normalised_by_hand)
+{
+    const double first = 0.001 * 0.001 * 9.81 / 0.25;
+    for (int i = 0; i < 4; i++) {
+        struct setup setup;
+        struct record record = {0};
+        setup_sheet(&setup, 5);
+        setup.model.end = setup.model.h;
+        setup.model.stop = MODEL_STOP_NORMALISED;
+        setup.model.tolerance = first * (i % 2 ? 1 + 1e-12 : 1 - 1e-12);
+        setup_pin(&setup, i < 2 ? 1 : 3, (const uint32_t[]){0, 7, 12});
+        record_run(&record, &setup.model);
+        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        if (i % 2)
+            ck_assert_uint_eq(record.report.cg_iterations_total, 0);
+        else
+            ck_assert_uint_gt(record.report.cg_iterations_total, 0);
+        record_free(&record);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
+/* A stiff sheet in units of mass, time and length that are so many times smaller. */
+static void run_in_units(double mass, double time, double length, double tolerance,
+                         struct record *record)
+{
+    struct setup setup;
+    struct cloth_error error = {0};
+    setup_stiff(&setup, 12);
+    mesh_free(&setup.cloth.mesh);
+    ck_assert_int_eq(mesh_grid(&setup.cloth.mesh, length, length, 12, 12, &error), 0);
+    const double force = mass * length / (time * time);
+    setup.material.density *= mass / (length * length);
+    setup.material.stretch *= force / length;
+    setup.material.shear *= force / length;
+    setup.material.bend *= force / length;
+    setup.material.damping_stiffness *= time;
+    setup.material.damping_viscous = 1e-3 * mass / time;
+    setup.model.gravity[1] *= length / (time * time);
+    setup.cloth.velocity[0] *= length / time;
+    setup.model.h *= time;
+    setup.model.end *= time;
+    setup.model.fps /= time;
+    setup.model.stop = MODEL_STOP_NORMALISED;
+    setup.model.tolerance = tolerance;
+    setup.model.preconditioner = MODEL_IC0_COARSE;
+    record_run(record, &setup.model);
+    ck_assert_msg(record->code == 0, "%s", record->error.text);
+    setup_free(&setup);
+}
+
+/* By powers of two, of masses by powers of four, since matrices hold roots, every number is the
+ * same but for its exponent. */
+START_TEST(normalised_in_any_units)
+{
+    static const double units[][3] = {{16, 1, 1}, {1, 4, 1}, {1, 1, 2}, {0.25, 8, 0.5}};
+    struct record record = {0}, closer = {0};
+    run_in_units(1, 1, 1, 1e-6, &record);
+    run_in_units(1, 1, 1, 1e-7, &closer);
+    ck_assert_uint_gt(closer.report.cg_iterations_total, record.report.cg_iterations_total);
+    for (int i = 0; i < 4; i++) {
+        struct record other = {0};
+        run_in_units(units[i][0], units[i][1], units[i][2], 1e-6, &other);
+        ck_assert_uint_eq(other.report.cg_iterations_total, record.report.cg_iterations_total);
+        for (size_t k = 0; k < 3 * record.frames * record.vertices; k++)
+            ck_assert_double_eq(other.position[k], units[i][2] * record.position[k]);
+        record_free(&other);
+    }
+    record_free(&record);
+    record_free(&closer);
+}
+END_TEST
+
 START_TEST(one_block)
 {
     struct setup setup;
@@ -291,6 +368,8 @@ int main(void)
     tcase_add_test(cases, a_sheet_moves_alike);
     tcase_add_test(cases, formats_move_alike);
     tcase_add_loop_test(cases, starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
+    tcase_add_test(cases, normalised_by_hand);
+    tcase_add_test(cases, normalised_in_any_units);
     tcase_add_test(cases, one_block);
     tcase_add_test(cases, held_blocks);
     tcase_add_test(cases, all_held);

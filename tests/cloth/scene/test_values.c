@@ -304,6 +304,17 @@ START_TEST(sets_change_values)
     ck_assert_int_eq(model.stop, MODEL_STOP_RELATIVE);
     ck_assert_double_eq(model.tolerance, 0.25);
     model_free(&model);
+    model = read_set("solver.stop={normalised: 1e-4}");
+    ck_assert_int_eq(model.stop, MODEL_STOP_NORMALISED);
+    ck_assert_double_eq(model.tolerance, 1e-4);
+    ck_assert_int_eq(model.guess, MODEL_GUESS_AUTO);
+    model_free(&model);
+    model = read_set("solver.guess=previous");
+    ck_assert_int_eq(model.guess, MODEL_GUESS_PREVIOUS);
+    model_free(&model);
+    model = read_set("solver.guess=zero");
+    ck_assert_int_eq(model.guess, MODEL_GUESS_ZERO);
+    model_free(&model);
     model = read_set("solver.stop={count: 10}");
     ck_assert_int_eq(model.stop, MODEL_STOP_COUNT);
     ck_assert_uint_eq(model.max_iterations, 10);

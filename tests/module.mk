@@ -14,8 +14,6 @@ LOG_COMPILER = $(SHELL) $(srcdir)/tests/support/run.sh
 TEST_EXTENSIONS = .sh
 SH_LOG_DRIVER = $(LOG_DRIVER)
 SH_LOG_COMPILER = $(LOG_COMPILER)
-# malloc_context_size=16: the slow unwinder that sees through Open MPI takes most of the time, and the less the fewer frames; with ten
-# of them not all that Open MPI leaks is known as its own.
 # intercept_tls_get_addr=0: LeakSanitizer trips now and then over the thread-local memory of loaded libraries that it follows.
 AM_TESTS_ENVIRONMENT = \
     CC='$(CC)'; CFLAGS='$(CFLAGS) $(SANITIZE_FLAGS)'; PKG_CONFIG='$(PKG_CONFIG)'; MAKE='$(MAKE)'; \
@@ -23,7 +21,7 @@ AM_TESTS_ENVIRONMENT = \
     SANITIZER='$(SANITIZE_FLAGS)'; export SANITIZER CC CFLAGS PKG_CONFIG MAKE MPIRUN MPI_CFLAGS MPI_LIBS; \
     DUITE_QUICK=$${DUITE_QUICK-$(DUITE_QUICK)}; export DUITE_QUICK; \
     support=`cd '$(srcdir)/tests/support' && pwd`; \
-    ASAN_OPTIONS=fast_unwind_on_malloc=0:malloc_context_size=16:intercept_tls_get_addr=0:$$ASAN_OPTIONS; export ASAN_OPTIONS; \
+    ASAN_OPTIONS=fast_unwind_on_malloc=0:intercept_tls_get_addr=0:$$ASAN_OPTIONS; export ASAN_OPTIONS; \
     LSAN_OPTIONS=suppressions=$$support/lsan.supp:print_suppressions=0; export LSAN_OPTIONS; \
     TSAN_OPTIONS=suppressions=$$support/tsan.supp; export TSAN_OPTIONS;
 AM_DISTCHECK_CONFIGURE_FLAGS = DUITE_QUICK=1

@@ -5,6 +5,7 @@
 #include "cloth/mesh/mesh.h"
 #include "cloth/physics/air.h"
 #include "cloth/physics/motion.h"
+#include "cloth/physics/spring.h"
 #include "cloth/solve/format.h"
 
 #include <stdbool.h>
@@ -207,7 +208,8 @@ struct model {
     enum model_guess guess;  /* of dv */
     enum model_preconditioner preconditioner;
     enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */
-    int full_slope; /* the matrix has the whole slope of the forces, which may make it indefinite */
+    int full_slope; /* enum phys_slope, of the matrix; only springs know PHYS_ABSOLUTE, which is
+                       PHYS_DEFINITE to all else */
 
     uint32_t grain; /* vertices a block */
 };

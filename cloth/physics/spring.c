@@ -54,10 +54,17 @@ PHYS_INLINE void four_make(const struct phys_springs *s, const struct phys_four 
 /* Share t of the stiffness that acts across a spring. */
 PHYS_INLINE void transverse(const struct four_springs *springs, int full, phys_vec *t)
 {
-    const phys_vec one = {1, 1, 1, 1};
-    const phys_vec share = one - springs->rest * springs->inverse, none = {0};
-    const phys_mask longer = springs->length > (full ? none : springs->rest);
+    const phys_vec one = {1, 1, 1, 1}, none = {0};
+    const phys_vec share = one - springs->rest * springs->inverse;
+    const phys_mask longer = springs->length > (full == PHYS_FULL ? none : springs->rest);
     phys_choose(&longer, &share, &none, t);
+    if (full != PHYS_ABSOLUTE)
+        return;
+    const phys_mask shorter = springs->length < springs->rest;
+    const phys_mask half = springs->length + springs->length < springs->rest;
+    const phys_vec turned = -share;
+    phys_choose(&shorter, &turned, t, t);
+    phys_choose(&half, &one, t, t);
 }
 
 /* k (l - L) + c (u . dv), the pull along u. */

@@ -11,21 +11,25 @@
  * and its stiffness towards a difference of positions is
  *     K = k (u u' + t (I - u u')),  t = max(0, 1 - L / l)                           (N/m)
  * where the negative transverse term of a spring in compression is dropped, so that K is never
- * indefinite; `full` keeps it, t = 1 - L / l: K is then the exact slope of the force. Two particles
- * at one place have no direction: u = 0 there, and only t and its K remain defined, as zero.
+ * indefinite; PHYS_FULL keeps it, t = 1 - L / l: K is then the exact slope of the force;
+ * PHYS_ABSOLUTE turns its sign, t = min(1, |1 - L / l|) (the eigenvalues' absolute values, after
+ * Chen et al. 2024): a step pushes springs aside no further than their push is a slope for. Two
+ * particles at one place have no direction: u = 0 there, and only t and its K remain defined, as
+ * zero; absolute as t = 1.
  *
  * Functions come in pairs. The plain one has both ends in the same arrays and writes both rows. The
  * one called `_cut` has end 1 in arrays of another block, and writes the rows of end 0 only; the
  * other block does the same for its end. Both sides compute with the same bits and opposite signs,
  * so that momentum is kept to roundoff of the sums. Springs are worked on in order. Pure functions;
  * nothing is allocated. */
+enum phys_slope { PHYS_DEFINITE, PHYS_FULL, PHYS_ABSOLUTE };
 struct phys_springs {
     size_t n;
     const uint32_t (*end)[2]; /* n: rows of the two ends */
     const double *stiffness;  /* n: k, N/m */
     const double *damping;    /* n: c, kg/s */
     const double *length;     /* n: L, m, > 0 */
-    int full;                 /* the whole K */
+    int full;                 /* which K: an enum phys_slope */
 };
 
 /* Adds the forces (N) to f. x: m, v: m/s. */

@@ -68,7 +68,7 @@ void flow_elements_stiffness(const duite_call *call, const struct flow_table *t,
 {
     const struct phys_hinges hinges = flow_table_hinges(t);
     const struct phys_folds folds = flow_table_folds(t);
-    phys_hinges_stiffness(&hinges, flow_of(call)->model->full_slope, scale, sight, y);
+    phys_hinges_stiffness(&hinges, flow_of(call)->model->full_slope == PHYS_FULL, scale, sight, y);
     phys_folds_stiffness(&folds, scale, sight, y);
 }
 
@@ -124,7 +124,7 @@ void flow_elements_assemble(const duite_call *call, const struct flow_table *t, 
 {
     enum { AT_ONCE = 32 }; /* elements, whose pairs stay in the nearest cache */
     const struct assembly assembly = {
-        t, {flow_args_of(call)->h, flow_of(call)->model->full_slope}, push, sight, b};
+        t, {flow_args_of(call)->h, flow_of(call)->model->full_slope == PHYS_FULL}, push, sight, b};
     struct phys_pair pair[AT_ONCE * PHYS_BEND_PAIRS];
     for (int kind = 0; kind < FLOW_SAILS; kind++)
         for (uint32_t from = 0; from < t->n_elements[kind]; from += AT_ONCE) {

@@ -239,6 +239,13 @@ static enum model_guess guess_of(const char *word)
     return strcmp(word, "zero") ? MODEL_GUESS_AUTO : MODEL_GUESS_ZERO;
 }
 
+static int slope_of(const char *word)
+{
+    if (!strcmp(word, "full"))
+        return PHYS_FULL;
+    return strcmp(word, "absolute") ? PHYS_DEFINITE : PHYS_ABSOLUTE;
+}
+
 static void build_solver(struct model *model, const struct scene_tree *tree)
 {
     int newton = scene_tree_get(tree, 1, "newton");
@@ -250,7 +257,7 @@ static void build_solver(struct model *model, const struct scene_tree *tree)
     model->preconditioner = preconditioner_of(scene_tree_text(tree, solver, "preconditioner"));
     model->guess = guess_of(scene_tree_text(tree, solver, "guess"));
     model->format = format_of(scene_tree_text(tree, solver, "format"));
-    model->full_slope = !strcmp(scene_tree_text(tree, solver, "jacobian"), "full");
+    model->full_slope = slope_of(scene_tree_text(tree, solver, "jacobian"));
     model->max_iterations = scene_tree_integer(tree, solver, "max_iterations");
     if (scene_tree_get(tree, stop, "count")) {
         model->stop = MODEL_STOP_COUNT;

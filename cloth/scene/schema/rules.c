@@ -262,7 +262,7 @@ static const struct scene_rule stop_kinds[] = {
     {0}};
 static const char *const preconditioners[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse", NULL};
 static const char *const formats[] = {"springs", "half", "half_float", NULL};
-static const char *const jacobians[] = {"definite", "full", NULL};
+static const char *const jacobians[] = {"definite", "full", "absolute", NULL};
 static const char *const guesses[] = {"auto", "zero", "previous", NULL};
 static const struct scene_rule solver_keys[] = {
     {"stop", SCENE_ONE_OF, .fallback = "{mass_norm: 0.01}", .inside = stop_kinds,
@@ -275,7 +275,8 @@ static const struct scene_rule solver_keys[] = {
      .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in double "
               "or float; triangles and bending take half for springs"},
     {"jacobian", SCENE_CHOICE, .fallback = "definite", .words = jacobians,
-     .about = "definite: without what could make the matrix indefinite; full: the whole slope"},
+     .about = "definite: without what could make the matrix indefinite; full: the whole slope; "
+              "absolute: of compressed springs its absolute value"},
     {"max_iterations", SCENE_INTEGER, .fallback = "10000", .least = 1,
      .about = "a solve that needs more fails"},
     {0}};

@@ -96,7 +96,7 @@ START_TEST(matrix_is_the_slope_of_the_force)
     struct phys_springs still = tangle(slack, shorter), s = tangle(damping, shorter);
     if (_i) {
         still.length = s.length = longer;
-        s.full = 1;
+        s.full = PHYS_FULL;
     }
     phys_vec value[SPRINGS];
     phys_springs_matrix(&s, h, places, places, value);
@@ -144,7 +144,7 @@ START_TEST(stiffness_times_velocity_is_the_slope_of_the_force)
     struct phys_springs s = tangle(slack, shorter);
     if (_i) {
         s.length = longer;
-        s.full = 1;
+        s.full = PHYS_FULL;
     }
     phys_vec more[N], less[N], f[2][N] = {{{0}}}, y[N] = {{0}};
     for (int i = 0; i < N; i++) {
@@ -196,6 +196,26 @@ START_TEST(compression_drops_the_transverse_term)
     ck_assert_double_eq(y[0][1], 0);
     take_stiffness(&s, 1, x, along, y);
     ck_assert_double_eq_tol(y[0][0], 100, 1e-12);
+}
+END_TEST
+
+/* The absolute slope: across a spring at 0.8 of its length 0.25 k, at less than half of it k, as
+ * for two ends at one place; a stretched one has its true slope. */
+START_TEST(compression_by_its_absolute_value)
+{
+    static const double at[] = {0.8, 0.4, 0, 1.25}, across[] = {0.25, 1, 1, 0.2};
+    const uint32_t end[1][2] = {{0, 1}};
+    const double k[1] = {100}, c[1] = {0}, length[1] = {1};
+    const struct phys_springs s = {1, end, k, c, length, PHYS_ABSOLUTE};
+    for (int i = 0; i < 4; i++) {
+        const phys_vec x[2] = {{0}, {at[i], 0, 0, 0}}, v[2] = {{0}, {0, 1, 0, 0}};
+        phys_vec value, y[2] = {{0}};
+        phys_springs_matrix(&s, 0.1, x, x, &value);
+        ck_assert_double_eq_tol(value[3], across[i], 1e-15);
+        ck_assert_double_eq_tol(value[0] * value[0], at[i] > 0 ? 1 - across[i] : 0, 1e-15);
+        take_stiffness(&s, 1, x, v, y);
+        ck_assert_double_eq_tol(y[0][1], 100 * across[i], 1e-12);
+    }
 }
 END_TEST
 
@@ -280,6 +300,7 @@ int main(void)
     tcase_add_loop_test(cases, stiffness_times_velocity_is_the_slope_of_the_force, 0, 2);
     tcase_add_loop_test(cases, system_is_force_stiffness_and_matrix, 0, 3);
     tcase_add_test(cases, compression_drops_the_transverse_term);
+    tcase_add_test(cases, compression_by_its_absolute_value);
     tcase_add_test(cases, ends_at_one_place_pull_nowhere);
     tcase_add_test(cases, cut_springs_are_exact_opposites);
     tcase_add_test(cases, internal_forces_sum_to_nothing);

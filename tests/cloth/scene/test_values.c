@@ -141,6 +141,20 @@ START_TEST(every_other_key)
 }
 END_TEST
 
+START_TEST(slopes)
+{
+    static const char *const words[] = {"definite", "full", "absolute"};
+    static const int kind[] = {PHYS_DEFINITE, PHYS_FULL, PHYS_ABSOLUTE};
+    for (int i = 0; i < 3; i++) {
+        char set[60];
+        snprintf(set, sizeof set, "solver.jacobian=%s", words[i]);
+        struct model model = read_set(set);
+        ck_assert_int_eq(model.full_slope, kind[i]);
+        model_free(&model);
+    }
+}
+END_TEST
+
 START_TEST(triangles_and_bending)
 {
     struct model model = read_changed(
@@ -150,7 +164,7 @@ START_TEST(triangles_and_bending)
         "solver: {jacobian: full}\n");
     const struct model_material *m = model.materials;
     ck_assert_int_eq(model.format, SOLVE_HALF);
-    ck_assert_int_eq(model.full_slope, 1);
+    ck_assert_int_eq(model.full_slope, PHYS_FULL);
     ck_assert_int_eq(m->model, MODEL_TRIANGLES);
     ck_assert_double_eq(m->stretch, 30);
     ck_assert_double_eq(model_weft(m), 20);
@@ -402,6 +416,7 @@ int main(void)
     tcase_add_test(cases, world_and_time);
     tcase_add_test(cases, cloth_and_material);
     tcase_add_test(cases, every_other_key);
+    tcase_add_test(cases, slopes);
     tcase_add_test(cases, triangles_and_bending);
     tcase_add_test(cases, cloths_of_every_mesh);
     tcase_add_test(cases, starts_and_masses);

@@ -8,7 +8,8 @@ dist_check_SCRIPTS =
 DUITE_TEST_LIBS = tests/support/libunit.la libduite_core.la $(CHECK_LIBS)
 CLOTH_TEST_LIBS = tests/support/libunit.la libduite_cloth.la libduite_core.la $(CHECK_LIBS)
 
-LOG_DRIVER = env AM_TAP_AWK='$(AWK)' $(SHELL) $(top_srcdir)/build-aux/tap-driver.sh
+# Comments, which have the errors against closed forms, are shown as tests go.
+LOG_DRIVER = env AM_TAP_AWK='$(AWK)' $(SHELL) $(top_srcdir)/build-aux/tap-driver.sh --comments
 LOG_COMPILER = $(SHELL) $(srcdir)/tests/support/run.sh
 # An extension, so that the scripts of LONG_TESTS have a rule, too.
 TEST_EXTENSIONS = .sh

@@ -94,7 +94,7 @@ START_TEST(euler_solves_its_equations)
            h, missing_euler(&one, h), missing_euler(&many, h),
            (double)many.report.newton_steps / 50);
     ck_assert_double_gt(missing_euler(&one, h), 1e-2);
-    ck_assert_double_lt(missing_euler(&many, h), 1e-7);
+    ck_assert_double_lt(missing_euler(&many, h), 1e-10);
     ck_assert_uint_eq(one.report.newton_steps, 0);
     ck_assert_uint_eq(many.report.newton_unconverged, 0);
     ck_assert_uint_gt(many.report.newton_steps, 100);

@@ -4,6 +4,7 @@
 #include "tests/support/unit.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const double WARP = 1000, WEFT = 300, SHEAR = 50, POISSON = 0.4;
@@ -291,6 +292,7 @@ START_TEST(patch)
             if (is_inner(i))
                 inner = fmax(inner, size);
         }
+        printf("# patch test: inner forces %.1e of the largest, %.3g N\n", inner / most, most);
         ck_assert_double_le(inner, 1e-12 * most);
         ck_assert_double_gt(most, 1);
     }
@@ -323,6 +325,11 @@ START_TEST(uniaxial_stretch)
         pull(f, 1, &up);
         ck_assert_double_eq_tol(right[0], along ? 0 : -WARP * e * height, 1e-12);
         ck_assert_double_eq_tol(up[1], along ? -WEFT * e * width : 0, 1e-12);
+        const double error =
+            along ? -up[1] / (WEFT * e * width) - 1 : -right[0] / (WARP * e * height) - 1;
+        printf(
+            "# stretched by %g along the %s at its own width: force off by %.1e, across %.1e N\n",
+            e, along ? "weft" : "warp", fabs(error), fabs(along ? right[0] : up[1]));
         ck_assert_double_eq_tol(right[1], 0, 1e-12);
         ck_assert_double_eq_tol(up[0], 0, 1e-12);
     }
@@ -340,6 +347,8 @@ START_TEST(pure_shear)
     place(&s, &fu, &fv, &state);
     forces(&s, &state, f);
     pull(f, 0, &right);
+    printf("# pure shear by %g: force off by %.1e\n", angle,
+           fabs(-right[1] / (SHEAR * angle * height) - 1));
     ck_assert_double_eq_tol(right[1], -SHEAR * angle * height, 1e-12);
     ck_assert_double_eq_tol(right[0], 0, 1e-12);
 }

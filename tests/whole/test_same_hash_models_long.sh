@@ -1,0 +1,62 @@
+#!/bin/sh
+# Every model with every integrator and way to meet a floor has one state_hash over a dozen mixtures of ranks, threads, schedulers, mappings
+# and balancers, in a wind, with weights, a start of its own, and pins of every kind, held and moved.
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless tests/whole/same_hash
+plan_later
+DUITE_TIMEOUT=1800
+export DUITE_TIMEOUT
+
+cat > "$scratch/world.yaml" << 'END'
+schema: 1
+gravity: [4, -9.81, 2]
+air: {wind: [3, 1, -2]}
+cloths:
+  - name: sheet
+    mesh: {grid: {width: 1, height: 1, nx: 30, ny: 30}}
+    material: cloth
+    masses: [{box: [[-1, -1, 0.45], [1, 1, 1]], mass: 0.001}]
+    start: [{box: [[-1, -1, -1], [0, 1, 1]], translate: [0, 0.001, 0], spin: [0, 0.5, 0]}]
+    loads: [{nearest: [0, 0, 0.5], force: [0.01, 0.02, -0.01]}]
+    pins:
+      - vertices: [0]
+      - {nearest: [0.5, 0, -0.5], motion: {times: [0, 1], translate: [[0, 0, 0], [0.5, 0.1, -0.2]], rotate: [[1, 0, 0, 0], [1, 0.2, 0, 0]]}}
+      - {nearest: [-0.5, 0, 0.5], to: line, direction: [1, 1, 0], motion: {times: [0, 1], translate: [[0, 0, 0], [0, 0.3, 0]]}}
+      - {nearest: [0.5, 0, 0.5], to: plane, normal: [1, 2, 0]}
+  - mesh: {inline: {vertices: [[2, 0, 0], [2.1, 0, 0], [2.2, 0, 0]], edges: [[0, 1], [1, 2]]}}
+    material: wire
+    mass_per_vertex: 0.01
+materials:
+  cloth: {density: 0.2, stretch: 3000, shear: 100, damping: {stiffness: 1.0e-5, mass: 0.1, viscous: 1.0e-5}}
+  wire: {density: 1, stretch: 300}
+obstacles: [{plane: {point: [0, -0.0001, 0], normal: [0, 1, 0]}}]
+time: {h: 1.0e-5, end: 6.0e-5}
+solver: {stop: {relative: 1.0e-4}}
+grain: 60
+END
+
+one_hash() { # NAME SETTING...
+    what=$1
+    shift
+    ok "$what" ranks 4 tests/whole/same_hash "$scratch/world.yaml" "${amount:-some}" 2 "$@"
+}
+every_integrator() { # MODEL SETTING...
+    model=$1
+    shift
+    for integrator in explicit_euler symplectic_euler verlet rk4; do
+        one_hash "$model, $integrator" "$@" integrator=$integrator
+    done
+    set -- "$@" time.h=0.001 time.end=0.004
+    one_hash "$model, implicit_euler" "$@"
+    one_hash "$model, implicit_euler, contact in the solve" "$@" contact=filter
+    one_hash "$model, implicit_euler, Newton, whole slope" "$@" newton.steps=4 solver.jacobian=full energies=steps
+    one_hash "$model, bdf2" "$@" integrator=bdf2 solver.format=half_float
+    one_hash "$model, bdf2, Newton" "$@" integrator=bdf2 newton.steps=4
+    one_hash "$model, long steps that are halved" "$@" time.h=0.02 time.end=0.04 time.stretch_growth=0.02
+}
+every_integrator "springs" materials.cloth.bend=50
+every_integrator "springs, hinges" 'materials.cloth.bending={rigidity: [1e-4, 5e-5]}'
+every_integrator "triangles" materials.cloth.model=triangles 'materials.cloth.stretch=[3000, 1000]' materials.cloth.poisson=0.3
+every_integrator "triangles, hinges" materials.cloth.model=triangles materials.cloth.forces=uncorrected 'materials.cloth.bending={rigidity: 1e-4}'
+every_integrator "triangles, quadratic bending" materials.cloth.model=triangles cloths[0].rest=uv \
+    'materials.cloth.bending={model: quadratic, rigidity: 1e-4}'

@@ -1,6 +1,8 @@
 /* A model owns all that its pointers reach; a zeroed model owns nothing. */
 #include "cloth/flow/model.h"
 
+#include "cloth/solve/patches.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,4 +83,23 @@ int model_fail(const char *place, struct cloth_error *error, const char *format,
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
     return cloth_fail(error, CLOTH_E_INPUT, "%s%s%s", place ? place : "", place ? ": " : "", text);
+}
+
+bool model_is_coarse(const struct model *model)
+{
+    return model->preconditioner == MODEL_COARSE || model->preconditioner == MODEL_IC0_COARSE;
+}
+
+uint32_t model_patches(const struct model *model, uint32_t n_blocks)
+{
+    enum { MOST_IN_ALL = 256, LEAST_VERTICES = 100 };
+    uint32_t n = model->patches ? model->patches : SOLVE_MOST_PATCHES;
+    if (!model_is_coarse(model))
+        return 1;
+    while (!model->patches && n > 1 &&
+           (n * n_blocks > MOST_IN_ALL || model->grain / n < LEAST_VERTICES))
+        n /= 2;
+    while (n > 1 && n * n_blocks > SOLVE_MOST_BLOCKS)
+        n--;
+    return n;
 }

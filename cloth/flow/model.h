@@ -164,7 +164,7 @@ enum model_preconditioner {
     MODEL_PLAIN,     /* none */
     MODEL_JACOBI,    /* inverses of the 3 x 3 blocks on the diagonal */
     MODEL_IC0,       /* incomplete Cholesky of each block */
-    MODEL_COARSE,    /* Jacobi and a coarse space, affine on each block */
+    MODEL_COARSE,    /* Jacobi and a coarse space, affine on each patch of a block */
     MODEL_IC0_COARSE /* IC(0) and that coarse space */
 };
 
@@ -207,6 +207,7 @@ struct model {
     uint32_t max_iterations; /* count: exactly so many */
     enum model_guess guess;  /* of dv */
     enum model_preconditioner preconditioner;
+    uint32_t patches; /* of a block, for the coarse space, at most 4; 0: as model_patches finds */
     enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */
     int full_slope; /* enum phys_slope, of the matrix; only springs know PHYS_ABSOLUTE, which is
                        PHYS_DEFINITE to all else */
@@ -244,6 +245,12 @@ static inline int model_stops_by_norms(const struct model *model)
 {
     return model->stop == MODEL_STOP_MASS_NORM || model->stop == MODEL_STOP_NORMALISED;
 }
+
+/* Whether its solves have a coarse space, and how many patches a block has in it: without a number
+ * of the model's own, as many as leave the coarse system, which is solved by one after the blocks,
+ * small against their work. */
+bool model_is_coarse(const struct model *model);
+uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 
 /* Its name in scenes. */
 const char *model_integrator_name(enum model_integrator integrator);

@@ -27,6 +27,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/implicit.c \
     cloth/flow/tasks/kernels_cg.c \
     cloth/flow/tasks/kernels_beside.c \
+    cloth/flow/tasks/kernels_coarse.c \
     cloth/flow/tasks/kernels_contact.c \
     cloth/flow/tasks/kernels_energy.c \
     cloth/flow/tasks/kernels_explicit.c \
@@ -41,6 +42,6 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/objects.c \
     cloth/flow/tasks/step.c \
     cloth/flow/tasks/system.c \
-    cloth/flow/tasks/kernels.h cloth/flow/tasks/tasks.h \
+    cloth/flow/tasks/kernels.h cloth/flow/tasks/patches.h cloth/flow/tasks/tasks.h \
     cloth/flow/tasks/turned.c \
     cloth/flow/tasks/watch.c

@@ -20,16 +20,18 @@ void solve_basis(size_t n, const double *free, const phys_vec *position, phys_ve
  * these are not along axes, the rows. Lane 3 of a row says which: 1 for x, 2 for y, 4 for z. */
 void solve_basis_filter(size_t n, const phys_vec *filter, phys_vec *basis);
 
-/* The diagonal block that inner entries and the diagonal make, row by row, own[3 k + c][3 l + d]:
- * function k along axis c. */
-void solve_couple(const struct solve_block *block, const void *values, const phys_vec *basis,
-                  double own[SOLVE_COUPLING]);
+/* The diagonal block that rows from .. to - 1 and the entries among them make, row by row, own[3 k +
+ * c][3 l + d]: function k along axis c. */
+void solve_couple(const struct solve_block *block, size_t from, size_t to, const void *values,
+                  const phys_vec *basis, double own[SOLVE_COUPLING]);
 
-/* Adds n entries into one other block, at `from` among the values, to `own`, and sets beside, this
- * block's rows by the other's columns. end: own row, row in other_basis. */
-void solve_couple_cut(const struct solve_block *block, const void *values, size_t from, size_t n,
-                      const uint32_t (*end)[2], const phys_vec *basis, const phys_vec *other_basis,
-                      double own[SOLVE_COUPLING], double beside[SOLVE_COUPLING]);
+/* Adds n entries, numbers at[] of the values, from rows of one set of columns to those of another:
+ * to `own`, of the former, and to beside, those rows by the latter's columns. end: own row, row in
+ * other_basis. */
+void solve_couple_cut(const struct solve_block *block, const void *values, size_t n,
+                      const uint32_t *at, const uint32_t (*end)[2], const phys_vec *basis,
+                      const phys_vec *other_basis, double own[SOLVE_COUPLING],
+                      double beside[SOLVE_COUPLING]);
 
 /* P' y of a block; y += P x of a block. */
 void solve_restrict(size_t n, const phys_vec *basis, const phys_vec *y, double x[SOLVE_COARSE]);

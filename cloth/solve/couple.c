@@ -189,21 +189,22 @@ PHYS_INLINE void add_turns(phys_vec sum[3], const phys_vec *a, const phys_vec *b
     sum[2] += ((*b)[1] * (*a)[2] - (*a)[1] * (*b)[2]) * *w;
 }
 
-PHYS_INLINE void couple(const struct solve_block *block, enum solve_format format,
-                        const void *values, const phys_vec *basis, double own[SOLVE_COUPLING])
+PHYS_INLINE void couple(const struct solve_block *block, enum solve_format format, size_t from,
+                        size_t to, const void *values, const phys_vec *basis,
+                        double own[SOLVE_COUPLING])
 {
     const void *entry = solve_values_of(format, block->n, values).entry;
     struct solve_symmetric sum[6] = {{{0}, {0}}};
     struct filtered filtered = {{{{{0}}}}};
     phys_vec turns[3] = {{0}};
     memset(own, 0, SOLVE_COUPLING * sizeof *own);
-    for (size_t a = 0; a < block->n; a++) {
+    for (size_t a = from; a < to; a++) {
         const double d = block->diagonal[a];
         struct solve_symmetric mass = {{0}, {0}};
         for (int c = 0; c < 3; c++)
             mass.diagonal[c] = d * has(basis + a, c);
         add_square(sum, basis + a, &mass);
-        for (uint32_t i = block->row[a]; i < block->row[a + 1]; i++) {
+        for (uint32_t i = block->row[a]; i < block->row[a + 1] && block->column[i] < to; i++) {
             const phys_vec *other = basis + block->column[i], phi = basis[a] - *other;
             struct solve_symmetric m = {{0}, {0}};
             phys_vec w;
@@ -227,19 +228,19 @@ PHYS_INLINE void couple(const struct solve_block *block, enum solve_format forma
 }
 
 PHYS_KERNEL(solve_couple,
-            (const struct solve_block *block, const void *values, const phys_vec *basis,
-             double own[SOLVE_COUPLING]),
-            (block, values, basis, own))
+            (const struct solve_block *block, size_t from, size_t to, const void *values,
+             const phys_vec *basis, double own[SOLVE_COUPLING]),
+            (block, from, to, values, basis, own))
 {
     if (block->format == SOLVE_SPRINGS)
-        couple(block, SOLVE_SPRINGS, values, basis, own);
+        couple(block, SOLVE_SPRINGS, from, to, values, basis, own);
     else if (block->format == SOLVE_HALF)
-        couple(block, SOLVE_HALF, values, basis, own);
+        couple(block, SOLVE_HALF, from, to, values, basis, own);
     else
-        couple(block, SOLVE_HALF_FLOAT, values, basis, own);
+        couple(block, SOLVE_HALF_FLOAT, from, to, values, basis, own);
 }
 
-/* The same for an entry into another block. */
+/* The same for an entry between two sets of columns. */
 PHYS_INLINE void couple_cut_filtered(const phys_vec *a, const phys_vec *b,
                                      const struct solve_symmetric *m, const phys_vec *turn,
                                      struct filtered *own, struct filtered *beside)
@@ -255,21 +256,20 @@ PHYS_INLINE void couple_cut_filtered(const phys_vec *a, const phys_vec *b,
 }
 
 PHYS_KERNEL(solve_couple_cut,
-            (const struct solve_block *block, const void *values, size_t from, size_t n,
+            (const struct solve_block *block, const void *values, size_t n, const uint32_t *at,
              const uint32_t (*end)[2], const phys_vec *basis, const phys_vec *other_basis,
              double own[SOLVE_COUPLING], double beside[SOLVE_COUPLING]),
-            (block, values, from, n, end, basis, other_basis, own, beside))
+            (block, values, n, at, end, basis, other_basis, own, beside))
 {
     const void *entry = solve_values_of(block->format, block->n, values).entry;
     struct solve_symmetric square[6] = {{{0}, {0}}}, sum[9] = {{{0}, {0}}};
     struct filtered filtered = {{{{{0}}}}}, filtered_beside = {{{{{0}}}}};
     phys_vec turns[9] = {{0}};
-    memset(beside, 0, SOLVE_COUPLING * sizeof *beside);
     for (size_t i = 0; i < n; i++) {
         const phys_vec phi = basis[end[i][0]], other = other_basis[end[i][1]];
         struct solve_symmetric m = {{0}, {0}};
         phys_vec w;
-        solve_entry_of(block->format, entry, from + i, &m, &w);
+        solve_entry_of(block->format, entry, at[i], &m, &w);
         if (phi[3] + other[3] > 0) {
             couple_cut_filtered(&phi, &other, &m, &w, &filtered, &filtered_beside);
             continue;

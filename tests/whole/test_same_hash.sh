@@ -22,6 +22,8 @@ else
         # shellcheck disable=SC2086
         ok "40 x 40, preconditioner $kind, some" ranks 4 tests/whole/same_hash "$scene" some 0 $small solver.preconditioner=$kind time.end=0.002
     done
+    # shellcheck disable=SC2086
+    ok "40 x 40, three patches a block, some" ranks 4 tests/whole/same_hash "$scene" some 0 $small solver.patches=3
     for format in half half_float; do
         # shellcheck disable=SC2086
         ok "40 x 40, format $format, some" ranks 4 tests/whole/same_hash "$scene" some 0 $small solver.format=$format

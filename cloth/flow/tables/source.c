@@ -164,6 +164,7 @@ void flow_source_free(struct flow_source *source)
     free(source->neighbours.slot);
     free(source->neighbours.copies);
     free(source->neighbours.copy);
+    free(source->neighbours.joins);
     flow_watched_free(&source->watched);
     free(source->shape);
     free(source->rim);

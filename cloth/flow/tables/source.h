@@ -89,7 +89,8 @@ void flow_springs_free(struct flow_springs *springs);
 /* Who reads what of whom: neighbours of all blocks, block after block, as every rank knows them. */
 struct flow_neighbours {
     uint32_t n_slots, n_copies;
-    uint32_t *slot; /* n_slots: blocks, ascending in a block */
+    uint32_t *slot;  /* n_slots: blocks, ascending in a block, */
+    uint32_t *joins; /* and which patches are joined with theirs */
     uint32_t
         *copies;    /* n_slots + blocks: of a block, where each slot's copies begin, and the end */
     uint32_t *copy; /* n_copies: places in the rim of the slot's block, ascending */
@@ -123,7 +124,8 @@ struct flow_source {
     struct flow_elements elements;
     struct flow_springs springs;
     struct mesh_blocks blocks;
-    uint32_t *rim; /* by place: its number in the rim of its block */
+    uint32_t patches; /* of a block */
+    uint32_t *rim;    /* by place: its number in the rim of its block */
     struct flow_neighbours neighbours;
     struct flow_watched watched;
     struct flow_table *shape;    /* a block: shapes, which point into the neighbours */

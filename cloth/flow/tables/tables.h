@@ -5,7 +5,7 @@
 #include "cloth/physics/bending.h"
 #include "cloth/physics/spring.h"
 #include "cloth/physics/triangle.h"
-#include "cloth/solve/block.h"
+#include "cloth/solve/patches.h"
 
 /* What does not change during a run. Every rank knows the shapes of all blocks and who their
  * neighbours are; the rest of a block is its table, a shared object beside the block's others,
@@ -50,10 +50,13 @@ struct flow_table {
     uint32_t lowest, highest; /* of its vertices */
     uint32_t n_slots;         /* neighbours */
     uint32_t n_copies;        /* rows that the cut springs end at, neighbour after neighbour */
-    float cost;               /* its tasks take so many times as long as they need, at least 1 */
+    uint32_t joined;          /* which of its patches are (cloth/solve/patches.h) */
+    uint32_t rim_start[SOLVE_MOST_PATCHES + 1]; /* places in the rim where patches begin */
+    float cost; /* its tasks take so many times as long as they need, at least 1 */
     /* Not owned: */
     const uint32_t *slot;   /* n_slots: blocks, ascending */
     const uint32_t *copies; /* n_slots + 1: those of slot s are copies[s] .. */
+    const uint32_t *joins;  /* n_slots: which patches here and there */
     const uint32_t *copy;   /* n_copies: places in the neighbour's rim, ascending in a slot */
     /* The table itself, in an image that is not owned; NULL but where one is open. */
     const uint32_t *vertex;      /* n: of the input */

@@ -16,6 +16,7 @@ enum {
 /* What is told of a block; the neighbours of all blocks follow. */
 struct shape {
     uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_rim, n_held, lowest, highest;
+    uint32_t joined, rim_start[SOLVE_MOST_PATCHES + 1];
     uint32_t n_watched, n_moved, n_guided, n_slots, n_copies, n_stiff, n_elements[FLOW_KINDS],
         n_membranes;
     float cost;
@@ -48,7 +49,7 @@ static int tell_head(const duite_call *call)
                          flow->model->n_motions * sizeof *flow->model->motions +
                          flow->model->n_guides * sizeof *flow->model->guides +
                          head->n_blocks * (sizeof(struct shape) + sizeof(uint32_t)) +
-                         (2 * (uint64_t)head->n_slots + head->n_copies) * sizeof(uint32_t);
+                         (3 * (uint64_t)head->n_slots + head->n_copies) * sizeof(uint32_t);
     for (uint32_t b = 0; b < head->n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
         head->most_rows = larger(t->n, head->most_rows);
@@ -83,33 +84,36 @@ static int tell_shared(const duite_call *call)
     to = put(to, model->motions, model->n_motions * sizeof *model->motions);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
-        const struct shape shape = {
-            .n = t->n,
-            .n_inner = t->n_inner,
-            .n_cut = t->n_cut,
-            .n_entries = t->n_entries,
-            .n_cut_entries = t->n_cut_entries,
-            .n_rim = t->n_rim,
-            .n_held = t->n_held,
-            .n_watched = t->n_watched,
-            .n_moved = t->n_moved,
-            .n_guided = t->n_guided,
-            .lowest = t->lowest,
-            .highest = t->highest,
-            .n_slots = t->n_slots,
-            .n_copies = t->n_copies,
-            .n_stiff = t->n_stiff,
-            .n_elements = {t->n_elements[FLOW_TRIANGLES], t->n_elements[FLOW_HINGES],
-                           t->n_elements[FLOW_FOLDS], t->n_elements[FLOW_SAILS]},
-            .n_membranes = t->n_membranes,
-            .cost = t->cost};
+        struct shape shape = {.n = t->n,
+                              .n_inner = t->n_inner,
+                              .n_cut = t->n_cut,
+                              .n_entries = t->n_entries,
+                              .n_cut_entries = t->n_cut_entries,
+                              .n_rim = t->n_rim,
+                              .n_held = t->n_held,
+                              .n_watched = t->n_watched,
+                              .n_moved = t->n_moved,
+                              .n_guided = t->n_guided,
+                              .lowest = t->lowest,
+                              .highest = t->highest,
+                              .n_slots = t->n_slots,
+                              .n_copies = t->n_copies,
+                              .n_stiff = t->n_stiff,
+                              .n_elements = {t->n_elements[FLOW_TRIANGLES],
+                                             t->n_elements[FLOW_HINGES], t->n_elements[FLOW_FOLDS],
+                                             t->n_elements[FLOW_SAILS]},
+                              .n_membranes = t->n_membranes,
+                              .joined = t->joined,
+                              .cost = t->cost};
+        memcpy(shape.rim_start, t->rim_start, sizeof shape.rim_start);
         to = put(to, &shape, sizeof shape);
     }
     const struct flow_neighbours *all = &source->neighbours;
     to = put(to, all->slot, all->n_slots * sizeof *all->slot);
     to = put(to, all->copies,
              ((size_t)all->n_slots + source->blocks.n_blocks) * sizeof *all->copies);
-    put(to, all->copy, all->n_copies * sizeof *all->copy);
+    to = put(to, all->copy, all->n_copies * sizeof *all->copy);
+    put(to, all->joins, all->n_slots * sizeof *all->joins);
     return 0;
 }
 const duite_kernel flow_tell_shared = {
@@ -167,6 +171,7 @@ static void unpack(struct flow_state *state)
     const uint32_t *slot = (const void *)(shape + tables->n_blocks);
     const uint32_t *copies = slot + state->head.n_slots;
     const uint32_t *copy = copies + state->head.n_slots + tables->n_blocks;
+    const uint32_t *joins = copy + state->head.n_copies;
     uint32_t first = 0;
     tables->slot = slot;
     tables->copy = copy;
@@ -189,11 +194,15 @@ static void unpack(struct flow_state *state)
                                                .n_copies = shape->n_copies,
                                                .n_stiff = shape->n_stiff,
                                                .n_membranes = shape->n_membranes,
+                                               .joined = shape->joined,
                                                .cost = shape->cost,
+                                               .joins = joins,
                                                .slot = slot,
                                                .copies = copies,
                                                .copy = copy};
         memcpy(tables->block[b].n_elements, shape->n_elements, sizeof shape->n_elements);
+        memcpy(tables->block[b].rim_start, shape->rim_start, sizeof shape->rim_start);
+        joins += shape->n_slots;
         first += shape->n;
         slot += shape->n_slots;
         copies += shape->n_slots + 1;

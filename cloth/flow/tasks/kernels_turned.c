@@ -5,6 +5,7 @@
  * that a pass finds P's part of s in `motion` and adds it to its own rows and to its copies alike.
  */
 #include "cloth/flow/tasks/bodies.h"
+#include "cloth/flow/tasks/patches.h"
 
 #include "cloth/solve/local.h"
 
@@ -22,85 +23,7 @@ static enum solve_local local_of(const duite_call *call)
     return flow_local(flow_of(call));
 }
 
-/* ---- What does not change during a run, but for contact ---- */
-
-static int basis(const duite_call *call)
-{
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    phys_vec *rows = duite_out(call, 1, phys_vec);
-    solve_basis(t->n, t->free, t->position, rows);
-    if (call->n_params > 3)
-        solve_basis_filter(t->n, duite_in(call, 3, phys_vec), rows);
-    flow_write_rim(t, rows, duite_out(call, 2, phys_vec));
-    return 0;
-}
-const duite_kernel flow_basis = {.name = "basis",
-                                 .body = basis,
-                                 .access = {DUITE_R, DUITE_W, DUITE_W},
-                                 .rest = DUITE_R,
-                                 .args_size = ARGS};
-
-static int basis_copies(const duite_call *call)
-{
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    phys_vec *copy = duite_out(call, 1, phys_vec);
-    copy[0] = (phys_vec){0};
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        const phys_vec *rim = duite_in(call, 2 + s, phys_vec);
-        for (uint32_t i = t->copies[s]; i < t->copies[s + 1]; i++)
-            copy[i] = rim[t->copy[i]];
-    }
-    return 0;
-}
-const duite_kernel flow_basis_copies = {.name = "basis_copies",
-                                        .body = basis_copies,
-                                        .access = {DUITE_R, DUITE_W},
-                                        .rest = DUITE_R,
-                                        .args_size = ARGS};
-
 /* ---- Of each step's matrix ---- */
-
-static int couple(const duite_call *call)
-{
-    struct flow_table table = flow_table_of(call), *t = &table;
-    const phys_vec *values = flow_open_matrix(call, t, 1);
-    const phys_vec *rows = duite_in(call, 2, phys_vec), *copies = duite_in(call, 3, phys_vec);
-    double *own = duite_out(call, 4, double), *later = own + SOLVE_COUPLING;
-    double earlier[SOLVE_COUPLING];
-    solve_couple(&t->matrix, values, rows, own);
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        const uint32_t from = t->cut_entry[s], n = t->cut_entry[s + 1] - from;
-        const bool is_later = t->slot[s] > flow_args_of(call)->block;
-        solve_couple_cut(&t->matrix, values, t->matrix.row[t->n] + from, n, t->copy_end + from,
-                         rows, copies, own, is_later ? later : earlier);
-        later += is_later ? SOLVE_COUPLING : 0;
-    }
-    return 0;
-}
-FLOW_TIMED(couple, FLOW_CG)
-const duite_kernel flow_couple = {.name = "couple",
-                                  .body = couple_timed,
-                                  .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_W},
-                                  .args_size = ARGS};
-
-static int factor_coarse(const duite_call *call)
-{
-    const struct flow *flow = flow_of(call);
-    double *factor = duite_out(call, 0, double);
-    solve_coarse_clear(&flow->pattern, factor);
-    for (uint32_t b = 0; b < flow->pattern.n; b++)
-        solve_coarse_fill(&flow->pattern, flow->first_slot, flow->tables.slot, b,
-                          duite_in(call, 1 + b, double), factor);
-    solve_coarse_factor(&flow->pattern, factor);
-    return 0;
-}
-FLOW_TIMED_PLAIN(factor_coarse, FLOW_CG)
-const duite_kernel flow_factor_coarse = {.name = "factor_coarse",
-                                         .body = factor_coarse_timed,
-                                         .access = {DUITE_W},
-                                         .rest = DUITE_R,
-                                         .args_size = ARGS,
-                                         .replicated = 1};
 
 static int factor(const duite_call *call)
 {
@@ -120,13 +43,24 @@ const duite_kernel flow_factor = {.name = "factor",
 
 /* ---- The solve ---- */
 
+/* P' q of each patch. */
+static void restrict_all(const duite_call *call, const struct flow_table *t, const phys_vec *rows,
+                         const phys_vec *q, double *right)
+{
+    const struct solve_patches patches = solve_patches_of(t->n, flow_of(call)->patches);
+    for (uint32_t k = 0; k < patches.n; k++) {
+        const uint32_t from = patches.start[k], n = patches.start[k + 1] - from;
+        solve_restrict(n, rows + from, q + from, right + SOLVE_COARSE * k);
+    }
+}
+
 /* s = M^-1 q but for the coarse part, of which the part has the right side. */
 static void turn(const duite_call *call, const struct flow_table *t, const double *factor,
                  const phys_vec *rows, const phys_vec *q, phys_vec *s, double *part)
 {
     part[SOLVE_QQ] = solve_local_apply(&t->matrix, local_of(call), factor, q, s);
     if (rows)
-        solve_restrict(t->n, rows, q, part + FLOW_PART_COARSE);
+        restrict_all(call, t, rows, q, part + FLOW_PART_COARSE);
 }
 
 static int start(const duite_call *call)
@@ -139,7 +73,7 @@ static int start(const duite_call *call)
                 duite_out(call, 4, phys_vec), duite_out(call, 5, phys_vec), q);
     memset(z, 0, t->n * sizeof *z);
     memset(duite_out(call, 9, phys_vec), 0, duite_count(call, 9) * sizeof(double));
-    memset(part, 0, FLOW_PART * sizeof *part);
+    memset(part, 0, flow_part_doubles(flow_of(call)) * sizeof *part);
     turn(call, t, duite_in(call, 2, double), is_coarse(call) ? duite_in(call, 12, phys_vec) : NULL,
          q, s, part);
     flow_pack_rim(t, s, duite_out(call, 10, double));
@@ -164,6 +98,45 @@ static const void *coarse_in(const duite_call *call, const struct flow_table *t,
     return duite_in(call, NEIGHBOURS + t->n_slots + which, double);
 }
 
+/* P's part of s, of patch k of a block. */
+static const double *motion_of(const duite_call *call, const struct flow_table *t, uint32_t block,
+                               uint32_t k)
+{
+    const struct flow *flow = flow_of(call);
+    const double *motion = coarse_in(call, t, MOTION);
+    return motion + solve_coarse_at(&flow->pattern, flow->patches * block + k);
+}
+
+static void prolong_all(const duite_call *call, const struct flow_table *t, phys_vec *s)
+{
+    const struct solve_patches patches = solve_patches_of(t->n, flow_of(call)->patches);
+    const phys_vec *rows = coarse_in(call, t, BASIS);
+    for (uint32_t k = 0; k < patches.n; k++) {
+        const uint32_t from = patches.start[k], n = patches.start[k + 1] - from;
+        solve_prolong(n, rows + from, motion_of(call, t, flow_args_of(call)->block, k), s + from);
+    }
+}
+
+/* Copies of one neighbour, whose patches they are of one after the other. rim: of its s. */
+static void advance_patches(const duite_call *call, const struct flow_table *t, uint32_t slot,
+                            const struct solve_scalars *scalars, const double *rim)
+{
+    const struct flow *flow = flow_of(call);
+    const struct flow_table *other = flow->tables.block + t->slot[slot];
+    const uint32_t *at = flow->at + (t->copy - flow->tables.copy);
+    const phys_vec *rows = coarse_in(call, t, BASIS_COPIES);
+    phys_vec *z = duite_out(call, COPIES, phys_vec), *p = z + t->n_copies;
+    uint32_t i = t->copies[slot];
+    for (uint32_t k = 0; k < flow->patches; k++) {
+        const uint32_t from = i;
+        while (i < t->copies[slot + 1] && t->copy[i] < other->rim_start[k + 1])
+            i++;
+        solve_advance_copies_coarse(i - from, scalars->alpha, scalars->beta, rim, at + from,
+                                    rows + from, motion_of(call, t, t->slot[slot], k), z + from,
+                                    p + from);
+    }
+}
+
 static void advance_copies(const duite_call *call, const struct flow_table *t,
                            const struct solve_scalars *scalars)
 {
@@ -174,15 +147,10 @@ static void advance_copies(const duite_call *call, const struct flow_table *t,
     for (uint32_t s = 0; s < t->n_slots; s++) {
         const uint32_t from = t->copies[s], n = t->copies[s + 1] - from;
         const double *rim = duite_in(call, NEIGHBOURS + s, double);
-        if (!is_coarse(call)) {
+        if (is_coarse(call))
+            advance_patches(call, t, s, scalars, rim);
+        else
             solve_advance_copies(n, alpha, beta, rim, at + from, z + from, p + from);
-            continue;
-        }
-        const phys_vec *rows = coarse_in(call, t, BASIS_COPIES);
-        const double *motion = coarse_in(call, t, MOTION);
-        solve_advance_copies_coarse(n, alpha, beta, rim, at + from, rows + from,
-                                    motion + solve_coarse_at(&flow->pattern, t->slot[s]), z + from,
-                                    p + from);
     }
 }
 
@@ -200,17 +168,13 @@ static void turn_and_show(const duite_call *call, const struct flow_pass *pass)
 static void advance(const duite_call *call, const struct solve_scalars *scalars,
                     const struct flow_pass *pass)
 {
-    const struct flow *flow = flow_of(call);
     const struct flow_table *t = pass->table;
     const struct solve_cut cut = flow_table_cut_entries(t);
     phys_vec *s = duite_out(call, S, phys_vec);
     double *part = duite_out(call, PART, double);
     const struct solve_turned turned = {duite_out(call, Z, phys_vec), s};
     if (is_coarse(call))
-        solve_prolong(t->n, coarse_in(call, t, BASIS),
-                      (const double *)coarse_in(call, t, MOTION) +
-                          solve_coarse_at(&flow->pattern, flow_args_of(call)->block),
-                      s);
+        prolong_all(call, t, s);
     advance_copies(call, t, scalars);
     solve_pass_turned(&t->matrix, &cut, pass->value, pass->copies + t->n_copies, scalars->alpha,
                       scalars->beta, &pass->rows, &turned, part);
@@ -261,6 +225,14 @@ const duite_kernel flow_pass_turned = {.name = "cg_pass_turned",
 
 /* ---- Scalars, on every rank ---- */
 
+/* The right side of a patch, of the parts that begin at parameter `from`. */
+static const double *right_of(const duite_call *call, size_t from, uint32_t patch)
+{
+    const uint32_t patches = flow_of(call)->patches;
+    const double *part = duite_in(call, from + patch / patches, double);
+    return part + FLOW_PART_COARSE + SOLVE_COARSE * (patch % patches);
+}
+
 /* Solves for the coarse part of s, of the parts that begin at parameter `from`. Returns its share
  * in q.s, of a q that these right sides are of. */
 static double solve_motion(const duite_call *call, const double *factor, size_t from,
@@ -269,13 +241,13 @@ static double solve_motion(const duite_call *call, const double *factor, size_t 
     const struct flow *flow = flow_of(call);
     double sum = 0;
     memset(motion, 0, flow_motion_doubles(flow) * sizeof *motion);
-    for (uint32_t b = 0; b < flow->pattern.n; b++)
-        memcpy(motion + solve_coarse_at(&flow->pattern, b),
-               duite_in(call, from + b, double) + FLOW_PART_COARSE, SOLVE_COARSE * sizeof *motion);
+    for (uint32_t p = 0; p < flow->pattern.n; p++)
+        memcpy(motion + solve_coarse_at(&flow->pattern, p), right_of(call, from, p),
+               SOLVE_COARSE * sizeof *motion);
     solve_coarse_solve(&flow->pattern, factor, motion);
-    for (uint32_t b = 0; b < flow->pattern.n; b++) {
-        const double *right = duite_in(call, from + b, double) + FLOW_PART_COARSE;
-        const double *x = motion + solve_coarse_at(&flow->pattern, b);
+    for (uint32_t p = 0; p < flow->pattern.n; p++) {
+        const double *right = right_of(call, from, p);
+        const double *x = motion + solve_coarse_at(&flow->pattern, p);
         for (int i = 0; i < SOLVE_COARSE; i++)
             sum += right[i] * x[i];
     }

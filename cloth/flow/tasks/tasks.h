@@ -90,8 +90,10 @@ struct flow {
     struct flow_far_rim *far_rim; /* of far.c */
     uint32_t *far_row;
     enum model_preconditioner preconditioner;
-    struct solve_pattern pattern; /* of the coarse factor, if there is one */
-    uint32_t *first_slot;         /* then: n_blocks + 1, of each block's neighbours among all */
+    uint32_t patches;             /* of a block; patch k of block b is number patches * b + k */
+    struct solve_pattern pattern; /* of the coarse factor, if there is one: of patches */
+    uint32_t *first_beside;       /* then: pattern.n + 1, of each patch's neighbours among all */
+    uint32_t *beside;             /* of all patches, patch after patch, ascending in each */
     struct cloth_error trouble;   /* of this rank: why it cannot begin, why a frame was not written;
                                    * changed by the main thread when no task runs, and by `frame` */
     atomic_int stop;              /* set by the main thread, read by the task `status` */
@@ -137,8 +139,6 @@ enum {
     FLOW_WHOLE,    /* (v - base_v).M (v - base_v) after it */
     FLOW_STATUS
 };
-/* What a preconditioned pass leaves of its block: the dots, then the coarse right side. */
-enum { FLOW_PART_COARSE = SOLVE_DOTS, FLOW_PART = FLOW_PART_COARSE + SOLVE_COARSE };
 /* Indices into the peaks of a state that is watched, F64, each the largest of any block: square of
  * the speed, l / L of the springs that count for it, and minus that. */
 enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
@@ -303,14 +303,8 @@ static inline enum solve_local flow_local(const struct flow *flow)
                : SOLVE_JACOBI;
 }
 
-/* Numbers of a motion: a vector of the coarse space. */
-static inline size_t flow_motion_doubles(const struct flow *flow)
-{
-    return SOLVE_COARSE_STRIDE * (size_t)flow->pattern.n;
-}
-
 /* Decides on the preconditioner of a run: the model's, but no coarse part of more than
- * SOLVE_MOST_BLOCKS blocks. Local. */
+ * SOLVE_MOST_BLOCKS blocks; and on patches. Local. */
 void flow_turned_choose(struct flow *flow, uint32_t n_blocks);
 /* That once more on all ranks, and the pattern of the coarse factor, if there is one. */
 int flow_turned_prepare(struct flow_state *state);

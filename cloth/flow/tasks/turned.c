@@ -1,7 +1,7 @@
 /* The main program's side of a preconditioned solve: its objects, what is forked once a run, what
  * in each step before the solve, and a pass of the recorded round. Objects that a preconditioner
  * does not need are not made. */
-#include "cloth/flow/tasks/tasks.h"
+#include "cloth/flow/tasks/patches.h"
 
 #include "cloth/base/memory.h"
 
@@ -27,18 +27,73 @@ void flow_turned_choose(struct flow *flow, uint32_t n_blocks)
         model_is_implicit(flow->model) ? flow->model->preconditioner : MODEL_PLAIN;
     if (flow_is_coarse(flow) && n_blocks > SOLVE_MOST_BLOCKS)
         without_coarse(flow, n_blocks);
+    flow->patches = model_patches(flow->model, n_blocks);
+}
+
+/* Appends to `to` the patches of block `other` that patch k is joined with. */
+static uint32_t *add_joined(const struct flow *flow, uint32_t joins, uint32_t k, uint32_t other,
+                            uint32_t *to)
+{
+    for (uint32_t l = 0; l < flow->patches; l++)
+        if (joins & solve_patch_bit(k, l))
+            *to++ = flow->patches * other + l;
+    return to;
+}
+
+/* Those of patch k of block b, ascending. Returns the end. */
+static uint32_t *add_neighbours(const struct flow *flow, uint32_t b, uint32_t k, uint32_t *to)
+{
+    const struct flow_table *t = flow->tables.block + b;
+    const uint32_t itself = solve_patch_bit(k, k);
+    uint32_t s = 0;
+    for (; s < t->n_slots && t->slot[s] < b; s++)
+        to = add_joined(flow, t->joins[s], k, t->slot[s], to);
+    to = add_joined(flow, t->joined & ~itself, k, b, to);
+    for (; s < t->n_slots; s++)
+        to = add_joined(flow, t->joins[s], k, t->slot[s], to);
+    return to;
+}
+
+/* How many neighbours all patches can have. */
+static size_t most_beside(const struct flow *flow)
+{
+    size_t slots = 0;
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
+        slots += 1 + (size_t)flow->tables.block[b].n_slots;
+    return slots * flow->patches * flow->patches;
 }
 
 static void make_pattern(struct flow *flow)
 {
-    const struct flow_tables *tables = &flow->tables;
+    const uint32_t n_blocks = flow->tables.n_blocks, n = flow->patches * n_blocks;
     struct cloth_error *trouble = &flow->trouble;
-    flow->first_slot = cloth_alloc((size_t)tables->n_blocks + 1, sizeof *flow->first_slot, trouble);
-    if (!flow->first_slot)
+    flow->first_beside = cloth_alloc((size_t)n + 1, sizeof *flow->first_beside, trouble);
+    flow->beside = cloth_alloc(most_beside(flow), sizeof *flow->beside, trouble);
+    if (!flow->first_beside || !flow->beside)
         return;
-    for (uint32_t b = 0; b < tables->n_blocks; b++)
-        flow->first_slot[b + 1] = flow->first_slot[b] + tables->block[b].n_slots;
-    solve_pattern_make(&flow->pattern, tables->n_blocks, flow->first_slot, tables->slot, trouble);
+    for (uint32_t b = 0; b < n_blocks; b++)
+        for (uint32_t k = 0; k < flow->patches; k++) {
+            uint32_t *first = flow->first_beside + flow->patches * b + k;
+            first[1] = (uint32_t)(add_neighbours(flow, b, k, flow->beside + *first) - flow->beside);
+        }
+    solve_pattern_make(&flow->pattern, n, flow->first_beside, flow->beside, trouble);
+}
+
+/* How many neighbours of patch p are behind it and before `end`. */
+static size_t count_later(const struct flow *flow, uint32_t p, uint32_t end)
+{
+    size_t count = 0;
+    for (uint32_t i = flow->first_beside[p]; i < flow->first_beside[p + 1]; i++)
+        count += flow->beside[i] > p && flow->beside[i] < end;
+    return count;
+}
+
+size_t flow_coupling_at(const struct flow *flow, uint32_t p, uint32_t q)
+{
+    size_t at = q > p ? 1 + count_later(flow, p, q) : 0;
+    for (uint32_t before = p - p % flow->patches; before < p; before++)
+        at += 1 + count_later(flow, before, UINT32_MAX);
+    return at;
 }
 
 int flow_turned_prepare(struct flow_state *state)
@@ -54,8 +109,9 @@ int flow_turned_prepare(struct flow_state *state)
 void flow_turned_free(struct flow *flow)
 {
     solve_pattern_free(&flow->pattern);
-    free(flow->first_slot);
-    flow->first_slot = NULL;
+    free(flow->first_beside);
+    free(flow->beside);
+    flow->first_beside = flow->beside = NULL;
 }
 
 /* Of so many numbers (at least one), beside another object. */
@@ -69,13 +125,12 @@ static void make_coarse(struct flow_state *state, uint32_t b)
 {
     struct flow_objects *o = state->block + b;
     const struct flow_table *t = state->flow->tables.block + b;
-    uint32_t later = 0;
-    for (uint32_t s = 0; s < t->n_slots; s++)
-        later += t->slot[s] > b;
+    const uint32_t last = state->flow->patches * (b + 1) - 1;
     make(state, 4 * (size_t)t->n, o->x, &o->basis);
     make(state, 4 * (size_t)(t->n_rim ? t->n_rim : 1), o->x, &o->rim_basis);
     make(state, 4 * (size_t)(t->n_copies ? t->n_copies : 1), o->x, &o->basis_copies);
-    make(state, SOLVE_COUPLING * (1 + (size_t)later), o->x, &o->coupling);
+    make(state, SOLVE_COUPLING * flow_coupling_at(state->flow, last, UINT32_MAX), o->x,
+         &o->coupling);
 }
 
 void flow_turned_make(struct flow_state *state)
@@ -90,7 +145,7 @@ void flow_turned_make(struct flow_state *state)
         make(state, 4 * (size_t)t->n, o->x, &o->z);
         make(state, 4 * (size_t)t->n, o->x, &o->s);
         make(state, solve_local_doubles(t->n, t->n_entries, local), o->x, &o->factor);
-        make(state, FLOW_PART, o->x, &o->part);
+        make(state, flow_part_doubles(flow), o->x, &o->part);
         if (flow_is_coarse(flow))
             make_coarse(state, b);
     }

@@ -256,6 +256,8 @@ static void build_solver(struct model *model, const struct scene_tree *tree)
     model->newton_tolerance = scene_tree_number(tree, newton, "tolerance");
     model->preconditioner = preconditioner_of(scene_tree_text(tree, solver, "preconditioner"));
     model->guess = guess_of(scene_tree_text(tree, solver, "guess"));
+    model->patches =
+        scene_tree_get(tree, solver, "patches") ? scene_tree_integer(tree, solver, "patches") : 0;
     model->format = format_of(scene_tree_text(tree, solver, "format"));
     model->full_slope = slope_of(scene_tree_text(tree, solver, "jacobian"));
     model->max_iterations = scene_tree_integer(tree, solver, "max_iterations");

@@ -271,6 +271,8 @@ static const struct scene_rule solver_keys[] = {
      .about = "of the change of velocity: nothing, or that of the step before"},
     {"preconditioner", SCENE_CHOICE, .fallback = "ic0_coarse", .words = preconditioners,
      .about = "of conjugate gradients"},
+    {"patches", SCENE_INTEGER, .least = 1, .most = 4,
+     .about = "of a block, each with motions of its own in the coarse space; else as many as pay"},
     {"format", SCENE_CHOICE, .fallback = "springs", .words = formats,
      .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in double "
               "or float; triangles and bending take half for springs"},

@@ -75,6 +75,35 @@ START_TEST(a_sheet_moves_alike)
 }
 END_TEST
 
+/* Whatever patches blocks are cut into, also where these have fewer rows than motions, or none. */
+START_TEST(patches_move_alike)
+{
+    struct record none = {0};
+    struct setup setup;
+    uint64_t before = UINT64_MAX;
+    setup_stiff(&setup, 20);
+    setup.model.tolerance = 1e-10;
+    setup.model.grain = _i ? 3 : 90;
+    setup.model.preconditioner = MODEL_PLAIN;
+    record_run(&none, &setup.model);
+    ck_assert_msg(none.code == 0, "%s", none.error.text);
+    setup.model.preconditioner = MODEL_IC0_COARSE;
+    for (uint32_t patches = 1; patches <= 4; patches++) {
+        struct record record = {.threads = 1 + patches % 2};
+        setup.model.patches = patches;
+        record_run(&record, &setup.model);
+        ck_assert_msg(record.code == 0, "%s", record.error.text);
+        ck_assert_double_le(farthest(&none, &record), 1e-6);
+        if (!_i)
+            ck_assert_uint_lt(record.report.cg_iterations_total, before);
+        before = record.report.cg_iterations_total;
+        record_free(&record);
+    }
+    record_free(&none);
+    setup_free(&setup);
+}
+END_TEST
+
 /* In half storage, too, with every preconditioner, of a sheet whose bend springs join vertices that
  * have others between them, and some twice. */
 START_TEST(formats_move_alike)
@@ -366,6 +395,7 @@ int main(void)
     Suite *suite = suite_create("solvers");
     TCase *cases = tcase_create("solvers");
     tcase_add_test(cases, a_sheet_moves_alike);
+    tcase_add_loop_test(cases, patches_move_alike, 0, 2);
     tcase_add_test(cases, formats_move_alike);
     tcase_add_loop_test(cases, starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
     tcase_add_test(cases, normalised_by_hand);

@@ -12,12 +12,14 @@ tests_cloth_solve_test_pass_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_solve_test_cg_SOURCES = tests/cloth/solve/test_cg.c
 tests_cloth_solve_test_cg_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/solve/test_block tests/cloth/solve/test_pass tests/cloth/solve/test_cg tests/cloth/solve/test_format
-check_PROGRAMS += tests/cloth/solve/test_local tests/cloth/solve/test_coarse tests/cloth/solve/test_preconditioned
+check_PROGRAMS += tests/cloth/solve/test_local tests/cloth/solve/test_coarse tests/cloth/solve/test_patches tests/cloth/solve/test_preconditioned
+tests_cloth_solve_test_patches_SOURCES = tests/cloth/solve/test_patches.c $(SOLVE_TEST_SYSTEM)
+tests_cloth_solve_test_patches_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_solve_test_local_SOURCES = tests/cloth/solve/test_local.c $(SOLVE_TEST_SYSTEM)
 tests_cloth_solve_test_local_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_solve_test_coarse_SOURCES = tests/cloth/solve/test_coarse.c $(SOLVE_TEST_TWO_LEVEL)
 tests_cloth_solve_test_coarse_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_solve_test_preconditioned_SOURCES = tests/cloth/solve/test_preconditioned.c $(SOLVE_TEST_TWO_LEVEL)
 tests_cloth_solve_test_preconditioned_LDADD = $(CLOTH_TEST_LIBS)
-TESTS += tests/cloth/solve/test_local tests/cloth/solve/test_coarse tests/cloth/solve/test_preconditioned
+TESTS += tests/cloth/solve/test_local tests/cloth/solve/test_coarse tests/cloth/solve/test_patches tests/cloth/solve/test_preconditioned
 endif

@@ -33,22 +33,21 @@ static void couple(struct two_level *level, uint32_t b)
     const struct system_block *block = level->system->block + b;
     const phys_vec *basis = level->basis + block->first;
     double(*coupling)[SOLVE_COUPLING] = level->coupling[b];
-    solve_couple(&block->matrix, block->value, basis, coupling[0]);
+    solve_couple(&block->matrix, 0, block->matrix.n, block->value, basis, coupling[0]);
     uint32_t later = 1;
     for (uint32_t s = level->first[b]; s < level->first[b + 1]; s++) {
-        uint32_t end[SYSTEM_SPRINGS][2], n = 0;
-        size_t from = 0;
-        double beside[SOLVE_COUPLING];
-        for (size_t i = 0; i < block->cut.n; i++) { /* those into one block follow each other */
+        uint32_t at[SYSTEM_SPRINGS], end[SYSTEM_SPRINGS][2], n = 0;
+        double beside[SOLVE_COUPLING] = {0};
+        for (size_t i = 0; i < block->cut.n; i++) {
             const uint32_t other = block->copy[block->cut.end[i][1]];
             if (block_of(level->system, other) != level->slot[s])
                 continue;
-            from = n ? from : i;
+            at[n] = block->row[block->matrix.n] + (uint32_t)i;
             end[n][0] = block->cut.end[i][0];
             end[n++][1] = other;
         }
-        solve_couple_cut(&block->matrix, block->value, block->row[block->matrix.n] + from, n,
-                         (const uint32_t(*)[2])end, basis, level->basis, coupling[0], beside);
+        solve_couple_cut(&block->matrix, block->value, n, at, (const uint32_t(*)[2])end, basis,
+                         level->basis, coupling[0], beside);
         if (level->slot[s] > b)
             memcpy(coupling[later++], beside, sizeof beside);
     }

@@ -25,6 +25,7 @@ enum {
     PAJE,
     SCHEDULER,
     SEED,
+    STEADY,
     SWITCH
 };
 
@@ -44,9 +45,11 @@ static const struct argp_option OPTIONS[] = {
      1},
     {"bandwidth", BANDWIDTH, "BYTES/S", 0, "of a network card (default: 1.25e9, 10 Gbit/s)", 1},
     {"switch", SWITCH, "BYTES/S", 0, "of all messages together (default: enough)", 1},
-    {"message", MESSAGE, "SECONDS", 0,
-     "of a core, to send, to take or to look for a message (default: 5e-7)", 1},
+    {"message", MESSAGE, "SECONDS", 0, "of a core, to send or to take a message (default: 5e-7)",
+     1},
     {"overhead", OVERHEAD, "SECONDS", 0, "between two tasks (default: as it was traced)", 1},
+    {"steady", STEADY, NULL, 0,
+     "bodies take the median of their kernel, without what the traced machine did meanwhile", 1},
     {"scheduler", SCHEDULER, "NAME", 0, "as of duite-cloth (default: steal)", 2},
     {"mapping", MAPPING, "NAME", 0,
      "as of duite-cloth (default: the homes of the trace, if there are as many hosts as ranks; "
@@ -136,6 +139,9 @@ static error_t parse(int key, char *value, struct argp_state *state)
         return parse_policy(state, key, value);
     case SEED:
         cluster->seed = whole(state, "seed", value, 0, UINT64_MAX);
+        return 0;
+    case STEADY:
+        cluster->steady = true;
         return 0;
     case PAJE:
         command->paje = value;

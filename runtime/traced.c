@@ -30,6 +30,16 @@ void traced_begin(duite *rt)
         trace_switch(rt->trace, true, 0, 0);
 }
 
+/* Waits for all as duite_wait does, and the trace says so: else what came before would seem to have
+ * taken the main program so long to fork. */
+static int meet(duite *rt, const char *call)
+{
+    const uint64_t from = base_ticks();
+    const int code = program_meet(rt, call);
+    trace_wait(rt->trace, from);
+    return code;
+}
+
 int duite_trace_step(duite *rt, uint64_t step)
 {
     int code = program_enter(rt, "duite_trace_step");
@@ -37,7 +47,7 @@ int duite_trace_step(duite *rt, uint64_t step)
         return code;
     bool wants = trace_wants(rt->trace, step);
     if (wants != trace_is_on(rt->trace)) {
-        code = program_meet(rt, "duite_trace_step");
+        code = meet(rt, "duite_trace_step");
         trace_flush(rt->trace);
         trace_switch(rt->trace, wants, step, rt->graph.root.forks);
     }
@@ -63,7 +73,7 @@ int traced_end(duite *rt, const char *call)
 {
     if (!rt->trace || rt->traced)
         return DUITE_OK;
-    int code = program_meet(rt, call);
+    int code = meet(rt, call);
     if (rt->comm && !code) {
         comm_hold(rt->comm);
         trace_align(rt->trace, rt->mpi);

@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-enum { SMALL_SUM = 1024 }; /* bytes: in replays such sums are made on every host */
+enum { SMALL_SUM = 1024 };     /* bytes: in replays such sums are made on every host */
 #define MOST_NODE  0x7fffffffu /* as many bits as there are for them */
 #define MOST_PHASE 0x1fffffffu
 

@@ -130,7 +130,10 @@ struct predict_times *predict_times_new(const struct trace_run *run);
 void predict_times_free(struct predict_times *times);
 /* Whether the task ran; and for how long. */
 bool predict_times_find(const struct predict_times *times, uint64_t number, double *seconds);
-/* The mean of the tasks of a kernel; of the runtime's own tasks of a kind; between two tasks. */
+/* Bodies take the median of their kernel from now on. False without memory. */
+bool predict_times_steady(struct predict_times *times, const struct trace_run *run);
+/* The mean of the tasks of a kernel, or their median; of the runtime's own tasks of a kind; between
+ * two tasks. */
 double predict_times_kernel(const struct predict_times *times, uint32_t kernel);
 double predict_times_own(const struct predict_times *times, uint32_t kind);
 double predict_times_gap(const struct predict_times *times);

@@ -17,7 +17,8 @@ struct predict_cluster {
     double capacity;       /* bytes/s of the switch, all messages together; infinite: enough */
     double core_speed;     /* times that of the traced run */
     double overhead;       /* s, of the runtime between two tasks; < 0: as it was seen */
-    double message;        /* s of a core, to send, to take or to look for a message */
+    double message; /* s of a core, to send or to take one, or (5e-7 at most) to look for one */
+    bool steady;    /* bodies take the median of their kernel, not what each took */
     const duite_scheduler *scheduler;
     const duite_mapping
         *mapping; /* NULL: the homes that were traced; as many hosts as ranks then */

@@ -5,8 +5,11 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define MOST_LOOK 5e-7 /* s: to find no message, however dear one is */
 
 /* ---- Words ---- */
 
@@ -90,7 +93,7 @@ void predict_fork(struct predict_program *p, const struct predict_fork *fork)
     const int host = place(graph, fork, own);
     const bool all = host == PREDICT_ALL, follows = !all && fork->at < 0;
     double seconds;
-    if (!predict_times_find(p->times, fork->number, &seconds))
+    if (!predict_times_find(p->times, fork->number, &seconds) || graph->cluster->steady)
         seconds = predict_times_kernel(p->times, fork->kernel);
     seconds /= graph->cluster->core_speed;
     for (size_t i = 0; i < fork->n; i++)
@@ -320,6 +323,8 @@ static bool prepare(struct predict_program *p)
     graph->began = base_alloc(hosts * sizeof *graph->began);
     graph->round = PREDICT_NONE;
     graph->flag = PREDICT_NONE;
+    if (p->times && graph->cluster->steady && !predict_times_steady(p->times, graph->run))
+        return false;
     if (!p->times || !graph->piece || !graph->began ||
         !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
         data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
@@ -332,7 +337,7 @@ static bool prepare(struct predict_program *p)
                           : graph->cluster->overhead;
     /* What ranks did between tasks has it already. */
     const bool seen = graph->cluster->overhead < 0 && graph->run->n_ranks > 1;
-    graph->look = hosts > 1 && !seen ? graph->cluster->message : 0;
+    graph->look = hosts > 1 && !seen ? fmin(graph->cluster->message, MOST_LOOK) : 0;
     return true;
 }
 

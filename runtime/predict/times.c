@@ -23,6 +23,7 @@ struct predict_times {
     struct time *time;
     size_t mask;
     struct mean *kernel, own[OWN_KINDS];
+    float *median; /* by kernel; NULL: not asked for */
     float *gap;
     size_t n_gaps;
 };
@@ -79,6 +80,62 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+/* ---- Medians ---- */
+
+struct body {
+    uint32_t kernel;
+    float seconds;
+};
+
+static int compare_bodies(const void *a, const void *b)
+{
+    const struct body *x = a, *y = b;
+    if (x->kernel != y->kernel)
+        return x->kernel < y->kernel ? -1 : 1;
+    return (x->seconds > y->seconds) - (x->seconds < y->seconds);
+}
+
+static size_t take_bodies(const struct predict_times *times, const struct trace_run *run,
+                          struct body *body)
+{
+    size_t n = 0;
+    double seconds;
+    for (uint32_t r = 0; r < run->n_ranks; r++)
+        for (size_t p = 0; p < run->rank[r].n_pieces; p++)
+            for (size_t i = 0; i < run->rank[r].piece[p].n; i++) {
+                const struct trace_event *event = &run->rank[r].piece[p].event[i];
+                if (event->kind != TRACE_TASK || event->flags & TRACE_NESTED)
+                    continue;
+                predict_times_find(times, event->number, &seconds);
+                body[n++] = (struct body){event->kernel, (float)seconds};
+            }
+    return n;
+}
+
+bool predict_times_steady(struct predict_times *times, const struct trace_run *run)
+{
+    size_t n = 1;
+    for (uint32_t r = 0; r < run->n_ranks; r++)
+        n += run->rank[r].n_events;
+    struct body *body = base_alloc(n * sizeof *body);
+    times->median = base_alloc_zero((run->n_kernels + 1) * sizeof *times->median);
+    if (body && times->median) {
+        n = take_bodies(times, run, body);
+        if (n)
+            qsort(body, n, sizeof *body, compare_bodies);
+    }
+    for (size_t first = 0, end; body && times->median && first < n; first = end) {
+        for (end = first; end < n && body[end].kernel == body[first].kernel;)
+            end++;
+        times->median[body[first].kernel] = body[first + (end - first) / 2].seconds;
+    }
+    const bool fine = body && times->median;
+    base_free(body);
+    return fine;
+}
+
+/* ---- All of it ---- */
+
 struct predict_times *predict_times_new(const struct trace_run *run)
 {
     struct predict_times *times = base_alloc_zero(sizeof *times);
@@ -114,6 +171,7 @@ void predict_times_free(struct predict_times *times)
     base_free(times->time);
     base_free(times->kernel);
     base_free(times->gap);
+    base_free(times->median);
     base_free(times);
 }
 
@@ -126,6 +184,8 @@ bool predict_times_find(const struct predict_times *times, uint64_t number, doub
 
 double predict_times_kernel(const struct predict_times *times, uint32_t kernel)
 {
+    if (times->median)
+        return times->median[kernel];
     return get(&times->kernel[kernel]);
 }
 

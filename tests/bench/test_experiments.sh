@@ -5,7 +5,7 @@ plan_later
 
 experiments=$(cd "$srcdir" && pwd)/bench/experiments
 mkdir "$scratch/bench" # what it leaves lies there
-ln -s "$PWD/duite-cloth" "$scratch/duite-cloth"
+ln -s "$PWD/duite-cloth" "$PWD/duite-predict" "$scratch"
 ln -s "$PWD/bench/compare" "$scratch/bench/compare"
 table() { # NAME LINES: so many rows, none of them without figures
     status=0
@@ -17,11 +17,12 @@ table() { # NAME LINES: so many rows, none of them without figures
 unknown() {
     status=0
     sh "$experiments" garment > "$scratch/said" 2>&1 || status=$?
-    test $status = 2 && grep -q "zara|partutex|resolution|grain|link" "$scratch/said"
+    test $status = 2 && grep -q "zara|partutex|resolution|grain|link|scaling" "$scratch/said"
 }
 ok "an unknown experiment" unknown
 ok "resolution" table resolution 3
 ok "grain" table grain 8
+ok "scaling" table scaling 24
 if test "${DUITE_LONG:-}" = 1; then
     ok "zara" table zara 22
     ok "partutex" table partutex 7

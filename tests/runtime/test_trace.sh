@@ -103,7 +103,7 @@ done
 dot_is_whole() { # nodes are named before edges, which never point back
     ./duite-trace "$scratch/$1" --dot "$scratch/$1.dot" && awk '
         /->/ { from = substr($1, 2); to = substr($3, 2); if (from + 0 >= to + 0) { print; bad = 1 } n++ }
-        END { exit bad || n < 100 }' "$scratch/$1.dot" && grep -q 'label="force [0-9]*.nrank [01]' "$scratch/$1.dot"
+        END { exit bad || n < 100 }' "$scratch/$1.dot" && grep -q 'label="position [0-9]*.nrank [01]' "$scratch/$1.dot"
 }
 ok "dot of two" dot_is_whole two
 
@@ -149,6 +149,11 @@ for mapping in list taskgraph; do
     ok "predicted with the mapping $mapping, which sees the tasks" predicted "  migrated " --hosts 3 --cores 2 --mapping $mapping
 done
 ok "predicted with blocks that move" predicted "balance migrate" --hosts 3 --cores 2 --mapping random --balance migrate
+one_step() { # what the main program waits for at the end of a step that is recorded alone is no work of its own
+    cloth one --threads 1 --trace-steps 1:2 && ./duite-predict "$scratch/one" --cores 8 > "$scratch/said" &&
+        sed -n 's/.*main program \([0-9.]*\) %.*/\1/p' "$scratch/said" | awk '{ print; exit !($1 < 80) }'
+}
+ok "one step alone is not held up by the main program" one_step
 same_twice() {
     predicted "limited by" --hosts 3 --cores 2 && cp "$scratch/said" "$scratch/first" &&
         predicted "limited by" --hosts 3 --cores 2 && cmp "$scratch/said" "$scratch/first"

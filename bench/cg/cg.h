@@ -64,7 +64,6 @@ struct cg_session {
     uint32_t most;
     struct cg_needed needed[CG_NEEDED]; /* those before are forgotten when it is full */
     size_t n_needed;
-    double p95; /* of the frames that ran last; 0: was told, or none ran */
 };
 
 /* Makes a model ready: rank 0 cuts it, the others join. Starts a runtime for its tasks as the
@@ -72,12 +71,15 @@ struct cg_session {
 int cg_make_flow(const struct model *model, struct flow **flow);
 int cg_start_runtime(struct serve_request *request, struct flow *flow, duite **rt);
 
-/* Runs a model from its start to its end on a runtime of its own; `system` (its context: `context`)
- * is given the last step's. 0, or what serve_fail returns. */
+/* Runs a model from its start to its end on a runtime of its own. output, progress, report: as of
+ * flow_run, or NULL. 0, or what serve_fail returns. */
 int cg_run(const struct model *model, struct serve_request *request,
-           const struct flow_output *output, const struct flow_progress *progress);
+           const struct flow_output *output, const struct flow_progress *progress,
+           struct flow_report *report);
 
 extern const struct serve_run cg_runs[];
+/* Frames of a sheet that falls (bench/cg/frames.c). */
+int cg_frames(void *session, struct serve_request *request, double *value);
 
 /* A system that was saved into a folder, as the state of this name. */
 #define CG_SYSTEM "system"
@@ -88,6 +90,8 @@ int cg_system_make(const char *folder, bool quick, char *text, size_t size);
 int cg_system_plan(struct states_plan *plan, const struct solve_system *system, bool quick);
 int cg_system_put(const struct cg_session *session);
 
+/* Ends the runtime that runs have left for the next one; its state is kept. The same as below. */
+int cg_pause(struct cg_session *session);
 /* Ends what runs have left for the next one. 1 if the runtime did not stop well. Collective. */
 int cg_end(struct cg_session *session);
 

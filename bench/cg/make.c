@@ -46,7 +46,7 @@ static int move(struct states_plan *plan, struct serve_request *request)
         moved.name = NULL;
         int code = states_wave(&plan->motion);
         if (!code)
-            code = cg_run(&plan->motion, request, &output, NULL);
+            code = cg_run(&plan->motion, request, &output, NULL, NULL);
         if (code)
             return code;
         moved.name = plan->moved;
@@ -140,7 +140,7 @@ static int make(void *context, struct serve_request *request, double *value)
     if (!code)
         code = move(&plan, request);
     if (!code)
-        code = cg_run(&plan.model, request, &output, NULL);
+        code = cg_run(&plan.model, request, &output, NULL, NULL);
     if (!code)
         code = complete(&state, &plan);
     if (!code)

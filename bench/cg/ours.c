@@ -34,16 +34,17 @@ int cg_make_flow(const struct model *model, struct flow **flow)
 }
 
 int cg_run(const struct model *model, struct serve_request *request,
-           const struct flow_output *output, const struct flow_progress *progress)
+           const struct flow_output *output, const struct flow_progress *progress,
+           struct flow_report *report)
 {
     struct cloth_error error = {0};
-    struct flow_report report;
+    struct flow_report unread;
     struct flow *flow = NULL;
     duite *rt = NULL;
     int code = cg_make_flow(model, &flow);
     if (!code)
         code = cg_start_runtime(request, flow, &rt);
-    if (!code && flow_run(flow, rt, output, progress, &report, &error))
+    if (!code && flow_run(flow, rt, output, progress, report ? report : &unread, &error))
         code = serve_fail("%s", error.text);
     if (rt && duite_stop(&rt) && !code)
         code = tasks_code(1);
@@ -85,6 +86,11 @@ static int begin(struct cg_session *s)
     if (!code)
         code = duite_wait(s->rt);
     return tasks_code(code);
+}
+
+int cg_pause(struct cg_session *s)
+{
+    return end(s, 0);
 }
 
 int cg_end(struct cg_session *s)
@@ -375,73 +381,5 @@ static int step(void *context, struct serve_request *request, double *value)
     return code;
 }
 
-/* ---- Frames ---- */
-
-enum { MOST_STEPS = 4096 };
-struct clock {
-    double at[MOST_STEPS + 1];
-    uint64_t n;
-};
-
-static void note(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations)
-{
-    struct clock *clock = context;
-    (void)cg_iterations;
-    if (step <= MOST_STEPS && steps)
-        clock->at[clock->n = step] = serve_seconds();
-}
-
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Frames of so many steps: the mean, and in *p95 what 95 % of them stay below. */
-static double frames(const struct clock *clock, uint64_t steps, double *p95)
-{
-    static double frame[MOST_STEPS];
-    const uint64_t n = clock->n / steps;
-    for (uint64_t i = 0; i < n; i++)
-        frame[i] = clock->at[(i + 1) * steps] - clock->at[i * steps];
-    qsort(frame, n, sizeof *frame, by_size);
-    *p95 = n ? frame[(n - 1) * 95 / 100] : NAN;
-    return n ? (clock->at[n * steps] - clock->at[0]) / (double)n : NAN;
-}
-
-/* Seconds a frame of a sheet that falls and comes to rest on the floor: h = 20 ms, two steps a
- * frame. what=p95 tells of the run that what=mean made, or makes one. */
-static int realtime(void *context, struct serve_request *request, double *value)
-{
-    enum { STEPS_A_FRAME = 2 };
-    static struct clock clock;
-    static double mean;
-    struct cg_session *s = context;
-    struct states_plan plan = {0};
-    char what[16];
-    const bool quick = serve_number(request, "quick") != 0;
-    const struct flow_progress progress = {.context = &clock, .step = note};
-    serve_word(request, "what", what, sizeof what);
-    const bool tail = !strcmp(what, "p95");
-    double *known = tail ? &s->p95 : &mean;
-    int code = 0;
-    if (!(*known > 0)) {
-        code = end(s, 0);
-        if (!code)
-            code = states_plan_make(&plan, "crumpled_h20", quick);
-        plan.model.end = (quick ? 8 : 100) * plan.model.h;
-        if (!code)
-            code = states_wave(&plan.model);
-        clock = (struct clock){.at = {serve_seconds()}};
-        if (!code)
-            code = cg_run(&plan.model, request, NULL, &progress);
-        states_plan_free(&plan);
-        mean = frames(&clock, STEPS_A_FRAME, &s->p95);
-    }
-    *value = *known;
-    *known = 0;
-    return code;
-}
-
-const struct serve_run cg_runs[] = {{"cg", cg},     {"solve", solve},       {"error", error},
-                                    {"step", step}, {"realtime", realtime}, {0}};
+const struct serve_run cg_runs[] = {{"cg", cg},     {"solve", solve},        {"error", error},
+                                    {"step", step}, {"realtime", cg_frames}, {0}};

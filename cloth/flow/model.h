@@ -17,7 +17,7 @@
 
 struct model_material {
     char *name;
-    double density; /* kg/m^2, > 0 */
+    double density; /* kg/m^2, > 0; 0: all its cloths have mass_per_vertex */
     enum { MODEL_SPRINGS, MODEL_TRIANGLES } model;
     double stretch, shear, bend; /* membrane moduli, N/m, >= 0; stretch along the warp; bend: of
                                     springs only */

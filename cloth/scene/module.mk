@@ -11,6 +11,8 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/schema/rules.h \
 	cloth/scene/schema/rules.c \
 	cloth/scene/schema/words.c \
+	cloth/scene/schema/fabrics.h \
+	cloth/scene/schema/fabrics.c \
 	cloth/scene/schema/check.h \
 	cloth/scene/schema/check.c \
 	cloth/scene/build/build.h \

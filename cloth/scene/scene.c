@@ -3,6 +3,7 @@
 #include "cloth/scene/scene.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
+#include "cloth/scene/schema/fabrics.h"
 #include "cloth/scene/yaml/edit.h"
 
 int scene_read(struct model *model, const char *path, size_t n_sets, const struct scene_set *sets,
@@ -16,6 +17,8 @@ int scene_read(struct model *model, const char *path, size_t n_sets, const struc
     tree.sets = sets;
     if (!code)
         code = scene_edit_sets(&tree, &own);
+    if (!code)
+        code = scene_fabrics_fill(&tree, &own);
     if (!code)
         code = scene_check(&tree, &own);
     if (!code)

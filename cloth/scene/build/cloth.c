@@ -1,6 +1,7 @@
 /* Cloths with their pins. Indices are checked here against the mesh, each with its own
  * place in the file. */
 #include "cloth/scene/build/build.h"
+#include "cloth/scene/schema/fabrics.h"
 #include "cloth/scene/schema/rules.h"
 #include "cloth/scene/yaml/scalar.h"
 
@@ -140,17 +141,44 @@ int scene_build_no_such(const char *what, const char *name, const char *const *n
     return scene_tree_fail(tree, node, error, "there is no %s '%.60s'%s", what, name, allowed);
 }
 
+static bool is_among(const char *word, const char *const *names, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!strcmp(names[i], word))
+            return true;
+    return false;
+}
+
 static int no_material(const char *name, const struct model *model, const struct scene_tree *tree,
                        int node, struct cloth_error *error)
 {
-    const char **names = scene_build_array(model->n_materials, sizeof *names, error);
+    size_t n = model->n_materials, n_fabrics = 0;
+    while (scene_fabric_names[n_fabrics])
+        n_fabrics++;
+    const char **names = scene_build_array(n + n_fabrics, sizeof *names, error);
     if (!names)
         return error->code;
     for (uint32_t i = 0; i < model->n_materials; i++)
         names[i] = model->materials[i].name;
-    int code = scene_build_no_such("material", name, names, model->n_materials, tree, node, error);
+    for (size_t i = 0; i < n_fabrics; i++)
+        if (!is_among(scene_fabric_names[i], names, n))
+            names[n++] = scene_fabric_names[i];
+    int code = scene_build_no_such("material", name, names, n, tree, node, error);
     free(names);
     return code;
+}
+
+/* Where no density is needed, none need be given. */
+static int check_density(const struct model_cloth *cloth, const struct model_material *material,
+                         const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    if (material->density > 0 || cloth->mass_per_vertex > 0)
+        return CLOTH_OK;
+    return scene_tree_fail(
+        tree, scene_tree_get(tree, node, "material"), error,
+        "material '%.60s' has no density and the cloth no mass_per_vertex; one of "
+        "them is expected",
+        material->name);
 }
 
 static int find_material(struct model_cloth *cloth, const struct model *model,
@@ -160,7 +188,7 @@ static int find_material(struct model_cloth *cloth, const struct model *model,
     for (uint32_t i = 0; i < model->n_materials; i++) {
         if (!strcmp(model->materials[i].name, name)) {
             cloth->material = i;
-            return CLOTH_OK;
+            return check_density(cloth, model->materials + i, tree, node, error);
         }
     }
     return no_material(name, model, tree, scene_tree_get(tree, node, "material"), error);

@@ -104,7 +104,8 @@ static int build_material(struct model_material *material, const struct scene_tr
     double stretch[2];
     *material = (struct model_material){
         .name = scene_build_copy(name, error),
-        .density = scene_tree_number(tree, node, "density"),
+        .density =
+            scene_tree_get(tree, node, "density") ? scene_tree_number(tree, node, "density") : 0,
         .shear = scene_tree_number(tree, node, "shear"),
         .bend = scene_tree_number(tree, node, "bend"),
         .poisson = scene_tree_number(tree, node, "poisson"),

@@ -3,6 +3,8 @@
  * it. docs/scene.md describes it. */
 #include "cloth/scene/schema/rules.h"
 
+#include "cloth/scene/schema/fabrics.h"
+
 static const struct scene_rule number = {.type = SCENE_NUMBER};
 static const struct scene_rule positive = {.type = SCENE_NUMBER, .range = SCENE_POSITIVE};
 static const struct scene_rule vertex = {.type = SCENE_INTEGER};
@@ -188,8 +190,10 @@ static const struct scene_rule bending_keys[] = {
 static const char *const diagonals[] = {"both", "one", NULL};
 
 static const struct scene_rule material_keys[] = {
-    {"density", SCENE_NUMBER, "kg/m^2", .required = true, .range = SCENE_POSITIVE,
-     .about = "mass of an area"},
+    {"like", SCENE_CHOICE, .words = scene_fabric_names,
+     .about = "a measured one, whose values stand where none are given"},
+    {"density", SCENE_NUMBER, "kg/m^2", .range = SCENE_POSITIVE,
+     .about = "mass of an area; but where cloths have mass_per_vertex"},
     {"model", SCENE_CHOICE, .fallback = "springs", .words = models,
      .about = "what resists being stretched"},
     {"stretch", SCENE_NUMBER_OR_LIST, "N/m", .required = true, .range = SCENE_NOT_NEGATIVE,
@@ -303,7 +307,8 @@ static const struct scene_rule scene_keys[] = {
     {"air", SCENE_MAP, .inside = air_keys, .about = "drag and wind on triangles; else there is none"},
     {"cloths", SCENE_LIST, .required = true, .filled = true, .inside = &cloth,
      .about = "what moves"},
-    {"materials", SCENE_NAMED, .required = true, .inside = &material, .about = "NAME is yours"},
+    {"materials", SCENE_NAMED, .inside = &material,
+     .about = "NAME is yours; cotton, silk and denim are there"},
     {"obstacles", SCENE_LIST, .fallback = "[]", .inside = &obstacle, .about = "what does not move"},
     {"contact", SCENE_CHOICE, .fallback = "project", .words = contacts,
      .about = "how obstacles are met"},

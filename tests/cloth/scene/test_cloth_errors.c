@@ -95,30 +95,36 @@ END_TEST
 
 START_TEST(names_and_indices)
 {
-    EXPECT({"material: cotton", "material: coton",
-            .error = ":6:15: there is no material 'coton'; did you mean 'cotton'? Allowed: cotton"},
-           {"material: cotton", "material: silk",
-            .error = ":6:15: there is no material 'silk'; allowed: cotton"},
-           {"materials:\n",
-            "  - {name: sheet, mesh: {grid: {width: 1, height: 1, nx: 2, ny: 2}}, material: "
-            "cotton}\nmaterials:\n",
-            .error = ":9:12: a second cloth is named 'sheet'; names must differ"},
-           {"vertices: [0, 3]", "vertices: [0, 12]",
-            .error = ":7:27: vertex 12 is outside the mesh of cloth 'sheet', which has 12 "
-                     "vertices; 0 to 11 are allowed"},
-           {"vertices: [11]", "vertices: [99]",
-            .error = ":8:25: vertex 99 is outside the mesh of cloth 'sheet', which has 12 "
-                     "vertices; 0 to 11 are allowed"},
-           {"vertices: [11]", "vertices: [11, 4, 11]",
-            .error = ":8:32: vertex 11 stands twice in one load; to load it twice, write another "
-                     "load or a larger force"},
-           {"material: cotton",
-            "material: cotton\n    cost: {factor: 3, box: [[9, 9, 9], [8, 8, 8]]}",
-            .error = ":7:28: the box holds no vertex of cloth 'sheet'; it is meant for positions "
-                     "after the transform"},
-           {"{vertices: [0, 3]}", "{box: [[9, 9, 9], [8, 8, 8]]}",
-            .error = ":7:18: the box holds no vertex of cloth 'sheet'; it is meant for positions "
-                     "after the transform"});
+    EXPECT(
+        {"material: cotton", "material: coton",
+         .error = ":6:15: there is no material 'coton'; did you mean 'cotton'? Allowed: cotton, "
+                  "silk, denim"},
+        {"material: cotton", "material: polyester",
+         .error = ":6:15: there is no material 'polyester'; allowed: cotton, silk, denim"},
+        {"density: 0.2, ", "",
+         .error = ":6:15: material 'cotton' has no density and the cloth no mass_per_vertex; one "
+                  "of them is expected"},
+        {"density: 0.2, stretch: 50", "like: wool",
+         .error = ":10:18: materials.cotton.like is wool; cotton or silk or denim is expected"},
+        {"materials:\n",
+         "  - {name: sheet, mesh: {grid: {width: 1, height: 1, nx: 2, ny: 2}}, material: "
+         "cotton}\nmaterials:\n",
+         .error = ":9:12: a second cloth is named 'sheet'; names must differ"},
+        {"vertices: [0, 3]", "vertices: [0, 12]",
+         .error = ":7:27: vertex 12 is outside the mesh of cloth 'sheet', which has 12 "
+                  "vertices; 0 to 11 are allowed"},
+        {"vertices: [11]", "vertices: [99]",
+         .error = ":8:25: vertex 99 is outside the mesh of cloth 'sheet', which has 12 "
+                  "vertices; 0 to 11 are allowed"},
+        {"vertices: [11]", "vertices: [11, 4, 11]",
+         .error = ":8:32: vertex 11 stands twice in one load; to load it twice, write another "
+                  "load or a larger force"},
+        {"material: cotton", "material: cotton\n    cost: {factor: 3, box: [[9, 9, 9], [8, 8, 8]]}",
+         .error = ":7:28: the box holds no vertex of cloth 'sheet'; it is meant for positions "
+                  "after the transform"},
+        {"{vertices: [0, 3]}", "{box: [[9, 9, 9], [8, 8, 8]]}",
+         .error = ":7:18: the box holds no vertex of cloth 'sheet'; it is meant for positions "
+                  "after the transform"});
 }
 END_TEST
 

@@ -111,7 +111,7 @@ START_TEST(unknown_and_missing_keys)
                      "halving, stretch_growth, stretch_limit, rest"},
            {"stretch: 50", "strech: 50",
             .error = ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
-                     "Allowed: density, model, stretch, shear, poisson, forces, bend, bending, "
+                     "Allowed: like, density, model, stretch, shear, poisson, forces, bend, bending, "
                      "damping, diagonals"},
            {"vertices: [11]", "vertex: [11]",
             .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, "
@@ -218,7 +218,7 @@ START_TEST(sets_that_are_wrong)
         {"time.h=*a", "the value is not YAML: found undefined alias"},
         {"time.h=!t 1", "time.h has the tag !t; a value without a tag is expected"},
         {"name=&a [*a]", "name is a list of 1; a text is expected"},
-        {"materials={}", "materials is an empty map; a non-empty map of names is expected"},
+        {"materials=[1]", "materials is a list of 1; a non-empty map of names is expected"},
         {"cloths=[]", "cloths is an empty list; a non-empty list of maps is expected"}};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         char error[300];

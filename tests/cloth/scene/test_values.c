@@ -107,6 +107,62 @@ START_TEST(cloth_and_material)
 }
 END_TEST
 
+static void same_fabric(const struct model_material *m, double density, double warp, double weft,
+                        double shear, double rigidity)
+{
+    ck_assert_int_eq(m->model, MODEL_TRIANGLES);
+    ck_assert_int_eq(m->bending, MODEL_HINGES);
+    ck_assert_double_eq(m->density, density);
+    ck_assert_double_eq_tol(m->stretch, warp, 1e-12 * warp);
+    ck_assert_double_eq_tol(model_weft(m), weft, 1e-12 * weft);
+    ck_assert_double_eq(m->shear, shear);
+    ck_assert_double_eq(m->rigidity[0], rigidity);
+    ck_assert_double_eq(m->rigidity[1], rigidity);
+}
+
+/* Those that no scene need write, with some of their values changed, and one of the scene's own of
+ * the same name. */
+START_TEST(named_fabrics)
+{
+    static const char *const sets[] = {
+        "cloths[0].material=denim", "cloths[0].material=silk",
+        "materials={linen: {like: cotton, density: 0.1, bending: {rigidity: 1}}}",
+        "cloths[0].material=cotton"};
+    const struct scene_set set[] = {
+        {.text = sets[0]}, {.text = sets[1]}, {.text = sets[2]}, {.text = sets[3]}};
+    struct model model = read_with(scene_right, 1, set);
+    ck_assert_uint_eq(model.n_materials, 2);
+    ck_assert_str_eq(model.materials[1].name, "denim");
+    ck_assert_uint_eq(model.cloths[0].material, 1);
+    same_fabric(model.materials + 1, 0.324, 2026.8, 410.5, 53.4, 1.954e-5);
+    ck_assert_double_eq(model.materials[1].poisson, 0.0498);
+    model_free(&model);
+    model = read_with(scene_right, 1, set + 1);
+    same_fabric(model.materials + 1, 0.0347, 2000, 2000, 20, 9.8e-7);
+    model_free(&model);
+    model = read_with(scene_right, 2, set + 2);
+    ck_assert_str_eq(model.materials[0].name, "linen");
+    same_fabric(model.materials, 0.1, 130.3, 85.7, 83.2, 1);
+    same_fabric(model.materials + 1, 0.276, 130.3, 85.7, 83.2, 9.04e-6);
+    model_free(&model);
+    model = read_with(scene_right, 1, set + 3); /* its own */
+    ck_assert_uint_eq(model.n_materials, 1);
+    ck_assert_double_eq(model.materials[0].density, 0.2);
+    model_free(&model);
+}
+END_TEST
+
+/* A density is wanted only where it is needed. */
+START_TEST(mass_without_density)
+{
+    const struct scene_set set[] = {{.text = "materials={cotton: {stretch: 50}}"},
+                                    {.text = "cloths[0].mass_per_vertex=0.1"}};
+    struct model model = read_with(scene_right, 2, set);
+    ck_assert_double_eq(model.materials[0].density, 0);
+    model_free(&model);
+}
+END_TEST
+
 START_TEST(every_other_key)
 {
     struct model model =
@@ -415,6 +471,8 @@ int main(void)
     TCase *cases = tcase_create("values");
     tcase_add_test(cases, world_and_time);
     tcase_add_test(cases, cloth_and_material);
+    tcase_add_test(cases, named_fabrics);
+    tcase_add_test(cases, mass_without_density);
     tcase_add_test(cases, every_other_key);
     tcase_add_test(cases, slopes);
     tcase_add_test(cases, triangles_and_bending);

@@ -1,0 +1,58 @@
+#!/bin/sh
+# The materials that every scene knows by name: what docs/physics.md says of them is what a strip weighs, and how far it hangs
+# along the warp and along the weft; the scene that ships with them runs, by short steps and by long ones.
+. "${srcdir:-.}/tests/support/tap.sh"
+. "$srcdir/tests/support/probes.sh"
+plan_later
+
+# A strip of 0.5 m x 0.05 m whose upper side may narrow; the rotation brings the warp, or the weft, down.
+strip() { # FABRIC ROTATION WIDTH HEIGHT NX NY UPPER LOWER
+    cat << END
+schema: 1
+cloths:
+  - mesh: {grid: {width: $3, height: $4, nx: $5, ny: $6}}
+    transform: {rotate: $2}
+    material: it
+    pins: [{vertices: $7, to: line, direction: [1, 0, 0]}]
+materials: {it: {like: $1, damping: {mass: 20}}}
+time: {h: 0.05, end: 20, fps: 0.1}
+solver: {stop: {relative: 1.0e-10}}
+probes: [{name: up, vertices: $7, values: [position, total]}, {name: low, vertices: $8, values: [position]}]
+END
+}
+warp() { strip "$1" '[0.7071067811865476, 0, 0, 0.7071067811865476]' 0.5 0.05 11 3 '[10, 21, 32]' '[0, 11, 22]'; }
+weft() { strip "$1" '[0.7071067811865476, 0.7071067811865476, 0, 0]' 0.05 0.5 3 11 '[0, 1, 2]' '[30, 31, 32]'; }
+
+hangs() { # WHAT DENSITY MODULUS UPPER LOWER MIDDLE LOWER: its weight is carried, and stretches it by q L^2 / 2 E
+    run strip.yaml || return 1
+    # shellcheck disable=SC2046 # three numbers
+    set -- "$1" "$2" "$3" $(last up.total.ry "up.$4.y" "low.$5.y" "low.$6.y" "low.$7.y")
+    near "$1, weight" "$4" "$(awk -v q="$2" 'BEGIN { printf "%.12g", 9.81 * q * 0.025 }')" 1e-6 &&
+        near "$1, stretch" "$(awk -v up="$5" -v a="$6" -v b="$7" -v c="$8" 'BEGIN { printf "%.12g", up - (a + 2 * b + c) / 4 - 0.5 }')" "$(awk -v q="$2" -v e="$3" 'BEGIN { printf "%.12g", 9.81 * q * 0.125 / e }')" 2e-3
+}
+while read -r fabric density warp weft; do
+    warp "$fabric" > strip.yaml
+    ok "$fabric along the warp" hangs "$fabric, warp" "$density" "$warp" 10 0 11 22
+    weft "$fabric" > strip.yaml
+    ok "$fabric along the weft" hangs "$fabric, weft" "$density" "$weft" 0 30 31 32
+done << 'END'
+cotton 0.276 130.3 85.7
+silk 0.0347 2000 2000
+denim 0.324 2026.8 410.5
+END
+
+scene=$srcdir/cloth/scenes/fabrics.yaml
+ships() { # H END: no edge is twice as long, nothing was given up
+    run "$scene" --report report.json --set time.h="$1" --end "$2" || return 1
+    grep -E 'max_stretch|steps_halved' report.json
+    awk -F'[:,]' '/"max_stretch"/ { s = $2 } END { exit !(s > 1 && s < 1.3) }' report.json
+}
+ok "the shipped scene by steps of 10 ms" ships 0.01 0.1
+ok "the shipped scene by steps of 40 ms" ships 0.04 0.4
+bare() { # no materials, no damping
+    printf 'schema: 1\ncloths: [{mesh: {grid: {width: 1, height: 1, nx: 5, ny: 5}}, material: %s}]\ntime: {h: 0.01, end: 0.05}\n' "$1" > bare.yaml
+    run bare.yaml
+}
+for fabric in cotton silk denim; do
+    ok "a scene that says $fabric and no more" bare $fabric
+done

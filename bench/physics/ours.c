@@ -42,7 +42,9 @@ int physics_end(struct physics_session *s)
 /* The scene of the bench "cg", of so many vertices along each side. */
 static int read_model(struct model *model, const char *sheet, unsigned side, bool quick)
 {
-    enum { SETS = 6 };
+    enum { SETS = 7 };
+    static const char UNDAMPED[] =
+        "materials.cloth={density: 0.2, stretch: 5000, shear: 2500, diagonals: one}";
     static const char TRIANGLES[] = "materials.cloth={model: triangles, density: 0.2, stretch: "
                                     "5000, shear: 2000, poisson: 0.3, damping: {stiffness: 0.05}}";
     char text[SETS][200];
@@ -51,13 +53,17 @@ static int read_model(struct model *model, const char *sheet, unsigned side, boo
     const bool explicit = !strcmp(sheet, "explicit");
     snprintf(text[0], sizeof *text, "cloths[0].mesh.grid={width: 1, height: 1, nx: %u, ny: %u}",
              side, side);
-    snprintf(text[1], sizeof *text, "time={h: %s, end: %s, fps: 1}", explicit ? "1e-7" : "0.001",
-             explicit ? "1e-7" : "0.001");
+    snprintf(text[1], sizeof *text, "time={h: %s, end: %s, fps: 1, halving: off}",
+             explicit ? "1e-7" : "0.001", explicit ? "1e-7" : "0.001");
     snprintf(text[2], sizeof *text, "integrator=%s",
              explicit ? "explicit_euler" : "implicit_euler");
     snprintf(text[3], sizeof *text, "grain=%d", quick ? 40 : 1000);
     snprintf(text[4], sizeof *text, "solver.preconditioner=none");
-    snprintf(text[5], sizeof *text, "%s", !strcmp(sheet, "triangles") ? TRIANGLES : "obstacles=[]");
+    snprintf(text[5], sizeof *text, "%s",
+             explicit                      ? UNDAMPED
+             : !strcmp(sheet, "triangles") ? TRIANGLES
+                                           : "gravity=[0, -9.81, 0]");
+    snprintf(text[6], sizeof *text, "obstacles=[]");
     for (int i = 0; i < SETS; i++)
         set[i].text = text[i];
     if (scene_read(model, BENCH_STATES_SCENE, SETS, set, &error))

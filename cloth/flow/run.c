@@ -40,7 +40,7 @@ const duite_kernel *const *flow_kernels(void)
         &flow_ready, &flow_initial, &flow_force, &flow_force_free, &flow_explicit, &flow_kick_first,
         &flow_kick_second, &flow_runge, &flow_system_all, &flow_predict, &flow_correct, &flow_shift,
         &flow_residual, &flow_system_rest, &flow_matrix, &flow_begin, &flow_pack, &flow_start,
-        &flow_guess, &flow_pass, &flow_scalars, &flow_velocity_dv, &flow_velocity_a, &flow_position,
+        &flow_guess, &flow_pass, &flow_scalars, &flow_velocity_dv, &flow_move, &flow_position,
         &flow_collide, &flow_keep, &flow_restore, &flow_status, &flow_frame, &flow_stretch,
         &flow_drive, &flow_touch, &flow_contact, &flow_hold, &flow_place, &flow_watch_block,
         &flow_probe, &flow_row, &flow_energy, &flow_level, &flow_seconds, &flow_tell,

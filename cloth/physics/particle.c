@@ -1,8 +1,9 @@
 /* Each row is computed from itself alone: no order of rows matters. */
 #include "cloth/physics/particle.h"
 
-void phys_outside(size_t n, const phys_vec *load, const double *drag, const phys_vec *v,
-                  phys_vec *f)
+PHYS_KERNEL(phys_outside,
+            (size_t n, const phys_vec *load, const double *drag, const phys_vec *v, phys_vec *f),
+            (n, load, drag, v, f))
 {
     for (size_t i = 0; i < n; i++)
         f[i] = load[i] - drag[i] * v[i];
@@ -14,7 +15,8 @@ void phys_accelerate(size_t n, const double *mass, const double *free, phys_vec 
         f[i] = free[i] * (f[i] / mass[i]);
 }
 
-void phys_advance(size_t n, double scale, const phys_vec *d, phys_vec *y)
+PHYS_KERNEL(phys_advance, (size_t n, double scale, const phys_vec *d, phys_vec *y),
+            (n, scale, d, y))
 {
     for (size_t i = 0; i < n; i++)
         y[i] += scale * d[i];
@@ -64,11 +66,18 @@ double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *mos
     return sum;
 }
 
-size_t phys_diverged(size_t n, double bound, const phys_vec *y)
+PHYS_KERNEL_OF(size_t, phys_diverged, (size_t n, double bound, const phys_vec *y), (n, bound, y))
 {
+    typedef int64_t mask __attribute__((vector_size(32)));
+    const phys_vec most = {bound, bound, bound, bound};
+    mask well = {-1, -1, -1, -1};
+    for (size_t i = 0; i < n; i++)
+        well &= (y[i] < most) & (y[i] > -most); /* NaN is neither */
+    if (well[0] & well[1] & well[2] & well[3])
+        return n;
     for (size_t i = 0; i < n; i++)
         for (int c = 0; c < 3; c++)
-            if (!(y[i][c] < bound && y[i][c] > -bound)) /* NaN too */
+            if (!(y[i][c] < bound && y[i][c] > -bound))
                 return i;
     return n;
 }

@@ -4,8 +4,6 @@
 
 #include "cloth/physics/detail/lanes.h"
 
-#include <math.h>
-
 /* ---- Four springs at once (detail/lanes.h) ---- */
 
 struct four_springs {
@@ -238,16 +236,43 @@ PHYS_KERNEL(phys_springs_matrix,
 
 /* ---- Stretch ---- */
 
-void phys_springs_range(const struct phys_springs *springs, const unsigned char *chosen,
-                        const phys_vec *x, const phys_vec *x_other, double range[2])
+/* Widens range, lane by lane, to l / L of four springs. */
+PHYS_INLINE void widen(const struct phys_springs *s, const struct phys_four *four,
+                       const unsigned char *chosen, const phys_vec *x, const phys_vec *x_other,
+                       phys_vec range[2])
 {
-    for (size_t i = 0; i < springs->n; i++) {
-        const phys_vec d = x_other[springs->end[i][1]] - x[springs->end[i][0]];
-        const double stretch = sqrt(phys_dot(&d, &d)) / springs->length[i];
-        if (chosen[i] && stretch < range[0])
-            range[0] = stretch;
-        if (chosen[i] && stretch > range[1])
-            range[1] = stretch;
+    uint32_t is[PHYS_WIDE];
+    phys_vec rest, stretch;
+    struct phys_wide d;
+    differences(s, four, x, x_other, &d);
+    dot(&d, &d, &stretch);
+    phys_sqrt(&stretch, &stretch);
+    phys_take_numbers(four, s->length, &rest);
+    stretch /= rest;
+    PHYS_UNROLL
+    for (int i = 0; i < PHYS_WIDE; i++)
+        is[i] = chosen[four->at[i]] != 0;
+    const phys_mask counts = -(phys_mask){is[0], is[1], is[2], is[3]};
+    const phys_mask less = counts & (stretch < range[0]), more = counts & (stretch > range[1]);
+    phys_choose(&less, &stretch, range, range);
+    phys_choose(&more, &stretch, range + 1, range + 1);
+}
+
+PHYS_KERNEL(phys_springs_range,
+            (const struct phys_springs *springs, const unsigned char *chosen, const phys_vec *x,
+             const phys_vec *x_other, double range[2]),
+            (springs, chosen, x, x_other, range))
+{
+    phys_vec lanes[2] = {{range[0], range[0], range[0], range[0]},
+                         {range[1], range[1], range[1], range[1]}};
+    for (size_t i = 0; i < springs->n; i += PHYS_WIDE) {
+        struct phys_four four;
+        phys_four_from(i, springs->n, &four);
+        widen(springs, &four, chosen, x, x_other, lanes);
+    }
+    for (int i = 0; i < PHYS_WIDE; i++) {
+        range[0] = lanes[0][i] < range[0] ? lanes[0][i] : range[0];
+        range[1] = lanes[1][i] > range[1] ? lanes[1][i] : range[1];
     }
 }
 

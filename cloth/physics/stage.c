@@ -1,6 +1,24 @@
 /* A row that is held has the acceleration and the velocity zero, and so stays where it is. */
 #include "cloth/physics/stage.h"
 
+PHYS_KERNEL_OF(int, phys_euler,
+               (size_t n, double h, int ahead, double bound, const double *mass, const double *free,
+                const phys_vec *f, phys_vec *x, phys_vec *v),
+               (n, h, ahead, bound, mass, free, f, x, v))
+{
+    typedef int64_t mask __attribute__((vector_size(32)));
+    const phys_vec most = {bound, bound, bound, bound};
+    mask well = {-1, -1, -1, -1};
+    for (size_t i = 0; i < n; i++) {
+        const phys_vec a = free[i] * (f[i] / mass[i]), before = v[i], after = before + h * a;
+        const phys_vec place = x[i] + h * (ahead ? after : before);
+        well &= (place < most) & (place > -most) & (after < most) & (after > -most);
+        x[i] = place;
+        v[i] = after;
+    }
+    return (well[0] & well[1] & well[2] & well[3]) != 0;
+}
+
 void phys_kick(size_t n, double t, double ahead, const double *mass, const double *drag,
                const double *free, const phys_vec *f, const phys_vec *v, phys_vec *w)
 {

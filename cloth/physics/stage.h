@@ -5,9 +5,14 @@
 
 #include <stddef.h>
 
-/* Parts of explicit steps of more than one stage. Arrays have n rows and the units of
+/* Explicit steps and parts of them. Arrays have n rows and the units of
  * cloth/physics/particle.h. Each row is computed from itself alone. Pure functions; nothing is
  * allocated. */
+
+/* A step of h seconds by explicit Euler, x += h v, v += h a with a = free f / mass, or, ahead, by
+ * symplectic Euler, where x moves by the new v. f: N. 0 if a row diverged (phys_diverged). */
+int phys_euler(size_t n, double h, int ahead, double bound, const double *mass, const double *free,
+               const phys_vec *f, phys_vec *x, phys_vec *v);
 
 /* A half step of velocity Verlet of t seconds:
  *

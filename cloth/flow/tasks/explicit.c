@@ -31,24 +31,13 @@ static int fork_position(struct flow_state *state, long v)
                          FLOW_NO_RIM);
 }
 
-/* v += h a. */
-static int fork_velocity(struct flow_state *state)
+/* x and v by the forces at where they are. */
+static int fork_move(struct flow_state *state)
 {
-    return flow_fork_all(state, &flow_velocity_a, flow_attempt_args(state),
-                         FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(v), FLOW_AT(rim_v)), FLOW_THEN_STATUS,
-                         FLOW_NO_RIM, FLOW_NO_RIM);
-}
-
-static int euler(struct flow_state *state)
-{
-    const int code = fork_position(state, FLOW_AT(v));
-    return code ? code : fork_velocity(state);
-}
-
-static int symplectic(struct flow_state *state)
-{
-    const int code = fork_velocity(state);
-    return code ? code : fork_position(state, FLOW_AT(v));
+    return flow_fork_all(
+        state, &flow_move, flow_attempt_args(state),
+        FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
+        FLOW_THEN_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
 }
 
 /* f, without the drag, stays from step to step: what ends one begins the next, unless contact or
@@ -89,21 +78,24 @@ static int runge(struct flow_state *state)
 
 int flow_explicit_begin(struct flow_state *state)
 {
-    if (state->flow->model->integrator != MODEL_VERLET)
+    switch (state->flow->model->integrator) {
+    case MODEL_RK4:
         return fork_acceleration(state);
-    return state->settled_forces ? DUITE_OK : fork_force(state, &flow_force_free);
+    case MODEL_VERLET:
+        return state->settled_forces ? DUITE_OK : fork_force(state, &flow_force_free);
+    default:
+        return fork_force(state, &flow_force);
+    }
 }
 
 int flow_explicit_end(struct flow_state *state)
 {
     switch (state->flow->model->integrator) {
-    case MODEL_SYMPLECTIC_EULER:
-        return symplectic(state);
     case MODEL_VERLET:
         return verlet(state);
     case MODEL_RK4:
         return runge(state);
     default:
-        return euler(state);
+        return fork_move(state);
     }
 }

@@ -61,16 +61,16 @@ extern const duite_kernel flow_scalars_coarse; /* w next scalars, w next motion,
                                                   factor; all parts */
 extern const duite_kernel
     flow_velocity_dv; /* table, r f, r a, r dv, r r, rw v, w rim of v, r scalars, cw status */
-extern const duite_kernel flow_velocity_a; /* table, r f, rw v, w rim of v, cw status */
-extern const duite_kernel flow_position;   /* table, r v, rw x, w rim of x, cw status */
-extern const duite_kernel flow_collide; /* table, rw x, rw v, w rim of x, w rim of v, cw status */
-extern const duite_kernel flow_touch;   /* table, r x, rw v, w rim of v */
-extern const duite_kernel flow_keep;    /* r x, r v, w kept x, w kept v */
-extern const duite_kernel flow_restore; /* table, r kept x, r kept v, w x, w v, w rims of both */
-extern const duite_kernel flow_status;  /* cw status: on rank 0, whether a stop was asked for */
-extern const duite_kernel flow_frame;   /* rw token; x of all blocks: on rank 0 */
-extern const duite_kernel flow_drive;   /* table, r x, rw v, w rim of v */
-extern const duite_kernel flow_place;   /* table, rw x, w rim of x */
+extern const duite_kernel flow_move; /* table, r f, rw x, rw v, w rim of x, w rim of v, cw status */
+extern const duite_kernel flow_position; /* table, r v, rw x, w rim of x, cw status */
+extern const duite_kernel flow_collide;  /* table, rw x, rw v, w rim of x, w rim of v, cw status */
+extern const duite_kernel flow_touch;    /* table, r x, rw v, w rim of v */
+extern const duite_kernel flow_keep;     /* r x, r v, w kept x, w kept v */
+extern const duite_kernel flow_restore;  /* table, r kept x, r kept v, w x, w v, w rims of both */
+extern const duite_kernel flow_status;   /* cw status: on rank 0, whether a stop was asked for */
+extern const duite_kernel flow_frame;    /* rw token; x of all blocks: on rank 0 */
+extern const duite_kernel flow_drive;    /* table, r x, rw v, w rim of v */
+extern const duite_kernel flow_place;    /* table, rw x, w rim of x */
 extern const duite_kernel flow_watch_block; /* table, r x, r v, cw peaks (max); rims of x */
 extern const duite_kernel flow_probe;       /* table, r x, r v, r force, w seen */
 extern const duite_kernel flow_row; /* rw token, r status, r peaks, r energies; seen of the blocks

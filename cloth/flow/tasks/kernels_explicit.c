@@ -6,6 +6,28 @@
 
 #define ARGS sizeof(struct flow_args)
 
+/* A step by either Euler, of the forces: x by the old v, or by the new one. */
+static int move(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const bool ahead = flow_of(call)->model->integrator == MODEL_SYMPLECTIC_EULER;
+    phys_vec *x = duite_out(call, 2, phys_vec), *v = duite_out(call, 3, phys_vec);
+    const int well = phys_euler(t->n, flow_args_of(call)->h, ahead, FLOW_BOUND, t->mass, t->free,
+                                duite_in(call, 1, phys_vec), x, v);
+    flow_write_rim(t, x, duite_out(call, 4, phys_vec));
+    flow_write_rim(t, v, duite_out(call, 5, phys_vec));
+    if (well)
+        return 0;
+    const int code = flow_check(call, t, ahead ? v : x, ahead ? "velocity" : "position", 6);
+    return code ? code : flow_check(call, t, ahead ? x : v, ahead ? "position" : "velocity", 6);
+}
+FLOW_TIMED(move, FLOW_VELOCITY)
+const duite_kernel flow_move = {
+    .name = "move",
+    .body = move_timed,
+    .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_RW, DUITE_W, DUITE_W, DUITE_CW},
+    .args_size = ARGS};
+
 /* v becomes a guess of the velocity at the end of the step, for forces that depend on it. */
 static int kick_first(const duite_call *call)
 {

@@ -154,21 +154,6 @@ const duite_kernel flow_velocity_dv = {
     .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_R, DUITE_CW},
     .args_size = ARGS};
 
-/* v += h a. */
-static int velocity_a(const duite_call *call)
-{
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    phys_vec *v = duite_out(call, 2, phys_vec);
-    phys_advance(t->n, flow_args_of(call)->h, duite_in(call, 1, phys_vec), v);
-    flow_write_rim(t, v, duite_out(call, 3, phys_vec));
-    return flow_check(call, t, v, "velocity", 4);
-}
-FLOW_TIMED(velocity_a, FLOW_VELOCITY)
-const duite_kernel flow_velocity_a = {.name = "velocity_explicit",
-                                      .body = velocity_a_timed,
-                                      .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
-                                      .args_size = ARGS};
-
 static int position(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;

@@ -2,6 +2,8 @@
 #include "cloth/physics/stage.h"
 #include "tests/support/unit.h"
 
+#include <math.h>
+
 static void same(const phys_vec *a, double x, double y, double z)
 {
     ck_assert_double_eq((*a)[0], x);
@@ -9,6 +11,28 @@ static void same(const phys_vec *a, double x, double y, double z)
     ck_assert_double_eq((*a)[2], z);
     ck_assert_double_eq((*a)[3], 0);
 }
+
+/* By the old v, and by the new one; what is held stays. */
+START_TEST(euler)
+{
+    const phys_vec f[2] = {{6, -3, 0, 0}, {1, 1, 1, 0}};
+    const double mass[2] = {2, 4}, loose[2] = {1, 0};
+    for (int ahead = 0; ahead < 2; ahead++) {
+        phys_vec x[2] = {{1, 2, 3, 0}, {4, 5, 6, 0}}, v[2] = {{4, 2, -6, 0}, {0, 0, 0, 0}};
+        ck_assert_int_eq(phys_euler(2, 0.5, ahead, 6.5, mass, loose, f, x, v), 1);
+        same(v, 5.5, 1.25, -6);
+        same(x, ahead ? 3.75 : 3, ahead ? 2.625 : 3, 0);
+        same(x + 1, 4, 5, 6);
+        same(v + 1, 0, 0, 0);
+        ck_assert_int_eq(phys_euler(2, 0, ahead, 6, mass, loose, f, x, v), 0); /* z of x[1], v[0] */
+        x[1][2] = NAN;
+        v[0][2] = 0;
+        ck_assert_int_eq(phys_euler(2, 0, ahead, 6.5, mass, loose, f, x, v), 0);
+        x[1][2] = 0;
+        ck_assert_int_eq(phys_euler(2, 0, ahead, 6, mass, loose, f, x, v), 1);
+    }
+}
+END_TEST
 
 START_TEST(kicks)
 {
@@ -57,6 +81,7 @@ int main(void)
 {
     Suite *suite = suite_create("stage");
     TCase *cases = tcase_create("stage");
+    tcase_add_test(cases, euler);
     tcase_add_test(cases, kicks);
     tcase_add_test(cases, kicks_together);
     tcase_add_test(cases, runge_step);

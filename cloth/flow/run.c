@@ -105,6 +105,36 @@ static int warn_of_h(struct flow *flow, struct cloth_error *error)
     return CLOTH_OK;
 }
 
+/* The longest step, s, in which the air's push on a cloth does not turn its velocity round and
+ * more: the slope of the drag over the mass, rho C |u| / density, times h is to be below 2. At the
+ * speed that the cloth starts with against the wind. */
+static double air_limit(const struct model *model, const struct model_cloth *cloth)
+{
+    const struct phys_air *air = &model->air;
+    const double density = model->materials[cloth->material].density;
+    double square = 0;
+    for (int i = 0; i < 3; i++)
+        square += pow(air->wind[i] - cloth->velocity[i], 2);
+    if (!cloth->mesh.n_triangles || cloth->mass_per_vertex > 0)
+        return INFINITY;
+    return 2 * density / (air->density * fmax(air->normal, air->tangent) * sqrt(square));
+}
+
+/* Its push is that of the begin of a step, whatever the integrator. */
+static void warn_of_air(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    for (uint32_t c = 0; model_has_air(model) && c < model->n_cloths && !flow->warning[5][0]; c++) {
+        const struct model_cloth *cloth = model->cloths + c;
+        const double most = air_limit(model, cloth);
+        if (model->h > most)
+            snprintf(flow->warning[5], sizeof flow->warning[5],
+                     "%.200s: steps of %g s are beyond the limit of the air, which is not in the "
+                     "matrix, %g s: its push on cloth '%.60s' can grow in each",
+                     model->h_place ? model->h_place : "h", model->h, most, cloth->name);
+    }
+}
+
 /* Keeps where the vertices are that no block has. */
 static int keep_rest(struct flow *flow, const struct flow_particles *particles,
                      struct cloth_error *error)
@@ -139,6 +169,7 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     flow->partition_hash = flow->source.blocks.hash;
     flow->inertia = flow_source_inertia(&flow->source);
     warn(flow, &flow->source.particles);
+    warn_of_air(flow);
     flow_turned_choose(flow, flow->source.blocks.n_blocks);
     if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||
         warn_of_h(flow, error))

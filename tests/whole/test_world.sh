@@ -136,3 +136,17 @@ edge_at_rest() {
 ok "a load along an edge, by its length at rest" edge_at_rest
 same() { run sheet.yaml --output a && ranks 3 "$DUITE_CLOTH" sheet.yaml --quiet --output b --threads 2 && cmp a/probes.csv b/probes.csv; }
 ok "air is the same on 3 ranks" same
+stormy() { # WIND LIMIT H: warned of beyond 2 density / (1.2 * 1.25 |u|), and only there
+    cat > storm.yaml << END
+schema: 1
+cloths: [{mesh: {grid: {width: 1, height: 1, nx: 3, ny: 3}}, material: it, velocity: [0, 0, -2]}]
+materials: {it: {density: 0.03, stretch: 50}}
+air: {density: 1.2, normal: 1.25, wind: [0, 0, $1]}
+time: {h: $3, end: 0.01}
+END
+    run storm.yaml 2> said
+    cat said
+    grep -q "^duite-cloth: warning: storm.yaml:5:11: steps of $3 s are beyond the limit of the air, which is not in the matrix, $2 s: its push on cloth 'cloth1'" said
+}
+ok "a step that is too long for the wind is warned of" stormy 6 0.005 0.006
+ok "one that is not is not" eval '! stormy 6 0.005 0.0049'

@@ -5,6 +5,8 @@
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"
 
+#include <math.h>
+
 bool comm_asks_start(struct comm_asks *asks, int n_ranks)
 {
     size_t n = (size_t)n_ranks;
@@ -142,6 +144,8 @@ bool comm_asks_over(struct comm *comm)
 
 /* ---- What a link costs ---- */
 
+#define LEAST_PER_BYTE 1e-12 /* s: what else goes on may hide it, but no way is free */
+
 enum { SMALL_LINES = 1, LARGE_LINES = 1024, ROUNDS = 12 };
 
 /* The fastest there and back, halved. */
@@ -178,7 +182,7 @@ void comm_measure(struct comm *comm)
         if (!mpi)
             mpi = ping(comm, other, bytes, LARGE_LINES, &large);
         own[0] = comm->rank < half ? small : 0;
-        own[1] = comm->rank < half && large > small ? (large - small) / sizeof bytes : 0;
+        own[1] = comm->rank < half ? fmax((large - small) / sizeof bytes, LEAST_PER_BYTE) : 0;
     }
     if (!mpi)
         mpi = MPI_Allreduce(own, all, 2, MPI_DOUBLE, MPI_MAX, comm->mpi);

@@ -321,16 +321,25 @@ START_TEST(packets)
 }
 END_TEST
 
-/* Costs of 3, 1, 1 and 1: block gives 4 and 2 a round, the mapping that sees them 3 and 3. The
- * values of what moves go along. */
+/* Costs of 3, 1, 1 and 1: block gives 4 and 2 ms a round, the mappings that see them 3 and 3, if
+ * forks say them at once, else from the second replay on, since in the first all are thought alike.
+ * The values of what moves go along. */
 START_TEST(mappings)
 {
-    for (int told = 0; told < 2; told++) {
+    static const struct {
+        const duite_mapping *mapping;
+        int told, expected; /* ms */
+    } cases[] = {{&map_block, 1, 12},
+                 {&map_list, 0, 10},
+                 {&map_list, 1, 9},
+                 {&map_taskgraph, 0, 10},
+                 {&map_taskgraph, 1, 9}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         struct trace_file_node nodes[4];
         for (uint32_t i = 0; i < 4; i++) {
             const double seconds = i ? 1 * MS : 3 * MS;
-            nodes[i] =
-                (struct trace_file_node){FILE_RW, seconds, told ? (float)seconds : 0, 1, {i}};
+            nodes[i] = (struct trace_file_node){
+                FILE_RW, seconds, cases[k].told ? (float)seconds : 0, 1, {i}};
         }
         struct trace_file file = begun(4, 1000);
         for (uint32_t i = 0; i < 4; i++)
@@ -339,10 +348,33 @@ START_TEST(mappings)
         for (int i = 0; i < 3; i++)
             trace_file_replay(&file, 4, 4, nodes, 1);
         struct predict_cluster two = machine(2, 1);
-        two.mapping = told ? &map_taskgraph : &map_list;
+        two.mapping = cases[k].mapping;
         struct predict_result r = foretold(&file, &two);
-        /* Told: at once. Else as block in the first replay, where all are thought alike. */
-        ck_assert_msg(fabs(r.makespan - (told ? 9 : 10) * MS) < 1e-6, "%.9g s", r.makespan);
+        ck_assert_msg(fabs(r.makespan - cases[k].expected * MS) < 1e-6, "%s, told %d: %.9g s",
+                      two.mapping->name, cases[k].told, r.makespan);
+    }
+}
+END_TEST
+
+/* 160 tasks, then a chain of ten that was forked last, 1 ms each, on 16 workers: first come, first
+ * served, the chain begins when the others are nearly done; by the longest path it comes first: 170
+ * / 16 tasks a worker. */
+START_TEST(paths)
+{
+    enum { SHORT = 160, CHAIN = 10 };
+    static struct trace_file_node nodes[SHORT + CHAIN];
+    for (uint32_t i = 0; i < SHORT + CHAIN; i++)
+        nodes[i] = (struct trace_file_node){
+            i < SHORT ? FILE_W : FILE_RW, 1 * MS, 0, 1, {i < SHORT ? i : SHORT}};
+    for (int knows = 0; knows < 2; knows++) {
+        struct trace_file file = begun(SHORT + 1, 8);
+        trace_file_graph(&file, SHORT + 1, SHORT + CHAIN, nodes);
+        trace_file_replay(&file, SHORT + 1, SHORT + CHAIN, nodes, 1);
+        struct predict_cluster many = machine(1, 16);
+        many.scheduler = knows ? &sched_priority : &sched_fifo;
+        const double makespan = foretold(&file, &many).makespan;
+        ck_assert_msg(knows ? fabs(makespan - 11 * MS) < 1e-6 : makespan > 18 * MS, "%.9g s",
+                      makespan);
     }
 }
 END_TEST
@@ -437,6 +469,7 @@ int main(void)
     tcase_add_test(cases, schedulers);
     tcase_add_test(cases, packets);
     tcase_add_test(cases, mappings);
+    tcase_add_test(cases, paths);
     tcase_add_test(cases, migration);
     tcase_add_test(cases, refusals);
     suite_add_tcase(suite, cases);

@@ -55,6 +55,36 @@ wavers() {
 ok "energies of the report are those of the probes" wavers
 ok "without energies: steps they are null" eval 'run fall.yaml --report report.json --end 0.002 && test "$(value energy_gained)" = null'
 
+# ---- Energy that is gained: a cloth swings from two corners, undamped. Parts of what it can fall.
+
+cat > swing.yaml << 'END'
+schema: 1
+cloths:
+  - mesh: {grid: {width: 1, height: 1, nx: 6, ny: 6}}
+    material: silk
+    pins: [{vertices: [0, 5]}]
+materials:
+  silk: {density: 0.2, model: triangles, stretch: [300, 200], shear: 20, poisson: 0.2, bending: {rigidity: 1.0e-4}}
+  net: {density: 0.2, stretch: 200, shear: 50}
+time: {h: 0.02, end: 0.8, halving: off, stretch_growth: 0}
+energies: steps
+newton: {tolerance: 1.0e-8}
+solver: {stop: {relative: 1.0e-11}}
+END
+exec 3>&1
+gains() { # MOST, MATERIAL, H, SETTING...
+    most=$1 material=$2 h=$3
+    shift 3
+    run swing.yaml --report report.json --set "cloths[0].material=$material" --set time.h="$h" "$@" || return 1
+    awk -v what="$material, h = $h s, $*" -v most="$most" -v gained="$(value energy_gained)" -v lowest="$(value energy_lowest)" -v left="$(value newton_unconverged)" \
+        'BEGIN { fall = 0.2 * 9.81 / 2; printf "# %s: gains %.1e of its fall, loses %.2f\n", what, gained / fall, -lowest / fall; exit !(gained ~ /^[0-9]/ && lowest < -fall / 1e3 && gained / fall <= most && !left) }' >&3
+}
+for material in silk net; do
+    ok "$material gains nothing by implicit_euler, Newton converged" gains 1e-9 $material 0.02 --set newton.steps=60
+    ok "$material gains little by one linear step" gains 0.01 $material 0.02
+    ok "$material gains little by bdf2" gains 0.01 $material 0.004 --set integrator=bdf2
+done
+
 # ---- Newton steps
 
 newton() {

@@ -34,3 +34,5 @@ dist_check_SCRIPTS += tests/whole/test_stretch_limits_long.sh
 LONG_TESTS += tests/whole/test_stretch_limits_long.sh
 dist_check_SCRIPTS += tests/whole/test_same_hash_models_long.sh
 LONG_TESTS += tests/whole/test_same_hash_models_long.sh
+dist_check_SCRIPTS += tests/whole/test_closed_forms_long.sh
+LONG_TESTS += tests/whole/test_closed_forms_long.sh

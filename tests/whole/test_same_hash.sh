@@ -32,7 +32,9 @@ else
     ok "40 x 40, triangles and hinges, some" ranks 4 tests/whole/same_hash "$scene" some 0 $small \
         'materials.cloth={model: triangles, density: 0.2, stretch: [3000, 1000], shear: 100, poisson: 0.3, damping: {stiffness: 0.01}, bending: {rigidity: [1e-4, 5e-5]}}'
     # shellcheck disable=SC2086
-    ok "40 x 40, triangles and quadratic bending, verlet, few" ranks 4 tests/whole/same_hash "$scene" few 0 $small integrator=verlet obstacles=[] time.h=1e-5 time.end=5e-5 \
+    ok "40 x 40, triangles and quadratic bending, verlet, a wind and a pin that moves, few" ranks 4 tests/whole/same_hash "$scene" few 0 $small \
+        'air={wind: [3, 1, -2]}' 'cloths[0].pins[2].motion={times: [0, 1], translate: [[0, 0, 0], [0, 1, 0]]}' \
+        integrator=verlet obstacles=[] time.h=1e-5 time.end=5e-5 \
         'materials.cloth={model: triangles, density: 0.2, stretch: 3000, shear: 100, bending: {model: quadratic, rigidity: 1e-4}, damping: {stiffness: 1e-5}}'
     # shellcheck disable=SC2086
     ok "40 x 40, explicit, some" ranks 4 tests/whole/same_hash "$scene" some 3 $small integrator=explicit_euler

@@ -49,7 +49,8 @@ static void print_times(FILE *file, const struct flow_report *report)
         {"collide", report->seconds_collide},   {"output", report->seconds_output}};
     fprintf(file, "  seconds in tasks, over all workers\n");
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
-        fprintf(file, "    %-14s %12.4f\n", rows[i].name, rows[i].seconds);
+        if (!isnan(rows[i].seconds))
+            fprintf(file, "    %-14s %12.4f\n", rows[i].name, rows[i].seconds);
 }
 
 void summary_print(FILE *file, const struct summary *summary)

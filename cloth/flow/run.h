@@ -28,7 +28,7 @@ struct flow_report {
     double simulated_seconds, wall_seconds;                  /* wall: from the first step on */
     double seconds_force, seconds_acceleration, seconds_matrix, seconds_cg, seconds_velocity,
         seconds_position, seconds_collide,
-        seconds_output;   /* in task bodies, over all workers and ranks */
+        seconds_output;   /* in task bodies, over all workers and ranks; NaN: there were none */
     double momentum_lost; /* largest |sum of b - A dv over the vertices not held| of a step, kg m/s,
                            * of the dv that the step used; NaN for an explicit run */
     double

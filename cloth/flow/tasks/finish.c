@@ -2,6 +2,7 @@
  * rank 0 and told to all. */
 #include "cloth/flow/tasks/bodies.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -9,6 +10,11 @@ static int largest_stretch(struct flow_state *state)
 {
     const int code = flow_stretch_fork(state, state->stretch[0]);
     return code ? code : duite_get(state->rt, state->stretch[0], &state->report->max_stretch);
+}
+
+static double some(double seconds)
+{
+    return seconds > 0 ? seconds : NAN;
 }
 
 /* Seconds in bodies, of all ranks in rank order. No other task runs meanwhile. */
@@ -23,14 +29,14 @@ static int sum_seconds(struct flow_state *state)
         code = duite_get(state->rt, state->seconds, sum);
     if (code)
         return code;
-    state->report->seconds_force = sum[FLOW_FORCE];
-    state->report->seconds_acceleration = sum[FLOW_ACCELERATION];
-    state->report->seconds_matrix = sum[FLOW_MATRIX];
-    state->report->seconds_cg = sum[FLOW_CG];
-    state->report->seconds_velocity = sum[FLOW_VELOCITY];
-    state->report->seconds_position = sum[FLOW_POSITION];
-    state->report->seconds_collide = sum[FLOW_COLLIDE];
-    state->report->seconds_output = sum[FLOW_OUTPUT];
+    state->report->seconds_force = some(sum[FLOW_FORCE]);
+    state->report->seconds_acceleration = some(sum[FLOW_ACCELERATION]);
+    state->report->seconds_matrix = some(sum[FLOW_MATRIX]);
+    state->report->seconds_cg = some(sum[FLOW_CG]);
+    state->report->seconds_velocity = some(sum[FLOW_VELOCITY]);
+    state->report->seconds_position = some(sum[FLOW_POSITION]);
+    state->report->seconds_collide = some(sum[FLOW_COLLIDE]);
+    state->report->seconds_output = some(sum[FLOW_OUTPUT]);
     return DUITE_OK;
 }
 

@@ -82,18 +82,27 @@ static bool reached(const struct solve_stop *stop, const struct solve_scalars *n
            solve_scalars_error(now, now->bound) <= stop->tolerance * stop->tolerance * now->size;
 }
 
-/* alpha and beta of the next pass. Where r is nothing, nothing is left to do. */
+/* alpha of the next pass, with r.z = product. Where r is nothing, nothing is left to do. */
+static int next_alpha(double product, struct solve_scalars *after)
+{
+    after->alpha = after->beta = 0;
+    if (after->square < SOLVE_NOTHING)
+        return SOLVE_OK;
+    if (!(after->curvature > 0) || !(product > 0))
+        return after->square <= RUBBISH * after->first ? SOLVE_OK : SOLVE_BREAKDOWN;
+    after->alpha = product / after->curvature;
+    return SOLVE_OK;
+}
+
+/* alpha and beta of the next pass. */
 static int next_factors(const double dots[SOLVE_DOTS], struct solve_scalars *after)
 {
-    const double product = dots[SOLVE_RZ], curvature = dots[SOLVE_PQ];
-    after->alpha = after->beta = 0;
-    if (dots[SOLVE_RR] < SOLVE_NOTHING)
-        return SOLVE_OK;
-    if (!(curvature > 0) || !(product > 0))
-        return dots[SOLVE_RR] <= RUBBISH * after->first ? SOLVE_OK : SOLVE_BREAKDOWN;
-    const double alpha = product / curvature;
+    const double product = dots[SOLVE_RZ];
+    const int code = next_alpha(product, after);
+    const double alpha = after->alpha;
+    if (alpha == 0)
+        return code;
     const double next = product - 2 * alpha * dots[SOLVE_RQ] + alpha * alpha * dots[SOLVE_QQ];
-    after->alpha = alpha;
     after->beta = next > 0 ? next / product : 0; /* what rounding leaves of nothing may be < 0 */
     return SOLVE_OK;
 }
@@ -160,21 +169,57 @@ static int arrive(const struct solve_stop *stop, struct solve_scalars *after)
     return SOLVE_OK;
 }
 
-/* What follows a pass of SOLVE_ON. */
-static int iterate(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
-                   struct solve_scalars *after)
+/* Looks at the residual. Returns whether that ends the solve, or its iterations: *code says how. */
+static bool ends(const struct solve_stop *stop, struct solve_scalars *after, int *code)
 {
     if (after->iterations == 0)
         after->first = after->square;
     if (after->wanted < 0)
         after->wanted = wanted(stop, after->square);
-    if (reached(stop, after))
-        return arrive(stop, after);
-    if (solve_scalars_iterations(after) == stop->most)
-        return fail(stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED, after);
+    if (reached(stop, after)) {
+        *code = arrive(stop, after);
+        return true;
+    }
+    if (solve_scalars_iterations(after) < stop->most)
+        return false;
+    *code = fail(stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED, after);
+    return true;
+}
+
+/* What follows an update of the classic form. */
+static int update(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
+                  struct solve_scalars *after)
+{
+    int code;
+    if (ends(stop, after, &code))
+        return code;
+    after->beta = after->iterations > 0 && after->product > 0 ? dots[SOLVE_RZ] / after->product : 0;
+    after->product = dots[SOLVE_RZ];
+    after->phase = SOLVE_ON;
+    return SOLVE_OK;
+}
+
+/* What follows its product. */
+static int multiplied(const double dots[SOLVE_DOTS], struct solve_scalars *after)
+{
+    after->curvature = dots[SOLVE_PQ];
+    after->iterations += 1;
+    after->phase = SOLVE_UPDATE;
+    const int code = next_alpha(after->product, after);
+    remember(after->alpha * after->product, after);
+    return fail(code, after);
+}
+
+/* What follows a pass of SOLVE_ON. */
+static int iterate(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
+                   struct solve_scalars *after)
+{
+    int code;
+    if (ends(stop, after, &code))
+        return code;
     after->iterations += 1;
     after->phase = stop->count && after->iterations == stop->most ? SOLVE_LAST : SOLVE_ON;
-    const int code = next_factors(dots, after);
+    code = next_factors(dots, after);
     remember(after->alpha * dots[SOLVE_RZ], after);
     return fail(code, after);
 }
@@ -186,11 +231,14 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
     if (before->phase == SOLVE_DONE)
         return SOLVE_OK;
     if (before->phase == SOLVE_SHOW || before->phase == SOLVE_AGAIN) { /* sum nothing */
-        after->phase = before->phase == SOLVE_SHOW ? SOLVE_CHECK : SOLVE_ON;
+        const double on = stop->classic ? SOLVE_UPDATE : SOLVE_ON;
+        after->phase = before->phase == SOLVE_SHOW ? SOLVE_CHECK : on;
         after->alpha = 1;
         after->beta = 0;
         return SOLVE_OK;
     }
+    if (stop->classic && before->phase == SOLVE_ON)
+        return multiplied(dots, after);
     after->square = dots[SOLVE_RR];
     after->size = dots[SOLVE_SIZE];
     after->bound = dots[SOLVE_BOUND];
@@ -198,6 +246,8 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
         return judge(stop, dots, after);
     if (before->phase == SOLVE_OPEN)
         return open(stop, dots, after);
+    if (before->phase == SOLVE_UPDATE)
+        return update(stop, dots, after);
     after->curvature = dots[SOLVE_PQ];
     after->phase = SOLVE_DONE;
     return before->phase == SOLVE_LAST ? SOLVE_OK : iterate(stop, dots, after);

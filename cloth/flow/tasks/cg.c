@@ -91,7 +91,9 @@ int flow_cg_start(struct flow_state *state)
 
 int flow_cg_iterate(struct flow_state *state)
 {
-    const uint64_t passes = (uint64_t)state->flow->model->max_iterations + SOLVE_EXTRA;
+    const struct model *model = state->flow->model;
+    const uint64_t each = model->form == MODEL_CLASSIC ? 2 : 1;
+    const uint64_t passes = each * model->max_iterations + SOLVE_EXTRA;
     const uint64_t rounds = (passes + 1) / 2;
     return duite_replay_while(state->rt, state->solve, state->scalars[0], rounds);
 }

@@ -214,6 +214,7 @@ struct model {
     enum model_preconditioner preconditioner;
     uint32_t patches; /* of a block, for the coarse space, at most 4; 0: as model_patches finds */
     enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */
+    int own_filter;           /* solves are filtered by the program's flow_filter, too */
     int full_slope; /* enum phys_slope, of the matrix; only springs know PHYS_ABSOLUTE, which is
                        PHYS_DEFINITE to all else */
 
@@ -233,10 +234,11 @@ static inline int model_solves_contact(const struct model *model)
            model->contact == MODEL_CONTACT_FILTER && model->n_planes;
 }
 
-/* Whether its solves are filtered by more than points: by contact or guides. */
+/* Whether its solves are filtered by more than points: by contact, guides or the program. */
 static inline int model_is_filtered(const struct model *model)
 {
-    return model_solves_contact(model) || (model_is_implicit(model) && model->n_guides);
+    return model_solves_contact(model) ||
+           (model_is_implicit(model) && (model->n_guides || model->own_filter));
 }
 
 /* Whether pins have a part in the velocities that a step begins with. */

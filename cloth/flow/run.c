@@ -221,6 +221,11 @@ void flow_free(struct flow *flow)
     free(flow);
 }
 
+void flow_filter_by(struct flow *flow, struct flow_filter filter)
+{
+    flow->filter = filter;
+}
+
 uint64_t flow_vertices(const struct flow *flow)
 {
     return flow->n_vertices;

@@ -2,6 +2,7 @@
 #define CLOTH_FLOW_RUN_H
 
 #include "cloth/flow/model.h"
+#include "cloth/solve/block.h"
 #include "cloth/solve/system.h"
 
 #include <duite.h>
@@ -87,6 +88,31 @@ struct flow_progress {
 const duite_kernel *const *flow_kernels(void);
 
 struct flow; /* a model made ready, or room for one */
+
+/* A program's own filter of the solves of implicit steps (the filter function of Keckeisen &
+ * Blochinger 2004; Baraff & Witkin 1998, section 5): in each step, before the solve, it is shown
+ * the vertices of one block after the other, and says along which directions of each its velocity
+ * must not change in the step. */
+struct flow_rows {
+    size_t n;               /* vertices of the block */
+    const uint32_t *vertex; /* n: in the numbering of the input meshes, cloth after cloth */
+    const phys_vec *x, *v;  /* n: m, m/s, lanes 0 to 2; where the step begins */
+    double time, h;         /* s: when the step ends; its length */
+    phys_vec *filter; /* n: S of each row (solve_filter in cloth/solve/block.h), as contact and
+                       * guides of pins have it; solve_hold holds a row along a normal more; at a
+                       * point: all 0. Rows of pins are held in any case. */
+};
+struct flow_filter {
+    void *context;
+    /* Called from tasks, of several blocks at once, on the rank that has the block; again where a
+     * step is made anew. What it writes must come of the rows, and of what is alike on all ranks,
+     * alone: blocks are on any rank. + - * / and sqrt, for results that are the same everywhere. */
+    void (*rows)(void *context, const struct flow_rows *rows);
+};
+
+/* Before flow_run, on every rank, for a model whose own_filter is set (on rank 0, before
+ * flow_prepare); without, the function is not called. Local. */
+void flow_filter_by(struct flow *flow, struct flow_filter filter);
 
 /* On rank 0 of the run: cuts the model into blocks and makes ready what the tables are made from.
  * No runtime needed. Checks what a scene alone cannot: pins inside the mesh, masses, lengths of

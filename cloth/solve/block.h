@@ -4,6 +4,7 @@
 #include "cloth/solve/cg.h"
 #include "cloth/solve/format.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -30,6 +31,21 @@ PHYS_INLINE void solve_filter(const phys_vec *filter, phys_vec *y)
     const phys_vec three = {1, 1, 1, 0}, d = *filter * three;
     const double c = (*filter)[3];
     *y = c * *y + ((1 - 2 * c) * phys_dot(&d, y)) * d;
+}
+
+/* Holds a row along one more normal, of length 1: a free one in a plane, one in a plane on a line,
+ * one on a line at a point. */
+PHYS_INLINE void solve_hold(const phys_vec *normal, phys_vec *filter)
+{
+    const phys_vec three = {1, 1, 1, 0}, d = *filter * three;
+    const phys_vec line = SOLVE_YZX(d) * SOLVE_ZXY(*normal) - SOLVE_ZXY(d) * SOLVE_YZX(*normal);
+    const double square = phys_dot(&line, &line), along = phys_dot(&d, normal);
+    if ((*filter)[3] > 0 && phys_dot(&d, &d) <= 0)
+        *filter = (phys_vec){(*normal)[0], (*normal)[1], (*normal)[2], 1};
+    else if ((*filter)[3] > 0 && square > 1e-12)
+        *filter = line * (1 / sqrt(square));
+    else if ((*filter)[3] <= 0 && along * along > 1e-12)
+        *filter = (phys_vec){0};
 }
 
 /* Entries into other blocks, whose values follow those of the inner ones: `own` the row here,

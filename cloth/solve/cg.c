@@ -246,10 +246,10 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
         return judge(stop, dots, after);
     if (before->phase == SOLVE_OPEN)
         return open(stop, dots, after);
+    after->phase = SOLVE_DONE;
     if (before->phase == SOLVE_UPDATE)
         return update(stop, dots, after);
     after->curvature = dots[SOLVE_PQ];
-    after->phase = SOLVE_DONE;
     return before->phase == SOLVE_LAST ? SOLVE_OK : iterate(stop, dots, after);
 }
 

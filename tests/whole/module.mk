@@ -36,3 +36,5 @@ dist_check_SCRIPTS += tests/whole/test_same_hash_models_long.sh
 LONG_TESTS += tests/whole/test_same_hash_models_long.sh
 dist_check_SCRIPTS += tests/whole/test_closed_forms_long.sh
 LONG_TESTS += tests/whole/test_closed_forms_long.sh
+dist_check_SCRIPTS += tests/whole/test_solvers_agree_long.sh
+LONG_TESTS += tests/whole/test_solvers_agree_long.sh

@@ -63,20 +63,6 @@ const duite_kernel flow_touch = {.name = "touch",
                                  .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_W},
                                  .args_size = sizeof(struct flow_args)};
 
-/* Holds a row along one more normal. */
-static void hold_along(const phys_vec *up, phys_vec *filter)
-{
-    const phys_vec d = {(*filter)[0], (*filter)[1], (*filter)[2], 0};
-    const phys_vec line = SOLVE_YZX(d) * SOLVE_ZXY(*up) - SOLVE_ZXY(d) * SOLVE_YZX(*up);
-    const double square = phys_dot(&line, &line), along = phys_dot(&d, up);
-    if ((*filter)[3] > 0 && phys_dot(&d, &d) <= 0)
-        *filter = (phys_vec){(*up)[0], (*up)[1], (*up)[2], 1};
-    else if ((*filter)[3] > 0 && square > 1e-12)
-        *filter = line * (1 / sqrt(square));
-    else if ((*filter)[3] <= 0 && along * along > 1e-12)
-        *filter = (phys_vec){0};
-}
-
 /* Holds the rows that a plane holds. */
 static void hold_rows(const duite_call *call, const struct flow_table *t,
                       const struct model_plane *plane, phys_vec *filter)
@@ -93,8 +79,27 @@ static void hold_rows(const duite_call *call, const struct flow_table *t,
             continue;
         const enum meeting how = meet(plane, flow_args_of(call)->h, x + i, v + i, &speed, &due);
         if (how == LANDS || (how == LIES && phys_dot(f + i, &way) <= 0))
-            hold_along(&up, filter + i);
+            solve_hold(&up, filter + i);
     }
+}
+
+/* The program's part. */
+static int filter_own(const duite_call *call, const struct flow_table *t, phys_vec *filter)
+{
+    const struct flow_filter *own = &flow_of(call)->filter;
+    const struct flow_rows rows = {.n = t->n,
+                                   .vertex = t->vertex,
+                                   .x = duite_in(call, 1, phys_vec),
+                                   .v = duite_in(call, 2, phys_vec),
+                                   .time = flow_args_of(call)->time,
+                                   .h = flow_args_of(call)->h,
+                                   .filter = filter};
+    if (!own->rows)
+        return duite_fail(call, FLOW_NO_FILTER,
+                          "the model has a filter of the program's own, but this rank was given no "
+                          "function; call flow_filter_by on every rank");
+    own->rows(own->context, &rows);
+    return 0;
 }
 
 static int contact(const duite_call *call)
@@ -113,7 +118,7 @@ static int contact(const duite_call *call)
     }
     for (uint32_t p = 0; model_solves_contact(model) && p < model->n_planes; p++)
         hold_rows(call, t, model->planes + p, filter);
-    return 0;
+    return model->own_filter ? filter_own(call, t, filter) : 0;
 }
 FLOW_TIMED(contact, FLOW_COLLIDE)
 const duite_kernel flow_contact = {.name = "contact",

@@ -43,7 +43,8 @@ enum {
     FLOW_NOT_WRITTEN,
     FLOW_NO_MEMORY,
     FLOW_NOT_CONVERGED,
-    FLOW_STRETCHED
+    FLOW_STRETCHED,
+    FLOW_NO_FILTER
 };
 
 /* Rows of a block's rim that blocks on one other rank read. */
@@ -76,6 +77,8 @@ struct flow {
     struct flow_rest rest;
     struct flow_watched watched;
     char *header; /* of the table of probes; NULL: none */
+
+    struct flow_filter filter; /* the program's; rows NULL: none */
 
     /* Of the run that is on. */
     unsigned n_clocks;

@@ -200,8 +200,10 @@ void record_run(struct record *r, const struct model *model)
     record_mpi(&rank, &ranks);
     r->code = rank ? flow_join(&flow, &r->error) : flow_prepare(&flow, model, ranks, &r->error);
     agree(r);
-    if (!r->code)
+    if (!r->code) {
+        flow_filter_by(flow, r->filter);
         run_prepared(r, flow);
+    }
     flow_free(flow);
 }
 

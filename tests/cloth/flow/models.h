@@ -40,11 +40,12 @@ struct record {
     double *time;     /* frames */
     uint64_t shown;   /* steps that the progress was told of */
     /* Set before the run: */
-    uint64_t stop_after;   /* asks for a stop once so many steps were shown; 0: never */
-    uint64_t break_frame;  /* writing this frame fails; 0: none */
-    unsigned threads;      /* 0: 1 */
-    const char *scheduler; /* NULL: the default */
-    const char *balance;   /* NULL: the default */
+    uint64_t stop_after;       /* asks for a stop once so many steps were shown; 0: never */
+    uint64_t break_frame;      /* writing this frame fails; 0: none */
+    unsigned threads;          /* 0: 1 */
+    const char *scheduler;     /* NULL: the default */
+    const char *balance;       /* NULL: the default */
+    struct flow_filter filter; /* rows NULL: none */
 };
 
 /* Prepares, runs and frees; every rank has the whole record then. Starts MPI if it is not; it ends

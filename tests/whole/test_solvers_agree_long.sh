@@ -1,8 +1,8 @@
 #!/bin/sh
 # The sheet of 22,500 vertices with the default preconditioner and with none, from the flat start into the first buckles: at a
 # tolerance of 1e-8 all vertices agree to 1e-6 m as long as nothing but the solve makes them differ. The flat sheet buckles from
-# 0.04 s on, and what it is disturbed by is the solves' own error: the difference then doubles in every other step, and is in proportion to the
-# tolerance. So after 0.1 s it is of the order of the buckles for any tolerance that doubles allow (docs/physics.md).
+# 0.04 s on, and what it is disturbed by is the solves' own error: the difference then doubles in every step or two, and is in
+# proportion to the tolerance. So after 0.1 s it is of the order of the buckles for any tolerance that doubles allow (docs/design.md).
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 scene=$srcdir/cloth/scenes/sheet.yaml

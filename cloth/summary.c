@@ -191,6 +191,7 @@ static void add_energies(struct output_report *json, const struct flow_report *r
     output_report_number(json, "energy_elastic", end->elastic);
     output_report_number(json, "energy_gravity", end->gravity);
     output_report_number(json, "energy_loads", end->loads);
+    output_report_number(json, "torque_left", report->torque_left);
 }
 
 static void add_runtime(struct output_report *json, const struct summary *summary)

@@ -41,7 +41,8 @@ struct flow_report {
     double max_stretch;     /* largest length / rest length of any stretch spring at the end */
     double stretch_highest; /* the largest of these at the start and after any step; NaN where steps
                                are not judged by it (model: stretch_growth, stretch_limit) */
-    struct flow_energy start, end;        /* of all vertices */
+    struct flow_energy start, end; /* of all vertices */
+    double torque_left;            /* at the end, of the forces of uncorrected triangles, N m */
     double energy_lowest, energy_highest, /* of their sum, at the start and after each step; */
         energy_gained; /* the most that it rose above an earlier one; NaN but with energy_steps */
     uint64_t state_hash;

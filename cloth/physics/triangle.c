@@ -143,28 +143,6 @@ PHYS_KERNEL_OF(double, phys_triangles_energy,
     return sum;
 }
 
-PHYS_KERNEL_OF(double, phys_triangles_stretch,
-               (const struct phys_triangles *t, const struct phys_sight *sight), (t, sight))
-{
-    double most = 0;
-    struct phys_moduli moduli = PHYS_NO_MODULI;
-    for (size_t first = 0; first < t->n; first += PHYS_WIDE) {
-        struct phys_four four;
-        struct phys_frame frame;
-        phys_vec radius;
-        phys_four_from(first, t->n, &four);
-        phys_frame_make(t, &four, sight, &moduli, &frame);
-        const phys_vec half = 0.5 * (frame.suu - frame.svv);
-        const phys_vec square = half * half + frame.suv * frame.suv;
-        phys_sqrt(&square, &radius);
-        radius += 0.5 * frame.trace;
-        for (size_t i = 0; i < four.valid; i++)
-            if (radius[i] > most)
-                most = radius[i];
-    }
-    return most;
-}
-
 PHYS_KERNEL(phys_triangles_torque,
             (const struct phys_triangles *t, const struct phys_sight *sight, double torque[3]),
             (t, sight, torque))
@@ -181,7 +159,7 @@ PHYS_KERNEL(phys_triangles_torque,
         phys_frame_stress(&frame, &e, &stress);
         phys_frame_s(&frame, &s);
         phys_frame_twist(&frame, &stress, &s, &c);
-        c *= -frame.area * frame.trace;
+        c *= -frame.area * frame.trace * (1 - moduli.corrected);
         for (int k = 0; k < 3; k++) {
             const phys_vec part = c * frame.normal.c[k];
             torque[k] = phys_sum_own(&four, t->corner, sight->n, &part, torque[k]);

@@ -74,12 +74,8 @@ void phys_triangles_system(const struct phys_triangles *triangles, size_t from, 
 double phys_triangles_energy(const struct phys_triangles *triangles,
                              const struct phys_sight *sight);
 
-/* Largest principal stretch, the larger eigenvalue of S; 0 if there are no triangles. */
-double phys_triangles_stretch(const struct phys_triangles *triangles,
-                              const struct phys_sight *sight);
-
-/* Adds the torques (N m) that forces leave, or would if they were uncorrected, of the triangles
- * that count here. */
+/* Adds the torques (N m) that the forces of uncorrected triangles leave, of those that count here.
+ */
 void phys_triangles_torque(const struct phys_triangles *triangles, const struct phys_sight *sight,
                            double torque[3]);
 

@@ -82,8 +82,10 @@ void flow_elements_stiffness(const duite_call *call, const struct flow_table *t,
  * add to the right side with it (phys_triangles_system). */
 void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double push,
                             const struct phys_sight *sight, phys_vec *b, struct phys_pair *sums);
-/* Their energy, J, of those that count here; x is parameter 1. */
-double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims);
+/* Their energy, J, of those that count here, to whose uncorrected forces' torque, N m, it adds; x
+ * is parameter 1. */
+double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims,
+                            double torque[3]);
 
 /* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are
  * none. */

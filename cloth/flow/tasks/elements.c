@@ -72,7 +72,8 @@ void flow_elements_stiffness(const duite_call *call, const struct flow_table *t,
     phys_folds_stiffness(&folds, scale, sight, y);
 }
 
-double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims)
+double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims,
+                            double torque[3])
 {
     if (!flow_has_elements(t))
         return 0;
@@ -80,6 +81,7 @@ double flow_elements_energy(const duite_call *call, const struct flow_table *t, 
     const struct phys_triangles triangles = flow_table_triangles(t);
     const struct phys_hinges hinges = flow_table_hinges(t);
     const struct phys_folds folds = flow_table_folds(t);
+    phys_triangles_torque(&triangles, &sight, torque);
     return phys_triangles_energy(&triangles, &sight) + phys_hinges_energy(&hinges, &sight) +
            phys_folds_energy(&folds, &sight);
 }

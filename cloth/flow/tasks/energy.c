@@ -41,7 +41,7 @@ int flow_energy_fork(struct flow_state *state)
 int flow_energy_note(struct flow_state *state)
 {
     struct flow_report *report = state->report;
-    double sums[FLOW_ENERGIES], total = 0;
+    double sums[FLOW_SUMS], total = 0;
     if (!state->flow->model->energy_steps)
         return DUITE_OK;
     const int code = duite_get(state->rt, state->energies[state->attempt.parity], sums);
@@ -68,7 +68,7 @@ static void begin(struct flow_state *state)
 
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
 {
-    double sums[FLOW_ENERGIES];
+    double sums[FLOW_SUMS];
     struct flow_args args = flow_attempt_args(state);
     args.h = args.h > 0 ? args.h : state->flow->model->h; /* before the first step */
     int code = flow_energies(state, args, state->energy);
@@ -80,6 +80,9 @@ int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
                                    .elastic = sums[FLOW_ENERGY_ELASTIC],
                                    .gravity = sums[FLOW_ENERGY_GRAVITY],
                                    .loads = sums[FLOW_ENERGY_LOADS]};
+    const double *torque = sums + FLOW_TORQUE;
+    state->report->torque_left =
+        sqrt(torque[0] * torque[0] + torque[1] * torque[1] + torque[2] * torque[2]);
     return DUITE_OK;
 }
 

@@ -18,7 +18,7 @@ static int energy(const duite_call *call)
     sums[FLOW_ENERGY_GRAVITY] = phys_energy_weight(t->n, t->mass, gravity, x);
     sums[FLOW_ENERGY_LOADS] = phys_energy_load(t->n, t->mass, gravity, t->load, x);
     sums[FLOW_ENERGY_ELASTIC] =
-        flow_elements_energy(call, t, 4) + phys_energy_springs(&springs, x, x);
+        flow_elements_energy(call, t, 4, sums + FLOW_TORQUE) + phys_energy_springs(&springs, x, x);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
         sums[FLOW_ENERGY_ELASTIC] +=

@@ -114,9 +114,9 @@ void flow_objects_make(struct flow_state *state)
     flow_watch_make(state);
     make_shared(state, DUITE_I64, 1, &state->token);
     make_shared(state, DUITE_F64, FLOW_PARTS, &state->seconds);
-    make_shared(state, DUITE_F64, FLOW_ENERGIES, &state->energy);
+    make_shared(state, DUITE_F64, FLOW_SUMS, &state->energy);
     for (int i = 0; i < 2; i++)
-        make_shared(state, DUITE_F64, FLOW_ENERGIES, state->energies + i);
+        make_shared(state, DUITE_F64, FLOW_SUMS, state->energies + i);
     make_shared(state, DUITE_F64, FLOW_STATUS, &state->trial);
     make_shared(state, DUITE_F64, 1, &state->slope);
     make_shared(state, DUITE_I64, FLOW_TELL, &state->told);

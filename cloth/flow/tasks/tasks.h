@@ -147,13 +147,16 @@ enum {
 enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
 /* Numbers of a watched vertex: position, velocity, reaction. */
 enum { FLOW_SEEN = 9 };
-/* Energies, J (kernels_energy.c). */
+/* Energies, J, and after them the torque that uncorrected triangles leave, N m (kernels_energy.c).
+ */
 enum {
     FLOW_ENERGY_MOTION,
     FLOW_ENERGY_ELASTIC,
     FLOW_ENERGY_GRAVITY,
     FLOW_ENERGY_LOADS,
-    FLOW_ENERGIES
+    FLOW_ENERGIES,
+    FLOW_TORQUE = FLOW_ENERGIES,
+    FLOW_SUMS = FLOW_TORQUE + 3
 };
 /* Indices into what rank 0 tells, I64 x 2. */
 enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
@@ -410,7 +413,7 @@ int flow_watch(struct flow_state *state);
 /* Forks its row of the table of probes, and finds whether the run rests: when the step is accepted,
  * and for the start. */
 int flow_watched(struct flow_state *state);
-/* Forks what adds up the energies of the present state in `sums` (F64, FLOW_ENERGIES). args: those
+/* Forks what adds up the energies of the present state in `sums` (F64, FLOW_SUMS). args: those
  * of the step that ends there. */
 int flow_energies(struct flow_state *state, struct flow_args args, duite_object sums);
 

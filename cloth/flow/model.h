@@ -29,6 +29,7 @@ struct model_material {
     double damping_viscous;   /* kg/s a vertex */
     double damping_mass;      /* 1/s: a force -damping_mass * m * v */
     double damping_stiffness; /* s: along each spring, times its k; of strains and angles too */
+    double damping_excess;    /* s: what it is of bending less that */
     int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
 };
 
@@ -270,6 +271,12 @@ static inline const struct mesh *model_rest(const struct model_cloth *cloth)
 static inline double model_weft(const struct model_material *material)
 {
     return material->stretch + material->weft_excess;
+}
+
+/* The stiffness damping of what resists bending, s, >= 0. */
+static inline double model_damping_bending(const struct model_material *material)
+{
+    return material->damping_stiffness + material->damping_excess;
 }
 
 static inline int model_has_air(const struct model *model)

@@ -192,6 +192,34 @@ askew() {
 }
 ok "a sheet drawn out askew, torque of the papers' forces" askew
 
+# A flap on a hinge, its other triangle held, is a weight m at 1 m from the hinge of stiffness D: it swings with w^2 = D / m, and
+# damping b of bending takes exp(-b w^2 t / 2).
+cat > flap.yaml << 'END'
+schema: 1
+gravity: [0, 0, 0]
+cloths:
+  - mesh: {inline: {vertices: [[0, 0, 0], [0, 0, 1], [-1, 0, 0.5], [1, 0, 0.5]], triangles: [[0, 1, 2], [1, 0, 3]]}}
+    material: sheet
+    mass_per_vertex: 0.1
+    pins: [{vertices: [0, 1, 2]}]
+    start: [{vertices: [3], velocity: [0, 0.001, 0]}]
+materials: {sheet: {stretch: 100, bending: {rigidity: 10}, damping: {stiffness: 0.02}}}
+time: {h: 2e-4, end: 1}
+integrator: rk4
+probes: [{name: p, vertices: [3]}]
+END
+flap() { # NAME DAMPING SCENE...: its damping; the velocity along y against the closed form
+    name=$1 damping=$2
+    shift 2
+    run flap.yaml "$@" || return 1
+    below "flap on a hinge, $name" "$(rows '{ a = b * 50; w = sqrt(100 - a * a); t = c("time"); d = c("p.3.vy") - 0.001 * exp(-a * t) * (cos(w * t) - a / w * sin(w * t))
+        if (d < 0) d = -d; if (d > most) most = d } END { print most / 0.001 }' -v b="$damping")" 1e-6
+}
+ok "a flap on a hinge, damped as all is" flap stiffness 0.02
+ok "a flap on a hinge, with a damping of its own" flap bending 0.05 --set materials.sheet.damping.bending=0.05
+ok "a flap on a hinge, with none" flap none 0 --set materials.sheet.damping.bending=0
+ok "a flap on a flat fold, with a damping of its own" flap fold 0.05 --set materials.sheet.damping.bending=0.05 --set materials.sheet.bending.model=quadratic
+
 # Nothing else moves what starts shifted: the same bits on ranks and threads.
 same() {
     run spin.yaml --set grain=1 --end 0.1 --set integrator=implicit_euler && cp out/probes.csv one.csv &&

@@ -124,7 +124,7 @@ void flow_element_rest(const struct flow_elements *elements, const struct flow_e
     const double k = rigidity(elements, c, corner) * bend.shape;
     rest->s = bend.s;
     rest->stiffness = material->bending == MODEL_HINGES ? k : 0;
-    rest->damping = material->damping_stiffness * k;
+    rest->damping = model_damping_bending(material) * k;
     for (int i = 0; i < 4; i++)
         rest->weight[i] = sqrt(k) * bend.weight[i];
 }
@@ -169,7 +169,7 @@ static void walk_edges(const struct walk *walk, const struct mesh_edges *edges,
                                         walk->first + edge->opposite[1]},
                                        4,
                                        FLOW_HINGES};
-        if (!quadratic || material->damping_stiffness > 0)
+        if (!quadratic || model_damping_bending(material) > 0)
             walk->visit(walk->to, &element);
         element.kind = FLOW_FOLDS;
         if (quadratic)

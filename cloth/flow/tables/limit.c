@@ -120,8 +120,10 @@ static void visit_element(void *to, const struct flow_element *element)
     if (!pairs_of(visitor->source, element, x, pair))
         return;
     const struct model *model = visitor->source->model;
-    const double damping =
-        model->materials[model->cloths[element->cloth].material].damping_stiffness;
+    const struct model_material *material =
+        model->materials + model->cloths[element->cloth].material;
+    const double damping = element->kind == FLOW_TRIANGLES ? material->damping_stiffness
+                                                           : model_damping_bending(material);
     for (uint32_t j = 1, k = 0; j < element->corners; j++)
         for (uint32_t i = 0; i < j; i++, k++) {
             if (particle[i].free > 0)

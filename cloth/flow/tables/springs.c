@@ -35,16 +35,17 @@ struct visitor {
     void (*visit)(void *to, const struct flow_spring *spring);
     void *to;
     uint32_t first;
-    double damping;
+    double damping, bending; /* s: of threads and shear, and of what bends */
 };
 
 static void pass_on(void *context, const struct mesh_spring *s)
 {
     const struct visitor *visitor = context;
+    const double damping = s->kind == MESH_BEND ? visitor->bending : visitor->damping;
     const struct flow_spring spring = {.a = visitor->first + s->a,
                                        .b = visitor->first + s->b,
                                        .stiffness = s->stiffness,
-                                       .damping = visitor->damping * s->stiffness,
+                                       .damping = damping * s->stiffness,
                                        .length = s->length,
                                        .stretch = s->kind == MESH_STRETCH};
     visitor->visit(visitor->to, &spring);
@@ -95,6 +96,7 @@ void flow_springs_each(const struct flow_springs *springs,
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         visitor.damping = model->materials[cloth->material].damping_stiffness;
+        visitor.bending = model_damping_bending(model->materials + cloth->material);
         mesh_lattice_each(springs->lattice + c, pass_on, &visitor);
         each_joint(springs, c, &visitor);
         visitor.first += cloth->mesh.n_vertices;

@@ -122,6 +122,9 @@ static int build_material(struct model_material *material, const struct scene_tr
     pair_of(tree, node, "stretch", stretch);
     material->stretch = stretch[0];
     material->weft_excess = stretch[1] - stretch[0];
+    if (scene_tree_get(tree, damping, "bending"))
+        material->damping_excess =
+            scene_tree_number(tree, damping, "bending") - material->damping_stiffness;
     build_bending(material, tree, scene_tree_get(tree, node, "bending"));
     return material->model == MODEL_TRIANGLES ? check_membrane(material, tree, node, error)
                                               : CLOTH_OK;

@@ -175,6 +175,8 @@ static const struct scene_rule damping_keys[] = {
     {"mass", SCENE_NUMBER, "1/s", "0", .range = SCENE_NOT_NEGATIVE, .about = "times the mass"},
     {"stiffness", SCENE_NUMBER, "s", "0", .range = SCENE_NOT_NEGATIVE,
      .about = "along a spring, times its stiffness"},
+    {"bending", SCENE_NUMBER, "s", .range = SCENE_NOT_NEGATIVE,
+     .about = "times the stiffness of what resists bending; else as stiffness"},
     {0}};
 
 static const char *const models[] = {"springs", "triangles", NULL};

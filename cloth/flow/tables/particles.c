@@ -37,9 +37,9 @@ struct holder {
 /* Whether two guides, by number, hold alike; both may be none. */
 static bool alike(const struct model_guide *guides, uint32_t a, uint32_t b)
 {
-    const struct model_guide *one = guides + a - 1, *other = guides + b - 1;
     if (a == b || !a || !b)
         return a == b;
+    const struct model_guide *one = guides + a - 1, *other = guides + b - 1;
     bool same = one->kind == other->kind && one->motion == other->motion;
     for (int i = 0; i < 3; i++)
         same = same && one->direction[i] - other->direction[i] == 0;

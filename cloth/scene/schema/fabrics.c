@@ -95,6 +95,8 @@ static int fill(struct scene_tree *tree, int material, const struct value *value
 
 int scene_fabrics_fill(struct scene_tree *tree, struct cloth_error *error)
 {
+    if (!scene_tree_is(tree, 1, YAML_MAPPING_NODE)) /* the check of keys says so */
+        return CLOTH_OK;
     int code = add_named(tree, error);
     const int materials = scene_tree_get(tree, 1, "materials");
     const bool is_map = scene_tree_is(tree, materials, YAML_MAPPING_NODE);

@@ -17,7 +17,7 @@ yaml_node_t *scene_tree_node(const struct scene_tree *tree, int node)
 
 bool scene_tree_is(const struct scene_tree *tree, int node, yaml_node_type_t type)
 {
-    return scene_tree_node(tree, node)->type == type;
+    return node && scene_tree_node(tree, node)->type == type;
 }
 
 const char *scene_tree_scalar(const struct scene_tree *tree, int node)

@@ -36,7 +36,7 @@ int scene_tree_fail(const struct scene_tree *tree, int node, struct cloth_error 
 /* The node's type and parts. A scalar's value is a string that lives as long as the tree is not
  * changed. */
 yaml_node_t *scene_tree_node(const struct scene_tree *tree, int node);
-bool scene_tree_is(const struct scene_tree *tree, int node, yaml_node_type_t type);
+bool scene_tree_is(const struct scene_tree *tree, int node, yaml_node_type_t type); /* 0 is none */
 const char *scene_tree_scalar(const struct scene_tree *tree, int node); /* NULL: not a scalar */
 bool scene_tree_empty(const struct scene_tree *tree, int node);    /* null: '', '~' or 'null' */
 size_t scene_tree_length(const struct scene_tree *tree, int node); /* of a list or a map */

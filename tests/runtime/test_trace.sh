@@ -149,11 +149,6 @@ for mapping in list taskgraph; do
     ok "predicted with the mapping $mapping, which sees the tasks" predicted "  migrated " --hosts 3 --cores 2 --mapping $mapping
 done
 ok "predicted with blocks that move" predicted "balance migrate" --hosts 3 --cores 2 --mapping random --balance migrate
-one_step() { # what the main program waits for at the end of a step that is recorded alone is no work of its own
-    cloth one --threads 1 --trace-steps 1:2 && ./duite-predict "$scratch/one" --cores 8 > "$scratch/said" &&
-        sed -n 's/.*main program \([0-9.]*\) %.*/\1/p' "$scratch/said" | awk '{ print; exit !($1 < 80) }'
-}
-ok "one step alone is not held up by the main program" one_step
 same_twice() {
     predicted "limited by" --hosts 3 --cores 2 && cp "$scratch/said" "$scratch/first" &&
         predicted "limited by" --hosts 3 --cores 2 && cmp "$scratch/said" "$scratch/first"

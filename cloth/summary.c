@@ -53,6 +53,25 @@ static void print_times(FILE *file, const struct flow_report *report)
             fprintf(file, "    %-14s %12.4f\n", rows[i].name, rows[i].seconds);
 }
 
+static void print_solves(FILE *file, const struct summary *summary)
+{
+    const struct flow_report *report = summary->report;
+    fprintf(file, "  CG iterations    %.2f a step on average, %" PRIu64 " at most\n",
+            iterations_mean(summary), report->cg_iterations_max);
+    fprintf(file, "  error of dv      %.3e of it at most in a step, in the mass norm (estimate)\n",
+            report->mass_norm_error);
+    if (report->cg_restarts)
+        fprintf(file,
+                "  CG restarts      %" PRIu64
+                ", where the true residual was larger than its recurrence said\n",
+                report->cg_restarts);
+    if (report->factors_shifted)
+        fprintf(file,
+                "  IC(0)            made with a shift %" PRIu64 " times, of blocks times steps\n",
+                report->factors_shifted);
+    fprintf(file, "  momentum lost    %.3e kg m/s at most in a step\n", report->momentum_lost);
+}
+
 void summary_print(FILE *file, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
@@ -79,24 +98,8 @@ void summary_print(FILE *file, const struct summary *summary)
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));
     print_times(file, report);
-    if (model_is_implicit(model)) {
-        fprintf(file, "  CG iterations    %.2f a step on average, %" PRIu64 " at most\n",
-                iterations_mean(summary), report->cg_iterations_max);
-        fprintf(file,
-                "  error of dv      %.3e of it at most in a step, in the mass norm (estimate)\n",
-                report->mass_norm_error);
-        if (report->cg_restarts)
-            fprintf(file,
-                    "  CG restarts      %" PRIu64
-                    ", where the true residual was larger than its recurrence said\n",
-                    report->cg_restarts);
-        if (report->factors_shifted)
-            fprintf(file,
-                    "  IC(0)            made with a shift %" PRIu64
-                    " times, of blocks times steps\n",
-                    report->factors_shifted);
-        fprintf(file, "  momentum lost    %.3e kg m/s at most in a step\n", report->momentum_lost);
-    }
+    if (model_is_implicit(model))
+        print_solves(file, summary);
     if (summary->ranks > 1)
         fprintf(file,
                 "  messages         %" PRIu64

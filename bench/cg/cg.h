@@ -70,6 +70,9 @@ struct cg_session {
  * request wants it (threads=, scheduler=). 0, or what serve_fail returns. */
 int cg_make_flow(const struct model *model, struct flow **flow);
 int cg_start_runtime(struct serve_request *request, struct flow *flow, duite **rt);
+/* Ends all that, and what flow_run_begin made if it was called; they are NULL then. 1 if the
+ * runtime did not stop well, else `code`. */
+int cg_stop(struct flow_state *run, bool begun, duite **rt, struct flow **flow, int code);
 
 /* Runs a model from its start to its end on a runtime of its own. output, progress, report: as of
  * flow_run, or NULL. 0, or what serve_fail returns. */

@@ -54,19 +54,25 @@ int cg_run(const struct model *model, struct serve_request *request,
 
 /* ---- A state made ready ---- */
 
+int cg_stop(struct flow_state *run, bool begun, duite **rt, struct flow **flow, int code)
+{
+    if (*rt && begun) {
+        flow_parcels_free(run);
+        flow_objects_free(run);
+        duite_wait(*rt);
+        flow_memory_free(run);
+    }
+    if (*rt && duite_stop(rt) && !code)
+        code = tasks_code(1);
+    flow_free(*flow);
+    *flow = NULL;
+    return code;
+}
+
 static int end(struct cg_session *s, int code)
 {
-    if (s->rt && *s->settings) {
-        flow_parcels_free(&s->run);
-        flow_objects_free(&s->run);
-        duite_wait(s->rt);
-        flow_memory_free(&s->run);
-    }
+    code = cg_stop(&s->run, *s->settings, &s->rt, &s->flow, code);
     *s->settings = '\0';
-    if (s->rt && duite_stop(&s->rt) && !code)
-        code = tasks_code(1);
-    flow_free(s->flow);
-    s->flow = NULL;
     states_plan_free(&s->plan);
     return code;
 }

@@ -17,17 +17,8 @@
 
 static int end(struct physics_session *s, int code)
 {
-    if (s->rt && *s->settings) {
-        flow_parcels_free(&s->run);
-        flow_objects_free(&s->run);
-        duite_wait(s->rt);
-        flow_memory_free(&s->run);
-    }
+    code = cg_stop(&s->run, *s->settings, &s->rt, &s->flow, code);
     *s->settings = '\0';
-    if (s->rt && duite_stop(&s->rt) && !code)
-        code = tasks_code(1);
-    flow_free(s->flow);
-    s->flow = NULL;
     model_free(&s->model);
     s->model = (struct model){0};
     s->expected = 0;

@@ -3,7 +3,7 @@
 #include "runtime/map/map.h"
 #include "runtime/predict/predict.h"
 #include "runtime/sched/sched.h"
-#include "tests/runtime/trace_file.h"
+#include "tests/runtime/foretell.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
@@ -13,72 +13,19 @@
 #include <string.h>
 #include <unistd.h>
 
-#define SLOTS(...) ((const uint32_t[]){__VA_ARGS__})
-#define MS         1e-3
-
-static char path[64];
-
-static struct predict_cluster machine(uint32_t hosts, uint32_t cores)
-{
-    return (struct predict_cluster){.hosts = hosts,
-                                    .cores = cores,
-                                    .latency = 0,
-                                    .bandwidth = 1e12,
-                                    .capacity = INFINITY,
-                                    .core_speed = 1,
-                                    .overhead = 0,
-                                    .scheduler = &sched_fifo,
-                                    .mapping = hosts > 1 ? &map_block : NULL,
-                                    .seed = 1};
-}
-
-static struct trace_run *written(struct trace_file *file)
-{
-    struct trace_run *run;
-    snprintf(path, sizeof path, "test_predict.%d.trace", (int)getpid());
-    ck_assert(trace_file_write(file, path));
-    ck_assert_int_eq(trace_read(&run, path, false), DUITE_OK);
-    unlink(path);
-    return run;
-}
-
-static struct predict_result foretold(struct trace_file *file,
-                                      const struct predict_cluster *cluster)
-{
-    struct predict_result result, again;
-    struct trace_run *run = written(file);
-    ck_assert_msg(!predict(run, cluster, &result, NULL), "%s", duite_message());
-    ck_assert_int_eq(predict(run, cluster, &again, NULL), DUITE_OK);
-    ck_assert_msg(!memcmp(&result, &again, offsetof(struct predict_result, limit)) &&
-                      result.limit == again.limit, /* what is behind it is padding */
-                  "not the same twice");
-    trace_run_free(run);
-    return result;
-}
-
 static void is(double value, double expected)
 {
     ck_assert_msg(fabs(value - expected) < 1e-9, "%.12g, not %.12g", value, expected);
 }
 
-/* n objects of so many bytes, recorded from now on. */
-static struct trace_file begun(uint32_t n, uint64_t bytes)
-{
-    struct trace_file file = {0};
-    for (uint32_t slot = 1; slot <= n; slot++)
-        trace_file_object(&file, slot, bytes);
-    trace_file_begin(&file, n);
-    return file;
-}
-
 /* Three tasks in a row: 1 + 2 + 3 ms, however many cores. */
 START_TEST(chain)
 {
-    struct trace_file file = begun(1, 8);
+    struct trace_file file = foretell_begun(1, 8);
     for (int i = 1; i <= 3; i++)
         trace_file_fork(&file, FILE_RW, i * MS, 0, 1, SLOTS(1));
-    const struct predict_cluster four = machine(1, 4);
-    struct predict_result r = foretold(&file, &four);
+    const struct predict_cluster four = foretell_machine(1, 4);
+    struct predict_result r = foretell(&file, &four);
     is(r.makespan, 6 * MS);
     is(r.critical_path, 6 * MS);
     is(r.idle, 0.75);
@@ -91,12 +38,12 @@ END_TEST
 /* Tasks of 3, 3, 2, 2, 2 ms on two cores, first come, first served: 3 + 2 + 2 and 3 + 2. */
 START_TEST(independent)
 {
-    struct trace_file file = begun(5, 8);
+    struct trace_file file = foretell_begun(5, 8);
     const double took[] = {3, 3, 2, 2, 2};
     for (uint32_t i = 0; i < 5; i++)
         trace_file_fork(&file, FILE_W, took[i] * MS, 0, 1, SLOTS(i + 1));
-    const struct predict_cluster two = machine(1, 2);
-    struct predict_result r = foretold(&file, &two);
+    const struct predict_cluster two = foretell_machine(1, 2);
+    struct predict_result r = foretell(&file, &two);
     is(r.makespan, 7 * MS);
     is(r.work, 12 * MS);
     is(r.critical_path, 3 * MS);
@@ -107,13 +54,13 @@ END_TEST
 /* A writer waits for all readers of what it overwrites, and two readers run at once: 1 + 4 + 1. */
 START_TEST(readers)
 {
-    struct trace_file file = begun(3, 8);
+    struct trace_file file = foretell_begun(3, 8);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_R_W, 2 * MS, 0, 2, SLOTS(1, 2));
     trace_file_fork(&file, FILE_R_W, 4 * MS, 0, 2, SLOTS(1, 3));
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
-    const struct predict_cluster two = machine(1, 2);
-    is(foretold(&file, &two).makespan, 6 * MS);
+    const struct predict_cluster two = foretell_machine(1, 2);
+    is(foretell(&file, &two).makespan, 6 * MS);
 }
 END_TEST
 
@@ -121,15 +68,15 @@ END_TEST
 START_TEST(priorities)
 {
     for (int urgent = 0; urgent < 2; urgent++) {
-        struct trace_file file = begun(4, 8);
+        struct trace_file file = foretell_begun(4, 8);
         for (uint32_t i = 0; i < 3; i++)
             trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(i + 1));
         trace_file_fork(&file, FILE_W, 6 * MS, urgent, 1, SLOTS(4));
-        struct predict_cluster two = machine(1, 2);
+        struct predict_cluster two = foretell_machine(1, 2);
         two.scheduler = urgent ? &sched_priority : &sched_fifo;
         /* The main thread forks in no time, then worker 0 serves, and worker 1 was served before:
          * it has the first task either way. */
-        is(foretold(&file, &two).makespan, urgent ? 6 * MS : 8 * MS);
+        is(foretell(&file, &two).makespan, urgent ? 6 * MS : 8 * MS);
     }
 }
 END_TEST
@@ -137,13 +84,13 @@ END_TEST
 /* 1 ms on host 0, 1,000,000 bytes in 2 ms and 0.5 ms on their way, 1 ms on host 1. */
 START_TEST(message)
 {
-    struct trace_file file = begun(2, 1000000);
+    struct trace_file file = foretell_begun(2, 1000000);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(1, 2));
-    struct predict_cluster two = machine(2, 1);
+    struct predict_cluster two = foretell_machine(2, 1);
     two.latency = 0.5 * MS;
     two.bandwidth = 5e8;
-    struct predict_result r = foretold(&file, &two);
+    struct predict_result r = foretell(&file, &two);
     is(r.makespan, 4.5 * MS);
     is(r.critical_path, 2 * MS);
     is(r.chain[PREDICT_LATENCY], 0.5 * MS);
@@ -158,14 +105,14 @@ END_TEST
  * host 1 in 2 ms each, one after the other. */
 START_TEST(cards)
 {
-    struct trace_file file = begun(4, 1000000);
+    struct trace_file file = foretell_begun(4, 1000000);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(2));
     trace_file_fork(&file, FILE_RR_W, 1 * MS, 0, 3, SLOTS(1, 2, 3));
     trace_file_fork(&file, FILE_RR_W, 1 * MS, 0, 3, SLOTS(1, 2, 4));
-    struct predict_cluster two = machine(2, 2);
+    struct predict_cluster two = foretell_machine(2, 2);
     two.bandwidth = 5e8;
-    struct predict_result r = foretold(&file, &two);
+    struct predict_result r = foretell(&file, &two);
     ck_assert_uint_eq(r.messages, 2);
     /* Both tasks on host 0 begin at 0: 2 goes until 2, then 1 until 4; then both readers. */
     is(r.makespan, 5 * MS);
@@ -176,13 +123,13 @@ END_TEST
 /* One card sends to two hosts: 2 ms, then 2 ms more. */
 START_TEST(sender)
 {
-    struct trace_file file = begun(3, 1000000);
+    struct trace_file file = foretell_begun(3, 1000000);
     trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_R_W, 0, 0, 2, SLOTS(1, 2));
     trace_file_fork(&file, FILE_R_W, 0, 0, 2, SLOTS(1, 3));
-    struct predict_cluster three = machine(3, 1);
+    struct predict_cluster three = foretell_machine(3, 1);
     three.bandwidth = 5e8;
-    is(foretold(&file, &three).makespan, 4 * MS);
+    is(foretell(&file, &three).makespan, 4 * MS);
 }
 END_TEST
 
@@ -190,15 +137,15 @@ END_TEST
 START_TEST(fabric)
 {
     for (int slow = 0; slow < 2; slow++) {
-        struct trace_file file = begun(8, 1000000);
+        struct trace_file file = foretell_begun(8, 1000000);
         for (uint32_t i = 0; i < 4; i++)
             trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(2 * i + 1));
         for (uint32_t i = 0; i < 4; i++)
             trace_file_fork(&file, FILE_R_W, 0, 0, 2, SLOTS(2 * i + 1, (2 * i + 3) % 8 + 1));
-        struct predict_cluster four = machine(4, 1);
+        struct predict_cluster four = foretell_machine(4, 1);
         four.bandwidth = 1e9;
         four.capacity = slow ? 1e9 : INFINITY;
-        is(foretold(&file, &four).makespan, slow ? 4 * MS : 1 * MS);
+        is(foretell(&file, &four).makespan, slow ? 4 * MS : 1 * MS);
     }
 }
 END_TEST
@@ -206,12 +153,12 @@ END_TEST
 /* Contributions run at once; who reads the sum waits for them all. */
 START_TEST(sums)
 {
-    struct trace_file file = begun(5, 8);
+    struct trace_file file = foretell_begun(5, 8);
     for (uint32_t i = 0; i < 3; i++)
         trace_file_fork(&file, FILE_R_CW, (i + 1) * MS, 0, 2, SLOTS(i + 1, 4));
     trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(4, 5));
-    const struct predict_cluster three = machine(1, 3);
-    is(foretold(&file, &three).makespan, 4 * MS);
+    const struct predict_cluster three = foretell_machine(1, 3);
+    is(foretell(&file, &three).makespan, 4 * MS);
 }
 END_TEST
 
@@ -219,7 +166,7 @@ END_TEST
 START_TEST(waits)
 {
     for (int get = 0; get < 2; get++) {
-        struct trace_file file = begun(3, 8);
+        struct trace_file file = foretell_begun(3, 8);
         trace_file_fork(&file, FILE_W, 5 * MS, 0, 1, SLOTS(1));
         trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(2));
         if (get)
@@ -227,8 +174,8 @@ START_TEST(waits)
         else
             trace_file_wait(&file);
         trace_file_fork(&file, FILE_W, 3 * MS, 0, 1, SLOTS(3));
-        const struct predict_cluster two = machine(1, 3);
-        is(foretold(&file, &two).makespan, get ? 5 * MS : 8 * MS);
+        const struct predict_cluster two = foretell_machine(1, 3);
+        is(foretell(&file, &two).makespan, get ? 5 * MS : 8 * MS);
     }
 }
 END_TEST
@@ -236,13 +183,13 @@ END_TEST
 /* A core of twice the speed, and half a millisecond between tasks. */
 START_TEST(speed_and_overhead)
 {
-    struct trace_file file = begun(1, 8);
+    struct trace_file file = foretell_begun(1, 8);
     for (int i = 0; i < 4; i++)
         trace_file_fork(&file, FILE_RW, 2 * MS, 0, 1, SLOTS(1));
-    struct predict_cluster one = machine(1, 1);
+    struct predict_cluster one = foretell_machine(1, 1);
     one.core_speed = 2;
     one.overhead = 0.5 * MS;
-    struct predict_result r = foretold(&file, &one);
+    struct predict_result r = foretell(&file, &one);
     is(r.makespan, 4 * MS + 3 * 0.5 * MS);
     is(r.chain[PREDICT_OVERHEAD], 1.5 * MS);
 }
@@ -252,13 +199,13 @@ END_TEST
 START_TEST(steady)
 {
     for (int is_steady = 0; is_steady < 2; is_steady++) {
-        struct trace_file file = begun(2, 8);
+        struct trace_file file = foretell_begun(2, 8);
         for (int i = 0; i < 5; i++)
             trace_file_fork(&file, FILE_RW, (i == 3 ? 9 : 1) * MS, 0, 1, SLOTS(1));
         trace_file_fork(&file, FILE_R_W, 2 * MS, 0, 2, SLOTS(1, 2));
-        struct predict_cluster one = machine(1, 1);
+        struct predict_cluster one = foretell_machine(1, 1);
         one.steady = is_steady;
-        is(foretold(&file, &one).makespan, is_steady ? 7 * MS : 15 * MS);
+        is(foretell(&file, &one).makespan, is_steady ? 7 * MS : 15 * MS);
     }
 }
 END_TEST
@@ -266,13 +213,13 @@ END_TEST
 /* Replicated: once, everywhere; what it reads goes to all. */
 START_TEST(replicated)
 {
-    struct trace_file file = begun(3, 1000);
+    struct trace_file file = foretell_begun(3, 1000);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_SAME, 1 * MS, 0, 2, SLOTS(1, 2));
     trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(2, 3));
-    struct predict_cluster three = machine(3, 1);
+    struct predict_cluster three = foretell_machine(3, 1);
     three.latency = 1 * MS;
-    struct predict_result r = foretold(&file, &three);
+    struct predict_result r = foretell(&file, &three);
     ck_assert_uint_eq(r.messages, 2);
     ck_assert(r.makespan > 4 * MS && r.makespan < 4.001 * MS);
 }
@@ -282,13 +229,13 @@ END_TEST
 START_TEST(schedulers)
 {
     for (size_t k = 0; duite_scheduler_names()[k]; k++) {
-        struct trace_file file = begun(20, 8);
+        struct trace_file file = foretell_begun(20, 8);
         for (uint32_t i = 0; i < 200; i++)
             trace_file_fork(&file, FILE_RR_W, (i % 7) * 0.1 * MS, (int32_t)i % 3, 3,
                             SLOTS(i % 20 + 1, (i + 3) % 20 + 1, (i + 7) % 20 + 1));
-        struct predict_cluster some = machine(2, 3);
+        struct predict_cluster some = foretell_machine(2, 3);
         some.scheduler = duite_scheduler_find(duite_scheduler_names()[k]);
-        struct predict_result r = foretold(&file, &some);
+        struct predict_result r = foretell(&file, &some);
         ck_assert_msg(r.makespan >= r.critical_path - 1e-9 && r.makespan >= r.work / 6 - 1e-9,
                       "%s: sooner than can be", some.scheduler->name);
         ck_assert_msg(r.makespan <= r.work + 1e-9, "%s: later than one after the other",
@@ -297,116 +244,10 @@ START_TEST(schedulers)
 }
 END_TEST
 
-/* ---- Replays ---- */
-
-/* Tasks on host 0 write the objects 1 and 2, two on host 1 read both, and each of them its own
- * object before: one packet a round, and none for what is read where it is written. */
-START_TEST(packets)
-{
-    static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
-                                                   {FILE_W, 1 * MS, 0, 1, {1}},
-                                                   {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 2}},
-                                                   {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 3}}};
-    struct trace_file file = begun(4, 1000);
-    trace_file_graph(&file, 4, 4, nodes);
-    trace_file_replay(&file, 4, 4, nodes, 5);
-    struct predict_cluster two = machine(2, 1);
-    two.message = 0.1 * MS;
-    struct predict_result r = foretold(&file, &two);
-    ck_assert_uint_eq(r.messages, 5);
-    ck_assert_uint_eq(r.bytes, 10 * 1000);
-    /* Host 1: two writers, ten tasks, and five packets that are taken meanwhile; looks for others
-     * cost 5e-7 s at most. */
-    ck_assert_msg(r.makespan > 12.5 * MS && r.makespan < 12.51 * MS, "%.9g s", r.makespan);
-}
-END_TEST
-
-/* Costs of 3, 1, 1 and 1: block gives 4 and 2 ms a round, the mappings that see them 3 and 3, if
- * forks say them at once, else from the second replay on, since in the first all are thought alike.
- * The values of what moves go along. */
-START_TEST(mappings)
-{
-    static const struct {
-        const duite_mapping *mapping;
-        int told, expected; /* ms */
-    } cases[] = {{&map_block, 1, 12},
-                 {&map_list, 0, 10},
-                 {&map_list, 1, 9},
-                 {&map_taskgraph, 0, 10},
-                 {&map_taskgraph, 1, 9}};
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        struct trace_file_node nodes[4];
-        for (uint32_t i = 0; i < 4; i++) {
-            const double seconds = i ? 1 * MS : 3 * MS;
-            nodes[i] = (struct trace_file_node){
-                FILE_RW, seconds, cases[k].told ? (float)seconds : 0, 1, {i}};
-        }
-        struct trace_file file = begun(4, 1000);
-        for (uint32_t i = 0; i < 4; i++)
-            trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(i + 1));
-        trace_file_graph(&file, 4, 4, nodes);
-        for (int i = 0; i < 3; i++)
-            trace_file_replay(&file, 4, 4, nodes, 1);
-        struct predict_cluster two = machine(2, 1);
-        two.mapping = cases[k].mapping;
-        struct predict_result r = foretold(&file, &two);
-        ck_assert_msg(fabs(r.makespan - cases[k].expected * MS) < 1e-6, "%s, told %d: %.9g s",
-                      two.mapping->name, cases[k].told, r.makespan);
-    }
-}
-END_TEST
-
-/* 160 tasks, then a chain of ten that was forked last, 1 ms each, on 16 workers: first come, first
- * served, the chain begins when the others are nearly done; by the longest path it comes first: 170
- * / 16 tasks a worker. */
-START_TEST(paths)
-{
-    enum { SHORT = 160, CHAIN = 10 };
-    static struct trace_file_node nodes[SHORT + CHAIN];
-    for (uint32_t i = 0; i < SHORT + CHAIN; i++)
-        nodes[i] = (struct trace_file_node){
-            i < SHORT ? FILE_W : FILE_RW, 1 * MS, 0, 1, {i < SHORT ? i : SHORT}};
-    for (int knows = 0; knows < 2; knows++) {
-        struct trace_file file = begun(SHORT + 1, 8);
-        trace_file_graph(&file, SHORT + 1, SHORT + CHAIN, nodes);
-        trace_file_replay(&file, SHORT + 1, SHORT + CHAIN, nodes, 1);
-        struct predict_cluster many = machine(1, 16);
-        many.scheduler = knows ? &sched_priority : &sched_fifo;
-        const double makespan = foretold(&file, &many).makespan;
-        ck_assert_msg(knows ? fabs(makespan - 11 * MS) < 1e-6 : makespan > 18 * MS, "%.9g s",
-                      makespan);
-    }
-}
-END_TEST
-
-/* Objects of 3 ms on host 0, of 1 ms on host 1: 6 ms a replay, 4 when some have moved. */
-START_TEST(migration)
-{
-    double makespan[2];
-    for (int moves = 0; moves < 2; moves++) {
-        struct trace_file_node nodes[8];
-        for (uint32_t i = 0; i < 8; i++)
-            nodes[i] = (struct trace_file_node){FILE_RW, (i < 4 ? 3 : 1) * MS, 0, 1, {i}};
-        struct trace_file file = begun(8, 1000);
-        trace_file_graph(&file, 8, 8, nodes);
-        for (int i = 0; i < 10; i++)
-            trace_file_replay(&file, 8, 8, nodes, 1);
-        struct predict_cluster two = machine(2, 1);
-        two.balance = duite_balancer_find(moves ? "migrate" : "none");
-        struct predict_result r = foretold(&file, &two);
-        makespan[moves] = r.makespan;
-        ck_assert((r.migrated > 0) == moves);
-        ck_assert(fabs(r.work - 160 * MS) < 1e-6); /* of floats */
-    }
-    ck_assert(fabs(makespan[0] - 120 * MS) < 1e-6);
-    ck_assert_msg(makespan[1] < 100 * MS && makespan[1] >= 80 * MS, "%.9g s", makespan[1]);
-}
-END_TEST
-
 static void refused(struct trace_file *file, const struct predict_cluster *cluster, const char *why)
 {
     struct predict_result result;
-    struct trace_run *run = written(file);
+    struct trace_run *run = foretell_written(file);
     ck_assert_int_eq(predict(run, cluster, &result, NULL), DUITE_E_ARGUMENT);
     ck_assert_msg(strstr(duite_message(), why) != NULL, "%s", duite_message());
     trace_run_free(run);
@@ -414,34 +255,34 @@ static void refused(struct trace_file *file, const struct predict_cluster *clust
 
 START_TEST(refusals)
 {
-    const struct predict_cluster one = machine(1, 1);
-    struct predict_cluster other = machine(2, 1);
-    struct trace_file file = begun(1, 8);
+    const struct predict_cluster one = foretell_machine(1, 1);
+    struct predict_cluster other = foretell_machine(2, 1);
+    struct trace_file file = foretell_begun(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
     file.lost = 3;
     refused(&file, &one, "is not whole (3 events or words are missing)");
-    file = begun(1, 8);
+    file = foretell_begun(1, 8);
     refused(&file, &one, "no tasks");
-    file = begun(1, 8);
+    file = foretell_begun(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(7));
     refused(&file, &one, "damaged");
-    file = begun(1, 8);
+    file = foretell_begun(1, 8);
     trace_file_word(&file, 200);
     refused(&file, &one, "damaged");
-    file = begun(1, 8);
+    file = foretell_begun(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
     other.mapping = NULL;
     refused(&file, &other, "name a mapping");
-    file = begun(1, 8);
+    file = foretell_begun(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
-    other = machine(0, 1);
+    other = foretell_machine(0, 1);
     refused(&file, &other, "cannot be");
-    file = begun(1, 8);
+    file = foretell_begun(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
-    other = machine(2, 1);
+    other = foretell_machine(2, 1);
     other.balance = duite_balancer_find("delegate");
     refused(&file, &other, "are not foretold");
-    file = begun(1, 8);
+    file = foretell_begun(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
     other = one;
     other.balance = duite_balancer_find("migrate");
@@ -467,10 +308,6 @@ int main(void)
     tcase_add_test(cases, steady);
     tcase_add_test(cases, replicated);
     tcase_add_test(cases, schedulers);
-    tcase_add_test(cases, packets);
-    tcase_add_test(cases, mappings);
-    tcase_add_test(cases, paths);
-    tcase_add_test(cases, migration);
     tcase_add_test(cases, refusals);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -115,6 +115,10 @@ struct flow_pass {
     double *rim;       /* of this block */
     size_t neighbours; /* parameters from here on: the rims of others */
 };
+/* Opens a pass whose parameters are those of both kinds: the scalars, the matrix, b, dv, r, p and q
+ * from 1 on; and the copies, then the block's rim; and rims of others. Also opens the matrix. */
+void flow_pass_open(const duite_call *call, struct flow_table *t, size_t copies, size_t neighbours,
+                    struct flow_pass *pass);
 /* SOLVE_SHOW; SOLVE_CHECK and SOLVE_OPEN, with what they sum; SOLVE_AGAIN but for rims and what a
  * preconditioner makes. Nothing in other phases. */
 void flow_pass_beside(const duite_call *call, const struct solve_scalars *scalars,

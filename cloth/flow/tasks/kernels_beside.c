@@ -6,6 +6,20 @@
 
 #include <string.h>
 
+void flow_pass_open(const duite_call *call, struct flow_table *t, size_t copies, size_t neighbours,
+                    struct flow_pass *pass)
+{
+    enum { MATRIX = 2, B, DV, R, P, Q };
+    *pass = (struct flow_pass){.table = t,
+                               .value = flow_open_matrix(call, t, MATRIX),
+                               .b = duite_in(call, B, phys_vec),
+                               .rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
+                                        duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)},
+                               .copies = duite_out(call, copies, phys_vec),
+                               .rim = duite_out(call, copies + 1, double),
+                               .neighbours = neighbours};
+}
+
 /* dv of the copies, from the rims of the blocks that have them. */
 static void read_shown(const duite_call *call, const struct flow_pass *pass, phys_vec *dv)
 {

@@ -224,15 +224,8 @@ static int pass(const duite_call *call)
 {
     struct flow_table table = flow_table_of(call), *t = &table;
     const struct solve_scalars *scalars = duite_in(call, SCALARS, struct solve_scalars);
-    const struct flow_pass pass = {
-        .table = t,
-        .value = flow_open_matrix(call, t, A),
-        .b = duite_in(call, B, phys_vec),
-        .rows = {duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
-                 duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec)},
-        .copies = duite_out(call, COPIES, phys_vec),
-        .rim = duite_out(call, RIM, double),
-        .neighbours = NEIGHBOURS};
+    struct flow_pass pass;
+    flow_pass_open(call, t, COPIES, NEIGHBOURS, &pass);
     double *part = duite_out(call, PART, double);
     if (scalars->phase == SOLVE_LAST)
         part[SOLVE_RR] =

@@ -57,14 +57,20 @@ static const struct scene_rule motion_keys[] = {
      .about = "the point that is rotated about"},
     {0}};
 
+/* How vertices are chosen, one of these. */
+/* clang-format off */
+#define PICK \
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex, \
+     .about = "in the mesh's numbering"}, \
+    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number, \
+     .about = "the vertex nearest to a point"}, \
+    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point, \
+     .about = "all vertices in the box between two corners"}
+/* clang-format on */
+
 static const char *const guides[] = {"point", "line", "plane", NULL};
 static const struct scene_rule pin_keys[] = {
-    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
-     .about = "in the mesh's numbering"},
-    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number,
-     .about = "the vertex nearest to a point"},
-    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
-     .about = "all vertices in the box between two corners"},
+    PICK,
     {"to", SCENE_CHOICE, .fallback = "point", .words = guides,
      .about = "where they are held: each at a point, or on a line or plane through it"},
     {"direction", SCENE_LIST, .length = 3, .inside = &number,
@@ -81,25 +87,14 @@ static const struct scene_rule probe_value = {.type = SCENE_CHOICE, .words = pro
 static const struct scene_rule probe_keys[] = {
     {"name", SCENE_TEXT, .about = "unique, of letters, digits, _ and -; else probe1, probe2, ..."},
     {"cloth", SCENE_TEXT, .about = "its name; optional where there is one only"},
-    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
-     .about = "in the mesh's numbering"},
-    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number,
-     .about = "the vertex nearest to a point"},
-    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
-     .about = "all vertices in the box between two corners"},
+    PICK,
     {"values", SCENE_LIST, .fallback = "[position, velocity, reaction]", .inside = &probe_value,
      .about = "of each vertex position, velocity, reaction; total: the sum of their reactions"},
     {0}};
 static const struct scene_rule probe = {.type = SCENE_MAP, .inside = probe_keys};
 
-
 static const struct scene_rule load_keys[] = {
-    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
-     .about = "in the mesh's numbering"},
-    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number,
-     .about = "the vertex nearest to a point"},
-    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
-     .about = "all vertices in the box between two corners"},
+    PICK,
     {"edges", SCENE_LIST, .choice = true, .filled = true, .inside = &edge,
      .about = "pairs of vertices: the force is along them, in N/m of their length at rest"},
     {"force", SCENE_LIST, "N", .required = true, .length = 3, .inside = &number,
@@ -107,25 +102,15 @@ static const struct scene_rule load_keys[] = {
     {0}};
 static const struct scene_rule load = {.type = SCENE_MAP, .inside = load_keys};
 
-static const struct scene_rule mass_keys[] = {
-    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
-     .about = "in the mesh's numbering"},
-    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number,
-     .about = "the vertex nearest to a point"},
-    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
-     .about = "all vertices in the box between two corners"},
-    {"mass", SCENE_NUMBER, "kg", .required = true, .range = SCENE_POSITIVE,
-     .about = "more, at each of the vertices"},
-    {0}};
+static const struct scene_rule mass_keys[] = {PICK,
+                                              {"mass", SCENE_NUMBER, "kg", .required = true,
+                                               .range = SCENE_POSITIVE,
+                                               .about = "more, at each of the vertices"},
+                                              {0}};
 static const struct scene_rule mass = {.type = SCENE_MAP, .inside = mass_keys};
 
 static const struct scene_rule start_keys[] = {
-    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
-     .about = "in the mesh's numbering"},
-    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number,
-     .about = "the vertex nearest to a point"},
-    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
-     .about = "all vertices in the box between two corners"},
+    PICK,
     {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3,
      .inside = &positive, .about = "first: a factor, or one for each axis"},
     {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number,
@@ -223,8 +208,7 @@ static const struct scene_rule plane_keys[] = {
      .about = "towards the free side, of any length but 0"},
     {0}};
 static const struct scene_rule obstacle_kinds[] = {
-    {"plane", SCENE_MAP, .inside = plane_keys, .about = "a floor or wall"},
-    {0}};
+    {"plane", SCENE_MAP, .inside = plane_keys, .about = "a floor or wall"}, {0}};
 static const struct scene_rule obstacle = {.type = SCENE_ONE_OF, .inside = obstacle_kinds};
 
 static const struct scene_rule air_keys[] = {
@@ -266,7 +250,8 @@ static const struct scene_rule stop_kinds[] = {
      .about = "distance that the residual moves vertices in the step, against that of neighbours"},
     {"count", SCENE_INTEGER, .least = 1, .about = "so many iterations, no test"},
     {0}};
-static const char *const preconditioners[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse", NULL};
+static const char *const preconditioners[] = {"none",   "jacobi",     "ic0",
+                                              "coarse", "ic0_coarse", NULL};
 static const char *const formats[] = {"springs", "half", "half_float", NULL};
 static const char *const jacobians[] = {"definite", "full", "absolute", NULL};
 static const char *const guesses[] = {"auto", "zero", "previous", NULL};
@@ -275,7 +260,8 @@ static const struct scene_rule solver_keys[] = {
     {"stop", SCENE_ONE_OF, .fallback = "{mass_norm: 0.01}", .inside = stop_kinds,
      .about = "when conjugate gradients end"},
     {"form", SCENE_CHOICE, .fallback = "one_reduction", .words = forms,
-     .about = "of conjugate gradients: one sum over all blocks an iteration, or the textbook's two"},
+     .about =
+         "of conjugate gradients: one sum over all blocks an iteration, or the textbook's two"},
     {"guess", SCENE_CHOICE, .fallback = "auto", .words = guesses,
      .about = "of the change of velocity: nothing, or that of the step before"},
     {"preconditioner", SCENE_CHOICE, .fallback = "ic0_coarse", .words = preconditioners,
@@ -283,8 +269,9 @@ static const struct scene_rule solver_keys[] = {
     {"patches", SCENE_INTEGER, .least = 1, .most = 4,
      .about = "of a block, each with motions of its own in the coarse space; else as many as pay"},
     {"format", SCENE_CHOICE, .fallback = "springs", .words = formats,
-     .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in double "
-              "or float; triangles and bending take half for springs"},
+     .about =
+         "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in double "
+         "or float; triangles and bending take half for springs"},
     {"jacobian", SCENE_CHOICE, .fallback = "definite", .words = jacobians,
      .about = "definite: without what could make the matrix indefinite; full: the whole slope; "
               "absolute: of compressed springs its absolute value"},
@@ -293,8 +280,8 @@ static const struct scene_rule solver_keys[] = {
     {0}};
 
 static const char *const contacts[] = {"project", "filter", NULL};
-static const char *const integrators[] = {"implicit_euler", "explicit_euler", "symplectic_euler",
-                                          "verlet", "rk4", "bdf2", NULL};
+static const char *const integrators[] = {
+    "implicit_euler", "explicit_euler", "symplectic_euler", "verlet", "rk4", "bdf2", NULL};
 static const char *const energies[] = {"ends", "steps", NULL};
 static const struct scene_rule newton_keys[] = {
     {"steps", SCENE_INTEGER, .fallback = "1", .least = 1, .most = 100,
@@ -309,7 +296,8 @@ static const struct scene_rule scene_keys[] = {
     {"name", SCENE_TEXT, .about = "of the scene; else the file's name"},
     {"gravity", SCENE_LIST, "m/s^2", .fallback = "[0, -9.81, 0]", .length = 3, .inside = &number,
      .about = "+y is up"},
-    {"air", SCENE_MAP, .inside = air_keys, .about = "drag and wind on triangles; else there is none"},
+    {"air", SCENE_MAP, .inside = air_keys,
+     .about = "drag and wind on triangles; else there is none"},
     {"cloths", SCENE_LIST, .required = true, .filled = true, .inside = &cloth,
      .about = "what moves"},
     {"materials", SCENE_NAMED, .inside = &material,

@@ -88,6 +88,20 @@ int scene_read_text(struct model *model, const char *text, size_t n_sets,
     return scene_read(model, scene_path(), n_sets, sets, error);
 }
 
+struct model scene_read_right(const char *text, size_t n_sets, const struct scene_set *sets)
+{
+    struct model model;
+    struct cloth_error error = {0};
+    int code = scene_read_text(&model, text, n_sets, sets, &error);
+    ck_assert_msg(code == CLOTH_OK, "%s", error.text);
+    return model;
+}
+
+struct model scene_read_set(const char *set)
+{
+    return scene_read_right(scene_right, 1, &(struct scene_set){.text = set});
+}
+
 void scene_expect_error(const char *text, const char *set, const char *error)
 {
     struct model model;

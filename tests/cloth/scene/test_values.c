@@ -1,4 +1,4 @@
-/* What a scene says arrives in the model: every key, every default, aliases, sets. */
+/* What a scene says arrives in the model: every key, every default, aliases. */
 #include "tests/cloth/scene/scene_file.h"
 #include "tests/support/unit.h"
 
@@ -7,26 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct model read_with(const char *text, size_t n_sets, const struct scene_set *sets)
-{
-    struct model model;
-    struct cloth_error error = {0};
-    int code = scene_read_text(&model, text, n_sets, sets, &error);
-    ck_assert_msg(code == CLOTH_OK, "%s", error.text);
-    return model;
-}
-
 static struct model read_changed(const char *from, const char *to)
 {
     char *text = scene_changed(scene_right, from, to);
-    struct model model = read_with(text, 0, NULL);
+    struct model model = scene_read_right(text, 0, NULL);
     free(text);
     return model;
-}
-
-static struct model read_set(const char *set)
-{
-    return read_with(scene_right, 1, &(struct scene_set){.text = set});
 }
 
 /* The scene's path and what follows it. */
@@ -47,7 +33,7 @@ static void same_vector(const double *a, double x, double y, double z)
 
 START_TEST(world_and_time)
 {
-    struct model model = read_with(scene_right, 0, NULL);
+    struct model model = scene_read_right(scene_right, 0, NULL);
     ck_assert_str_eq(model.name, "scene");
     same_vector(model.gravity, 0, -9.81, 0);
     ck_assert_double_eq(model.h, 0.001);
@@ -71,7 +57,7 @@ END_TEST
 
 START_TEST(cloth_and_material)
 {
-    struct model model = read_with(scene_right, 0, NULL);
+    struct model model = scene_read_right(scene_right, 0, NULL);
     ck_assert_uint_eq(model.n_cloths, 1);
     const struct model_cloth *cloth = &model.cloths[0];
     ck_assert_str_eq(cloth->name, "sheet");
@@ -130,22 +116,22 @@ START_TEST(named_fabrics)
         "cloths[0].material=cotton"};
     const struct scene_set set[] = {
         {.text = sets[0]}, {.text = sets[1]}, {.text = sets[2]}, {.text = sets[3]}};
-    struct model model = read_with(scene_right, 1, set);
+    struct model model = scene_read_right(scene_right, 1, set);
     ck_assert_uint_eq(model.n_materials, 2);
     ck_assert_str_eq(model.materials[1].name, "denim");
     ck_assert_uint_eq(model.cloths[0].material, 1);
     same_fabric(model.materials + 1, 0.324, 2026.8, 410.5, 53.4, 1.954e-5);
     ck_assert_double_eq(model.materials[1].poisson, 0.0498);
     model_free(&model);
-    model = read_with(scene_right, 1, set + 1);
+    model = scene_read_right(scene_right, 1, set + 1);
     same_fabric(model.materials + 1, 0.0347, 2000, 2000, 20, 9.8e-7);
     model_free(&model);
-    model = read_with(scene_right, 2, set + 2);
+    model = scene_read_right(scene_right, 2, set + 2);
     ck_assert_str_eq(model.materials[0].name, "linen");
     same_fabric(model.materials, 0.1, 130.3, 85.7, 83.2, 1);
     same_fabric(model.materials + 1, 0.276, 130.3, 85.7, 83.2, 9.04e-6);
     model_free(&model);
-    model = read_with(scene_right, 1, set + 3); /* its own */
+    model = scene_read_right(scene_right, 1, set + 3); /* its own */
     ck_assert_uint_eq(model.n_materials, 1);
     ck_assert_double_eq(model.materials[0].density, 0.2);
     model_free(&model);
@@ -157,7 +143,7 @@ START_TEST(mass_without_density)
 {
     const struct scene_set set[] = {{.text = "materials={cotton: {stretch: 50}}"},
                                     {.text = "cloths[0].mass_per_vertex=0.1"}};
-    struct model model = read_with(scene_right, 2, set);
+    struct model model = scene_read_right(scene_right, 2, set);
     ck_assert_double_eq(model.materials[0].density, 0);
     model_free(&model);
 }
@@ -204,7 +190,7 @@ START_TEST(slopes)
     for (int i = 0; i < 3; i++) {
         char set[60];
         snprintf(set, sizeof set, "solver.jacobian=%s", words[i]);
-        struct model model = read_set(set);
+        struct model model = scene_read_set(set);
         ck_assert_int_eq(model.full_slope, kind[i]);
         model_free(&model);
     }
@@ -256,7 +242,7 @@ START_TEST(cloths_of_every_mesh)
         "     material: cotton, transform: {scale: 2}}\n"
         "materials:\n");
     scene_write_file("a.obj", triangle, strlen(triangle));
-    struct model model = read_with(text, 0, NULL);
+    struct model model = scene_read_right(text, 0, NULL);
     ck_assert_uint_eq(model.n_cloths, 4);
     ck_assert_str_eq(model.cloths[1].name, "cloth2");
     ck_assert_uint_eq(model.cloths[1].mesh.n_triangles, 1);
@@ -344,99 +330,10 @@ START_TEST(numbers_of_every_form)
     for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
         char set[64];
         snprintf(set, sizeof set, "gravity[0]=%s", forms[i].text);
-        struct model model = read_set(set);
+        struct model model = scene_read_set(set);
         ck_assert_double_eq(model.gravity[0], forms[i].value);
         model_free(&model);
     }
-}
-END_TEST
-
-START_TEST(sets_change_values)
-{
-    struct model model = read_set("time.h=0.002");
-    ck_assert_double_eq(model.h, 0.002);
-    model_free(&model);
-    model = read_set("cloths[0].mesh.grid.nx=40");
-    ck_assert_uint_eq(model.cloths[0].mesh.n_vertices, 120);
-    model_free(&model);
-    model = read_set("obstacles[0].plane={point: [0, 0, 0], normal: [1, 0, 0]}");
-    same_vector(model.planes[0].normal, 1, 0, 0);
-    model_free(&model);
-    static const char *const kinds[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse"};
-    for (int i = 0; i < 5; i++) {
-        char set[64];
-        snprintf(set, sizeof set, "solver.preconditioner=%s", kinds[i]);
-        model = read_set(set);
-        ck_assert_int_eq(model.preconditioner, (enum model_preconditioner)i);
-        model_free(&model);
-    }
-    model = read_set("solver.stop={relative: 0.25}");
-    ck_assert_int_eq(model.stop, MODEL_STOP_RELATIVE);
-    ck_assert_double_eq(model.tolerance, 0.25);
-    model_free(&model);
-    model = read_set("solver.stop={normalised: 1e-4}");
-    ck_assert_int_eq(model.stop, MODEL_STOP_NORMALISED);
-    ck_assert_double_eq(model.tolerance, 1e-4);
-    ck_assert_int_eq(model.guess, MODEL_GUESS_AUTO);
-    model_free(&model);
-    model = read_set("solver.guess=previous");
-    ck_assert_int_eq(model.guess, MODEL_GUESS_PREVIOUS);
-    model_free(&model);
-    model = read_set("solver.guess=zero");
-    ck_assert_int_eq(model.guess, MODEL_GUESS_ZERO);
-    model_free(&model);
-    model = read_set("solver.stop={count: 10}");
-    ck_assert_int_eq(model.stop, MODEL_STOP_COUNT);
-    ck_assert_uint_eq(model.max_iterations, 10);
-    model_free(&model);
-    model = read_set("name=a=b");
-    ck_assert_str_eq(model.name, "a=b");
-    model_free(&model);
-}
-END_TEST
-
-START_TEST(sets_make_and_append)
-{
-    struct model model = read_set("materials.cotton.damping.viscous=2");
-    ck_assert_double_eq(model.materials[0].damping_viscous, 2);
-    ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
-    model_free(&model);
-    model = read_set("solver.stop.absolute=0.5"); /* neither solver nor stop is in the file */
-    ck_assert_int_eq(model.stop, MODEL_STOP_ABSOLUTE);
-    model_free(&model);
-    model = read_set("cloths[0].pins[1].nearest=[0, 0, 0]");
-    ck_assert_uint_eq(model.cloths[0].n_pins, 2);
-    ck_assert_str_eq(model.cloths[0].pins[1].pick.place,
-                     "--set cloths[0].pins[1].nearest=[0, 0, 0]");
-    model_free(&model);
-    model = read_set("cloths[0].pins[0].vertices[2]=5");
-    ck_assert_uint_eq(model.cloths[0].pins[0].pick.n_vertices, 3);
-    ck_assert_uint_eq(model.cloths[0].pins[0].pick.vertices[2], 5);
-    model_free(&model);
-    const struct scene_set both[] = {{.text = "materials.wool={density: 1, stretch: 1}"},
-                                     {.text = "cloths[0].material=wool"},
-                                     {.text = "materials.wool.density=3"}};
-    model = read_with(scene_right, 3, both);
-    ck_assert_double_eq(model.materials[model.cloths[0].material].density, 3);
-    model_free(&model);
-}
-END_TEST
-
-START_TEST(sets_leave_aliases_alone)
-{
-    char *text =
-        scene_changed(scene_right, "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}",
-                      "  cotton: &c {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n"
-                      "  other: *c");
-    const struct scene_set sets[] = {{.text = "materials.other.damping.mass=9"},
-                                     {.text = "materials.cotton.stretch=1"}};
-    struct model model = read_with(text, 2, sets);
-    ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
-    ck_assert_double_eq(model.materials[0].stretch, 1);
-    ck_assert_double_eq(model.materials[1].damping_mass, 9);
-    ck_assert_double_eq(model.materials[1].stretch, 50);
-    model_free(&model);
-    free(text);
 }
 END_TEST
 
@@ -445,7 +342,7 @@ START_TEST(shared_empty_map_takes_defaults)
     char *text = scene_changed(scene_right, "    material: cotton",
                                "    transform: &e {}\n    material: cotton");
     char *more = scene_changed(text, "damping: {mass: 0.1}", "damping: *e");
-    struct model model = read_with(more, 0, NULL);
+    struct model model = scene_read_right(more, 0, NULL);
     ck_assert_double_eq(model.materials[0].damping_mass, 0);
     ck_assert_double_eq(model.cloths[0].mesh.position[0], -0.5);
     model_free(&model);
@@ -480,9 +377,6 @@ int main(void)
     tcase_add_test(cases, starts_and_masses);
     tcase_add_test(cases, probes_and_rest);
     tcase_add_test(cases, numbers_of_every_form);
-    tcase_add_test(cases, sets_change_values);
-    tcase_add_test(cases, sets_make_and_append);
-    tcase_add_test(cases, sets_leave_aliases_alone);
     tcase_add_test(cases, shared_empty_map_takes_defaults);
     tcase_add_test(cases, huge_and_tiny_normals);
     suite_add_tcase(suite, cases);

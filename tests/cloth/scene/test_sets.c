@@ -1,0 +1,108 @@
+/* What --set says arrives in the model: it changes values, makes what is not there, appends to
+ * lists, and leaves other uses of what it changes alone. */
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+START_TEST(sets_change_values)
+{
+    struct model model = scene_read_set("time.h=0.002");
+    ck_assert_double_eq(model.h, 0.002);
+    model_free(&model);
+    model = scene_read_set("cloths[0].mesh.grid.nx=40");
+    ck_assert_uint_eq(model.cloths[0].mesh.n_vertices, 120);
+    model_free(&model);
+    model = scene_read_set("obstacles[0].plane={point: [0, 0, 0], normal: [1, 0, 0]}");
+    ck_assert_double_eq(model.planes[0].normal[0], 1);
+    ck_assert_double_eq(model.planes[0].normal[1], 0);
+    model_free(&model);
+    static const char *const kinds[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse"};
+    for (int i = 0; i < 5; i++) {
+        char set[64];
+        snprintf(set, sizeof set, "solver.preconditioner=%s", kinds[i]);
+        model = scene_read_set(set);
+        ck_assert_int_eq(model.preconditioner, (enum model_preconditioner)i);
+        model_free(&model);
+    }
+    model = scene_read_set("solver.stop={relative: 0.25}");
+    ck_assert_int_eq(model.stop, MODEL_STOP_RELATIVE);
+    ck_assert_double_eq(model.tolerance, 0.25);
+    model_free(&model);
+    model = scene_read_set("solver.stop={normalised: 1e-4}");
+    ck_assert_int_eq(model.stop, MODEL_STOP_NORMALISED);
+    ck_assert_double_eq(model.tolerance, 1e-4);
+    ck_assert_int_eq(model.guess, MODEL_GUESS_AUTO);
+    model_free(&model);
+    model = scene_read_set("solver.guess=previous");
+    ck_assert_int_eq(model.guess, MODEL_GUESS_PREVIOUS);
+    model_free(&model);
+    model = scene_read_set("solver.guess=zero");
+    ck_assert_int_eq(model.guess, MODEL_GUESS_ZERO);
+    model_free(&model);
+    model = scene_read_set("solver.stop={count: 10}");
+    ck_assert_int_eq(model.stop, MODEL_STOP_COUNT);
+    ck_assert_uint_eq(model.max_iterations, 10);
+    model_free(&model);
+    model = scene_read_set("name=a=b");
+    ck_assert_str_eq(model.name, "a=b");
+    model_free(&model);
+}
+END_TEST
+
+START_TEST(sets_make_and_append)
+{
+    struct model model = scene_read_set("materials.cotton.damping.viscous=2");
+    ck_assert_double_eq(model.materials[0].damping_viscous, 2);
+    ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
+    model_free(&model);
+    model = scene_read_set("solver.stop.absolute=0.5"); /* neither solver nor stop is in the file */
+    ck_assert_int_eq(model.stop, MODEL_STOP_ABSOLUTE);
+    model_free(&model);
+    model = scene_read_set("cloths[0].pins[1].nearest=[0, 0, 0]");
+    ck_assert_uint_eq(model.cloths[0].n_pins, 2);
+    ck_assert_str_eq(model.cloths[0].pins[1].pick.place,
+                     "--set cloths[0].pins[1].nearest=[0, 0, 0]");
+    model_free(&model);
+    model = scene_read_set("cloths[0].pins[0].vertices[2]=5");
+    ck_assert_uint_eq(model.cloths[0].pins[0].pick.n_vertices, 3);
+    ck_assert_uint_eq(model.cloths[0].pins[0].pick.vertices[2], 5);
+    model_free(&model);
+    const struct scene_set both[] = {{.text = "materials.wool={density: 1, stretch: 1}"},
+                                     {.text = "cloths[0].material=wool"},
+                                     {.text = "materials.wool.density=3"}};
+    model = scene_read_right(scene_right, 3, both);
+    ck_assert_double_eq(model.materials[model.cloths[0].material].density, 3);
+    model_free(&model);
+}
+END_TEST
+
+START_TEST(sets_leave_aliases_alone)
+{
+    char *text =
+        scene_changed(scene_right, "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}",
+                      "  cotton: &c {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n"
+                      "  other: *c");
+    const struct scene_set sets[] = {{.text = "materials.other.damping.mass=9"},
+                                     {.text = "materials.cotton.stretch=1"}};
+    struct model model = scene_read_right(text, 2, sets);
+    ck_assert_double_eq(model.materials[0].damping_mass, 0.1);
+    ck_assert_double_eq(model.materials[0].stretch, 1);
+    ck_assert_double_eq(model.materials[1].damping_mass, 9);
+    ck_assert_double_eq(model.materials[1].stretch, 50);
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("scene sets");
+    TCase *cases = tcase_create("sets");
+    tcase_add_test(cases, sets_change_values);
+    tcase_add_test(cases, sets_make_and_append);
+    tcase_add_test(cases, sets_leave_aliases_alone);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -1,0 +1,124 @@
+/* Predictions of recorded graphs, against schedules worked out by hand: what they send, and what
+ * mappings, schedulers and balancers that know them make of them. */
+#include "runtime/map/map.h"
+#include "runtime/sched/sched.h"
+#include "tests/runtime/foretell.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+
+/* Tasks on host 0 write the objects 1 and 2, two on host 1 read both, and each of them its own
+ * object before: one packet a round, and none for what is read where it is written. */
+START_TEST(packets)
+{
+    static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
+                                                   {FILE_W, 1 * MS, 0, 1, {1}},
+                                                   {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 2}},
+                                                   {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 3}}};
+    struct trace_file file = foretell_begun(4, 1000);
+    trace_file_graph(&file, 4, 4, nodes);
+    trace_file_replay(&file, 4, 4, nodes, 5);
+    struct predict_cluster two = foretell_machine(2, 1);
+    two.message = 0.1 * MS;
+    struct predict_result r = foretell(&file, &two);
+    ck_assert_uint_eq(r.messages, 5);
+    ck_assert_uint_eq(r.bytes, 10 * 1000);
+    /* Host 1: two writers, ten tasks, and five packets that are taken meanwhile; looks for others
+     * cost 5e-7 s at most. */
+    ck_assert_msg(r.makespan > 12.5 * MS && r.makespan < 12.51 * MS, "%.9g s", r.makespan);
+}
+END_TEST
+
+/* Costs of 3, 1, 1 and 1: block gives 4 and 2 ms a round, the mappings that see them 3 and 3, if
+ * forks say them at once, else from the second replay on, since in the first all are thought alike.
+ * The values of what moves go along. */
+START_TEST(mappings)
+{
+    static const struct {
+        const duite_mapping *mapping;
+        int told, expected; /* ms */
+    } cases[] = {{&map_block, 1, 12},
+                 {&map_list, 0, 10},
+                 {&map_list, 1, 9},
+                 {&map_taskgraph, 0, 10},
+                 {&map_taskgraph, 1, 9}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct trace_file_node nodes[4];
+        for (uint32_t i = 0; i < 4; i++) {
+            const double seconds = i ? 1 * MS : 3 * MS;
+            nodes[i] = (struct trace_file_node){
+                FILE_RW, seconds, cases[k].told ? (float)seconds : 0, 1, {i}};
+        }
+        struct trace_file file = foretell_begun(4, 1000);
+        for (uint32_t i = 0; i < 4; i++)
+            trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(i + 1));
+        trace_file_graph(&file, 4, 4, nodes);
+        for (int i = 0; i < 3; i++)
+            trace_file_replay(&file, 4, 4, nodes, 1);
+        struct predict_cluster two = foretell_machine(2, 1);
+        two.mapping = cases[k].mapping;
+        struct predict_result r = foretell(&file, &two);
+        ck_assert_msg(fabs(r.makespan - cases[k].expected * MS) < 1e-6, "%s, told %d: %.9g s",
+                      two.mapping->name, cases[k].told, r.makespan);
+    }
+}
+END_TEST
+
+/* 160 tasks, then a chain of ten that was forked last, 1 ms each, on 16 workers: first come, first
+ * served, the chain begins when the others are nearly done; by the longest path it comes first: 170
+ * / 16 tasks a worker. */
+START_TEST(paths)
+{
+    enum { SHORT = 160, CHAIN = 10 };
+    static struct trace_file_node nodes[SHORT + CHAIN];
+    for (uint32_t i = 0; i < SHORT + CHAIN; i++)
+        nodes[i] = (struct trace_file_node){
+            i < SHORT ? FILE_W : FILE_RW, 1 * MS, 0, 1, {i < SHORT ? i : SHORT}};
+    for (int knows = 0; knows < 2; knows++) {
+        struct trace_file file = foretell_begun(SHORT + 1, 8);
+        trace_file_graph(&file, SHORT + 1, SHORT + CHAIN, nodes);
+        trace_file_replay(&file, SHORT + 1, SHORT + CHAIN, nodes, 1);
+        struct predict_cluster many = foretell_machine(1, 16);
+        many.scheduler = knows ? &sched_priority : &sched_fifo;
+        const double makespan = foretell(&file, &many).makespan;
+        ck_assert_msg(knows ? fabs(makespan - 11 * MS) < 1e-6 : makespan > 18 * MS, "%.9g s",
+                      makespan);
+    }
+}
+END_TEST
+
+/* Objects of 3 ms on host 0, of 1 ms on host 1: 6 ms a replay, 4 when some have moved. */
+START_TEST(migration)
+{
+    double makespan[2];
+    for (int moves = 0; moves < 2; moves++) {
+        struct trace_file_node nodes[8];
+        for (uint32_t i = 0; i < 8; i++)
+            nodes[i] = (struct trace_file_node){FILE_RW, (i < 4 ? 3 : 1) * MS, 0, 1, {i}};
+        struct trace_file file = foretell_begun(8, 1000);
+        trace_file_graph(&file, 8, 8, nodes);
+        for (int i = 0; i < 10; i++)
+            trace_file_replay(&file, 8, 8, nodes, 1);
+        struct predict_cluster two = foretell_machine(2, 1);
+        two.balance = duite_balancer_find(moves ? "migrate" : "none");
+        struct predict_result r = foretell(&file, &two);
+        makespan[moves] = r.makespan;
+        ck_assert((r.migrated > 0) == moves);
+        ck_assert(fabs(r.work - 160 * MS) < 1e-6); /* of floats */
+    }
+    ck_assert(fabs(makespan[0] - 120 * MS) < 1e-6);
+    ck_assert_msg(makespan[1] < 100 * MS && makespan[1] >= 80 * MS, "%.9g s", makespan[1]);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("predict");
+    TCase *cases = tcase_create("replays");
+    tcase_add_test(cases, packets);
+    tcase_add_test(cases, mappings);
+    tcase_add_test(cases, paths);
+    tcase_add_test(cases, migration);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

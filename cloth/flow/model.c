@@ -3,6 +3,7 @@
 
 #include "cloth/solve/patches.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,6 +55,8 @@ void model_free(struct model *model)
     free(model->motions);
     free(model->keys);
     free(model->guides);
+    free(model->courses);
+    free(model->beats);
     free(model->materials);
     free(model->cloths);
     free(model->planes);
@@ -102,4 +105,32 @@ uint32_t model_patches(const struct model *model, uint32_t n_blocks)
     while (n > 1 && n * n_blocks > SOLVE_MOST_BLOCKS)
         n--;
     return n;
+}
+
+double model_course_at(const struct model *model, uint32_t course, double time)
+{
+    if (!course)
+        return 1;
+    const struct model_course *c = model->courses + course - 1;
+    return c->n ? phys_course_at(c->n, model->beats + c->first, time)
+                : phys_sine(c->frequency * time + c->phase);
+}
+
+double model_course_most(const struct model *model, uint32_t course)
+{
+    double most = 0;
+    if (!course || !model->courses[course - 1].n)
+        return 1;
+    const struct model_course *c = model->courses + course - 1;
+    for (uint32_t i = 0; i < c->n; i++)
+        most = fmax(most, fabs(model->beats[c->first + i].factor));
+    return most;
+}
+
+double model_course_end(const struct model *model, uint32_t course)
+{
+    if (!course)
+        return 0;
+    const struct model_course *c = model->courses + course - 1;
+    return c->n ? model->beats[c->first + c->n - 1].time : INFINITY;
 }

@@ -4,6 +4,7 @@
 #include "cloth/base/error.h"
 #include "cloth/mesh/mesh.h"
 #include "cloth/physics/air.h"
+#include "cloth/physics/course.h"
 #include "cloth/physics/motion.h"
 #include "cloth/physics/spring.h"
 #include "cloth/solve/format.h"
@@ -67,13 +68,21 @@ struct model_motion {
     double about[3];
 };
 
-/* A constant force: on each of the picked vertices, newton; or, if there are edges, along these,
+/* How a load varies: by beats first .. first + n - 1 of the model's; n 0: as a sine of the
+ * frequency (1/s) and phase (turns). */
+struct model_course {
+    uint32_t first, n;
+    double frequency, phase;
+};
+
+/* A force: on each of the picked vertices, newton; or, if there are edges, along these,
  * newton a metre of the length at rest, half of an edge's on each end. */
 struct model_load {
     struct model_pick pick; /* a vertex that stands twice gets it twice; edges: its place alone */
     uint32_t n_edges;
     uint32_t (*edges)[2]; /* of the cloth's mesh */
     double force[3];
+    uint32_t course; /* that it is multiplied by, from 1; 0: it is constant */
 };
 
 /* Time lost on purpose: the tasks of a block whose vertices lie in the box take `factor` times as
@@ -185,8 +194,12 @@ struct model {
     struct phys_key *keys; /* of each motion in ascending order; at time 0 it is no motion */
     uint32_t n_guides;
     struct model_guide *guides;
-    double gravity[3]; /* m/s^2 */
+    uint32_t n_courses, n_beats;
+    struct model_course *courses;
+    struct phys_beat *beats; /* of each course in ascending order */
+    double gravity[3];       /* m/s^2 */
     struct phys_air air;
+    uint32_t wind_course; /* that the wind is multiplied by, from 1; 0: it is constant */
     enum model_contact contact;
 
     double h; /* s; time is an integer count of h/1024 */
@@ -283,6 +296,12 @@ static inline int model_has_air(const struct model *model)
 {
     return model->air.density > 0;
 }
+
+/* The factor of a course, by number, at a time, s; of 0: 1. Its largest size at any time; and the
+ * time, s, from which on it is constant: INFINITY for a sine. */
+double model_course_at(const struct model *model, uint32_t course, double time);
+double model_course_most(const struct model *model, uint32_t course);
+double model_course_end(const struct model *model, uint32_t course);
 
 /* Frees what the model owns and clears it. */
 void model_free(struct model *model);

@@ -2,6 +2,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/model.c cloth/flow/model.h \
     cloth/flow/run.c cloth/flow/run.h \
     cloth/flow/tables/limit.c \
+    cloth/flow/tables/loads.c \
     cloth/flow/tables/elements.c cloth/flow/tables/elements.h \
     cloth/flow/tables/members.c \
     cloth/flow/tables/neighbours.c \
@@ -44,4 +45,5 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/system.c \
     cloth/flow/tasks/kernels.h cloth/flow/tasks/patches.h cloth/flow/tasks/tasks.h \
     cloth/flow/tasks/turned.c \
+    cloth/flow/tasks/varying.c \
     cloth/flow/tasks/watch.c

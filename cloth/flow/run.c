@@ -107,14 +107,15 @@ static int warn_of_h(struct flow *flow, struct cloth_error *error)
 
 /* The longest step, s, in which the air's push on a cloth does not turn its velocity round and
  * more: the slope of the drag over the mass, rho C |u| / density, times h is to be below 2. At the
- * speed that the cloth starts with against the wind. */
+ * speed that the cloth starts with against the wind at its strongest. */
 static double air_limit(const struct model *model, const struct model_cloth *cloth)
 {
+    const double most = model_course_most(model, model->wind_course);
     const struct phys_air *air = &model->air;
     const double density = model->materials[cloth->material].density;
     double square = 0;
     for (int i = 0; i < 3; i++)
-        square += pow(air->wind[i] - cloth->velocity[i], 2);
+        square += pow(most * air->wind[i] - cloth->velocity[i], 2);
     if (!cloth->mesh.n_triangles || cloth->mass_per_vertex > 0)
         return INFINITY;
     return 2 * density / (air->density * fmax(air->normal, air->tangent) * sqrt(square));

@@ -1,6 +1,7 @@
 libduite_cloth_la_SOURCES += \
     cloth/physics/air.c cloth/physics/air.h \
     cloth/physics/bending.h \
+    cloth/physics/course.c cloth/physics/course.h \
     cloth/physics/element.h \
     cloth/physics/fold.c \
     cloth/physics/hinge.c \

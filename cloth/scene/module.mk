@@ -19,6 +19,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/world.c \
 	cloth/scene/build/mesh.c \
 	cloth/scene/build/cloth.c \
+	cloth/scene/build/course.c \
 	cloth/scene/build/load.c \
 	cloth/scene/build/start.c \
 	cloth/scene/build/motion.c \

@@ -12,13 +12,6 @@
 /* kg of a vertex: squares of momenta beyond these would be nothing, or infinite. */
 static const double LEAST_MASS = 1e-30, MOST_MASS = 1e30;
 
-static void note(struct flow_odd *odd, const struct model_cloth *cloth, uint32_t vertex,
-                 const char *place)
-{
-    if (odd->n++ == 0)
-        *odd = (struct flow_odd){1, vertex, cloth, place};
-}
-
 PHYS_INLINE void to_vector(const double *x, phys_vec *y)
 {
     *y = (phys_vec){x[0], x[1], x[2], 0};
@@ -54,7 +47,7 @@ static void hold(void *to, uint32_t vertex)
     const uint32_t guide = holder->pin->guide, guided = p->guide ? p->guide[v] : 0;
     const bool held = p->free[v] == 0 || guided;
     if (!p->used[v] && !held)
-        note(&p->pinned, holder->cloth, vertex, holder->pin->pick.place);
+        flow_odd_note(&p->pinned, holder->cloth, vertex, holder->pin->pick.place);
     if (held &&
         ((p->motion && p->motion[v] != motion) || !alike(holder->model->guides, guided, guide)))
         holder->torn = vertex;
@@ -83,65 +76,6 @@ static int pins(struct flow_particles *p, uint32_t first, const struct model *mo
                               "vertex %u of cloth '%.60s' is held by two pins that do not hold "
                               "and move alike; one is expected",
                               holder.torn, cloth->name);
-    }
-    return code;
-}
-
-/* A load and what it adds to a vertex. */
-struct loader {
-    struct flow_particles *particles;
-    uint32_t first; /* vertex of the cloth */
-    const struct model_cloth *cloth;
-    const char *place;
-    phys_vec force; /* N */
-};
-
-static void add_load(void *to, uint32_t vertex)
-{
-    const struct loader *loader = to;
-    struct flow_particles *p = loader->particles;
-    if (!p->used[loader->first + vertex])
-        note(&p->loaded, loader->cloth, vertex, loader->place);
-    p->load[loader->first + vertex] += loader->force;
-}
-
-static int load_edges(struct loader *loader, const struct model_load *load,
-                      struct cloth_error *error)
-{
-    const struct mesh *mesh = model_rest(loader->cloth);
-    phys_vec a, b, force;
-    to_vector(load->force, &force);
-    for (uint32_t i = 0; i < load->n_edges; i++) {
-        const uint32_t *end = load->edges[i];
-        for (int k = 0; k < 2; k++)
-            if (end[k] >= mesh->n_vertices)
-                return flow_no_vertex(loader->cloth, "a load", end[k], loader->place, error);
-        to_vector(mesh->position + 3 * (size_t)end[0], &a);
-        to_vector(mesh->position + 3 * (size_t)end[1], &b);
-        b -= a;
-        loader->force = 0.5 * sqrt(phys_dot(&b, &b)) * force;
-        add_load(loader, end[0]);
-        add_load(loader, end[1]);
-    }
-    return CLOTH_OK;
-}
-
-static int loads(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
-                 struct cloth_error *error)
-{
-    int code = CLOTH_OK;
-    for (uint32_t i = 0; i < cloth->n_loads && !code; i++) {
-        const struct model_load *load = cloth->loads + i;
-        struct loader loader = {
-            .particles = p, .first = first, .cloth = cloth, .place = load->pick.place};
-        const struct flow_picking picking = {.pick = &load->pick,
-                                             .cloth = cloth,
-                                             .used = p->used + first,
-                                             .what = "a load",
-                                             .visit = add_load,
-                                             .to = &loader};
-        to_vector(load->force, &loader.force);
-        code = load->n_edges ? load_edges(&loader, load, error) : flow_pick(&picking, error);
     }
     return code;
 }
@@ -254,7 +188,7 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
         p->free[first + i] = 1;
         if (!p->used[first + i])
-            note(&p->unused, cloth, i, cloth->mesh_place);
+            flow_odd_note(&p->unused, cloth, i, cloth->mesh_place);
     }
     int code = check_start(cloth, error);
     if (!code)
@@ -262,7 +196,7 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     if (!code)
         code = masses(p, first, model, cloth, error);
     if (!code)
-        code = loads(p, first, cloth, error);
+        code = flow_loads_make(p, first, cloth, error);
     if (!code)
         code = pins(p, first, model, cloth, error);
     return code;
@@ -358,6 +292,7 @@ void flow_particles_free(struct flow_particles *particles)
     free(particles->free);
     free(particles->mass);
     free(particles->motion);
+    free(particles->varying);
     free(particles->guide);
     free(particles->load);
     free(particles->start);

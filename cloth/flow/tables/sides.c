@@ -163,6 +163,18 @@ static void fill_watched(const struct flow_source *source, const struct flow_tab
         image->watched[i] = watched->place[low + i] - t->first;
 }
 
+static void fill_varying(const struct flow_source *source, const struct flow_table *t,
+                         const struct flow_image *image)
+{
+    const struct flow_varying *load =
+        source->particles.varying + (t->n_varying ? flow_varying_from(source, t->first) : 0);
+    for (uint32_t i = 0; i < t->n_varying; i++, load++) {
+        image->varying[i][0] = load->at - t->first;
+        image->varying[i][1] = load->course;
+        image->varying_force[i] = (phys_vec){load->force[0], load->force[1], load->force[2], 0};
+    }
+}
+
 /* Whether side i is the first one of its entry. */
 static bool opens(const struct flow_table *t, const struct flow_side *side, uint32_t i)
 {
@@ -247,6 +259,7 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *i
     fill_watched(source, t, &arrays);
     fill_numbered(source, t, source->particles.motion, t->n_moved, arrays.moved);
     fill_numbered(source, t, source->particles.guide, t->n_guided, arrays.guided);
+    fill_varying(source, t, &arrays);
     fill_inner(t, side, &arrays);
     fill_cut(source, t, side + t->n_inner, &arrays);
     fill_sides(source, t, side, &arrays);

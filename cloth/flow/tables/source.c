@@ -123,6 +123,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
     source->shape = cloth_alloc(blocks->n_blocks, sizeof *source->shape, error);
     if (!source->rim || !source->shape)
         return CLOTH_E_MEMORY;
+    flow_varying_settle(source);
     for (uint32_t b = 0; b < blocks->n_blocks; b++) {
         struct flow_table *shape = source->shape + b;
         shape->format = source->model->format;
@@ -132,6 +133,8 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         find_cost(source, shape);
         shape->n_moved = count_numbered(source, shape, source->particles.motion);
         shape->n_guided = count_numbered(source, shape, source->particles.guide);
+        shape->n_varying = flow_varying_from(source, shape->first + shape->n) -
+                           flow_varying_from(source, shape->first);
     }
     count_watched(source);
     flow_source_count(source);

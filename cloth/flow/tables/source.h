@@ -18,6 +18,20 @@ struct flow_odd {
     const struct model_cloth *cloth;
     const char *place; /* of the mesh, pin or load that names it */
 };
+static inline void flow_odd_note(struct flow_odd *odd, const struct model_cloth *cloth,
+                                 uint32_t vertex, const char *place)
+{
+    if (odd->n++ == 0)
+        *odd = (struct flow_odd){1, vertex, cloth, place};
+}
+
+/* A load that varies, on one vertex. */
+struct flow_varying {
+    uint32_t at;     /* its vertex, of all cloths; when blocks are there, its place */
+    uint32_t course; /* of the model, from 1 */
+    uint32_t number; /* in the scene's order */
+    double force[3]; /* N, times the course */
+};
 
 /* Particles by vertex. Arrays of n. */
 struct flow_particles {
@@ -27,7 +41,9 @@ struct flow_particles {
     uint32_t *motion, *guide;               /* number from 1, 0: none; NULL: there are none */
     double *mass;                           /* kg */
     phys_vec *load;                         /* N, gravity included; NULL: gravity alone */
-    double (*start)[6];                     /* m, m/s; NULL: all start where the meshes have them */
+    uint32_t n_varying;
+    struct flow_varying *varying; /* in the scene's order; then by place */
+    double (*start)[6];           /* m, m/s; NULL: all start where the meshes have them */
 };
 
 /* Errors: CLOTH_E_INPUT for pins and loads outside their mesh, boxes without a vertex, starts
@@ -41,6 +57,11 @@ void flow_particles_free(struct flow_particles *particles);
  */
 int flow_starts_make(struct flow_particles *particles, uint32_t first,
                      const struct model_cloth *cloth, struct cloth_error *error);
+
+/* The loads of a cloth, the first vertex of which is `first`, as the part of flow_particles_make
+ * that is about them; after weights. Local. */
+int flow_loads_make(struct flow_particles *particles, uint32_t first,
+                    const struct model_cloth *cloth, struct cloth_error *error);
 
 /* A part of the scene that picks vertices, and what becomes of each. */
 struct flow_picking {
@@ -191,6 +212,11 @@ double flow_limit_of(const struct flow_limit *limit, enum model_integrator integ
 /* What measures residuals, kg m^2: the mass of all vertices that no pin holds times the square of
  * the mean length at rest of all edges that can be stretched; 0 where there are none. Local. */
 double flow_source_inertia(const struct flow_source *source);
+
+/* Orders the loads that vary by place, when blocks are there; those of unused vertices are dropped.
+ * Then: the first of them at or after a place. Local. */
+void flow_varying_settle(struct flow_source *source);
+uint32_t flow_varying_from(const struct flow_source *source, uint32_t place);
 
 /* The cloth of a vertex, and its first vertex; looked for from the last one found. */
 struct flow_cloths {

@@ -61,6 +61,8 @@ static void lay(const struct flow_table *t, struct room *room, struct flow_image
     image->n_held = next(room, sizeof *image->n_held);
     image->moved = next(room, t->n_moved * sizeof *image->moved);
     image->guided = next(room, t->n_guided * sizeof *image->guided);
+    image->varying = next(room, t->n_varying * sizeof *image->varying);
+    image->varying_force = next(room, t->n_varying * sizeof *image->varying_force);
     image->watched = next(room, t->n_watched * sizeof *image->watched);
     image->stretch = next(room, sides);
     for (int kind = 0; kind < FLOW_KINDS; kind++)
@@ -93,6 +95,8 @@ void flow_table_open(struct flow_table *t, const void *image)
     t->watched = arrays.watched;
     t->moved = (const uint32_t(*)[2])arrays.moved;
     t->guided = (const uint32_t(*)[2])arrays.guided;
+    t->varying = (const uint32_t(*)[2])arrays.varying;
+    t->varying_force = arrays.varying_force;
     t->end = (const uint32_t(*)[2])arrays.end;
     t->copy_end = (const uint32_t(*)[2])arrays.copy_end;
     t->stiffness = arrays.stiffness;

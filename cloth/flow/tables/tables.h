@@ -47,6 +47,7 @@ struct flow_table {
     uint32_t n_watched;       /* rows that probes are at */
     uint32_t n_moved;         /* rows that pins move */
     uint32_t n_guided;        /* rows that pins leave free along a guide */
+    uint32_t n_varying;       /* loads that vary */
     uint32_t lowest, highest; /* of its vertices */
     uint32_t n_slots;         /* neighbours */
     uint32_t n_copies;        /* rows that the cut springs end at, neighbour after neighbour */
@@ -59,13 +60,15 @@ struct flow_table {
     const uint32_t *joins;  /* n_slots: which patches here and there */
     const uint32_t *copy;   /* n_copies: places in the neighbour's rim, ascending in a slot */
     /* The table itself, in an image that is not owned; NULL but where one is open. */
-    const uint32_t *vertex;      /* n: of the input */
-    const uint32_t *cut;         /* n_slots + 1: the springs into slot s are n_inner + cut[s] .. */
-    const uint32_t *rim;         /* n_rim: ascending */
-    const uint32_t *watched;     /* n_watched: rows, ascending */
-    const uint32_t (*moved)[2];  /* n_moved: row, ascending; number of its motion, from 1 */
-    const uint32_t (*guided)[2]; /* n_guided: row, ascending; number of its guide, from 1 */
-    const uint32_t (*end)[2];    /* inner: rows; cut: row here, place in the neighbour's rim */
+    const uint32_t *vertex;       /* n: of the input */
+    const uint32_t *cut;          /* n_slots + 1: the springs into slot s are n_inner + cut[s] .. */
+    const uint32_t *rim;          /* n_rim: ascending */
+    const uint32_t *watched;      /* n_watched: rows, ascending */
+    const uint32_t (*moved)[2];   /* n_moved: row, ascending; number of its motion, from 1 */
+    const uint32_t (*guided)[2];  /* n_guided: row, ascending; number of its guide, from 1 */
+    const uint32_t (*varying)[2]; /* n_varying: row, ascending; number of its course, from 1 */
+    const phys_vec *varying_force; /* n_varying: N, times the course */
+    const uint32_t (*end)[2];      /* inner: rows; cut: row here, place in the neighbour's rim */
     const uint32_t (*copy_end)[2]; /* cut entries: row here, number of the copy */
     const uint32_t *cut_entry; /* n_slots + 1: the cut entries into slot s are cut_entry[s] .. */
     const uint32_t *at;        /* half storage: of each spring, its entry */
@@ -95,6 +98,8 @@ struct flow_image {
     uint32_t (*held)[2];                  /* n_held */
     uint32_t (*moved)[2];                 /* n_moved */
     uint32_t (*guided)[2];                /* n_guided */
+    uint32_t (*varying)[2];               /* n_varying */
+    phys_vec *varying_force;              /* n_varying */
     uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_entries */, *rim;
     uint32_t *cut, *cut_entry; /* n_slots + 1 */
     uint32_t *watched;         /* n_watched */

@@ -87,6 +87,11 @@ void flow_elements_assemble(const duite_call *call, const struct flow_table *t, 
 double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims,
                             double torque[3]);
 
+/* Loads that vary (varying.c), as they are at the time of the arguments: adds them (N) to f; their
+ * energy (J) at x, zero at the origin. */
+void flow_varying_add(const duite_call *call, const struct flow_table *t, phys_vec *f);
+double flow_varying_energy(const duite_call *call, const struct flow_table *t, const phys_vec *x);
+
 /* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are
  * none. */
 static inline void flow_write_rim(const struct flow_table *table, const phys_vec *y, phys_vec *rim)

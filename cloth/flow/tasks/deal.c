@@ -17,8 +17,8 @@ enum {
 struct shape {
     uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_rim, n_held, lowest, highest;
     uint32_t joined, rim_start[SOLVE_MOST_PATCHES + 1];
-    uint32_t n_watched, n_moved, n_guided, n_slots, n_copies, n_stiff, n_elements[FLOW_KINDS],
-        n_membranes;
+    uint32_t n_watched, n_moved, n_guided, n_varying, n_slots, n_copies, n_stiff,
+        n_elements[FLOW_KINDS], n_membranes;
     float cost;
 };
 
@@ -48,6 +48,8 @@ static int tell_head(const duite_call *call)
                          flow->model->n_keys * sizeof *flow->model->keys +
                          flow->model->n_motions * sizeof *flow->model->motions +
                          flow->model->n_guides * sizeof *flow->model->guides +
+                         flow->model->n_beats * sizeof *flow->model->beats +
+                         flow->model->n_courses * sizeof *flow->model->courses +
                          head->n_blocks * (sizeof(struct shape) + sizeof(uint32_t)) +
                          (3 * (uint64_t)head->n_slots + head->n_copies) * sizeof(uint32_t);
     for (uint32_t b = 0; b < head->n_blocks; b++) {
@@ -81,6 +83,8 @@ static int tell_shared(const duite_call *call)
     to = put(to, model->planes, model->n_planes * sizeof *model->planes);
     to = put(to, model->keys, model->n_keys * sizeof *model->keys);
     to = put(to, model->guides, model->n_guides * sizeof *model->guides);
+    to = put(to, model->beats, model->n_beats * sizeof *model->beats);
+    to = put(to, model->courses, model->n_courses * sizeof *model->courses);
     to = put(to, model->motions, model->n_motions * sizeof *model->motions);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
@@ -94,6 +98,7 @@ static int tell_shared(const duite_call *call)
                               .n_watched = t->n_watched,
                               .n_moved = t->n_moved,
                               .n_guided = t->n_guided,
+                              .n_varying = t->n_varying,
                               .lowest = t->lowest,
                               .highest = t->highest,
                               .n_slots = t->n_slots,
@@ -150,6 +155,8 @@ int flow_share_head(struct flow_state *state)
     flow->told.keys = NULL;
     flow->told.motions = NULL;
     flow->told.guides = NULL;
+    flow->told.beats = NULL;
+    flow->told.courses = NULL;
     flow->model = &flow->told;
     flow->n_steps = head->n_steps;
     flow->inertia = head->inertia;
@@ -166,7 +173,9 @@ static void unpack(struct flow_state *state)
     flow->told.planes = flow->shared;
     flow->told.keys = (void *)(flow->told.planes + flow->model->n_planes);
     flow->told.guides = (void *)(flow->told.keys + flow->model->n_keys);
-    flow->told.motions = (void *)(flow->told.guides + flow->model->n_guides);
+    flow->told.beats = (void *)(flow->told.guides + flow->model->n_guides);
+    flow->told.courses = (void *)(flow->told.beats + flow->model->n_beats);
+    flow->told.motions = (void *)(flow->told.courses + flow->model->n_courses);
     const struct shape *shape = (const void *)(flow->told.motions + flow->model->n_motions);
     const uint32_t *slot = (const void *)(shape + tables->n_blocks);
     const uint32_t *copies = slot + state->head.n_slots;
@@ -188,6 +197,7 @@ static void unpack(struct flow_state *state)
                                                .n_watched = shape->n_watched,
                                                .n_moved = shape->n_moved,
                                                .n_guided = shape->n_guided,
+                                               .n_varying = shape->n_varying,
                                                .lowest = shape->lowest,
                                                .highest = shape->highest,
                                                .n_slots = shape->n_slots,

@@ -49,9 +49,14 @@ void flow_elements_bend(const duite_call *call, const struct flow_table *t,
 {
     const struct phys_hinges hinges = flow_table_hinges(t);
     const struct phys_folds folds = flow_table_folds(t);
+    const struct model *model = flow_of(call)->model;
     phys_hinges_force(&hinges, sight, f);
     phys_folds_force(&folds, sight, f);
-    phys_air_force(&flow_of(call)->model->air, t->n_elements[FLOW_SAILS],
+    struct phys_air air = model->air;
+    const double course = model_course_at(model, model->wind_course, flow_args_of(call)->time);
+    for (int i = 0; i < 3; i++)
+        air.wind[i] *= course;
+    phys_air_force(&air, t->n_elements[FLOW_SAILS],
                    (const uint32_t(*)[4])t->list[FLOW_SAILS].corner, sight, f);
 }
 

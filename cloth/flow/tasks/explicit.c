@@ -6,18 +6,19 @@
 
 #include <stddef.h>
 
-/* f at x, v: all forces, or those without the drag. */
-static int fork_force(struct flow_state *state, const duite_kernel *kernel)
+/* f at x, v: all forces, or those without the drag, when so much of the step is over. */
+static int fork_force(struct flow_state *state, const duite_kernel *kernel, double part)
 {
-    return flow_fork_all(state, kernel, flow_attempt_args(state),
-                         FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)), FLOW_NOTHING,
-                         FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    struct flow_args args = flow_attempt_args(state);
+    args.time = (args.begin + part * state->attempt.length) * state->flow->model->h / FLOW_TICKS;
+    return flow_fork_all(state, kernel, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)),
+                         FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
 }
 
 /* f becomes the acceleration. */
-static int fork_acceleration(struct flow_state *state)
+static int fork_acceleration(struct flow_state *state, double part)
 {
-    const int code = fork_force(state, &flow_force);
+    const int code = fork_force(state, &flow_force, part);
     return code ? code
                 : flow_fork_all(state, &flow_explicit, flow_attempt_args(state),
                                 FLOW_OBJECTS(FLOW_AT(f)), FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
@@ -52,7 +53,7 @@ static int verlet(struct flow_state *state)
     if (!code)
         code = fork_position(state, FLOW_AT(v0));
     if (!code)
-        code = fork_force(state, &flow_force_free);
+        code = fork_force(state, &flow_force_free, 1);
     state->settled_forces = !model->n_planes && !model_is_driven(model);
     return code ? code
                 : flow_fork_all(state, &flow_kick_second, args,
@@ -62,10 +63,11 @@ static int verlet(struct flow_state *state)
 
 static int runge(struct flow_state *state)
 {
+    static const double when[PHYS_RUNGE_STAGES] = {0, 0.5, 0.5, 1};
     struct flow_args args = flow_attempt_args(state);
     int code = DUITE_OK;
     for (; args.stage < PHYS_RUNGE_STAGES && !code; args.stage++) {
-        code = args.stage > 0 ? fork_acceleration(state) : DUITE_OK;
+        code = args.stage > 0 ? fork_acceleration(state, when[args.stage]) : DUITE_OK;
         if (!code)
             code = flow_fork_all(state, &flow_runge, args,
                                  FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(x), FLOW_AT(v), FLOW_AT(x0),
@@ -80,11 +82,11 @@ int flow_explicit_begin(struct flow_state *state)
 {
     switch (state->flow->model->integrator) {
     case MODEL_RK4:
-        return fork_acceleration(state);
+        return fork_acceleration(state, 0);
     case MODEL_VERLET:
-        return state->settled_forces ? DUITE_OK : fork_force(state, &flow_force_free);
+        return state->settled_forces ? DUITE_OK : fork_force(state, &flow_force_free, 0);
     default:
-        return fork_force(state, &flow_force);
+        return fork_force(state, &flow_force, 0);
     }
 }
 

@@ -66,6 +66,7 @@ static int force(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     phys_outside(t->n, t->load, t->drag, duite_in(call, 2, phys_vec), duite_out(call, 3, phys_vec));
+    flow_varying_add(call, t, duite_out(call, 3, phys_vec));
     add_inner(call, t);
     return 0;
 }
@@ -80,6 +81,7 @@ static int force_free(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
     memcpy(duite_out(call, 3, phys_vec), t->load, t->n * sizeof *t->load);
+    flow_varying_add(call, t, duite_out(call, 3, phys_vec));
     add_inner(call, t);
     return 0;
 }

@@ -89,6 +89,7 @@ static void begin_right_side(const struct making *m, const struct phys_sight *si
     const struct flow_table *t = m->t;
     if (m->push > 0) {
         phys_outside(t->n, t->load, t->drag, duite_in(m->call, 2, phys_vec), m->b);
+        flow_varying_add(m->call, t, m->b);
         if (sight->x)
             flow_elements_bend(m->call, t, sight, m->b);
     }

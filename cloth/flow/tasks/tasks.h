@@ -118,7 +118,7 @@ struct flow_args {
     uint64_t frame;
     uint32_t stage;  /* of a step by RK4 */
     double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */
-    double time;     /* s: of a frame; at the end of the step */
+    double time;     /* s: of a frame; of what varies; else at the end of the step */
     double before;   /* s: of a row of probes: length of the step before */
     double part;     /* of dv */
     double guess;    /* a solve begins with dv times this; 0: from nothing */

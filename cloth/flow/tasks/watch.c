@@ -110,6 +110,9 @@ static int find_rest(struct flow_state *state)
     for (uint32_t i = 0; i < model->n_motions; i++)
         if (model->keys[model->motions[i].first + model->motions[i].n - 1].time > time)
             state->moved = time; /* a pin will move yet */
+    for (uint32_t course = 1; course <= model->n_courses; course++)
+        if (model_course_end(model, course) > time)
+            state->moved = time; /* a load will vary yet */
     if (!(sqrt(peaks[FLOW_PEAK_SPEED]) <= model->rest.speed))
         state->moved = time;
     state->resting = state->grid.now > 0 && time - state->moved >= model->rest.hold;

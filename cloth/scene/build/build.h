@@ -33,9 +33,14 @@ int scene_build_once(const struct model_pick *pick, const struct scene_tree *tre
 int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
                           const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* The loads of a cloth that has its mesh and name. */
-int scene_build_loads(struct model_cloth *cloth, const struct scene_tree *tree, int node,
-                      struct cloth_error *error);
+/* The key course of a map, if it has one: of a load, or of the air. *number: the model's new one;
+ * 0: there is none. After the time. */
+int scene_build_course(struct model *model, uint32_t *number, const struct scene_tree *tree,
+                       int node, struct cloth_error *error);
+
+/* The loads of a cloth that has its mesh and name; their courses are added to the model's. */
+int scene_build_loads(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
+                      int node, struct cloth_error *error);
 
 /* The masses and starts of a cloth that has its mesh and name. */
 int scene_build_starts(struct model_cloth *cloth, const struct scene_tree *tree, int node,

@@ -276,7 +276,7 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
         code = build_cost(cloth, tree, node, error);
     if (!code)
         code = scene_build_starts(cloth, tree, node, error);
-    return code ? code : scene_build_loads(cloth, tree, node, error);
+    return code ? code : scene_build_loads(model, cloth, tree, node, error);
 }
 
 int scene_build_cloths(struct model *model, const struct scene_tree *tree,

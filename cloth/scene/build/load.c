@@ -47,8 +47,8 @@ static int build_load(struct model_load *load, const struct scene_tree *tree, in
                             error);
 }
 
-int scene_build_loads(struct model_cloth *cloth, const struct scene_tree *tree, int node,
-                      struct cloth_error *error)
+int scene_build_loads(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
+                      int node, struct cloth_error *error)
 {
     int list = scene_tree_get(tree, node, "loads"), code = CLOTH_OK;
     uint32_t n = (uint32_t)scene_tree_length(tree, list);
@@ -58,9 +58,13 @@ int scene_build_loads(struct model_cloth *cloth, const struct scene_tree *tree, 
         cloth->n_loads = n;
     else
         code = error->code;
-    for (uint32_t i = 0; !code && i < n; i++)
-        code = build_load(&cloth->loads[i], tree, scene_tree_item(tree, list, i), cloth, seen,
-                          i + 1, error);
+    for (uint32_t i = 0; !code && i < n; i++) {
+        struct model_load *load = &cloth->loads[i];
+        const int item = scene_tree_item(tree, list, i);
+        code = build_load(load, tree, item, cloth, seen, i + 1, error);
+        if (!code)
+            code = scene_build_course(model, &load->course, tree, item, error);
+    }
     free(seen);
     return code;
 }

@@ -285,28 +285,30 @@ static void build_solver(struct model *model, const struct scene_tree *tree)
     }
 }
 
-static void build_air(struct model *model, const struct scene_tree *tree)
+static int build_air(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
 {
     const int air = scene_tree_get(tree, 1, "air");
     if (!air)
-        return;
+        return CLOTH_OK;
     model->air.density = scene_tree_number(tree, air, "density");
     model->air.normal = scene_tree_number(tree, air, "normal");
     model->air.tangent = scene_tree_number(tree, air, "tangent");
     scene_tree_vector(tree, scene_tree_get(tree, air, "wind"), 3, model->air.wind);
+    return scene_build_course(model, &model->wind_course, tree, air, error);
 }
 
 int scene_build_world(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
 {
     model->grain = scene_tree_integer(tree, 1, "grain");
     scene_tree_vector(tree, scene_tree_get(tree, 1, "gravity"), 3, model->gravity);
-    build_air(model, tree);
     build_solver(model, tree);
     if (!strcmp(scene_tree_text(tree, 1, "contact"), "filter"))
         model->contact = MODEL_CONTACT_FILTER;
     int code = build_name(model, tree, error);
     if (!code)
         code = build_time(model, tree, error);
+    if (!code)
+        code = build_air(model, tree, error);
     if (!code)
         code = build_materials(model, tree, error);
     return code ? code : build_obstacles(model, tree, error);

@@ -93,12 +93,26 @@ static const struct scene_rule probe_keys[] = {
     {0}};
 static const struct scene_rule probe = {.type = SCENE_MAP, .inside = probe_keys};
 
+static const struct scene_rule beat = {.type = SCENE_LIST, .length = 2, .inside = &number};
+static const struct scene_rule sine_keys[] = {
+    {"frequency", SCENE_NUMBER, "1/s", .required = true, .range = SCENE_POSITIVE,
+     .about = "turns a second"},
+    {"phase", SCENE_NUMBER, .fallback = "0", .about = "turns at time 0; 0.25: a cosine"},
+    {0}};
+static const struct scene_rule course_kinds[] = {
+    {"keys", SCENE_LIST, .filled = true, .inside = &beat,
+     .about = "[time in s, factor], times ascending; linear in between"},
+    {"sine", SCENE_MAP, .inside = sine_keys, .about = "sin 2 pi (frequency t + phase)"},
+    {0}};
+
 static const struct scene_rule load_keys[] = {
     PICK,
     {"edges", SCENE_LIST, .choice = true, .filled = true, .inside = &edge,
      .about = "pairs of vertices: the force is along them, in N/m of their length at rest"},
     {"force", SCENE_LIST, "N", .required = true, .length = 3, .inside = &number,
-     .about = "constant, on each of the vertices"},
+     .about = "on each of the vertices"},
+    {"course", SCENE_ONE_OF, .inside = course_kinds,
+     .about = "what the force is multiplied by in time; else it is constant"},
     {0}};
 static const struct scene_rule load = {.type = SCENE_MAP, .inside = load_keys};
 
@@ -215,6 +229,8 @@ static const struct scene_rule air_keys[] = {
     {"density", SCENE_NUMBER, "kg/m^3", "1.2", .range = SCENE_POSITIVE, .about = "of the air"},
     {"wind", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
      .about = "the same everywhere"},
+    {"course", SCENE_ONE_OF, .inside = course_kinds,
+     .about = "what the wind is multiplied by in time; else it is constant"},
     {"normal", SCENE_NUMBER, .fallback = "1.2", .range = SCENE_NOT_NEGATIVE,
      .about = "coefficient of the drag across a triangle"},
     {"tangent", SCENE_NUMBER, .fallback = "0.01", .range = SCENE_NOT_NEGATIVE,

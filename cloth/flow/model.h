@@ -98,13 +98,22 @@ struct model_mass {
     double mass;            /* kg, > 0 */
 };
 
+/* A plane wave over the mesh: sin(2 pi (vector . (p - about) + phase)), p where the mesh has a
+ * vertex, times each of the other two. */
+struct model_wave {
+    double vector[3], phase;          /* waves a metre, waves */
+    double translate[3], velocity[3]; /* m, m/s */
+};
+
 /* How the picked vertices start, if not where the mesh has them: x -> about + rotate(scale * (x -
- * about)) + translate; then v, or what it was before, + spin x (x - about). */
+ * about)) + translate; then v, or what it was before, + spin x (x - about). The wave is added to
+ * both. */
 struct model_start {
     struct model_pick pick;
     struct mesh_transform transform;
     double about[3], spin[3], velocity[3]; /* m, rad/s, m/s */
     bool has_velocity;
+    struct model_wave wave;
 };
 
 struct model_cloth {

@@ -107,8 +107,7 @@ awk 'BEGIN { printf "schema: 1\ngravity: [0, 0, 0]\ncloths:\n  - mesh: {inline: 
     for (i = 0; i <= 10; i++) printf "%s[%g, 0, 0]", i ? ", " : "", i / 10
     printf "], edges: ["
     for (i = 0; i < 10; i++) printf "%s[%d, %d]", i ? ", " : "", i, i + 1
-    printf "]}}\n    material: wire\n    mass_per_vertex: 0.01\n    pins: [{vertices: [0, 10]}]\n    start: [{box: [[-9, -9, -9], [9, 9, 9]], scale: 1.25}"
-    for (i = 1; i < 10; i++) printf ", {vertices: [%d], translate: [0, %.15g, 0]}", i, 1e-5 * sin(3 * 3.14159265358979324 * i / 10)
+    printf "]}}\n    material: wire\n    mass_per_vertex: 0.01\n    pins: [{vertices: [0, 10]}]\n    start: [{box: [[-9, -9, -9], [9, 9, 9]], scale: 1.25, wave: {vector: [1.5, 0, 0], translate: [0, 1e-5, 0]}}"
     print "]\nmaterials: {wire: {density: 1, stretch: 200}}\ntime: {h: 2.5e-4, end: 0.3}\nintegrator: rk4\nprobes: [{name: p, vertices: [5], values: [position]}]" }' > string.yaml
 string() {
     run string.yaml || return 1

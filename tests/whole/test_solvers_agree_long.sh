@@ -1,23 +1,22 @@
 #!/bin/sh
-# The sheet of 22,500 vertices with the default preconditioner and with none, from the flat start into the first buckles: at a
-# tolerance of 1e-8 all vertices agree to 1e-6 m as long as nothing but the solve makes them differ. The flat sheet buckles from
-# 0.04 s on, and what it is disturbed by is the solves' own error: the difference then doubles in every step or two, and is in
-# proportion to the tolerance. So after 0.1 s it is of the order of the buckles for any tolerance that doubles allow (docs/design.md).
+# The sheet of 22,500 vertices with the default preconditioner and with none, in one format of the matrix: at a tolerance of 1e-8
+# all vertices agree to 1e-6 m after 0.1 s, and the difference falls with the tolerance. The scene's wave of 0.1 mm matters: a quite
+# flat sheet buckles from 0.044 s on as the solves' own errors tell, which double in every step or two (docs/design.md).
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 scene=$srcdir/cloth/scenes/sheet.yaml
 DUITE_TIMEOUT=1500
 
 simulate() { # TOLERANCE PRECONDITIONER
-    limited "$DUITE_CLOTH" "$scene" --threads 2 --set time.end=0.05 --set "solver={preconditioner: $2, stop: {relative: $1}}" \
+    limited "$DUITE_CLOTH" "$scene" --threads 2 --set time.end=0.1 --set "solver={preconditioner: $2, stop: {relative: $1}}" \
         --set 'probes=[{box: [[-9, -9, -9], [9, 9, 9]], values: [position]}]' --output "$scratch/$2" &&
-        sed -n '32p; 52p' "$scratch/$2/probes.csv" | tr ',' ' ' > "$scratch/$2-$1"
+        sed -n '52p; 102p' "$scratch/$2/probes.csv" | tr ',' ' ' > "$scratch/$2-$1"
     status=$?
     rm -rf "${scratch:?}/$2"
     return $status
 }
 
-# The largest difference of a coordinate after 30 steps, and after 50.
+# The largest difference of a coordinate after 50 steps, and after 100.
 differences() { # TOLERANCE
     paste -d ' ' "$scratch/none-$1" "$scratch/ic0_coarse-$1" |
         awk '{ n = NF / 2; most = 0
@@ -27,8 +26,8 @@ differences() { # TOLERANCE
     test "$(wc -l < "$scratch/difference-$1")" = 2
 }
 
-below() { # DIFFERENCE-FILE LIMIT-AT-30 LIMIT-AT-50
-    awk -v a="$2" -v b="$3" '{ if (!($1 > 0 && $1 <= (NR == 1 ? a : b))) bad = 1 } END { exit bad || NR != 2 }' "$1"
+below() { # DIFFERENCE-FILE LIMIT
+    awk -v limit="$2" '{ if (!($1 > 0 && $1 <= limit)) bad = 1 } END { exit bad || NR != 2 }' "$1"
 }
 
 in_proportion() { # by a tenth of the tolerance at most a half of the difference
@@ -43,5 +42,5 @@ for tolerance in 1e-8 1e-9; do
     ok "differences, $tolerance" differences $tolerance
     sed 's/^/# largest difference, m: /' "$scratch/difference-$tolerance"
 done
-ok "1e-8: 1e-7 m after 0.03 s, 1e-6 m after 0.05 s" below "$scratch/difference-1e-8" 1e-7 1e-6
+ok "1e-8: 1e-6 m after 0.1 s" below "$scratch/difference-1e-8" 1e-6
 ok "in proportion to the tolerance" in_proportion

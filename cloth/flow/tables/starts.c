@@ -2,6 +2,7 @@
  * velocity. Rest shapes and masses do not see it. */
 #include "cloth/flow/tables/source.h"
 
+#include "cloth/physics/course.h"
 #include "cloth/physics/particle.h"
 
 #include <stdlib.h>
@@ -10,6 +11,7 @@
 /* A start and the vertices that it moves. */
 struct starter {
     double (*start)[6]; /* of the cloth's first vertex */
+    const double *mesh; /* where the mesh has them */
     const struct model_start *how;
     uint32_t lost; /* one that it takes beyond all bounds; UINT32_MAX: none */
 };
@@ -30,11 +32,20 @@ static int refuse(const struct model_cloth *cloth, uint32_t vertex, double (*sta
                       vertex, cloth->name, x[0], x[1], x[2], v[0], v[1], v[2], FLOW_BOUND);
 }
 
+static double wave_at(const struct model_start *how, const double mesh[3])
+{
+    double cycles = how->wave.phase;
+    for (int c = 0; c < 3; c++)
+        cycles += how->wave.vector[c] * (mesh[c] - how->about[c]);
+    return phys_sine(cycles);
+}
+
 static void move(void *to, uint32_t vertex)
 {
     struct starter *starter = to;
     const struct model_start *how = starter->how;
     double *x = starter->start[vertex], *v = x + 3, arm[3];
+    const double sine = wave_at(how, starter->mesh + 3 * (size_t)vertex);
     struct mesh one = {.n_vertices = 1, .position = arm};
     for (int c = 0; c < 3; c++)
         arm[c] = x[c] - how->about[c];
@@ -42,8 +53,9 @@ static void move(void *to, uint32_t vertex)
     for (int c = 0; c < 3; c++) {
         const int a = (c + 1) % 3, b = (c + 2) % 3;
         const double before = how->has_velocity ? how->velocity[c] : v[c];
-        v[c] = before + (how->spin[a] * arm[b] - how->spin[b] * arm[a]);
-        x[c] = how->about[c] + arm[c];
+        v[c] =
+            before + (how->spin[a] * arm[b] - how->spin[b] * arm[a]) + how->wave.velocity[c] * sine;
+        x[c] = how->about[c] + arm[c] + how->wave.translate[c] * sine;
     }
     if (!is_bounded(x))
         starter->lost = vertex;
@@ -72,7 +84,7 @@ int flow_starts_make(struct flow_particles *particles, uint32_t first,
         code = is_bounded(start[i]) ? CLOTH_OK : refuse(cloth, i, start, cloth->place, error);
     for (uint32_t i = 0; i < cloth->n_starts && !code; i++) {
         const struct model_pick *pick = &cloth->starts[i].pick;
-        struct starter starter = {start, cloth->starts + i, UINT32_MAX};
+        struct starter starter = {start, cloth->mesh.position, cloth->starts + i, UINT32_MAX};
         const struct flow_picking picking = {.pick = pick,
                                              .cloth = cloth,
                                              .used = particles->used + first,

@@ -28,6 +28,16 @@ static int build_masses(struct model_cloth *cloth, const struct scene_tree *tree
     return code;
 }
 
+static void build_wave(struct model_wave *wave, const struct scene_tree *tree, int node)
+{
+    if (!node)
+        return;
+    wave->phase = scene_tree_number(tree, node, "phase");
+    scene_tree_vector(tree, scene_tree_get(tree, node, "vector"), 3, wave->vector);
+    scene_tree_vector(tree, scene_tree_get(tree, node, "translate"), 3, wave->translate);
+    scene_tree_vector(tree, scene_tree_get(tree, node, "velocity"), 3, wave->velocity);
+}
+
 static int build_start(struct model_start *start, const struct scene_tree *tree, int node,
                        const struct model_cloth *cloth, uint32_t *seen, uint32_t number,
                        struct cloth_error *error)
@@ -38,6 +48,7 @@ static int build_start(struct model_start *start, const struct scene_tree *tree,
     start->has_velocity = velocity != 0;
     if (velocity)
         scene_tree_vector(tree, velocity, 3, start->velocity);
+    build_wave(&start->wave, tree, scene_tree_get(tree, node, "wave"));
     int code = scene_build_transform(&start->transform, tree, node, error);
     if (!code)
         code = scene_build_pick(&start->pick, tree, node, cloth, error);

@@ -123,6 +123,16 @@ static const struct scene_rule mass_keys[] = {PICK,
                                               {0}};
 static const struct scene_rule mass = {.type = SCENE_MAP, .inside = mass_keys};
 
+static const struct scene_rule wave_keys[] = {
+    {"vector", SCENE_LIST, "1/m", .required = true, .length = 3, .inside = &number,
+     .about = "waves a metre along each axis, by where the mesh has the vertices"},
+    {"phase", SCENE_NUMBER, .fallback = "0", .about = "in waves, at the point `about`"},
+    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     .about = "a shift, times the sine"},
+    {"velocity", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     .about = "added, times the sine"},
+    {0}};
+
 static const struct scene_rule start_keys[] = {
     PICK,
     {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3,
@@ -137,6 +147,8 @@ static const struct scene_rule start_keys[] = {
      .about = "instead of what it was before"},
     {"spin", SCENE_LIST, "rad/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
      .about = "added: the velocity of a rigid turn about the point"},
+    {"wave", SCENE_MAP, .inside = wave_keys,
+     .about = "added: a sine over the mesh, of the place or the velocity"},
     {0}};
 static const struct scene_rule start = {.type = SCENE_MAP, .inside = start_keys};
 

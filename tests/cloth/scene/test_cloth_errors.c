@@ -225,6 +225,9 @@ START_TEST(starts_and_masses_that_cannot_be_made)
            {MORE("start: [{vertices: [1], rotate: [0, 0, 0, 0]}]"),
             .error = ":7:37: the quaternion [w, x, y, z] has no direction; its length must be "
                      "neither zero nor huge"},
+           {MORE("start: [{vertices: [1], wave: {phase: 1}}]"),
+            .error = ":7:35: cloths[0].start[0].wave.vector is missing; a list of 3 numbers (1/m) is "
+                     "expected"},
            {MORE("start: [{vertices: [1], spin: [0, .nan, 0]}]"),
             .error = ":7:39: cloths[0].start[0].spin[1] is .nan; a finite number is expected"});
 }

@@ -274,7 +274,8 @@ START_TEST(starts_and_masses)
         "material: cotton\n    masses: [{vertices: [3, 5], mass: 0.25}]\n"
         "    start: [{nearest: [0, 0, 9]}, {box: [[1, 1, 1], [-1, -1, -1]], scale: 2,\n"
         "             rotate: [0, 2, 0, 0], translate: [1, 2, 3], about: [4, 5, 6],\n"
-        "             velocity: [0, 0, 0], spin: [7, 8, 9]}]");
+        "             velocity: [0, 0, 0], spin: [7, 8, 9],\n"
+        "             wave: {vector: [1, 2, 3], phase: 0.5, velocity: [4, 5, 6]}}]");
     const struct model_cloth *cloth = model.cloths;
     ck_assert_uint_eq(cloth->n_masses, 1);
     ck_assert_double_eq(cloth->masses[0].mass, 0.25);
@@ -291,6 +292,10 @@ START_TEST(starts_and_masses)
     same_vector(full->transform.translate, 1, 2, 3);
     same_vector(full->about, 4, 5, 6);
     same_vector(full->spin, 7, 8, 9);
+    same_vector(full->wave.vector, 1, 2, 3);
+    ck_assert_double_eq(full->wave.phase, 0.5);
+    same_vector(full->wave.translate, 0, 0, 0);
+    same_vector(full->wave.velocity, 4, 5, 6);
     model_free(&model);
 }
 END_TEST

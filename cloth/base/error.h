@@ -19,8 +19,9 @@ struct cloth_error {
     char text[1024];
 };
 
-/* Sets code and sentence (printf form, no trailing newline) unless an error is already set. Returns
- * the code that is set, so that `return cloth_fail(...)` reads well. `error` may be NULL. Local. */
+/* Sets code and sentence (printf form, no trailing newline; one that is too long loses its middle)
+ * unless an error is already set. Returns the code that is set, so that `return cloth_fail(...)`
+ * reads well. `error` may be NULL. Local. */
 int cloth_fail(struct cloth_error *error, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

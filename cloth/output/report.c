@@ -118,6 +118,37 @@ static bool written_in_place(const char *path)
     return stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
+/* Which of our own two outputs the path leads to, as /dev/stdout does; -1: neither. */
+static int own_output(const char *path)
+{
+    struct stat there, here;
+    if (stat(path, &there) != 0)
+        return -1;
+    for (int file = STDOUT_FILENO; file <= STDERR_FILENO; file++)
+        if (fstat(file, &here) == 0 && here.st_dev == there.st_dev && here.st_ino == there.st_ino)
+            return file;
+    return -1;
+}
+
+/* Goes on where that output is: what was printed before stays, what is printed later follows. */
+static int write_own(const struct output_report *report, int file, const char *path,
+                     struct cloth_error *error)
+{
+    fflush(stdout);
+    const int copy = dup(file);
+    FILE *stream = copy < 0 ? NULL : fdopen(copy, "w");
+    if (!stream) {
+        const int code = output_fail(error, "write", path);
+        if (copy >= 0)
+            close(copy);
+        return code;
+    }
+    const int bad = fill_report(stream, report) || fflush(stream) != 0;
+    const int code = bad ? output_fail(error, "write", path) : 0;
+    fclose(stream);
+    return code;
+}
+
 /* Whether a folder (ended by '/') is `made` or one of its parents. */
 static bool within(const char *folder, const char *made)
 {
@@ -153,7 +184,7 @@ int output_report_check(const char *path, const char *made, struct cloth_error *
     struct stat status;
     if (stat(path, &status) == 0 && S_ISDIR(status.st_mode))
         return cloth_fail(error, CLOTH_E_INPUT, "this is a folder; the name of a file is expected");
-    if (written_in_place(path))
+    if (written_in_place(path) || own_output(path) >= 0)
         return access(path, W_OK) == 0
                    ? 0
                    : cloth_fail(error, CLOTH_E_INPUT, "cannot be written: %s", strerror(errno));
@@ -169,6 +200,9 @@ int output_report_write(struct output_report *report, const char *path, struct c
 {
     if (fflush(report->stream) != 0 || ferror(report->stream))
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the report %s", path);
+    const int own = own_output(path);
+    if (own >= 0)
+        return write_own(report, own, path, error);
     if (written_in_place(path))
         return output_write_file(path, fill_report, report, error);
     char *file = follow(path);

@@ -10,7 +10,7 @@ struct solve_scalars solve_scalars_start(double step, double phase)
         .phase = phase, .alpha = 1, .wanted = -1, .step = step, .stride = 1};
 }
 
-/* A residual is rubbish when its square is less than this part of the first one: what is left is
+/* A residual is rubbish when its square is less than this part of the right side's: what is left is
  * rounding, of which r.z may be anything. */
 #define RUBBISH 1e-26
 
@@ -155,6 +155,7 @@ static int judge(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
 static int open(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                 struct solve_scalars *after)
 {
+    after->first = dots[SOLVE_RR];
     after->wanted = wanted(stop, dots[SOLVE_RR]);
     after->alpha = dots[SOLVE_PQ] > 0 ? dots[SOLVE_RQ] / dots[SOLVE_PQ] : 0;
     after->phase = SOLVE_AGAIN;
@@ -173,7 +174,7 @@ static int arrive(const struct solve_stop *stop, struct solve_scalars *after)
 static bool ends(const struct solve_stop *stop, struct solve_scalars *after, int *code)
 {
     if (after->iterations == 0)
-        after->first = after->square;
+        after->first = fmax(after->first, after->square);
     if (after->wanted < 0)
         after->wanted = wanted(stop, after->square);
     if (reached(stop, after)) {

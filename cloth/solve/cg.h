@@ -109,7 +109,7 @@ struct solve_scalars {
     double product;     /* classic: r.z of the last update */
     double outcome;     /* of the solve: SOLVE_OK ..., below */
     double step, last;  /* the caller's */
-    double first;       /* r.r of the first pass */
+    double first;       /* r.r before the first pass, or b.b, if that is more */
     double size, bound; /* dv.D dv, r.D^-1 r of the last pass */
     double drift;       /* SOLVE_DRIFT of the last check, kg m^2/s^2 */
     double refused;     /* by the last check: r.r, or with mass_norm the drift */

@@ -4,14 +4,32 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 static _Thread_local char sentence[1024];
 
+/* What is too long, because of a path say, loses its middle: why stands at the end. */
+static void cut_middle(const char *whole)
+{
+    enum { HEAD = sizeof sentence / 4, GAP = 6, TAIL = sizeof sentence - HEAD - GAP };
+    snprintf(sentence, sizeof sentence, "%.*s ... %s", (int)HEAD, whole,
+             whole + strlen(whole) - TAIL);
+}
+
+/* Sentences are made of earlier ones, so they are not written where those are read. */
 int base_error(int code, const char *format, ...)
 {
+    char *whole = NULL;
     va_list list;
     va_start(list, format);
-    vsnprintf(sentence, sizeof sentence, format, list);
+    if (vasprintf(&whole, format, list) < 0)
+        snprintf(sentence, sizeof sentence, "out of memory for what went wrong");
+    else if (strlen(whole) < sizeof sentence)
+        memcpy(sentence, whole, strlen(whole) + 1);
+    else
+        cut_middle(whole);
+    free(whole);
     va_end(list);
     return code;
 }

@@ -128,5 +128,19 @@ ok "a report that is the scene" sh -c '
         grep -qx "duite-cloth: --report ./kept.yaml: this is the scene itself, which would be lost" said.err' "$DUITE_CLOTH"
 ok "a scene without end" says 1 "/dev/zero: larger than 256 MiB; a large mesh belongs into a file of its own" /dev/zero
 
+
+# Paths longer than a sentence lose their middle, not what is wrong.
+long=$(printf '%0240d/%0240d/%0240d/%0240d/%0240d' 1 2 3 4 5)
+mkdir -p "$long" && cp step.yaml "$long/step.yaml"
+long_path() { # END_OF_SENTENCE ARGUMENT...
+    long_end=$1
+    shift
+    "$@" > said.out 2> said.err && return 1
+    cat said.err
+    case $(cat said.err) in *"$long_end") test "$(wc -l < said.err)" = 1 && grep -q ' \.\.\. 0*' said.err ;; *) return 1 ;; esac
+}
+ok "a scene in a deep folder" long_path "/step.yaml:8:11: time.h is 0; a finite number > 0 (s) is expected" "$DUITE_CLOTH" "$long/step.yaml"
+ok "a folder of frames that is too deep" long_path ": Not a directory" "$DUITE_CLOTH" scene.yaml --output "$long/step.yaml/x"
+
 ok "every change was one" test ! -e unchanged
 ok "the scene itself is right" limited "$DUITE_CLOTH" scene.yaml --quiet

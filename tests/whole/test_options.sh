@@ -174,6 +174,13 @@ too_large() { # each file may have 10 MB: the frames before are whole, and the m
 ok "a file that cannot grow" too_large
 ok "a report in the folder of frames" eval 'run scene.yaml --end 0.002 --output both/frames --report both/x.json &&
     test -s both/x.json'
+own_output() { # a report to standard output, which is a file: what was there stays, the summary follows
+    echo before > whole
+    run scene.yaml --end 0.002 --report /dev/stdout >> whole && cat whole && test "$(sed -n 1p whole)" = before &&
+        test "$(sed -n 2p whole)" = '{' && grep -q '^  "state_hash": ' whole && grep -q '^  state hash  ' whole &&
+        run scene.yaml --end 0.002 --quiet --report /dev/stdout > whole && test "$(sed -n '$p' whole)" = '}'
+}
+ok "a report to standard output" own_output
 full() { # ARGUMENT...: standard output takes nothing
     status=0
     "$DUITE_CLOTH" "$@" > /dev/full 2> complained || status=$?
@@ -182,6 +189,13 @@ full() { # ARGUMENT...: standard output takes nothing
 }
 ok "a summary that cannot be printed" full scene.yaml --end 0.002
 ok "keys that cannot be printed" full --keys
+no_room() {
+    status=0
+    "$DUITE_CLOTH" scene.yaml --end 0.002 --quiet --report /dev/stdout > /dev/full 2> complained || status=$?
+    cat complained
+    test $status = 1 && grep -qx 'duite-cloth: cannot write /dev/stdout: No space left on device' complained
+}
+ok "a report that standard output does not take" no_room
 
 unused() {
     printf 'v 0 0 0\nv 1 0 0\nv 0 0 1\nv 5 5 5\nf 1 2 3\n' > one.obj

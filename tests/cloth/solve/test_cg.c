@@ -296,6 +296,26 @@ START_TEST(breakdowns)
 }
 END_TEST
 
+/* What rounding leaves of a guess that was right is no breakdown, against what there was to solve;
+ * more than that is one. */
+START_TEST(little_left_of_a_guess)
+{
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-20, .most = 9};
+    const double left[] = {1e-30, 1e-20};
+    for (int i = 0; i < 2; i++) {
+        struct solve_scalars now[4] = {solve_scalars_start(0, SOLVE_OPEN)};
+        double dots[SOLVE_DOTS] = {[SOLVE_RR] = 1, [SOLVE_RQ] = 1, [SOLVE_PQ] = 1};
+        ck_assert_int_eq(solve_scalars_next(&stop, dots, now, now + 1), SOLVE_OK);
+        ck_assert_int_eq(solve_scalars_next(&stop, dots, now + 1, now + 2), SOLVE_OK);
+        dots[SOLVE_RR] = left[i];
+        dots[SOLVE_RZ] = -1e-43;
+        dots[SOLVE_PQ] = 1e-43;
+        ck_assert_int_eq(solve_scalars_next(&stop, dots, now + 2, now + 3),
+                         i == 0 ? SOLVE_OK : SOLVE_BREAKDOWN);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("cg");
@@ -310,6 +330,7 @@ int main(void)
     tcase_add_loop_test(cases, what_stays_wrong_is_said, 0, 3);
     tcase_add_test(cases, nothing_to_solve);
     tcase_add_test(cases, breakdowns);
+    tcase_add_test(cases, little_left_of_a_guess);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

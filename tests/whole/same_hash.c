@@ -2,11 +2,12 @@
  * `shuffle`, each time with the next balancer, in one job of MPI, and compares every state_hash
  * with that of one rank and one thread.
  *
- *   mpirun -n N same_hash SCENE all|half|some|few SEEDS [KEY=VALUE]...
+ *   mpirun -n N same_hash SCENE all|half|pairs|some|few SEEDS [KEY=VALUE]...
  *
  * all: every product of 1 .. N ranks, 1, 2 and 4 threads, schedulers and mappings; half: of each
- * the first, third, ... mapping, or the others, by turns; some: a dozen that meet each of them;
- * few: the first and the last three of these. */
+ * the first, third, ... mapping, or the others, by turns; pairs: so that any two of number of
+ * ranks, threads, scheduler, mapping and balancer meet at least once; some: a dozen; few: the first
+ * and the last three of these. */
 #include "cloth/flow/run.h"
 #include "cloth/scene/scene.h"
 
@@ -22,6 +23,7 @@ struct config {
     unsigned threads;
     const char *scheduler, *mapping;
     uint64_t seed;
+    const char *balance; /* NULL: each time the next one */
 };
 
 struct checks {
@@ -69,13 +71,17 @@ static uint64_t run(const struct model *model, const struct config *config, cons
     return error->code ? 0 : report.state_hash;
 }
 
-static const char *next_balance(int check)
+static size_t count(const char *const *names)
 {
-    const char *const *names = duite_balancer_names();
-    int n = 0;
+    size_t n = 0;
     while (names[n])
         n++;
-    return names[check % n];
+    return n;
+}
+
+static const char *next_balance(int check)
+{
+    return duite_balancer_names()[(size_t)check % count(duite_balancer_names())];
 }
 
 static void check(struct checks *checks, const struct config *config)
@@ -84,7 +90,8 @@ static void check(struct checks *checks, const struct config *config)
     const bool in = checks->world_rank < config->ranks;
     struct cloth_error error = {0};
     uint64_t hash = 0;
-    const char *balance = next_balance(checks->n++);
+    const char *next = next_balance(checks->n++);
+    const char *balance = config->balance ? config->balance : next;
     MPI_Comm_split(MPI_COMM_WORLD, in ? 0 : MPI_UNDEFINED, checks->world_rank, &comm);
     if (in) {
         hash = run(checks->model, config, balance, comm, &error);
@@ -129,17 +136,103 @@ static void check_all(struct checks *checks, bool half)
 static void check_some(struct checks *checks, bool few)
 {
     static const struct config some[] = {
-        {1, 1, "steal", "metis", 1},        {1, 2, "fifo", "metis", 1},
-        {1, 4, "shuffle", "cyclic", 2},     {2, 1, "steal", "cyclic", 1},
-        {2, 1, "shuffle", "metis", 3},      {2, 2, "fifo", "metis", 1},
-        {2, 2, "locality", "taskgraph", 4}, {3, 1, "priority", "list", 1},
-        {3, 2, "shuffle", "metis", 5},      {4, 1, "steal", "metis", 1},
-        {4, 1, "fifo", "cyclic", 1},        {4, 2, "shuffle", "cyclic", 6},
+        {1, 1, "steal", "metis", 1, NULL},        {1, 2, "fifo", "metis", 1, NULL},
+        {1, 4, "shuffle", "cyclic", 2, NULL},     {2, 1, "steal", "cyclic", 1, NULL},
+        {2, 1, "shuffle", "metis", 3, NULL},      {2, 2, "fifo", "metis", 1, NULL},
+        {2, 2, "locality", "taskgraph", 4, NULL}, {3, 1, "priority", "list", 1, NULL},
+        {3, 2, "shuffle", "metis", 5, NULL},      {4, 1, "steal", "metis", 1, NULL},
+        {4, 1, "fifo", "cyclic", 1, NULL},        {4, 2, "shuffle", "cyclic", 6, NULL},
     };
     const size_t n = sizeof some / sizeof *some;
     for (size_t i = 0; i < n; i++)
         if ((!few || i == 0 || i + 3 >= n) && some[i].ranks <= checks->world_size)
             check(checks, &some[i]);
+}
+
+/* ---- Pairs ---- */
+
+enum { RANKS, THREADS, SCHEDULER, MAPPING, BALANCE, FACTORS, MOST_VALUES = 16 };
+
+struct pairs {
+    size_t values[FACTORS];
+    bool met[FACTORS][MOST_VALUES][FACTORS][MOST_VALUES];
+};
+
+/* How many pairs of what is chosen and this value of factor f are not met yet. */
+static size_t new_pairs(const struct pairs *pairs, const bool chosen[FACTORS],
+                        const size_t pick[FACTORS], size_t f, size_t value)
+{
+    size_t n = 0;
+    for (size_t g = 0; g < FACTORS; g++)
+        n += chosen[g] && !pairs->met[f][value][g][pick[g]];
+    return n;
+}
+
+/* Completes a choice: each factor gets the value that meets most of the others anew, `turn` on from
+ * where the last one stood where several do. */
+static void complete(const struct pairs *pairs, bool chosen[FACTORS], size_t turn,
+                     size_t pick[FACTORS])
+{
+    for (size_t f = 0; f < FACTORS; f++) {
+        size_t most = 0;
+        if (chosen[f])
+            continue;
+        pick[f] = turn % pairs->values[f];
+        for (size_t i = 0; i < pairs->values[f]; i++) {
+            const size_t value = (turn + i) % pairs->values[f];
+            const size_t n = new_pairs(pairs, chosen, pick, f, value);
+            if (n <= most)
+                continue;
+            most = n;
+            pick[f] = value;
+        }
+        chosen[f] = true;
+    }
+}
+
+static void check_pair(struct checks *checks, struct pairs *pairs, size_t turn,
+                       bool chosen[FACTORS], size_t pick[FACTORS])
+{
+    complete(pairs, chosen, turn, pick);
+    for (size_t f = 0; f < FACTORS; f++)
+        for (size_t g = 0; g < FACTORS; g++)
+            pairs->met[f][pick[f]][g][pick[g]] = true;
+    check(checks, &(struct config){.ranks = 1 + (int)pick[RANKS],
+                                   .threads = 1U << pick[THREADS],
+                                   .scheduler = duite_scheduler_names()[pick[SCHEDULER]],
+                                   .mapping = duite_mapping_names()[pick[MAPPING]],
+                                   .seed = 1 + turn,
+                                   .balance = duite_balancer_names()[pick[BALANCE]]});
+}
+
+/* The pairs of two factors that are not met. Returns the next turn. */
+static size_t check_two(struct checks *checks, struct pairs *pairs, size_t f, size_t g, size_t turn)
+{
+    for (size_t i = 0; i < pairs->values[f]; i++)
+        for (size_t j = 0; j < pairs->values[g]; j++) {
+            bool chosen[FACTORS] = {false};
+            size_t pick[FACTORS] = {0};
+            if (pairs->met[f][i][g][j])
+                continue;
+            chosen[f] = chosen[g] = true;
+            pick[f] = i;
+            pick[g] = j;
+            check_pair(checks, pairs, turn++, chosen, pick);
+        }
+    return turn;
+}
+
+static void check_pairs(struct checks *checks)
+{
+    struct pairs pairs = {.values = {(size_t)checks->world_size, 3, count(duite_scheduler_names()),
+                                     count(duite_mapping_names()), count(duite_balancer_names())}};
+    size_t turn = 0;
+    check(checks, &(struct config){1, 1, "steal", "metis", 1, "none"}); /* what is expected */
+    turn =
+        check_two(checks, &pairs, SCHEDULER, MAPPING, turn); /* most values: the rest rides along */
+    for (size_t f = 0; f < FACTORS; f++)
+        for (size_t g = f + 1; g < FACTORS; g++)
+            turn = check_two(checks, &pairs, f, g, turn);
 }
 
 static void check_seeds(struct checks *checks, uint64_t seeds)
@@ -159,7 +252,7 @@ static int read_scene(struct model *model, int argc, char **argv, struct cloth_e
     size_t n = 0;
     if (argc < 4 || argc > 4 + 16)
         return cloth_fail(error, CLOTH_E_INPUT,
-                          "same_hash SCENE all|half|some|few SEEDS [KEY=VALUE]...");
+                          "same_hash SCENE all|half|pairs|some|few SEEDS [KEY=VALUE]...");
     for (int i = 4; i < argc; i++)
         sets[n++].text = argv[i];
     return scene_read(model, argv[1], n, sets, error);
@@ -180,6 +273,8 @@ int main(int argc, char **argv)
     } else {
         if (!strcmp(argv[2], "all") || !strcmp(argv[2], "half"))
             check_all(&checks, !strcmp(argv[2], "half"));
+        else if (!strcmp(argv[2], "pairs"))
+            check_pairs(&checks);
         else
             check_some(&checks, !strcmp(argv[2], "few"));
         check_seeds(&checks, strtoull(argv[3], NULL, 10));

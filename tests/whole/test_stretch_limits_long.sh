@@ -13,7 +13,7 @@ value() { sed -n "s/^ *\"$1\": *\"\{0,1\}\([^\",]*\).*/\1/p" report.json; }
 
 stays() { # SCENE H
     limit=$(sed -n 's/^time:.*stretch_limit: *\([0-9.]*\).*/\1/p' "$1")
-    end=$(sed -n 's/^time:.* end: *\([0-9.]*\).*/\1/p' "$1" | awk -v h="$2" '{ print $1 > 3 * h ? $1 : 3 * h }')
+    end=$(sed -n 's/^time:.* end: *\([0-9.]*\).*/\1/p' "$1" | awk -v h="$2" '{ print ($1 > 3 * h ? $1 : 3 * h) }')
     test -n "$limit" || { echo "$1 has no time.stretch_limit" && return 1; }
     limited "$DUITE_CLOTH" "$1" --quiet --report report.json --set integrator=implicit_euler --set time.h="$2" --end "$end" || return 1
     printf '# %-16s %-8s %6s steps, %4s halved, largest stretch %.4f of %s\n' "$(basename "$1")" "$2 s" "$(value steps)" \

@@ -3,8 +3,9 @@
 
 PHYS_KERNEL_OF(int, phys_euler,
                (size_t n, double h, int ahead, double bound, const double *mass, const double *free,
-                const phys_vec *f, phys_vec *x, phys_vec *v),
-               (n, h, ahead, bound, mass, free, f, x, v))
+                const phys_vec *f, const phys_vec *x, const phys_vec *v, phys_vec *x_next,
+                phys_vec *v_next),
+               (n, h, ahead, bound, mass, free, f, x, v, x_next, v_next))
 {
     typedef int64_t mask __attribute__((vector_size(32)));
     const phys_vec most = {bound, bound, bound, bound};
@@ -13,8 +14,8 @@ PHYS_KERNEL_OF(int, phys_euler,
         const phys_vec a = free[i] * (f[i] / mass[i]), before = v[i], after = before + h * a;
         const phys_vec place = x[i] + h * (ahead ? after : before);
         well &= (place < most) & (place > -most) & (after < most) & (after > -most);
-        x[i] = place;
-        v[i] = after;
+        x_next[i] = place;
+        v_next[i] = after;
     }
     return (well[0] & well[1] & well[2] & well[3]) != 0;
 }

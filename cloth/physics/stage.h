@@ -10,9 +10,11 @@
  * allocated. */
 
 /* A step of h seconds by explicit Euler, x += h v, v += h a with a = free f / mass, or, ahead, by
- * symplectic Euler, where x moves by the new v. f: N. 0 if a row diverged (phys_diverged). */
+ * symplectic Euler, where x moves by the new v. f: N. What it makes goes to x_next and v_next,
+ * which may be x and v. 0 if a row diverged (phys_diverged). */
 int phys_euler(size_t n, double h, int ahead, double bound, const double *mass, const double *free,
-               const phys_vec *f, phys_vec *x, phys_vec *v);
+               const phys_vec *f, const phys_vec *x, const phys_vec *v, phys_vec *x_next,
+               phys_vec *v_next);
 
 /* A half step of velocity Verlet of t seconds:
  *

@@ -92,6 +92,18 @@ double flow_elements_energy(const duite_call *call, const struct flow_table *t, 
 void flow_varying_add(const duite_call *call, const struct flow_table *t, phys_vec *f);
 double flow_varying_energy(const duite_call *call, const struct flow_table *t, const phys_vec *x);
 
+/* All forces on the block's rows, N, at x and v, which are parameters 1 and 2; rims of x come from
+ * parameter `rims` on, those of v behind them. Those without the drag. (kernels_step.c) */
+void flow_forces(const duite_call *call, const struct flow_table *t, size_t rims, phys_vec *f);
+void flow_forces_free(const duite_call *call, const struct flow_table *t, size_t rims, phys_vec *f);
+
+/* Rows of the worker's own for these where no other task reads them; until the task ends. */
+static inline phys_vec *flow_force_room(const duite_call *call)
+{
+    const struct flow *flow = flow_of(call);
+    return flow->forces + call->worker * flow->n_forces;
+}
+
 /* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are
  * none. */
 static inline void flow_write_rim(const struct flow_table *table, const phys_vec *y, phys_vec *rim)
@@ -178,18 +190,28 @@ static inline void flow_add_norms(const duite_call *call, const struct solve_blo
     dots[SOLVE_BOUND] = norms.bound;
 }
 
+/* In a body: what it did since it began, or since this was called, was this part of the step. */
+static inline void flow_part_ends(const duite_call *call, enum flow_part part)
+{
+    struct flow_clock *clock = flow_of(call)->clock + call->worker;
+    const double now = flow_now();
+    clock->seconds[part] += now - clock->from;
+    clock->from = now;
+}
+
 /* Runs a body without subnormal numbers, `cost` times as long as it needs, and adds its seconds to
  * a part of the step, on this worker's line. */
 static inline int flow_timed(const duite_call *call, duite_body *body, enum flow_part part,
                              double cost)
 {
-    const double start = flow_now(), worked = cost > 1 ? flow_worked() : 0;
+    const double worked = cost > 1 ? flow_worked() : 0;
+    flow_of(call)->clock[call->worker].from = flow_now();
     const phys_tiny before = phys_tiny_off();
     const int code = body(call);
     phys_tiny_back(before);
     if (cost > 1)
         flow_work_on(worked, cost);
-    flow_of(call)->clock[call->worker].seconds[part] += flow_now() - start;
+    flow_part_ends(call, part);
     return code;
 }
 

@@ -53,7 +53,7 @@ void flow_elements_bend(const duite_call *call, const struct flow_table *t,
     phys_hinges_force(&hinges, sight, f);
     phys_folds_force(&folds, sight, f);
     struct phys_air air = model->air;
-    const double course = model_course_at(model, model->wind_course, flow_args_of(call)->time);
+    const double course = model_course_at(model, model->wind_course, flow_args_of(call)->now);
     for (int i = 0; i < 3; i++)
         air.wind[i] *= course;
     phys_air_force(&air, t->n_elements[FLOW_SAILS],

@@ -8,20 +8,24 @@
 extern const duite_kernel flow_tell_head; /* w head: on rank 0 */
 extern const duite_kernel
     flow_tell_shared; /* w shared: planes, motions, shapes, neighbours; on rank 0 */
-extern const duite_kernel flow_table_make;  /* w table of a block: on rank 0 */
-extern const duite_kernel flow_table_keep;  /* rw table: where the block lives */
-extern const duite_kernel flow_collect;     /* r vector of a block, w it without its fourth lane */
-extern const duite_kernel flow_ready;       /* cw ready: fails if this rank cannot begin */
-extern const duite_kernel flow_initial;     /* table, w x, w v, w rim of x, w rim of v */
-extern const duite_kernel flow_force;       /* table, r x, r v, w f; rims of x, rims of v */
-extern const duite_kernel flow_force_free;  /* the same without drag */
-extern const duite_kernel flow_explicit;    /* table, rw f: acceleration */
-extern const duite_kernel flow_kick_first;  /* table, r f, rw v: guess of that at the end, w rim of
-                                               it, w v of the half step */
-extern const duite_kernel flow_kick_second; /* table, r f, r v of the half step, w v, w rim of v, cw
-                                               status */
-extern const duite_kernel flow_runge; /* table, r f: acceleration, rw x, rw v, rw x0, rw v0, rw
-                                         sum_x, rw sum_v, w rim of x, w rim of v, cw status */
+extern const duite_kernel flow_table_make; /* w table of a block: on rank 0 */
+extern const duite_kernel flow_table_keep; /* rw table: where the block lives */
+extern const duite_kernel flow_collect;    /* r vector of a block, w it without its fourth lane */
+extern const duite_kernel flow_ready;      /* cw ready: fails if this rank cannot begin */
+extern const duite_kernel flow_initial;    /* table, w x, w v, w rim of x, w rim of v */
+extern const duite_kernel flow_force;      /* table, r x, r v, w f; rims of x, rims of v */
+extern const duite_kernel flow_force_free; /* the same without drag */
+extern const duite_kernel flow_euler; /* table, rw x, rw v, w next rim of x, w that of v, cw status;
+                                         rims of x, rims of v: either Euler */
+extern const duite_kernel flow_euler_beside; /* table, r x, r v, w next x, w next v, w next rim of
+                                                x, w that of v, cw status; rims of x, rims of v */
+extern const duite_kernel
+    flow_verlet_first; /* table, rw x, rw v: guess of that at the end, r f, w v of the half step, w
+                          rim of x, w rim of v, cw status */
+extern const duite_kernel flow_verlet_second; /* table, r x, rw v, w f, r v of the half step, w next
+                                                 rim of v, cw status; rims of x, rims of v */
+extern const duite_kernel flow_runge; /* table, rw x, rw v, rw x0, rw v0, rw sum_x, rw sum_v, w next
+                                         rim of x, w that of v, cw status; rims of x, rims of v */
 extern const duite_kernel
     flow_system_all; /* table, r x, r v, w f: right-hand side, w a; rims of x, rims of v */
 extern const duite_kernel flow_system_rest; /* the same where f has the forces: rw f */
@@ -61,7 +65,6 @@ extern const duite_kernel flow_scalars_coarse; /* w next scalars, w next motion,
                                                   factor; all parts */
 extern const duite_kernel
     flow_velocity_dv; /* table, r f, r a, r dv, r r, rw v, w rim of v, r scalars, cw status */
-extern const duite_kernel flow_move; /* table, r f, rw x, rw v, w rim of x, w rim of v, cw status */
 extern const duite_kernel flow_position; /* table, r v, rw x, w rim of x, cw status */
 extern const duite_kernel flow_collide;  /* table, rw x, rw v, w rim of x, w rim of v, cw status */
 extern const duite_kernel flow_touch;    /* table, r x, rw v, w rim of v */

@@ -43,13 +43,12 @@ const duite_kernel flow_initial = {.name = "initial",
                                    .args_size = ARGS};
 
 /* Adds the forces inside the cloth. */
-static void add_inner(const duite_call *call, const struct flow_table *t)
+static void add_inner(const duite_call *call, const struct flow_table *t, size_t rims, phys_vec *f)
 {
     const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
-    phys_vec *f = duite_out(call, 3, phys_vec);
     struct phys_springs springs = flow_table_inner(t);
     if (flow_has_elements(t)) {
-        const struct phys_sight sight = flow_elements_see(call, t, 4);
+        const struct phys_sight sight = flow_elements_see(call, t, rims);
         flow_elements_force(call, t, &sight, f);
     }
     if (!t->n_stiff)
@@ -57,17 +56,29 @@ static void add_inner(const duite_call *call, const struct flow_table *t)
     phys_springs_force(&springs, x, v, f);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
-        phys_springs_force_cut(&springs, x, v, duite_in(call, 4 + s, phys_vec),
-                               duite_in(call, 4 + t->n_slots + s, phys_vec), f);
+        phys_springs_force_cut(&springs, x, v, duite_in(call, rims + s, phys_vec),
+                               duite_in(call, rims + t->n_slots + s, phys_vec), f);
     }
+}
+
+void flow_forces(const duite_call *call, const struct flow_table *t, size_t rims, phys_vec *f)
+{
+    phys_outside(t->n, t->load, t->drag, duite_in(call, 2, phys_vec), f);
+    flow_varying_add(call, t, f);
+    add_inner(call, t, rims, f);
+}
+
+void flow_forces_free(const duite_call *call, const struct flow_table *t, size_t rims, phys_vec *f)
+{
+    memcpy(f, t->load, t->n * sizeof *f);
+    flow_varying_add(call, t, f);
+    add_inner(call, t, rims, f);
 }
 
 static int force(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
-    phys_outside(t->n, t->load, t->drag, duite_in(call, 2, phys_vec), duite_out(call, 3, phys_vec));
-    flow_varying_add(call, t, duite_out(call, 3, phys_vec));
-    add_inner(call, t);
+    flow_forces(call, t, 4, duite_out(call, 3, phys_vec));
     return 0;
 }
 FLOW_TIMED(force, FLOW_FORCE)
@@ -80,9 +91,7 @@ const duite_kernel flow_force = {.name = "force",
 static int force_free(const duite_call *call)
 {
     const struct flow_table table = flow_table_of(call), *t = &table;
-    memcpy(duite_out(call, 3, phys_vec), t->load, t->n * sizeof *t->load);
-    flow_varying_add(call, t, duite_out(call, 3, phys_vec));
-    add_inner(call, t);
+    flow_forces_free(call, t, 4, duite_out(call, 3, phys_vec));
     return 0;
 }
 FLOW_TIMED(force_free, FLOW_FORCE)
@@ -91,19 +100,6 @@ const duite_kernel flow_force_free = {.name = "force_free",
                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W},
                                       .rest = DUITE_R,
                                       .args_size = ARGS};
-
-static int acceleration(const duite_call *call)
-{
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    phys_accelerate(t->n, t->mass, t->free, duite_out(call, 1, phys_vec));
-    flow_guides_filter(call, t, duite_out(call, 1, phys_vec));
-    return 0;
-}
-FLOW_TIMED(acceleration, FLOW_ACCELERATION)
-const duite_kernel flow_explicit = {.name = "acceleration_explicit",
-                                    .body = acceleration_timed,
-                                    .access = {DUITE_R, DUITE_RW},
-                                    .args_size = ARGS};
 
 /* What a filtered solve lost: entries to held rows and rows in contact do not cancel. */
 static void sum_rows(size_t n, const phys_vec *r, double sum[3])

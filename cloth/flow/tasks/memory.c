@@ -37,6 +37,13 @@ static void take_sums(struct flow *flow)
         cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for the entries of a matrix");
 }
 
+static void take_forces(struct flow *flow)
+{
+    flow->forces = aligned_alloc(64, flow->n_clocks * flow->n_forces * sizeof *flow->forces);
+    if (!flow->forces)
+        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for the forces of a block");
+}
+
 static void take(struct flow_state *state)
 {
     struct flow *flow = state->flow;
@@ -58,6 +65,9 @@ static void take(struct flow_state *state)
         if (!flow->copies)
             cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for copies of vertices");
     }
+    flow->n_forces = 2 * ((size_t)head->most_rows / 2 + 1); /* whole cache lines */
+    if (!model_is_implicit(flow->model))
+        take_forces(flow);
     flow->shared = cloth_alloc(head->shared_bytes, 1, &flow->trouble);
     flow->tables.block = cloth_alloc(head->n_blocks, sizeof *flow->tables.block, &flow->trouble);
     flow->tables.n_blocks = head->n_blocks;
@@ -109,6 +119,7 @@ void flow_memory_free(struct flow_state *state)
     free(flow->clock);
     free(flow->sums);
     free(flow->copies);
+    free(flow->forces);
     free(flow->room);
     free(flow->row);
     free(flow->seen);
@@ -122,7 +133,7 @@ void flow_memory_free(struct flow_state *state)
     XXH64_freeState(state->hash);
     flow->clock = NULL;
     flow->sums = NULL;
-    flow->copies = NULL;
+    flow->copies = flow->forces = NULL;
     flow->room = flow->row = flow->seen = NULL;
     state->block = NULL;
     state->parcel = NULL;

@@ -50,8 +50,12 @@ static void make_integrator(struct flow_state *state, const struct flow_table *t
 {
     const struct model *model = state->flow->model;
     const bool runge = model->integrator == MODEL_RK4;
-    if (model_is_implicit(model))
+    if (model_is_implicit(model)) {
         make_implicit(state->rt, t, model_is_filtered(model), o);
+    } else {
+        make(state->rt, t->n_rim, o->x, &o->spare_rim_x);
+        make(state->rt, t->n_rim, o->x, &o->spare_rim_v);
+    }
     if (model->integrator == MODEL_BDF2 || (model_is_implicit(model) && model->newton_steps > 1)) {
         make(state->rt, t->n, o->x, &o->base_x);
         make(state->rt, t->n, o->x, &o->base_v);
@@ -142,37 +146,14 @@ int flow_objects_free(struct flow_state *state)
     }
     for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {
         const struct flow_objects *o = state->block + b;
-        const duite_object all[] = {o->x,
-                                    o->v,
-                                    o->f,
-                                    o->a,
-                                    o->dv,
-                                    o->r,
-                                    o->p,
-                                    o->q,
-                                    o->copies,
-                                    o->rim_x,
-                                    o->rim_v,
-                                    o->rim_q[0],
-                                    o->rim_q[1],
-                                    o->kept_x,
-                                    o->filter,
-                                    o->kept_v,
-                                    o->z,
-                                    o->s,
-                                    o->factor,
-                                    o->part,
-                                    o->basis,
-                                    o->rim_basis,
-                                    o->basis_copies,
-                                    o->coupling,
-                                    o->x0,
-                                    o->v0,
-                                    o->sum_x,
-                                    o->sum_v,
-                                    o->felt,
-                                    o->seen,
-                                    o->table};
+        const duite_object all[] = {
+            o->x,        o->v,           o->f,           o->a,         o->dv,
+            o->r,        o->p,           o->q,           o->copies,    o->rim_x,
+            o->rim_v,    o->spare_rim_x, o->spare_rim_v, o->rim_q[0],  o->rim_q[1],
+            o->kept_x,   o->filter,      o->kept_v,      o->z,         o->s,
+            o->factor,   o->part,        o->basis,       o->rim_basis, o->basis_copies,
+            o->coupling, o->x0,          o->v0,          o->sum_x,     o->sum_v,
+            o->felt,     o->seen,        o->table};
         const int failed = release(state->rt, sizeof all / sizeof *all, all);
         const duite_object steps[] = {o->base_x, o->base_v, o->last_x, o->last_v};
         const int too = release(state->rt, sizeof steps / sizeof *steps, steps);

@@ -11,11 +11,12 @@ struct flow_args flow_attempt_args(const struct flow_state *state)
 {
     const struct model *model = state->flow->model;
     const struct flow_attempt *attempt = &state->attempt;
+    const double end = (double)(attempt->begin + attempt->length) * model->h / FLOW_TICKS;
     return (struct flow_args){.last = !model->halving || attempt->length == 1,
                               .h = model->h * attempt->length / FLOW_TICKS,
                               .begin = (double)attempt->begin,
-                              .time = (double)(attempt->begin + attempt->length) * model->h /
-                                      FLOW_TICKS};
+                              .time = end,
+                              .now = end};
 }
 
 int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct flow_args args,
@@ -83,6 +84,10 @@ static int keep(struct flow_state *state)
 
 static int restore(struct flow_state *state)
 {
+    if (flow_explicit_keeps(state->flow->model)) {
+        flow_explicit_restore(state);
+        return DUITE_OK;
+    }
     return fork_all(state, &flow_restore,
                     FLOW_OBJECTS(FLOW_AT(kept_x), FLOW_AT(kept_v), FLOW_AT(x), FLOW_AT(v),
                                  FLOW_AT(rim_x), FLOW_AT(rim_v)),
@@ -129,7 +134,8 @@ static int end_step(struct flow_state *state)
     const struct model *model = state->flow->model;
     const duite_object status = state->status[state->attempt.parity];
     const struct flow_args args = flow_attempt_args(state);
-    int code = model->halving && !is_driven(model) ? keep(state) : DUITE_OK;
+    const bool keeps = model->halving && !is_driven(model) && !flow_explicit_keeps(model);
+    int code = keeps ? keep(state) : DUITE_OK;
     if (!code)
         code = model_is_implicit(model) ? flow_implicit_end(state) : flow_explicit_end(state);
     if (!code && model_is_driven(model))

@@ -31,9 +31,10 @@ enum flow_part {
     FLOW_PARTS
 };
 
-/* Seconds in bodies on one worker; each on its own cache line, written by that worker only. */
+/* Seconds in bodies on one worker; each on its own cache lines, written by that worker only. */
 struct flow_clock {
     _Alignas(64) double seconds[FLOW_PARTS];
+    double from; /* of the body that runs: when its part of the step began */
 };
 
 /* Codes of bodies that fail. */
@@ -89,6 +90,9 @@ struct flow {
     phys_vec *copies; /* a worker, two for each of most_copies: what elements see of neighbours
                        * while a task works on them; NULL: there are no elements */
     size_t n_copies;  /* of a worker */
+    phys_vec *forces; /* a worker, most_rows: those that an explicit step needs for itself alone;
+                       * NULL: the run is implicit */
+    size_t n_forces;  /* of a worker */
     uint32_t *at; /* of each copy of all blocks: its place in what a pass reads of the neighbour */
     struct flow_far_rim *far_rim; /* of far.c */
     uint32_t *far_row;
@@ -118,7 +122,8 @@ struct flow_args {
     uint64_t frame;
     uint32_t stage;  /* of a step by RK4 */
     double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */
-    double time;     /* s: of a frame; of what varies; else at the end of the step */
+    double time;     /* s: of a frame; else at the end of the step */
+    double now;      /* s: of what varies, where forces and energies are */
     double before;   /* s: of a row of probes: length of the step before */
     double part;     /* of dv */
     double guess;    /* a solve begins with dv times this; 0: from nothing */
@@ -174,9 +179,11 @@ struct flow_head {
 };
 
 /* Shared objects of a block. copies: r of its copies, then p. rim_q: three numbers a row. table: an
- * image (cloth/flow/tables/tables.h), never written once it is dealt. */
+ * image (cloth/flow/tables/tables.h), never written once it is dealt. In explicit runs the names of
+ * the state, its rims and what is kept pass from object to object (explicit.c). */
 struct flow_objects {
     duite_object table, x, v, f, rim_x, rim_v;
+    duite_object spare_rim_x, spare_rim_v;         /* of explicit runs */
     duite_object a, dv, r, p, q, copies, rim_q[2]; /* of implicit runs */
     duite_object x0, v0, sum_x, sum_v; /* RK4: struct phys_runge; Verlet: v0, that of the half step
                                         */
@@ -355,6 +362,10 @@ int flow_initialise(struct flow_state *state);
  * for contact. */
 int flow_explicit_begin(struct flow_state *state);
 int flow_explicit_end(struct flow_state *state);
+/* Whether its steps leave the state before them as what is kept; then, what makes that the state
+ * again. */
+bool flow_explicit_keeps(const struct model *model);
+void flow_explicit_restore(struct flow_state *state);
 /* The same of an implicit one. */
 int flow_implicit_begin(struct flow_state *state);
 int flow_implicit_end(struct flow_state *state);

@@ -75,6 +75,7 @@ static int fork_row(struct flow_state *state)
     const uint32_t length = state->length ? state->length : FLOW_TICKS;
     struct flow_args args = {.frame = steps,
                              .time = flow_time(state),
+                             .now = flow_time(state),
                              .h = length * tick,
                              .before =
                                  (state->length_before ? state->length_before : length) * tick};

@@ -19,17 +19,18 @@ START_TEST(euler)
     const double mass[2] = {2, 4}, loose[2] = {1, 0};
     for (int ahead = 0; ahead < 2; ahead++) {
         phys_vec x[2] = {{1, 2, 3, 0}, {4, 5, 6, 0}}, v[2] = {{4, 2, -6, 0}, {0, 0, 0, 0}};
-        ck_assert_int_eq(phys_euler(2, 0.5, ahead, 6.5, mass, loose, f, x, v), 1);
+        ck_assert_int_eq(phys_euler(2, 0.5, ahead, 6.5, mass, loose, f, x, v, x, v), 1);
         same(v, 5.5, 1.25, -6);
         same(x, ahead ? 3.75 : 3, ahead ? 2.625 : 3, 0);
         same(x + 1, 4, 5, 6);
         same(v + 1, 0, 0, 0);
-        ck_assert_int_eq(phys_euler(2, 0, ahead, 6, mass, loose, f, x, v), 0); /* z of x[1], v[0] */
+        ck_assert_int_eq(phys_euler(2, 0, ahead, 6, mass, loose, f, x, v, x, v),
+                         0); /* z of x[1], v[0] */
         x[1][2] = NAN;
         v[0][2] = 0;
-        ck_assert_int_eq(phys_euler(2, 0, ahead, 6.5, mass, loose, f, x, v), 0);
+        ck_assert_int_eq(phys_euler(2, 0, ahead, 6.5, mass, loose, f, x, v, x, v), 0);
         x[1][2] = 0;
-        ck_assert_int_eq(phys_euler(2, 0, ahead, 6, mass, loose, f, x, v), 1);
+        ck_assert_int_eq(phys_euler(2, 0, ahead, 6, mass, loose, f, x, v, x, v), 1);
     }
 }
 END_TEST

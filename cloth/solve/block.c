@@ -34,15 +34,21 @@ PHYS_INLINE void begin_rows(size_t from, size_t to, double alpha, double beta,
     phys_vec *restrict p = rows->p, *restrict q = rows->q;
     phys_vec square = sum[SOLVE_RR], product = sum[SOLVE_RZ];
     for (size_t a = from; a < to; a++) {
-        dv[a] += alpha * p[a];
+        const phys_vec before = q[a]; /* in registers: compilers read again what they stored */
+        phys_vec left = r[a], next = p[a];
+        dv[a] += alpha * next;
         if (turned) {
-            r[a] -= alpha * q[a];
-            solve_turn(alpha, beta, turned->s + a, turned->z + a, p + a);
-            product += r[a] * turned->z[a];
+            phys_vec z = turned->z[a];
+            left -= alpha * before;
+            solve_turn(alpha, beta, turned->s + a, &z, &next);
+            turned->z[a] = z;
+            product += left * z;
         } else {
-            solve_turn(alpha, beta, q + a, r + a, p + a);
+            solve_turn(alpha, beta, &before, &left, &next);
         }
-        square += r[a] * r[a];
+        r[a] = left;
+        p[a] = next;
+        square += left * left;
         q[a] = (phys_vec){0};
     }
     sum[SOLVE_RR] = square;

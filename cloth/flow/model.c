@@ -28,6 +28,8 @@ static void free_cloth(struct model_cloth *cloth)
         free_pick(&cloth->starts[i].pick);
     free(cloth->masses);
     free(cloth->starts);
+    free(cloth->region);
+    free(cloth->mask);
     free(cloth->pins);
     free(cloth->loads);
     free(cloth->name);

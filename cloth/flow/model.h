@@ -116,11 +116,17 @@ struct model_start {
     struct model_wave wave;
 };
 
+enum { MODEL_MOST_REGIONS = 64 };
+
 struct model_cloth {
     char *name;
     struct mesh mesh;  /* transformed: rest lengths and masses are those of this shape, */
     struct mesh *rest; /* unless this is another, which shares all but the positions; or NULL */
     uint32_t material;
+    uint32_t n_regions; /* where there are others: at most MODEL_MOST_REGIONS */
+    uint32_t
+        *region;    /* materials, which have model, diagonals and, if any, bending of the cloth's */
+    uint64_t *mask; /* by vertex, which regions have it: mesh_region; NULL: there are none */
     double mass_per_vertex; /* kg, replaces density * area where > 0 */
     double velocity[3];     /* at the start, m/s */
     double *start;          /* n_vertices x 6: where they start (m) and how fast (m/s), the shape of
@@ -304,6 +310,31 @@ static inline double model_damping_bending(const struct model_material *material
 static inline int model_has_air(const struct model *model)
 {
     return model->air.density > 0;
+}
+
+/* The material, by number, of what n > 0 vertices of the cloth's mesh have in common: that of the
+ * last region that has them all, else the cloth's. */
+static inline uint32_t model_material_of(const struct model_cloth *cloth, size_t n,
+                                         const uint32_t *vertex)
+{
+    const int region = mesh_region(cloth->mask, n, vertex);
+    return region < 0 ? cloth->material : cloth->region[region];
+}
+
+/* One after the other, all materials of a cloth: i = 0 is its own, then those of its regions. */
+static inline const struct model_material *
+model_material(const struct model *model, const struct model_cloth *cloth, uint32_t i)
+{
+    return model->materials + (i ? cloth->region[i - 1] : cloth->material);
+}
+
+/* Whether a point is in the box between two corners, lower and upper, or on it. */
+static inline bool model_in_box(const double *x, const double box[2][3])
+{
+    bool in = true;
+    for (int i = 0; i < 3; i++)
+        in = in && x[i] >= box[0][i] && x[i] <= box[1][i];
+    return in;
 }
 
 /* The factor of a course, by number, at a time, s; of 0: 1. Its largest size at any time; and the

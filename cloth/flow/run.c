@@ -112,8 +112,9 @@ static double air_limit(const struct model *model, const struct model_cloth *clo
 {
     const double most = model_course_most(model, model->wind_course);
     const struct phys_air *air = &model->air;
-    const double density = model->materials[cloth->material].density;
-    double square = 0;
+    double density = INFINITY, square = 0;
+    for (uint32_t i = 0; i <= cloth->n_regions; i++)
+        density = fmin(density, model_material(model, cloth, i)->density);
     for (int i = 0; i < 3; i++)
         square += pow(most * air->wind[i] - cloth->velocity[i], 2);
     if (!cloth->mesh.n_triangles || cloth->mass_per_vertex > 0)

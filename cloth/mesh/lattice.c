@@ -79,33 +79,51 @@ static int add(struct builder *builder, uint32_t a, uint32_t b, enum mesh_spring
     return builder->take(builder, &spring);
 }
 
+/* Those of what joins two vertices. */
+static const struct mesh_moduli *moduli_of(const struct builder *builder, uint32_t a, uint32_t b)
+{
+    const struct mesh_regions *regions = builder->moduli->regions;
+    const int region = regions ? mesh_region(regions->mask, 2, (const uint32_t[]){a, b}) : -1;
+    return region < 0 ? builder->moduli : regions->moduli + region;
+}
+
 enum { NO_AREA = -1 };
+
+/* Of a spring of a grid. */
+static double modulus_along(const struct mesh_moduli *moduli, enum mesh_spring_kind kind, int weft)
+{
+    if (kind == MESH_STRETCH)
+        return weft ? moduli->stretch + moduli->weft_excess : moduli->stretch;
+    return kind == MESH_BEND ? moduli->bend : moduli->shear;
+}
 
 /* The springs of a grid's vertex (i, j) to later vertices, nearest number first. */
 static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j)
 {
-    const struct mesh_moduli *moduli = builder->moduli;
     uint32_t nx = builder->mesh->grid_nx, ny = builder->mesh->grid_ny, a = j * nx + i;
     double along = j == 0 || j == ny - 1 ? 0.5 : 1; /* half where the row is the border */
     double across = i == 0 || i == nx - 1 ? 0.5 : 1;
-    double other = moduli->both_diagonals ? moduli->shear : 0;
     const struct {
         int exists;
         uint32_t b;
         enum mesh_spring_kind kind;
-        double k;
+        int weft;
+        double part; /* of the modulus */
     } springs[] = {
-        {i + 1 < nx, a + 1, MESH_STRETCH, along * moduli->stretch},
-        {i + 2 < nx, a + 2, MESH_BEND, along * moduli->bend},
-        {i > 0 && j + 1 < ny, a + nx - 1, MESH_SHEAR, other},
-        {j + 1 < ny, a + nx, MESH_STRETCH, across * (moduli->stretch + moduli->weft_excess)},
-        {i + 1 < nx && j + 1 < ny, a + nx + 1, MESH_SHEAR, moduli->shear},
-        {j + 2 < ny, a + 2 * nx, MESH_BEND, across * moduli->bend},
+        {i + 1 < nx, a + 1, MESH_STRETCH, 0, along},
+        {i + 2 < nx, a + 2, MESH_BEND, 0, along},
+        {i > 0 && j + 1 < ny && builder->moduli->both_diagonals, a + nx - 1, MESH_SHEAR, 0, 1},
+        {j + 1 < ny, a + nx, MESH_STRETCH, 1, across},
+        {i + 1 < nx && j + 1 < ny, a + nx + 1, MESH_SHEAR, 0, 1},
+        {j + 2 < ny, a + 2 * nx, MESH_BEND, 1, across},
     };
     for (size_t s = 0; s < sizeof springs / sizeof *springs; s++) {
-        if (!springs[s].exists || springs[s].k == 0)
+        if (!springs[s].exists)
             continue;
-        int code = add(builder, a, springs[s].b, springs[s].kind, springs[s].k, NO_AREA);
+        const uint32_t b = springs[s].b;
+        const double k = springs[s].part *
+                         modulus_along(moduli_of(builder, a, b), springs[s].kind, springs[s].weft);
+        int code = k == 0 ? CLOTH_OK : add(builder, a, b, springs[s].kind, k, NO_AREA);
         if (code)
             return code;
     }
@@ -124,9 +142,10 @@ static int add_grid(struct builder *builder)
 /* The modulus along an edge. */
 static int modulus_of(const struct builder *builder, const struct mesh_edge *edge, double *modulus)
 {
+    const struct mesh_moduli *moduli = moduli_of(builder, edge->a, edge->b);
     double a[2], b[2];
-    *modulus = builder->moduli->stretch;
-    if (builder->moduli->weft_excess == 0)
+    *modulus = moduli->stretch;
+    if (moduli->weft_excess == 0)
         return CLOTH_OK;
     if (!mesh_uv(builder->mesh, edge->a, a) || !mesh_uv(builder->mesh, edge->b, b))
         return cloth_fail(builder->error, CLOTH_E_INPUT,
@@ -134,14 +153,13 @@ static int modulus_of(const struct builder *builder, const struct mesh_edge *edg
                           "uv; a grid, an OBJ file with vt, or one modulus is expected");
     const double u = (b[0] - a[0]) * (b[0] - a[0]), v = (b[1] - a[1]) * (b[1] - a[1]);
     if (u + v > 0)
-        *modulus += builder->moduli->weft_excess * (v / (u + v));
+        *modulus += moduli->weft_excess * (v / (u + v));
     return CLOTH_OK;
 }
 
 /* All stretch springs, then all bend springs, each in edge order. */
 static int add_edges(struct builder *builder, const struct mesh_edges *edges)
 {
-    const struct mesh_moduli *moduli = builder->moduli;
     int code = CLOTH_OK;
     for (uint32_t e = 0; e < edges->n && !code; e++) {
         const struct mesh_edge *edge = &edges->edge[e];
@@ -151,11 +169,12 @@ static int add_edges(struct builder *builder, const struct mesh_edges *edges)
         if (!code)
             code = add(builder, edge->a, edge->b, MESH_STRETCH, modulus, area);
     }
-    for (uint32_t e = 0; e < edges->n && !code && moduli->bend != 0; e++) {
+    for (uint32_t e = 0; e < edges->n && !code; e++) {
         const struct mesh_edge *edge = &edges->edge[e];
         uint32_t a = edge->opposite[0], b = edge->opposite[1];
-        if (b != UINT32_MAX && a != b)
-            code = add(builder, a, b, MESH_BEND, moduli->bend, edge->area);
+        const double modulus = b == UINT32_MAX || a == b ? 0 : moduli_of(builder, a, b)->bend;
+        if (modulus != 0)
+            code = add(builder, a, b, MESH_BEND, modulus, edge->area);
     }
     return code;
 }

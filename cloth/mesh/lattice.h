@@ -26,10 +26,18 @@ struct mesh_moduli {
     int both_diagonals;          /* grids only */
     double weft_excess; /* N/m: of stretch along v, more than along u; between them by the square of
                            the cosine */
+    const struct mesh_regions *regions; /* that have other moduli; NULL: none */
+};
+
+/* What joins vertices that are all in a region has the moduli of that; which diagonals there are
+ * those of the mesh say. */
+struct mesh_regions {
+    const uint64_t *mask;             /* as mesh_region wants it */
+    const struct mesh_moduli *moduli; /* by region */
 };
 
 /* To be gone through in order, as often as wanted. The springs of a grid are made as they are
- * visited, those of other meshes are stored. The mesh must outlive it. */
+ * visited, those of other meshes are stored. Mesh and regions must outlive it. */
 struct mesh_lattice {
     const struct mesh *mesh;
     struct mesh_moduli moduli;

@@ -61,15 +61,19 @@ void mesh_used(const struct mesh *mesh, unsigned char *used)
         used[mesh->lone_edge[i]] = 1;
 }
 
+void mesh_add_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass)
+{
+    uint32_t corner[3];
+    mesh_corners(mesh, triangle, corner);
+    double third = mesh_area(mesh->position, corner) * density / 3;
+    for (size_t i = 0; i < 3; i++)
+        mass[corner[i]] += third;
+}
+
 void mesh_add_mass(const struct mesh *mesh, double density, double *mass)
 {
-    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
-        uint32_t corner[3];
-        mesh_corners(mesh, t, corner);
-        double third = mesh_area(mesh->position, corner) * density / 3;
-        for (size_t i = 0; i < 3; i++)
-            mass[corner[i]] += third;
-    }
+    for (uint32_t t = 0; t < mesh->n_triangles; t++)
+        mesh_add_mass_of(mesh, t, density, mass);
 }
 
 void mesh_free(struct mesh *mesh)

@@ -102,5 +102,17 @@ void mesh_edges_free(struct mesh_edges *edges);
 /* Adds to mass[v] (kg, n_vertices) a third of each triangle's area (as positioned) times density
  * (kg/m^2). */
 void mesh_add_mass(const struct mesh *mesh, double density, double *mass);
+/* The same of one triangle. */
+void mesh_add_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass);
+
+/* Regions of a mesh are bits in a mask by vertex. The last region that has all of n > 0 vertices;
+ * -1: there is none. */
+static inline int mesh_region(const uint64_t *mask, size_t n, const uint32_t *vertex)
+{
+    uint64_t common = mask ? UINT64_MAX : 0;
+    for (size_t i = 0; i < n && mask; i++)
+        common &= mask[vertex[i]];
+    return common ? 63 - __builtin_clzll(common) : -1;
+}
 
 #endif

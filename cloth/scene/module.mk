@@ -21,6 +21,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/cloth.c \
 	cloth/scene/build/course.c \
 	cloth/scene/build/load.c \
+	cloth/scene/build/region.c \
 	cloth/scene/build/start.c \
 	cloth/scene/build/motion.c \
 	cloth/scene/build/probe.c

@@ -10,20 +10,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct model_material *material_of(const struct model *model,
-                                                const struct model_cloth *cloth)
-{
-    return model->materials + cloth->material;
-}
-
 int flow_has_triangles(const struct model *model, const struct model_cloth *cloth)
 {
-    return material_of(model, cloth)->model == MODEL_TRIANGLES;
+    return model_material(model, cloth, 0)->model == MODEL_TRIANGLES;
+}
+
+/* That bends as quadratic, or as hinges. Without a bending of its own a region has no rigidity. */
+static const struct model_material *bending_of(const struct model *model,
+                                               const struct model_cloth *cloth)
+{
+    for (uint32_t i = 0; i <= cloth->n_regions; i++)
+        if (model_material(model, cloth, i)->bending != MODEL_NO_BENDING)
+            return model_material(model, cloth, i);
+    return NULL;
+}
+
+static bool damps_bending(const struct model *model, const struct model_cloth *cloth)
+{
+    for (uint32_t i = 0; i <= cloth->n_regions; i++)
+        if (model_damping_bending(model_material(model, cloth, i)) > 0)
+            return true;
+    return false;
 }
 
 int flow_has_bending(const struct model *model, const struct model_cloth *cloth)
 {
-    return material_of(model, cloth)->bending != MODEL_NO_BENDING;
+    return bending_of(model, cloth) != NULL;
 }
 
 /* ---- Rest shapes ---- */
@@ -82,10 +94,9 @@ static int bend_rest(const struct flow_elements *elements, uint32_t cloth, const
 }
 
 /* The rigidity across an edge, whose direction is the mean of what its triangles say. */
-static double rigidity(const struct flow_elements *elements, uint32_t cloth, const uint32_t *corner)
+static double rigidity(const struct flow_elements *elements, uint32_t cloth, const uint32_t *corner,
+                       const struct model_material *material)
 {
-    const struct model_material *material =
-        material_of(elements->model, elements->model->cloths + cloth);
     double one[6], two[6];
     const uint32_t second[3] = {corner[0], corner[1], corner[3]};
     local_of(elements, cloth, corner, one);
@@ -108,11 +119,12 @@ void flow_element_rest(const struct flow_elements *elements, const struct flow_e
 {
     const struct model *model = elements->model;
     const uint32_t c = element->cloth, first = first_of(model, c);
-    const struct model_material *material = material_of(model, model->cloths + c);
     uint32_t corner[4];
     for (uint32_t i = 0; i < element->corners; i++)
         corner[i] = element->corner[i] - first;
-    *rest = (struct flow_rest_of){0};
+    const uint32_t n = element->kind == FLOW_TRIANGLES ? 3 : 2; /* those of its edge */
+    *rest = (struct flow_rest_of){.material = model_material_of(model->cloths + c, n, corner)};
+    const struct model_material *material = model->materials + rest->material;
     if (element->kind == FLOW_TRIANGLES) {
         triangle_rest(elements, c, corner, rest);
         return;
@@ -121,7 +133,7 @@ void flow_element_rest(const struct flow_elements *elements, const struct flow_e
         return;
     struct phys_bend_rest bend;
     bend_rest(elements, c, corner, &bend);
-    const double k = rigidity(elements, c, corner) * bend.shape;
+    const double k = rigidity(elements, c, corner, material) * bend.shape;
     rest->s = bend.s;
     rest->stiffness = material->bending == MODEL_HINGES ? k : 0;
     rest->damping = model_damping_bending(material) * k;
@@ -154,10 +166,9 @@ static int bends(const struct mesh_edge *edge)
     return edge->opposite[1] != UINT32_MAX && edge->opposite[0] != edge->opposite[1];
 }
 
-static void walk_edges(const struct walk *walk, const struct mesh_edges *edges,
-                       const struct model_material *material)
+static void walk_edges(const struct walk *walk, const struct mesh_edges *edges, bool quadratic,
+                       bool damped)
 {
-    const bool quadratic = material->bending == MODEL_QUADRATIC;
     for (uint32_t e = 0; e < edges->n; e++) {
         const struct mesh_edge *edge = edges->edge + e;
         if (!bends(edge))
@@ -169,7 +180,7 @@ static void walk_edges(const struct walk *walk, const struct mesh_edges *edges,
                                         walk->first + edge->opposite[1]},
                                        4,
                                        FLOW_HINGES};
-        if (!quadratic || model_damping_bending(material) > 0)
+        if (!quadratic || damped)
             walk->visit(walk->to, &element);
         element.kind = FLOW_FOLDS;
         if (quadratic)
@@ -188,7 +199,9 @@ void flow_elements_each(const struct flow_elements *elements,
         if (flow_has_triangles(model, cloth))
             walk_triangles(&walk, &cloth->mesh, FLOW_TRIANGLES);
         if (flow_has_bending(model, cloth))
-            walk_edges(&walk, elements->edges + c, material_of(model, cloth));
+            walk_edges(&walk, elements->edges + c,
+                       bending_of(model, cloth)->bending == MODEL_QUADRATIC,
+                       damps_bending(model, cloth));
         if (model_has_air(model))
             walk_triangles(&walk, &cloth->mesh, FLOW_SAILS);
         walk.first += cloth->mesh.n_vertices;
@@ -218,7 +231,7 @@ static int check_edges(const struct flow_elements *elements, uint32_t c, struct 
 {
     const double flat = 1e-6;
     const struct model_cloth *cloth = elements->model->cloths + c;
-    const struct model_material *material = material_of(elements->model, cloth);
+    const struct model_material *material = bending_of(elements->model, cloth);
     for (uint32_t e = 0; e < elements->edges[c].n; e++) {
         const struct mesh_edge *edge = elements->edges[c].edge + e;
         const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};

@@ -33,6 +33,7 @@ void flow_elements_free(struct flow_elements *elements);
 
 /* What the tables say of an element. Of one that flow_elements_make found nothing wrong with. */
 struct flow_rest_of {
+    uint32_t material;                       /* of triangles, and of the edges that bend */
     double gradient[4], area;                /* triangles */
     double stiffness, damping, s, weight[4]; /* bending: N m, N m s; sqrt(N/m) */
 };

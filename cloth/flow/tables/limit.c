@@ -61,33 +61,31 @@ static void visit(void *to, const struct flow_spring *s)
 /* The pairs of an element by itself, in a step of 1 s without damping: of K at the start. Returns
  * whether it has any stiffness. */
 static bool pairs_of(const struct flow_source *source, const struct flow_element *element,
-                     const phys_vec x[4], struct phys_pair pair[PHYS_BEND_PAIRS])
+                     const phys_vec x[4], const struct flow_rest_of *rest,
+                     struct phys_pair pair[PHYS_BEND_PAIRS])
 {
     const uint32_t corner[1][4] = {{0, 1, 2, element->kind == FLOW_TRIANGLES ? 0 : 3}};
-    const struct model_cloth *cloth = source->model->cloths + element->cloth;
-    const struct model_material *m = source->model->materials + cloth->material;
+    const struct model_material *m = source->model->materials + rest->material;
     const struct phys_sight sight = {.n = 4, .x = x};
     const struct phys_step step = {1, 0};
     const double none = 0;
     struct phys_membrane membrane;
-    struct flow_rest_of rest;
-    flow_element_rest(&source->elements, element, &rest);
     const phys_vec vector =
         element->kind == FLOW_TRIANGLES
-            ? (phys_vec){rest.gradient[0], rest.gradient[1], rest.gradient[2], rest.gradient[3]}
-            : (phys_vec){rest.weight[0], rest.weight[1], rest.weight[2], rest.weight[3]};
+            ? (phys_vec){rest->gradient[0], rest->gradient[1], rest->gradient[2], rest->gradient[3]}
+            : (phys_vec){rest->weight[0], rest->weight[1], rest->weight[2], rest->weight[3]};
     if (element->kind == FLOW_TRIANGLES &&
         !phys_membrane_make(m->stretch, model_weft(m), m->shear, m->poisson, 0, &membrane)) {
-        const struct phys_triangles one = {1, corner, &vector, &rest.area, &membrane};
+        const struct phys_triangles one = {1, corner, &vector, &rest->area, &membrane};
         phys_triangles_matrix(&one, 0, 1, &step, &sight, NULL, pair);
     } else if (element->kind == FLOW_HINGES) {
-        const struct phys_hinges one = {1, corner, &rest.stiffness, &none, &rest.s};
+        const struct phys_hinges one = {1, corner, &rest->stiffness, &none, &rest->s};
         phys_hinges_matrix(&one, 0, 1, &step, &sight, NULL, pair);
     } else {
         const struct phys_folds one = {1, corner, &vector};
         phys_folds_matrix(&one, 0, 1, 1, pair);
     }
-    return element->kind != FLOW_HINGES || rest.stiffness > 0;
+    return element->kind != FLOW_HINGES || rest->stiffness > 0;
 }
 
 /* Adds `times` a pair to the block of one of its corners: N, or as good N', since their sum is
@@ -117,11 +115,11 @@ static void visit_element(void *to, const struct flow_element *element)
         x[i] = particle[i].position;
         times += particle[i].free;
     }
-    if (!pairs_of(visitor->source, element, x, pair))
+    struct flow_rest_of rest;
+    flow_element_rest(&visitor->source->elements, element, &rest);
+    if (!pairs_of(visitor->source, element, x, &rest, pair))
         return;
-    const struct model *model = visitor->source->model;
-    const struct model_material *material =
-        model->materials + model->cloths[element->cloth].material;
+    const struct model_material *material = visitor->source->model->materials + rest.material;
     const double damping = element->kind == FLOW_TRIANGLES ? material->damping_stiffness
                                                            : model_damping_bending(material);
     for (uint32_t j = 1, k = 0; j < element->corners; j++)

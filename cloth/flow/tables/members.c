@@ -176,7 +176,7 @@ void flow_source_members(const struct flow_source *source, uint32_t block,
             fill_corners(source, t, image, element, list->corner[e],
                          list->at + (size_t)flow_pairs[kind] * e);
             if (kind == FLOW_TRIANGLES) {
-                list->corner[e][3] = source->model->cloths[element->cloth].material;
+                list->corner[e][3] = rest.material;
                 list->vector[e] = (phys_vec){rest.gradient[0], rest.gradient[1], rest.gradient[2],
                                              rest.gradient[3]};
                 list->number[0][e] = rest.area;

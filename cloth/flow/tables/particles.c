@@ -133,11 +133,15 @@ static int no_mass(const struct model_cloth *cloth, uint32_t vertex, struct clot
 static int masses(struct flow_particles *p, uint32_t first, const struct model *model,
                   const struct model_cloth *cloth, struct cloth_error *error)
 {
-    const struct model_material *material = model->materials + cloth->material;
     phys_vec gravity;
     to_vector(model->gravity, &gravity);
-    if (!(cloth->mass_per_vertex > 0))
-        mesh_add_mass(model_rest(cloth), material->density, p->mass + first);
+    for (uint32_t t = 0; t < cloth->mesh.n_triangles && !(cloth->mass_per_vertex > 0); t++) {
+        uint32_t corner[3];
+        mesh_corners(&cloth->mesh, t, corner);
+        mesh_add_mass_of(model_rest(cloth), t,
+                         model->materials[model_material_of(cloth, 3, corner)].density,
+                         p->mass + first);
+    }
     for (uint32_t i = 0; i < cloth->mesh.n_vertices && cloth->mass_per_vertex > 0; i++)
         p->mass[first + i] = cloth->mass_per_vertex;
     const int code = more_masses(p, first, cloth, error);
@@ -266,7 +270,8 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
                       const struct model_cloth *cloth, uint32_t first, uint32_t vertex,
                       struct flow_particle *particle)
 {
-    const struct model_material *material = model->materials + cloth->material;
+    const uint32_t own = vertex - first;
+    const struct model_material *material = model->materials + model_material_of(cloth, 1, &own);
     const bool moves = particles->free[vertex];
     particle->mass = particles->mass[vertex];
     particle->drag = material->damping_viscous + material->damping_mass * particle->mass;

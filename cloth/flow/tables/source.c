@@ -81,9 +81,7 @@ static double extra(const struct model *model, struct flow_cloths *at, uint32_t 
     flow_source_cloth(at, model, vertex);
     const struct model_cloth *cloth = model->cloths + at->cloth;
     const double *x = cloth->mesh.position + 3 * (size_t)(vertex - at->first);
-    bool in = cloth->cost.factor > 1;
-    for (int i = 0; i < 3; i++)
-        in = in && x[i] >= cloth->cost.box[0][i] && x[i] <= cloth->cost.box[1][i];
+    const bool in = cloth->cost.factor > 1 && model_in_box(x, cloth->cost.box);
     return in ? cloth->cost.factor - 1.0 : 0;
 }
 

@@ -97,6 +97,7 @@ struct flow_spring {
 struct flow_springs {
     const struct model *model;
     struct mesh_lattice *lattice; /* a cloth; none of one that is made of triangles */
+    struct mesh_regions *regions; /* a cloth; moduli NULL: none */
     const struct flow_elements *elements;
 };
 /* The elements, whose joints come after the springs of their cloth, must outlive them. Errors:

@@ -6,26 +6,54 @@
 #include <math.h>
 #include <stdlib.h>
 
+static struct mesh_moduli moduli_of(const struct model_material *m)
+{
+    return (struct mesh_moduli){m->stretch,        m->shear,       m->bend,
+                                m->both_diagonals, m->weft_excess, NULL};
+}
+
+/* Those of the regions of a cloth, for its lattice. */
+static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_regions *regions,
+                        struct cloth_error *error)
+{
+    const struct model_cloth *cloth = springs->model->cloths + c;
+    struct mesh_moduli *moduli = cloth_alloc(cloth->n_regions, sizeof *moduli, error);
+    if (!moduli)
+        return CLOTH_E_MEMORY;
+    for (uint32_t i = 0; i < cloth->n_regions; i++)
+        moduli[i] = moduli_of(springs->model->materials + cloth->region[i]);
+    *regions = (struct mesh_regions){cloth->mask, moduli};
+    return CLOTH_OK;
+}
+
+static int make_cloth(struct flow_springs *springs, uint32_t c, struct cloth_error *error)
+{
+    const struct model_cloth *cloth = springs->model->cloths + c;
+    struct mesh_moduli moduli = moduli_of(model_material(springs->model, cloth, 0));
+    struct cloth_error inner = {0};
+    if (flow_has_triangles(springs->model, cloth))
+        return CLOTH_OK;
+    int code = cloth->mask ? find_regions(springs, c, springs->regions + c, error) : CLOTH_OK;
+    if (code)
+        return code;
+    moduli.regions = cloth->mask ? springs->regions + c : NULL;
+    code = mesh_lattice_build(springs->lattice + c, model_rest(cloth), &moduli, &inner);
+    if (code == CLOTH_E_INPUT)
+        model_fail(cloth->mesh_place, error, "cloth '%.60s': %s", cloth->name, inner.text);
+    else if (code)
+        cloth_fail(error, code, "%s", inner.text);
+    return code;
+}
+
 int flow_springs_make(struct flow_springs *springs, const struct model *model,
                       const struct flow_elements *elements, struct cloth_error *error)
 {
     *springs = (struct flow_springs){.model = model, .elements = elements};
     springs->lattice = cloth_alloc(model->n_cloths, sizeof *springs->lattice, error);
-    int code = springs->lattice ? CLOTH_OK : CLOTH_E_MEMORY;
-    for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
-        const struct model_cloth *cloth = model->cloths + c;
-        const struct model_material *m = model->materials + cloth->material;
-        const struct mesh_moduli moduli = {m->stretch, m->shear, m->bend, m->both_diagonals,
-                                           m->weft_excess};
-        struct cloth_error inner = {0};
-        if (flow_has_triangles(model, cloth))
-            continue;
-        code = mesh_lattice_build(springs->lattice + c, model_rest(cloth), &moduli, &inner);
-        if (code == CLOTH_E_INPUT)
-            model_fail(cloth->mesh_place, error, "cloth '%.60s': %s", cloth->name, inner.text);
-        else if (code)
-            cloth_fail(error, code, "%s", inner.text);
-    }
+    springs->regions = cloth_alloc(model->n_cloths, sizeof *springs->regions, error);
+    int code = springs->lattice && springs->regions ? CLOTH_OK : CLOTH_E_MEMORY;
+    for (uint32_t c = 0; c < model->n_cloths && !code; c++)
+        code = make_cloth(springs, c, error);
     if (code)
         flow_springs_free(springs);
     return code;
@@ -35,13 +63,24 @@ struct visitor {
     void (*visit)(void *to, const struct flow_spring *spring);
     void *to;
     uint32_t first;
-    double damping, bending; /* s: of threads and shear, and of what bends */
+    const struct model *model;
+    const struct model_cloth *cloth;
 };
+
+/* The material of what joins two vertices of the cloth's mesh. */
+static const struct model_material *material_of(const struct visitor *visitor, uint32_t a,
+                                                uint32_t b)
+{
+    return visitor->model->materials +
+           model_material_of(visitor->cloth, 2, (const uint32_t[]){a, b});
+}
 
 static void pass_on(void *context, const struct mesh_spring *s)
 {
     const struct visitor *visitor = context;
-    const double damping = s->kind == MESH_BEND ? visitor->bending : visitor->damping;
+    const struct model_material *material = material_of(visitor, s->a, s->b);
+    const double damping =
+        s->kind == MESH_BEND ? model_damping_bending(material) : material->damping_stiffness;
     const struct flow_spring spring = {.a = visitor->first + s->a,
                                        .b = visitor->first + s->b,
                                        .stiffness = s->stiffness,
@@ -54,13 +93,14 @@ static void pass_on(void *context, const struct mesh_spring *s)
 static void join(const struct visitor *visitor, const struct mesh *mesh, uint32_t a, uint32_t b,
                  double stiffness, unsigned char stretch)
 {
+    const double damping = stiffness > 0 ? material_of(visitor, a, b)->damping_stiffness : 0;
     const double *p = mesh->position + 3 * (size_t)a, *q = mesh->position + 3 * (size_t)b;
     const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
     const double length = sqrt(x * x + y * y + z * z);
     const struct flow_spring spring = {.a = visitor->first + (a < b ? a : b),
                                        .b = visitor->first + (a < b ? b : a),
                                        .stiffness = stiffness,
-                                       .damping = visitor->damping * stiffness,
+                                       .damping = damping * stiffness,
                                        .length = length,
                                        .stretch = stretch && length > 0};
     visitor->visit(visitor->to, &spring);
@@ -81,7 +121,7 @@ static void each_joint(const struct flow_springs *springs, uint32_t c,
         const bool lone = edge->opposite[0] == UINT32_MAX;
         if (triangles || !lone)
             join(visitor, mesh, edge->a, edge->b,
-                 lone ? model->materials[cloth->material].stretch : 0, triangles);
+                 lone ? material_of(visitor, edge->a, edge->b)->stretch : 0, triangles);
         if (flow_has_bending(model, cloth) && edge->opposite[1] != UINT32_MAX &&
             edge->opposite[0] != edge->opposite[1])
             join(visitor, mesh, edge->opposite[0], edge->opposite[1], 0, 0);
@@ -92,14 +132,12 @@ void flow_springs_each(const struct flow_springs *springs,
                        void (*visit)(void *to, const struct flow_spring *spring), void *to)
 {
     const struct model *model = springs->model;
-    struct visitor visitor = {.visit = visit, .to = to};
+    struct visitor visitor = {.visit = visit, .to = to, .model = model};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
-        const struct model_cloth *cloth = model->cloths + c;
-        visitor.damping = model->materials[cloth->material].damping_stiffness;
-        visitor.bending = model_damping_bending(model->materials + cloth->material);
+        visitor.cloth = model->cloths + c;
         mesh_lattice_each(springs->lattice + c, pass_on, &visitor);
         each_joint(springs, c, &visitor);
-        visitor.first += cloth->mesh.n_vertices;
+        visitor.first += visitor.cloth->mesh.n_vertices;
     }
 }
 
@@ -107,7 +145,10 @@ void flow_springs_free(struct flow_springs *springs)
 {
     for (uint32_t c = 0; springs->lattice && c < springs->model->n_cloths; c++)
         mesh_lattice_free(springs->lattice + c);
+    for (uint32_t c = 0; springs->regions && c < springs->model->n_cloths; c++)
+        free((void *)springs->regions[c].moduli);
     free(springs->lattice);
+    free(springs->regions);
     *springs = (struct flow_springs){0};
 }
 

@@ -19,6 +19,16 @@ int scene_build_cloths(struct model *model, const struct scene_tree *tree,
 int scene_build_probes(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
 
+/* The material, by number, that the key material of a map names, for a cloth whose
+ * mass_per_vertex is known. */
+int scene_build_material(uint32_t *material, const struct model_cloth *cloth,
+                         const struct model *model, const struct scene_tree *tree, int node,
+                         struct cloth_error *error);
+
+/* The regions of a cloth that has its mesh, name and material. */
+int scene_build_regions(struct model_cloth *cloth, const struct model *model,
+                        const struct scene_tree *tree, int node, struct cloth_error *error);
+
 /* What picks vertices: a map with one of the keys vertices, nearest, box. */
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error);

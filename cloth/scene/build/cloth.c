@@ -37,14 +37,6 @@ static int build_vertices(uint32_t **vertices, uint32_t *n_vertices, const struc
     return CLOTH_OK;
 }
 
-static bool in_box(const double *x, double (*box)[3])
-{
-    bool in = true;
-    for (int i = 0; i < 3; i++)
-        in = in && x[i] >= box[0][i] && x[i] <= box[1][i];
-    return in;
-}
-
 static int build_box(double (*box)[3], const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error)
 {
@@ -57,7 +49,7 @@ static int build_box(double (*box)[3], const struct scene_tree *tree, int node,
         box[1][i] = corner[!low][i];
     }
     for (size_t v = 0; v < cloth->mesh.n_vertices; v++)
-        if (in_box(cloth->mesh.position + 3 * v, box))
+        if (model_in_box(cloth->mesh.position + 3 * v, (const double(*)[3])box))
             return CLOTH_OK;
     return scene_tree_fail(tree, node, error,
                            "the box holds no vertex of cloth '%.60s'; it is meant for positions "
@@ -181,13 +173,14 @@ static int check_density(const struct model_cloth *cloth, const struct model_mat
         material->name);
 }
 
-static int find_material(struct model_cloth *cloth, const struct model *model,
-                         const struct scene_tree *tree, int node, struct cloth_error *error)
+int scene_build_material(uint32_t *material, const struct model_cloth *cloth,
+                         const struct model *model, const struct scene_tree *tree, int node,
+                         struct cloth_error *error)
 {
     const char *name = scene_tree_text(tree, node, "material");
     for (uint32_t i = 0; i < model->n_materials; i++) {
         if (!strcmp(model->materials[i].name, name)) {
-            cloth->material = i;
+            *material = i;
             return check_density(cloth, model->materials + i, tree, node, error);
         }
     }
@@ -246,10 +239,12 @@ static int build_rest(struct model_cloth *cloth, const struct scene_tree *tree, 
 /* Triangles and bending are no springs. */
 static void choose_format(struct model *model, const struct model_cloth *cloth)
 {
-    const struct model_material *material = model->materials + cloth->material;
-    if (model->format == SOLVE_SPRINGS &&
-        (material->model == MODEL_TRIANGLES || material->bending != MODEL_NO_BENDING))
-        model->format = SOLVE_HALF;
+    for (uint32_t i = 0; i <= cloth->n_regions; i++) {
+        const struct model_material *material = model_material(model, cloth, i);
+        if (model->format == SOLVE_SPRINGS &&
+            (material->model == MODEL_TRIANGLES || material->bending != MODEL_NO_BENDING))
+            model->format = SOLVE_HALF;
+    }
 }
 
 static int build_cloth(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
@@ -263,11 +258,13 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
     if (!code)
         code = name_cloth(model, i, tree, node, error);
     if (!code)
-        code = find_material(cloth, model, tree, node, error);
+        code = scene_build_material(&cloth->material, cloth, model, tree, node, error);
     if (!code)
         code = scene_build_mesh(&cloth->mesh, tree, node, error);
     if (!code)
         code = build_rest(cloth, tree, node, error);
+    if (!code)
+        code = scene_build_regions(cloth, model, tree, node, error);
     if (!code)
         choose_format(model, cloth);
     if (!code)

@@ -70,15 +70,25 @@ static int add(struct scene_tree *tree, const char *name, struct cloth_error *er
     return scene_edit_default(tree, materials, name, like, error);
 }
 
-static int add_named(struct scene_tree *tree, struct cloth_error *error)
+/* Adds what the key material of a map names. */
+static int add_named(struct scene_tree *tree, int map, struct cloth_error *error)
 {
-    const int cloths = scene_tree_get(tree, 1, "cloths");
-    const bool is_list = scene_tree_is(tree, cloths, YAML_SEQUENCE_NODE);
-    const size_t n = is_list ? scene_tree_length(tree, cloths) : 0;
+    const int fabric = named_by(tree, map, "material");
+    return fabric < 0 ? CLOTH_OK : add(tree, scene_fabric_names[fabric], error);
+}
+
+/* The same of each map of a list, and of those in its key `inner`, unless that is NULL. */
+static int add_all_named(struct scene_tree *tree, int list, const char *inner,
+                         struct cloth_error *error)
+{
+    const size_t n =
+        scene_tree_is(tree, list, YAML_SEQUENCE_NODE) ? scene_tree_length(tree, list) : 0;
     int code = CLOTH_OK;
     for (size_t i = 0; i < n && !code; i++) {
-        const int fabric = named_by(tree, scene_tree_item(tree, cloths, i), "material");
-        code = fabric < 0 ? CLOTH_OK : add(tree, scene_fabric_names[fabric], error);
+        const int item = scene_tree_item(tree, list, i);
+        code = add_named(tree, item, error);
+        if (!code && inner && scene_tree_is(tree, item, YAML_MAPPING_NODE))
+            code = add_all_named(tree, scene_tree_get(tree, item, inner), NULL, error);
     }
     return code;
 }
@@ -97,7 +107,7 @@ int scene_fabrics_fill(struct scene_tree *tree, struct cloth_error *error)
 {
     if (!scene_tree_is(tree, 1, YAML_MAPPING_NODE)) /* the check of keys says so */
         return CLOTH_OK;
-    int code = add_named(tree, error);
+    int code = add_all_named(tree, scene_tree_get(tree, 1, "cloths"), "regions", error);
     const int materials = scene_tree_get(tree, 1, "materials");
     const bool is_map = scene_tree_is(tree, materials, YAML_MAPPING_NODE);
     for (size_t i = 0; !code && is_map && i < scene_tree_length(tree, materials); i++) {

@@ -159,6 +159,15 @@ static const struct scene_rule cost_keys[] = {
      .about = "the vertices between two corners; else all"},
     {0}};
 
+static const struct scene_rule region_keys[] = {
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
+     .about = "in the mesh's numbering"},
+    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point,
+     .about = "all vertices in the box between two corners"},
+    {"material", SCENE_TEXT, .required = true, .about = "of what has all its vertices there"},
+    {0}};
+static const struct scene_rule region = {.type = SCENE_MAP, .inside = region_keys};
+
 static const char *const rests[] = {"position", "uv", NULL};
 static const struct scene_rule cloth_keys[] = {
     {"name", SCENE_TEXT, .about = "unique; else cloth1, cloth2, ..."},
@@ -166,6 +175,8 @@ static const struct scene_rule cloth_keys[] = {
     {"transform", SCENE_MAP, .fallback = "{}", .inside = transform_keys,
      .about = "of the mesh, before lengths and masses are taken"},
     {"material", SCENE_TEXT, .required = true, .about = "a name in materials"},
+    {"regions", SCENE_LIST, .fallback = "[]", .inside = &region,
+     .about = "parts of other materials; the last one that has an element counts"},
     {"rest", SCENE_CHOICE, .fallback = "position", .words = rests,
      .about = "where the shape at rest is taken from; uv: in m"},
     {"mass_per_vertex", SCENE_NUMBER, "kg", .range = SCENE_POSITIVE,

@@ -9,7 +9,7 @@ static struct mesh_lattice lattice_of(const struct mesh *mesh, double stretch, d
 {
     struct cloth_error error = {0};
     struct mesh_lattice lattice;
-    struct mesh_moduli moduli = {stretch, shear, bend, both, 0};
+    struct mesh_moduli moduli = {stretch, shear, bend, both, 0, NULL};
     int code = mesh_lattice_build(&lattice, mesh, &moduli, &error);
     ck_assert_msg(code == CLOTH_OK, "%s", error.text);
     struct mesh_spring *spring = springs_of(&lattice); /* as they are visited, a grid's too */
@@ -193,7 +193,7 @@ static void fails(const struct mesh *mesh, double bend, const char *says)
 {
     struct cloth_error error = {0};
     struct mesh_lattice lattice;
-    struct mesh_moduli moduli = {1, 1, bend, 1, 0};
+    struct mesh_moduli moduli = {1, 1, bend, 1, 0, NULL};
     ck_assert_int_eq(mesh_lattice_build(&lattice, mesh, &moduli, &error), CLOTH_E_INPUT);
     ck_assert_msg(strncmp(error.text, says, strlen(says)) == 0, "%s", error.text);
     ck_assert(lattice.n == 0 && !lattice.spring);

@@ -164,8 +164,7 @@ START_TEST(loads_that_cannot_be_made)
 }
 END_TEST
 
-#define MORE(text) "material: cotton", "material: cotton\n    " text
-
+#define MORE(text)   "material: cotton", "material: cotton\n    " text
 #define COURSE(text) "force: [0, 1, 0]", "force: [0, 1, 0], course: {" text "}"
 
 START_TEST(courses_that_cannot_be_made)
@@ -202,6 +201,29 @@ START_TEST(courses_that_cannot_be_made)
 }
 END_TEST
 
+START_TEST(regions_that_cannot_be_made)
+{
+    EXPECT({MORE("regions: [{vertices: [0, 1], material: wool}]"),
+            .error = ":7:44: there is no material 'wool'; allowed: cotton, silk, denim"},
+           {MORE("regions: [{vertices: [0, 1]}]"),
+            .error = ":7:15: cloths[0].regions[0].material is missing; a text is expected"},
+           {MORE("regions: [{nearest: [0, 0, 0], material: cotton}]"),
+            .error = ":7:16: nearest is not a key of cloths[0].regions[0]; allowed: vertices, box, "
+                     "material"},
+           {MORE("regions: [{vertices: [0, 12], material: cotton}]"),
+            .error = ":7:30: vertex 12 is outside the mesh of cloth 'sheet', which has 12 "
+                     "vertices; 0 to 11 are allowed"},
+           {MORE("regions: [{vertices: [0, 2], material: cotton}]"),
+            .error = ":7:15: no edge of cloth 'sheet' lies whole in this region; both ends of one, "
+                     "at least, are expected"},
+           {MORE("regions: [{vertices: [0, 1], material: silk}]"),
+            .error = ":7:44: material 'silk' of a region has another model than 'cotton', that of "
+                     "the cloth; the same is expected"},
+           {MORE("regions: [{vertices: [0, 1], material: [1]}]"),
+            .error = ":7:44: cloths[0].regions[0].material is a list of 1; a text is expected"});
+}
+END_TEST
+
 START_TEST(starts_and_masses_that_cannot_be_made)
 {
     EXPECT({MORE("masses: [{vertices: [1], mass: 0}]"),
@@ -226,8 +248,9 @@ START_TEST(starts_and_masses_that_cannot_be_made)
             .error = ":7:37: the quaternion [w, x, y, z] has no direction; its length must be "
                      "neither zero nor huge"},
            {MORE("start: [{vertices: [1], wave: {phase: 1}}]"),
-            .error = ":7:35: cloths[0].start[0].wave.vector is missing; a list of 3 numbers (1/m) is "
-                     "expected"},
+            .error =
+                ":7:35: cloths[0].start[0].wave.vector is missing; a list of 3 numbers (1/m) is "
+                "expected"},
            {MORE("start: [{vertices: [1], spin: [0, .nan, 0]}]"),
             .error = ":7:39: cloths[0].start[0].spin[1] is .nan; a finite number is expected"});
 }
@@ -327,6 +350,7 @@ int main(void)
     tcase_add_test(cases, names_and_indices);
     tcase_add_test(cases, loads_that_cannot_be_made);
     tcase_add_test(cases, courses_that_cannot_be_made);
+    tcase_add_test(cases, regions_that_cannot_be_made);
     tcase_add_test(cases, starts_and_masses_that_cannot_be_made);
     tcase_add_test(cases, motions_that_cannot_be_made);
     tcase_add_test(cases, pins_that_hold_to_nothing);

@@ -164,7 +164,7 @@ START_TEST(files_that_are_no_scenes)
         "time, integrator, energies, newton, solver, probes, grain");
     scene_expect_error(
         "schema: 1\ncloths: &a [*a]\n", NULL,
-        ":2:9: cloths[0] is a list of 1; a map of name, mesh, transform, material, rest, "
+        ":2:9: cloths[0] is a list of 1; a map of name, mesh, transform, material, regions, rest, "
         "mass_per_vertex, velocity, "
         "pins, loads, masses, start, cost is expected");
 }

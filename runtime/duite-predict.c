@@ -251,17 +251,19 @@ static int work(struct command *command, const struct trace_run *run)
 
 int main(int argc, char **argv)
 {
-    struct command command = {.scheduler = "steal",
-                              .mapping = "of the trace",
-                              .balance = "none",
-                              .cluster = {.scheduler = duite_scheduler_find("steal"),
-                                          .latency = -1,
-                                          .bandwidth = 1.25e9,
-                                          .capacity = INFINITY,
-                                          .core_speed = 1,
-                                          .overhead = -1,
-                                          .message = 5e-7,
-                                          .seed = 1}};
+    struct command command = {
+        .scheduler = "steal",
+        .mapping = "of the trace",
+        .balance = "none",
+        .cluster = {.scheduler = duite_scheduler_find("steal"),
+                    .latency = -1,
+                    .bandwidth = 1.25e9,
+                    .capacity = INFINITY,
+                    .core_speed = 1,
+                    .overhead = -1,
+                    .message = 5e-7,
+                    .seed = 1,
+                    .policy_seconds = duite_options_default().policy_seconds}};
     argp_err_exit_status = BAD_INPUT;
     if (argp_parse(&ARGP, argc, argv, 0, NULL, &command))
         return BAD_INPUT;

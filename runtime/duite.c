@@ -19,34 +19,6 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-/* A number of the environment, or -1 if it is none. */
-static double seconds_of(const char *text, double otherwise)
-{
-    char *end;
-    if (!text)
-        return otherwise;
-    double seconds = strtod(text, &end);
-    return end == text || *end ? -1 : seconds;
-}
-
-duite_options duite_options_default(void)
-{
-    const char *check = getenv("DUITE_CHECK");
-    return (duite_options){.comm = MPI_COMM_WORLD,
-                           .check = !check                       ? 0
-                                    : !strcmp(check, "accesses") ? 1
-                                                                 : -1,
-                           .scheduler = &sched_steal,
-                           .mapping = &map_metis,
-                           .balance = &balance_none,
-                           .seed = 1,
-                           .stuck_seconds = seconds_of(getenv("DUITE_STUCK_SECONDS"), 60),
-                           .lost_seconds = seconds_of(getenv("DUITE_LOST_SECONDS"), 8),
-                           .spin_seconds = 100e-6,
-                           .trace_end = UINT64_MAX,
-                           .bind = 1};
-}
-
 /* ---- MPI ---- */
 
 static _Atomic int alive; /* runtimes that are not stopped, or were cut off from other ranks */
@@ -82,53 +54,6 @@ static int start_mpi(void)
 }
 
 /* ---- Start ---- */
-
-static int check_options(const duite_options *options)
-{
-    if (!options)
-        return base_error(DUITE_E_ARGUMENT,
-                          "duite_start: no options; begin with duite_options_default()");
-    if (options->comm == MPI_COMM_NULL)
-        return base_error(DUITE_E_ARGUMENT, "duite_start: the communicator is MPI_COMM_NULL");
-    return DUITE_OK;
-}
-
-/* The rest of the options may be wrong on one rank alone: all ranks come to agree() nevertheless.
- */
-static int check_rest(const duite_options *options)
-{
-    const duite_scheduler *s = options->scheduler;
-    if (!options->kernels)
-        return base_error(DUITE_E_ARGUMENT, "duite_start: no list of kernels");
-    if (!s || !s->name || !s->place || !s->serve || !s->victim || !s->chain)
-        return base_error(DUITE_E_ARGUMENT,
-                          "duite_start: no scheduler, or one without all its functions");
-    if (!options->mapping || !options->mapping->name || !options->mapping->map)
-        return base_error(DUITE_E_ARGUMENT, "duite_start: no mapping");
-    const duite_balancer *b = options->balance;
-    if (!b || !b->name || !b->victim != !b->give)
-        return base_error(DUITE_E_ARGUMENT,
-                          "duite_start: no balancer, or one with only one of victim and give");
-    if (options->threads > 4096)
-        return base_error(DUITE_E_ARGUMENT, "duite_start: %u threads are more than 4096",
-                          options->threads);
-    if (options->check < 0)
-        return base_error(DUITE_E_ARGUMENT,
-                          "duite_start: DUITE_CHECK has no such mode; there is \"accesses\"");
-    if (!(options->spin_seconds >= 0))
-        return base_error(DUITE_E_ARGUMENT, "duite_start: spin_seconds is not >= 0");
-    if (!(options->stuck_seconds >= 0 && options->stuck_seconds <= 1e9))
-        return base_error(DUITE_E_ARGUMENT,
-                          "duite_start: stuck_seconds (or DUITE_STUCK_SECONDS) is not a number "
-                          "from 0 to 1e9");
-    if (!(options->lost_seconds >= 0 && options->lost_seconds <= 1e9))
-        return base_error(DUITE_E_ARGUMENT,
-                          "duite_start: lost_seconds (or DUITE_LOST_SECONDS) is not a number "
-                          "from 0 to 1e9");
-    if (options->trace && options->trace_first > options->trace_end)
-        return base_error(DUITE_E_ARGUMENT, "duite_start: trace_first is after trace_end");
-    return DUITE_OK;
-}
 
 static uint64_t hash_kernels(const struct graph *graph)
 {
@@ -240,13 +165,13 @@ static int start_graph(duite *rt, const duite_options *options)
     int rank, n;
     if (MPI_Comm_rank(rt->mpi, &rank) || MPI_Comm_size(rt->mpi, &n))
         return base_error(DUITE_E_MPI, "MPI_Comm_rank failed");
-    rt->mapping = options->mapping;
+    rt->mapping.own = options->mapping;
     rt->balance = options->balance;
     rt->migration.due = 1;
     rt->seed = options->seed;
     rt->window = options->window;
     static const duite_kernel *const none[] = {NULL};
-    int code = check_rest(options);
+    int code = options_check_rest(options);
     int started = graph_start(&rt->graph, rank, n, code ? none : options->kernels,
                               code ? NULL : options->laws);
     if (!code)
@@ -273,6 +198,10 @@ static int start_workers(duite *rt, const duite_options *options, int code)
     rt->threads = threads;
     rt->oversubscribed = host.total > cores.n;
     bool bind = options->bind && !rt->oversubscribed;
+    const duite_scheduler *scheduler = options->scheduler;
+    const duite_balancer *balancer = options->balance;
+    if (!code)
+        code = policies_guard(rt, options, &scheduler, &balancer);
     if (!code && options->trace)
         code = traced_open(rt, options);
     if (!code)
@@ -282,8 +211,9 @@ static int start_workers(duite *rt, const duite_options *options, int code)
                                  .comm = rt->comm,
                                  .check = rt->check,
                                  .trace = rt->trace,
-                                 .scheduler = options->scheduler,
-                                 .balancer = options->balance,
+                                 .scheduler = scheduler,
+                                 .balancer = balancer,
+                                 .guard = rt->guard,
                                  .measures = options->mapping->map_tasks != NULL,
                                  .context = options->context,
                                  .rt = rt,
@@ -293,7 +223,7 @@ static int start_workers(duite *rt, const duite_options *options, int code)
                                  .spin_seconds = rt->oversubscribed ? 0 : options->spin_seconds,
                                  .cores = bind ? cores.unit + host.before : NULL});
     work_cores_free(&cores);
-    return code;
+    return code ? code : base_guard_code(rt->guard);
 }
 
 /* ---- The end ---- */
@@ -323,11 +253,15 @@ void instance_give_up(duite *rt)
         comm_part(rt->comm, work_main(rt->pool));
 }
 
-static void end(duite *rt)
+/* Returns what was found meanwhile. */
+static int end(duite *rt)
 {
+    policies_end(rt);
     if (instance_is_broken(rt))
         instance_give_up(rt);
     work_stop(rt->pool);
+    const int code = rt->unguarded ? DUITE_OK : base_guard_code(rt->guard);
+    base_guard_stop(rt->guard);
     recorded_stop(rt); /* closes their channels */
     bool whole = comm_stop(rt->comm);
     trace_free(rt->trace, whole);
@@ -339,6 +273,7 @@ static void end(duite *rt)
     check_stop(rt->check);
     base_free(rt);
     base_pool_leave();
+    return code;
 }
 
 static int start_parts(duite *rt, MPI_Comm mpi, const duite_options *options)
@@ -353,7 +288,7 @@ int duite_start(duite **out, const duite_options *options)
     if (!out)
         return base_error(DUITE_E_ARGUMENT, "duite_start: nowhere to put the runtime");
     *out = NULL;
-    int code = check_options(options);
+    int code = options_check(options);
     if (!code)
         code = start_mpi();
     if (code)
@@ -380,6 +315,7 @@ int duite_start(duite **out, const duite_options *options)
         if (rt->comm && moves)
             comm_measure(rt->comm);
         traced_begin(rt);
+        policies_begin(rt);
         comm_open(rt->comm, options->balance->victim != NULL);
         *out = rt;
     }
@@ -414,9 +350,9 @@ int duite_stop(duite **out)
     const int traced = instance_is_broken(rt) ? DUITE_OK : traced_end(rt, "duite_stop");
     if (!code)
         code = traced;
-    end(rt);
+    const int ended = end(rt);
     *out = NULL;
-    return code;
+    return code ? code : ended;
 }
 
 int duite_abandon(duite **out)

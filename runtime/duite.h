@@ -233,9 +233,12 @@ typedef struct duite_options {
     double
         stuck_seconds; /* when nothing moves for so long, who waits for what is told, see below; 0:
                           never. Default 60, or what DUITE_STUCK_SECONDS in the environment says */
-    double lost_seconds; /* a rank that gives no sign of life for so long is lost, see below; 0:
-                            never. What rank 0 says counts for all. Default 8, or what
-                            DUITE_LOST_SECONDS in the environment says */
+    double lost_seconds;   /* a rank that gives no sign of life for so long is lost, see below; 0:
+                              never. What rank 0 says counts for all. Default 8, or what
+                              DUITE_LOST_SECONDS in the environment says */
+    double policy_seconds; /* a function of a policy that is not built in is left when it did not
+                              return for so long, see duite_policy.h; 0: never. Default 10, or what
+                              DUITE_POLICY_SECONDS in the environment says */
     const char *trace; /* a file in which each rank writes down what happens, see duite_trace_step.
                           Default NULL: none */
     uint64_t trace_first, trace_end; /* steps that are written down: from trace_first on, before

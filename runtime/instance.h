@@ -1,9 +1,12 @@
 #ifndef DUITE_INSTANCE_H
 #define DUITE_INSTANCE_H
 
+#include "runtime/balance/front.h"
 #include "runtime/comm/comm.h"
 #include "runtime/graph/graph.h"
 #include "runtime/graph/record.h"
+#include "runtime/map/front.h"
+#include "runtime/sched/front.h"
 #include "runtime/trace/trace.h"
 #include "runtime/workers/workers.h"
 
@@ -15,14 +18,18 @@ struct duite {
     struct comm *comm;   /* NULL: one rank */
     struct check *check; /* NULL: not in checking mode */
     struct work_pool *pool;
-    struct trace *trace; /* NULL: nothing is written down */
-    bool traced;         /* the trace is closed */
-    const duite_mapping *mapping;
+    struct trace *trace;      /* NULL: nothing is written down */
+    bool traced;              /* the trace is closed */
+    struct base_guard *guard; /* of policies that are not ours; NULL: all are, or none is guarded */
+    struct sched_front scheduler;
+    struct balance_front balancer;
+    struct map_front mapping;
     const duite_balancer *balance;
     uint64_t seed;
     size_t window;
     unsigned threads;
     int oversubscribed;
+    bool unguarded;                  /* that the guard is over was told */
     bool mpi_held;                   /* by the program: between duite_mpi_begin and duite_mpi_end */
     int remembered;                  /* code of a failed fork, new, ... */
     char sentence[1024];             /* of `remembered` */
@@ -46,6 +53,21 @@ bool instance_is_broken(const duite *rt);
 /* It is broken: tells the other ranks, awaits nothing any more, and returns when no task is left.
  * Does nothing the second time. */
 void instance_give_up(duite *rt);
+
+/* May a start try these? The rest of them may be wrong on one rank alone: all ranks agree
+ * nevertheless. Errors: arguments. */
+int options_check(const duite_options *options);
+int options_check_rest(const duite_options *options);
+
+/* Policies that are not ours are asked under a guard from now on: *scheduler and *balancer, as the
+ * options say, become fronts. The runtime knows its ranks and threads. Local. Errors: memory,
+ * DUITE_E_SYSTEM. */
+int policies_guard(duite *rt, const duite_options *options, const duite_scheduler **scheduler,
+                   const duite_balancer **balancer);
+/* All ranks have started: the end of the guard is the end of all. */
+void policies_begin(duite *rt);
+/* This rank stops: the others, which do, too, would not hear of it any more. */
+void policies_end(duite *rt);
 
 /* ---- Shared by program.c, objects.c and recorded.c ---- */
 

@@ -187,7 +187,7 @@ static uint64_t ask(struct migration *m)
                                  .look_seconds = last->took,
                                  .replays = last->replays,
                                  .since = last->replays - last->looked,
-                                 .mapping = rt->mapping,
+                                 .mapping = rt->mapping.own,
                                  .seed = rt->seed};
     return work_migrate(rt->pool, &blocks, m->home);
 }
@@ -207,7 +207,7 @@ static int ask_mapping(struct migration *m, bool *again)
     tasks.graph.message_seconds = comm_transfer(rt->comm, 0);
     tasks.graph.seed = rt->seed;
     if (!code)
-        code = rt->mapping->map_tasks(&tasks.graph, m->home);
+        code = map_ask_tasks(&rt->mapping, &tasks.graph, m->home);
     map_tasks_free(&tasks);
     return code;
 }
@@ -325,13 +325,13 @@ static int refused(const struct migration *m)
     int code = (int)m->values[TOLD_CODE];
     if (code)
         return base_error(code, "mapping %s failed on rank 0 with code %d (%s)",
-                          m->rt->mapping->name, code, duite_code_text(code));
+                          m->rt->mapping.own->name, code, duite_code_text(code));
     if (!(m->values[TOLD_REFUSED] > 0))
         return DUITE_OK;
     return base_error(DUITE_E_ARGUMENT,
                       "%s %s moves a block to a rank that there is not, or one that stays",
                       m->record ? "mapping" : "balancer",
-                      m->record ? m->rt->mapping->name : m->rt->balance->name);
+                      m->record ? m->rt->mapping.own->name : m->rt->balance->name);
 }
 
 static int migrate(struct migration *m, uint64_t replay, uint64_t *map_at)
@@ -368,7 +368,7 @@ static int migrate(struct migration *m, uint64_t replay, uint64_t *map_at)
 int program_migrate(duite *rt, const struct graph_record *record, uint64_t replay, uint64_t *map_at)
 {
     struct instance_migration *own = &rt->migration;
-    bool maps = rt->mapping->map_tasks && replay == *map_at;
+    bool maps = rt->mapping.own->map_tasks && replay == *map_at;
     int code = DUITE_OK;
     if (rt->comm && (maps || (rt->balance->migrate && own->replays == own->due))) {
         struct migration m = {.rt = rt, .record = maps ? record : NULL};

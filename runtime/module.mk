@@ -10,7 +10,7 @@ libduite_la_LDFLAGS = $(AM_LDFLAGS) -version-info 0:0:0 -export-symbols-regex '^
 libduite_core_la_SOURCES = $(libduite_la_SOURCES)
 libduite_core_la_LIBADD = $(libduite_la_LIBADD)
 
-libduite_la_SOURCES += runtime/duite.c runtime/inside.c runtime/instance.h runtime/migrate.c runtime/objects.c runtime/program.c runtime/blocking.c runtime/recorded.c runtime/traced.c
+libduite_la_SOURCES += runtime/duite.c runtime/inside.c runtime/instance.h runtime/migrate.c runtime/objects.c runtime/options.c runtime/policies.c runtime/program.c runtime/blocking.c runtime/recorded.c runtime/traced.c
 include runtime/base/module.mk
 include runtime/data/module.mk
 include runtime/graph/module.mk

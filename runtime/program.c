@@ -22,7 +22,10 @@ int program_enter_any(duite *rt, const char *call)
         return program_remember(
             rt,
             base_error(DUITE_E_STATE, "%s: not between duite_mpi_begin and duite_mpi_end", call));
-    return rt->comm ? comm_broken(rt->comm) : DUITE_OK;
+    if (!rt->comm || !comm_broken(rt->comm))
+        return DUITE_OK;
+    instance_give_up(rt); /* once the program knows of it no body finds its context gone */
+    return comm_broken(rt->comm);
 }
 
 int program_enter(duite *rt, const char *call)
@@ -55,7 +58,7 @@ int program_settle(duite *rt)
     if (!table->n_unsettled)
         return DUITE_OK;
     trace_settles(rt->trace, table);
-    int code = map_settle(&rt->graph.table, rt->mapping, rt->seed);
+    int code = map_settle(&rt->graph.table, &rt->mapping, rt->seed);
     if (!code)
         trace_settled(rt->trace, table);
     return code;

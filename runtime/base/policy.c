@@ -43,3 +43,11 @@ const void *base_policy_find(const struct base_policies *policies, const char *n
     unknown(policies);
     return NULL;
 }
+
+bool base_policy_is_ours(const struct base_policies *policies, const void *table)
+{
+    for (size_t i = 0; policies->names[i]; i++)
+        if (policies->tables[i] == table)
+            return true;
+    return false;
+}

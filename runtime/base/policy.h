@@ -1,6 +1,8 @@
 #ifndef DUITE_BASE_POLICY_H
 #define DUITE_BASE_POLICY_H
 
+#include <stdbool.h>
+
 /* The policies of one kind: the built-in ones, in the same order in both lists. */
 struct base_policies {
     const char *kind;         /* "scheduler" */
@@ -12,5 +14,8 @@ struct base_policies {
 /* The built-in policy of that name; or, if there is a / in it, that of the shared library in the
  * file, which stays loaded. NULL, and a sentence for duite_message, if there is none. Local. */
 const void *base_policy_find(const struct base_policies *policies, const char *name);
+
+/* Whether the table is one of the built-in ones. */
+bool base_policy_is_ours(const struct base_policies *policies, const void *table);
 
 #endif

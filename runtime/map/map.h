@@ -2,6 +2,7 @@
 #define DUITE_MAP_MAP_H
 
 #include "runtime/data/object.h"
+#include "runtime/map/front.h"
 
 #include <duite_policy.h>
 
@@ -20,6 +21,6 @@ int map_follow(struct data_table *table, duite_object object, duite_object leade
 /* Gives a home to all objects without one: leaders by the mapping, followers with them. Main
  * thread, collective. Errors: those of the mapping; memory; DUITE_E_ARGUMENT for a home that is no
  * rank. */
-int map_settle(struct data_table *table, const duite_mapping *mapping, uint64_t seed);
+int map_settle(struct data_table *table, const struct map_front *mapping, uint64_t seed);
 
 #endif

@@ -157,16 +157,16 @@ static int build_edges(const struct data_table *table, struct nodes *nodes)
     return DUITE_OK;
 }
 
-static int ask(const struct data_table *table, struct nodes *nodes, const duite_mapping *mapping,
+static int ask(const struct data_table *table, struct nodes *nodes, const struct map_front *mapping,
                uint64_t seed)
 {
-    int code = mapping->map(&nodes->graph, table->n_ranks, seed, nodes->home);
+    int code = map_ask(mapping, &nodes->graph, table->n_ranks, seed, nodes->home);
     if (code)
         return code;
     for (size_t i = 0; i < nodes->graph.n; i++)
         if (nodes->home[i] < 0 || nodes->home[i] >= table->n_ranks)
             return base_error(DUITE_E_ARGUMENT, "mapping %s sends an object to rank %d of %d",
-                              mapping->name, nodes->home[i], table->n_ranks);
+                              mapping->own->name, nodes->home[i], table->n_ranks);
     return DUITE_OK;
 }
 
@@ -184,7 +184,7 @@ static void move_in(struct data_table *table, const struct nodes *nodes)
     table->settled += nodes->graph.n;
 }
 
-int map_settle(struct data_table *table, const duite_mapping *mapping, uint64_t seed)
+int map_settle(struct data_table *table, const struct map_front *mapping, uint64_t seed)
 {
     if (!table->n_unsettled)
         return DUITE_OK;

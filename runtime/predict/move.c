@@ -4,9 +4,11 @@
  * the host with most to do a core. */
 #include "runtime/predict/program.h"
 
+#include "runtime/balance/front.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/map/blocks.h"
+#include "runtime/map/front.h"
 #include "runtime/map/tasks.h"
 
 #include <math.h>
@@ -32,6 +34,8 @@ bool predict_moves_start(struct predict_program *p)
     if (!balance || !balance->migrate)
         return p->moves.other != NULL;
     p->moves.state = base_alloc_zero(balance->state_size + 1);
+    if (p->moves.state)
+        balance_front_state(balance, p->moves.state, p->graph->caller);
     if (p->moves.state && balance->start)
         balance->start(p->moves.state, 0, (int)cluster->hosts, 0, cluster->seed);
     return p->moves.other && p->moves.state;
@@ -208,7 +212,8 @@ static int ask_mapping(struct move *m, struct predict_recorded *recorded)
     tasks.graph.message_seconds = cluster->latency;
     tasks.graph.seed = cluster->seed;
     if (!code)
-        code = cluster->mapping->map_tasks(&tasks.graph, m->home);
+        code = map_ask_tasks(&(struct map_front){cluster->mapping, m->p->graph->caller},
+                             &tasks.graph, m->home);
     recorded->map_at = tasks.guessed && !recorded->replays ? 1 : UINT64_MAX;
     m->p->moves.due += m->p->moves.due == m->p->moves.replays;
     map_tasks_free(&tasks);

@@ -1,7 +1,10 @@
 /* A prediction: the graph is made once, and then run. */
 #include "runtime/predict/graph.h"
 
+#include "runtime/balance/front.h"
 #include "runtime/base/error.h"
+#include "runtime/map/front.h"
+#include "runtime/sched/front.h"
 
 const char *predict_limit_name(enum predict_limit limit)
 {
@@ -28,6 +31,10 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
                           "the homes that were traced are those of %u ranks, not %u hosts: name a "
                           "mapping",
                           run->n_ranks, c->hosts);
+    if (!(c->policy_seconds >= 0 && c->policy_seconds <= 1e9))
+        return base_error(DUITE_E_ARGUMENT,
+                          "the seconds of a policy (DUITE_POLICY_SECONDS) are no number from 0 to "
+                          "1e9");
     if (!(c->message >= 0))
         return base_error(DUITE_E_ARGUMENT, "the cost of a message is a number >= 0");
     if (c->balance && (c->balance->victim || c->balance->place))
@@ -42,15 +49,48 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
     return DUITE_OK;
 }
 
-int predict(const struct trace_run *run, const struct predict_cluster *cluster,
+/* Policies that are not ours are asked under a guard. */
+struct guarded {
+    struct base_guard *guard;
+    struct sched_front scheduler;
+    struct balance_front balance;
+};
+
+static int guard(struct guarded *guarded, struct predict_cluster *cluster,
+                 struct predict_graph *graph)
+{
+    const bool schedules = sched_is_foreign(cluster->scheduler),
+               balances = cluster->balance && balance_is_foreign(cluster->balance),
+               maps = cluster->mapping && map_is_foreign(cluster->mapping);
+    if (!(cluster->policy_seconds > 0) || !(schedules || balances || maps))
+        return DUITE_OK;
+    int code = base_guard_start(&guarded->guard, cluster->policy_seconds, 1, -1);
+    if (code)
+        return code;
+    graph->caller = base_guard_caller(guarded->guard, 0);
+    if (schedules)
+        cluster->scheduler = sched_front(&guarded->scheduler, cluster->scheduler);
+    if (balances)
+        cluster->balance = balance_front(&guarded->balance, cluster->balance);
+    return DUITE_OK;
+}
+
+int predict(const struct trace_run *run, const struct predict_cluster *asked,
             struct predict_result *result, FILE *paje)
 {
-    struct predict_graph graph = {.run = run, .cluster = cluster};
-    int code = predict_check(run, cluster);
+    struct predict_cluster cluster = *asked;
+    struct predict_graph graph = {.run = run, .cluster = &cluster};
+    struct guarded guarded = {0};
+    int code = predict_check(run, &cluster);
+    if (!code)
+        code = guard(&guarded, &cluster, &graph);
     if (!code)
         code = predict_build(&graph);
     if (!code)
+        code = base_guard_code(guarded.guard);
+    if (!code)
         code = predict_simulate(&graph, result, paje);
     predict_graph_free(&graph);
+    base_guard_stop(guarded.guard);
     return code;
 }

@@ -6,6 +6,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/sched/front.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -305,6 +306,9 @@ static int run(struct predict_machine *m)
     }
     if (m->failed)
         return base_no_memory("the prediction");
+    int code = m->graph->caller ? base_guard_code(m->graph->caller->guard) : DUITE_OK;
+    if (code)
+        return code;
     if (m->over < m->graph->n_nodes)
         return base_error(DUITE_E_ARGUMENT,
                           "after %llu of %zu tasks and messages nothing goes on: the scheduler %s "
@@ -365,6 +369,7 @@ static void init(struct predict_machine *m)
 {
     const uint32_t cores = m->cluster->cores;
     for (uint32_t w = 0; w < m->n_workers; w++) {
+        sched_front_state(m->scheduler, state_of(m, w), m->graph->caller);
         if (m->scheduler->start)
             m->scheduler->start(state_of(m, w), w % cores, cores, m->cluster->seed);
         if (m->scheduler->look)

@@ -3,6 +3,7 @@
  * too few does no harm. */
 #include "runtime/workers/balance.h"
 
+#include "runtime/balance/front.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -10,6 +11,7 @@
 #include "runtime/workers/internal.h"
 #include "runtime/workers/spent.h"
 
+#include <math.h>
 #include <string.h>
 
 enum {
@@ -18,8 +20,9 @@ enum {
     STOCK = 4, /* guests a worker, the one that runs among them: with fewer it asks for more */
 };
 
-#define FIRST_ASK_SECONDS 2e-5 /* so long a worker idles before it asks */
-#define SERVE_SECONDS     2e-5 /* between two looks for tasks to give */
+#define FIRST_ASK_SECONDS   2e-5 /* so long a worker idles before it asks */
+#define LONGEST_ASK_SECONDS 1e6
+#define SERVE_SECONDS       2e-5 /* between two looks for tasks to give */
 
 struct work_balance {
     const duite_balancer *balancer;
@@ -60,6 +63,9 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
         balance->spent = base_alloc_zero(n * sizeof *balance->spent);
     if (!balance->states || !balance->cost || (measures && !balance->spent))
         return base_no_memory("the balancer");
+    for (unsigned i = 0; i < n; i++)
+        balance_front_state(balancer, balance->states + i * balance->stride,
+                            base_guard_caller(pool->setup.guard, 0));
     for (unsigned i = 0; i < n && balancer->start; i++)
         balancer->start(balance->states + i * balance->stride, graph->rank, graph->n_ranks, i,
                         pool->setup.seed);
@@ -83,6 +89,14 @@ static void *state_of(const struct work_worker *worker)
 {
     const struct work_balance *balance = worker->pool->balance;
     return balance->states + worker->index * balance->stride;
+}
+
+void work_balance_caller(struct work_worker *worker, unsigned caller)
+{
+    const struct work_pool *pool = worker->pool;
+    if (pool->balance)
+        balance_front_state(pool->balance->balancer, state_of(worker),
+                            base_guard_caller(pool->setup.guard, caller));
 }
 
 /* ---- What a task costs ---- */
@@ -292,6 +306,7 @@ static void ask(struct work_worker *worker)
     unsigned attempt = atomic_load_explicit(&balance->attempt, memory_order_relaxed);
     int giver = atomic_load_explicit(&balance->giver, memory_order_relaxed);
     int rank = balance->balancer->victim(state_of(worker), attempt, giver, &seconds);
+    seconds = fmin(fmax(seconds, 0), LONGEST_ASK_SECONDS); /* whatever it says */
     unsigned idle = 1 + (unsigned)atomic_load_explicit(&pool->parked, memory_order_relaxed);
     bool other = rank >= 0 && rank < pool->setup.graph->n_ranks && rank != pool->setup.graph->rank;
     if (other && !comm_ask(pool->setup.comm, rank, idle, seconds))

@@ -96,7 +96,7 @@ static struct graph_task *steal(struct work_worker *worker, struct wait *wait)
     struct graph_task *task = NULL;
     for (unsigned attempt = 0; !task && wait->refused < MOST_REFUSED; attempt++) {
         unsigned victim = pool->setup.scheduler->victim(worker->state, attempt);
-        if (victim >= pool->setup.threads)
+        if (victim >= pool->setup.threads || work_is_endless(pool, attempt))
             break;
         task = steal_from(worker, victim, wait);
     }

@@ -131,6 +131,8 @@ bool work_note_relieve(struct work_worker *worker);
 void work_note_idle(struct work_worker *worker, uint64_t idle, uint64_t exposed);
 void work_note_message(void *worker, bool sends, int peer, size_t bytes);
 
+/* Whether a scheduler names victims without an end, in one round: the main program will tell. */
+bool work_is_endless(struct work_pool *pool, unsigned attempt);
 /* Looks for work once; idles for a moment if there is none. */
 void work_look(struct work_worker *worker, const struct work_wish *wish);
 /* Runs the task and what it chains. */

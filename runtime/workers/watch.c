@@ -7,10 +7,7 @@
 #include "runtime/workers/watch.h"
 
 #include "runtime/base/clock.h"
-#include "runtime/base/error.h"
 #include "runtime/workers/internal.h"
-
-#include <signal.h>
 
 void work_waits(struct work_pool *pool, const struct work_why *why)
 {
@@ -46,62 +43,40 @@ static uint64_t movement(struct work_pool *pool)
     return pool->setup.comm ? sum * odd + comm_movement(pool->setup.comm) : sum;
 }
 
-static void *watch_main(void *argument)
+static void look(void *context)
 {
-    struct work_pool *pool = argument;
+    struct work_pool *pool = context;
     struct work_watch *watch = &pool->watch;
-    double patience = watch->seconds, since = base_seconds();
-    uint64_t before = movement(pool);
-    bool told = false;
-    for (;;) {
-        work_park_announce(&watch->park);
-        if (atomic_load_explicit(&pool->stop, memory_order_seq_cst))
-            break;
-        work_park_sleep(&watch->park, watch->seconds > 8e-3 ? watch->seconds / 8 : 1e-3);
-        double now = base_seconds();
-        uint64_t moved = movement(pool);
-        if (moved != before || !atomic_load_explicit(&watch->waits.call, memory_order_relaxed)) {
-            before = moved;
-            since = now;
-            told = false;
-        } else if (!told && now - since >= patience) {
-            work_tell(pool, now - since);
-            told = true;
-            patience *= 2;
-        }
+    const double now = base_seconds();
+    const uint64_t moved = movement(pool);
+    if (moved != watch->before || !atomic_load_explicit(&watch->waits.call, memory_order_relaxed)) {
+        watch->before = moved;
+        watch->since = now;
+        watch->told = false;
+    } else if (!watch->told && now - watch->since >= watch->patience) {
+        work_tell(pool, now - watch->since);
+        watch->told = true;
+        watch->patience *= 2;
     }
-    work_park_cancel(&watch->park);
-    return NULL;
 }
 
 int work_watch_start(struct work_pool *pool, double seconds)
 {
     struct work_watch *watch = &pool->watch;
-    sigset_t all, before;
     pthread_mutex_init(&watch->lock, NULL);
-    if (!work_park_start(&watch->park))
-        return base_no_memory("the thread that watches");
-    watch->seconds = seconds;
     if (seconds <= 0)
         return DUITE_OK;
-    sigfillset(&all); /* signals are for the program's threads */
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    watch->started = !pthread_create(&watch->thread, NULL, watch_main, pool);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return watch->started ? DUITE_OK
-                          : base_error(DUITE_E_SYSTEM, "cannot start the thread that watches");
+    watch->patience = seconds;
+    watch->since = base_seconds();
+    watch->before = movement(pool);
+    return base_lookout_start(&watch->lookout, "the thread that watches",
+                              seconds > 8e-3 ? seconds / 8 : 1e-3, look, pool);
 }
 
 void work_watch_stop(struct work_pool *pool)
 {
-    struct work_watch *watch = &pool->watch;
-    if (watch->started) {
-        atomic_thread_fence(memory_order_seq_cst);
-        work_park_wake(&watch->park);
-        pthread_join(watch->thread, NULL);
-    }
-    work_park_stop(&watch->park);
-    pthread_mutex_destroy(&watch->lock);
+    base_lookout_stop(&pool->watch.lookout);
+    pthread_mutex_destroy(&pool->watch.lock);
 }
 
 void work_watch_passes(struct work_pool *pool)

@@ -1,8 +1,8 @@
 #ifndef DUITE_WORKERS_WATCH_H
 #define DUITE_WORKERS_WATCH_H
 
+#include "runtime/base/lookout.h"
 #include "runtime/data/packet.h"
-#include "runtime/workers/park.h"
 
 #include <stdint.h>
 
@@ -23,15 +23,17 @@ struct work_waits {
 };
 
 struct work_watch {
-    double seconds; /* 0: nobody watches */
-    bool started;
-    pthread_t thread;
-    struct work_park park;
-    pthread_mutex_t lock; /* held during a look, see work_leaves */
+    struct base_lookout lookout;
+    double patience; /* seconds of a standstill until it is told */
+    double since;    /* when something moved last, as far as was seen; */
+    uint64_t before; /* what was read then */
+    bool told;
+    pthread_mutex_t lock; /* held while it tells, see work_leaves */
     struct work_waits waits;
 };
 
-/* Starts and ends the thread. The workers are there. Errors: DUITE_E_SYSTEM, memory. */
+/* Starts and ends the thread; 0 seconds: nobody watches; else the workers are there. Errors:
+ * DUITE_E_SYSTEM. */
 int work_watch_start(struct work_pool *pool, double seconds);
 void work_watch_stop(struct work_pool *pool);
 

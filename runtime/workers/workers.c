@@ -6,6 +6,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
+#include "runtime/sched/front.h"
 #include "runtime/workers/cores.h"
 #include "runtime/workers/internal.h"
 
@@ -102,8 +103,7 @@ void work_notify(void *context)
 
 /* ---- One worker's work ---- */
 
-/* A scheduler names victims without an end: the main program will tell. */
-static bool is_endless(struct work_pool *pool, unsigned attempt)
+bool work_is_endless(struct work_pool *pool, unsigned attempt)
 {
     if (attempt < MOST_ATTEMPTS + MOST_ATTEMPTS_A_WORKER * pool->setup.threads)
         return false;
@@ -130,7 +130,7 @@ static struct graph_task *find(struct work_worker *worker)
         task = work_queue_take_shared(queue = &pool->shared, end);
     for (unsigned attempt = 0; !task; attempt++) {
         unsigned victim = scheduler->victim(worker->state, attempt);
-        if (victim >= pool->setup.threads || is_endless(pool, attempt))
+        if (victim >= pool->setup.threads || work_is_endless(pool, attempt))
             break;
         if (victim == worker->index)
             continue;
@@ -316,11 +316,21 @@ void work_look(struct work_worker *worker, const struct work_wish *wish)
     }
 }
 
+/* From now on this caller of the guard asks the worker's scheduler. */
+static void be_caller(struct work_worker *worker, unsigned caller)
+{
+    const struct work_setup *setup = &worker->pool->setup;
+    sched_front_state(setup->scheduler, worker->state, base_guard_caller(setup->guard, caller));
+}
+
 static void *thread_main(void *argument)
 {
     struct work_worker *worker = argument;
     struct work_pool *pool = worker->pool;
     work_cores_bind(worker->unit);
+    base_guard_here(base_guard_caller(pool->setup.guard, worker->index));
+    be_caller(worker, worker->index);
+    work_balance_caller(worker, worker->index);
     while (!atomic_load_explicit(&pool->stop, memory_order_acquire))
         work_look(worker, &(struct work_wish){0});
     base_pool_thread_end();
@@ -342,6 +352,7 @@ static bool prepare(struct work_pool *pool, unsigned index, int unit)
     worker->pause = WORK_FIRST_PAUSE_SECONDS;
     worker->call = (duite_call){
         .context = setup->context, .rt = setup->rt, .rank = setup->graph->rank, .worker = index};
+    be_caller(worker, 0);
     if (setup->scheduler->start)
         setup->scheduler->start(worker->state, index, setup->threads, setup->seed);
     if (setup->scheduler->look)

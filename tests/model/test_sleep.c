@@ -207,6 +207,7 @@ static void fall_asleep(struct work_park *park, double seconds)
 #include "runtime/workers/internal.h"
 #define work_balance_start(balance, pool) nothing()
 #define work_balance_stop(pool)           nothing()
+#define work_balance_caller(worker, i)    ((void)(worker), (void)(i))
 #define work_guest_came(balance, guest)   ((void)(guest))
 #define work_placed_away(worker, task)    ((void)(worker), false)
 #define work_begins(worker, task)         ((void)(task), false)

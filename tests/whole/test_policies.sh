@@ -43,6 +43,22 @@ const duite_mapping duite_own_mapping = {.name = "mine", .summary = "", .map = m
 const duite_balancer duite_own_balancer = {.name = "mine", .summary = "", .state_size = 8, .start = start, .place = stay};
 EOF
 
+cat > "$scratch/hangs.c" << 'EOF'
+#include <duite_policy.h>
+static unsigned place(void *state, const duite_ready *task)
+{
+    (void)task;
+    for (volatile int turn = 0; ++*(int *)state > 50; turn = !turn)
+        ;
+    return DUITE_SHARED_QUEUE;
+}
+static duite_end serve(void *state) { (void)state; return DUITE_OLDEST; }
+static unsigned victim(void *state, unsigned attempt) { (void)state, (void)attempt; return DUITE_NO_QUEUE; }
+static int chain(void *state, const duite_ready *task) { (void)state, (void)task; return 0; }
+const duite_scheduler duite_own_scheduler = {
+    .name = "hangs", .summary = "", .state_size = sizeof(int), .place = place, .serve = serve, .victim = victim, .chain = chain};
+EOF
+
 # shellcheck disable=SC2086 # a list of flags
 library() { $CC -O2 -Wall -Wextra -Werror -shared -fPIC -I"$srcdir/runtime" -o "$scratch/$1.so" "$scratch/$1.c"; }
 cloth() { # RANKS OPTIONS...
@@ -56,6 +72,12 @@ same_as_steal() { # RANKS OPTIONS...
 }
 talks() { TALKS=1 cloth "$@" > "$scratch/said" 2>&1 && for what in "a queue" homes balance; do
         grep -qx "asked for $what" "$scratch/said" || return 1; done; }
+named() { # COMMAND...: ends with a code, and says who did not return
+    status=0
+    (DUITE_POLICY_SECONDS=0.2 && export DUITE_POLICY_SECONDS && "$@") > "$scratch/said" 2>&1 || status=$?
+    cat "$scratch/said"
+    test $status != 0 && test $status -lt 124 && grep -q "scheduler hangs: its place did not return for 0.2 s" "$scratch/said"
+}
 refused() { # SENTENCE OPTIONS...
     sentence=$1
     shift
@@ -76,3 +98,8 @@ for mapping in block random; do ok "mapping $mapping changes nothing" same_as_st
 ok "a file that is not there" refused "duite-cloth: --scheduler ./no.so: the scheduler cannot be loaded: .*no.so" --scheduler ./no.so
 ok "a library without a mapping" refused "duite-cloth: --mapping ./near.so: the library defines no duite_own_mapping" --mapping ./near.so
 ok "a name that is none" refused "there is no balancer of this name; known are none, .*, and shared libraries" --balance near.so
+
+ok "a scheduler that never returns" library hangs
+for n in 1 2; do ok "is named on $n ranks" named cloth $n --scheduler ./hangs.so; done
+ok "a trace" cloth 1 --trace t
+ok "in which it is named by predictions, too" named "$(dirname "$DUITE_CLOTH")/duite-predict" "$scratch/t" --scheduler "$scratch/hangs.so"

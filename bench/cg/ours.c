@@ -138,6 +138,13 @@ static void settings_of(struct serve_request *request, char *settings, size_t si
     snprintf(settings, size, "%s %u %s %s %s", state, threads, scheduler, solver, format);
 }
 
+/* States may be older than what they are cut by now. */
+static int cut_again(struct cg_session *s)
+{
+    free(s->state.order);
+    return cg_order(&s->state, s->plan.model.grain);
+}
+
 /* solver=plain or jacobi: that preconditioner; format=half or half_float: that format; without the
  * words the default ones. */
 static int ready(struct cg_session *s, struct serve_request *request)
@@ -176,13 +183,15 @@ static int ready(struct cg_session *s, struct serve_request *request)
         code = begin(s);
     if (!code && saved)
         code = cg_system_put(s);
+    if (!code && !saved && !s->flow->vertex)
+        code = cut_again(s);
     if (!code)
         snprintf(s->settings, sizeof s->settings, "%s", settings);
     return code;
 }
 
-/* dv, in the numbering of the input. Rank 0 knows the order of the blocks, others the state's,
- * which is the same but of a saved system. */
+/* dv, in the numbering of the input. Rank 0 knows the order of the blocks, others cut them as it
+ * does, but for a saved system. */
 static int answer(struct cg_session *s, double *dv)
 {
     const struct flow *flow = s->flow;

@@ -19,6 +19,15 @@ struct cutter {
     uint32_t *nodes; /* part after part: those of part p are nodes[start[p] ..] */
 };
 
+/* Where there are many, two or four workers are to have as many each: one block more than that is
+ * what all others wait for. */
+static uint32_t count_blocks(uint32_t n, uint32_t grain)
+{
+    const uint32_t blocks = n / grain + (n % grain ? 1 : 0);
+    const uint64_t even = ((uint64_t)blocks + 2) / 4 * 4;
+    return blocks < MESH_MANY_BLOCKS || even > n ? blocks : (uint32_t)even;
+}
+
 static int number_nodes(struct cutter *cutter, uint32_t n_vertices, const unsigned char *used,
                         uint32_t grain)
 {
@@ -27,7 +36,7 @@ static int number_nodes(struct cutter *cutter, uint32_t n_vertices, const unsign
     for (uint32_t v = 0; v < n_vertices; v++)
         blocks->n_places += used[v] ? 1 : 0;
     uint32_t n = blocks->n_places;
-    blocks->n_blocks = n / grain + (n % grain ? 1 : 0);
+    blocks->n_blocks = count_blocks(n, grain);
     blocks->start = cloth_alloc((size_t)blocks->n_blocks + 1, sizeof(uint32_t), cutter->error);
     blocks->vertex = cloth_alloc(n, sizeof(uint32_t), cutter->error);
     blocks->place = cloth_alloc(n_vertices, sizeof(uint32_t), cutter->error);

@@ -16,6 +16,8 @@
  * none. */
 #define MESH_NO_PLACE 0xffffffffu
 
+enum { MESH_MANY_BLOCKS = 16 };
+
 struct mesh_blocks {
     uint32_t n_blocks, n_vertices, n_places;
     uint32_t *start;  /* n_blocks + 1: block b has the places start[b] .. start[b + 1] - 1 */
@@ -32,12 +34,13 @@ struct mesh_pairs {
     void (*each)(const void *context, void (*visit)(void *to, uint32_t a, uint32_t b), void *to);
 };
 
-/* used: one byte a vertex. grain >= 1; the number of blocks is ceil(used vertices / grain), and no
- * block is empty: where METIS leaves some empty, the largest others are split along their inner
- * order. Without any pairs, blocks are runs of vertices by number. Errors: CLOTH_E_INPUT (grain 0,
- * a pair with a vertex that is not used), CLOTH_E_LIBRARY (METIS failed), CLOTH_E_MEMORY. Local,
- * the same result everywhere. Not by two threads at once: METIS seeds and draws from the C
- * library's random numbers. */
+/* used: one byte a vertex. grain >= 1; the number of blocks is ceil(used vertices / grain), from
+ * MESH_MANY_BLOCKS on the nearest multiple of four (the larger of two; as long as there are so many
+ * vertices), and no block is empty: where METIS leaves some empty, the largest others are split
+ * along their inner order. Without any pairs, blocks are runs of vertices by number. Errors:
+ * CLOTH_E_INPUT (grain 0, a pair with a vertex that is not used), CLOTH_E_LIBRARY (METIS failed),
+ * CLOTH_E_MEMORY. Local, the same result everywhere. Not by two threads at once: METIS seeds and
+ * draws from the C library's random numbers. */
 int mesh_blocks_cut(struct mesh_blocks *blocks, uint32_t n_vertices, const unsigned char *used,
                     const struct mesh_pairs *pairs, uint32_t grain, struct cloth_error *error);
 void mesh_blocks_free(struct mesh_blocks *blocks);

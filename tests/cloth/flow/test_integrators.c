@@ -211,7 +211,7 @@ START_TEST(blocks_make_no_difference)
     run(&one, &setup, scheme);
     setup.model.grain = 9;
     run(&many, &setup, scheme);
-    ck_assert_uint_eq(many.report.blocks, 22);
+    ck_assert_uint_eq(many.report.blocks, 24);
     for (size_t v = 0; v < one.vertices; v++)
         for (size_t c = 0; c < 3; c++)
             ck_assert_double_eq_tol(record_at(&many, 1, v, c), record_at(&one, 1, v, c), 1e-11);

@@ -178,7 +178,7 @@ static void compare_grains(enum model_integrator integrator)
     setup.model.grain = 9;
     record_run(&many, &setup.model);
     ck_assert_msg(many.code == 0, "%s", many.error.text);
-    ck_assert_uint_eq(many.report.blocks, 22);
+    ck_assert_uint_eq(many.report.blocks, 24);
     for (size_t v = 0; v < one.vertices; v++)
         for (size_t c = 0; c < 3; c++)
             ck_assert_double_eq_tol(record_at(&many, 1, v, c), record_at(&one, 1, v, c), 1e-11);

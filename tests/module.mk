@@ -27,17 +27,19 @@ AM_TESTS_ENVIRONMENT = \
     TSAN_OPTIONS=suppressions=$$support/tsan.supp; export TSAN_OPTIONS;
 AM_DISTCHECK_CONFIGURE_FLAGS = DUITE_QUICK=1
 
-# In place of automake's rule of this name: one plain line with the sums of all cases at the end, also after a failure. Tests
-# run one by one: programs of Open MPI that start at the same moment now and then trip over each other's folders.
+# In place of automake's rule of this name: one plain line with the sums of all cases at the end, also after a failure. TEST_JOBS
+# tests run at once, whatever make's own -j: most have several ranks or threads, and wait for them.
+TEST_JOBS = 2
 check-TESTS: $(check_PROGRAMS)
 	@$(am__set_TESTS_bases); \
 	  logs=`for base in $$bases; do echo $$base.log; done`; trs=`for base in $$bases; do echo $$base.trs; done`; \
 	  rm -f $$logs $$trs $(TEST_SUITE_LOG); status=0; \
-	  $(MAKE) $(AM_MAKEFLAGS) -j1 $(TEST_SUITE_LOG) TEST_LOGS="`echo $$logs`" || status=$$?; \
+	  $(MAKE) $(AM_MAKEFLAGS) -j$(TEST_JOBS) $(TEST_SUITE_LOG) TEST_LOGS="`echo $$logs`" || status=$$?; \
 	  $(SHELL) $(srcdir)/tests/support/count.sh $$trs; exit $$status
 
+# Long tests fill the machine, and run one by one.
 check-long:
-	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)' TEST_SUITE_LOG=test-suite-long.log
+	$(MAKE) $(AM_MAKEFLAGS) check TEST_JOBS=1 TESTS='$(LONG_TESTS)' TEST_SUITE_LOG=test-suite-long.log
 
 # For ThreadSanitizer: the test programs of what has threads, without the scripts that start ranks.
 check-threads:

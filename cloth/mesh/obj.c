@@ -78,11 +78,15 @@ static int read_uv(struct obj *obj, const char *at)
 }
 
 /* A number of the file, from 1 or backwards from the last of n, into one from 0. */
-static int resolve(struct obj *obj, long long number, size_t n, const char *what, uint32_t *index)
+static int resolve(struct obj *obj, const char *word, long long number, size_t n, const char *what,
+                   uint32_t *index)
 {
     if (number == 0)
         return FAIL(obj, "there is no %s 0; they count from 1", what);
-    if (number > (long long)MESH_MOST || (number < 0 && -number > (long long)n))
+    if (number > (long long)MESH_MOST || number < -(long long)MESH_MOST)
+        return FAIL(obj, "there is no %s of the number in '%s'; %zu come before this line", what,
+                    mesh_word_quote(word).text, n);
+    if (number < 0 && -number > (long long)n)
         return FAIL(obj, "there is no %s %lld; %zu come before this line", what, number, n);
     *index = (uint32_t)(number > 0 ? number - 1 : (long long)n + number);
     return CLOTH_OK;
@@ -95,9 +99,9 @@ static int read_corner(struct obj *obj, const char *word, uint32_t *corner)
         return FAIL(obj, "'%s' is not a corner; it is v, v/vt, v//vn or v/vt/vn in whole numbers",
                     mesh_word_quote(word).text);
     corner[1] = NO_UV;
-    int code = resolve(obj, read.v, obj->position.n, "vertex", &corner[0]);
+    int code = resolve(obj, word, read.v, obj->position.n, "vertex", &corner[0]);
     if (!code && read.vt)
-        code = resolve(obj, read.vt, obj->uv.n, "texture coordinate", &corner[1]);
+        code = resolve(obj, word, read.vt, obj->uv.n, "texture coordinate", &corner[1]);
     return code;
 }
 

@@ -88,10 +88,13 @@ static int next_alpha(double product, struct solve_scalars *after)
     after->alpha = after->beta = 0;
     if (after->square < SOLVE_NOTHING)
         return SOLVE_OK;
-    if (!(after->curvature > 0) || !(product > 0))
-        return after->square <= RUBBISH * after->first ? SOLVE_OK : SOLVE_BREAKDOWN;
-    after->alpha = product / after->curvature;
-    return SOLVE_OK;
+    const double alpha = product / after->curvature;
+    if (isfinite(after->curvature) && isfinite(product) && product > 0 && alpha > 0) {
+        after->alpha = alpha;
+        return SOLVE_OK;
+    }
+    const double rubbish = RUBBISH * after->first;
+    return isfinite(rubbish) && after->square <= rubbish ? SOLVE_OK : SOLVE_BREAKDOWN;
 }
 
 /* alpha and beta of the next pass. */

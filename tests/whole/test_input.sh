@@ -126,6 +126,23 @@ ok "a report that is the scene" sh -c '
     cat said.err
     test $status = 2 && cmp scene.yaml kept.yaml &&
         grep -qx "duite-cloth: --report ./kept.yaml: this is the scene itself, which would be lost" said.err' "$DUITE_CLOTH"
+awk 'BEGIN { printf "schema: 1\na: "; for (i = 0; i < 100000; i++) printf "[" }' > deep.yaml
+ok "a scene of brackets" says 1 "deep.yaml:2: more than 1000 brackets [ and { are open here; a scene needs a few" deep.yaml
+refused "a probe of nothing" \
+    "--set probes=[{vertices: [1], values: []}]: probes[0].values is an empty list; a non-empty list of words is expected" \
+    scene.yaml --set 'probes=[{vertices: [1], values: []}]'
+changed long 'end: 0.004' 'end: 1e300'
+sed -i 's/h: 0.001/h: 1e299/' long.yaml
+ok "more frames than a disk holds, by default" says 1 \
+    "long.yaml:8:23: time.fps * time.end is 2.5e+301 frames; at most 2147483647 are possible" long.yaml
+beyond() { # KEY=VALUE: forces beyond all numbers end the run soon, with a sentence
+    status=0
+    limited "$DUITE_CLOTH" scene.yaml --set "$1" > said.out 2> said.err || status=$?
+    cat said.err
+    test $status = 1 && grep -q 'duite-cloth: step 1: conjugate gradients broke down .* beyond all measure' said.err
+}
+ok "a force beyond all measure" beyond 'cloths[0].loads=[{vertices: [3], force: [0, 1e300, 0]}]'
+ok "a course beyond all measure" beyond 'cloths[0].loads=[{vertices: [3], force: [0, 1, 0], course: {keys: [[0, 1e308]]}}]'
 ok "a scene without end" says 1 "/dev/zero: larger than 256 MiB; a large mesh belongs into a file of its own" /dev/zero
 
 

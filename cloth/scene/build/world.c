@@ -189,6 +189,8 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
     model->halving = !strcmp(scene_tree_text(tree, time, "halving"), "on");
     model->stretch_growth = model->halving ? scene_tree_number(tree, time, "stretch_growth") : 0;
     model->stretch_limit = scene_tree_number(tree, time, "stretch_limit");
+    const int fps = scene_tree_get(tree, time, "fps");
+    const bool by_default = scene_tree_node(tree, fps)->start_mark.index == SCENE_BY_DEFAULT;
     double steps = model->end / model->h;
     if (steps < 0.5)
         return scene_tree_fail(tree, end, error,
@@ -200,7 +202,7 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
                                "time.end / time.h is %g steps; at most %.0f are possible", steps,
                                MOST_STEPS);
     if (!(model->fps * model->end <= MOST_FRAMES))
-        return scene_tree_fail(tree, scene_tree_get(tree, time, "fps"), error,
+        return scene_tree_fail(tree, by_default ? end : fps, error,
                                "time.fps * time.end is %g frames; at most %.0f are possible",
                                model->fps * model->end, MOST_FRAMES);
     return CLOTH_OK;

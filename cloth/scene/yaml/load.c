@@ -49,6 +49,27 @@ static int read_file(const char *path, char **bytes, size_t *size, struct cloth_
     return code;
 }
 
+/* The parser takes the square of the depth: brackets that open this often without closing are no
+ * scene, wherever they stand. */
+enum { MOST_DEPTH = 1000 };
+
+static int check_depth(const char *path, const char *bytes, size_t size, struct cloth_error *error)
+{
+    size_t depth = 0, line = 1;
+    for (size_t i = 0; i < size; i++) {
+        const bool closes = bytes[i] == ']' || bytes[i] == '}';
+        line += bytes[i] == '\n';
+        depth += bytes[i] == '[' || bytes[i] == '{';
+        depth -= closes && depth > 0;
+        if (depth > MOST_DEPTH)
+            return cloth_fail(error, CLOTH_E_INPUT,
+                              "%s:%zu: more than %d brackets [ and { are open here; a scene needs "
+                              "a few",
+                              path, line, MOST_DEPTH);
+    }
+    return CLOTH_OK;
+}
+
 /* Characters, not bytes, are counted: a byte 10xxxxxx continues one. */
 static void line_and_column(const char *bytes, size_t offset, size_t *line, size_t *column)
 {
@@ -123,6 +144,8 @@ int scene_tree_load(struct scene_tree *tree, const char *path, struct cloth_erro
     size_t size = 0;
     yaml_parser_t parser;
     int code = read_file(path, &bytes, &size, error);
+    if (!code)
+        code = check_depth(path, bytes, size, error);
     if (!code) {
         if (yaml_parser_initialize(&parser)) {
             code = parse(tree, &parser, bytes, size, error);

@@ -58,9 +58,11 @@ START_TEST(corners)
     fails(SQUARE "f 1 2 0\n", "5: there is no vertex 0; they count from 1");
     fails(SQUARE "f 1 2 -5\n", "5: there is no vertex -5; 4 come before this line");
     fails(SQUARE "f 1 2 3\nf 1 2 5\n", "6: there is no vertex 5; the mesh has the vertices 1 to 4");
-    fails(SQUARE "f 1 2 4294967297\n", "5: there is no vertex 2147483649");
+    fails(SQUARE "f 1 2 4294967297\n",
+          "5: there is no vertex of the number in '4294967297'; 4 come before");
     fails(SQUARE "f 1 2 2147483648\n", "5: there is no vertex 2147483648; the mesh has");
-    fails(SQUARE "f 1 2 -99999999999999999999\n", "5: there is no vertex -2147483649");
+    fails(SQUARE "f 1 2 -99999999999999999999\n",
+          "5: there is no vertex of the number in '-99999999999999999999'; 4");
     fails(SQUARE "vt 0 0\nf 1/1 2/1 3/2\n", "6: there is no texture coordinate 2; the file has 1");
     fails(SQUARE "vt 0 0\nf 1/1 2/1 3/-2\n", "6: there is no texture coordinate -2; 1 come");
     fails(SQUARE "f 1/1 2/1 3/1\n", "5: there is no texture coordinate 1; the file has 0");

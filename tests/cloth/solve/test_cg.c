@@ -316,6 +316,21 @@ START_TEST(little_left_of_a_guess)
 }
 END_TEST
 
+/* A number that is infinite, or a step that is none, would stay so for all iterations. */
+START_TEST(nothing_moves)
+{
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-3, .most = 9};
+    const double product[] = {1, INFINITY, 1e-200}, curvature[] = {INFINITY, 1, 1e200};
+    for (int i = 0; i < 3; i++) {
+        const struct solve_scalars before = solve_scalars_start(0, SOLVE_ON);
+        struct solve_scalars after;
+        const double dots[SOLVE_DOTS] = {
+            [SOLVE_RR] = 1, [SOLVE_RZ] = product[i], [SOLVE_PQ] = curvature[i]};
+        ck_assert_int_eq(solve_scalars_next(&stop, dots, &before, &after), SOLVE_BREAKDOWN);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("cg");
@@ -331,6 +346,7 @@ int main(void)
     tcase_add_test(cases, nothing_to_solve);
     tcase_add_test(cases, breakdowns);
     tcase_add_test(cases, little_left_of_a_guess);
+    tcase_add_test(cases, nothing_moves);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -88,7 +88,8 @@ static const struct scene_rule probe_keys[] = {
     {"name", SCENE_TEXT, .about = "unique, of letters, digits, _ and -; else probe1, probe2, ..."},
     {"cloth", SCENE_TEXT, .about = "its name; optional where there is one only"},
     PICK,
-    {"values", SCENE_LIST, .filled = true, .fallback = "[position, velocity, reaction]", .inside = &probe_value,
+    {"values", SCENE_LIST, .filled = true, .fallback = "[position, velocity, reaction]",
+     .inside = &probe_value,
      .about = "of each vertex position, velocity, reaction; total: the sum of their reactions"},
     {0}};
 static const struct scene_rule probe = {.type = SCENE_MAP, .inside = probe_keys};

@@ -53,6 +53,10 @@ typedef struct duite_ready {
      * path from its begin to the end of the round, in seconds of the costs that forks said; one
      * that said none counts as their mean, or as 1 if none did. Else 0. */
     double path;
+    /* Of a task of the program in a replay: 1 and the number of the worker that ran the last one of
+     * this graph that is placed by the same object, which its core's caches may still have. 0: none
+     * did yet, or no object places it. */
+    uint32_t warm;
 } duite_ready;
 
 /* The other workers as one of them sees them. */

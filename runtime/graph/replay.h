@@ -55,6 +55,7 @@ struct graph_place {
     size_t count, bytes;
     const duite_law *law;         /* of a contribution */
     size_t first_param, n_params; /* in param_of: those that point here */
+    _Atomic uint32_t warm;        /* 1 and the worker that ran the last node for it; 0: none did */
 };
 
 struct graph_draft;
@@ -115,6 +116,21 @@ struct graph_replay {
 static inline struct graph_task *graph_plan_task(const struct graph_plan *plan, size_t i)
 {
     return (struct graph_task *)(void *)(plan->nodes + i * GRAPH_NODE_BYTES);
+}
+
+/* The place that a node runs for, by the owner rule; NULL: none. */
+static inline struct graph_place *graph_node_place(const struct graph_task *task)
+{
+    const struct graph_plan *plan = task->node->plan;
+    const size_t at = (size_t)((const unsigned char *)task - plan->nodes) / GRAPH_NODE_BYTES;
+    return plan->owner[at] == GRAPH_NO_PLACE ? NULL : &plan->place[plan->owner[at]];
+}
+
+/* See duite_ready.warm. */
+static inline uint32_t graph_task_warm(const struct graph_task *task)
+{
+    const struct graph_place *place = task->kind == GRAPH_NODE ? graph_node_place(task) : NULL;
+    return place ? atomic_load_explicit(&place->warm, memory_order_relaxed) : 0;
 }
 
 /* Compiles a record for a fixed number of rounds, or with a flag: an object of the record that is

@@ -27,6 +27,7 @@ struct predict_node {
     float seconds, cost, path;
     uint32_t pending; /* edges that end here, and 1 for the main program */
     uint32_t edge;    /* the first of those that begin here, or NONE */
+    uint32_t placed;  /* in a replay, of a task of the program: 1 and the object; 0: by none */
     uint32_t kind : 3;
     uint32_t phase : 29; /* of a replay's round: messages on the longest path to it, at most */
 };

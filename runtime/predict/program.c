@@ -107,6 +107,7 @@ void predict_fork(struct predict_program *p, const struct predict_fork *fork)
                    .priority = fork->priority,
                    .cost = fork->cost,
                    .seconds = (float)seconds,
+                   .placed = graph->replays && own != PREDICT_NONE ? own + 1 : 0,
                    .kind = all && graph->cluster->hosts > 1 ? PREDICT_EVERYWHERE : PREDICT_TASK});
     if (graph->failed)
         return;

@@ -61,6 +61,8 @@ static void start(struct predict_machine *m, uint32_t node, uint32_t worker)
     m->begin[node] = begin;
     m->busy += (double)n->seconds;
     m->ran[worker] = node;
+    if (n->placed)
+        m->warm[n->placed - 1] = worker;
     if (m->state[worker] == IDLE)
         m->idle[n->host]--;
     m->state[worker] = BUSY;
@@ -349,6 +351,7 @@ static bool prepare(struct predict_machine *m, bool paje)
     m->state = base_alloc_zero(workers);
     m->next = base_alloc(workers * sizeof *m->next);
     m->ran = base_alloc(workers * sizeof *m->ran);
+    m->warm = base_alloc(graph->n_objects * sizeof *m->warm + 1);
     m->last = base_alloc(hosts * sizeof *m->last);
     m->idle = base_alloc(hosts * sizeof *m->idle);
     m->looked = base_alloc_zero(workers * sizeof *m->looked);
@@ -360,9 +363,10 @@ static bool prepare(struct predict_machine *m, bool paje)
     m->end = base_alloc(n * sizeof *m->end + 1);
     m->cause = base_alloc_zero(n * sizeof *m->cause + 1);
     m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
-    return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->last &&
-           m->idle && m->looked && m->handled && m->paid && m->network.out && m->network.in &&
-           m->begin && m->end && m->cause && (m->runs_on || !paje) && see_others(m);
+    return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->warm &&
+           m->last && m->idle && m->looked && m->handled && m->paid && m->network.out &&
+           m->network.in && m->begin && m->end && m->cause && (m->runs_on || !paje) &&
+           see_others(m);
 }
 
 static void init(struct predict_machine *m)
@@ -385,6 +389,8 @@ static void init(struct predict_machine *m)
     }
     for (size_t i = 0; i < m->graph->n_nodes; i++)
         m->end[i] = -1;
+    for (size_t i = 0; i < m->graph->n_objects; i++)
+        m->warm[i] = PREDICT_NONE;
 }
 
 static void stop(struct predict_machine *m)
@@ -394,10 +400,10 @@ static void stop(struct predict_machine *m)
     for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
         free(m->shared[h].node);
     free(m->events.event);
-    void *const all[] = {m->states, m->queue, m->shared,      m->state,      m->next,
-                         m->ran,    m->last,  m->network.out, m->network.in, m->begin,
-                         m->end,    m->cause, m->idle,        m->runs_on,    m->near,
-                         m->other,  m->level, m->looked,      m->handled,    m->paid};
+    void *const all[] = {m->states,  m->queue,       m->shared,     m->state, m->next,  m->ran,
+                         m->last,    m->network.out, m->network.in, m->begin, m->end,   m->cause,
+                         m->idle,    m->runs_on,     m->near,       m->other, m->level, m->looked,
+                         m->handled, m->paid,        m->warm};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         base_free(all[i]);
 }

@@ -15,10 +15,10 @@ unsigned sched_place_shared(void *state, const duite_ready *task)
     return DUITE_SHARED_QUEUE;
 }
 
-unsigned sched_place_here(void *state, const duite_ready *task)
+unsigned sched_place_warm(void *state, const duite_ready *task)
 {
-    (void)task;
-    return ((const struct sched_state *)state)->worker;
+    const struct sched_state *own = state;
+    return task->warm ? task->warm - 1 : own->worker;
 }
 
 unsigned sched_place_owner(void *state, const duite_ready *task)
@@ -69,11 +69,9 @@ int sched_never_chain(void *state, const duite_ready *task)
     return 0;
 }
 
-int sched_always_chain(void *state, const duite_ready *task)
+int sched_chain_warm(void *state, const duite_ready *task)
 {
-    (void)state;
-    (void)task;
-    return 1;
+    return sched_place_warm(state, task) == ((const struct sched_state *)state)->worker;
 }
 
 int sched_chain_owner(void *state, const duite_ready *task)

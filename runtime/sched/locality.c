@@ -39,9 +39,9 @@ const duite_scheduler sched_locality = {
     .summary = "own newest first, steal the oldest of the nearest in the machine",
     .state_size = sizeof(struct state),
     .start = sched_start,
-    .place = sched_place_here,
+    .place = sched_place_warm,
     .serve = sched_serve_newest,
     .victim = victim,
-    .chain = sched_always_chain,
+    .chain = sched_chain_warm,
     .look = look,
 };

@@ -15,9 +15,10 @@ struct sched_state {
 
 void sched_start(void *state, unsigned worker, unsigned n_workers, uint64_t seed);
 
-/* All in one queue; each worker its own; the worker of the task's block. */
+/* All in one queue; each worker its own, but in a replay the one that ran the last task on the same
+ * data; the worker of the task's block. */
 unsigned sched_place_shared(void *state, const duite_ready *task);
-unsigned sched_place_here(void *state, const duite_ready *task);
+unsigned sched_place_warm(void *state, const duite_ready *task);
 unsigned sched_place_owner(void *state, const duite_ready *task);
 
 duite_end sched_serve_newest(void *state);
@@ -29,7 +30,8 @@ unsigned sched_no_victim(void *state, unsigned attempt);
 unsigned sched_any_victim(void *state, unsigned attempt);
 
 int sched_never_chain(void *state, const duite_ready *task);
-int sched_always_chain(void *state, const duite_ready *task);
-int sched_chain_owner(void *state, const duite_ready *task); /* on the worker of its block */
+/* Where the last two would place it. */
+int sched_chain_warm(void *state, const duite_ready *task);
+int sched_chain_owner(void *state, const duite_ready *task);
 
 #endif

@@ -1,6 +1,8 @@
 /* steal: a worker keeps what it makes ready and works on the newest, whose data are warm; an idle
  * one takes the oldest of a random victim. After Blumofe & Leiserson, Scheduling multithreaded
- * computations by work stealing, JACM 46(5), 1999. */
+ * computations by work stealing, JACM 46(5), 1999. In a replay the same data are worked on again:
+ * their next task goes to the worker that ran the last one, and what was stolen stays stolen. After
+ * Acar, Blelloch & Blumofe, The data locality of work stealing, SPAA 2000. */
 #include "runtime/sched/sched.h"
 
 const duite_scheduler sched_steal = {
@@ -8,8 +10,8 @@ const duite_scheduler sched_steal = {
     .summary = "own newest first, steal the oldest of a random victim",
     .state_size = sizeof(struct sched_state),
     .start = sched_start,
-    .place = sched_place_here,
+    .place = sched_place_warm,
     .serve = sched_serve_newest,
     .victim = sched_any_victim,
-    .chain = sched_always_chain,
+    .chain = sched_chain_warm,
 };

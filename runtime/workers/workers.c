@@ -6,6 +6,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
+#include "runtime/graph/replay.h"
 #include "runtime/sched/front.h"
 #include "runtime/workers/cores.h"
 #include "runtime/workers/internal.h"
@@ -35,7 +36,8 @@ static duite_ready describe(const struct graph *graph, const struct graph_task *
                          .block = task->block,
                          .priority = task->priority,
                          .cost = task->cost,
-                         .path = graph_task_path(task)};
+                         .path = graph_task_path(task),
+                         .warm = graph_task_warm(task)};
 }
 
 void work_wake_one(struct work_pool *pool, unsigned queue)

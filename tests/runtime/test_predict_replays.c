@@ -87,6 +87,63 @@ START_TEST(paths)
 }
 END_TEST
 
+/* A scheduler that keeps what it is told of who was at the data before. */
+static uint32_t told[16];
+static unsigned n_told;
+
+static unsigned listen(void *state, const duite_ready *task)
+{
+    (void)state;
+    told[n_told++ % 16] = task->warm;
+    return 1; /* the second worker runs all */
+}
+
+static duite_end in_turn(void *state)
+{
+    (void)state;
+    return DUITE_OLDEST;
+}
+
+static unsigned nobody(void *state, unsigned attempt)
+{
+    (void)state;
+    (void)attempt;
+    return DUITE_NO_QUEUE;
+}
+
+static int never(void *state, const duite_ready *task)
+{
+    (void)state;
+    (void)task;
+    return 0;
+}
+
+/* Two objects, forked once and replayed in two rounds: data are warm from the second one on. */
+START_TEST(warmth)
+{
+    static const duite_scheduler LISTENING = {.name = "listening",
+                                              .summary = "for tests",
+                                              .place = listen,
+                                              .serve = in_turn,
+                                              .victim = nobody,
+                                              .chain = never};
+    static const struct trace_file_node nodes[] = {{FILE_RW, 1 * MS, 0, 1, {0}},
+                                                   {FILE_RW, 1 * MS, 0, 1, {1}}};
+    struct trace_file file = foretell_begun(2, 8);
+    for (uint32_t i = 0; i < 2; i++)
+        trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(i + 1));
+    trace_file_graph(&file, 2, 2, nodes);
+    trace_file_replay(&file, 2, 2, nodes, 2);
+    struct predict_cluster one = foretell_machine(1, 2);
+    one.scheduler = &LISTENING;
+    n_told = 0;
+    foretell(&file, &one);
+    ck_assert_uint_eq(n_told, 2 * 6); /* it is foretold twice */
+    for (unsigned i = 0; i < n_told; i++)
+        ck_assert_uint_eq(told[i], i % 6 < 4 ? 0 : 1 + 1);
+}
+END_TEST
+
 /* Objects of 3 ms on host 0, of 1 ms on host 1: 6 ms a replay, 4 when some have moved. */
 START_TEST(migration)
 {
@@ -118,6 +175,7 @@ int main(void)
     tcase_add_test(cases, packets);
     tcase_add_test(cases, mappings);
     tcase_add_test(cases, paths);
+    tcase_add_test(cases, warmth);
     tcase_add_test(cases, migration);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -308,6 +308,8 @@ START_TEST(what_is_said)
     ck_assert_uint_eq(n_told, 5);
     check_told(told);
     ck_assert_str_eq(told[4].kernel, "duite_get");
+    for (int i = 0; i < 5; i++)
+        ck_assert_uint_eq(told[i].warm, 0);
     ck_assert_int_eq(told[4].priority, INT32_MAX);
     ck_assert_double_eq(told[4].cost, 0);
     n_told = 0;
@@ -317,6 +319,8 @@ START_TEST(what_is_said)
     ck_assert_uint_eq(n_told, 5);
     ck_assert_str_eq(told[0].kernel, "duite_replay");
     check_told(told + 1);
+    for (int i = 1; i < 5; i++) /* one after the other, on one worker */
+        ck_assert_uint_eq(told[i].warm, i > 1);
     duite_free(rt, a);
     duite_graph_free(rt, graph);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
@@ -335,6 +339,26 @@ START_TEST(chains_at_home)
 }
 END_TEST
 
+/* What was run by worker 2, or 3, in a replay. */
+START_TEST(stays_warm)
+{
+    static const char *const NAMES[] = {"steal", "locality"};
+    for (int i = 0; i < 2; i++) {
+        const struct duite_scheduler *s = duite_scheduler_find(NAMES[i]);
+        void *state = calloc(1, s->state_size);
+        const duite_ready own = {.kernel = "note", .warm = 1 + 2};
+        const duite_ready other = {.kernel = "note", .warm = 1 + 3};
+
+        s->start(state, 2, 4, 1);
+        ck_assert_uint_eq(s->place(state, &own), 2);
+        ck_assert_int_eq(s->chain(state, &own), 1);
+        ck_assert_uint_eq(s->place(state, &other), 3);
+        ck_assert_int_eq(s->chain(state, &other), 0);
+        free(state);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("schedulers");
@@ -347,6 +371,7 @@ int main(void)
     tcase_add_test(test, by_priority);
     tcase_add_test(test, what_is_said);
     tcase_add_test(test, chains_at_home);
+    tcase_add_test(test, stays_warm);
     suite_add_tcase(suite, test);
     return unit_run(suite);
 }

@@ -97,7 +97,7 @@ endif
 check_PROGRAMS += bench/graph-run bench/compare
 bench_graph_run_SOURCES = bench/sweep/run.c bench/sweep/graph.c bench/sweep/graph.h
 bench_graph_run_LDADD = libduite_core.la -lm
-bench_compare_SOURCES = bench/sweep/compare.c bench/sweep/compare.h bench/sweep/journal.c bench/sweep/median.c bench/sweep/page.c bench/sweep/start.c bench/sweep/statistics.c
+bench_compare_SOURCES = bench/sweep/compare.c bench/sweep/compare.h bench/sweep/graph.c bench/sweep/graph.h bench/sweep/journal.c bench/sweep/median.c bench/sweep/page.c bench/sweep/start.c bench/sweep/statistics.c
 bench_compare_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"'
 bench_compare_LDADD = libduite_core.la -lm
 

@@ -1,6 +1,7 @@
 /* compare: runs a product of policies and shapes on scenes and graphs, and says which differences
  * are more than noise. */
 #include "bench/sweep/compare.h"
+#include "bench/sweep/graph.h"
 
 #include <config.h>
 
@@ -120,6 +121,7 @@ static uint64_t number(struct argp_state *state, const char *text, uint64_t leas
 
 static error_t parse(int key, char *text, struct argp_state *state)
 {
+    char wrong[500];
     struct compare *compare = state->input;
     if (key >= LIST && key < LIST + COMPARE_DIMENSIONS) {
         take_list(state, compare, key - LIST, text);
@@ -127,6 +129,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
     }
     switch (key) {
     case SET:
+        if (!strchr(text, '='))
+            argp_error(state, "--set %s: KEY=VALUE is expected", text);
         add(state, &compare->sets, text);
         return 0;
     case TASKS:
@@ -154,6 +158,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
         compare->folder = text;
         return 0;
     case ARGP_KEY_ARG:
+        if (sweep_graph_wrong(text, wrong, sizeof wrong))
+            argp_error(state, "%s", wrong);
         add(state, &compare->list[SUBJECT], text);
         return 0;
     case ARGP_KEY_NO_ARGS:

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 void sweep_graph_free(struct sweep_graph *graph)
 {
@@ -193,6 +194,29 @@ int sweep_graph_make(struct sweep_graph *graph, const char *kind, size_t n, doub
     if (!graph->n)
         fprintf(stderr, "there is no kind of graph %s, or no memory for it\n", kind);
     return !graph->n;
+}
+
+bool sweep_graph_is_file(const char *what)
+{
+    return strchr(what, '.') || strchr(what, '/');
+}
+
+const char *sweep_graph_wrong(const char *what, char *text, size_t size)
+{
+    if (sweep_graph_is_file(what)) {
+        if (access(what, R_OK) == 0)
+            return NULL;
+        snprintf(text, size, "%s: %s", what, strerror(errno));
+        return text;
+    }
+    size_t used = (size_t)snprintf(text, size, "there is no kind of graph %.60s; known are", what);
+    for (const char *const *kind = sweep_graph_kinds; *kind; kind++) {
+        if (!strcmp(*kind, what))
+            return NULL;
+        used += (size_t)snprintf(text + used, size - used, " %s,", *kind);
+    }
+    snprintf(text + used, size - used, " and files by a name with a . or / in it");
+    return text;
 }
 
 /* ---- Files ---- */

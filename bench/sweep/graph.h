@@ -1,6 +1,7 @@
 #ifndef BENCH_SWEEP_GRAPH_H
 #define BENCH_SWEEP_GRAPH_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -34,6 +35,11 @@ int sweep_graph_make(struct sweep_graph *graph, const char *kind, size_t n, doub
                      uint32_t bytes, uint64_t seed);
 /* The kinds, ended by NULL. */
 extern const char *const sweep_graph_kinds[];
+
+/* What is named on a command line is a file where it has a . or / in it, else a kind. Why it cannot
+ * be used, in words written to text: NULL if it can. */
+bool sweep_graph_is_file(const char *what);
+const char *sweep_graph_wrong(const char *what, char *text, size_t size);
 
 /* Files: a line "duite-graph 1", then one a task: cost, bytes, number of reads, the tasks read,
  * from 0; at its end maybe @ and its place, numbered from 0 as they come; # begins a comment. 1,

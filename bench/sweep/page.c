@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -73,12 +74,13 @@ static void print_head(const struct compare *compare, FILE *out)
     for (int d = 0; d < COMPARE_DIMENSIONS; d++)
         if (varies(compare, d))
             fprintf(out, " %-10s |", compare_dimension[d]);
-    fprintf(out, " %-28s | %-9s | %-9s | %-22s | %-16s |\n|", "ms [95 % of the median]",
+    fprintf(out, " %-28s | %-9s | %-9s | %-25s | %-16s |\n|", "ms [95 % of the median]",
             "in bodies", "outside", "times the fastest", "");
     for (int d = 0; d < COMPARE_DIMENSIONS; d++)
         if (varies(compare, d))
             fputs("------------|", out);
-    fputs("------------------------------|----------:|----------:|------------------------|--------"
+    fputs("------------------------------|----------:|----------:|---------------------------|-----"
+          "---"
           "----------|\n",
           out);
 }
@@ -96,7 +98,7 @@ static void print_row(const struct compare *compare, const struct compare_config
         snprintf(ratio, sizeof ratio, "%.3f [%.3f .. %.3f]", config->ratio, config->ratio_low,
                  config->ratio_high);
     }
-    fprintf(out, " %-28s | %9.4g | %9.4g | %-22s | %-16s |\n", time, 1e3 * config->bodies,
+    fprintf(out, " %-28s | %9.4g | %9.4g | %-25s | %-16s |\n", time, 1e3 * config->bodies,
             1e3 * config->outside, ratio, verdict(config));
 }
 
@@ -146,6 +148,7 @@ static void print_label(const struct compare *compare, const struct compare_conf
 }
 
 /* The bars: what is in bodies, what is outside, and the interval of the whole. */
+/* Both parts of a bar are 0 or more, and it is as high as the median: medians need not add up. */
 static void plot_bars(const struct compare *compare, size_t number, const size_t *row, size_t n,
                       FILE *out)
 {
@@ -156,7 +159,8 @@ static void plot_bars(const struct compare *compare, size_t number, const size_t
             continue;
         fputc('"', out);
         print_label(compare, c, -1, out);
-        fprintf(out, "\" %g %g %g %g %g\n", 1e3 * c->bodies, 1e3 * (c->median - c->bodies),
+        const double bodies = fmin(c->bodies, c->median);
+        fprintf(out, "\" %g %g %g %g %g\n", 1e3 * bodies, 1e3 * (c->median - bodies),
                 1e3 * c->median, 1e3 * c->low, 1e3 * c->high);
     }
     fprintf(
@@ -177,7 +181,8 @@ static void plot_lines(const struct compare *compare, size_t number, int dimensi
     size_t series = 0;
     fprintf(out,
             "reset\nset output '%s%zu.png'\nset title '%s' noenhanced\nset logscale x 2\n"
-            "set xlabel '%s'\nset ylabel 'ms'\nset yrange [0:*]\nset key outside noenhanced\n",
+            "set xlabel '%s'\nset ylabel 'ms'\nset yrange [0:*]\nset key outside noenhanced\n"
+            "set offsets graph 0.05, graph 0.05, 0, 0\n",
             compare_dimension[dimension], number, subject, compare_dimension[dimension]);
     for (size_t i = 0; i < compare->n; i++) {
         const struct compare_config *c = &compare->config[i];
@@ -200,8 +205,8 @@ static void plot_lines(const struct compare *compare, size_t number, int dimensi
         const struct compare_config *c = &compare->config[i];
         if (c->value[SUBJECT] != subject || c->value[dimension] != compare->list[dimension].item[0])
             continue;
-        fprintf(out, "%s $line%zu using 1:2:3:4 with yerrorlines title '", series ? "," : "plot",
-                series);
+        fprintf(out, "%s $line%zu using 1:2:3:4 with yerrorlines lw 2 title '",
+                series ? "," : "plot", series);
         print_label(compare, c, dimension, out);
         fputs("'", out);
         series++;

@@ -274,6 +274,7 @@ static int policy(struct argp_state *state, const void *found)
 
 static error_t parse(int key, char *text, struct argp_state *state)
 {
+    char wrong[500];
     struct command *command = state->input;
     duite_options *options = &command->options;
     switch (key) {
@@ -310,6 +311,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case ARGP_KEY_ARG:
         if (command->what)
             return ARGP_ERR_UNKNOWN;
+        if (sweep_graph_wrong(text, wrong, sizeof wrong))
+            argp_error(state, "%s", wrong);
         command->what = text;
         return 0;
     case ARGP_KEY_NO_ARGS:
@@ -342,7 +345,7 @@ int main(int argc, char **argv)
     argp_err_exit_status = 2;
     if (argp_parse(&argp, argc, argv, 0, NULL, &command))
         return 2;
-    bool file = strchr(command.what, '.') || strchr(command.what, '/');
+    const bool file = sweep_graph_is_file(command.what);
     int failed = file ? sweep_graph_read(&command.graph, command.what)
                       : sweep_graph_make(&command.graph, command.what, command.tasks, command.cost,
                                          command.bytes, command.graph_seed);

@@ -161,7 +161,10 @@ out:
 
 static int read_mesh(struct output_cache *cache, const char *path, struct cloth_error *error)
 {
-    return mesh_read_obj(&cache->mesh, path, error);
+    const int code = mesh_read_obj(&cache->mesh, path, error);
+    if (code == CLOTH_E_IO) /* as of the other files */
+        error->code = CLOTH_E_INPUT;
+    return code ? error->code : CLOTH_OK;
 }
 
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error)

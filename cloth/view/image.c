@@ -16,10 +16,11 @@ static int fail(struct cloth_error *error, const char *path, const char *reason)
     return cloth_fail(error, CLOTH_E_IO, "cannot write %s: %s", path, reason);
 }
 
-static int write_file(const struct view_picture *picture, const char *path,
+/* name: the file that is opened; path: what it is to be, in sentences. */
+static int write_file(const struct view_picture *picture, const char *name, const char *path,
                       struct cloth_error *error)
 {
-    FILE *file = fopen(path, "wbe");
+    FILE *file = fopen(name, "wbe");
     if (!file)
         return fail(error, path, strerror(errno));
     png_image image = {.version = PNG_IMAGE_VERSION,
@@ -41,11 +42,11 @@ int view_picture_write(const struct view_picture *picture, const char *path,
 {
     struct stat status;
     if (stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode))
-        return write_file(picture, path, error); /* a pipe or a device */
+        return write_file(picture, path, path, error); /* a pipe or a device */
     char *part = NULL;
     if (asprintf(&part, "%s.part", path) < 0)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s", path);
-    int code = write_file(picture, part, error);
+    int code = write_file(picture, part, path, error);
     if (!code && rename(part, path) != 0)
         code = fail(error, path, strerror(errno));
     if (code)

@@ -76,4 +76,8 @@ ok "a damaged one names its line" bad_file
 ok "a full disk" full
 ok "without gnuplot" without_plots
 ok "an unknown scheduler lists the known ones" refused 2 "known are steal, locality" tree --scheduler best
-ok "an unknown kind of graph fails, and its words are kept" refused 1 "failed; its words are in u/run.log" ring --rounds 1 --output u
+ok "a run that fails, and its words are kept" refused 1 "failed; its words are in u/run.log" "$top/cloth/scenes/sheet.yaml" \
+    --set grain=0 --rounds 1 --output u
+ok "an unknown kind of graph" refused 2 "there is no kind of graph ring; known are stencil, .* chain, and files" ring --output u
+ok "a scene that is not there" refused 2 "none.yaml: No such file or directory" tree none.yaml --output u
+ok "a set without a value" refused 2 "set grain: KEY=VALUE is expected" tree --set grain --output u

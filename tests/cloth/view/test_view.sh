@@ -34,6 +34,8 @@ says "version says the name" '^duite-view [0-9]'
 exits 2 "nothing to show" view
 exits 2 "no place for the picture" view "$dir"
 says "says the option" '--png'
+: > "$scratch/file"
+exits 2 "a file for a folder" view "$scratch/file" --png "$scratch/x.png"
 exits 2 "no such folder" view "$scratch/none" --png "$scratch/x.png"
 says "names the folder" "$scratch/none: No such file"
 exits 2 "a frame that is not there" picture --png "$scratch/x.png" --frame 2

@@ -95,6 +95,9 @@ void summary_print(FILE *file, const struct summary *summary)
     if (report->steps_halved)
         fprintf(file, "  shorter steps    down to h / %.0f; halved %" PRIu64 " times\n",
                 model->h / report->shortest_step, report->steps_halved);
+    if (report->steps_retaken)
+        fprintf(file, "  gained energy    %" PRIu64 " steps by bdf2, made anew by implicit_euler\n",
+                report->steps_retaken);
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));
     print_times(file, report);
@@ -218,6 +221,7 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_number(json, "critical_path_seconds", summary->critical_path);
     output_report_number(json, "lower_bound_seconds", summary->lower_bound);
     output_report_integer(json, "steps_halved", summary->report->steps_halved);
+    output_report_integer(json, "steps_retaken", summary->report->steps_retaken);
     output_report_integer(json, "peak_memory_bytes", summary->memory_bytes);
 }
 

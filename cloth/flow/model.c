@@ -90,6 +90,14 @@ int model_fail(const char *place, struct cloth_error *error, const char *format,
     return cloth_fail(error, CLOTH_E_INPUT, "%s%s%s", place ? place : "", place ? ": " : "", text);
 }
 
+bool model_is_guarded(const struct model *model)
+{
+    const double *wind = model->air.wind;
+    const bool blown = model_has_air(model) && (wind[0] != 0 || wind[1] != 0 || wind[2] != 0);
+    return model_is_implicit(model) && model->energy_growth > 0 && !blown && !model->n_motions &&
+           !model->n_courses && !model->own_filter;
+}
+
 bool model_is_coarse(const struct model *model)
 {
     return model->preconditioner == MODEL_COARSE || model->preconditioner == MODEL_IC0_COARSE;

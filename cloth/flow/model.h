@@ -225,6 +225,9 @@ struct model {
     double stretch_growth; /* so is one in which the largest length / rest length of stretch springs
                               grows by more, */
     double stretch_limit;  /* or that ends with a larger one; 0: no limit */
+    double energy_growth;  /* part of the largest energy of motion and strain so far; of the model
+                              that is guarded a step that ends so much above an earlier energy is
+                              made anew, by BDF2 by implicit Euler, else shorter; 0: by any */
     struct model_rest rest;
     enum model_integrator integrator;
     uint32_t newton_steps;   /* at most, of a step of an implicit one; 0: as 1, one linear step */
@@ -274,6 +277,16 @@ static inline int model_is_filtered(const struct model *model)
 static inline int model_is_driven(const struct model *model)
 {
     return model->n_motions || model->n_guides;
+}
+
+/* Whether its steps are judged by the energy that they gain: implicit ones, where nothing does work
+ * on the cloth. */
+bool model_is_guarded(const struct model *model);
+
+/* Whether a step may be made anew, from a copy of the state before it. */
+static inline bool model_keeps(const struct model *model)
+{
+    return model->halving || (model->integrator == MODEL_BDF2 && model_is_guarded(model));
 }
 
 /* Whether its solves stop by norms of the masses. */

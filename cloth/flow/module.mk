@@ -24,7 +24,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/far.c \
     cloth/flow/tasks/finish.c \
     cloth/flow/tasks/frames.c \
-    cloth/flow/tasks/grid.c cloth/flow/tasks/grid.h \
+    cloth/flow/tasks/grid.c cloth/flow/tasks/energy.h cloth/flow/tasks/grid.h \
     cloth/flow/tasks/implicit.c \
     cloth/flow/tasks/kernels_cg.c \
     cloth/flow/tasks/kernels_beside.c \

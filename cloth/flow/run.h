@@ -23,7 +23,9 @@ struct flow_report {
     uint64_t steps;                            /* made, of any length */
     uint64_t newton_steps, newton_unconverged; /* Newton steps; steps of time whose last Newton step
                                                   was not small enough; 0 where there is but one */
-    uint64_t steps_halved; /* how often a step was given up and begun anew with half the length */
+    uint64_t steps_halved;  /* how often a step was given up and begun anew with half the length */
+    uint64_t steps_retaken; /* how often one by BDF2 gained energy and was made anew by implicit
+                               Euler */
     uint64_t frames, cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */
     double shortest_step;                                    /* s */
     double simulated_seconds, wall_seconds;                  /* wall: from the first step on */

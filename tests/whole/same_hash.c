@@ -56,7 +56,10 @@ static uint64_t run(const struct model *model, const struct config *config, cons
     duite *rt;
     int rank;
     MPI_Comm_rank(comm, &rank);
-    if (rank ? flow_join(&flow, error) : flow_prepare(&flow, model, config->ranks, error))
+    int failed =
+        (rank ? flow_join(&flow, error) : flow_prepare(&flow, model, config->ranks, error)) != 0;
+    MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, comm);
+    if (failed)
         return 0;
     duite_options options = options_of(config, flow, comm);
     options.balance = duite_balancer_find(balance);

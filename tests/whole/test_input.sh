@@ -95,9 +95,9 @@ refused "more frames than a disk holds" \
 refused "a grain of zero on the command line" \
     "--grain 0: grain is 0; a whole number from 1 to 4294967295 is expected" scene.yaml --grain 0
 changed key 'end: 0.004' 'end: 0.004, fsp: 30'
-refused "an unknown key" "key.yaml:8:30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, halving, stretch_growth, stretch_limit, rest" key.yaml
+refused "an unknown key" "key.yaml:8:30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, halving, stretch_growth, stretch_limit, energy_growth, rest" key.yaml
 refused "an unknown key on the command line" \
-    "--set time.fsp=30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, halving, stretch_growth, stretch_limit, rest" scene.yaml --set time.fsp=30
+    "--set time.fsp=30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, halving, stretch_growth, stretch_limit, energy_growth, rest" scene.yaml --set time.fsp=30
 refused "a missing scene" "none.yaml: cannot open the scene file: No such file or directory" none.yaml
 printf 'schema: 1\ntime: [\n' > broken.yaml
 refused "a broken scene" \

@@ -31,28 +31,69 @@ int flow_energies(struct flow_state *state, struct flow_args args, duite_object 
     return code;
 }
 
-int flow_energy_fork(struct flow_state *state)
+/* Whether energies are looked at after the step under way. */
+static bool looks(const struct flow_state *state)
 {
-    return state->flow->model->energy_steps ? flow_energies(state, flow_attempt_args(state),
-                                                            state->energies[state->attempt.parity])
-                                            : DUITE_OK;
+    const struct model *model = state->flow->model;
+    return model->energy_steps || (model_is_guarded(model) && !state->guard.off);
 }
 
-int flow_energy_note(struct flow_state *state)
+int flow_energy_fork(struct flow_state *state)
 {
-    struct flow_report *report = state->report;
-    double sums[FLOW_SUMS], total = 0;
-    if (!state->flow->model->energy_steps)
+    return looks(state) ? flow_energies(state, flow_attempt_args(state),
+                                        state->energies[state->attempt.parity])
+                        : DUITE_OK;
+}
+
+int flow_energy_wait(struct flow_state *state)
+{
+    struct flow_guard *guard = &state->guard;
+    double sums[FLOW_SUMS];
+    if (!looks(state))
         return DUITE_OK;
     const int code = duite_get(state->rt, state->energies[state->attempt.parity], sums);
     if (code)
         return code;
+    guard->sum = 0;
     for (int i = 0; i < FLOW_ENERGIES; i++)
-        total += sums[i];
-    report->energy_lowest = fmin(report->energy_lowest, total);
-    report->energy_highest = fmax(report->energy_highest, total);
-    report->energy_gained = fmax(report->energy_gained, total - report->energy_lowest);
+        guard->sum += sums[i];
+    guard->moving = sums[FLOW_ENERGY_MOTION] + sums[FLOW_ENERGY_ELASTIC];
     return DUITE_OK;
+}
+
+bool flow_energy_gained(const struct flow_state *state, bool touched)
+{
+    const struct model *model = state->flow->model;
+    const struct flow_guard *guard = &state->guard;
+    return model_is_guarded(model) && !guard->off && !touched &&
+           guard->sum - guard->lowest > model->energy_growth * fmax(guard->most, guard->moving);
+}
+
+/* The guard is on from the second step without contact on: what the first one begins with was not
+ * looked at. */
+static void note_guard(struct flow_state *state, bool touched)
+{
+    struct flow_guard *guard = &state->guard;
+    if (touched || guard->off) {
+        guard->off = touched;
+        guard->lowest = INFINITY;
+        return;
+    }
+    guard->lowest = flow_energy_gained(state, false) ? guard->sum : fmin(guard->lowest, guard->sum);
+    guard->most = fmax(guard->most, guard->moving);
+}
+
+void flow_energy_note(struct flow_state *state, bool touched)
+{
+    struct flow_report *report = state->report;
+    const double sum = state->guard.sum;
+    if (state->flow->model->energy_steps) {
+        report->energy_lowest = fmin(report->energy_lowest, sum);
+        report->energy_highest = fmax(report->energy_highest, sum);
+        report->energy_gained = fmax(report->energy_gained, sum - report->energy_lowest);
+    }
+    if (model_is_guarded(state->flow->model))
+        note_guard(state, touched);
 }
 
 /* Before the first step. */
@@ -61,9 +102,10 @@ static void begin(struct flow_state *state)
     struct flow_report *report = state->report;
     const struct flow_energy *start = &report->start;
     const double total = start->kinetic + start->elastic + start->gravity + start->loads;
-    const bool looks = state->flow->model->energy_steps;
-    report->energy_lowest = report->energy_highest = looks ? total : NAN;
-    report->energy_gained = looks ? 0 : NAN;
+    const bool told = state->flow->model->energy_steps;
+    state->guard = (struct flow_guard){.lowest = total, .most = start->kinetic + start->elastic};
+    report->energy_lowest = report->energy_highest = told ? total : NAN;
+    report->energy_gained = told ? 0 : NAN;
 }
 
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy)

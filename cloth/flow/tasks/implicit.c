@@ -243,11 +243,16 @@ static int bdf2_start(struct flow_state *state)
     return code ? code : finish(state, flow_attempt_args(state));
 }
 
+bool flow_implicit_is_second(const struct flow_state *state)
+{
+    return state->flow->model->integrator == MODEL_BDF2 && state->smooth == state->attempt.length;
+}
+
 static int bdf2(struct flow_state *state)
 {
     struct flow_args args = flow_attempt_args(state);
     double slope;
-    if (state->smooth != state->attempt.length)
+    if (!flow_implicit_is_second(state))
         return bdf2_start(state);
     args.h *= 2.0 / 3;
     int code = flow_fork_all(state, &flow_predict, args,

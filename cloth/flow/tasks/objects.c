@@ -99,7 +99,7 @@ void flow_objects_make(struct flow_state *state)
     for (uint32_t b = 0; b < tables->n_blocks; b++) {
         struct flow_objects *o = state->block + b;
         make_block(state->rt, tables->block + b, o);
-        if (!state->flow->model->halving)
+        if (!model_keeps(state->flow->model))
             continue;
         make(state->rt, tables->block[b].n, o->x, &o->kept_x);
         make(state->rt, tables->block[b].n, o->x, &o->kept_v);

@@ -7,6 +7,9 @@
 #include <stddef.h>
 #include <stdio.h>
 
+/* A step that gains energy in so many ticks is not made shorter still. */
+enum { LEAST_GUARDED = FLOW_TICKS / 16 };
+
 struct flow_args flow_attempt_args(const struct flow_state *state)
 {
     const struct model *model = state->flow->model;
@@ -104,7 +107,7 @@ static bool is_driven(const struct model *model)
 static int drive(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
-    int code = model->halving ? keep(state) : DUITE_OK;
+    int code = model_keeps(model) ? keep(state) : DUITE_OK;
     if (!code && model_is_driven(model))
         code = flow_pins_drive(state);
     if (!code && model_solves_contact(model))
@@ -134,7 +137,7 @@ static int end_step(struct flow_state *state)
     const struct model *model = state->flow->model;
     const duite_object status = state->status[state->attempt.parity];
     const struct flow_args args = flow_attempt_args(state);
-    const bool keeps = model->halving && !is_driven(model) && !flow_explicit_keeps(model);
+    const bool keeps = model_keeps(model) && !is_driven(model) && !flow_explicit_keeps(model);
     int code = keeps ? keep(state) : DUITE_OK;
     if (!code)
         code = model_is_implicit(model) ? flow_implicit_end(state) : flow_explicit_end(state);
@@ -218,46 +221,84 @@ static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
 /* Takes the step back: it is to be made anew with half the length. */
 static int refuse(struct flow_state *state, const struct flow_verdict *verdict)
 {
-    state->attempt.forked = state->settled_forces = false;
-    state->guessed = 0; /* dv is of a step that failed */
     if (!state->flow->model->halving || !flow_grid_halve(&state->grid))
         return give_up(state, verdict);
     return restore(state);
 }
 
-/* Waits for the step that was forked whole and accepts it, with its frames, or refuses it. */
-static int settle(struct flow_state *state)
+/* The same for a step that gained too much energy and can do with less: one by BDF2 by implicit
+ * Euler, which has the state restored and nothing to go on from, others with half the length. */
+static bool can_lose(const struct flow_state *state)
+{
+    return flow_implicit_is_second(state) ||
+           (state->flow->model->halving && state->attempt.length > LEAST_GUARDED);
+}
+
+static int retake(struct flow_state *state, bool second)
+{
+    if (second)
+        state->report->steps_retaken++;
+    else
+        flow_grid_halve(&state->grid);
+    return restore(state);
+}
+
+/* Waits for what is known of the step that was forked whole. */
+static int await(struct flow_state *state, double status[FLOW_STATUS], struct flow_verdict *verdict)
 {
     const struct model *model = state->flow->model;
-    const struct flow_attempt attempt = state->attempt;
-    struct flow_verdict verdict = {.before = state->longest,
-                                   .after = state->longest,
-                                   .most = model->stretch_limit,
-                                   .growth = model->stretch_growth};
-    double status[FLOW_STATUS];
-    int code = duite_get(state->rt, state->status[attempt.parity], status);
+    const unsigned parity = state->attempt.parity;
+    *verdict = (struct flow_verdict){.before = state->longest,
+                                     .after = state->longest,
+                                     .most = model->stretch_limit,
+                                     .growth = model->stretch_growth};
+    int code = duite_get(state->rt, state->status[parity], status);
     if (!code && flow_is_judged(model))
-        code = duite_get(state->rt, state->stretch[attempt.parity], &verdict.after);
+        code = duite_get(state->rt, state->stretch[parity], &verdict->after);
+    if (!code)
+        code = flow_energy_wait(state);
     if (code)
         return code;
     flow_implicit_status(state, status);
-    verdict.failed = status[FLOW_WRONG] > 0;
-    const bool refused = flow_verdict_refuses(&verdict);
-    flow_implicit_settle(state, !refused, status);
-    if (refused)
-        return refuse(state, &verdict);
-    state->attempt.forked = false;
+    verdict->failed = status[FLOW_WRONG] > 0;
+    return DUITE_OK;
+}
+
+/* With its frames. */
+static int accept(struct flow_state *state, const double status[FLOW_STATUS],
+                  const struct flow_verdict *verdict)
+{
+    const struct flow_attempt attempt = state->attempt;
     state->length_before = state->length;
     state->length = attempt.length;
-    state->longest = verdict.after;
+    state->longest = verdict->after;
     if (state->longest > state->report->stretch_highest)
         state->report->stretch_highest = state->longest;
-    flow_grid_accept(&state->grid, flow_verdict_calm(&verdict));
+    flow_grid_accept(&state->grid, flow_verdict_calm(verdict));
     note(state, status);
-    code = flow_energy_note(state);
-    if (!code)
-        code = flow_watched(state);
+    flow_energy_note(state, status[FLOW_TOUCHED] > 0);
+    const int code = flow_watched(state);
     return code ? code : flow_frames(state, attempt.begin);
+}
+
+/* Waits for the step that was forked whole and accepts or refuses it. */
+static int settle(struct flow_state *state)
+{
+    struct flow_verdict verdict;
+    double status[FLOW_STATUS];
+    const int code = await(state, status, &verdict);
+    if (code)
+        return code;
+    const bool refused = flow_verdict_refuses(&verdict), second = flow_implicit_is_second(state);
+    const bool gained =
+        !refused && flow_energy_gained(state, status[FLOW_TOUCHED] > 0) && can_lose(state);
+    flow_implicit_settle(state, !refused && !gained, status);
+    state->attempt.forked = false;
+    if (!refused && !gained)
+        return accept(state, status, &verdict);
+    state->settled_forces = false;
+    state->guessed = 0; /* dv is of a step that is not made */
+    return refused ? refuse(state, &verdict) : retake(state, second);
 }
 
 /* The step that follows what is under way, if that is accepted. */

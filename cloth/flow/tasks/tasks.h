@@ -4,6 +4,7 @@
 #include "cloth/flow/run.h"
 #include "cloth/flow/tables/source.h"
 #include "cloth/flow/tables/tables.h"
+#include "cloth/flow/tasks/energy.h"
 #include "cloth/flow/tasks/grid.h"
 #include "cloth/flow/tasks/kernels.h"
 #include "cloth/solve/coarse.h"
@@ -243,7 +244,8 @@ struct flow_state {
     uint32_t length_before;
     uint32_t
         guessed; /* ticks of the step that left dv, if the next solve may begin with it; else 0 */
-    uint32_t smooth; /* ticks of the step before, if contact had no part in it; else 0 */
+    uint32_t smooth; /* ticks of the step before, if contact had no part in it; else 0, and then the
+                      * next step is by implicit Euler where the others are by BDF2 */
     duite_object coarse, motion[2]; /* with a coarse part: its factor and its part of s */
     struct flow_head head;
     duite_object *parcel;  /* a block: what travels to rank 0 on its own; empty in between */
@@ -257,7 +259,8 @@ struct flow_state {
     struct flow_attempt attempt;
     bool settled_forces; /* f is that of x and v (velocity Verlet) */
     double longest;      /* largest stretch at grid.now, if steps are judged by it */
-    char reason[600];    /* why no step is short enough */
+    struct flow_guard guard;
+    char reason[600]; /* why no step is short enough */
     uint64_t next_frame;
     bool begun;    /* all ranks have their memory, objects are made */
     bool stopping; /* a stop was agreed: ends after the next frame */
@@ -372,6 +375,8 @@ int flow_implicit_end(struct flow_state *state);
 /* Forks what makes the system of a step of implicit Euler, linearised where it begins: its right
  * side f, its matrix a. */
 int flow_assemble(struct flow_state *state);
+/* Whether the step under way is by BDF2, and not by implicit Euler as the first one is. */
+bool flow_implicit_is_second(const struct flow_state *state);
 /* When the status of a step is known: adds what its Newton steps noted. Then, when it is accepted
  * or not: what the next step may build on, and the report. */
 void flow_implicit_status(const struct flow_state *state, double status[FLOW_STATUS]);
@@ -424,19 +429,6 @@ int flow_watch(struct flow_state *state);
 /* Forks its row of the table of probes, and finds whether the run rests: when the step is accepted,
  * and for the start. */
 int flow_watched(struct flow_state *state);
-/* Forks what adds up the energies of the present state in `sums` (F64, FLOW_SUMS). args: those
- * of the step that ends there. */
-int flow_energies(struct flow_state *state, struct flow_args args, duite_object sums);
-
-/* The energies of the present state. Waits for it. */
-int flow_energy_get(struct flow_state *state, struct flow_energy *energy);
-/* Those before the first step go into the report. Waits. */
-int flow_energy_begin(struct flow_state *state);
-/* If a run looks at them after each step: forks that of the step under way; adds them to the report
- * when it is accepted. */
-int flow_energy_fork(struct flow_state *state);
-int flow_energy_note(struct flow_state *state);
-
 /* The tick, not rounded, that a frame shows. */
 double flow_frame_tick(const struct model *model, uint64_t frame);
 /* Forks the frames whose nearest end of a step is known: the last step, accepted, went from tick

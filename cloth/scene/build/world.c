@@ -189,6 +189,7 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
     model->halving = !strcmp(scene_tree_text(tree, time, "halving"), "on");
     model->stretch_growth = model->halving ? scene_tree_number(tree, time, "stretch_growth") : 0;
     model->stretch_limit = scene_tree_number(tree, time, "stretch_limit");
+    model->energy_growth = scene_tree_number(tree, time, "energy_growth");
     const int fps = scene_tree_get(tree, time, "fps");
     const bool by_default = scene_tree_node(tree, fps)->start_mark.index == SCENE_BY_DEFAULT;
     double steps = model->end / model->h;

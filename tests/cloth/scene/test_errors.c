@@ -70,7 +70,7 @@ START_TEST(wrong_kinds)
          .error = ":2:14: gravity[1] is a map of 1; a finite number is expected"},
         {"time: {h: 0.001, end: 0.1}", "time: 3",
          .error = ":12:7: time is 3; a map of h, end, fps, halving, stretch_growth, "
-                  "stretch_limit, rest is expected"},
+                  "stretch_limit, energy_growth, rest is expected"},
         {"name: sheet", "name: ''",
          .error = ":4:11: cloths[0].name is the text ''; a text is expected"},
         {"name: sheet", "name: [a]",
@@ -105,10 +105,10 @@ START_TEST(unknown_and_missing_keys)
                      "probes, grain"},
            {"h: 0.001", "h: 0.001, dt: 1",
             .error = ":12:18: dt is not a key of time; allowed: h, end, fps, halving, "
-                     "stretch_growth, stretch_limit, rest"},
+                     "stretch_growth, stretch_limit, energy_growth, rest"},
            {"h: 0.001", "h: 0.001, fsp: 1",
             .error = ":12:18: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, "
-                     "halving, stretch_growth, stretch_limit, rest"},
+                     "halving, stretch_growth, stretch_limit, energy_growth, rest"},
            {"stretch: 50", "strech: 50",
             .error =
                 ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
@@ -194,7 +194,7 @@ START_TEST(sets_that_are_wrong)
     } all[] = {
         {"time.h=-1", "time.h is -1; a finite number > 0 (s) is expected"},
         {"time.hh=1", "hh is not a key of time; did you mean 'h'? Allowed: h, end, fps, halving, "
-                      "stretch_growth, stretch_limit, rest"},
+                      "stretch_growth, stretch_limit, energy_growth, rest"},
         {"time.h.x=1", "'time.h' is not a map"},
         {"cloths.x=1", "'cloths' is not a map"},
         {"time[0]=1", "'time' is not a list"},

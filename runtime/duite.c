@@ -3,6 +3,7 @@
 #include "runtime/instance.h"
 
 #include "runtime/balance/balance.h"
+#include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
@@ -344,7 +345,9 @@ int duite_stop(duite **out)
         return base_error(DUITE_E_STATE, "duite_stop is for the main thread, outside of bodies");
     if (rt->building || rt->mpi_held)
         return program_enter(rt, "duite_stop");
+    const uint64_t from = rt->trace ? base_ticks() : 0;
     int code = program_wait(rt, "duite_stop");
+    trace_wait(rt->trace, from);
     if (!code)
         code = not_freed(rt);
     const int traced = instance_is_broken(rt) ? DUITE_OK : traced_end(rt, "duite_stop");

@@ -88,8 +88,10 @@ static void leave(struct base_guard *guard, struct base_caller *caller)
         write_sentence(guard, caller, what);
         tell(guard);
     }
-    if (!take_out(caller))
-        fprintf(stderr, "duite: %s; nor can it be left, as it takes no signals\n", guard->sentence);
+    if (take_out(caller) || guard->deaf)
+        return;
+    guard->deaf = true;
+    fprintf(stderr, "duite: %s; nor can it be left, as it takes no signals\n", guard->sentence);
 }
 
 static void look(void *context)

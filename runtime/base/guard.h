@@ -50,6 +50,7 @@ struct base_guard {
     struct base_caller *caller; /* n of them */
     struct base_lookout lookout;
     bool blocked; /* the signal, in the thread that started the guard */
+    bool deaf;    /* a thread that takes no signals was told of */
     char sentence[400];
     pthread_mutex_t lock; /* of the next two */
     void (*tell)(void *context, const char *sentence);
@@ -85,7 +86,7 @@ static inline bool base_guard_enters(struct base_caller *caller, const struct ba
     const uint64_t calls = atomic_load_explicit(&caller->calls, memory_order_relaxed);
     atomic_store_explicit(&caller->calls, calls + 1, memory_order_relaxed);
     atomic_store_explicit(&caller->policy, policy, memory_order_relaxed);
-    atomic_store_explicit(&caller->inside, what, memory_order_relaxed);
+    atomic_store_explicit(&caller->inside, what, memory_order_release);
     atomic_signal_fence(memory_order_seq_cst); /* against the handler, on this thread */
     return true;
 }

@@ -137,6 +137,36 @@ static void warn_of_air(struct flow *flow)
     }
 }
 
+/* What a material says that its cloth has nothing for; NULL: nothing. A grid knows its rows. */
+static const char *idle_key(const struct model_material *material, const struct model_cloth *cloth)
+{
+    if (material->model == MODEL_TRIANGLES)
+        return material->bend > 0 ? "bend is of springs; triangles have bending" : NULL;
+    if (material->poisson < 0 || material->poisson > 0)
+        return "poisson is of triangles; springs have no such ratio of their own";
+    if (material->uncorrected)
+        return "forces is of triangles";
+    return material->shear > 0 && !cloth->mesh.grid_nx ? "shear is of the springs of grids, and of "
+                                                         "triangles; other meshes have no diagonals"
+                                                       : NULL;
+}
+
+static void warn_of_moduli(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        for (uint32_t i = 0; i <= model->cloths[c].n_regions; i++) {
+            const struct model_cloth *cloth = model->cloths + c;
+            const struct model_material *material = model_material(model, cloth, i);
+            const char *key = idle_key(material, cloth);
+            if (key && !flow->warning[6][0])
+                snprintf(flow->warning[6], sizeof flow->warning[6],
+                         "%.200s%smaterial '%.60s' says what means nothing to cloth '%.60s': %s",
+                         cloth->place ? cloth->place : "", cloth->place ? ": " : "",
+                         material->name ? material->name : "", cloth->name ? cloth->name : "", key);
+        }
+}
+
 /* Keeps where the vertices are that no block has. */
 static int keep_rest(struct flow *flow, const struct flow_particles *particles,
                      struct cloth_error *error)
@@ -172,6 +202,7 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     flow->inertia = flow_source_inertia(&flow->source);
     warn(flow, &flow->source.particles);
     warn_of_air(flow);
+    warn_of_moduli(flow);
     flow_turned_choose(flow, flow->source.blocks.n_blocks);
     if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||
         warn_of_h(flow, error))

@@ -208,6 +208,17 @@ unused() {
 }
 ok "vertices that nothing uses are warned about, with their pins and loads" unused
 
+idle() { # SENTENCE SCENE...: a key that means nothing to the cloth is warned of, once
+    sentence=$1
+    shift
+    prints run "$@" --end 0.002 && cat complained && test "$(wc -l < complained)" = 1 &&
+        grep -q "^duite-cloth: warning: .*material 'cotton' says what means nothing to cloth 'cloth1': $sentence" complained
+}
+one='cloths[0].mesh={inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], triangles: [[0, 1, 2]]}}'
+ok "a ratio of springs" idle "poisson is of triangles" scene.yaml --set materials.cotton.poisson=0.3
+ok "forces of springs" idle "forces is of triangles" scene.yaml --set materials.cotton.forces=uncorrected
+ok "bend of triangles" idle "bend is of springs" scene.yaml --set materials.cotton.model=triangles --set materials.cotton.bend=1
+ok "shear of a mesh without rows" idle "shear is of the springs of grids" scene.yaml --set "$one" --set 'cloths[0].pins=[]' --set materials.cotton.shear=1
 stopped() { # COMMAND...: SIGUSR1 after the first frames; status 0, a sentence, whole files
     rm -rf frames
     "$@" scene.yaml --end 100000 --grain 20 --output frames > printed 2> complained &

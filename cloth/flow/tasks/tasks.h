@@ -72,8 +72,8 @@ struct flow {
     void *shared;              /* planes, key frames, slots and copies that the above point to */
 
     /* Rank 0 only. */
-    char warning[6][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air; empty:
-                             none */
+    char warning[7][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli;
+                             empty: none */
     struct flow_source source; /* until the tables are dealt */
     uint32_t *vertex;          /* by place; from then on */
     struct flow_rest rest;

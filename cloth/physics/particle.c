@@ -5,8 +5,12 @@ PHYS_KERNEL(phys_outside,
             (size_t n, const phys_vec *load, const double *drag, const phys_vec *v, phys_vec *f),
             (n, load, drag, v, f))
 {
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
+        phys_fetch(load + i, PHYS_FETCH, 0);
+        phys_fetch(v + i, PHYS_FETCH, 0);
+        phys_fetch(drag + i, PHYS_FETCH, 0);
         f[i] = load[i] - drag[i] * v[i];
+    }
 }
 
 void phys_accelerate(size_t n, const double *mass, const double *free, phys_vec *f)

@@ -92,6 +92,18 @@ struct where {
     int cut;
 };
 
+/* What is known of the springs some way behind i, and rows of x that they end at: springs inside a
+ * block go through its rows in order. */
+PHYS_INLINE void fetch(const struct phys_springs *s, size_t i, const struct where *at)
+{
+    if (!at->cut)
+        phys_fetch(at->x + s->end[i][1], PHYS_FETCH, 0);
+    phys_fetch(s->end + i, PHYS_FETCH, 0);
+    phys_fetch(s->stiffness + i, PHYS_FETCH, 0);
+    phys_fetch(s->damping + i, PHYS_FETCH, 0);
+    phys_fetch(s->length + i, PHYS_FETCH, 0);
+}
+
 /* ---- Forces ---- */
 
 PHYS_INLINE void force_four(const struct phys_springs *s, size_t first, size_t end,
@@ -113,8 +125,10 @@ PHYS_INLINE void force_four(const struct phys_springs *s, size_t first, size_t e
 PHYS_INLINE void force_all(const struct phys_springs *s, const struct where *at, phys_vec *f)
 {
     const size_t whole = s->n - s->n % PHYS_WIDE;
-    for (size_t i = 0; i < whole; i += PHYS_WIDE)
+    for (size_t i = 0; i < whole; i += PHYS_WIDE) {
+        fetch(s, i, at);
         force_four(s, i, i + PHYS_WIDE, at, f);
+    }
     if (whole < s->n)
         force_four(s, whole, s->n, at, f);
 }

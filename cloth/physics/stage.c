@@ -11,6 +11,8 @@ PHYS_KERNEL_OF(int, phys_euler,
     const phys_vec most = {bound, bound, bound, bound};
     mask well = {-1, -1, -1, -1};
     for (size_t i = 0; i < n; i++) {
+        phys_fetch(mass + i, PHYS_FETCH, 0);
+        phys_fetch(free + i, PHYS_FETCH, 0);
         const phys_vec a = free[i] * (f[i] / mass[i]), before = v[i], after = before + h * a;
         const phys_vec place = x[i] + h * (ahead ? after : before);
         well &= (place < most) & (place > -most) & (after < most) & (after > -most);

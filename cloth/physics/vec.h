@@ -3,6 +3,7 @@
 
 #include "cloth/base/simd.h"
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* Vectors of the state are rows of four doubles, x y z 0, aligned to 32 bytes: one AVX register,
@@ -20,6 +21,18 @@ typedef double phys_vec __attribute__((vector_size(32)));
 #else
 #define PHYS_UNROLL _Pragma("GCC unroll 8")
 #endif
+
+/* Asks memory for what lies so many bytes further on: an address alone, which may be behind the
+ * end. */
+PHYS_INLINE void phys_fetch(const void *from, size_t bytes, int to_write)
+{
+    const uintptr_t address = (uintptr_t)from + bytes;
+    if (to_write)
+        __builtin_prefetch((const void *)address, 1);
+    else
+        __builtin_prefetch((const void *)address, 0);
+}
+enum { PHYS_FETCH = 1024 }; /* bytes ahead of a loop: enough for memory to answer */
 
 /* Heads of functions whose loops carry the run, in place of
  *

@@ -14,16 +14,6 @@ enum {
     LINE = 64
 };
 
-/* What lies so many bytes further on: an address alone, which may be behind the end. */
-PHYS_INLINE void fetch(const void *from, size_t bytes, int to_write)
-{
-    const uintptr_t address = (uintptr_t)from + bytes;
-    if (to_write)
-        __builtin_prefetch((const void *)address, 1);
-    else
-        __builtin_prefetch((const void *)address, 0);
-}
-
 /* The first half of a pass for rows from .. to - 1; leaves q zero. Adds r * r to sum, and r * z if
  * there is a z. */
 PHYS_INLINE void begin_rows(size_t from, size_t to, double alpha, double beta,
@@ -61,12 +51,12 @@ PHYS_INLINE void fetch_row(enum solve_format format, const struct solve_values *
 {
     static const size_t bytes[] = {
         [SOLVE_SPRINGS] = 32, [SOLVE_HALF] = 72, [SOLVE_HALF_FLOAT] = 36}; /* an entry */
-    fetch(rows->dv + a, AHEAD * sizeof(phys_vec), 1);
-    fetch(rows->r + a, AHEAD * sizeof(phys_vec), 1);
-    fetch(rows->p + a, AHEAD * sizeof(phys_vec), 1);
-    fetch(rows->q + a, AHEAD * sizeof(phys_vec), 1);
+    phys_fetch(rows->dv + a, AHEAD * sizeof(phys_vec), 1);
+    phys_fetch(rows->r + a, AHEAD * sizeof(phys_vec), 1);
+    phys_fetch(rows->p + a, AHEAD * sizeof(phys_vec), 1);
+    phys_fetch(rows->q + a, AHEAD * sizeof(phys_vec), 1);
     for (size_t line = 0; line < 3 * bytes[format]; line += LINE) /* of three entries */
-        fetch((const char *)values->entry + bytes[format] * i, BYTES_AHEAD + line, 0);
+        phys_fetch((const char *)values->entry + bytes[format] * i, BYTES_AHEAD + line, 0);
 }
 
 /* How many rows have begun when those that the entries of rows from .. to - 1 end at have. */

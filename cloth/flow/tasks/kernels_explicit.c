@@ -7,6 +7,26 @@
 
 #define ARGS sizeof(struct flow_args)
 
+/* Asks memory for what a task comes to when its long loops, which ask for themselves, are done:
+ * rows of the neighbours' rims, from parameter `rims` on, and the rims of its own that it writes,
+ * parameters own .. end - 1. */
+static void fetch_rims(const duite_call *call, const struct flow_table *t, size_t rims, size_t own,
+                       size_t end)
+{
+    enum { ROWS = 2 }; /* a cache line */
+    for (; own < end; own++)
+        for (uint32_t i = 0; i < t->n_rim; i += ROWS)
+            phys_fetch(duite_out(call, own, phys_vec) + i, 0, 1);
+    for (uint32_t s = 0; s < t->n_slots; s++) {
+        const phys_vec *x = duite_in(call, rims + s, phys_vec);
+        const phys_vec *v = duite_in(call, rims + t->n_slots + s, phys_vec);
+        for (uint32_t i = t->copies[s]; i < t->copies[s + 1]; i++) {
+            phys_fetch(x + t->copy[i], 0, 0);
+            phys_fetch(v + t->copy[i], 0, 0);
+        }
+    }
+}
+
 /* ---- Either Euler ---- */
 
 /* Where a step begins is parameters 1 and 2; what it makes is parameters `to`, to + 1, after which
@@ -17,6 +37,7 @@ static int euler_to(const duite_call *call, size_t to, size_t rims)
     const bool ahead = flow_of(call)->model->integrator == MODEL_SYMPLECTIC_EULER;
     phys_vec *x = duite_out(call, to, phys_vec), *v = duite_out(call, to + 1, phys_vec);
     phys_vec *f = flow_force_room(call);
+    fetch_rims(call, t, rims + 3, rims, rims + 2);
     flow_forces(call, t, rims + 3, f);
     flow_part_ends(call, FLOW_FORCE);
     const int well = phys_euler(t->n, flow_args_of(call)->h, ahead, FLOW_BOUND, t->mass, t->free, f,
@@ -86,6 +107,7 @@ static int verlet_second(const duite_call *call)
     const struct flow_table table = flow_table_of(call), *t = &table;
     const phys_vec *middle = duite_in(call, 4, phys_vec);
     phys_vec *v = duite_out(call, 2, phys_vec), *f = duite_out(call, 3, phys_vec);
+    fetch_rims(call, t, 7, 5, 6);
     flow_forces_free(call, t, 7, f);
     flow_part_ends(call, FLOW_FORCE);
     phys_kick(t->n, 0.5 * flow_args_of(call)->h, 0, t->mass, t->drag, t->free, f, middle, v);
@@ -114,6 +136,7 @@ static int stage(const duite_call *call)
         .sum_x = duite_out(call, 5, phys_vec),
         .sum_v = duite_out(call, 6, phys_vec),
     };
+    fetch_rims(call, t, 10, 7, 9);
     flow_forces(call, t, 10, a);
     flow_part_ends(call, FLOW_FORCE);
     phys_accelerate(t->n, t->mass, t->free, a);

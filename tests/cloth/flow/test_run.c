@@ -237,13 +237,12 @@ START_TEST(threads_and_schedulers_change_no_bit)
 }
 END_TEST
 
-/* Seconds that a run takes of this thread. */
+/* Seconds that a run spends in the tasks of its conjugate gradients. */
 static double work_of(const struct model *model, uint64_t *hash)
 {
     struct record record = {0};
-    const double start = flow_worked();
     record_run(&record, model);
-    const double work = flow_worked() - start;
+    const double work = record.report.seconds_cg;
     ck_assert_msg(record.code == 0, "%s", record.error.text);
     *hash = record.report.state_hash;
     record_free(&record);
@@ -251,7 +250,8 @@ static double work_of(const struct model *model, uint64_t *hash)
 }
 
 /* Blocks of a sheet of 1 m, whose upper half is dear, are as dear as their vertices are on average;
- * the run takes longer and comes to the same. */
+ * the run takes longer and comes to the same. Other programs can only make a run longer, so the
+ * shortest of some is what the tasks take, of which a dear one takes fifty times as much. */
 START_TEST(cost_takes_time_and_changes_no_bit)
 {
     uint64_t hash, dear_hash;
@@ -269,11 +269,12 @@ START_TEST(cost_takes_time_and_changes_no_bit)
     ck_assert_double_eq_tol(sum, 72 + 5 * 72, 1e-3);
     flow_source_free(&source);
     setup.cloth.cost.factor = 0;
-    work_of(&setup.model, &hash); /* starts MPI */
-    const double work = work_of(&setup.model, &hash);
+    double work = work_of(&setup.model, &hash);
+    for (int i = 0; i < 4; i++)
+        work = fmin(work, work_of(&setup.model, &hash));
     setup.cloth.cost.factor = 50;
     const double dear = work_of(&setup.model, &dear_hash);
-    ck_assert_double_ge(dear, 1.3 * work);
+    ck_assert_double_ge(dear, 5 * work);
     ck_assert_uint_eq(dear_hash, hash);
     setup_free(&setup);
 }

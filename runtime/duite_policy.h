@@ -54,8 +54,8 @@ typedef struct duite_ready {
      * that said none counts as their mean, or as 1 if none did. Else 0. */
     double path;
     /* Of a task of the program in a replay: 1 and the number of the worker that ran the last one of
-     * this graph that is placed by the same object, which its core's caches may still have. 0: none
-     * did yet, or no object places it. */
+     * this graph that is placed by the same object, if that took 2 microseconds or more: its core's
+     * caches may have the data. 0: it took less, there was none, or no object places it. */
     uint32_t warm;
 } duite_ready;
 

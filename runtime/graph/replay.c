@@ -96,6 +96,7 @@ void graph_replay_run(struct graph_task *task)
     plan->replay = task;
     plan->last = replay->rounds - 1;
     plan->stop = false;
+    atomic_store_explicit(&plan->warm, false, memory_order_relaxed);
     atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
     atomic_store_explicit(&plan->left, plan->decides ? UNKNOWN : (int64_t)plan->n_sinks,
                           memory_order_relaxed);
@@ -198,14 +199,6 @@ static void leave_scope(struct graph_scope *scope, void *worker, const struct da
     graph_scope_end(scope, worker);
 }
 
-/* All workers read what this writes: it is written only where it changes. */
-static void note_worker(const struct graph_task *task, unsigned worker)
-{
-    struct graph_place *place = graph_node_place(task);
-    if (place && atomic_load_explicit(&place->warm, memory_order_relaxed) != worker + 1)
-        atomic_store_explicit(&place->warm, worker + 1, memory_order_relaxed);
-}
-
 static bool run_body(struct graph *graph, void *worker, struct graph_task *task,
                      const duite_call *call)
 {
@@ -216,7 +209,6 @@ static bool run_body(struct graph *graph, void *worker, struct graph_task *task,
     if (!failure)
         failure = graph_given_up(graph);
     bool runs = !failure;
-    note_worker(task, call->worker);
     if (runs) {
         if (node->n_leaves)
             clear_leaves(plan, task);

@@ -55,7 +55,7 @@ struct graph_place {
     size_t count, bytes;
     const duite_law *law;         /* of a contribution */
     size_t first_param, n_params; /* in param_of: those that point here */
-    _Atomic uint32_t warm;        /* 1 and the worker that ran the last node for it; 0: none did */
+    _Atomic uint32_t warm;        /* see duite_ready.warm */
 };
 
 struct graph_draft;
@@ -63,7 +63,8 @@ struct graph_draft;
 struct graph_plan {
     _Atomic uint32_t refs; /* the record, and each replay on its way */
     struct graph *graph;
-    size_t n_filled; /* nodes that were made so far */
+    _Atomic bool warm; /* something became so in this replay */
+    size_t n_filled;   /* nodes that were made so far */
     size_t n_nodes, n_calls, n_uses, n_roots, n_sinks, n_places;
     size_t n_objects;         /* places that are objects */
     unsigned char *nodes;     /* the tasks: GRAPH_NODE_BYTES each */
@@ -126,10 +127,27 @@ static inline struct graph_place *graph_node_place(const struct graph_task *task
     return plan->owner[at] == GRAPH_NO_PLACE ? NULL : &plan->place[plan->owner[at]];
 }
 
+/* What takes less is over before another core has its data: it leaves nothing warm. */
+#define GRAPH_WARM_SECONDS 2e-6
+
+/* Tells whose caches may have what the node runs for: 1 and the worker, or 0. All workers read what
+ * this writes: it is written only where it changes. */
+static inline void graph_task_warms(const struct graph_task *task, uint32_t warm)
+{
+    struct graph_place *place = graph_node_place(task);
+    if (place && atomic_load_explicit(&place->warm, memory_order_relaxed) != warm)
+        atomic_store_explicit(&place->warm, warm, memory_order_relaxed);
+    if (warm && !atomic_load_explicit(&task->node->plan->warm, memory_order_relaxed))
+        atomic_store_explicit(&task->node->plan->warm, true, memory_order_relaxed);
+}
+
 /* See duite_ready.warm. */
 static inline uint32_t graph_task_warm(const struct graph_task *task)
 {
-    const struct graph_place *place = task->kind == GRAPH_NODE ? graph_node_place(task) : NULL;
+    if (task->kind != GRAPH_NODE ||
+        !atomic_load_explicit(&task->node->plan->warm, memory_order_relaxed))
+        return 0;
+    const struct graph_place *place = graph_node_place(task);
     return place ? atomic_load_explicit(&place->warm, memory_order_relaxed) : 0;
 }
 

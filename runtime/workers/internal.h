@@ -1,6 +1,7 @@
 #ifndef DUITE_WORKERS_INTERNAL_H
 #define DUITE_WORKERS_INTERNAL_H
 
+#include "runtime/graph/replay.h"
 #include "runtime/workers/balance.h"
 #include "runtime/workers/near.h"
 #include "runtime/workers/park.h"
@@ -159,5 +160,17 @@ void work_idles(struct work_worker *worker, uint64_t now);
 void work_stir(struct work_worker *worker);
 /* The worker has something to do again: it leaves the seat to one that sleeps. */
 void work_busy_again(struct work_worker *worker);
+
+/* A task took so many ticks. In replays of short ones, nothing is warm and nothing is looked up. */
+static inline void work_warms(const struct work_worker *worker, const struct graph_task *task,
+                              uint64_t took)
+{
+    if (task->kind != GRAPH_NODE)
+        return;
+    if ((double)took * worker->pool->tick >= GRAPH_WARM_SECONDS)
+        graph_task_warms(task, worker->index + 1);
+    else if (atomic_load_explicit(&task->node->plan->warm, memory_order_relaxed))
+        graph_task_warms(task, 0);
+}
 
 #endif

@@ -6,7 +6,6 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
-#include "runtime/graph/replay.h"
 #include "runtime/sched/front.h"
 #include "runtime/workers/cores.h"
 #include "runtime/workers/internal.h"
@@ -192,6 +191,7 @@ void work_run(struct work_worker *worker, struct graph_task *task)
         work_leaves(worker, below);
         uint64_t end = base_ticks(), took = end > start ? end - start : 0;
         uint64_t own = took > worker->within ? took - worker->within : 0;
+        work_warms(worker, task, took);
         if (worker->ring)
             work_note_task(worker, task,
                            &(struct work_ran){start, took, took - own, kind, body, length > 1});

@@ -5,6 +5,7 @@
 #include <duite_policy.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <time.h>
 
 enum { TASKS = 30, BLOCKS = 7, STEPS = 40 };
 
@@ -31,6 +32,20 @@ static int step(const duite_call *call)
     return 0;
 }
 
+/* As long as data need to be worth staying with. */
+static int last_long(const duite_call *call)
+{
+    struct timespec begin, now;
+    (void)call;
+    clock_gettime(CLOCK_MONOTONIC, &begin);
+    do
+        clock_gettime(CLOCK_MONOTONIC, &now);
+    while ((double)(now.tv_sec - begin.tv_sec) + 1e-9 * (double)(now.tv_nsec - begin.tv_nsec) <
+           1e-5);
+    return 0;
+}
+
+static const duite_kernel LONG = {.name = "long", .body = last_long, .access = {DUITE_W}};
 static const duite_kernel NOTE = {
     .name = "note", .body = note, .access = {DUITE_W}, .args_size = sizeof(int)};
 static const duite_kernel STEP = {
@@ -319,8 +334,45 @@ START_TEST(what_is_said)
     ck_assert_uint_eq(n_told, 5);
     ck_assert_str_eq(told[0].kernel, "duite_replay");
     check_told(told + 1);
-    for (int i = 1; i < 5; i++) /* one after the other, on one worker */
-        ck_assert_uint_eq(told[i].warm, i > 1);
+    duite_free(rt, a);
+    duite_graph_free(rt, graph);
+    ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
+}
+END_TEST
+
+static int build_warm(duite *rt, void *context)
+{
+    return duite_fork(rt, &LONG, NULL, 1, context);
+}
+
+START_TEST(what_is_warm)
+{
+    static const duite_scheduler LISTENING = {.name = "listening",
+                                              .summary = "for tests",
+                                              .place = listen,
+                                              .serve = in_turn,
+                                              .victim = nobody,
+                                              .chain = never};
+    static const duite_kernel *const KERNELS[] = {&NOTE, &LONG, NULL};
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt = NULL;
+
+    misuse_mpi();
+    options.kernels = KERNELS;
+    options.scheduler = &LISTENING;
+    options.threads = 1;
+    ck_assert_int_eq(duite_start(&rt, &options), DUITE_OK);
+    duite_object a = misuse_new(rt, 1);
+    duite_graph graph;
+
+    n_ran = 0;
+    n_told = 0;
+    ck_assert_int_eq(duite_graph_new(rt, build_warm, &a, &graph), DUITE_OK);
+    ck_assert_int_eq(duite_replay(rt, graph, 3), DUITE_OK);
+    ck_assert_int_eq(duite_wait(rt), DUITE_OK);
+    ck_assert_uint_eq(n_told, 4);
+    for (unsigned i = 0; i < n_told; i++)
+        ck_assert_uint_eq(told[i].warm, i > 1); /* after the first round, worker 0 */
     duite_free(rt, a);
     duite_graph_free(rt, graph);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
@@ -372,6 +424,7 @@ int main(void)
     tcase_add_test(test, what_is_said);
     tcase_add_test(test, chains_at_home);
     tcase_add_test(test, stays_warm);
+    tcase_add_test(test, what_is_warm);
     suite_add_tcase(suite, test);
     return unit_run(suite);
 }

@@ -137,7 +137,8 @@ static void warn_of_air(struct flow *flow)
     }
 }
 
-/* What a material says that its cloth has nothing for; NULL: nothing. A grid knows its rows. */
+/* What a material says that its cloth has nothing for; NULL: nothing. A chain beside a grid may
+ * share a material that shears. */
 static const char *idle_key(const struct model_material *material, const struct model_cloth *cloth)
 {
     if (material->model == MODEL_TRIANGLES)
@@ -146,9 +147,10 @@ static const char *idle_key(const struct model_material *material, const struct 
         return "poisson is of triangles; springs have no such ratio of their own";
     if (material->uncorrected)
         return "forces is of triangles";
-    return material->shear > 0 && !cloth->mesh.grid_nx ? "shear is of the springs of grids, and of "
-                                                         "triangles; other meshes have no diagonals"
-                                                       : NULL;
+    return material->shear > 0 && !cloth->mesh.grid_nx && cloth->mesh.n_triangles
+               ? "shear is of the springs of grids, and of "
+                 "triangles; other meshes have no diagonals"
+               : NULL;
 }
 
 static void warn_of_moduli(struct flow *flow)

@@ -1,145 +1,22 @@
-/* The coarse factor, C = L L' in dense blocks of nine, by columns of blocks in the order of
- * elimination. A block is nine columns of twelve numbers, the last three zero; of a diagonal block
- * the entries on the diagonal are inverted, and zero for a column that was dropped. */
+/* The coarse factor in dense blocks of nine, by columns of blocks in the order of elimination. A
+ * block is nine columns of twelve numbers, the last three zero. C = L L' is made in double; of a
+ * diagonal block the entries on the diagonal are inverted, and zero for a column that was dropped.
+ * A solve reads the factor once forth and once back, and while it does other workers wait. So where
+ * the least pivot is large against a float's rounding it goes on as (I + T) E (I + T'), with the
+ * inverses of E's blocks in double, which are one product, and T in float. The same T stands on
+ * both sides, so what a solve does is symmetric and as definite as E, however T is rounded. */
 #include "cloth/solve/coarse.h"
 
-#include "cloth/base/memory.h"
+#include "cloth/solve/matrix3.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* ---- The pattern ---- */
-
-/* The graph that elimination leaves, as bits: row b of `words` words has those that b still meets.
- */
-struct graph {
-    uint32_t n, words;
-    uint64_t *bits;
-    uint32_t *degree; /* UINT32_MAX: eliminated */
-};
-
-static uint64_t *row_of(const struct graph *graph, uint32_t b)
-{
-    return graph->bits + (size_t)b * graph->words;
-}
-
-static uint32_t count_bits(const struct graph *graph, uint32_t b)
-{
-    uint32_t count = 0;
-    for (uint32_t w = 0; w < graph->words; w++)
-        count += (uint32_t)__builtin_popcountll(row_of(graph, b)[w]);
-    return count;
-}
-
-static bool meets(const struct graph *graph, uint32_t a, uint32_t b)
-{
-    return row_of(graph, a)[b / 64] >> b % 64 & 1;
-}
-
-static void forget(struct graph *graph, uint32_t a, uint32_t b)
-{
-    row_of(graph, a)[b / 64] &= ~(UINT64_C(1) << b % 64);
-}
-
-/* The first block of least degree. */
-static uint32_t least(const struct graph *graph)
-{
-    uint32_t best = 0;
-    for (uint32_t b = 1; b < graph->n; b++)
-        if (graph->degree[b] < graph->degree[best])
-            best = b;
-    return best;
-}
-
-/* Joins all that meet b to each other. */
-static void eliminate(struct graph *graph, uint32_t b)
-{
-    for (uint32_t a = 0; a < graph->n; a++) {
-        if (!meets(graph, b, a))
-            continue;
-        for (uint32_t w = 0; w < graph->words; w++)
-            row_of(graph, a)[w] |= row_of(graph, b)[w];
-        forget(graph, a, a);
-        forget(graph, a, b);
-        graph->degree[a] = count_bits(graph, a);
-    }
-    graph->degree[b] = UINT32_MAX;
-}
-
-/* Fills block, place and first; leaves in the rows of bits what each block met when it went. */
-static void order(struct graph *graph, struct solve_pattern *pattern)
-{
-    pattern->first[0] = 0;
-    for (uint32_t k = 0; k < graph->n; k++) {
-        const uint32_t b = least(graph);
-        pattern->block[k] = b;
-        pattern->place[b] = k;
-        pattern->first[k + 1] = pattern->first[k] + graph->degree[b];
-        eliminate(graph, b);
-    }
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return x < y ? -1 : x > y;
-}
-
-static void list(const struct graph *graph, struct solve_pattern *pattern)
-{
-    for (uint32_t k = 0; k < graph->n; k++) {
-        uint32_t *row = pattern->row + pattern->first[k], n = 0;
-        for (uint32_t a = 0; a < graph->n; a++)
-            if (meets(graph, pattern->block[k], a))
-                row[n++] = pattern->place[a];
-        qsort(row, n, sizeof *row, ascending);
-    }
-}
-
-int solve_pattern_make(struct solve_pattern *pattern, uint32_t n, const uint32_t *first,
-                       const uint32_t *slot, struct cloth_error *error)
-{
-    struct graph graph = {.n = n, .words = n / 64 + 1};
-    *pattern = (struct solve_pattern){.n = n};
-    graph.bits = cloth_alloc((size_t)n * graph.words, sizeof *graph.bits, error);
-    graph.degree = cloth_alloc(n, sizeof *graph.degree, error);
-    pattern->block = cloth_alloc(n, sizeof *pattern->block, error);
-    pattern->place = cloth_alloc(n, sizeof *pattern->place, error);
-    pattern->first = cloth_alloc((size_t)n + 1, sizeof *pattern->first, error);
-    if (!graph.bits || !graph.degree || !pattern->block || !pattern->place || !pattern->first)
-        goto done;
-    for (uint32_t b = 0; b < n; b++) {
-        for (uint32_t i = first[b]; i < first[b + 1]; i++)
-            row_of(&graph, b)[slot[i] / 64] |= UINT64_C(1) << slot[i] % 64;
-        graph.degree[b] = count_bits(&graph, b);
-    }
-    order(&graph, pattern);
-    pattern->row = cloth_alloc(pattern->first[n], sizeof *pattern->row, error);
-    if (pattern->row)
-        list(&graph, pattern);
-done:
-    free(graph.bits);
-    free(graph.degree);
-    if (pattern->row)
-        return CLOTH_OK;
-    solve_pattern_free(pattern);
-    return CLOTH_E_MEMORY;
-}
-
-void solve_pattern_free(struct solve_pattern *pattern)
-{
-    free(pattern->block);
-    free(pattern->place);
-    free(pattern->first);
-    free(pattern->row);
-    *pattern = (struct solve_pattern){0};
-}
-
-/* ---- The factor ---- */
 
 /* A pivot below this part of its entry in C is rounding. */
 #define LEAST 1e-10
+
+/* With a pivot below this part, as in long steps of cloth that nothing holds, T is not rounded. */
+#define LEAST_OF_ROUNDED 1e-5
 
 enum { N = SOLVE_COARSE, WIDTH = 3 };
 
@@ -147,18 +24,25 @@ struct dense {
     phys_vec c[N][WIDTH];
 };
 
-/* The diagonal of C, a stride a column of blocks; the diagonal blocks of all columns; the entries.
- */
+struct rounded {
+    float c[N][4 * WIDTH];
+};
+
+/* The diagonal of C, a stride a column of blocks, of which the first one says in number N whether
+ * there is T in place of L; the diagonal blocks of all columns; the entries, which are rounded
+ * where they lie. */
 struct parts {
     double *whole;
     struct dense *diagonal, *entry;
+    struct rounded *rounded;
 };
 
 static struct parts parts_of(const struct solve_pattern *pattern, double *factor)
 {
     double *dense = factor + (size_t)pattern->n * SOLVE_COARSE_STRIDE;
     struct dense *diagonal = (struct dense *)(void *)dense;
-    return (struct parts){factor, diagonal, diagonal + pattern->n};
+    struct dense *entry = diagonal + pattern->n;
+    return (struct parts){factor, diagonal, entry, (struct rounded *)(void *)entry};
 }
 
 size_t solve_coarse_doubles(const struct solve_pattern *pattern)
@@ -227,7 +111,7 @@ PHYS_INLINE void subtract(double factor, const phys_vec *from, phys_vec *to)
 }
 
 /* The factor of a diagonal block; whole: its entries on the diagonal in C. */
-PHYS_INLINE uint32_t factor_dense(const double *whole, struct dense *d)
+PHYS_INLINE uint32_t factor_dense(const double *whole, struct dense *d, double *least)
 {
     uint32_t dropped = 0;
     for (int j = 0; j < N; j++) {
@@ -241,6 +125,7 @@ PHYS_INLINE uint32_t factor_dense(const double *whole, struct dense *d)
             column[i] = i > j && good ? column[i] * inverse : 0;
         column[j] = inverse;
         dropped += !good;
+        *least = good ? fmin(*least, pivot / whole[j]) : *least;
     }
     return dropped;
 }
@@ -249,19 +134,25 @@ PHYS_INLINE uint32_t factor_dense(const double *whole, struct dense *d)
 PHYS_INLINE void solve_dense(const struct dense *l, struct dense *a)
 {
     for (int j = 0; j < N; j++) {
+        phys_vec sum[WIDTH] = {a->c[j][0], a->c[j][1], a->c[j][2]};
         for (int m = 0; m < j; m++)
-            subtract(get(l->c[m], j), a->c[m], a->c[j]);
+            subtract(get(l->c[m], j), a->c[m], sum);
         for (int w = 0; w < WIDTH; w++)
-            a->c[j][w] *= get(l->c[j], j);
+            a->c[j][w] = sum[w] * get(l->c[j], j);
     }
 }
 
 /* c -= a b'. */
 PHYS_INLINE void reduce(const struct dense *a, const struct dense *b, struct dense *c)
 {
-    for (int j = 0; j < N; j++)
+    for (int j = 0; j < N; j++) {
+        phys_vec sum[WIDTH] = {c->c[j][0], c->c[j][1], c->c[j][2]};
+        PHYS_UNROLL
         for (int m = 0; m < N; m++)
-            subtract(get(b->c[m], j), a->c[m], c->c[j]);
+            subtract(get(b->c[m], j), a->c[m], sum);
+        for (int w = 0; w < WIDTH; w++)
+            c->c[j][w] = sum[w];
+    }
 }
 
 /* Takes column k out of the columns behind it. */
@@ -280,34 +171,91 @@ PHYS_INLINE void reduce_all(const struct solve_pattern *pattern, uint32_t k, str
     }
 }
 
+/* y = L^-1 y of a diagonal block, zero above row j. */
+PHYS_INLINE void forward_dense(const struct dense *l, int j, phys_vec *y)
+{
+    phys_vec sum[WIDTH] = {y[0], y[1], y[2]};
+    for (; j < N; j++) {
+        const double value = get(sum, j) * get(l->c[j], j);
+        subtract(value, l->c[j], sum);
+        ((double *)(void *)sum)[j] = value;
+    }
+    for (int w = 0; w < WIDTH; w++)
+        y[w] = sum[w];
+}
+
+/* L^-1 of a diagonal block, a column at a time. */
+PHYS_INLINE void invert_dense(const struct dense *l, struct dense *inverse)
+{
+    *inverse = (struct dense){0};
+    for (int j = 0; j < N; j++) {
+        ((double *)(void *)inverse->c[j])[j] = 1;
+        forward_dense(l, j, inverse->c[j]);
+    }
+}
+
+/* to = a m, of a lower triangular m, rounded. */
+PHYS_INLINE void multiply(const struct dense *a, const struct dense *m, struct rounded *to)
+{
+    for (int j = 0; j < N; j++) {
+        phys_vec sum[WIDTH] = {{0}};
+        for (int k = j; k < N; k++)
+            subtract(-get(m->c[j], k), a->c[k], sum);
+        for (int w = 0; w < WIDTH; w++)
+            for (int c = 0; c < 4; c++)
+                to->c[j][4 * w + c] = (float)sum[w][c];
+    }
+}
+
+/* m = m' m, to the same bits on both sides of its diagonal. */
+PHYS_INLINE void square(struct dense *m)
+{
+    const struct dense l = *m;
+    for (int j = 0; j < N; j++)
+        for (int i = 0; i < N; i++) {
+            const phys_vec *a = l.c[i < j ? i : j], *b = l.c[i < j ? j : i];
+            const phys_vec sum = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            ((double *)(void *)m->c[j])[i] = phys_lanes(&sum);
+        }
+}
+
+/* L of a column becomes the inverse of E and T. What is written of T lies before what is still to
+ * be read. */
+PHYS_INLINE void finish(const struct solve_pattern *pattern, uint32_t k, const struct parts *parts)
+{
+    struct dense inverse;
+    invert_dense(parts->diagonal + k, &inverse);
+    for (uint32_t i = pattern->first[k]; i < pattern->first[k + 1]; i++) {
+        struct rounded t;
+        multiply(parts->entry + i, &inverse, &t);
+        memcpy(parts->rounded + i, &t, sizeof t);
+    }
+    square(&inverse);
+    parts->diagonal[k] = inverse;
+}
+
 PHYS_KERNEL_OF(uint32_t, solve_coarse_factor, (const struct solve_pattern *pattern, double *factor),
                (pattern, factor))
 {
     const struct parts parts = parts_of(pattern, factor);
     uint32_t dropped = 0;
+    double least = 1;
     for (uint32_t k = 0; k < pattern->n; k++) {
         const double *whole = parts.whole + (size_t)k * SOLVE_COARSE_STRIDE;
-        dropped += factor_dense(whole, parts.diagonal + k);
+        dropped += factor_dense(whole, parts.diagonal + k, &least);
         for (uint32_t i = pattern->first[k]; i < pattern->first[k + 1]; i++)
             solve_dense(parts.diagonal + k, parts.entry + i);
         reduce_all(pattern, k, parts.diagonal);
     }
+    parts.whole[N] = least > LEAST_OF_ROUNDED;
+    for (uint32_t k = 0; k < pattern->n && parts.whole[N] > 0; k++)
+        finish(pattern, k, &parts);
     return dropped;
 }
 
 /* ---- The solution ---- */
 
-/* y = L^-1 y of a diagonal block. */
-PHYS_INLINE void forward_dense(const struct dense *l, phys_vec *y)
-{
-    for (int j = 0; j < N; j++) {
-        const double value = get(y, j) * get(l->c[j], j);
-        subtract(value, l->c[j], y);
-        ((double *)(void *)y)[j] = value;
-    }
-}
-
-/* y = L^-T y. */
+/* y = L^-T y of a diagonal block. */
 PHYS_INLINE void backward_dense(const struct dense *l, phys_vec *y)
 {
     double *x = (double *)(void *)y;
@@ -319,18 +267,80 @@ PHYS_INLINE void backward_dense(const struct dense *l, phys_vec *y)
     }
 }
 
-/* y -= sum of l' x over the entries of a column. */
-PHYS_INLINE void backward_column(const struct solve_pattern *pattern, const struct dense *entry,
-                                 uint32_t k, const phys_vec *all, phys_vec *y)
+/* y = m y. */
+PHYS_INLINE void times(const struct dense *m, phys_vec *y)
 {
-    phys_vec sum[N] = {{0}};
+    phys_vec sum[WIDTH] = {{0}};
+    PHYS_UNROLL
+    for (int j = 0; j < N; j++)
+        subtract(-get(y, j), m->c[j], sum);
+    for (int w = 0; w < WIDTH; w++)
+        y[w] = sum[w];
+}
+
+/* Column j of entry i. */
+PHYS_INLINE void column_of(const struct parts *parts, bool rounded, uint32_t i, int j,
+                           phys_vec to[WIDTH])
+{
+    PHYS_UNROLL
+    for (int w = 0; w < WIDTH; w++)
+        if (rounded)
+            solve_widen(parts->rounded[i].c[j] + 4 * w, to + w);
+        else
+            to[w] = parts->entry[i].c[j][w];
+}
+
+/* y -= l x, of entry i. */
+PHYS_INLINE void forward(const struct parts *parts, bool rounded, uint32_t i, const phys_vec *x,
+                         phys_vec *y)
+{
+    phys_vec column[WIDTH], sum[WIDTH] = {y[0], y[1], y[2]};
+    PHYS_UNROLL
+    for (int j = 0; j < N; j++) {
+        column_of(parts, rounded, i, j, column);
+        subtract(get(x, j), column, sum);
+    }
+    for (int w = 0; w < WIDTH; w++)
+        y[w] = sum[w];
+}
+
+/* y -= sum of l' x over the entries of column k, three of its nine columns: those from j on. */
+PHYS_INLINE void backward(const struct solve_pattern *pattern, const struct parts *parts,
+                          bool rounded, uint32_t k, int j, const phys_vec *all, double *y)
+{
+    phys_vec sum[3] = {{0}}, column[WIDTH], lanes;
     for (uint32_t i = pattern->first[k]; i < pattern->first[k + 1]; i++) {
         const phys_vec *x = all + WIDTH * (size_t)pattern->row[i];
-        for (int j = 0; j < N; j++)
-            sum[j] += entry[i].c[j][0] * x[0] + entry[i].c[j][1] * x[1] + entry[i].c[j][2] * x[2];
+        PHYS_UNROLL
+        for (int c = 0; c < 3; c++) {
+            column_of(parts, rounded, i, j + c, column);
+            sum[c] += column[0] * x[0] + column[1] * x[1] + column[2] * x[2];
+        }
     }
-    for (int j = 0; j < N; j++)
-        ((double *)(void *)y)[j] -= phys_lanes(sum + j);
+    solve_lanes_of(sum, sum + 1, sum + 2, &lanes);
+    for (int c = 0; c < 3; c++)
+        y[j + c] -= lanes[c];
+}
+
+PHYS_INLINE void solve(const struct solve_pattern *pattern, const struct parts *parts, bool rounded,
+                       phys_vec *all)
+{
+    for (uint32_t k = 0; k < pattern->n; k++) {
+        phys_vec *here = all + WIDTH * (size_t)k;
+        if (!rounded)
+            forward_dense(parts->diagonal + k, 0, here);
+        for (uint32_t i = pattern->first[k]; i < pattern->first[k + 1]; i++)
+            forward(parts, rounded, i, here, all + WIDTH * (size_t)pattern->row[i]);
+    }
+    for (uint32_t k = pattern->n; k-- > 0;) {
+        phys_vec *here = all + WIDTH * (size_t)k;
+        if (rounded)
+            times(parts->diagonal + k, here);
+        for (int j = 0; j < N; j += 3)
+            backward(pattern, parts, rounded, k, j, all, (double *)(void *)here);
+        if (!rounded)
+            backward_dense(parts->diagonal + k, here);
+    }
 }
 
 PHYS_KERNEL(solve_coarse_solve,
@@ -339,16 +349,8 @@ PHYS_KERNEL(solve_coarse_solve,
 {
     const struct parts parts = parts_of(pattern, (double *)(uintptr_t)factor);
     phys_vec *all = (phys_vec *)(void *)x;
-    for (uint32_t k = 0; k < pattern->n; k++) {
-        phys_vec *here = all + WIDTH * (size_t)k;
-        forward_dense(parts.diagonal + k, here);
-        for (uint32_t i = pattern->first[k]; i < pattern->first[k + 1]; i++)
-            for (int j = 0; j < N; j++)
-                subtract(get(here, j), parts.entry[i].c[j], all + WIDTH * (size_t)pattern->row[i]);
-    }
-    for (uint32_t k = pattern->n; k-- > 0;) {
-        phys_vec *here = all + WIDTH * (size_t)k;
-        backward_column(pattern, parts.entry, k, all, here);
-        backward_dense(parts.diagonal + k, here);
-    }
+    if (parts.whole[N] > 0)
+        solve(pattern, &parts, true, all);
+    else
+        solve(pattern, &parts, false, all);
 }

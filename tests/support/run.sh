@@ -1,7 +1,7 @@
 #!/bin/sh
 # run.sh TEST: runs one test for automake's TAP driver, which takes the 77 of a skipped test for a failure. A test that is
-# stuck ends after an hour. Open MPI keeps its sockets in a folder of the test's own: programs that start at the same moment
-# trip over each other in the one that all users' runs share. Paths of sockets are short, so it is always in /tmp.
+# stuck ends after an hour. Temporary files are in a folder of the test's own, those of Open MPI too: programs of several tests
+# that start at the same moment trip over each other in the one that all runs of a user share.
 . "${0%/*}/mpi.sh"
 case $1 in
     # AddressSanitizer's slow unwinder, which sees through Open MPI, waits for itself in the loader of llvmpipe's code.
@@ -10,9 +10,9 @@ case $1 in
     *tests/cloth/base/* | *tests/cloth/mesh/* | *tests/cloth/physics/* | *tests/cloth/solve/*)
         export ASAN_OPTIONS="$ASAN_OPTIONS:fast_unwind_on_malloc=1" ;;
 esac
-folder=$(mktemp -d /tmp/duite-mpi.XXXXXX) || exit 99
+folder=$(mktemp -d "${TMPDIR:-/tmp}/duite.XXXXXX") || exit 99
 trap 'rm -rf "$folder"' EXIT
 trap 'exit 99' HUP INT TERM
-OMPI_MCA_orte_tmpdir_base=$folder timeout --kill-after=10 3600 "$@"
+TMPDIR=$folder timeout --kill-after=10 3600 "$@"
 status=$?
 test $status = 77 || exit $status

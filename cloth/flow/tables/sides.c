@@ -166,8 +166,10 @@ static void fill_watched(const struct flow_source *source, const struct flow_tab
 static void fill_varying(const struct flow_source *source, const struct flow_table *t,
                          const struct flow_image *image)
 {
+    if (!t->n_varying)
+        return;
     const struct flow_varying *load =
-        source->particles.varying + (t->n_varying ? flow_varying_from(source, t->first) : 0);
+        source->particles.varying + flow_varying_from(source, t->first);
     for (uint32_t i = 0; i < t->n_varying; i++, load++) {
         image->varying[i][0] = load->at - t->first;
         image->varying[i][1] = load->course;

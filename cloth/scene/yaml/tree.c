@@ -37,6 +37,8 @@ bool scene_tree_empty(const struct scene_tree *tree, int node)
 
 size_t scene_tree_length(const struct scene_tree *tree, int node)
 {
+    if (!node)
+        return 0;
     const yaml_node_t *at = scene_tree_node(tree, node);
     if (at->type == YAML_SEQUENCE_NODE)
         return (size_t)(at->data.sequence.items.top - at->data.sequence.items.start);

@@ -39,7 +39,7 @@ yaml_node_t *scene_tree_node(const struct scene_tree *tree, int node);
 bool scene_tree_is(const struct scene_tree *tree, int node, yaml_node_type_t type); /* 0 is none */
 const char *scene_tree_scalar(const struct scene_tree *tree, int node); /* NULL: not a scalar */
 bool scene_tree_empty(const struct scene_tree *tree, int node);    /* null: '', '~' or 'null' */
-size_t scene_tree_length(const struct scene_tree *tree, int node); /* of a list or a map */
+size_t scene_tree_length(const struct scene_tree *tree, int node); /* of a list or map; of 0: 0 */
 int scene_tree_item(const struct scene_tree *tree, int list, size_t i);
 yaml_node_pair_t scene_tree_pair(const struct scene_tree *tree, int map, size_t i);
 int scene_tree_get(const struct scene_tree *tree, int map, const char *key); /* 0: no such key */

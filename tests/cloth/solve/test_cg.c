@@ -263,6 +263,33 @@ START_TEST(what_stays_wrong_is_said)
 }
 END_TEST
 
+/* The true residual may be twice as large as what was asked for, and no more: its square is 4 times
+ * as large. */
+START_TEST(how_much_more_the_true_residual_may_be)
+{
+    static const struct solve_stop stops[] = {
+        {.confirm = true, .tolerance = 1e-3},
+        {.relative = true, .confirm = true, .tolerance = 0.1},
+        {.normalised = true, .confirm = true, .tolerance = 0.01}};
+    const struct solve_stop *stop = stops + _i;
+    const double first = 25, unit = 3;
+    const double asked = stop->relative     ? 0.1 * 0.1 * first
+                         : stop->normalised ? 0.01 * 0.01 * unit
+                                            : 1e-3 * 1e-3;
+    struct solve_scalars before = solve_scalars_start(0, SOLVE_CHECK), after;
+    before.wanted = asked;
+    before.unit = unit;
+    const double part[] = {0.1, 1, 3.99, 4.01, 40, 4000};
+    for (int i = 0; i < 6; i++) {
+        const double square = part[i] * asked;
+        const double dots[SOLVE_DOTS] = {[SOLVE_RR] = square, [SOLVE_BOUND] = square};
+        ck_assert_int_eq(solve_scalars_next(stop, dots, &before, &after), SOLVE_OK);
+        ck_assert_double_eq(after.phase, part[i] < 4 ? SOLVE_DONE : SOLVE_AGAIN);
+        ck_assert_double_eq(after.restarts, part[i] < 4 ? 0 : 1);
+    }
+}
+END_TEST
+
 /* Nothing on the right side, or so little that its square is nothing. */
 START_TEST(nothing_to_solve)
 {
@@ -343,6 +370,7 @@ int main(void)
     tcase_add_loop_test(cases, what_is_right_is_confirmed, 0, 3);
     tcase_add_loop_test(cases, what_is_wrong_is_found, 0, 3);
     tcase_add_loop_test(cases, what_stays_wrong_is_said, 0, 3);
+    tcase_add_loop_test(cases, how_much_more_the_true_residual_may_be, 0, 3);
     tcase_add_test(cases, nothing_to_solve);
     tcase_add_test(cases, breakdowns);
     tcase_add_test(cases, little_left_of_a_guess);

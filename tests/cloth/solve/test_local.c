@@ -187,7 +187,89 @@ START_TEST(pivots_that_fail)
 }
 END_TEST
 
-/* The factor of SSOR is the last resort, and ends for what is no number too. */
+/* y += A_ab x, the 3 x 3 block of rows a and columns b of the dense matrix. */
+static void add_block(uint32_t a, uint32_t b, const phys_vec *x, phys_vec *y)
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            (*y)[i] += sys.dense[3 * a + (uint32_t)i][3 * b + (uint32_t)j] * (*x)[j];
+}
+
+/* x = A_aa^-1 y, by Cramer's rule. */
+static void divide_by_block(uint32_t a, const phys_vec *y, phys_vec *x)
+{
+    double m[3][3], part[3][3];
+    for (uint32_t i = 0; i < 3; i++)
+        for (uint32_t j = 0; j < 3; j++)
+            m[i][j] = sys.dense[3 * a + i][3 * a + j];
+    for (int k = -1; k < 3; k++) {
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                part[i][j] = j == k ? (*y)[i] : m[i][j];
+        double det = 0;
+        for (int i = 0; i < 3; i++)
+            det += part[0][i] * (part[1][(i + 1) % 3] * part[2][(i + 2) % 3] -
+                                 part[1][(i + 2) % 3] * part[2][(i + 1) % 3]);
+        if (k < 0)
+            *x = (phys_vec){1 / det, 1 / det, 1 / det, 0};
+        else
+            (*x)[k] *= det;
+    }
+}
+
+/* q = M s with M = (E + L) E^-1 (E + U), the matrix of SSOR: E is the dense matrix's block
+ * diagonal, L and U are what lies below and above it. */
+static void over_relaxed(const phys_vec *s, phys_vec *q)
+{
+    phys_vec y[SYSTEM_ROWS];
+    for (uint32_t a = 0; a < sys.n; a++) {
+        phys_vec sum = {0}, part;
+        for (uint32_t b = a + 1; b < sys.n; b++)
+            add_block(a, b, s + b, &sum);
+        divide_by_block(a, &sum, &part);
+        y[a] = s[a] + part;
+    }
+    for (uint32_t a = 0; a < sys.n; a++) {
+        q[a] = (phys_vec){0};
+        for (uint32_t b = 0; b <= a; b++)
+            add_block(a, b, y + b, q + a);
+    }
+}
+
+/* Springs of less than no stiffness: each row's own block is small beside the others, and all
+ * pivots of IC(0) fail. */
+START_TEST(ssor_is_the_last_resort)
+{
+    phys_vec x[SYSTEM_ROWS], s[SYSTEM_ROWS], q[SYSTEM_ROWS];
+    srand(10);
+    sys.format = (enum solve_format)_i;
+    system_sheet(&sys, 6, 6, 1);
+    for (uint32_t a = 0; a < sys.n; a++)
+        sys.diagonal[a] = 0.3 + 0.02 * a;
+    for (uint32_t i = 0; i < sys.n_springs; i++) {
+        sys.value[i] =
+            (phys_vec){0.1 * system_draw(), 0.1 * system_draw(), 0.1 * system_draw(), -1};
+        sys.diagonal[sys.end[i][0]] += 1;
+        sys.diagonal[sys.end[i][1]] += 1;
+    }
+    sys.free[9] = 0;
+    system_cut(&sys, 1);
+    ck_assert_int_eq(make(SOLVE_IC0), SOLVE_SSOR);
+    check_symmetric(SOLVE_IC0);
+    system_draw_rows(&sys, x);
+    apply(SOLVE_IC0, x, s);
+    over_relaxed(s, q);
+    double most = 0; /* (I + T)^-1 of such a matrix is large, and T in float */
+    for (uint32_t a = 0; a < sys.n; a++)
+        for (int c = 0; c < 3; c++)
+            most = fmax(most, fabs(s[a][c]));
+    for (uint32_t a = 0; a < sys.n; a++)
+        for (int c = 0; c < 3; c++)
+            ck_assert_double_eq_tol(q[a][c], x[a][c], FLOAT * most);
+}
+END_TEST
+
+/* It ends for what is no number, too. */
 START_TEST(not_a_number)
 {
     srand(8);
@@ -229,6 +311,7 @@ int main(void)
     tcase_add_loop_test(cases, symmetric_and_positive, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1);
     tcase_add_test(cases, all_rows_held);
     tcase_add_test(cases, pivots_that_fail);
+    tcase_add_loop_test(cases, ssor_is_the_last_resort, SOLVE_SPRINGS, SOLVE_HALF_FLOAT + 1);
     tcase_add_test(cases, not_a_number);
     tcase_add_test(cases, stiff_beside_soft);
     suite_add_tcase(suite, cases);

@@ -40,3 +40,6 @@ dist_check_SCRIPTS += tests/whole/test_closed_forms_long.sh
 LONG_TESTS += tests/whole/test_closed_forms_long.sh
 dist_check_SCRIPTS += tests/whole/test_solvers_agree_long.sh
 LONG_TESTS += tests/whole/test_solvers_agree_long.sh
+dist_check_SCRIPTS += tests/whole/test_golden.sh
+EXTRA_DIST += tests/whole/golden.txt
+TESTS += tests/whole/test_golden.sh

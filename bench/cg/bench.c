@@ -30,7 +30,8 @@ enum { TARGET_THREADS = 2 };
 
 /* ---- States ---- */
 
-static int make(const struct bench_options *options, struct subject **maker, const char *name)
+static int make(const struct bench_options *options, struct subject **maker, const char *name,
+                const char *why_made)
 {
     char command[200], why[400];
     double vertices;
@@ -38,7 +39,7 @@ static int make(const struct bench_options *options, struct subject **maker, con
         *maker = subject_start((struct subject_shape){"duite", 0, options->threads});
     if (!*maker)
         return 1;
-    fprintf(stderr, "duite-bench: making the state %s\n", name);
+    fprintf(stderr, "duite-bench: making the state %s: %s\n", name, why_made);
     snprintf(command, sizeof command, "make state=%s quick=%d threads=%u scheduler=%s", name,
              options->quick, options->threads, options->scheduler);
     if (!subject_ask(*maker, command, &vertices, why, sizeof why))
@@ -89,7 +90,7 @@ static int prepare(const struct bench_options *options,
             continue;
         }
         if (state_read(&state, *name))
-            code = make(options, &maker, *name) || state_read(&state, *name);
+            code = make(options, &maker, *name, serve_failure()) || state_read(&state, *name);
         snprintf(text, sizeof text, "%016" PRIx64 ", %u vertices, %zu springs", state.hash,
                  state.system.n, state.system.n_pairs);
         if (!code)

@@ -38,6 +38,12 @@ int states_start(struct model *model, const double *x, const double *v);
 int cg_order(struct state *state, uint32_t grain);
 uint64_t cg_hash(const struct solve_system *system);
 
+/* The system of the first step of the plan's model, which is made whole, whatever energy it gains
+ * and however far it stretches: a step that is halved would leave the system of a shorter one. 0,
+ * or what serve_fail returns: the step fails, or its length is not the model's. */
+int cg_make_system(struct states_plan *plan, struct serve_request *request,
+                   struct solve_system *system);
+
 /* The run "make": makes a state that is not there, in full or quick. */
 extern const struct serve_run cg_make_runs[];
 

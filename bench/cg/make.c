@@ -1,9 +1,10 @@
 /* Making a state: its motion, unless the last state had the same one; the system of one step as the
- * cloth hands it over; the answers by plain loops. */
+ * cloth hands it over, of its whole length; the answers by plain loops. */
 #include "bench/cg/cg.h"
 
 #include "cloth/mesh/blocks.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,6 +53,20 @@ static int move(struct states_plan *plan, struct serve_request *request)
         moved.name = plan->moved;
     }
     return states_start(&plan->model, moved.after.x, moved.after.v);
+}
+
+int cg_make_system(struct states_plan *plan, struct serve_request *request,
+                   struct solve_system *system)
+{
+    struct model *model = &plan->model;
+    const struct flow_output output = {.context = system, .system = take};
+    model->halving = false;
+    model->energy_growth = model->stretch_growth = model->stretch_limit = 0;
+    const int code = cg_run(model, request, &output, NULL, NULL);
+    if (!code && !(fabs(system->h - model->h) <= 1e-9 * model->h))
+        return serve_fail("its system is of a step of %g ms, not of one whole step of %g ms",
+                          1e3 * system->h, 1e3 * model->h);
+    return code;
 }
 
 static void each_pair(const void *context, void (*visit)(void *to, uint32_t a, uint32_t b),
@@ -135,12 +150,11 @@ static int make(void *context, struct serve_request *request, double *value)
     struct states_plan plan = {0};
     (void)context;
     serve_word(request, "state", state.name, sizeof state.name);
-    const struct flow_output output = {.context = &state.system, .system = take};
     int code = states_plan_make(&plan, state.name, serve_number(request, "quick") != 0);
     if (!code)
         code = move(&plan, request);
     if (!code)
-        code = cg_run(&plan.model, request, &output, NULL, NULL);
+        code = cg_make_system(&plan, request, &state.system);
     if (!code)
         code = complete(&state, &plan);
     if (!code)

@@ -1,6 +1,7 @@
 /* A file is a head and the arrays as they lie in memory: it stays on the machine that made it. */
 #include "bench/cg/state.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -76,6 +77,16 @@ static int read_arrays(struct state *state, const struct head *head, FILE *file)
     return 0;
 }
 
+static int check_step(const char *name, const char *path, double h)
+{
+    const char *told = strstr(name, "_h");
+    const double ms = told && isdigit((unsigned char)told[2]) ? strtod(told + 2, NULL) : 1e3 * h;
+    return fabs(1e3 * h - ms) <= 1e-9 * ms
+               ? 0
+               : serve_fail("%s has the system of a step of %g ms, not of one of %g ms", path,
+                            1e3 * h, ms);
+}
+
 int state_read(struct state *state, const char *name)
 {
     char path[4200];
@@ -89,7 +100,9 @@ int state_read(struct state *state, const char *name)
         fread(&head, sizeof head, 1, file) != 1 || (memcmp(head.magic, MAGIC, sizeof MAGIC) &&
                                                     memcmp(head.magic, BLOCKS, sizeof BLOCKS))
             ? serve_fail("%s is not a state of this version", path)
-            : read_arrays(state, &head, file);
+            : check_step(name, path, head.h);
+    if (!code)
+        code = read_arrays(state, &head, file);
     fclose(file);
     if (code) {
         state_free(state);

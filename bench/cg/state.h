@@ -19,7 +19,8 @@ struct state {
 /* The folder of the states is named by this variable of the environment. */
 #define STATE_FOLDER "DUITE_BENCH_STATES"
 
-/* NAME.state in the folder; 0, or what serve_fail returns. */
+/* NAME.state in the folder; 0, or what serve_fail returns. A name with _hN is of a step of N ms: a
+ * file with the system of another step is refused. */
 int state_read(struct state *state, const char *name);
 int state_write(const struct state *state);
 void state_free(struct state *state);

@@ -7,7 +7,10 @@ tests_bench_test_problem_LDADD = tests/support/libunit.la $(CHECK_LIBS)
 check_PROGRAMS += tests/bench/test_sheet
 tests_bench_test_sheet_SOURCES = tests/bench/test_sheet.c
 tests_bench_test_sheet_LDADD = bench/libbench.la tests/support/libunit.la $(CHECK_LIBS)
-TESTS += tests/bench/test_problem tests/bench/test_sheet
+check_PROGRAMS += tests/bench/test_states
+tests_bench_test_states_SOURCES = tests/bench/test_states.c
+tests_bench_test_states_LDADD = bench/libbench.la tests/support/libunit.la $(CHECK_LIBS)
+TESTS += tests/bench/test_problem tests/bench/test_sheet tests/bench/test_states
 endif
 EXTRA_DIST += tests/bench/bench.sh
 dist_check_SCRIPTS += tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_compare.sh tests/bench/test_experiments.sh tests/bench/test_physics.sh tests/bench/test_ranks.sh

@@ -37,11 +37,19 @@ END
 }
 
 hashes() { sed -n 's/^# \(state_.*\)/\1/p' "$1"; }
-kept() { # nothing is made anew; what is damaged is
+# other_step NAME: the state is of a step of half the length.
+other_step() {
+    head -c 64 "$scratch/states/quick/$1.state" > "$scratch/other" && printf '\173\024\256\107\341\172\204\077' >> "$scratch/other" && # 0.01
+        tail -c +73 "$scratch/states/quick/$1.state" >> "$scratch/other" && mv "$scratch/other" "$scratch/states/quick/$1.state"
+}
+kept() { # nothing is made anew; what is damaged, or of another step, is
     : > "$scratch/states/quick/falling_h8.state"
+    other_step crumpled_h20 || return 1
     bench_cg --quick --repeats 1 --only spring_150 --threads 3 > "$scratch/again" 2> "$scratch/said" || return 1
     cat "$scratch/said"
-    test "$(grep -c 'making the state' "$scratch/said")" = 1 && grep -q 'making the state falling_h8$' "$scratch/said" &&
+    test "$(grep -c 'making the state' "$scratch/said")" = 2 &&
+        grep -q 'making the state falling_h8: .*falling_h8.state is not a state of this version$' "$scratch/said" &&
+        grep -q 'making the state crumpled_h20: .* has the system of a step of 10 ms, not of one of 20 ms$' "$scratch/said" &&
         hashes "$scratch/lines" > "$scratch/first" && hashes "$scratch/again" | diff "$scratch/first" - &&
         test "$(wc -l < "$scratch/first")" -ge 17
 }

@@ -1,0 +1,114 @@
+/* The states of the bench "cg": a system is that of one whole step, also where the cloth would
+ * rather take two of half the length, and a file with the system of another step is refused. */
+#include "bench/cg/cg.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static struct serve_request request = {.text = "make threads=2 scheduler=steal"};
+
+/* A free cloth pressed together to half its size: its linear step would end with more energy than
+ * it began with. */
+static void plan_hard(struct states_plan *plan)
+{
+    ck_assert_msg(!states_plan_make(plan, "falling_h20_bend", true), "%s", serve_failure());
+    ck_assert_msg(!states_wave(&plan->model), "%s", serve_failure());
+    struct model_cloth *cloth = plan->model.cloths;
+    for (size_t v = 0; v < cloth->mesh.n_vertices; v++) {
+        cloth->start[6 * v] *= 0.5;
+        cloth->start[6 * v + 2] *= 0.5;
+    }
+}
+
+static void setup(void)
+{
+    char folder[] = "/tmp/duite.states.XXXXXX";
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    ck_assert_int_eq(setenv(STATE_FOLDER, folder, 1), 0);
+}
+
+static void path_of(const char *name, char *path, size_t size)
+{
+    snprintf(path, size, "%s/%s", getenv(STATE_FOLDER), name);
+}
+
+static void teardown(void)
+{
+    char path[300];
+    path_of("hanging_h20.state", path, sizeof path);
+    unlink(path);
+    rmdir(getenv(STATE_FOLDER));
+}
+
+/* The cloth's own step, which nobody keeps whole, is halved: the case is one. */
+START_TEST(the_step_would_be_halved)
+{
+    struct states_plan plan;
+    struct flow_report report = {0};
+    plan_hard(&plan);
+    ck_assert_msg(!cg_run(&plan.model, &request, NULL, NULL, &report), "%s", serve_failure());
+    ck_assert_uint_gt(report.steps_halved, 0);
+    states_plan_free(&plan);
+}
+END_TEST
+
+START_TEST(the_step_is_whole)
+{
+    struct states_plan plan;
+    struct solve_system system = {0};
+    plan_hard(&plan);
+    ck_assert_msg(!cg_make_system(&plan, &request, &system), "%s", serve_failure());
+    ck_assert_double_eq_tol(system.h, 0.02, 1e-12);
+    solve_system_free(&system);
+    states_plan_free(&plan);
+}
+END_TEST
+
+/* What is no number cannot be a step. */
+START_TEST(a_step_that_fails_is_told)
+{
+    struct states_plan plan;
+    struct solve_system system = {0};
+    plan_hard(&plan);
+    plan.model.cloths->start[3] = 1e200;
+    ck_assert_int_ne(cg_make_system(&plan, &request, &system), 0);
+    ck_assert_str_ne(serve_failure(), "");
+    solve_system_free(&system);
+    states_plan_free(&plan);
+}
+END_TEST
+
+START_TEST(another_step_is_refused)
+{
+    struct state state = {.name = "hanging_h20"}, back;
+    ck_assert_int_eq(solve_system_make(&state.system, 2, 1, SOLVE_PAIRS_OF_SPRINGS, NULL), 0);
+    state.after = calloc(6, sizeof *state.after);
+    state.order = calloc(2, sizeof *state.order);
+    state.system.h = 0.02;
+    ck_assert_int_eq(state_write(&state), 0);
+    ck_assert_msg(!state_read(&back, "hanging_h20"), "%s", serve_failure());
+    state_free(&back);
+    state.system.h = 0.005;
+    ck_assert_int_eq(state_write(&state), 0);
+    ck_assert_int_ne(state_read(&back, "hanging_h20"), 0);
+    ck_assert_ptr_nonnull(strstr(serve_failure(), "hanging_h20.state has the system of a step of 5 "
+                                                  "ms, not of one of 20 ms"));
+    state_free(&state);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("states");
+    TCase *all = tcase_create("states");
+    tcase_add_unchecked_fixture(all, setup, teardown);
+    tcase_add_test(all, the_step_would_be_halved);
+    tcase_add_test(all, the_step_is_whole);
+    tcase_add_test(all, a_step_that_fails_is_told);
+    tcase_add_test(all, another_step_is_refused);
+    suite_add_tcase(suite, all);
+    return unit_run(suite);
+}

@@ -1,6 +1,7 @@
 /* starpu-graph: the twin of graph-run (bench/sweep/run.c): the same tasks on the same graph,
  * submitted to one of StarPU's schedulers in each round, and the same report. One process. Options
- * that only graph-run knows are not taken. */
+ * that only graph-run knows are not taken. A scheduler that StarPU does not know is refused: StarPU
+ * would warn and take another one, whose figures would have the wrong name. */
 #include "bench/sweep/graph.h"
 
 #include <inttypes.h>
@@ -142,9 +143,29 @@ static int report(const struct command *command, double seconds, double in_bodie
     return command->report ? fclose(out) != 0 : 0;
 }
 
+/* ---- StarPU's schedulers ---- */
+
+static bool knows(const char *scheduler)
+{
+    struct starpu_sched_policy **policy = starpu_sched_get_predefined_policies();
+    while (*policy && strcmp((*policy)->policy_name, scheduler) != 0)
+        policy++;
+    return *policy;
+}
+
+/* The names, each after `before`. */
+static void list_schedulers(FILE *out, const char *before)
+{
+    struct starpu_sched_policy **policy = starpu_sched_get_predefined_policies();
+    for (; *policy; policy++)
+        fprintf(out, "%s%s", before, (*policy)->policy_name);
+    fputc('\n', out);
+}
+
 static int run(struct command *command)
 {
     struct starpu_conf conf;
+    unsetenv("STARPU_SCHED"); /* it would count more than the name here */
     if (starpu_conf_init(&conf))
         return 1;
     conf.ncpus = command->threads;
@@ -191,13 +212,24 @@ int main(int argc, char **argv)
 {
     struct command command = {
         .scheduler = "lws", .tasks = 1000, .cost = 1e-5, .bytes = 4096, .rounds = 10, .threads = 2};
+    if (argc == 2 && !strcmp(argv[1], "--schedulers"))
+        return list_schedulers(stdout, " "), 0;
     bool fine = argc > 1;
     for (int i = 2; i < argc && fine; i += 2)
         fine = i + 1 < argc && take(&command, argv[i], argv[i + 1]);
     if (!fine || command.threads < 1 || !command.rounds) {
         fprintf(stderr,
                 "starpu-graph KIND|FILE [--scheduler NAME] [--threads N] [--tasks N] [--cost "
-                "SECONDS] [--bytes N] [--rounds N] [--report FILE]\n");
+                "SECONDS] [--bytes N] [--rounds N] [--report FILE]\n"
+                "starpu-graph --schedulers: prints the names of StarPU's schedulers\n");
+        return 2;
+    }
+    if (!knows(command.scheduler)) {
+        fprintf(stderr,
+                "starpu-graph: --scheduler %s: StarPU has no scheduler of this name; known "
+                "are",
+                command.scheduler);
+        list_schedulers(stderr, " ");
         return 2;
     }
     command.what = argv[1];

@@ -74,8 +74,11 @@ static bool is_adversary(const char *name)
 static void check_item(struct argp_state *state, int dimension, const char *item)
 {
     const void *found = state;
-    char *end = NULL;
-    if (dimension == SCHEDULER && strncmp(item, "starpu:", 7) != 0)
+    char *end = NULL, wrong[2500];
+    const bool starpu = dimension == SCHEDULER && !strncmp(item, "starpu:", 7);
+    if (starpu && compare_starpu_wrong(item + 7, wrong, sizeof wrong))
+        argp_error(state, "--scheduler %s: %s", item, wrong);
+    if (dimension == SCHEDULER && !starpu)
         found = duite_scheduler_find(item);
     else if (dimension == MAPPING)
         found = duite_mapping_find(item);

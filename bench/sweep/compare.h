@@ -63,6 +63,9 @@ void compare_journal_close(struct compare *compare);
 /* The host and the build, a line each after `before`. */
 void compare_describe(FILE *out, const char *before);
 
+/* Why StarPU's scheduler of this name cannot be run, in words written to text: NULL if it can. */
+const char *compare_starpu_wrong(const char *name, char *text, size_t size);
+
 /* Starts a run and reads its report; run->done is set in any case. */
 void compare_start(const struct compare *compare, const struct compare_config *config,
                    struct compare_run *run);

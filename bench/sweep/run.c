@@ -279,6 +279,12 @@ static error_t parse(int key, char *text, struct argp_state *state)
     duite_options *options = &command->options;
     switch (key) {
     case SCHEDULER:
+        if (!strncmp(text, "starpu:", 7))
+            argp_error(
+                state,
+                "--scheduler %s: graph-run has none of StarPU's schedulers; starpu-graph and "
+                "compare run them, and bench/rivals/starpu-graph --schedulers lists them",
+                text);
         return policy(state, options->scheduler = duite_scheduler_find(text));
     case MAPPING:
         return policy(state, options->mapping = duite_mapping_find(text));

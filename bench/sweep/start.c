@@ -10,6 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#define STARPU_GRAPH "rivals/starpu-graph"
+
 enum { WORDS = 120 };
 
 struct line {
@@ -30,14 +32,45 @@ static void append_pair(struct line *line, const char *option, const char *value
     append(line, value);
 }
 
+enum { PROGRAM = PATH_MAX + 100 };
+
 /* Beside this program, or in the folder above it. */
-static void append_program(struct line *line, const char *name, const char *above)
+static const char *find_program(const char *name, const char *above, char path[PROGRAM])
 {
-    char self[PATH_MAX] = "", path[PATH_MAX + 100];
+    char self[PATH_MAX] = "";
     if (readlink("/proc/self/exe", self, sizeof self - 1) < 0)
         self[0] = 0;
-    snprintf(path, sizeof path, "%s/%s%s", dirname(self), above, name);
-    append(line, path);
+    snprintf(path, PROGRAM, "%s/%s%s", dirname(self), above, name);
+    return path;
+}
+
+static void append_program(struct line *line, const char *name, const char *above)
+{
+    char path[PROGRAM];
+    append(line, find_program(name, above, path));
+}
+
+const char *compare_starpu_wrong(const char *name, char *text, size_t size)
+{
+    char path[PROGRAM], command[PROGRAM + 40], known[2000] = "", word[100];
+    bool found = false;
+    if (access(find_program(STARPU_GRAPH, "", path), X_OK)) {
+        snprintf(text, size, "%s is not built: configure found no libstarpu-dev", path);
+        return text;
+    }
+    snprintf(command, sizeof command, "'%s' --schedulers", path);
+    FILE *in = popen(command, "r");
+    for (size_t used = 0; in && used < sizeof known && fscanf(in, "%99s", word) == 1;) {
+        found = found || !strcmp(word, name);
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", word);
+    }
+    if (!in || pclose(in) || !*known)
+        snprintf(text, size, "%s --schedulers does not list StarPU's schedulers", path);
+    else if (!found)
+        snprintf(text, size, "StarPU has no scheduler of this name; known are %s", known);
+    else
+        return NULL;
+    return text;
 }
 
 static bool is_scene(const char *subject)
@@ -91,7 +124,7 @@ static void make_line(const struct compare *compare, const struct compare_config
     if (is_scene(subject)) {
         append_scene(compare, config, line);
     } else {
-        append_program(line, starpu ? "rivals/starpu-graph" : "graph-run", "");
+        append_program(line, starpu ? STARPU_GRAPH : "graph-run", "");
         append_graph(compare, config, line);
     }
     append_pair(line, "--scheduler", config->value[SCHEDULER] + (starpu ? 7 : 0));

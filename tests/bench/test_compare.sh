@@ -76,6 +76,30 @@ ok "a damaged one names its line" bad_file
 ok "a full disk" full
 ok "without gnuplot" without_plots
 ok "an unknown scheduler lists the known ones" refused 2 "known are steal, locality" tree --scheduler best
+starpu_graph() { refused_by "$bin/rivals/starpu-graph" "known are .* lws.*" irregular --scheduler nope; }
+refused_by() { # PROGRAM SENTENCE OPTIONS...: before anything runs: with nothing on standard output
+    program=$1 sentence=$2 status=0
+    shift 2
+    limited "$program" "$@" > "$scratch/out" 2> "$scratch/said" || status=$?
+    cat "$scratch/said" "$scratch/out"
+    test $status = 2 && test ! -s "$scratch/out" && grep -q "$sentence" "$scratch/said"
+}
+starpu_runs() {
+    STARPU_SCHED=nope refused 0 "1 rounds" irregular --scheduler starpu:eager --rounds 1 --output e &&
+        test "$(grep -c '^0,irregular,.*,starpu:eager,.*,fine$' "$scratch/e/runs.csv")" = 1 && ! grep nope "$scratch/e/run.log"
+}
+if test -x "$bin/rivals/starpu-graph"; then
+    ok "a scheduler that StarPU does not have lists those that it has" refused 2 \
+        "starpu:nope: StarPU has no scheduler of this name; known are .*lws" irregular --scheduler steal,starpu:nope --output n
+    ok "... and nothing runs" test ! -e "$scratch/n"
+    ok "... likewise of its twin alone" starpu_graph
+    ok "one that it has runs, also if the environment names another" starpu_runs
+fi
+mkdir "$scratch/alone" && cp "$bin/compare" "$scratch/alone" # no rivals beside it
+ok "StarPU's twin is not there" refused_by "$scratch/alone/compare" "alone/rivals/starpu-graph is not built" \
+    irregular --scheduler starpu:lws --output "$scratch/n"
+ok "graph-run has none of StarPU's schedulers" refused_by "$bin/graph-run" "bench/rivals/starpu-graph --schedulers lists them" \
+    irregular --scheduler starpu:lws
 ok "a run that fails, and its words are kept" refused 1 "failed; its words are in u/run.log" "$top/cloth/scenes/sheet.yaml" \
     --set grain=0 --rounds 1 --output u
 ok "an unknown kind of graph" refused 2 "there is no kind of graph ring; known are stencil, .* chain, and files" ring --output u

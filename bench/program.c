@@ -1,6 +1,7 @@
 /* The table of programs is constant; configure says what is missing. */
 #include "bench/program.h"
 
+#include "bench/environment.h"
 #include "bench/subject.h"
 
 #include <config.h>
@@ -119,6 +120,7 @@ const char *const *program_settings(const struct program *program, unsigned core
 
 void program_environment(const struct program *program, unsigned cores)
 {
+    environment_forget();
     for (const char *const *word = program_settings(program, cores); *word; word++)
         set(*word);
     /* hwloc: silent about caches that virtual machines report wrongly; no look for graphics cards,

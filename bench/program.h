@@ -28,7 +28,8 @@ const char *program_missing(const struct program *program);
 /* What the environment is given for so many cores: NAME=VALUE words, ended by NULL. */
 const char *const *program_settings(const struct program *program, unsigned cores);
 
-/* Sets the environment for a child that wants so many cores. */
+/* Sets the environment for a child that wants so many cores; what a user chose for programs of
+ * duite in general is removed. */
 void program_environment(const struct program *program, unsigned cores);
 
 /* The words of the command, ended by NULL; `ranks`: under mpirun, or NULL. `argv` has room for 16.

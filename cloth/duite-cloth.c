@@ -296,7 +296,7 @@ static int command_line(struct command *command, int argc, char **argv)
         return error == ENOMEM ? SIMULATE_FAILED : SIMULATE_BAD_INPUT;
     if (!command->run.trace && (command->run.trace_first || command->run.trace_end != UINT64_MAX)) {
         if (command->talks)
-            fprintf(stderr, "duite-cloth: --trace-steps without --trace FILE\n");
+            fprintf(stderr, "duite-cloth: --trace-steps without --trace FILE, or DUITE_TRACE\n");
         return SIMULATE_BAD_INPUT;
     }
     if (command->done || command->run.scene)
@@ -304,6 +304,57 @@ static int command_line(struct command *command, int argc, char **argv)
     if (command->talks)
         fprintf(stderr, "duite-cloth: a scene file is expected; see duite-cloth --help\n");
     return SIMULATE_BAD_INPUT;
+}
+
+/* ---- The environment ---- */
+
+static const char *name_of(const char *variable, const char *otherwise)
+{
+    const char *name = getenv(variable);
+    return name ? name : otherwise;
+}
+
+/* What counts where no option is given: the environment, else what is built in. What the
+ * environment has wrong is found once the options are read, which may replace it. */
+static void begin(struct simulate_options *run)
+{
+    const duite_options defaults = duite_options_default();
+    run->scheduler = defaults.scheduler;
+    run->scheduler_name = name_of("DUITE_SCHEDULER", "steal");
+    run->mapping = defaults.mapping;
+    run->mapping_name = name_of("DUITE_MAPPING", "metis");
+    run->balance = defaults.balance;
+    run->balance_name = name_of("DUITE_BALANCE", "none");
+    run->threads = defaults.threads;
+    run->seed = defaults.seed;
+    run->trace = defaults.trace;
+    run->trace_end = UINT64_MAX;
+}
+
+static int wrong_variable(struct cloth_error *error, const char *variable, const char *why)
+{
+    return cloth_fail(error, CLOTH_E_INPUT, "%s=%s in the environment: %s", variable,
+                      getenv(variable), why);
+}
+
+/* A policy is NULL, a number the largest of its type, only if the environment made it so. */
+static int check_environment(const struct simulate_options *run, struct cloth_error *error)
+{
+    const duite_options defaults = duite_options_default();
+    if (!run->scheduler && !duite_scheduler_find(run->scheduler_name))
+        return wrong_variable(error, "DUITE_SCHEDULER", duite_message());
+    if (!run->mapping && !duite_mapping_find(run->mapping_name))
+        return wrong_variable(error, "DUITE_MAPPING", duite_message());
+    if (!run->balance && !duite_balancer_find(run->balance_name))
+        return wrong_variable(error, "DUITE_BALANCE", duite_message());
+    if (run->threads == UINT_MAX)
+        return wrong_variable(error, "DUITE_THREADS", "a whole number from 0 to 4096 is expected");
+    if (run->seed == UINT64_MAX && defaults.seed == UINT64_MAX)
+        return wrong_variable(error, "DUITE_SEED",
+                              "a whole number from 0 to 18446744073709551614 is expected");
+    if (run->trace && !*run->trace)
+        return wrong_variable(error, "DUITE_TRACE", "the name of a file is expected");
+    return CLOTH_OK;
 }
 
 static void free_command(struct command *command)
@@ -330,11 +381,13 @@ static int agree(int code)
     return code;
 }
 
-/* Hosts may differ: the first rank that cannot have what it was asked for says so. */
-static int check_instructions(int rank)
+/* Hosts may differ, in processors and environments: the first rank that cannot have what it was
+ * asked for says so. */
+static int check_host(int rank, const struct simulate_options *run)
 {
     struct cloth_error error = {0};
-    const int code = cloth_simd_check(&error) ? SIMULATE_BAD_INPUT : SIMULATE_OK;
+    const int code = cloth_simd_check(&error) || check_environment(run, &error) ? SIMULATE_BAD_INPUT
+                                                                                : SIMULATE_OK;
     int first = code ? rank : INT_MAX;
     MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
     if (first == rank)
@@ -349,18 +402,11 @@ int main(int argc, char **argv)
     if (MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
         return SIMULATE_FAILED;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    struct command command = {.run = {.scheduler = duite_scheduler_find("steal"),
-                                      .scheduler_name = "steal",
-                                      .mapping = duite_mapping_find("metis"),
-                                      .mapping_name = "metis",
-                                      .balance = duite_balancer_find("none"),
-                                      .balance_name = "none",
-                                      .trace_end = UINT64_MAX,
-                                      .seed = 1},
-                              .talks = rank == 0};
+    struct command command = {.talks = rank == 0};
+    begin(&command.run);
     int code = agree(command_line(&command, argc, argv));
     if (code == SIMULATE_OK && !command.done)
-        code = agree(check_instructions(rank));
+        code = agree(check_host(rank, &command.run));
     if (code == SIMULATE_OK && !command.done)
         code = simulate(&command.run);
     code = finish_output(code);

@@ -71,9 +71,9 @@ static int check_file(const struct simulate_options *options, const char *option
     if (stat(path, &file) == 0 && stat(options->scene, &scene) == 0 &&
         file.st_dev == scene.st_dev && file.st_ino == scene.st_ino)
         return cloth_fail(error, CLOTH_E_INPUT,
-                          "--%s %s: this is the scene itself, which would be lost", option, path);
+                          "%s %s: this is the scene itself, which would be lost", option, path);
     const int code = output_report_check(path, options->output, &inner);
-    return code ? cloth_fail(error, code, "--%s %s: %s", option, path, inner.text) : code;
+    return code ? cloth_fail(error, code, "%s %s: %s", option, path, inner.text) : code;
 }
 
 static int open_system(const struct run *run, struct cloth_error *error)
@@ -166,9 +166,9 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     if (!code)
         code = flow_prepare(&run->flow, &run->model, run->ranks, error);
     if (!code && options->report)
-        code = check_file(options, "report", options->report, error);
+        code = check_file(options, "--report", options->report, error);
     if (!code && options->trace)
-        code = check_file(options, "trace", options->trace, error);
+        code = check_file(options, "--trace (or DUITE_TRACE)", options->trace, error);
     return code;
 }
 

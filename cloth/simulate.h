@@ -16,9 +16,9 @@ struct simulate_options {
     const char *save_system;                 /* folder; NULL: none */
     const char *trace;                       /* file; NULL: none */
     uint64_t trace_first, trace_end;         /* steps from .. to the one before */
-    const struct duite_scheduler *scheduler; /* never NULL */
-    const struct duite_mapping *mapping;     /* never NULL */
-    const struct duite_balancer *balance;    /* never NULL */
+    const struct duite_scheduler *scheduler; /* never NULL when it runs */
+    const struct duite_mapping *mapping;     /* as that */
+    const struct duite_balancer *balance;    /* as that */
     const char *scheduler_name, *mapping_name, *balance_name;
     unsigned threads; /* 0: the rank's share of the cores */
     uint64_t seed;

@@ -76,10 +76,12 @@ static uint64_t hash_kernels(const struct graph *graph)
 /* What must be the same on all ranks, and what they tell one another besides. */
 struct started {
     uint64_t kernels, laws, seed, scheduler, mapping, balance;
-    uint64_t traced, first, end; /* whether there is a trace, and of which steps */
+    uint64_t traced, first, end; /* the name of the trace, 0: there is none; and of which steps */
     double lost_seconds;         /* that of rank 0 counts */
     char host[64];
 };
+
+#define EITHER(field, variable) ": options." field ", or " variable " in the environment"
 
 static const char *difference(const struct started *a, const struct started *b)
 {
@@ -88,14 +90,14 @@ static const char *difference(const struct started *a, const struct started *b)
     if (a->laws != b->laws)
         return "laws";
     if (a->seed != b->seed)
-        return "seeds";
+        return "seeds" EITHER("seed", "DUITE_SEED");
     if (a->scheduler != b->scheduler)
-        return "schedulers";
+        return "schedulers" EITHER("scheduler", "DUITE_SCHEDULER");
     if (a->mapping != b->mapping)
-        return "mappings";
+        return "mappings" EITHER("mapping", "DUITE_MAPPING");
     if (a->traced != b->traced || a->first != b->first || a->end != b->end)
-        return "traces";
-    return a->balance != b->balance ? "balancers" : NULL;
+        return "traces" EITHER("trace", "DUITE_TRACE");
+    return a->balance != b->balance ? "balancers" EITHER("balance", "DUITE_BALANCE") : NULL;
 }
 
 static int compare(const struct started *all, int n, int rank)
@@ -132,7 +134,7 @@ static struct started own_start(const duite *rt, const duite_options *options)
         .scheduler = XXH64(options->scheduler->name, strlen(options->scheduler->name), 0),
         .mapping = XXH64(options->mapping->name, strlen(options->mapping->name), 0),
         .balance = XXH64(options->balance->name, strlen(options->balance->name), 0),
-        .traced = options->trace != NULL,
+        .traced = options->trace ? XXH64(options->trace, strlen(options->trace), 1) : 0,
         .first = options->trace ? options->trace_first : 0,
         .end = options->trace ? options->trace_end : 0,
         .lost_seconds = options->lost_seconds};

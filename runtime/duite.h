@@ -219,12 +219,12 @@ typedef struct duite_options {
     const duite_kernel *const *kernels; /* ended by NULL; the list is copied, the kernels are not */
     const duite_law *const *laws;       /* of the program, ended by NULL; default NULL: none */
     void *context;                      /* given to every body; may differ between ranks */
-    unsigned
-        threads; /* workers of this rank, the main thread among them; 0: its share of the cores */
-    const struct duite_scheduler *scheduler; /* default: steal */
-    const struct duite_mapping *mapping;     /* default: metis */
-    const struct duite_balancer *balance;    /* default: none; see below */
-    uint64_t seed;                           /* of everything random in policies. Default 1 */
+    unsigned threads; /* workers of this rank, the main thread among them; 0: its share of the
+                         cores. Default: DUITE_THREADS, else 0. May differ between ranks */
+    const struct duite_scheduler *scheduler; /* default: DUITE_SCHEDULER, else steal */
+    const struct duite_mapping *mapping;     /* default: DUITE_MAPPING, else metis */
+    const struct duite_balancer *balance;    /* default: DUITE_BALANCE, else none; see below */
+    uint64_t seed;       /* of everything random in policies. Default: DUITE_SEED, else 1 */
     double spin_seconds; /* how long an idle worker spins before it sleeps. Default 100e-6 */
     int bind;            /* bind workers to cores where the rank owns enough. Default 1 */
     size_t window;       /* most tasks of this rank that are unfinished when a fork returns, see
@@ -240,14 +240,17 @@ typedef struct duite_options {
                               return for so long, see duite_policy.h; 0: never. Default 10, or what
                               DUITE_POLICY_SECONDS in the environment says */
     const char *trace; /* a file in which each rank writes down what happens, see duite_trace_step.
-                          Default NULL: none */
+                          NULL: none. Default: DUITE_TRACE, else NULL */
     uint64_t trace_first, trace_end; /* steps that are written down: from trace_first on, before
                                         trace_end. Default: all, and what comes before them */
     int check; /* 1: checking mode, below. Default 0, or 1 with DUITE_CHECK=accesses in the
                   environment */
 } duite_options;
 
-/* The defaults, as the fields say; reads the environment. Local. */
+/* The defaults, as the fields say. What the program sets afterwards counts first, then the
+ * variables of the environment that the fields name, which are read here, then what is built in. A
+ * variable without sense (a name of no policy, a number that is none) is an error of duite_start,
+ * which names it, unless the program sets the field. Local. */
 duite_options duite_options_default(void);
 
 /* The built-in policies by name, or from a shared library if the name has a / in it

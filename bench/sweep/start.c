@@ -1,6 +1,7 @@
 /* A run is a program of its own: duite-cloth for scenes, graph-run for graphs, StarPU's twin of it
  * for schedulers named starpu:NAME. Its report is a file in the folder, which the next run
  * overwrites; what it prints goes to run.log there. */
+#include "bench/environment.h"
 #include "bench/sweep/compare.h"
 
 #include <libgen.h>
@@ -144,6 +145,7 @@ static int execute(const struct compare *compare, struct line *line)
     fflush(NULL);
     pid_t child = fork();
     if (!child) {
+        environment_forget();
         if (freopen(log, "w", stdout))
             dup2(STDOUT_FILENO, STDERR_FILENO);
         execvp(line->word[0], line->word);

@@ -23,8 +23,8 @@ tests_negative_ranks_system_LDFLAGS = -Wl,--wrap=pthread_create
 check_PROGRAMS += tests/negative/ranks_lost
 tests_negative_ranks_lost_SOURCES = tests/negative/ranks_lost.c $(MISUSE)
 tests_negative_ranks_lost_LDADD = libduite_core.la
-dist_check_SCRIPTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh
-TESTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh
+dist_check_SCRIPTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh tests/negative/test_environment.sh
+TESTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh tests/negative/test_environment.sh
 dist_check_SCRIPTS += tests/negative/test_lost_long.sh
 LONG_TESTS += tests/negative/test_lost_long.sh
 

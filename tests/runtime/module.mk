@@ -93,7 +93,7 @@ tests_runtime_test_rename_SOURCES = tests/runtime/test_rename.c tests/negative/m
 tests_runtime_test_rename_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
-RUNTIME_TESTS = tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched tests/runtime/test_sched_knowing tests/runtime/test_makespan tests/runtime/test_guard tests/runtime/test_traced tests/runtime/test_check \
+RUNTIME_TESTS = tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_pool tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched tests/runtime/test_sched_knowing tests/runtime/test_makespan tests/runtime/test_guard tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
     tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
@@ -102,6 +102,8 @@ tests_runtime_test_predict_SOURCES = tests/runtime/test_predict.c $(FORETELL_FIL
 tests_runtime_test_predict_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_predict_replays_SOURCES = tests/runtime/test_predict_replays.c $(FORETELL_FILES)
 tests_runtime_test_predict_replays_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_environment_SOURCES = tests/runtime/test_environment.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_test_environment_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
 tests_runtime_test_check_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_nested_tasks_SOURCES = tests/runtime/test_nested_tasks.c

@@ -136,6 +136,45 @@ ok "--set solver.stop" eval 'run scene.yaml --set "solver.stop={count: 3}" --rep
 ok "an explicit run has no iterations" eval 'run scene.yaml --set integrator=explicit_euler --set time.h=1e-4 --end 0.001 \
     --report report.json && is cg_iterations_mean null && is momentum_lost null'
 
+# ---- The environment, where no option is given
+
+chosen() { # SETTING...: a run with these in its environment
+    (for setting; do export "$setting"; done
+     run scene.yaml --end 0.004 --report report.json --quiet)
+}
+ok "the environment chooses" chosen DUITE_SCHEDULER=fifo DUITE_MAPPING=cyclic DUITE_BALANCE=delegate DUITE_THREADS=3 DUITE_SEED=9 \
+    DUITE_TRACE=environment.trace
+ok "the report names it" eval 'is scheduler fifo && is mapping cyclic && is balance delegate && is threads 3'
+ok "the trace is there" test -s environment.trace
+options_first() {
+    (export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_THREADS=none DUITE_SEED=no DUITE_TRACE=
+     run scene.yaml --end 0.004 --report report.json --quiet --scheduler lifo --mapping block --balance none --threads 2 --seed 3 \
+         --trace option.trace) && is scheduler lifo && is mapping block && is balance none && is threads 2 && test -s option.trace
+}
+ok "options go first" options_first
+wrong_variable() { # SENTENCE SETTING: as wrong, and without a folder of frames
+    (export "${2?}" && wrong "$1" scene.yaml --output untouched) && test ! -e untouched
+}
+ok "DUITE_SCHEDULER of no name" wrong_variable \
+    "duite-cloth: DUITE_SCHEDULER=lazy in the environment: there is no scheduler of this name; known are steal, " DUITE_SCHEDULER=lazy
+ok "DUITE_MAPPING of no name" wrong_variable \
+    "duite-cloth: DUITE_MAPPING=flat in the environment: there is no mapping of this name; known are metis, " DUITE_MAPPING=flat
+ok "DUITE_BALANCE of no name" wrong_variable \
+    "duite-cloth: DUITE_BALANCE= in the environment: there is no balancer of this name; known are none, " DUITE_BALANCE=
+ok "DUITE_THREADS that is no number" wrong_variable \
+    "duite-cloth: DUITE_THREADS=2x in the environment: a whole number from 0 to 4096 is expected" DUITE_THREADS=2x
+ok "DUITE_SEED that is no number" wrong_variable \
+    "duite-cloth: DUITE_SEED=-1 in the environment: a whole number from 0 to 18446744073709551614 is expected" DUITE_SEED=-1
+ok "DUITE_TRACE that is empty" wrong_variable "duite-cloth: DUITE_TRACE= in the environment: the name of a file is expected" DUITE_TRACE=
+on_one_rank() {
+    status=0
+    limited "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n 1 "$DUITE_CLOTH" scene.yaml --quiet : \
+        -n 1 env DUITE_MAPPING=flat "$DUITE_CLOTH" scene.yaml --quiet > complained 2>&1 || status=$?
+    cat complained
+    test $status = 2 && grep -q "duite-cloth: DUITE_MAPPING=flat in the environment: there is no mapping" complained
+}
+ok "DUITE_MAPPING of no name on rank 1 alone" on_one_rank
+
 awk '/^```yaml/ { inside = 1; next } /^```/ && inside { exit } inside' "$top/docs/scene.md" > example.yaml
 ok "the example of docs/scene.md runs" run example.yaml --end 0.003
 

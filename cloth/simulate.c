@@ -24,7 +24,8 @@ struct run {
     struct output_probes *probes; /* then, if the scene has any */
     struct summary_progress progress;
     struct flow_report report;
-    struct cloth_error untraced; /* why the trace is not whole */
+    struct mesh_elastic *elastic; /* rank 0: of each material */
+    struct cloth_error untraced;  /* why the trace is not whole */
 };
 
 static volatile sig_atomic_t stop_requested;
@@ -158,6 +159,17 @@ static int check_same(const struct run *run, struct cloth_error *error)
                       other);
 }
 
+/* While there are meshes. */
+static int find_elastic(struct run *run, struct cloth_error *error)
+{
+    run->elastic = calloc(run->model.n_materials, sizeof *run->elastic);
+    if (!run->elastic)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the moduli of materials");
+    for (uint32_t i = 0; i < run->model.n_materials; i++)
+        run->elastic[i] = model_elastic(&run->model, i);
+    return CLOTH_OK;
+}
+
 /* Rank 0 reads the scene and cuts it into blocks; the others are sent their blocks by the run. */
 static int read_and_cut(struct run *run, struct cloth_error *error)
 {
@@ -165,6 +177,8 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     int code = scene_read(&run->model, options->scene, options->n_sets, options->sets, error);
     if (!code)
         code = flow_prepare(&run->flow, &run->model, run->ranks, error);
+    if (!code)
+        code = find_elastic(run, error);
     if (!code && options->report)
         code = check_file(options, "--report", options->report, error);
     if (!code && options->trace)
@@ -322,6 +336,7 @@ static int conclude(const struct run *run)
         const struct summary summary = {.options = run->options,
                                         .model = &run->model,
                                         .report = &run->report,
+                                        .elastic = run->elastic,
                                         .ranks = run->ranks,
                                         .threads = run->threads,
                                         .workers = workers,
@@ -363,6 +378,7 @@ int simulate(const struct simulate_options *options)
     output_probes_close(&run.probes, &ignored);
     output_close(&run.frames, &ignored);
     flow_free(run.flow);
+    free(run.elastic);
     model_free(&run.model);
     return code;
 }

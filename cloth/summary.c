@@ -7,6 +7,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -147,6 +148,33 @@ static void add_setting(struct output_report *json, const struct summary *summar
     output_report_text(json, "simd", cloth_simd_name());
 }
 
+/* material_NAME_KEY */
+static int add_modulus(struct output_report *json, const char *name, const char *key, double value,
+                       struct cloth_error *error)
+{
+    char *text = NULL;
+    if (asprintf(&text, "material_%s_%s", name, key) < 0)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the report");
+    output_report_number(json, text, value);
+    free(text);
+    return CLOTH_OK;
+}
+
+static int add_materials(struct output_report *json, const struct summary *summary,
+                         struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (uint32_t i = 0; i < summary->model->n_materials; i++) {
+        const char *name = summary->model->materials[i].name;
+        const struct mesh_elastic *elastic = summary->elastic + i;
+        code = code ? code : add_modulus(json, name, "E_warp", elastic->warp, error);
+        code = code ? code : add_modulus(json, name, "E_weft", elastic->weft, error);
+        code = code ? code : add_modulus(json, name, "G", elastic->shear, error);
+        code = code ? code : add_modulus(json, name, "nu12", elastic->poisson, error);
+    }
+    return code;
+}
+
 static void add_times(struct output_report *json, const struct flow_report *report)
 {
     output_report_integer(json, "steps", report->steps);
@@ -236,10 +264,12 @@ int summary_write(const struct summary *summary, const char *path, struct cloth_
     add_solver(json, summary);
     add_energies(json, summary->report);
     add_runtime(json, summary);
+    code = add_materials(json, summary, error);
     output_report_number(json, "max_stretch", summary->report->max_stretch);
     output_report_number(json, "stretch_highest", summary->report->stretch_highest);
     add_hash(json, "state_hash", summary->report->state_hash);
-    code = output_report_write(json, path, error);
+    if (!code)
+        code = output_report_write(json, path, error);
     output_report_free(json);
     return code;
 }

@@ -11,6 +11,7 @@ struct summary {
     const struct simulate_options *options;
     const struct model *model;
     const struct flow_report *report;
+    const struct mesh_elastic *elastic; /* of each material of the model */
     int ranks;
     unsigned threads;                  /* of rank 0 */
     uint64_t workers;                  /* of all ranks together */

@@ -80,6 +80,40 @@ const char *model_integrator_name(enum model_integrator integrator)
     return names[integrator];
 }
 
+static bool has_material(const struct model_cloth *cloth, uint32_t material)
+{
+    bool found = cloth->material == material;
+    for (uint32_t i = 0; i < cloth->n_regions; i++)
+        found = found || cloth->region[i] == material;
+    return found;
+}
+
+/* Alike but for rounding, of cells that are at other places. */
+static double common(double a, double b)
+{
+    return fabs(a - b) <= 1e-9 * fabs(a) ? a : NAN;
+}
+
+struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
+{
+    const struct model_material *m = model->materials + material;
+    struct mesh_elastic all = {NAN, NAN, NAN, NAN};
+    uint32_t n = 0;
+    if (m->model == MODEL_TRIANGLES)
+        return (struct mesh_elastic){m->stretch, model_weft(m), m->shear, m->poisson};
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        if (!has_material(model->cloths + c, material))
+            continue;
+        const struct mesh_moduli moduli = model_moduli(m);
+        const struct mesh_elastic one = mesh_elastic_of(model_rest(model->cloths + c), &moduli);
+        if (!n++)
+            all = one;
+        all = (struct mesh_elastic){common(all.warp, one.warp), common(all.weft, one.weft),
+                                    common(all.shear, one.shear), common(all.poisson, one.poisson)};
+    }
+    return all;
+}
+
 int model_fail(const char *place, struct cloth_error *error, const char *format, ...)
 {
     char text[900];

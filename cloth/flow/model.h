@@ -2,6 +2,7 @@
 #define CLOTH_FLOW_MODEL_H
 
 #include "cloth/base/error.h"
+#include "cloth/mesh/elastic.h"
 #include "cloth/mesh/mesh.h"
 #include "cloth/physics/air.h"
 #include "cloth/physics/course.h"
@@ -314,6 +315,13 @@ static inline double model_weft(const struct model_material *material)
     return material->stretch + material->weft_excess;
 }
 
+/* The moduli of springs, without regions. */
+static inline struct mesh_moduli model_moduli(const struct model_material *m)
+{
+    return (struct mesh_moduli){m->stretch,        m->shear,       m->bend,
+                                m->both_diagonals, m->weft_excess, NULL};
+}
+
 /* The stiffness damping of what resists bending, s, >= 0. */
 static inline double model_damping_bending(const struct model_material *material)
 {
@@ -340,6 +348,12 @@ model_material(const struct model *model, const struct model_cloth *cloth, uint3
 {
     return model->materials + (i ? cloth->region[i - 1] : cloth->material);
 }
+
+/* The moduli that a material, by number, gives to the cloths that have it, for small strains.
+ * Triangles have their own in any mesh; springs have them from the cells of grids. NaN: none is
+ * known, since no cloth has the material, or a mesh that is no grid, or cloths whose cells make
+ * different ones. Before the meshes are freed. */
+struct mesh_elastic model_elastic(const struct model *model, uint32_t material);
 
 /* Whether a point is in the box between two corners, lower and upper, or on it. */
 static inline bool model_in_box(const double *x, const double box[2][3])

@@ -104,6 +104,84 @@ hanging() { # NAME MATERIAL
 ok "a strip of triangles that hangs" hanging triangles 'model: triangles, stretch: [400, 100], shear: 20'
 ok "a strip of springs that hangs: the modulus of the lattice" hanging springs 'stretch: [400, 100]'
 
+# ---- Sheets of springs: what is pulled and sheared has the moduli that the report says, which are those of docs/physics.md ----
+# 5 x 4 vertices in cells of A x B, free but for forces along its edges, half of an edge's on each end: uniform strain in any lattice.
+lattice() { # A B MATERIAL LOADS
+    cat << END
+schema: 1
+gravity: [0, 0, 0]
+cloths:
+  - mesh: {grid: {width: $(awk -v a="$1" 'BEGIN { print 4 * a }'), height: $(awk -v b="$2" 'BEGIN { print 3 * b }'), nx: 5, ny: 4}}
+    material: m
+    loads: [$4]
+materials:
+  m: {density: 0.2, $3, damping: {mass: 20}}
+time: {h: 0.05, end: 40, fps: 0.1}
+solver: {stop: {relative: 1.0e-10}}
+grain: 7
+probes: [{name: p, vertices: [0, 4, 15, 19], values: [position]}]
+END
+}
+along_z() { echo "{edges: [[$1, $(($1 + 5))], [$(($1 + 5)), $(($1 + 10))], [$(($1 + 10)), $(($1 + 15))]], force: $2}"; }
+along_x() { echo "{edges: [[$1, $(($1 + 1))], [$(($1 + 1)), $(($1 + 2))], [$(($1 + 2)), $(($1 + 3))], [$(($1 + 3)), $(($1 + 4))]], force: $2}"; }
+said() { sed -n "s/^ *\"material_m_$1\": *\([^,]*\).*/\1/p" report.json; }
+gives() { # WHAT KEY FOUND CLOSED-FORM: what the report says, and what the sheet does
+    near "$1, report" "$(said "$2")" "$4" 1e-12 && near "$1" "$3" "$4" 2e-4
+}
+strains() { # along x, along z, the angle
+    # shellcheck disable=SC2046
+    last p.0.x p.0.z p.4.x p.4.z p.15.x p.15.z p.19.x p.19.z |
+        awk -v OFMT=%.12g -v w="$(awk -v a="$1" 'BEGIN { print 4 * a }')" -v h="$(awk -v b="$2" 'BEGIN { print 3 * b }')" '{
+            print ($3 - $1 + $7 - $5) / 2 / w - 1, ($6 - $2 + $8 - $4) / 2 / h - 1, ($4 - $2 + $8 - $6) / 2 / w + ($5 - $1 + $7 - $3) / 2 / h }'
+}
+moduli() { # NAME A B MATERIAL E1 E2 G NU12: closed forms; 0.01 N/m on the edges
+    lattice "$2" "$3" "$4" "$(along_z 4 '[0.01, 0, 0]'), $(along_z 0 '[-0.01, 0, 0]')" > warp.yaml
+    run warp.yaml --report report.json || return 1
+    # shellcheck disable=SC2046
+    set -- "$@" $(strains "$2" "$3")
+    gives "$1, E of the warp" E_warp "$(awk -v e="$9" 'BEGIN { printf "%.12g", 0.01 / e }')" "$5" || return 1
+    narrows=$(awk -v x="$9" -v z="${10}" 'BEGIN { printf "%.12g", -z / x }')
+    below "$1, nu12 $8 but for" "$(awk -v a="$narrows" -v b="$8" -v c="$(said nu12)" 'BEGIN { a -= b; c -= b; print (a < 0 ? -a : a) + 1e6 * (c < 0 ? -c : c) }')" 1e-4 || return 1
+    lattice "$2" "$3" "$4" "$(along_x 15 '[0, 0, 0.01]'), $(along_x 0 '[0, 0, -0.01]')" > weft.yaml
+    run weft.yaml --report report.json || return 1
+    # shellcheck disable=SC2046
+    set -- "$1" "$2" "$3" "$4" "$5" "$6" "$7" "$8" $(strains "$2" "$3")
+    gives "$1, E of the weft" E_weft "$(awk -v e="${10}" 'BEGIN { printf "%.12g", 0.01 / e }')" "$6" || return 1
+    lattice "$2" "$3" "$4" "$(along_x 15 '[0.01, 0, 0]'), $(along_x 0 '[-0.01, 0, 0]'), $(along_z 4 '[0, 0, 0.01]'), $(along_z 0 '[0, 0, -0.01]')" > shear.yaml
+    run shear.yaml --report report.json || return 1
+    # shellcheck disable=SC2046
+    set -- "$1" "$2" "$3" "$4" "$5" "$6" "$7" "$8" $(strains "$2" "$3")
+    gives "$1, G" G "$(awk -v e="${11}" 'BEGIN { printf "%.12g", 0.01 / e }')" "$7"
+}
+value() { awk "BEGIN { printf \"%.17g\", $1 }"; }
+ok "both diagonals, shear half of stretch: isotropic" moduli "both diagonals" 0.1 0.1 'stretch: 900, shear: 450' 1200 1200 450 "$(value 1/3)"
+# C11 = ks + kd, C22 = kw + kd, C12 = G = kd
+ok "warp and weft" moduli "warp and weft" 0.1 0.1 'stretch: [900, 300], shear: 400' "$(value 1300-160000/700)" "$(value 700-160000/1300)" 400 "$(value 4/7)"
+# Cells of 0.1 x 0.2: C11 = 900 / 2 + 2 kd 0.1^3 / (0.2 * 0.05) = 530, C22 = 1200 + 2 kd 0.2^3 / (0.1 * 0.05) = 2480, C12 = 2 kd 0.02 / 0.05
+ok "cells that are not square" moduli "oblong cells" 0.1 0.2 'stretch: [900, 600], shear: 400' "$(value 530-320*320/2480)" "$(value 2480-320*320/530)" 320 "$(value 320/2480)"
+ok "one diagonal: 1 / G = 2 / kd + 2 / ks" moduli "one diagonal" 0.1 0.1 'stretch: 1000, shear: 400, diagonals: one' 1000 1000 "$(value 1000/7)" 0
+# 1 / G = (a^2 / 900 + b^2 / 600 + (a^2 + b^2) / kd) / (a b)
+ok "one, in cells that are not square" moduli "one diagonal, oblong" 0.1 0.2 'stretch: [900, 600], shear: 400, diagonals: one' 450 1200 \
+    "$(value '0.02/(0.01/900+0.04/600+0.05/400)')" 0
+ok "that of sheet.yaml" moduli "sheet.yaml" 0.1 0.1 'stretch: 5000, shear: 2500, diagonals: one' 5000 5000 "$(value 2500/3)" 0
+
+null() { # KEY...: what the report does not know
+    for key in "$@"; do test "$(said "$key")" = null || return 1; done
+}
+no_grid() {
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > one.obj
+    lattice 0.1 0.1 'stretch: 900' '' > other.yaml
+    run other.yaml --end 0.1 --report report.json --set 'probes=[]' --set 'cloths[0].mesh={file: one.obj}' && null E_warp E_weft G nu12
+}
+ok "springs of a mesh that is no grid: null" no_grid
+two_cells() { # the same material in cells of other sides; triangles do not mind
+    lattice 0.1 0.1 'stretch: 900' '' > other.yaml
+    set -- --end 0.1 --report report.json --set 'probes=[]' --set 'cloths[1]={mesh: {grid: {width: 1, height: 2, nx: 5, ny: 5}}, material: m}'
+    run other.yaml "$@" && null E_warp E_weft && run other.yaml "$@" --set materials.m.model=triangles --set materials.m.poisson=0.2 &&
+        near "triangles, report" "$(said E_weft)" 900 0 && near "triangles, nu12" "$(said nu12)" 0.2 0
+}
+ok "cloths of other cells: null" two_cells
+
 # ---- A clamped strip of rigidity D under its weight q, 0.5 m from the clamp: D theta'' = -q (L - s) cos theta ----
 # Hinges share the bending out to half an edge either way: the strip is free from half an edge behind its clamped rows on. Its
 # diagonals are mirrored at the middle: were they all alike, the strip would twist as it bends, and bend further. What either half

@@ -6,12 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static struct mesh_moduli moduli_of(const struct model_material *m)
-{
-    return (struct mesh_moduli){m->stretch,        m->shear,       m->bend,
-                                m->both_diagonals, m->weft_excess, NULL};
-}
-
 /* Those of the regions of a cloth, for its lattice. */
 static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_regions *regions,
                         struct cloth_error *error)
@@ -21,7 +15,7 @@ static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_re
     if (!moduli)
         return CLOTH_E_MEMORY;
     for (uint32_t i = 0; i < cloth->n_regions; i++)
-        moduli[i] = moduli_of(springs->model->materials + cloth->region[i]);
+        moduli[i] = model_moduli(springs->model->materials + cloth->region[i]);
     *regions = (struct mesh_regions){cloth->mask, moduli};
     return CLOTH_OK;
 }
@@ -29,7 +23,7 @@ static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_re
 static int make_cloth(struct flow_springs *springs, uint32_t c, struct cloth_error *error)
 {
     const struct model_cloth *cloth = springs->model->cloths + c;
-    struct mesh_moduli moduli = moduli_of(model_material(springs->model, cloth, 0));
+    struct mesh_moduli moduli = model_moduli(model_material(springs->model, cloth, 0));
     struct cloth_error inner = {0};
     if (flow_has_triangles(springs->model, cloth))
         return CLOTH_OK;

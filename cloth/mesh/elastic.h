@@ -1,0 +1,21 @@
+#ifndef CLOTH_MESH_ELASTIC_H
+#define CLOTH_MESH_ELASTIC_H
+
+#include "cloth/mesh/lattice.h"
+
+/* A membrane's moduli for small strains, along its threads: of a strip that is pulled with free
+ * sides, and of a sheet that is sheared by tangential loads with free sides. */
+struct mesh_elastic {
+    double warp, weft; /* Young's moduli E1, E2, N/m */
+    double shear;      /* G, N/m */
+    double poisson;    /* nu12: how much a pull along the warp narrows the weft; NaN: not defined */
+};
+
+/* Those of the springs that mesh_lattice_build gives a grid's inner vertices. Every vertex is a
+ * centre of inversion, so a uniform strain moves it as it moves the corners of the cells, and the
+ * sum over the springs of a cell is exact: C = sum of k l^2 t t t t / area, t the direction of a
+ * spring (Born & Huang 1954). Without bend springs a sheet of any size with free edges has these
+ * moduli. docs/physics.md has the closed forms. All NaN of a mesh that is no grid. Pure. */
+struct mesh_elastic mesh_elastic_of(const struct mesh *mesh, const struct mesh_moduli *moduli);
+
+#endif

@@ -36,9 +36,10 @@ while read -r fabric density warp weft; do
     weft "$fabric" > strip.yaml
     ok "$fabric along the weft" hangs "$fabric, weft" "$density" "$weft" 0 30 31 32
 done << 'END'
-cotton 0.276 130.3 85.7
+rib_knit 0.276 130.3 85.7
 silk 0.0347 2000 2000
 denim 0.324 2026.8 410.5
+polycotton 0.22 4069.9 4033.0
 END
 
 scene=$srcdir/cloth/scenes/fabrics.yaml
@@ -53,6 +54,10 @@ bare() { # no materials, no damping
     printf 'schema: 1\ncloths: [{mesh: {grid: {width: 1, height: 1, nx: 5, ny: 5}}, material: %s}]\ntime: {h: 0.01, end: 0.05}\n' "$1" > bare.yaml
     run bare.yaml
 }
-for fabric in cotton silk denim; do
+for fabric in rib_knit silk denim polycotton; do
     ok "a scene that says $fabric and no more" bare $fabric
 done
+cotton() { # is what the scene makes it, and no knit in disguise
+    ! bare cotton 2> said.err && cat said.err && grep -q "there is no material 'cotton'.*rib_knit, silk, denim, polycotton" said.err
+}
+ok "cotton is an error that lists the fabrics" cotton

@@ -344,7 +344,7 @@ static const struct scene_rule scene_keys[] = {
     {"cloths", SCENE_LIST, .required = true, .filled = true, .inside = &cloth,
      .about = "what moves"},
     {"materials", SCENE_NAMED, .inside = &material,
-     .about = "NAME is yours; cotton, silk and denim are there"},
+     .about = "NAME is yours; rib_knit, silk, denim and polycotton are there"},
     {"obstacles", SCENE_LIST, .fallback = "[]", .inside = &obstacle, .about = "what does not move"},
     {"contact", SCENE_CHOICE, .fallback = "project", .words = contacts,
      .about = "how obstacles are met"},

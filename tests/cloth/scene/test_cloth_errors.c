@@ -98,14 +98,16 @@ START_TEST(names_and_indices)
     EXPECT(
         {"material: cotton", "material: coton",
          .error = ":6:15: there is no material 'coton'; did you mean 'cotton'? Allowed: cotton, "
-                  "silk, denim"},
+                  "rib_knit, silk, denim, polycotton"},
         {"material: cotton", "material: polyester",
-         .error = ":6:15: there is no material 'polyester'; allowed: cotton, silk, denim"},
+         .error = ":6:15: there is no material 'polyester'; allowed: cotton, rib_knit, "
+                  "silk, denim, polycotton"},
         {"density: 0.2, ", "",
          .error = ":6:15: material 'cotton' has no density and the cloth no mass_per_vertex; one "
                   "of them is expected"},
         {"density: 0.2, stretch: 50", "like: wool",
-         .error = ":10:18: materials.cotton.like is wool; cotton or silk or denim is expected"},
+         .error = ":10:18: materials.cotton.like is wool; rib_knit or silk or denim or "
+                  "polycotton is expected"},
         {"materials:\n",
          "  - {name: sheet, mesh: {grid: {width: 1, height: 1, nx: 2, ny: 2}}, material: "
          "cotton}\nmaterials:\n",
@@ -204,7 +206,8 @@ END_TEST
 START_TEST(regions_that_cannot_be_made)
 {
     EXPECT({MORE("regions: [{vertices: [0, 1], material: wool}]"),
-            .error = ":7:44: there is no material 'wool'; allowed: cotton, silk, denim"},
+            .error = ":7:44: there is no material 'wool'; allowed: cotton, rib_knit, silk, denim, "
+                     "polycotton"},
            {MORE("regions: [{vertices: [0, 1]}]"),
             .error = ":7:15: cloths[0].regions[0].material is missing; a text is expected"},
            {MORE("regions: [{nearest: [0, 0, 0], material: cotton}]"),

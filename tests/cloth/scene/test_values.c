@@ -112,10 +112,13 @@ START_TEST(named_fabrics)
 {
     static const char *const sets[] = {
         "cloths[0].material=denim", "cloths[0].material=silk",
-        "materials={linen: {like: cotton, density: 0.1, bending: {rigidity: 1}}}",
-        "cloths[0].material=cotton"};
-    const struct scene_set set[] = {
-        {.text = sets[0]}, {.text = sets[1]}, {.text = sets[2]}, {.text = sets[3]}};
+        "materials={linen: {like: rib_knit, density: 0.1, bending: {rigidity: 1}}}",
+        "cloths[0].material=rib_knit", "materials={rib_knit: {density: 0.5, stretch: 1}}"};
+    const struct scene_set set[] = {{.text = sets[0]},
+                                    {.text = sets[1]},
+                                    {.text = sets[2]},
+                                    {.text = sets[3]},
+                                    {.text = sets[4]}};
     struct model model = scene_read_right(scene_right, 1, set);
     ck_assert_uint_eq(model.n_materials, 2);
     ck_assert_str_eq(model.materials[1].name, "denim");
@@ -131,9 +134,9 @@ START_TEST(named_fabrics)
     same_fabric(model.materials, 0.1, 130.3, 85.7, 83.2, 1);
     same_fabric(model.materials + 1, 0.276, 130.3, 85.7, 83.2, 9.04e-6);
     model_free(&model);
-    model = scene_read_right(scene_right, 1, set + 3); /* its own */
+    model = scene_read_right(scene_right, 2, set + 3); /* its own */
     ck_assert_uint_eq(model.n_materials, 1);
-    ck_assert_double_eq(model.materials[0].density, 0.2);
+    ck_assert_double_eq(model.materials[0].density, 0.5);
     model_free(&model);
 }
 END_TEST

@@ -280,7 +280,7 @@ static const struct argp ARGP = {
         "Simulates the cloths of a scene file. Run it under mpirun for several ranks; the "
         "result is the same, to the "
         "last bit.\v"
-        "Exit codes: 0 done (or stopped by SIGUSR1 after a whole frame), 1 the run failed or "
+        "Exit codes: 0 done (or stopped by SIGUSR1), 1 the run failed or "
         "its files could not be written, 2 the input or the command line is wrong, 3 another "
         "rank was lost, or MPI failed. Scene files are described in docs/scene.md and by --keys."};
 

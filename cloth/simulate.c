@@ -7,6 +7,7 @@
 #include <math.h>
 #include <mpi.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,14 +27,21 @@ struct run {
     struct flow_report report;
     struct mesh_elastic *elastic; /* rank 0: of each material */
     struct cloth_error untraced;  /* why the trace is not whole */
+    bool stopped_before;          /* asked to stop before it began */
 };
 
-static volatile sig_atomic_t stop_requested;
+static atomic_int stop_requested; /* read by all threads, written by the signal's handler */
 
 static void request_stop(int signal)
 {
     (void)signal;
-    stop_requested = 1;
+    atomic_store_explicit(&stop_requested, 1, memory_order_relaxed);
+}
+
+static int stop_wanted(void *context)
+{
+    (void)context;
+    return atomic_load_explicit(&stop_requested, memory_order_relaxed);
 }
 
 void simulate_catch_signals(void)
@@ -170,12 +178,13 @@ static int find_elastic(struct run *run, struct cloth_error *error)
     return CLOTH_OK;
 }
 
-/* Rank 0 reads the scene and cuts it into blocks; the others are sent their blocks by the run. */
+/* Rank 0 reads the scene and cuts it into blocks, unless it is asked to stop; the others are sent
+ * their blocks by the run. */
 static int read_and_cut(struct run *run, struct cloth_error *error)
 {
     const struct simulate_options *options = run->options;
     int code = scene_read(&run->model, options->scene, options->n_sets, options->sets, error);
-    if (!code)
+    if (!code && !stop_wanted(NULL))
         code = flow_prepare(&run->flow, &run->model, run->ranks, error);
     if (!code)
         code = find_elastic(run, error);
@@ -184,6 +193,18 @@ static int read_and_cut(struct run *run, struct cloth_error *error)
     if (!code && options->trace)
         code = check_file(options, "--trace (or DUITE_TRACE)", options->trace, error);
     return code;
+}
+
+/* Whether any rank was asked to stop before the run begins. Collective; the same on all ranks. */
+static bool check_stop(struct run *run)
+{
+    int wanted = stop_wanted(NULL);
+    MPI_Allreduce(MPI_IN_PLACE, &wanted, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    run->stopped_before = wanted;
+    if (wanted && run->rank == 0)
+        fprintf(stderr, "duite-cloth: stopped as asked by SIGUSR1 before the first step; nothing "
+                        "was written\n");
+    return wanted;
 }
 
 /* All that can be wrong with the input, then the folder of frames. */
@@ -198,7 +219,7 @@ static int prepare(struct run *run)
     else
         flow_join(&run->flow, &error);
     const int code = agree(run, &error);
-    if (code)
+    if (code || check_stop(run))
         return code;
     const char *warning;
     for (size_t i = 0; run->rank == 0 && (warning = flow_warning(run->flow, i)); i++)
@@ -226,12 +247,6 @@ static void show_step(void *context, uint64_t step, uint64_t steps, uint64_t cg_
     struct run *run = context;
     if (!run->options->quiet)
         summary_progress_step(&run->progress, step, steps, cg_iterations);
-}
-
-static int stop_wanted(void *context)
-{
-    (void)context;
-    return stop_requested;
 }
 
 static int runtime_fails(struct cloth_error *error, int code)
@@ -368,7 +383,9 @@ int simulate(const struct simulate_options *options)
     int failure = prepare(&run);
     if (failure == CLOTH_E_MEMORY || failure == CLOTH_E_LIBRARY || failure == CLOTH_E_IO)
         code = SIMULATE_FAILED;
-    if (!failure) {
+    if (!failure && run.stopped_before)
+        code = SIMULATE_OK;
+    else if (!failure) {
         failure = execute(&run);
         if (!failure)
             failure = conclude(&run);

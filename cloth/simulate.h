@@ -28,8 +28,9 @@ struct simulate_options {
 /* Exit codes of the program. After SIMULATE_LOST MPI may not be called any more. */
 enum { SIMULATE_OK = 0, SIMULATE_FAILED = 1, SIMULATE_BAD_INPUT = 2, SIMULATE_LOST = 3 };
 
-/* From now on SIGUSR1 asks a run to finish its frame and stop, and SIGXFSZ is an error of the
- * write, instead of ending the process. Local. */
+/* From now on SIGUSR1, on any rank, asks a run to finish its step, to write a frame of the state
+ * after it and to stop, or not to begin; and SIGXFSZ is an error of the write, instead of ending
+ * the process. Local. */
 void simulate_catch_signals(void);
 
 /* Reads, runs, reports. Every input error is found before anything is written, and printed by one

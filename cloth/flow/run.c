@@ -313,7 +313,6 @@ int flow_run_begin(struct flow_state *state)
     flow->output = state->output;
     flow->frames = 0;
     flow->hash = 0;
-    atomic_store(&flow->stop, 0);
     int code = flow_share_head(state);
     if (code)
         return code;
@@ -333,7 +332,7 @@ int flow_run_begin(struct flow_state *state)
     return code;
 }
 
-/* All steps, or until a stop that was asked for has had its frame. */
+/* All steps, or until a stop that was asked for. */
 static int run_steps(struct flow_state *state)
 {
     const bool implicit = model_is_implicit(state->flow->model);
@@ -404,13 +403,10 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
              const struct flow_progress *progress, struct flow_report *report,
              struct cloth_error *error)
 {
-    struct flow_state state = {.flow = flow,
-                               .rt = rt,
-                               .output = output,
-                               .progress = progress,
-                               .report = report,
-                               .error = error};
+    struct flow_state state = {
+        .flow = flow, .rt = rt, .output = output, .report = report, .error = error};
     *report = (struct flow_report){0};
+    flow->progress = progress;
     int code = flow_run_begin(&state);
     const double start = flow_now();
     if (!code)
@@ -434,5 +430,6 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
         report->momentum_lost = report->mass_norm_error = NAN;
     flow_memory_free(&state);
     flow->output = NULL;
+    flow->progress = NULL;
     return failed;
 }

@@ -72,8 +72,8 @@ struct flow_output {
     int (*system)(void *context, const struct solve_system *system, struct cloth_error *error);
 };
 
-/* What a run says while it goes on; called by the main thread of rank 0 after each step, when the
- * next one is under way. May be NULL. */
+/* What a run says while it goes on; `step` is called by the main thread of rank 0 after each step,
+ * when the next one is under way. May be NULL. */
 struct flow_progress {
     void *context;
     /* The meshes of the model are not read any more: all blocks have their tables. Called once,
@@ -82,8 +82,9 @@ struct flow_progress {
     /* step: how many of the steps of length h are over, or begun; after each shorter step, too.
      * cg_iterations: of this step. */
     void (*step)(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations);
-    /* Nonzero asks the run to finish its frame and stop. Asked on rank 0 after each step. May be
-     * NULL. */
+    /* Nonzero, on any rank, asks the run to finish the steps that have begun, to show the state
+     * after them in a frame, and to stop. Asked in each step, on every rank, from tasks
+     * of several threads at once. May be NULL. */
     int (*stop)(void *context);
 };
 

@@ -258,27 +258,3 @@ ok "a ratio of springs" idle "poisson is of triangles" scene.yaml --set material
 ok "forces of springs" idle "forces is of triangles" scene.yaml --set materials.cotton.forces=uncorrected
 ok "bend of triangles" idle "bend is of springs" scene.yaml --set materials.cotton.model=triangles --set materials.cotton.bend=1
 ok "shear of a mesh without rows" idle "shear is of the springs of grids" scene.yaml --set "$one" --set 'cloths[0].pins=[]' --set materials.cotton.shear=1
-stopped() { # COMMAND...: SIGUSR1 after the first frames; status 0, a sentence, whole files
-    rm -rf frames
-    "$@" scene.yaml --end 100000 --grain 20 --output frames > printed 2> complained &
-    job=$!
-    for _ in $(seq 300); do
-        test "$(wc -l < frames/frames.csv 2> /dev/null || echo 0)" -lt 3 || break
-        sleep 0.1
-    done
-    kill -USR1 $job
-    for _ in $(seq 300); do
-        kill -0 $job 2> /dev/null || break
-        sleep 0.1
-    done
-    kill -KILL $job 2> /dev/null
-    status=0
-    wait $job || status=$?
-    echo "exit status $status"
-    cat complained
-    frame=$(sed -n 's/^duite-cloth: stopped as asked by SIGUSR1 .*; the last frame is \([0-9]*\)$/\1/p' complained)
-    test $status = 0 && test -n "$frame" && test "$(tail -n 1 frames/frames.csv | cut -d , -f 1)" = "$frame" &&
-        test "$(wc -c < frames/cloth.pc2)" -eq $((32 + 12 * 64 * (frame + 1)))
-}
-ok "SIGUSR1 finishes the frame" stopped "$DUITE_CLOTH"
-ok "SIGUSR1 finishes the frame, 2 ranks" stopped "${MPIRUN:-mpirun}" --oversubscribe --bind-to none -n 2 "$DUITE_CLOTH"

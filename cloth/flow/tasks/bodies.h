@@ -39,8 +39,12 @@ static inline struct flow_table flow_table_of(const duite_call *call)
     return table;
 }
 
+/* Notes in the status, parameter i, that this rank is asked to stop, if it is. */
+void flow_note_stop(const duite_call *call, size_t i);
+
 /* Fails if a row diverged, naming it by the input's number, or, where the step can be made anew,
- * notes it in the status, parameter i. what: "position" or "velocity". */
+ * notes it in the status, parameter i. Notes there, too, that a stop is asked for. what: "position"
+ * or "velocity". */
 int flow_check(const duite_call *call, const struct flow_table *table, const phys_vec *y,
                const char *what, size_t i);
 

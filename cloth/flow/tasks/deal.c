@@ -299,8 +299,9 @@ static void forget_source(struct flow_state *state)
     flow->watched = flow->source.watched;
     flow->source.watched = (struct flow_watched){0};
     flow_source_free(&flow->source);
-    if (state->progress && state->progress->dealt)
-        state->progress->dealt(state->progress->context);
+    const struct flow_progress *progress = state->flow->progress;
+    if (progress && progress->dealt)
+        progress->dealt(progress->context);
 }
 
 int flow_deal(struct flow_state *state)

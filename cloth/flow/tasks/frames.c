@@ -1,6 +1,7 @@
 /* Frame k shows the state after the step whose end is nearest to k / fps. Where steps may be
  * shorter than h it is known only when the step beyond k / fps is accepted: then either this step's
- * end or its begin, which is kept, is shown. The frame before must have been written by then. */
+ * end or its begin, which is kept, is shown. The frame before must have been written by then. The
+ * last frame of a run that is stopped shows the state that the run ends with, whenever that is. */
 #include "cloth/flow/tasks/tasks.h"
 
 #include <math.h>
@@ -16,6 +17,7 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
     int64_t token;
     const struct flow_args args = {.frame = state->next_frame++,
                                    .time = tick * state->flow->model->h / FLOW_TICKS};
+    state->shown = tick;
     if (!flow_shows(state)) /* only counted */
         return DUITE_OK;
     if (args.frame > 0) {
@@ -28,6 +30,12 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
     for (uint32_t b = 0; b < n; b++)
         state->refs[1 + b] = kept ? state->block[b].kept_x : state->block[b].x;
     return duite_fork_at(state->rt, 0, &flow_frame, &args, 1 + (size_t)n, state->refs);
+}
+
+int flow_frame_last(struct flow_state *state)
+{
+    const double now = (double)state->grid.now;
+    return state->shown < now ? fork_frame(state, now, false) : DUITE_OK;
 }
 
 int flow_frames(struct flow_state *state, uint64_t from)

@@ -70,7 +70,7 @@ extern const duite_kernel flow_collide;  /* table, rw x, rw v, w rim of x, w rim
 extern const duite_kernel flow_touch;    /* table, r x, rw v, w rim of v */
 extern const duite_kernel flow_keep;     /* r x, r v, w kept x, w kept v */
 extern const duite_kernel flow_restore;  /* table, r kept x, r kept v, w x, w v, w rims of both */
-extern const duite_kernel flow_status;   /* cw status: on rank 0, whether a stop was asked for */
+extern const duite_kernel flow_status;   /* cw status: whether its rank is asked to stop */
 extern const duite_kernel flow_frame;    /* rw token; x of all blocks: on rank 0 */
 extern const duite_kernel flow_drive;    /* table, r x, rw v, w rim of v */
 extern const duite_kernel flow_place;    /* table, rw x, w rim of x */

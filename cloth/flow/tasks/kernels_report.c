@@ -4,8 +4,7 @@
 
 static int status(const duite_call *call)
 {
-    if (atomic_load_explicit(&flow_of(call)->stop, memory_order_relaxed))
-        duite_out(call, 0, double)[FLOW_STOP] = 1;
+    flow_note_stop(call, 0);
     return 0;
 }
 const duite_kernel flow_status = {

@@ -9,11 +9,19 @@
 
 #define ARGS sizeof(struct flow_args)
 
+void flow_note_stop(const duite_call *call, size_t i)
+{
+    const struct flow_progress *progress = flow_of(call)->progress;
+    if (progress && progress->stop && progress->stop(progress->context))
+        duite_out(call, i, double)[FLOW_STOP] = 1;
+}
+
 int flow_check(const duite_call *call, const struct flow_table *t, const phys_vec *y,
                const char *what, size_t i)
 {
     const size_t bad = phys_diverged(t->n, FLOW_BOUND, y);
     const struct flow_args *args = flow_args_of(call);
+    flow_note_stop(call, i);
     if (bad < t->n)
         duite_out(call, i, double)[FLOW_WRONG] = 1;
     if (bad == t->n || !args->last)

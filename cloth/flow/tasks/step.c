@@ -153,8 +153,8 @@ static int end_step(struct flow_state *state)
         code = flow_watch(state);
     if (!code)
         code = flow_energy_fork(state);
-    if (!code)
-        code = duite_fork_at(state->rt, 0, &flow_status, &args, 1, &status);
+    for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++) /* also of no block */
+        code = duite_fork_at(state->rt, rank, &flow_status, &args, 1, &status);
     state->attempt.forked = !code;
     return code;
 }
@@ -169,17 +169,14 @@ int flow_step(struct flow_state *state)
 
 /* ---- Judging it ---- */
 
-/* Shows a finished step to the program and asks it whether to go on; on rank 0. */
+/* Shows a finished step to the program; on rank 0. */
 static void tell_progress(struct flow_state *state, uint64_t iterations)
 {
-    const struct flow_progress *progress = state->progress;
-    if (!progress || duite_rank(state->rt))
+    const struct flow_progress *progress = state->flow->progress;
+    if (!progress || !progress->step || duite_rank(state->rt))
         return;
     const uint64_t step = (state->grid.now + FLOW_TICKS - 1) / FLOW_TICKS;
-    if (progress->step)
-        progress->step(progress->context, step, state->flow->n_steps, iterations);
-    if (progress->stop && progress->stop(progress->context))
-        atomic_store_explicit(&state->flow->stop, 1, memory_order_relaxed);
+    progress->step(progress->context, step, state->flow->n_steps, iterations);
 }
 
 /* Adds an accepted step to the report. */
@@ -355,6 +352,13 @@ static int watch_start(struct flow_state *state)
     return code ? code : flow_watched(state);
 }
 
+/* Before the end, where it was asked for. */
+static int stop(struct flow_state *state)
+{
+    state->report->stopped = true;
+    return flow_frame_last(state);
+}
+
 int flow_steps(struct flow_state *state)
 {
     flow_grid_begin(&state->grid, state->flow->n_steps);
@@ -371,10 +375,11 @@ int flow_steps(struct flow_state *state)
         code = settle_beside(state, &begun);
         if (!code && begun)
             code = end_step(state);
-        else if (!code && (state->stopping || state->resting) && state->next_frame > frame &&
-                 state->grid.now < state->grid.end) {
-            state->report->stopped = !state->resting;
-            break;
+        else if (!code && state->grid.now < state->grid.end) {
+            if (state->stopping)
+                return stop(state);
+            if (state->resting && state->next_frame > frame)
+                break;
         }
     }
     return code;

@@ -83,6 +83,7 @@ struct flow {
     struct flow_filter filter; /* the program's; rows NULL: none */
 
     /* Of the run that is on. */
+    const struct flow_progress *progress; /* tasks ask it whether to stop; NULL: nobody is asked */
     unsigned n_clocks;
     struct flow_clock *clock; /* a worker */
     struct phys_pair *sums;   /* a worker, most_entries: room for a matrix while it is assembled in
@@ -104,7 +105,6 @@ struct flow {
     uint32_t *beside;             /* of all patches, patch after patch, ascending in each */
     struct cloth_error trouble;   /* of this rank: why it cannot begin, why a frame was not written;
                                    * changed by the main thread when no task runs, and by `frame` */
-    atomic_int stop;              /* set by the main thread, read by the task `status` */
     /* On rank 0: written by the tasks `frame`, one at a time, and by the main thread when no task
      * runs. */
     const struct flow_output *output;
@@ -230,7 +230,6 @@ struct flow_state {
     struct flow *flow;
     duite *rt;
     const struct flow_output *output;
-    const struct flow_progress *progress;
     struct flow_report *report;
     struct cloth_error *error;
     struct flow_objects *block;
@@ -262,9 +261,10 @@ struct flow_state {
     struct flow_guard guard;
     char reason[600]; /* why no step is short enough */
     uint64_t next_frame;
+    double shown;  /* tick of the last frame */
     bool begun;    /* all ranks have their memory, objects are made */
-    bool stopping; /* a stop was agreed: ends after the next frame */
-    bool resting;  /* it rests: the same */
+    bool stopping; /* a stop was agreed: no more steps begin */
+    bool resting;  /* it rests: ends after the next frame */
     double moved;  /* s: when it was last seen too fast for that */
 };
 
@@ -434,6 +434,8 @@ double flow_frame_tick(const struct model *model, uint64_t frame);
 /* Forks the frames whose nearest end of a step is known: the last step, accepted, went from tick
  * `from` to grid.now. */
 int flow_frames(struct flow_state *state, uint64_t from);
+/* Forks a frame of the state at grid.now, where the run ends, unless the last frame shows it. */
+int flow_frame_last(struct flow_state *state);
 
 /* Forks what hands the system of the last step to the program. */
 int flow_system(struct flow_state *state);

@@ -36,9 +36,9 @@ struct record {
     struct cloth_error error;
     struct flow_report report;
     size_t vertices, frames;
-    double *position; /* frames x vertices x 3 */
-    double *time;     /* frames */
-    uint64_t shown;   /* steps that the progress was told of */
+    double *position;       /* frames x vertices x 3 */
+    double *time;           /* frames */
+    _Atomic uint64_t shown; /* steps that the progress was told of; tasks read it */
     /* Set before the run: */
     uint64_t stop_after;       /* asks for a stop once so many steps were shown; 0: never */
     uint64_t break_frame;      /* writing this frame fails; 0: none */

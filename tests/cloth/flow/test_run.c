@@ -141,20 +141,23 @@ START_TEST(absolute_tolerance)
 }
 END_TEST
 
-/* Asked for after step 1, the stop comes with the next frame; frames are 5 steps apart. */
-START_TEST(stop_finishes_the_frame)
+/* Asked for after step 1, when step 2 has begun, the stop is noted at the end of step 2; step 3 has
+ * begun by then. Frames are 1000 steps apart: the last one shows where the run stops. */
+START_TEST(stop_finishes_the_step)
 {
     struct setup setup;
     struct record record = {.stop_after = 1};
     setup_sheet(&setup, 6);
-    setup.model.fps = 200;
-    setup.model.end = 0.1;
+    setup.model.fps = 1;
+    setup.model.end = 1;
     record_run(&record, &setup.model);
     ck_assert_msg(record.code == 0, "%s", record.error.text);
     ck_assert(record.report.stopped);
-    ck_assert_uint_eq(record.report.steps, 5);
-    ck_assert_uint_eq(record.frames, record.report.steps / 5 + 1);
-    ck_assert_uint_eq(record.report.last_frame, record.frames - 1);
+    ck_assert_uint_eq(record.report.steps, 3);
+    ck_assert_uint_eq(record.frames, 2);
+    ck_assert_uint_eq(record.report.last_frame, 1);
+    ck_assert_double_eq(record.time[1], 3 * setup.model.h);
+    ck_assert_double_eq(record.report.simulated_seconds, record.time[1]);
     record_free(&record);
     setup_free(&setup);
 }
@@ -299,7 +302,7 @@ int main(void)
     tcase_add_test(cases, count_makes_exactly_so_many_iterations);
     tcase_add_test(cases, nothing_to_do);
     tcase_add_test(cases, absolute_tolerance);
-    tcase_add_test(cases, stop_finishes_the_frame);
+    tcase_add_test(cases, stop_finishes_the_step);
     tcase_add_test(cases, unused_vertices_stay);
     tcase_add_test(cases, two_cloths);
     tcase_add_test(cases, threads_and_schedulers_change_no_bit);

@@ -21,7 +21,8 @@ struct run {
     unsigned threads;
     struct model model;
     struct flow *flow;
-    struct output_frames *frames; /* rank 0, when frames are wanted */
+    struct output_lock *locks[2]; /* rank 0: of the folders of frames and of the system */
+    struct output_frames *frames; /* then, when frames are wanted */
     struct output_probes *probes; /* then, if the scene has any */
     struct summary_progress progress;
     struct flow_report report;
@@ -85,7 +86,17 @@ static int check_file(const struct simulate_options *options, const char *option
     return code ? cloth_fail(error, code, "%s %s: %s", option, path, inner.text) : code;
 }
 
-static int open_system(const struct run *run, struct cloth_error *error)
+/* Another run may write into the same folder. */
+static int lock_folder(struct output_lock **lock, const char *folder, struct cloth_error *error)
+{
+    struct cloth_error note = {0};
+    const int code = output_lock_take(lock, folder, &note, error);
+    if (note.code)
+        fprintf(stderr, "duite-cloth: warning: %s\n", note.text);
+    return code;
+}
+
+static int open_system(struct run *run, struct cloth_error *error)
 {
     const struct model *model = &run->model;
     if (!model_is_implicit(model))
@@ -103,7 +114,7 @@ static int open_system(const struct run *run, struct cloth_error *error)
     if (model->end / model->h + 0.5 < 1)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "--save-system: the scene ends before its first step");
-    return output_system_open(run->options->save_system, error);
+    return lock_folder(run->locks + 1, run->options->save_system, error);
 }
 
 /* In the folder of frames, which is there. */
@@ -117,6 +128,8 @@ static int open_probes(struct run *run, struct cloth_error *error)
 static int open_output(struct run *run, struct cloth_error *error)
 {
     const struct model *model = &run->model;
+    if (lock_folder(run->locks, run->options->output, error))
+        return error->code;
     const struct mesh **meshes = calloc(model->n_cloths, sizeof *meshes);
     const char **names = calloc(model->n_cloths, sizeof *names);
     double(*planes)[6] = calloc(model->n_planes + 1, sizeof *planes);
@@ -394,6 +407,8 @@ int simulate(const struct simulate_options *options)
     struct cloth_error ignored = {0};
     output_probes_close(&run.probes, &ignored);
     output_close(&run.frames, &ignored);
+    output_lock_free(run.locks);
+    output_lock_free(run.locks + 1);
     flow_free(run.flow);
     free(run.elastic);
     model_free(&run.model);

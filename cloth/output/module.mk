@@ -1,6 +1,7 @@
 libduite_cloth_la_SOURCES += \
 	cloth/output/output.h \
 	cloth/output/frames.c \
+	cloth/output/lock.c \
 	cloth/output/probes.c \
 	cloth/output/cache.c \
 	cloth/output/report.c \

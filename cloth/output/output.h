@@ -43,6 +43,21 @@ int output_frame(void *context, uint64_t frame, double time, const double *posit
 /* Closes; *frames becomes NULL. */
 int output_close(struct output_frames **frames, struct cloth_error *error);
 
+/* A folder's lock: DIR/duite.lock, which names the host and the process of the run that writes into
+ * the folder. Local functions, on rank 0. */
+struct output_lock;
+
+/* Takes the lock, before anything else in the folder is touched; the folder is made if missing. A
+ * lock of a process of this host that runs no more is replaced; then `note` says so (CLOTH_E_IO).
+ * One process may take a folder twice. From the first lock on SIGTERM, SIGINT and SIGHUP remove the
+ * locks before they end the process. Errors: CLOTH_E_INPUT where another run has the folder, as
+ * the lock names it and the sentence does; else as of output_open. */
+int output_lock_take(struct output_lock **lock, const char *folder, struct cloth_error *note,
+                     struct cloth_error *error);
+
+/* Removes it, if it is still that of this process; *lock becomes NULL. */
+void output_lock_free(struct output_lock **lock);
+
 /* The table of probes, DIR/probes.csv: a header, then a row a step, written when the step is done:
  * a run that is killed leaves the rows so far. Local functions, on rank 0. */
 struct output_probes;
@@ -79,11 +94,8 @@ int output_cache_frame(struct output_cache *cache, uint64_t frame, double *posit
                        struct cloth_error *error);
 void output_cache_close(struct output_cache *cache);
 
-/* Makes the folder of a system before the run that it is of. Errors as of output_open. Local. */
-int output_system_open(const char *folder, struct cloth_error *error);
-
 /* Writes a system for other solvers, in Matrix Market form (Boisvert, Pozo & Remington 1996), into
- * a folder that is there: matrix.mtx (S A S + I - S: symmetric, its lower triangle, one entry a
+ * a folder that is there (output_lock_take): matrix.mtx (S A S + I - S: symmetric, its lower triangle, one entry a
  * place, column by column), and as arrays rhs.mtx (S b), solution.mtx (dv), mass.mtx (of each
  * unknown; 0 where held), position.mtx (after the step). Unknown 3 i + c is component c of vertex
  * i, both from 0. Files of these names are replaced. Errors as of output_open. Local. */

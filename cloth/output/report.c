@@ -64,12 +64,13 @@ static int fill_report(FILE *file, const void *what)
     return ferror(file);
 }
 
-/* Beside its final name, then renamed, so that the path never holds half a report. */
+/* Beside its final name, then renamed, so that the path never holds half a report, or parts of two
+ * runs'. */
 static int write_renamed(const struct output_report *report, const char *path,
                          struct cloth_error *error)
 {
     char *part = NULL;
-    if (asprintf(&part, "%s.part", path) < 0)
+    if (asprintf(&part, "%s.%ld.part", path, (long)getpid()) < 0)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory to write %s", path);
     int code = output_write_file(part, fill_report, report, error);
     if (!code && rename(part, path) != 0) {

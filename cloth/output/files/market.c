@@ -159,11 +159,6 @@ static int write(const char *folder, const char *name, int (*fill)(FILE *file, c
     return code;
 }
 
-int output_system_open(const char *folder, struct cloth_error *error)
-{
-    return output_make_folder(folder, error);
-}
-
 int output_system(const char *folder, const struct solve_system *s, struct cloth_error *error)
 {
     struct sums sums;

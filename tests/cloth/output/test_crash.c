@@ -206,9 +206,9 @@ END_TEST
 
 START_TEST(report_is_whole_or_not_at_all)
 {
-    char path[96], part[112], text[64];
+    char path[96], part[144], text[64];
     snprintf(path, sizeof path, "%s/report.json", sample.folder);
-    snprintf(part, sizeof part, "%s.part", path);
+    snprintf(part, sizeof part, "%s.%ld.part", path, (long)getpid());
     int through = 0;
     for (long n = 0; !through; n++) {
         ck_assert_int_lt(n, 50);

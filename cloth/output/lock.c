@@ -1,0 +1,242 @@
+/* A lock is a file that its run alone made: O_EXCL holds on network file systems, too, where locks
+ * of files often fail. Only one process at a time may judge a lock to be stale and replace it: the
+ * one that made the file *.take. A lock that is not empty names its host and process. */
+#include "cloth/output/files/files.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct output_lock {
+    char *path, *take; /* the lock, and the file that lets its maker replace it */
+    size_t number;     /* of `held` */
+};
+
+struct holder {
+    char host[HOST_NAME_MAX + 1];
+    long process; /* 0: the lock names none */
+};
+
+enum { MOST = 4 };
+static char *_Atomic held[MOST]; /* paths of the locks of this process, for the signal handler */
+
+/* ---- Signals ---- */
+
+/* Ends the process as the signal would have without a handler. */
+static void end_by(int number)
+{
+    for (int i = 0; i < MOST; i++)
+        if (held[i])
+            unlink(held[i]);
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+/* A signal that is ignored, as by nohup, stays so. */
+static void catch_ends(void)
+{
+    static const int numbers[] = {SIGTERM, SIGINT, SIGHUP};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction before, action = {.sa_handler = end_by, .sa_flags = SA_RESTART};
+        sigemptyset(&action.sa_mask);
+        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler == SIG_DFL)
+            sigaction(numbers[i], &action, NULL);
+    }
+}
+
+/* ---- Who holds a lock ---- */
+
+static struct holder this_process(void)
+{
+    struct holder self = {.process = (long)getpid()};
+    if (gethostname(self.host, sizeof self.host - 1) != 0)
+        strcpy(self.host, "unknown");
+    return self;
+}
+
+/* Returns false where there is no lock. */
+static bool read_holder(const char *path, struct holder *holder)
+{
+    char text[HOST_NAME_MAX + 64] = "", format[64];
+    *holder = (struct holder){.process = 0};
+    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+        return errno != ENOENT;
+    const ssize_t n = read(file, text, sizeof text - 1);
+    close(file);
+    snprintf(format, sizeof format, "host %%%ds process %%ld", HOST_NAME_MAX);
+    if (n <= 0 || sscanf(text, format, holder->host, &holder->process) != 2 || holder->process <= 0)
+        holder->process = 0;
+    return true;
+}
+
+static bool is_same(const struct holder *a, const struct holder *b)
+{
+    return a->process == b->process && !strcmp(a->host, b->host);
+}
+
+/* Not of an earlier process with the same number. */
+static bool is_ours(const struct holder *holder)
+{
+    const struct holder self = this_process();
+    bool holds = false;
+    for (int i = 0; i < MOST; i++)
+        holds = holds || held[i];
+    return holds && is_same(holder, &self);
+}
+
+static bool is_stale(const struct holder *holder)
+{
+    const struct holder self = this_process();
+    if (!holder->process || strcmp(holder->host, self.host) != 0)
+        return false;
+    return is_same(holder, &self) || (kill((pid_t)holder->process, 0) != 0 && errno == ESRCH);
+}
+
+/* ---- Taking one ---- */
+
+static int write_lock(const char *path)
+{
+    char text[HOST_NAME_MAX + 64];
+    const struct holder self = this_process();
+    const int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0)
+        return -1;
+    const int n = snprintf(text, sizeof text, "host %s\nprocess %ld\n", self.host, self.process);
+    int bad = output_write_at(file, text, (size_t)n, 0) != 0 || output_sync(file) != 0;
+    int reason = errno;
+    if (close(file) != 0 && !bad) {
+        bad = 1;
+        reason = errno;
+    }
+    if (!bad)
+        return 0;
+    unlink(path);
+    errno = reason == EEXIST ? EIO : reason;
+    return -1;
+}
+
+static int refuse(const char *folder, const char *path, const struct holder *holder,
+                  struct cloth_error *error)
+{
+    if (!holder->process)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s: another run writes into this folder, or died as it began to: %s "
+                          "names no process; give another folder, or, if no run uses this one, "
+                          "remove that file",
+                          folder, path);
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "%s: another run writes into this folder, process %ld on host %s; give "
+                      "another folder, or wait for the end of that run; if it has died, remove %s",
+                      folder, holder->process, holder->host, path);
+}
+
+/* While `take` is ours no other process replaces the lock. */
+static int replace(const struct output_lock *lock, const char *folder, struct cloth_error *note,
+                   struct cloth_error *error)
+{
+    struct holder holder;
+    if (read_holder(lock->path, &holder)) {
+        if (!is_stale(&holder))
+            return refuse(folder, lock->path, &holder, error);
+        cloth_fail(note, CLOTH_E_IO,
+                   "%s: process %ld of this host left %s and runs no more; this run has the "
+                   "folder now",
+                   folder, holder.process, lock->path);
+        if (unlink(lock->path) != 0)
+            return output_refuse(error, "remove", lock->path);
+    }
+    if (write_lock(lock->path) == 0)
+        return CLOTH_OK;
+    return errno == EEXIST ? refuse(folder, lock->path, &(struct holder){.process = 0}, error)
+                           : output_refuse(error, "write", lock->path);
+}
+
+static int take(const struct output_lock *lock, const char *folder, struct cloth_error *note,
+                struct cloth_error *error)
+{
+    struct holder holder;
+    if (write_lock(lock->path) == 0)
+        return CLOTH_OK;
+    if (errno != EEXIST)
+        return output_refuse(error, "write", lock->path);
+    const bool locked = read_holder(lock->path, &holder);
+    if (locked && is_ours(&holder))
+        return CLOTH_OK;
+    if (locked && !is_stale(&holder))
+        return refuse(folder, lock->path, &holder, error);
+    if (write_lock(lock->take) != 0) {
+        read_holder(lock->take, &holder);
+        return errno == EEXIST ? refuse(folder, lock->take, &holder, error)
+                               : output_refuse(error, "write", lock->take);
+    }
+    const int code = replace(lock, folder, note, error);
+    unlink(lock->take);
+    return code;
+}
+
+/* ---- For the run ---- */
+
+static int make(struct output_lock *lock, const char *folder, struct cloth_error *error)
+{
+    lock->path = output_path(folder, "duite.lock", "");
+    lock->take = output_path(folder, "duite.lock", ".take");
+    if (lock->path && lock->take)
+        return output_make_folder(folder, error);
+    return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the lock of %s", folder);
+}
+
+static void free_lock(struct output_lock *lock)
+{
+    free(lock->path);
+    free(lock->take);
+    free(lock);
+}
+
+/* Where it is not noted a signal leaves the lock, as SIGKILL does. */
+static void note_held(struct output_lock *lock)
+{
+    for (lock->number = 0; lock->number < MOST && held[lock->number];)
+        lock->number++;
+    if (lock->number < MOST)
+        held[lock->number] = lock->path;
+}
+
+int output_lock_take(struct output_lock **lock, const char *folder, struct cloth_error *note,
+                     struct cloth_error *error)
+{
+    *lock = NULL;
+    struct output_lock *made = calloc(1, sizeof *made);
+    if (!made)
+        return cloth_fail(error, CLOTH_E_MEMORY, "no memory for the lock of %s", folder);
+    catch_ends();
+    int code = make(made, folder, error);
+    code = code ? code : take(made, folder, note, error);
+    if (code) {
+        free_lock(made);
+        return code;
+    }
+    note_held(made);
+    *lock = made;
+    return CLOTH_OK;
+}
+
+void output_lock_free(struct output_lock **lock)
+{
+    struct output_lock *gone = *lock;
+    struct holder holder;
+    const struct holder self = this_process();
+    *lock = NULL;
+    if (!gone)
+        return;
+    if (gone->number < MOST)
+        held[gone->number] = NULL;
+    if (read_holder(gone->path, &holder) && is_same(&holder, &self))
+        unlink(gone->path); /* else somebody removed it, and another run may have the folder */
+    free_lock(gone);
+}

@@ -1,0 +1,119 @@
+#!/bin/sh
+# A folder belongs to one run at a time: a second one is refused before it touches anything, with a sentence that names the first.
+# A lock that a dead process left is replaced on the same host only.
+# shellcheck disable=SC2086 # commands of several words
+. "${srcdir:-.}/tests/support/tap.sh"
+skip_unless "$DUITE_CLOTH"
+plan_later
+cd "$scratch" || exit 99
+
+cat > scene.yaml << 'END'
+schema: 1
+cloths:
+  - mesh: {grid: {width: 1, height: 1, nx: 8, ny: 8}}
+    material: cotton
+    pins: [{vertices: [0, 7]}]
+materials:
+  cotton: {density: 0.2, stretch: 500, damping: {mass: 1}}
+time: {h: 0.001, end: 100000, fps: 1000}
+grain: 20
+END
+two="${MPIRUN:-mpirun} --oversubscribe --bind-to none -n 2"
+host=$(uname -n)
+dead=$(sh -c 'echo $$') # a process that was
+
+await() { # COMMAND...: until it succeeds, or half a minute is over
+    for _ in $(seq 300); do
+        "$@" && return 0
+        sleep 0.1
+    done
+    return 1
+}
+over() { ! kill -0 "$1" 2> /dev/null; }
+begin() { # COMMAND...: a run of hours, in the background, that has frames
+    rm -rf frames
+    "$@" "$DUITE_CLOTH" scene.yaml --threads 1 --quiet --output frames > first 2>&1 &
+    job=$!
+    await test -e frames/cloth.pc2
+}
+stop() { # PROCESS: a run of hours that goes well
+    kill -USR1 "$1"
+    await over "$1"
+    kill -KILL "$1" 2> /dev/null
+    status=0
+    wait "$1" || status=$?
+    test $status = 0 && test ! -e frames/duite.lock
+}
+run() { # a short run into the folder; leaves its status and what it said
+    status=0
+    limited "$DUITE_CLOTH" scene.yaml --end 0.002 --quiet "$@" > second 2>&1 || status=$?
+    echo "exit status $status"
+    cat second
+}
+refused() { # SENTENCE [OPTION...]: and nothing in the folder is another
+    sentence=$1
+    shift
+    (cd frames && ls -l -i --time-style=full-iso -- *.json *.obj) > before
+    run --output frames "$@"
+    (cd frames && ls -l -i --time-style=full-iso -- *.json *.obj) | cmp - before && test $status = 2 &&
+        test "$(cat second)" = "duite-cloth: $sentence"
+}
+owner() { sed -n 's/^process //p' frames/duite.lock; }
+taken() { echo "frames: another run writes into this folder, process $(owner) on host $host; give another folder, or wait for the end of that run; if it has died, remove frames/duite.lock"; }
+
+second() { begin "$@" && refused "$(taken)" && cat first && stop $job && test "$(grep -c 'removed or replaced' first)" = 0; }
+ok "a second run in a folder" second env
+ok "a second run in a folder, 2 ranks" second $two
+
+at_once() { # of two runs that begin together one goes on
+    rm -rf frames
+    for number in 1 2; do
+        "$DUITE_CLOTH" scene.yaml --threads 1 --quiet --output frames > run$number 2>&1 &
+        eval "run$number=$!"
+    done
+    await eval 'over $run1 || over $run2'
+    over $run1 && set -- $run1 $run2 1 || set -- $run2 $run1 2
+    status=0
+    wait "$1" || status=$?
+    await test -e frames/cloth.pc2
+    echo "exit status $status"
+    cat run1 run2
+    test $status = 2 && grep -q "another run writes into this folder" "run$3" && stop "$2"
+}
+ok "two runs that begin together" at_once
+
+result() { run --output frames && test $status = 0 && test ! -e frames/duite.lock; }
+ok "a run leaves no lock" result
+left() { printf 'host %s\nprocess %s\n' "$1" "$2" > frames/duite.lock; }
+left elsewhere "$dead"
+ok "a lock of another host" refused "frames: another run writes into this folder, process $dead on host elsewhere; give another folder, or wait for the end of that run; if it has died, remove frames/duite.lock"
+: > frames/duite.lock
+ok "a lock without a name" refused "frames: another run writes into this folder, or died as it began to: frames/duite.lock names no process; give another folder, or, if no run uses this one, remove that file"
+left "$host" "$dead"
+: > frames/duite.lock.take
+ok "a lock that another run is about to replace" refused "frames: another run writes into this folder, or died as it began to: frames/duite.lock.take names no process; give another folder, or, if no run uses this one, remove that file"
+rm frames/duite.lock.take
+replaced() {
+    result && test "$(cat second)" = "duite-cloth: warning: frames: process $dead of this host left frames/duite.lock and runs no more; this run has the folder now"
+}
+ok "a lock of a dead process" replaced
+killed() { # SIGNAL: ends a run; whether it leaves its lock
+    begin env && kill -s "$1" $job && await over $job
+    wait $job
+    echo "exit status $?"
+    test -e frames/duite.lock
+}
+ended() { ! killed "$1" && result && test ! -s second; }
+ok "SIGTERM removes the lock" ended TERM
+crashed() { killed KILL && dead=$job && replaced; }
+ok "SIGKILL leaves a lock, which the next run replaces" crashed
+failed() {
+    run --output frames --set integrator=explicit_euler --set time.halving=off --set time.h=0.1 --end 500
+    test $status = 1 && test ! -e frames/duite.lock
+}
+ok "a run that fails leaves no lock" failed
+both() { run --output frames --save-system ./frames && test $status = 0 && test ! -s second && test ! -e frames/duite.lock && test -e frames/matrix.mtx; }
+ok "frames and system in one folder" both
+system() { rm -rf system && mv frames system && left_in system && run --save-system system && test $status = 2 && test -e system/matrix.mtx; }
+left_in() { printf 'host elsewhere\nprocess 1\n' > "$1/duite.lock"; }
+ok "a folder of a system that another run has" system

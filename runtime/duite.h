@@ -30,6 +30,7 @@
 #include <stdio.h>
 
 #ifdef __cplusplus
+#include <initializer_list>
 extern "C" {
 #endif
 
@@ -72,7 +73,11 @@ typedef struct duite_object {
 } duite_object;
 
 /* Names none; what duite_new leaves behind when it fails. */
+#ifdef __cplusplus
+#define DUITE_NO_OBJECT (duite_object{0, 0})
+#else
 #define DUITE_NO_OBJECT ((duite_object){0, 0})
+#endif
 
 /* Element types of objects. */
 typedef enum duite_type {
@@ -470,11 +475,31 @@ int duite_fork_with(duite *rt, const duite_how *how, const duite_kernel *kernel,
                     size_t n, const duite_object *objects);
 
 /* duite_fork with the objects, and a structure of arguments, written out:
- * DUITE_FORK(rt, &AXPY, DUITE_ARGS(struct axpy, .alpha = 2, .first = 7), x, y). */
+ * DUITE_FORK(rt, &AXPY, DUITE_ARGS(struct axpy, .alpha = 2, .first = 7), x, y). In C++ before C++20
+ * the arguments have no names: DUITE_ARGS(axpy, 2, 7). */
+#ifdef __cplusplus
+} /* extern "C" */
+/* What the two macros need: C++ has no temporary arrays. For them alone. */
+struct duite_cpp {
+    template <typename T> static const T *args(const T &written)
+    {
+        return &written;
+    }
+    static int fork(duite *rt, const duite_kernel *kernel, const void *args,
+                    std::initializer_list<duite_object> objects)
+    {
+        return duite_fork(rt, kernel, args, objects.size(), objects.begin());
+    }
+};
+#define DUITE_ARGS(type, ...)             duite_cpp::args<type>({__VA_ARGS__})
+#define DUITE_FORK(rt, kernel, args, ...) duite_cpp::fork(rt, kernel, args, {__VA_ARGS__})
+extern "C" {
+#else
 #define DUITE_ARGS(type, ...) (&(const type){__VA_ARGS__})
 #define DUITE_FORK(rt, kernel, args, ...)                                                          \
     duite_fork(rt, kernel, args, sizeof((duite_object[]){__VA_ARGS__}) / sizeof(duite_object),     \
                (duite_object[]){__VA_ARGS__})
+#endif
 
 /* Waits for all tasks forked so far, on all ranks. Returns the error of the task that is first in
  * the reference order (a task, then its children) among those that failed themselves since the last

@@ -21,6 +21,8 @@ CredType=cred/munge
 AuthInfo=socket=$slurm/munge/socket
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
 SlurmdParameters=config_overrides
 TmpFS=$slurm/tmp.%n
 StateSaveLocation=$slurm/state
@@ -57,4 +59,8 @@ grep -E '^(srun|sbatch|salloc) ' "$srcdir/docs/cluster.md" > "$scratch/commands"
 ok "there are commands" test -s "$scratch/commands"
 while IFS= read -r command; do ok "$command" limited sh -c "cd $scratch && $command"; done < "$scratch/commands"
 ok "the batch job ran on two ranks" test "$(report ranks "$scratch/sheet.json")" = 2
+all_cores() { # two of each host
+    scontrol show job | awk '/JobName=/ { sheet = /JobName=sheet$/ } sheet && /NumCPUs=/ { print; right = /NumCPUs=4 / } END { exit !right }'
+}
+ok "the batch job had all cores of both hosts" all_cores
 exits 143 "a rank is killed" killed

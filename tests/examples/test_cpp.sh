@@ -9,8 +9,7 @@ command -v ${CXX:-c++} > /dev/null || skip_all "there is no C++ compiler (packag
 
 prefix=$scratch/usr
 PKG_CONFIG_PATH=$prefix/lib/pkgconfig${PKG_CONFIG_PATH:+:$PKG_CONFIG_PATH}
-LD_LIBRARY_PATH=$prefix/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
-export PKG_CONFIG_PATH LD_LIBRARY_PATH
+export PKG_CONFIG_PATH
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
 compile() { # PROGRAM SOURCE

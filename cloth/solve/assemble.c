@@ -54,7 +54,8 @@ PHYS_INLINE void add_turns(const struct solve_block *block, const struct solve_c
 }
 
 /* Four numbers are written of each three: the fourth, a zero, is where the next three begin, or the
- * one behind all. */
+ * one behind all. So all memory of the values is written; floats may fill half of the last double.
+ */
 PHYS_INLINE void write_doubles(size_t n, const struct phys_pair *sums, double *value)
 {
     value[SOLVE_NINE * n] = 0;
@@ -68,6 +69,8 @@ PHYS_INLINE void write_doubles(size_t n, const struct phys_pair *sums, double *v
 PHYS_INLINE void write_floats(size_t n, const struct phys_pair *sums, float *value)
 {
     value[SOLVE_NINE * n] = 0;
+    if (n % 2 == 0)
+        value[SOLVE_NINE * n + 1] = 0;
     for (size_t i = 0; i < n; i++) {
         PHYS_UNROLL
         for (size_t k = 0; k < 3; k++) {

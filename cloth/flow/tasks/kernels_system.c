@@ -21,17 +21,21 @@ struct making {
     struct phys_pair *sums; /* NULL: springs are the entries */
 };
 
-/* Writes the diagonal of the matrix, parameter i; what follows is for the values. */
+/* Writes the diagonal of the matrix, parameter i, and a filter that lets all pass until the one of
+ * the step comes (flow_hold); what follows is for the values. */
 static void *begin_matrix(const duite_call *call, const struct flow_table *t, size_t i)
 {
     const double h = flow_args_of(call)->h;
     double *diagonal = duite_out(call, i, double);
     phys_vec *value = duite_out(call, i, phys_vec) + flow_diagonal_rows(t);
+    const bool filtered = model_is_filtered(flow_of(call)->model);
     for (uint32_t a = 0; a < t->n; a++)
         diagonal[a] = t->mass[a] + h * t->drag[a];
     for (size_t a = t->n; a < 4 * flow_diagonal_rows(t); a++)
         diagonal[a] = 0;
-    return model_is_filtered(flow_of(call)->model) ? value + t->n : value; /* the filter's place */
+    for (size_t a = 0; filtered && a < t->n; a++)
+        value[a] = (phys_vec){0, 0, 0, 1};
+    return filtered ? value + t->n : value;
 }
 
 /* ---- Springs ---- */
@@ -99,6 +103,17 @@ static void begin_right_side(const struct making *m, const struct phys_sight *si
         flow_elements_stiffness(m->call, t, m->h * m->h, sight, m->b);
 }
 
+/* The values from the sums. The object has room for what is joined twice, too: zeros. */
+static void end_matrix(const struct making *m, const struct solve_cut *cut)
+{
+    const struct flow_table *t = m->t;
+    const size_t entries = t->matrix.row[t->n] + cut->n;
+    const size_t n = solve_format_doubles(t->format, t->n, entries);
+    double *value = m->values;
+    solve_assembled(&t->matrix, cut, m->sums, value);
+    memset(value + n, 0, (flow_table_doubles(t) - n) * sizeof *value);
+}
+
 static void make(const struct making *m)
 {
     const struct flow_table *t = m->t;
@@ -115,7 +130,7 @@ static void make(const struct making *m)
         flow_elements_assemble(m->call, t, m->push, &sight, m->b, m->sums);
     all_springs(m);
     if (m->sums)
-        solve_assembled(&t->matrix, &cut, m->sums, m->values);
+        end_matrix(m, &cut);
 }
 
 /* The room of the worker that runs a body. */

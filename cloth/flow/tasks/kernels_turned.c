@@ -30,8 +30,12 @@ static int factor(const duite_call *call)
     struct flow_table table = flow_table_of(call), *t = &table;
     const phys_vec *values = flow_open_matrix(call, t, 1);
     const struct solve_cut cut = flow_table_cut_entries(t);
-    const int tried =
-        solve_local_factor(&t->matrix, &cut, values, local_of(call), duite_out(call, 2, double));
+    double *factor = duite_out(call, 2, double);
+    const int tried = solve_local_factor(&t->matrix, &cut, values, local_of(call), factor);
+    /* The object has room for entries that are there twice, too (flow_table): zeros. */
+    const size_t used = solve_local_doubles(t->n, t->matrix.row[t->n], local_of(call));
+    memset(factor + used, 0,
+           (solve_local_doubles(t->n, t->n_entries, local_of(call)) - used) * sizeof *factor);
     duite_out(call, 3, double)[FLOW_SHIFTED] = tried > 0;
     return 0;
 }

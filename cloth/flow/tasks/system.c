@@ -96,8 +96,10 @@ static int part(const duite_call *call)
     double *part = duite_out(call, 6, double), *to = part + entries_at(t);
     put_rows(call, t, part);
     to = put_entries(t, flow_args_of(call)->block, &values, to);
-    for (; to < part + rim_at(t); to += entry_doubles(t))
+    for (; to < part + rim_at(t); to += entry_doubles(t)) {
+        memset(to, 0, entry_doubles(t) * sizeof *to);
         to[BLOCK] = -1;
+    }
     for (uint32_t i = 0; i < t->n_rim; i++)
         *to++ = t->rim[i];
     return 0;

@@ -56,6 +56,14 @@ check_PROGRAMS += tests/cloth/flow/test_newton
 tests_cloth_flow_test_newton_SOURCES = tests/cloth/flow/test_newton.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_newton_LDADD = $(CLOTH_TEST_LIBS)
 TESTS += tests/cloth/flow/test_newton
+check_PROGRAMS += tests/cloth/flow/test_checked
+tests_cloth_flow_test_checked_SOURCES = tests/cloth/flow/test_checked.c $(FLOW_TEST_MODELS) \
+	tests/cloth/scene/scene_file.c tests/cloth/scene/scene_file.h
+tests_cloth_flow_test_checked_LDADD = $(CLOTH_TEST_LIBS)
+tests_cloth_flow_test_checked_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=check_call
+TESTS += tests/cloth/flow/test_checked
 endif
 dist_check_SCRIPTS += tests/cloth/flow/test_ranks.sh
 TESTS += tests/cloth/flow/test_ranks.sh
+dist_check_SCRIPTS += tests/cloth/flow/test_checked_long.sh
+LONG_TESTS += tests/cloth/flow/test_checked_long.sh

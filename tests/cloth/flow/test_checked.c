@@ -1,0 +1,403 @@
+/* Every kernel of the flow in checking mode, where bodies run on guarded copies, twice, with
+ * different bytes under what they overwrite: small scenes in several blocks, each with another part
+ * of the model. The linker puts the function below in the place of the one that calls bodies
+ * (module.mk), so the last case knows which kernels no scene has run. What ranks send each other is
+ * seen on two of them (test_ranks.sh). With an argument all pairs of what there is to choose are
+ * run (test_checked_long.sh), else each choice at least once. */
+#include "cloth/flow/tasks/kernels.h"
+#include "runtime/check/check.h"
+#include "tests/cloth/flow/models.h"
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <mpi.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+enum { MOST_SETS = 6, MOST_KERNELS = 128 };
+
+static const char *const base =
+    "schema: 1\n"
+    "cloths:\n"
+    "  - name: sheet\n"
+    "    mesh: {grid: {width: 1, height: 1, nx: 6, ny: 6}}\n"
+    "    material: springs\n"
+    "    pins: [{vertices: [0]}]\n"
+    "    velocity: [0, -1, 0]\n"
+    "materials:\n"
+    "  springs: {density: 0.2, stretch: 50, shear: 25, bend: 5, damping: {viscous: 0.001, mass: "
+    "0.1, stiffness: 0.01}}\n"
+    "  undamped: {density: 0.2, stretch: 50}\n"
+    "  hinges: {density: 0.2, stretch: 50, shear: 25, bending: {rigidity: 0.001}}\n"
+    "  quadratic: {density: 0.2, stretch: 50, shear: 25, bending: {model: quadratic, rigidity: "
+    "[0.001, 0.002]}}\n"
+    "  triangles: {density: 0.2, model: triangles, stretch: [50, 40], shear: 20, poisson: 0.3,\n"
+    "    damping: {stiffness: 0.01}, bending: {rigidity: 0.001}}\n"
+    "  uncorrected: {density: 0.2, model: triangles, stretch: 50, shear: 20, forces: uncorrected}\n"
+    "obstacles:\n"
+    "  - plane: {point: [0, -0.0015, 0], normal: [0, 1, 0]}\n"
+    "probes: [{vertices: [0, 7, 35], values: [position, velocity, reaction, total]}]\n"
+    "time: {h: 0.001, end: 0.003, fps: 500}\n"
+    "solver: {stop: {count: 4}}\n"
+    "energies: steps\n"
+    "grain: 8\n";
+
+/* ---- Which kernels ran ---- */
+
+static unsigned char *ran; /* of MOST_KERNELS; shared with the processes of the cases */
+
+int __real_check_call(struct check *check, const struct check_task *task, duite_call *call);
+int __wrap_check_call(struct check *check, const struct check_task *task, duite_call *call);
+
+int __wrap_check_call(struct check *check, const struct check_task *task, duite_call *call)
+{
+    const duite_kernel *const *all = flow_kernels();
+    for (size_t i = 0; all[i]; i++)
+        if (all[i] == task->kernel)
+            __atomic_store_n(ran + i, 1, __ATOMIC_RELAXED);
+    return __real_check_call(check, task, call);
+}
+
+/* ---- Runs ---- */
+
+static int take_frame(void *context, uint64_t frame, double time, const double *position,
+                      struct cloth_error *error)
+{
+    (void)context, (void)frame, (void)time, (void)position, (void)error;
+    return CLOTH_OK;
+}
+
+static int take_row(void *context, uint64_t step, double time, size_t n, const double *values,
+                    struct cloth_error *error)
+{
+    (void)context, (void)step, (void)time, (void)n, (void)values, (void)error;
+    return CLOTH_OK;
+}
+
+static int take_system(void *context, const struct solve_system *system, struct cloth_error *error)
+{
+    (void)context, (void)system, (void)error;
+    return CLOTH_OK;
+}
+
+static void hold_some(void *context, const struct flow_rows *rows)
+{
+    (void)context;
+    for (size_t i = 0; i < rows->n; i += 3)
+        rows->filter[i] = (phys_vec){0};
+}
+
+/* What a run is besides its scene. */
+struct how {
+    bool system, own_filter;
+    struct flow_report report; /* of it */
+};
+
+static void run_checked(struct how *how, struct flow *flow, struct cloth_error *error)
+{
+    const struct flow_output output = {
+        .frame = take_frame, .row = take_row, .system = how->system ? take_system : NULL};
+    duite_options options = duite_options_default();
+    duite *rt = NULL;
+    options.kernels = flow_kernels();
+    options.context = flow;
+    options.threads = 1;
+    options.bind = 0;
+    options.check = 1;
+    ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
+    flow_filter_by(flow, (struct flow_filter){.rows = hold_some});
+    flow_run(flow, rt, &output, NULL, &how->report, error);
+    ck_assert_msg(!duite_stop(&rt), "%s", duite_message());
+}
+
+/* The base with these sets, of which those that are NULL are none. Collective. */
+static void run_how(struct how *how, const char *const sets[MOST_SETS])
+{
+    struct scene_set some[MOST_SETS];
+    char name[1024] = "";
+    size_t n = 0;
+    for (size_t i = 0; i < MOST_SETS; i++)
+        if (sets[i]) {
+            some[n++] = (struct scene_set){.text = sets[i]};
+            snprintf(name + strlen(name), sizeof name - strlen(name), " %s", sets[i]);
+        }
+    int rank, ranks;
+    struct cloth_error error = {0};
+    struct flow *flow = NULL;
+    struct model model = {0};
+    record_mpi(&rank, &ranks);
+    if (rank) {
+        flow_join(&flow, &error);
+    } else {
+        model = scene_read_right(base, n, some);
+        model.own_filter = how->own_filter;
+        flow_prepare(&flow, &model, ranks, &error);
+    }
+    MPI_Bcast(&error, sizeof error, MPI_BYTE, 0, MPI_COMM_WORLD);
+    if (!error.code)
+        run_checked(how, flow, &error);
+    flow_free(flow);
+    if (!rank)
+        model_free(&model);
+    ck_assert_msg(!error.code, "with%s: %s", name, error.text);
+}
+
+#define SETS(...) ((const char *const[MOST_SETS]){__VA_ARGS__})
+
+static void run(const char *const sets[MOST_SETS])
+{
+    run_how(&(struct how){0}, sets);
+}
+
+/* ---- Cases ---- */
+
+static const char *const integrators[] = {
+    "integrator=implicit_euler",   "integrator=bdf2",   "integrator=explicit_euler",
+    "integrator=symplectic_euler", "integrator=verlet", "integrator=rk4"};
+enum { INTEGRATORS = 6, IMPLICIT = 2 };
+static const char *const preconditioners[] = {
+    "solver.preconditioner=none", "solver.preconditioner=jacobi", "solver.preconditioner=ic0",
+    "solver.preconditioner=coarse", "solver.preconditioner=ic0_coarse"};
+static const char *const formats[] = {"solver.format=springs", "solver.format=half",
+                                      "solver.format=half_float"};
+static const char *const newton = "newton={steps: 2, tolerance: 1e-9}";
+
+#define LENGTH(list) (sizeof(list) / sizeof *(list))
+
+static bool whole;
+
+/* Whether choice i of n is run with choice k of m: without the long test each with one other. */
+static bool paired(size_t i, size_t n, size_t k, size_t m)
+{
+    return whole || (n < m ? k % n == i : i % m == k);
+}
+
+START_TEST(materials)
+{
+    static const char *const all[] = {
+        "cloths[0].material=springs",   "cloths[0].material=undamped",
+        "cloths[0].material=hinges",    "cloths[0].material=quadratic",
+        "cloths[0].material=triangles", "cloths[0].material=uncorrected"};
+    for (size_t i = 0; i < INTEGRATORS; i++)
+        for (size_t k = 0; k < LENGTH(all); k++)
+            if (paired(i, INTEGRATORS, k, LENGTH(all)))
+                run(SETS(integrators[i], all[k]));
+}
+END_TEST
+
+START_TEST(pins)
+{
+    static const char *const all[] = {
+        "cloths[0].pins=[]",
+        "cloths[0].pins[0].motion={times: [0, 1], translate: [[0, 0, 0], [0, 0.3, 0]]}",
+        "cloths[0].pins=[{box: [[-1, -1, -0.6], [1, 1, -0.4]], to: line, direction: [1, 0, 0]}]",
+        "cloths[0].pins=[{vertices: [0, 35], to: plane, normal: [1, 2, 0]}]",
+        ("cloths[0].pins=[{vertices: [0, 35], to: plane, normal: [1, 2, 0], motion: "
+         "{times: [0, 1], rotate: [[1, 0, 0, 0], [0.8, 0, 0.6, 0]]}}]"),
+    };
+    for (size_t i = 0; i < INTEGRATORS; i++)
+        for (size_t k = 0; k < LENGTH(all); k++)
+            if (paired(i, INTEGRATORS, k, LENGTH(all)))
+                run(SETS(integrators[i], all[k]));
+}
+END_TEST
+
+START_TEST(contact)
+{
+    for (size_t i = 0; i < IMPLICIT; i++)
+        for (size_t k = 0; k < LENGTH(formats); k++)
+            if (paired(i, IMPLICIT, k, LENGTH(formats)))
+                run(SETS(integrators[i], formats[k], "contact=filter",
+                         k % 2 ? "cloths[0].material=triangles" : NULL));
+    run(SETS("obstacles=[]"));
+}
+END_TEST
+
+static void solves(const char *of)
+{
+    for (size_t i = 0; i < LENGTH(formats); i++)
+        for (size_t k = 0; k < LENGTH(preconditioners); k++) {
+            if (!paired(i, LENGTH(formats), k, LENGTH(preconditioners)))
+                continue;
+            run(SETS(of, formats[i], preconditioners[k]));
+            run(SETS(of, formats[i], preconditioners[k], "solver.guess=zero",
+                     "cloths[0].material=hinges"));
+        }
+}
+
+START_TEST(solves_of_one_reduction)
+{
+    solves(NULL);
+}
+END_TEST
+
+START_TEST(solves_of_newton_steps)
+{
+    solves(newton);
+}
+END_TEST
+
+START_TEST(filtered_solves)
+{
+    struct how own = {.own_filter = true};
+    for (size_t i = 0; i < LENGTH(preconditioners); i++) {
+        if (paired(i, LENGTH(preconditioners), 0, 3))
+            run(SETS("contact=filter", preconditioners[i]));
+        if (paired(i, LENGTH(preconditioners), 1, 3))
+            run(SETS(newton, "cloths[0].pins=[{vertices: [0, 35], to: plane, normal: [1, 2, 0]}]",
+                     preconditioners[i]));
+        if (paired(i, LENGTH(preconditioners), 2, 3))
+            run_how(&own, SETS(preconditioners[i]));
+    }
+}
+END_TEST
+
+START_TEST(other_solves)
+{
+    static const char *const all[] = {"solver.form=classic",
+                                      "solver.stop={mass_norm: 0.01}",
+                                      "solver.patches=1",
+                                      "solver.patches=4",
+                                      "solver.jacobian=full",
+                                      "solver.jacobian=absolute",
+                                      "solver.stop={relative: 1e-9}",
+                                      "solver.stop={count: 7}",
+                                      "solver.stop={absolute: 1e-3}",
+                                      "solver.stop={normalised: 0.001}"};
+    for (size_t i = 0; i < LENGTH(all); i++)
+        for (size_t k = 0; k < 2; k++)
+            if (paired(i, LENGTH(all), k, 2))
+                run(SETS(all[i], k && i ? preconditioners[4] : preconditioners[0],
+                         "cloths[0].mesh.grid.nx=7"));
+}
+END_TEST
+
+START_TEST(outside)
+{
+    static const char *const load = "cloths[0].loads=[{vertices: [20], force: [0, 1, 0], course: "
+                                    "{sine: {frequency: 5}}}, {edges: [[0, 1]], force: [1, 0, 0], "
+                                    "course: {keys: [[0, 0], [1, 1]]}}, {vertices: [9], force: [0, "
+                                    "0, 1]}]";
+    for (size_t i = 0; i < INTEGRATORS; i++) {
+        if (paired(i, INTEGRATORS, 0, 2))
+            run(SETS(integrators[i], load));
+        if (paired(i, INTEGRATORS, 1, 2))
+            run(SETS(integrators[i], load, "air={wind: [1, 2, 3], course: {sine: {frequency: 1}}}",
+                     "cloths[0].material=triangles"));
+    }
+}
+END_TEST
+
+START_TEST(cloths)
+{
+    static const char *const all[] = {
+        "cloths[0].mesh={inline: {vertices: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [9, 9, "
+        "9]], edges: [[0, 1], [1, 2], [2, 3]]}}",
+        "cloths[0].mesh={inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], triangles: [[0, 1, "
+        "2]]}}",
+        "cloths[0].regions=[{box: [[-1, -1, 0], [1, 1, 1]], material: undamped}]",
+        "cloths[0].masses=[{vertices: [3], mass: 0.1}]",
+        "cloths[0].mass_per_vertex=0.1",
+        "cloths[0].cost={factor: 2}",
+        "cloths[0].start=[{vertices: [3, 4], velocity: [0, 0, 1], spin: [0, 2, 0]}]",
+        "cloths[1]={mesh: {grid: {width: 1, height: 1, nx: 2, ny: 3}}, material: triangles, "
+        "transform: {translate: [0, 3, 0]}}"};
+    static const char *const grains[] = {"grain=1", "grain=2", "grain=8", "grain=100"};
+    int rank, ranks;
+    record_mpi(&rank, &ranks);
+    for (size_t i = 0; i < LENGTH(all); i++) {
+        const bool small = i < 2;
+        for (size_t k = small ? 0 : 2; k < (small ? 2 : 4); k++)
+            if ((k < 3 || ranks == 1) && paired(i, LENGTH(all), k % 2, 2))
+                run(SETS(all[i], grains[k], small ? "cloths[0].material=undamped" : NULL,
+                         small ? "cloths[0].mass_per_vertex=0.1" : NULL, "probes=[]"));
+    }
+}
+END_TEST
+
+/* What gives a step up, and begins it again with half the length. */
+START_TEST(halved_steps)
+{
+    for (size_t i = 0; i < INTEGRATORS; i++) {
+        struct how how = {0};
+        if (!paired(i, INTEGRATORS, 0, 3))
+            continue;
+        run_how(&how, SETS(integrators[i], "time.stretch_growth=0.004", "time.end=0.001",
+                           "cloths[0].start=[{vertices: [20], velocity: [9, 0, 0]}]"));
+        ck_assert_uint_gt(how.report.steps_halved, 0);
+    }
+}
+END_TEST
+
+START_TEST(cut_newton_steps)
+{
+    for (size_t i = 0; i < (whole ? IMPLICIT : 1); i++)
+        run(SETS(integrators[i], "newton={steps: 5, tolerance: 1e-9}", "time={h: 0.05, end: 0.1}",
+                 "time.halving=off", "materials.springs={density: 0.2, stretch: 5000, shear: 10}",
+                 "cloths[0].start=[{vertices: [20], velocity: [50, 0, 0]}]"));
+}
+END_TEST
+
+START_TEST(saved_systems)
+{
+    struct how how = {.system = true};
+    for (size_t i = 0; i < LENGTH(formats); i++)
+        run_how(&how, SETS(formats[i], i ? "cloths[0].material=hinges" : NULL));
+}
+END_TEST
+
+START_TEST(rests)
+{
+    run(SETS("time.rest={speed: 0.1, hold: 0.001}", "gravity=[0, 0, 0]",
+             "cloths[0].velocity=[0, 0, 0]", "time.end=0.01"));
+}
+END_TEST
+
+/* ---- All kernels ---- */
+
+START_TEST(every_kernel_was_run)
+{
+    const duite_kernel *const *all = flow_kernels();
+    char names[1024] = "";
+    int rank, ranks;
+    record_mpi(&rank, &ranks);
+    MPI_Allreduce(MPI_IN_PLACE, ran, MOST_KERNELS, MPI_UNSIGNED_CHAR, MPI_MAX, MPI_COMM_WORLD);
+    for (size_t i = 0; all[i]; i++) {
+        ck_assert_uint_lt(i, MOST_KERNELS);
+        const bool between_ranks = all[i] == &flow_pack;
+        if (!ran[i] && (ranks > 1 || !between_ranks))
+            snprintf(names + strlen(names), sizeof names - strlen(names), " %s", all[i]->name);
+    }
+    ck_assert_msg(!names[0], "no case has run the kernels%s", names);
+}
+END_TEST
+
+int main(int argc, char **argv)
+{
+    (void)argv;
+    whole = argc > 1;
+    ran = mmap(NULL, MOST_KERNELS, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (ran == MAP_FAILED)
+        return 99;
+    Suite *suite = suite_create("checking mode");
+    TCase *cases = tcase_create("kernels");
+    tcase_set_timeout(cases, 600);
+    tcase_add_test(cases, materials);
+    tcase_add_test(cases, pins);
+    tcase_add_test(cases, contact);
+    tcase_add_test(cases, solves_of_one_reduction);
+    tcase_add_test(cases, solves_of_newton_steps);
+    tcase_add_test(cases, filtered_solves);
+    tcase_add_test(cases, other_solves);
+    tcase_add_test(cases, outside);
+    tcase_add_test(cases, cloths);
+    tcase_add_test(cases, halved_steps);
+    tcase_add_test(cases, cut_newton_steps);
+    tcase_add_test(cases, saved_systems);
+    tcase_add_test(cases, rests);
+    tcase_add_test(cases, every_kernel_was_run);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -278,8 +278,10 @@ static int run(const struct command *command, struct measure *measure)
     }
     if (command->bench->finish)
         command->bench->finish();
-    if (!failed)
+    if (!failed) {
+        report_others(&report);
         conclude(verdicts);
+    }
     return report_finish(&report, failed ? NULL : command->json) || failed;
 }
 

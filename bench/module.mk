@@ -5,7 +5,7 @@ BENCH_RIVALS =
 BENCH_STATE = bench/cg/state.c bench/cg/state.h
 BENCH_SHARED = bench/problem.c bench/problem.h bench/serve.c bench/serve.h
 check_LTLIBRARIES += bench/libbench.la
-bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/measure.c bench/measure.h \
+bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench/load.h bench/measure.c bench/measure.h \
 	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
 	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/fib.c \
 	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/stencil.c \
@@ -97,7 +97,7 @@ endif
 check_PROGRAMS += bench/graph-run bench/compare
 bench_graph_run_SOURCES = bench/sweep/run.c bench/sweep/graph.c bench/sweep/graph.h
 bench_graph_run_LDADD = libduite_core.la -lm
-bench_compare_SOURCES = bench/environment.h bench/sweep/compare.c bench/sweep/compare.h bench/sweep/graph.c bench/sweep/graph.h bench/sweep/journal.c bench/sweep/median.c bench/sweep/page.c bench/sweep/start.c bench/sweep/statistics.c
+bench_compare_SOURCES = bench/environment.h bench/load.c bench/load.h bench/sweep/compare.c bench/sweep/compare.h bench/sweep/graph.c bench/sweep/graph.h bench/sweep/journal.c bench/sweep/median.c bench/sweep/page.c bench/sweep/start.c bench/sweep/statistics.c
 bench_compare_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"'
 bench_compare_LDADD = libduite_core.la -lm
 

@@ -121,11 +121,18 @@ static void processor(char *name, size_t size)
         fclose(file);
 }
 
+static void warn(struct report *report, const char *key, const char *warning)
+{
+    if (!warning)
+        return;
+    report_text(report, key, warning);
+    fprintf(stderr, "duite-bench: warning: %s\n", warning);
+}
+
 void report_host(struct report *report)
 {
     char text[400], date[40] = "";
     struct utsname system = {0};
-    double load = 0;
     time_t now = time(NULL);
     struct tm when;
     uname(&system);
@@ -142,10 +149,20 @@ void report_host(struct report *report)
     report_text(report, "host_system", text);
     report_text(report, "compiler", COMPILER);
     report_text(report, "compiler_flags", BENCH_CFLAGS);
-    if (getloadavg(&load, 1) == 1)
-        report_number(report, "host_load", load);
-    if (load > 0.5)
-        printf("# the machine is busy: its figures mislead\n");
+    load_begin(&report->load);
+    if (isfinite(report->load.average))
+        report_number(report, "host_load", report->load.average);
+    warn(report, "warning_load",
+         load_warn_average(report->load.average, report->load.cores, text, sizeof text));
+}
+
+void report_others(struct report *report)
+{
+    char text[200];
+    const double others = load_others(&report->load);
+    if (isfinite(others))
+        report_number(report, "host_others_cores", others);
+    warn(report, "warning_others", load_warn_others(others, report->load.cores, text, sizeof text));
 }
 
 /* ---- The end ---- */

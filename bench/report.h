@@ -1,6 +1,7 @@
 #ifndef BENCH_REPORT_H
 #define BENCH_REPORT_H
 
+#include "bench/load.h"
 #include "bench/measure.h"
 
 #include <stdio.h>
@@ -11,6 +12,7 @@ struct report {
     FILE *json; /* in memory; NULL: none is wanted */
     char *text;
     size_t size;
+    struct load load; /* before the first subject */
 };
 
 /* `json`: whether there is to be a file. 1, said on stderr, without memory. */
@@ -25,8 +27,10 @@ void report_number(struct report *report, const char *key, double value);
  * name_low and name_high, or null, and name_target. */
 void report_metric(struct report *report, const struct measure_metric *metric);
 
-/* The machine, the compiler, the load. */
+/* The machine, the compiler, the load. A high one draws a warning, on stderr, too. */
 void report_host(struct report *report);
+/* When all subjects have ended: how many cores other programs had since report_host; likewise. */
+void report_others(struct report *report);
 
 /* Writes the file, whole or not at all, if path is not NULL. 1, said on stderr, if it cannot. */
 int report_finish(struct report *report, const char *path);

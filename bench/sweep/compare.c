@@ -10,6 +10,7 @@
 #include <duite_policy.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -250,9 +251,9 @@ static int run_one(struct compare *compare, struct compare_config *config, size_
     if (run->fine)
         printf(": %.4g ms\n", 1e3 * run->seconds);
     else
-        printf(": failed; its words are in %s/run.log\n", compare->folder);
+        printf(": failed; %s\n", run->why ? run->why : "out of memory");
     fflush(stdout);
-    compare->failed |= !run->fine;
+    compare->failed += !run->fine;
     check_hash(compare, config, round);
     return compare_journal_add(compare, config, round);
 }
@@ -275,14 +276,38 @@ static int run_round(struct compare *compare, size_t *order, size_t round)
     return failed;
 }
 
+/* Others on the machine are looked for once a round, if it took long enough to tell. *most: of all
+ * rounds; the first one in which there are too many draws a warning at once. */
+static void look_for_others(struct compare *compare, size_t round, double *most)
+{
+    char text[200], warning[250];
+    const double others = load_others(&compare->load), cores = compare->load.cores;
+    if (!isfinite(others))
+        return;
+    load_begin(&compare->load);
+    const bool warned = load_warn_others(*most, cores, text, sizeof text);
+    *most = fmax(*most, others);
+    if (warned || !load_warn_others(others, cores, text, sizeof text))
+        return;
+    snprintf(warning, sizeof warning, "in round %zu %s", round + 1, text);
+    compare_journal_warn(compare, warning);
+}
+
 static int run_all(struct compare *compare)
 {
+    char text[200];
+    double others = 0;
     size_t *order = calloc(compare->n, sizeof *order);
     int failed = !order;
+    load_begin(&compare->load);
+    compare_journal_warn(
+        compare, load_warn_average(compare->load.average, compare->load.cores, text, sizeof text));
     printf("%zu configurations, %zu rounds, order from seed %" PRIu64 "\n", compare->n,
            compare->rounds, compare->seed);
-    for (size_t round = 0; round < compare->rounds && !failed; round++)
+    for (size_t round = 0; round < compare->rounds && !failed; round++) {
         failed = run_round(compare, order, round);
+        look_for_others(compare, round, &others);
+    }
     free(order);
     return failed;
 }
@@ -300,7 +325,20 @@ static int work(struct compare *compare)
         failed = compare_page(compare) || failed;
     }
     compare_journal_close(compare);
+    if (compare->failed)
+        fprintf(stderr, "compare: %zu %s failed: %s/compare.md says which, and why\n",
+                compare->failed, compare->failed > 1 ? "runs" : "run", compare->folder);
     return failed || compare->wrong || compare->failed;
+}
+
+static void end(struct compare *compare)
+{
+    for (size_t i = 0; i < compare->n; i++) {
+        for (size_t r = 0; r < compare->rounds; r++)
+            free(compare->config[i].run[r].why);
+        free(compare->config[i].run);
+    }
+    free(compare->config);
 }
 
 const char *argp_program_version = "compare (" PACKAGE_STRING ")";
@@ -342,8 +380,6 @@ int main(int argc, char **argv)
         setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
     }
     int failed = work(&compare);
-    for (size_t i = 0; i < compare.n; i++)
-        free(compare.config[i].run);
-    free(compare.config);
+    end(&compare);
     return failed;
 }

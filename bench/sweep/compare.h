@@ -1,6 +1,8 @@
 #ifndef BENCH_SWEEP_COMPARE_H
 #define BENCH_SWEEP_COMPARE_H
 
+#include "bench/load.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -21,6 +23,7 @@ struct compare_run {
     double seconds, bodies; /* bodies: in bodies of tasks, a worker; the rest is outside of them */
     double stolen, messages, bytes;
     char hash[20];
+    char *why; /* it failed: how it ended, and its last error */
     bool done, fine;
 };
 
@@ -49,8 +52,10 @@ struct compare {
     struct compare_config *config;
     size_t n;
     FILE *journal;
-    bool wrong;  /* two runs that should agree have not the same hash */
-    bool failed; /* a run did */
+    struct load load;    /* from the first run on, then from that of a round on */
+    char warnings[2000]; /* about the load, a line each */
+    bool wrong;          /* two runs that should agree have not the same hash */
+    size_t failed;       /* runs that did */
 };
 
 /* Opens the journal and takes over what is there, or begins it with the host and the build. 1, said
@@ -59,6 +64,9 @@ int compare_journal_open(struct compare *compare);
 /* Appends a run and sees to it that it is on the disk. 1, said on stderr: nothing more can be kept.
  */
 int compare_journal_add(struct compare *compare, const struct compare_config *config, size_t round);
+/* Adds a warning: to the journal, so that a comparison that is taken up again keeps it, to
+ * compare->warnings, and on stderr. NULL is none. */
+void compare_journal_warn(struct compare *compare, const char *warning);
 void compare_journal_close(struct compare *compare);
 /* The host and the build, a line each after `before`. */
 void compare_describe(FILE *out, const char *before);
@@ -66,7 +74,8 @@ void compare_describe(FILE *out, const char *before);
 /* Why StarPU's scheduler of this name cannot be run, in words written to text: NULL if it can. */
 const char *compare_starpu_wrong(const char *name, char *text, size_t size);
 
-/* Starts a run and reads its report; run->done is set in any case. */
+/* Starts a run and reads its report; run->done is set in any case. The log of one that failed
+ * becomes failed.log. */
 void compare_start(const struct compare *compare, const struct compare_config *config,
                    struct compare_run *run);
 
@@ -76,6 +85,10 @@ void compare_judge(struct compare *compare);
  * with the largest k for which fewer than k of n tosses come out heads with a probability of at
  * most 2.5 %; of fewer than 6 values all of them. Sorts the values. */
 double compare_median(double *values, size_t n, double *low, double *high);
+
+/* How many runs of it failed; *first, if any, is the first one. */
+size_t compare_failures(const struct compare *compare, const struct compare_config *config,
+                        const struct compare_run **first);
 
 /* Tables on the terminal; summary.csv, plots (where gnuplot is installed; else a sentence) and
  * compare.md in the folder. 1, said on stderr, if a file cannot be written. */

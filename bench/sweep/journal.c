@@ -101,6 +101,15 @@ static void take_line(struct compare *compare, char *line)
     snprintf(run->hash, sizeof run->hash, "%s", figure[5]);
 }
 
+#define WARNING "# warning: "
+
+static void keep_warning(struct compare *compare, const char *warning)
+{
+    const size_t used = strlen(compare->warnings);
+    if (!strstr(compare->warnings, warning))
+        snprintf(compare->warnings + used, sizeof compare->warnings - used, "%s\n", warning);
+}
+
 /* Takes over whole lines; *whole: bytes up to the end of the last one. */
 static int take_over(struct compare *compare, FILE *in, long *whole)
 {
@@ -116,6 +125,8 @@ static int take_over(struct compare *compare, FILE *in, long *whole)
         *whole = ftell(in);
         same = same || !strcmp(line, wanted);
         line[strcspn(line, "\n")] = 0;
+        if (!strncmp(line, WARNING, strlen(WARNING)))
+            keep_warning(compare, line + strlen(WARNING));
         take_line(compare, line);
     }
     free(wanted);
@@ -175,13 +186,25 @@ int compare_journal_add(struct compare *compare, const struct compare_config *co
     fprintf(out, "%zu", round);
     for (int d = 0; d < COMPARE_DIMENSIONS; d++)
         fprintf(out, ",%s", config->value[d]);
-    fprintf(out, ",%.9g,%.9g,%.0f,%.0f,%.0f,%s,%s\n", run->seconds, run->bodies, run->stolen,
-            run->messages, run->bytes, run->hash, run->fine ? "fine" : "failed");
+    if (run->fine)
+        fprintf(out, ",%.9g,%.9g,%.0f,%.0f,%.0f,%s,fine\n", run->seconds, run->bodies, run->stolen,
+                run->messages, run->bytes, run->hash);
+    else
+        fputs(",,,,,,,failed\n", out);
     if (!fflush(out) && !fsync(fileno(out)))
         return 0;
     fprintf(stderr, "compare: %s/runs.csv: %s; what was written before is kept\n", compare->folder,
             strerror(errno));
     return 1;
+}
+
+void compare_journal_warn(struct compare *compare, const char *warning)
+{
+    if (!warning)
+        return;
+    fprintf(stderr, "compare: warning: %s\n", warning);
+    keep_warning(compare, warning);
+    fprintf(compare->journal, WARNING "%s\n", warning);
 }
 
 void compare_journal_close(struct compare *compare)

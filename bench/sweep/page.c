@@ -34,10 +34,11 @@ static bool varies(const struct compare *compare, int dimension)
     return dimension != SUBJECT && compare->list[dimension].n > 1;
 }
 
-static const char *verdict(const struct compare_config *config)
+static const char *verdict(const struct compare *compare, const struct compare_config *config)
 {
+    const struct compare_run *run;
     if (!config->n)
-        return "failed";
+        return compare_failures(compare, config, &run) ? "failed" : "not run";
     if (config->fastest)
         return "fastest";
     return config->noise ? "within the noise" : "slower";
@@ -87,7 +88,7 @@ static void print_head(const struct compare *compare, FILE *out)
 
 static void print_row(const struct compare *compare, const struct compare_config *config, FILE *out)
 {
-    char time[60] = "", ratio[60] = "";
+    char time[60] = "", ratio[60] = "", bodies[20] = "", outside[20] = "";
     fputs("|", out);
     for (int d = 0; d < COMPARE_DIMENSIONS; d++)
         if (varies(compare, d))
@@ -95,11 +96,14 @@ static void print_row(const struct compare *compare, const struct compare_config
     if (config->n) {
         snprintf(time, sizeof time, "%.4g [%.4g .. %.4g]", 1e3 * config->median, 1e3 * config->low,
                  1e3 * config->high);
+        snprintf(bodies, sizeof bodies, "%.4g", 1e3 * config->bodies);
+        snprintf(outside, sizeof outside, "%.4g", 1e3 * config->outside);
+    }
+    if (config->n && isfinite(config->ratio)) /* not if the fastest failed in each of its rounds */
         snprintf(ratio, sizeof ratio, "%.3f [%.3f .. %.3f]", config->ratio, config->ratio_low,
                  config->ratio_high);
-    }
-    fprintf(out, " %-28s | %9.4g | %9.4g | %-25s | %-16s |\n", time, 1e3 * config->bodies,
-            1e3 * config->outside, ratio, verdict(config));
+    fprintf(out, " %-28s | %9s | %9s | %-25s | %-16s |\n", time, bodies, outside, ratio,
+            verdict(compare, config));
 }
 
 static void print_table(const struct compare *compare, const char *subject, size_t *row, FILE *out)
@@ -122,8 +126,51 @@ static void print_summary(const struct compare *compare, FILE *out)
         const struct compare_config *c = &compare->config[i];
         for (int d = 0; d < COMPARE_DIMENSIONS; d++)
             fprintf(out, "%s,", c->value[d]);
-        fprintf(out, "%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.6g,%.6g,%.6g,%s\n", c->n, c->median, c->low,
-                c->high, c->bodies, c->outside, c->ratio, c->ratio_low, c->ratio_high, verdict(c));
+        const double figure[] = {c->median,  c->low,   c->high,      c->bodies,
+                                 c->outside, c->ratio, c->ratio_low, c->ratio_high};
+        fprintf(out, "%zu,", c->n);
+        for (size_t k = 0; k < sizeof figure / sizeof *figure; k++)
+            if (c->n && isfinite(figure[k]))
+                fprintf(out, "%.9g,", figure[k]);
+            else
+                fputc(',', out);
+        fprintf(out, "%s\n", verdict(compare, c));
+    }
+}
+
+/* ---- Failures ---- */
+
+static void print_member(const struct compare *compare, const struct compare_config *config,
+                         FILE *out)
+{
+    fputs(config->value[SUBJECT], out);
+    for (int d = 1; d < COMPARE_DIMENSIONS; d++)
+        if (varies(compare, d))
+            fprintf(out, ", %s %s", compare_dimension[d], config->value[d]);
+}
+
+static void print_failures(const struct compare *compare, FILE *out)
+{
+    const struct compare_run *run;
+    if (compare->failed)
+        fprintf(out, "\n**Runs failed.**\n\n");
+    for (size_t i = 0; i < compare->n; i++) {
+        const size_t n = compare_failures(compare, &compare->config[i], &run);
+        if (!n)
+            continue;
+        fputs("- ", out);
+        print_member(compare, &compare->config[i], out);
+        fprintf(out, ": %zu of %zu runs; %s%s\n", n, compare->rounds, n > 1 ? "the first: " : "",
+                run->why ? run->why : "out of memory");
+    }
+}
+
+static void print_warnings(const struct compare *compare, FILE *out)
+{
+    for (const char *line = compare->warnings; *line;) {
+        const size_t length = strcspn(line, "\n");
+        fprintf(out, "\n**Warning:** %.*s.\n", (int)length, line);
+        line += length + (line[length] == '\n');
     }
 }
 
@@ -147,11 +194,23 @@ static void print_label(const struct compare *compare, const struct compare_conf
         fputs("time", out);
 }
 
-/* The bars: what is in bodies, what is outside, and the interval of the whole. */
-/* Both parts of a bar are 0 or more, and it is as high as the median: medians need not add up. */
+/* Not if all members of the subject failed. */
+static bool has_figures(const struct compare *compare, size_t number)
+{
+    for (size_t i = 0; i < compare->n; i++)
+        if (compare->config[i].n &&
+            compare->config[i].value[SUBJECT] == compare->list[SUBJECT].item[number])
+            return true;
+    return false;
+}
+
+/* The bars: what is in bodies, what is outside, and the interval of the whole. Both parts of a bar
+ * are 0 or more, and it is as high as the median: medians need not add up. */
 static void plot_bars(const struct compare *compare, size_t number, const size_t *row, size_t n,
                       FILE *out)
 {
+    if (!has_figures(compare, number))
+        return;
     fprintf(out, "$bars%zu << EOD\n", number);
     for (size_t i = 0; i < n; i++) {
         const struct compare_config *c = &compare->config[row[i]];
@@ -232,7 +291,7 @@ static bool plot(const struct compare *compare, size_t *row)
         size_t n = sort(compare, compare->list[SUBJECT].item[s], row);
         plot_bars(compare, s, row, n, out);
         for (int d = 0; d < COMPARE_DIMENSIONS; d++)
-            if (is_line(compare, d))
+            if (is_line(compare, d) && has_figures(compare, s))
                 plot_lines(compare, s, d, out);
     }
     if (close_file(compare, "plots.gp", out))
@@ -264,6 +323,8 @@ static void print_rest(const struct compare *compare, FILE *out)
         out);
     if (compare->wrong)
         fputs("\n**Results differ between runs that should agree.**\n", out);
+    print_warnings(compare, out);
+    print_failures(compare, out);
 }
 
 static int print_page(const struct compare *compare, size_t *row, bool plots)
@@ -276,6 +337,8 @@ static int print_page(const struct compare *compare, size_t *row, bool plots)
     for (size_t s = 0; s < compare->list[SUBJECT].n; s++) {
         fprintf(out, "\n## %s\n\n", compare->list[SUBJECT].item[s]);
         print_table(compare, compare->list[SUBJECT].item[s], row, out);
+        if (!has_figures(compare, s))
+            continue;
         if (plots)
             fprintf(out, "\n![bars](bars%zu.png)\n", s);
         for (int d = 0; d < COMPARE_DIMENSIONS && plots; d++)

@@ -1,6 +1,6 @@
 /* A run is a program of its own: duite-cloth for scenes, graph-run for graphs, StarPU's twin of it
  * for schedulers named starpu:NAME. Its report is a file in the folder, which the next run
- * overwrites; what it prints goes to run.log there. */
+ * overwrites; what it prints goes to run.log there, and of a run that failed to failed.log. */
 #include "bench/environment.h"
 #include "bench/sweep/compare.h"
 
@@ -188,6 +188,69 @@ static void read_report(const char *file, struct compare_run *run)
     run->fine = run->seconds > 0 && hash;
 }
 
+/* ---- Failures ---- */
+
+static bool is_error(const char *line)
+{
+    static const char *const programs[] = {
+        "duite-cloth: ", "graph-run: ", "starpu-graph: ", "duite: ", "timeout: "};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        if (!strncmp(line, programs[i], strlen(programs[i])))
+            return true;
+    return false;
+}
+
+/* The last line of the log that a program of ours has said, else the last line. mpirun and argp add
+ * theirs behind it. */
+static void find_last_error(const char *log, char *last, size_t size)
+{
+    char line[1000];
+    bool found = false;
+    FILE *in = fopen(log, "r");
+    while (in && fgets(line, sizeof line, in)) {
+        line[strcspn(line, "\n")] = 0;
+        if (!*line || (found && !is_error(line)))
+            continue;
+        found = is_error(line);
+        snprintf(last, size, "%s", line);
+    }
+    if (in)
+        fclose(in);
+}
+
+/* status: of waitpid. `timeout` ends with 124 where it had to stop what it started. */
+static void note_failure(const struct compare *compare, int status, struct compare_run *run)
+{
+    enum { TIMED_OUT = 124 };
+    char log[PATH_MAX], kept[PATH_MAX], last[1000] = "it said nothing", how[60];
+    snprintf(log, sizeof log, "%s/run.log", compare->folder);
+    snprintf(kept, sizeof kept, "%s/failed.log", compare->folder);
+    find_last_error(log, last, sizeof last);
+    rename(log, kept);
+    if (WIFSIGNALED(status))
+        snprintf(how, sizeof how, "signal %d", WTERMSIG(status));
+    else if (WEXITSTATUS(status) == TIMED_OUT)
+        snprintf(how, sizeof how, "stopped after %u s (--timeout)", compare->timeout);
+    else if (!status)
+        snprintf(how, sizeof how, "exit status 0, but no figures in its report");
+    else
+        snprintf(how, sizeof how, "exit status %d", WEXITSTATUS(status));
+    if (asprintf(&run->why, "%s: %s", how, last) < 0)
+        run->why = NULL;
+}
+
+size_t compare_failures(const struct compare *compare, const struct compare_config *config,
+                        const struct compare_run **first)
+{
+    size_t n = 0;
+    for (size_t r = 0; r < compare->rounds; r++) {
+        const struct compare_run *run = &config->run[r];
+        if (run->done && !run->fine && !n++)
+            *first = run;
+    }
+    return n;
+}
+
 void compare_start(const struct compare *compare, const struct compare_config *config,
                    struct compare_run *run)
 {
@@ -197,8 +260,11 @@ void compare_start(const struct compare *compare, const struct compare_config *c
     unlink(report);
     *run = (struct compare_run){.done = true};
     make_line(compare, config, report, &line);
-    if (!execute(compare, &line))
+    const int status = execute(compare, &line);
+    if (!status)
         read_report(report, run);
+    if (!run->fine)
+        note_failure(compare, status, run);
     for (int i = 0; i < line.n; i++)
         free(line.word[i]);
 }

@@ -10,7 +10,10 @@ tests_bench_test_sheet_LDADD = bench/libbench.la tests/support/libunit.la $(CHEC
 check_PROGRAMS += tests/bench/test_states
 tests_bench_test_states_SOURCES = tests/bench/test_states.c
 tests_bench_test_states_LDADD = bench/libbench.la tests/support/libunit.la $(CHECK_LIBS)
-TESTS += tests/bench/test_problem tests/bench/test_sheet tests/bench/test_states
+check_PROGRAMS += tests/bench/test_load
+tests_bench_test_load_SOURCES = tests/bench/test_load.c bench/load.c bench/load.h
+tests_bench_test_load_LDADD = tests/support/libunit.la $(CHECK_LIBS)
+TESTS += tests/bench/test_load tests/bench/test_problem tests/bench/test_sheet tests/bench/test_states
 endif
 EXTRA_DIST += tests/bench/bench.sh
 dist_check_SCRIPTS += tests/bench/test_bench.sh tests/bench/test_cg.sh tests/bench/test_compare.sh tests/bench/test_experiments.sh tests/bench/test_physics.sh tests/bench/test_ranks.sh

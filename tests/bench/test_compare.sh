@@ -104,8 +104,48 @@ ok "StarPU's twin is not there" refused_by "$scratch/alone/compare" "alone/rival
     irregular --scheduler starpu:lws --output "$scratch/n"
 ok "graph-run has none of StarPU's schedulers" refused_by "$bin/graph-run" "bench/rivals/starpu-graph --schedulers lists them" \
     irregular --scheduler starpu:lws
-ok "a run that fails, and its words are kept" refused 1 "failed; its words are in u/run.log" "$top/cloth/scenes/sheet.yaml" \
-    --set grain=0 --rounds 1 --output u
+# A member that fails beside one that does not: the page names it and says why; no table and no file has a figure of it.
+failed() {
+    refused 1 "compare: 2 runs failed: f/compare.md says which, and why" tree --threads 1,5000 --rounds 2 --output f || return 1
+    cat "$scratch/f/compare.md" "$scratch/f/summary.csv" "$scratch/f/runs.csv"
+    grep -q ": 5000: failed; exit status 1: graph-run: .*5000 threads are more than 4096" "$scratch/said" &&
+        grep -q "^- tree, threads 5000: 2 of 2 runs; the first: exit status 1: graph-run: .*5000 threads" "$scratch/f/compare.md" &&
+        grep -q "^| 5000  *|  *|  *|  *|  *| failed  *|$" "$scratch/f/compare.md" &&
+        grep -qx "tree,0,1,5000,none,metis,steal,0,,,,,,,,,failed" "$scratch/f/summary.csv" &&
+        test "$(grep -cx "[01],tree,0,1,5000,none,metis,steal,,,,,,,failed" "$scratch/f/runs.csv")" = 2 &&
+        grep -q "5000 threads" "$scratch/f/failed.log" && ! grep -i nan "$scratch/said" "$scratch/f/"*.csv "$scratch/f/compare.md"
+}
+all_failed() {
+    refused 1 "compare: 1 run failed: u/compare.md" "$top/cloth/scenes/sheet.yaml" --set grain=0 --rounds 1 --output u &&
+        grep -q "^- .*sheet.yaml: 1 of 1 runs; exit status [1-9][0-9]*: duite-cloth: .*grain" "$scratch/u/compare.md" &&
+        ! grep "bars0.png" "$scratch/u/compare.md"
+}
+timed_out() {
+    (cd "$scratch" && limited "$bin/compare" tree --tasks 4000 --cost 1 --timeout 1 --rounds 1 --output late > said 2>&1) && return 1
+    cat "$scratch/said"
+    grep -q "failed; stopped after 1 s (--timeout)" "$scratch/said"
+}
+# Loops on all cores. The page of a comparison that is taken up again has the warning, too.
+busy() {
+    loops=
+    for _ in $(seq "$(nproc)"); do
+        sh -c 'while :; do :; done' &
+        loops="$loops $!"
+    done
+    (cd "$scratch" && limited "$bin/compare" tree --threads 1 --tasks 40 --cost 0.01 --steps 1 --rounds 1 --output b > said 2>&1)
+    status=$?
+    # shellcheck disable=SC2086
+    kill $loops && wait $loops 2> /dev/null
+    cat "$scratch/said"
+    grep '^compare: warning: in round 1 other programs took [0-9.]* of [0-9]* cores' "$scratch/said" > "$scratch/warned" && test $status = 0 &&
+        sed 's/^compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxqf - "$scratch/b/compare.md" || return 1
+    (cd "$scratch" && limited "$bin/compare" tree --threads 1 --tasks 40 --cost 0.01 --steps 1 --rounds 1 --output b) &&
+        sed 's/^compare: warning: \(.*\)$/**Warning:** \1./' "$scratch/warned" | grep -Fxqf - "$scratch/b/compare.md"
+}
+ok "a member that fails is named with its reason, and has no figures" failed
+ok "... also if all fail" all_failed
+ok "... or one takes too long" timed_out
+ok "a machine that is busy draws a warning" busy
 ok "an unknown kind of graph" refused 2 "there is no kind of graph ring; known are stencil, .* chain, and files" ring --output u
 ok "a scene that is not there" refused 2 "none.yaml: No such file or directory" tree none.yaml --output u
 ok "a set without a value" refused 2 "set grain: KEY=VALUE is expected" tree --set grain --output u

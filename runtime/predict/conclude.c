@@ -63,14 +63,9 @@ static void follow_chain(const struct predict_machine *m, double *chain)
     }
 }
 
-static enum predict_limit find_limit(const struct predict_result *result, double workers)
+static enum predict_limit find_limit(const struct predict_result *result)
 {
     enum predict_limit limit = PREDICT_WORK;
-    const double most = 0.8 * result->makespan;
-    if (result->work / workers >= most)
-        return PREDICT_WORK;
-    if (result->critical_path >= most)
-        return PREDICT_PATH;
     for (int i = 1; i < PREDICT_LIMITS; i++)
         if (result->chain[i] > result->chain[limit])
             limit = (enum predict_limit)i;
@@ -116,5 +111,5 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result)
         result->work += (double)graph->node[i].seconds;
     follow_chain(m, result->chain);
     result->critical_path = critical_path(graph, m->begin);
-    result->limit = find_limit(result, m->n_workers);
+    result->limit = find_limit(result);
 }

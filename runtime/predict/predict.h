@@ -46,7 +46,7 @@ struct predict_result {
     double idle;          /* share of the workers' time without a task */
     double overhead;      /* s between two tasks, as it was taken to be */
     double chain[PREDICT_LIMITS];
-    enum predict_limit limit;
+    enum predict_limit limit; /* the largest of them */
 };
 
 /* The names of the limits, for people. */

@@ -64,6 +64,25 @@ START_TEST(readers)
 }
 END_TEST
 
+/* What limits is what holds up most: of 2 + 8 ms the long task, which waited for a core, has 8;
+ * that the longest chain of tasks is 8 ms, too, is nothing that held it up. */
+START_TEST(the_largest_share_limits)
+{
+    struct trace_file file = foretell_begun(3, 8);
+    trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(1));
+    trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(2));
+    trace_file_fork(&file, FILE_W, 8 * MS, 0, 1, SLOTS(3));
+    struct predict_cluster two = foretell_machine(1, 2);
+    two.scheduler = &sched_fifo;
+    struct predict_result r = foretell(&file, &two);
+    is(r.makespan, 10 * MS);
+    is(r.critical_path, 8 * MS);
+    is(r.chain[PREDICT_WORK], 8 * MS);
+    is(r.chain[PREDICT_PATH], 2 * MS);
+    ck_assert_int_eq(r.limit, PREDICT_WORK);
+}
+END_TEST
+
 /* The long one first if it is told to be urgent: 6, not 2 + 2 + 6 on the second core's end. */
 START_TEST(priorities)
 {
@@ -296,6 +315,7 @@ int main(void)
     TCase *cases = tcase_create("predict");
     tcase_add_test(cases, chain);
     tcase_add_test(cases, independent);
+    tcase_add_test(cases, the_largest_share_limits);
     tcase_add_test(cases, readers);
     tcase_add_test(cases, priorities);
     tcase_add_test(cases, message);

@@ -86,7 +86,7 @@ int cg_system_plan(struct states_plan *plan, const struct solve_system *s, bool 
     if (!model->materials || !model->cloths)
         return serve_no_memory();
     model->n_materials = model->n_cloths = 1;
-    model->materials->stretch = 1;
+    model->materials->ea = 1;
     return make_cloth(model->cloths, s);
 }
 

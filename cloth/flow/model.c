@@ -88,6 +88,17 @@ static bool has_material(const struct model_cloth *cloth, uint32_t material)
     return found;
 }
 
+void model_parts(const struct model *model, uint32_t material, bool *triangles, bool *edges)
+{
+    *triangles = *edges = false;
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const struct model_cloth *cloth = model->cloths + c;
+        const bool has = has_material(cloth, material);
+        *triangles = *triangles || (has && cloth->mesh.n_triangles);
+        *edges = *edges || (has && cloth->mesh.n_lone_edges);
+    }
+}
+
 /* Alike but for rounding, of cells that are at other places. */
 static double common(double a, double b)
 {

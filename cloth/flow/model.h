@@ -32,6 +32,7 @@ struct model_material {
     double damping_mass;      /* 1/s: a force -damping_mass * m * v */
     double damping_stiffness; /* s: along each spring, times its k; of strains and angles too */
     double damping_excess;    /* s: what it is of bending less that */
+    double ea;                /* N, >= 0: force / strain of an edge without triangles */
     int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
 };
 
@@ -318,8 +319,8 @@ static inline double model_weft(const struct model_material *material)
 /* The moduli of springs, without regions. */
 static inline struct mesh_moduli model_moduli(const struct model_material *m)
 {
-    return (struct mesh_moduli){m->stretch,        m->shear,       m->bend,
-                                m->both_diagonals, m->weft_excess, NULL};
+    return (struct mesh_moduli){m->stretch,     m->shear, m->bend, m->both_diagonals,
+                                m->weft_excess, NULL,     m->ea};
 }
 
 /* The stiffness damping of what resists bending, s, >= 0. */
@@ -354,6 +355,9 @@ model_material(const struct model *model, const struct model_cloth *cloth, uint3
  * known, since no cloth has the material, or a mesh that is no grid, or cloths whose cells make
  * different ones. Before the meshes are freed. */
 struct mesh_elastic model_elastic(const struct model *model, uint32_t material);
+
+/* Whether cloths that have the material, by number, have triangles, or edges without triangles. */
+void model_parts(const struct model *model, uint32_t material, bool *triangles, bool *edges);
 
 /* Whether a point is in the box between two corners, lower and upper, or on it. */
 static inline bool model_in_box(const double *x, const double box[2][3])

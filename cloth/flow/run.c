@@ -139,8 +139,15 @@ static void warn_of_air(struct flow *flow)
 
 /* What a material says that its cloth has nothing for; NULL: nothing. A chain beside a grid may
  * share a material that shears. */
-static const char *idle_key(const struct model_material *material, const struct model_cloth *cloth)
+static const char *idle_key(const struct model *model, const struct model_material *material,
+                            const struct model_cloth *cloth)
 {
+    bool triangles, edges;
+    model_parts(model, (uint32_t)(material - model->materials), &triangles, &edges);
+    if (material->ea > 0 && !edges)
+        return "ea is of edges without triangles";
+    if (material->stretch > 0 && !triangles)
+        return "stretch is of triangles and threads; edges without triangles have ea";
     if (material->model == MODEL_TRIANGLES)
         return material->bend > 0 ? "bend is of springs; triangles have bending" : NULL;
     if (material->poisson < 0 || material->poisson > 0)
@@ -160,7 +167,7 @@ static void warn_of_moduli(struct flow *flow)
         for (uint32_t i = 0; i <= model->cloths[c].n_regions; i++) {
             const struct model_cloth *cloth = model->cloths + c;
             const struct model_material *material = model_material(model, cloth, i);
-            const char *key = idle_key(material, cloth);
+            const char *key = idle_key(model, material, cloth);
             if (key && !flow->warning[6][0])
                 snprintf(flow->warning[6], sizeof flow->warning[6],
                          "%.200s%smaterial '%.60s' says what means nothing to cloth '%.60s': %s",

@@ -157,17 +157,29 @@ static int modulus_of(const struct builder *builder, const struct mesh_edge *edg
     return CLOTH_OK;
 }
 
+/* Of triangles. */
+static int add_side(struct builder *builder, const struct mesh_edge *edge)
+{
+    double modulus;
+    const int code = modulus_of(builder, edge, &modulus);
+    return code ? code : add(builder, edge->a, edge->b, MESH_STRETCH, modulus, edge->area);
+}
+
+static int add_lone_edge(struct builder *builder, const struct mesh_edge *edge)
+{
+    const double length = mesh_distance(builder->mesh->position, edge->a, edge->b);
+    const double ea = moduli_of(builder, edge->a, edge->b)->ea;
+    return add(builder, edge->a, edge->b, MESH_STRETCH, length > 0 ? ea / length : 0, NO_AREA);
+}
+
 /* All stretch springs, then all bend springs, each in edge order. */
 static int add_edges(struct builder *builder, const struct mesh_edges *edges)
 {
     int code = CLOTH_OK;
     for (uint32_t e = 0; e < edges->n && !code; e++) {
         const struct mesh_edge *edge = &edges->edge[e];
-        double area = edge->opposite[0] == UINT32_MAX ? NO_AREA : edge->area;
-        double modulus;
-        code = modulus_of(builder, edge, &modulus);
-        if (!code)
-            code = add(builder, edge->a, edge->b, MESH_STRETCH, modulus, area);
+        code = edge->opposite[0] == UINT32_MAX ? add_lone_edge(builder, edge)
+                                               : add_side(builder, edge);
     }
     for (uint32_t e = 0; e < edges->n && !code; e++) {
         const struct mesh_edge *edge = &edges->edge[e];

@@ -9,9 +9,9 @@
  * border; k is the modulus, N/m. other meshes: every edge of a triangle is stretch with k = modulus
  * * area of its triangles / length^2; the vertices opposite an inner edge are joined by bend with k
  * = modulus * area of the two triangles / length^2; shear has none. lone edges that are no
- * triangle's: stretch with k = modulus. Rest lengths are the distances in the mesh as positioned.
- * Springs with k = 0 are left out. Sorted by (a, b), a < b; two springs may join the same vertices,
- * stretch before bend then. */
+ * triangle's: stretch with k = ea / length. Rest lengths are the distances in the mesh as
+ * positioned. Springs with k = 0 are left out. Sorted by (a, b), a < b; two springs may join the
+ * same vertices, stretch before bend then. */
 enum mesh_spring_kind { MESH_STRETCH, MESH_SHEAR, MESH_BEND };
 
 struct mesh_spring {
@@ -27,6 +27,7 @@ struct mesh_moduli {
     double weft_excess; /* N/m: of stretch along v, more than along u; between them by the square of
                            the cosine */
     const struct mesh_regions *regions; /* that have other moduli; NULL: none */
+    double ea;                          /* N, of lone edges: force / strain */
 };
 
 /* What joins vertices that are all in a region has the moduli of that; which diagonals there are

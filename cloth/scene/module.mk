@@ -18,6 +18,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/build.h \
 	cloth/scene/build/world.c \
 	cloth/scene/build/mesh.c \
+	cloth/scene/build/moduli.c \
 	cloth/scene/build/cloth.c \
 	cloth/scene/build/course.c \
 	cloth/scene/build/load.c \

@@ -14,7 +14,7 @@ cloths:
     mass_per_vertex: 0.1
     masses: [{vertices: [2], mass: 0.15}, {nearest: [9, 0, 0], mass: 0.05}]
     pins: [{vertices: [0]}]
-materials: {wire: {density: 1, stretch: 40}}
+materials: {wire: {density: 1, ea: 40}}
 time: {h: 5e-4, end: 0.8}
 integrator: rk4
 probes: [{name: p, vertices: [1, 2]}]
@@ -39,7 +39,7 @@ cloths:
     material: wire
     mass_per_vertex: 0.1
     start: [{vertices: [0, 1], scale: 1.2, about: [3, 0, 0], spin: [0, 12.909944487358056, 0]}]
-materials: {wire: {density: 1, stretch: 50}}
+materials: {wire: {density: 1, ea: 50}}
 time: {h: 0.002, end: 5}
 energies: steps
 probes: [{name: p, vertices: [0, 1]}]
@@ -95,7 +95,7 @@ cloths:
     material: wire
     mass_per_vertex: 0.1
     pins: [{vertices: [0]}]
-materials: {wire: {density: 1, stretch: 1e5}}
+materials: {wire: {density: 1, ea: 1e5}}
 time: {h: 5e-4, end: 2.2}
 integrator: rk4
 probes: [{name: p, vertices: [1], values: [position]}]
@@ -118,7 +118,7 @@ cloths:
     mass_per_vertex: 0.1
     pins: [{vertices: [0]}]
     start: [{vertices: [1], scale: 1.0000118860814, spin: [0, 3.44761856436, 0]}]
-materials: {wire: {density: 1, stretch: 1e5}}
+materials: {wire: {density: 1, ea: 1e5}}
 time: {h: 5e-4, end: 1.8224712718}
 integrator: rk4
 probes: [{name: p, vertices: [0, 1]}]
@@ -133,13 +133,35 @@ cone() { # after one turn
 }
 ok "a conical pendulum" cone
 
+# A chain of links of 0.1 m and 0.4 m hangs: each is drawn by the weights below it, F L / EA, whatever its length.
+cat > links.yaml << 'END'
+schema: 1
+cloths:
+  - mesh: {inline: {vertices: [[0, 0, 0], [0, -0.1, 0], [0, -0.5, 0]], edges: [[0, 1], [1, 2]]}}
+    material: wire
+    mass_per_vertex: 0.1
+    pins: [{vertices: [0]}]
+materials: {wire: {density: 1, ea: 40, damping: {mass: 20}}}
+time: {h: 0.05, end: 40, fps: 0.1}
+solver: {stop: {relative: 1.0e-10}}
+probes: [{name: p, vertices: [1, 2], values: [position]}]
+END
+links() {
+    run links.yaml || return 1
+    # shellcheck disable=SC2046
+    set -- $(last p.1.y p.2.y)
+    near "a chain, its upper link" "$1" "$(awk 'BEGIN { print -0.1 * (1 + 1.962 / 40) }')" 1e-6 &&
+        near "its lower link, four times as long" "$(less "$2" "$1")" "$(awk 'BEGIN { print -0.4 * (1 + 0.981 / 40) }')" 1e-6
+}
+ok "links of other lengths are drawn by the same strain" links
+
 # A taut chain of nine weights between two pins: w = 2 sqrt(T / m a) sin(n pi / 20).
 awk 'BEGIN { printf "schema: 1\ngravity: [0, 0, 0]\ncloths:\n  - mesh: {inline: {vertices: ["
     for (i = 0; i <= 10; i++) printf "%s[%g, 0, 0]", i ? ", " : "", i / 10
     printf "], edges: ["
     for (i = 0; i < 10; i++) printf "%s[%d, %d]", i ? ", " : "", i, i + 1
     printf "]}}\n    material: wire\n    mass_per_vertex: 0.01\n    pins: [{vertices: [0, 10]}]\n    start: [{box: [[-9, -9, -9], [9, 9, 9]], scale: 1.25, wave: {vector: [1.5, 0, 0], translate: [0, 1e-5, 0]}}"
-    print "]\nmaterials: {wire: {density: 1, stretch: 200}}\ntime: {h: 2.5e-4, end: 0.3}\nintegrator: rk4\nprobes: [{name: p, vertices: [5], values: [position]}]" }' > string.yaml
+    print "]\nmaterials: {wire: {density: 1, ea: 20}}\ntime: {h: 2.5e-4, end: 0.3}\nintegrator: rk4\nprobes: [{name: p, vertices: [5], values: [position]}]" }' > string.yaml
 string() {
     run string.yaml || return 1
     below "third mode of a taut chain, of its amplitude" "$(rows '{ w = 2 * sqrt(5 / 0.01 / 0.125) * sin(3 * 3.14159265358979324 / 20)
@@ -181,7 +203,7 @@ shaken() { # RATIO of W to the weight's own 20 rad/s
         for (i = 0; i <= n; i++) printf "%s%.15g", i ? ", " : "", i * T / 96
         printf "], translate: ["
         for (i = 0; i <= n; i++) printf "%s[%.15g, 0, 0]", i ? ", " : "", 0.01 * sin(i * 2 * 3.14159265358979324 / 96)
-        print "]}}]\nmaterials: {wire: {density: 1, stretch: 40, damping: {stiffness: 0.02}}}"
+        print "]}}]\nmaterials: {wire: {density: 1, ea: 40, damping: {stiffness: 0.02}}}"
         printf "time: {h: %.15g, end: %.15g}\nintegrator: rk4\nprobes: [{name: p, vertices: [1], values: [position]}]\n", T / 96, 12 * T }' > shaken.yaml
     run shaken.yaml || return 1
     # shellcheck disable=SC2046

@@ -39,7 +39,7 @@ bar() { # LINKS
         printf "]}}\n    material: m\n    mass_per_vertex: %.12g\n    masses: [{box: [[0.01, -1, -1], [1.99, 1, 1]], mass: %.12g}]\n", 0.02 / n, 0.02 / n
         print "    pins: [{vertices: [0]}]\n    start:"
         for (i = 1; i <= n; i++) printf "      - {vertices: [%d], translate: [%.12g, 0, 0]}\n", i, 1e-5 * sin(3.14159265358979 / 2 * i / n)
-        printf "materials: {m: {density: 1, stretch: %.12g}}\n", 40 * n / 2
+        print "materials: {m: {density: 1, ea: 40}}"
         printf "time: {h: 1e-4, end: 0.5}\nintegrator: verlet\nprobes: [{name: p, vertices: [%d], values: [velocity]}]\n", n }' > bar.yaml
     run bar.yaml && crossings "p.$1.vx"
 }
@@ -54,7 +54,7 @@ double() { # -1 or 1: slow or fast
     awk -v sign="$1" 'BEGIN { print "schema: 1\ncloths:\n  - mesh: {inline: {vertices: [[0, 0, 0], [0, -0.5, 0], [0, -1, 0]], edges: [[0, 1], [1, 2]]}}"
         print "    material: wire\n    mass_per_vertex: 0.1\n    pins: [{vertices: [0]}]"
         printf "    start: [{vertices: [1], translate: [1e-4, -1.962e-5, 0]}, {vertices: [2], translate: [%.12g, -2.943e-5, 0]}]\n", 1e-4 * (1 - sign * sqrt(2))
-        print "materials: {wire: {density: 1, stretch: 1e5}}\ntime: {h: 2.5e-4, end: 6}\nintegrator: rk4\nprobes: [{name: p, vertices: [1, 2], values: [position]}]" }' > double.yaml
+        print "materials: {wire: {density: 1, ea: 5e4}}\ntime: {h: 2.5e-4, end: 6}\nintegrator: rk4\nprobes: [{name: p, vertices: [1, 2], values: [position]}]" }' > double.yaml
     run double.yaml && near "double pendulum, mode $1" "$(crossings p.2.x)" \
         "$(awk -v sign="$1" 'BEGIN { printf "%.12g", sqrt(9.81 / 0.5 * (2 + sign * sqrt(2))) / 2 / 3.14159265358979 }')" 1e-4
 }

@@ -20,7 +20,7 @@ cloths:
     loads:
       - {vertices: [1], force: [0.2, 0, 0], course: {sine: {frequency: 3.183098861837907}}}
       - {vertices: [0], force: [0, 0.3, 0], course: {sine: {frequency: 1, phase: 0.25}}}
-materials: {wire: {density: 1, stretch: 40}}
+materials: {wire: {density: 1, ea: 40}}
 time: {h: 1e-3, end: 2}
 integrator: rk4
 solver: {stop: {relative: 1e-12}}

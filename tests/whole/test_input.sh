@@ -67,6 +67,9 @@ ok "a load that names a vertex twice" says 1 \
 # What only the whole model shows names its place in the scene, too.
 changed mass 'grid: {width.*ny: 8}' 'inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}'
 sed -i 's/    pins.*/    pins: []/' mass.yaml
+refused "a chain without EA" "mass.yaml:4:15: cloth 'cloth1' has edges without triangles, for which material 'cotton' has no ea; a finite number >= 0 (N) $(
+    )is expected: the spring constant of such an edge times its length (stretch is of triangles and threads)" mass.yaml
+sed -i 's/stretch: 500/ea: 500/' mass.yaml
 refused "a vertex without mass" \
     "mass.yaml:3:5: mass_per_vertex is missing: only edges use vertex 0 of cloth 'cloth1', which have no area to take a$(
     ) mass from; a finite number > 0 (kg) is expected" mass.yaml --grain 1

@@ -258,3 +258,6 @@ ok "a ratio of springs" idle "poisson is of triangles" scene.yaml --set material
 ok "forces of springs" idle "forces is of triangles" scene.yaml --set materials.cotton.forces=uncorrected
 ok "bend of triangles" idle "bend is of springs" scene.yaml --set materials.cotton.model=triangles --set materials.cotton.bend=1
 ok "shear of a mesh without rows" idle "shear is of the springs of grids" scene.yaml --set "$one" --set 'cloths[0].pins=[]' --set materials.cotton.shear=1
+chain='cloths[0]={mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}, material: cotton, mass_per_vertex: 1}'
+ok "EA of a sheet" idle "ea is of edges without triangles" scene.yaml --set materials.cotton.ea=1
+ok "stretch of a chain" idle "stretch is of triangles and threads" scene.yaml --set "$chain" --set materials.cotton.ea=1

@@ -24,7 +24,7 @@ cloths:
     material: thread
     mass_per_vertex: 0.1
     pins: [{vertices: [0, 1], to: line, direction: [3, -4, 0]}]
-materials: {thread: {density: 1, stretch: 10}}
+materials: {thread: {density: 1, ea: 10}}
 time: {h: 0.001, end: 0.5}
 solver: {stop: {relative: 1.0e-13}}
 probes: [{name: p, vertices: [0]}]
@@ -52,7 +52,7 @@ turns() { # INTEGRATOR ARGUMENT...
     awk 'BEGIN { printf "{times: ["; for (i = 0; i <= 100; i++) printf "%s%.17g", i ? "," : "", i / 100
         printf "], rotate: ["; for (i = 0; i <= 100; i++) printf "%s[%.17g,0,%.17g,0]", i ? "," : "", cos(i / 100), -sin(i / 100); print "]}" }' > motion
     run bead.yaml --output out --set integrator="$name" --set time.end=0.995 --set 'cloths[0].mesh.inline.vertices=[[1, 0, 0], [3, 0, 0]]' --set time.stretch_growth=0 \
-        --set gravity='[0,0,0]' --set materials.thread.stretch=1e-12 --set "cloths[0].pins=[{vertices: [0, 1], to: line, direction: [2, 0, 0], motion: $(cat motion)}]" "$@" || return 1
+        --set gravity='[0,0,0]' --set materials.thread.ea=1e-12 --set "cloths[0].pins=[{vertices: [0, 1], to: line, direction: [2, 0, 0], motion: $(cat motion)}]" "$@" || return 1
     last 'p.0.x [m]' 'p.0.z [m]' 'p.0.rx [N]' 'p.0.ry [N]' 'p.0.rz [N]' |
         awk -v t=0.995 -v h="${h:-0.001}" '{ c = cos(2 * t); s = sin(2 * t); e = exp(2 * t); r = $1 * c + $2 * s; push = $5 * c - $3 * s
             print r - (e + 1 / e) / 2, $2 * c - $1 * s, push - 0.4 * (e - 1 / e), $3 * c + $5 * s, $4
@@ -102,7 +102,7 @@ cloths:
     material: thread
     mass_per_vertex: 0.1
     pins: [{vertices: [0], motion: {times: [0, 0.02, 0.05], translate: [[0, 0, 0], [0, 0.08, 0], [0, 0.09, 0]]}}]
-materials: {thread: {density: 1, stretch: 40}}
+materials: {thread: {density: 1, ea: 40}}
 newton: {steps: 50, tolerance: 1.0e-12}
 time: {h: 0.01, end: 0.06, stretch_growth: 0.02}
 solver: {stop: {relative: 1.0e-13}}

@@ -19,7 +19,7 @@ cloths:
     material: cotton
     pins: [{vertices: [0]}]
 materials:
-  cotton: {density: 0.2, stretch: 200, shear: 50, damping: {mass: 1, stiffness: 0.01}}
+  cotton: {density: 0.2, stretch: 200, shear: 50, ea: 20, damping: {mass: 1, stiffness: 0.01}}
 time: {h: 0.002, end: 0.04}
 grain: 20
 probes:

@@ -15,7 +15,7 @@ cloths:
     mass_per_vertex: 0.1
     pins: [{vertices: [0, 3]}]
     start: [{vertices: [1], translate: [0.01, 0, 0]}]
-materials: {wire: {density: 1, stretch: 40}, weak: {density: 1, stretch: 2}}
+materials: {wire: {density: 1, ea: 40}, weak: {density: 1, ea: 2}}
 time: {h: 1e-3, end: 7}
 integrator: rk4
 probes: [{name: p, vertices: [1, 2], values: [position]}]
@@ -96,7 +96,7 @@ ok "a quadratic fold" flap --set materials.fold.bending.model=quadratic
 
 # The limit of explicit steps is that of the hardest region: 2 / w, w^2 = 2 (k1 + k2) / m or less.
 warned() {
-    run beats.yaml --end 0.01 --set integrator=verlet --set time.h=0.005 --set materials.weak.stretch=4e4 2> said || true
+    run beats.yaml --end 0.01 --set integrator=verlet --set time.h=0.005 --set materials.weak.ea=4e4 2> said || true
     cat said
     grep -q 'beyond the limit of verlet, 0.0022' said
 }

@@ -30,7 +30,7 @@ cloths:
     mass_per_vertex: 0.01
 materials:
   cloth: {density: 0.2, stretch: 3000, shear: 100, damping: {stiffness: 1.0e-5, mass: 0.1, viscous: 1.0e-5}}
-  wire: {density: 1, stretch: 300}
+  wire: {density: 1, ea: 30}
 obstacles: [{plane: {point: [0, -0.0001, 0], normal: [0, 1, 0]}}]
 time: {h: 1.0e-5, end: 6.0e-5}
 solver: {stop: {relative: 1.0e-4}}

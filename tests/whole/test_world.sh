@@ -15,7 +15,7 @@ cloths:
     material: wire
     mass_per_vertex: 0.1
     pins: [{vertices: [0], motion: {times: [0, 10], translate: [[0, 0, 0], [0.1, 0, 0]]}}]
-materials: {wire: {density: 1, stretch: 2000, damping: {stiffness: 0.002}}}
+materials: {wire: {density: 1, ea: 2000, damping: {stiffness: 0.002}}}
 time: {h: 0.002, end: 4}
 integrator: rk4
 grain: 1
@@ -68,7 +68,7 @@ awk 'BEGIN { printf "schema: 1\ncloths:\n  - mesh: {inline: {vertices: ["
     printf "], edges: ["
     for (i = 0; i < 16; i++) printf "%s[%d, %d]", i ? ", " : "", i, i + 1
     print "]}}\n    material: rope\n    mass_per_vertex: 0.01\n    pins: [{vertices: [0]}, {vertices: [16], motion: {times: [0, 1],"
-    print "      translate: [[0, 0, 0], [-0.4, 0.1, 0]]}}]\nmaterials: {rope: {density: 1, stretch: 500, damping: {viscous: 0.02, stiffness: 0.01}}}"
+    print "      translate: [[0, 0, 0], [-0.4, 0.1, 0]]}}]\nmaterials: {rope: {density: 1, ea: 31.25, damping: {viscous: 0.02, stiffness: 0.01}}}"
     print "time: {h: 0.01, end: 60, fps: 10, rest: {speed: 1e-9, hold: 0.2}}\ngrain: 5\nsolver: {stop: {relative: 1e-10}}"
     print "probes: [{name: ends, vertices: [0, 16], values: [reaction, total]}, {name: all, box: [[-1, -1, -1], [1, 1, 1]], values: [position]}]" }' > chain.yaml
 chain() {

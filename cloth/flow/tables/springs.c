@@ -84,13 +84,15 @@ static void pass_on(void *context, const struct mesh_spring *s)
     visitor->visit(visitor->to, &spring);
 }
 
+/* A joint without stiffness, or with ea (N) the spring of an edge without triangles. */
 static void join(const struct visitor *visitor, const struct mesh *mesh, uint32_t a, uint32_t b,
-                 double stiffness, unsigned char stretch)
+                 double ea, unsigned char stretch)
 {
-    const double damping = stiffness > 0 ? material_of(visitor, a, b)->damping_stiffness : 0;
     const double *p = mesh->position + 3 * (size_t)a, *q = mesh->position + 3 * (size_t)b;
     const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
     const double length = sqrt(x * x + y * y + z * z);
+    const double stiffness = length > 0 ? ea / length : 0;
+    const double damping = stiffness > 0 ? material_of(visitor, a, b)->damping_stiffness : 0;
     const struct flow_spring spring = {.a = visitor->first + (a < b ? a : b),
                                        .b = visitor->first + (a < b ? b : a),
                                        .stiffness = stiffness,
@@ -115,7 +117,7 @@ static void each_joint(const struct flow_springs *springs, uint32_t c,
         const bool lone = edge->opposite[0] == UINT32_MAX;
         if (triangles || !lone)
             join(visitor, mesh, edge->a, edge->b,
-                 lone ? material_of(visitor, edge->a, edge->b)->stretch : 0, triangles);
+                 lone ? material_of(visitor, edge->a, edge->b)->ea : 0, triangles);
         if (flow_has_bending(model, cloth) && edge->opposite[1] != UINT32_MAX &&
             edge->opposite[0] != edge->opposite[1])
             join(visitor, mesh, edge->opposite[0], edge->opposite[1], 0, 0);

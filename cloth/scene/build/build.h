@@ -29,6 +29,10 @@ int scene_build_material(uint32_t *material, const struct model_cloth *cloth,
 int scene_build_regions(struct model_cloth *cloth, const struct model *model,
                         const struct scene_tree *tree, int node, struct cloth_error *error);
 
+/* That the materials of a cloth with its regions have the moduli that its mesh needs. */
+int scene_build_check_moduli(const struct model_cloth *cloth, const struct model *model,
+                             const struct scene_tree *tree, int node, struct cloth_error *error);
+
 /* What picks vertices: a map with one of the keys vertices, nearest, box. */
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error);

@@ -266,6 +266,8 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
     if (!code)
         code = scene_build_regions(cloth, model, tree, node, error);
     if (!code)
+        code = scene_build_check_moduli(cloth, model, tree, node, error);
+    if (!code)
         choose_format(model, cloth);
     if (!code)
         code = build_pins(model, cloth, tree, node, error);

@@ -119,9 +119,13 @@ static int build_material(struct model_material *material, const struct scene_tr
     };
     if (!material->name)
         return error->code;
-    pair_of(tree, node, "stretch", stretch);
-    material->stretch = stretch[0];
-    material->weft_excess = stretch[1] - stretch[0];
+    if (scene_tree_get(tree, node, "stretch")) {
+        pair_of(tree, node, "stretch", stretch);
+        material->stretch = stretch[0];
+        material->weft_excess = stretch[1] - stretch[0];
+    }
+    if (scene_tree_get(tree, node, "ea"))
+        material->ea = scene_tree_number(tree, node, "ea");
     if (scene_tree_get(tree, damping, "bending"))
         material->damping_excess =
             scene_tree_number(tree, damping, "bending") - material->damping_stiffness;

@@ -55,7 +55,7 @@ void setup_weight(struct setup *s)
     memset(s, 0, sizeof *s);
     setup_common(s);
     s->material.density = 1;
-    s->material.stretch = 40;
+    s->material.ea = 40; /* of 1 m */
     s->material.damping_stiffness = 0.002;
     s->cloth.mass_per_vertex = 0.1;
     s->model.grain = 1;

@@ -95,7 +95,7 @@ static void hang(struct setup *s, const double *swing)
     }
     s->cloth.start = start;
     s->cloth.mass_per_vertex = M;
-    s->material.stretch = K;
+    s->material.ea = K * LENGTH;
     s->material.damping_stiffness = 0;
     s->model.grain = 100;
     s->model.tolerance = 1e-12;

@@ -84,6 +84,7 @@ START_TEST(planes_that_meet)
         static const uint32_t edge[] = {0, 1};
         ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 2, vertices, 1, edge, 0, NULL, &error), 0);
         setup.cloth.mass_per_vertex = 0.1;
+        setup.material.ea = 20;
         setup.model.grain = 1;
         setup.model.planes = (struct model_plane *)(uintptr_t)planes;
         setup.model.n_planes = 1 + walls;

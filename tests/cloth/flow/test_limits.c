@@ -35,7 +35,7 @@ static void chain(struct setup *s, double amplitude)
     ck_assert_int_eq(
         mesh_inline(&s->cloth.mesh, LINKS + 1, vertices, LINKS, edges, 0, NULL, &error), 0);
     s->cloth.mass_per_vertex = M;
-    s->material.stretch = K;
+    s->material.ea = K * 0.1; /* each link is 0.1 m long */
     s->material.damping_stiffness = 0;
     s->model.gravity[1] = 0;
     s->model.grain = 10;

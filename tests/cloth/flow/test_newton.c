@@ -27,7 +27,7 @@ static void chain(struct setup *s, double h, size_t steps)
     ck_assert_int_eq(
         mesh_inline(&s->cloth.mesh, LINKS + 1, vertices, LINKS, edges, 0, NULL, &error), 0);
     s->cloth.mass_per_vertex = M;
-    s->material.stretch = K;
+    s->material.ea = K * LENGTH;
     s->material.damping_stiffness = 0;
     s->model.h = h;
     s->model.end = h * (double)steps;
@@ -190,7 +190,7 @@ START_TEST(line_search)
     mesh_free(&setup.cloth.mesh);
     ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 3, vertices, 2, edges, 0, NULL, &error), 0);
     setup_pin(&setup, 2, (const uint32_t[]){0, 2});
-    setup.material.stretch = k;
+    setup.material.ea = k * half;
     setup.model.newton_steps = 2;
     run(&r, &setup);
     double low = 0, high = 1; /* m u / h^2 = m g - 2 k (l - L) u / l */
@@ -223,7 +223,7 @@ START_TEST(bdf2_after_contact)
     double y = 0, v = 0, last_y = 0, last_v = 0;
     setup_weight(&setup);
     setup.cloth.n_pins = 0;
-    setup.material.stretch = 0;
+    setup.material.ea = 0;
     setup.material.damping_stiffness = 0;
     setup.model.gravity[1] = -G;
     setup.model.integrator = MODEL_BDF2;

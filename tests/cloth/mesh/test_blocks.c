@@ -34,7 +34,7 @@ static void graph_free(struct graph *graph)
 static struct graph sheet(uint32_t nx, uint32_t ny, uint32_t more)
 {
     struct mesh mesh = grid(1, 1, nx, ny);
-    struct mesh_moduli moduli = {1, 1, 1, 1, 0, NULL};
+    struct mesh_moduli moduli = {1, 1, 1, 1, 0, NULL, 0};
     struct mesh_lattice lattice;
     ck_assert_int_eq(mesh_lattice_build(&lattice, &mesh, &moduli, NULL), CLOTH_OK);
     struct graph graph = graph_new(mesh.n_vertices + more, lattice.n);

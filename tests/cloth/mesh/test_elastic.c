@@ -65,7 +65,7 @@ static void is_inverse(const struct mesh_elastic *found, double c[3][3])
 static void holds(double stretch, double weft, double shear, double bend, int both, double a,
                   double b)
 {
-    const struct mesh_moduli moduli = {stretch, shear, bend, both, weft - stretch, NULL};
+    const struct mesh_moduli moduli = {stretch, shear, bend, both, weft - stretch, NULL, 0};
     struct mesh mesh = grid_of(a, b);
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &moduli);
     double c[3][3];
@@ -88,7 +88,7 @@ END_TEST
 
 static struct mesh_elastic of(double stretch, double shear, int both)
 {
-    const struct mesh_moduli moduli = {stretch, shear, 0, both, 0, NULL};
+    const struct mesh_moduli moduli = {stretch, shear, 0, both, 0, NULL, 0};
     struct mesh mesh = grid_of(0.02, 0.02);
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &moduli);
     mesh_free(&mesh);

@@ -9,7 +9,7 @@ static struct mesh_lattice lattice_of(const struct mesh *mesh, double stretch, d
 {
     struct cloth_error error = {0};
     struct mesh_lattice lattice;
-    struct mesh_moduli moduli = {stretch, shear, bend, both, 0, NULL};
+    struct mesh_moduli moduli = {stretch, shear, bend, both, 0, NULL, stretch};
     int code = mesh_lattice_build(&lattice, mesh, &moduli, &error);
     ck_assert_msg(code == CLOTH_OK, "%s", error.text);
     struct mesh_spring *spring = springs_of(&lattice); /* as they are visited, a grid's too */
@@ -160,7 +160,7 @@ START_TEST(triangle_meshes)
     spring_is(&lattice, 1, 2, MESH_STRETCH, 100 * 12.0 / 25, 5);
     spring_is(&lattice, 1, 3, MESH_STRETCH, 100 * 6.0 / 16, 4);
     spring_is(&lattice, 0, 3, MESH_BEND, 10 * 12.0 / 25, 5);
-    spring_is(&lattice, 4, 5, MESH_STRETCH, 100, 2);
+    spring_is(&lattice, 4, 5, MESH_STRETCH, 100 / 2.0, 2); /* EA / length */
     mesh_lattice_free(&lattice);
     lattice = lattice_of(&mesh, 100, 77, 0, 1);
     ck_assert_uint_eq(lattice.n, 6);
@@ -193,7 +193,7 @@ static void fails(const struct mesh *mesh, double bend, const char *says)
 {
     struct cloth_error error = {0};
     struct mesh_lattice lattice;
-    struct mesh_moduli moduli = {1, 1, bend, 1, 0, NULL};
+    struct mesh_moduli moduli = {1, 1, bend, 1, 0, NULL, 0};
     ck_assert_int_eq(mesh_lattice_build(&lattice, mesh, &moduli, &error), CLOTH_E_INPUT);
     ck_assert_msg(strncmp(error.text, says, strlen(says)) == 0, "%s", error.text);
     ck_assert(lattice.n == 0 && !lattice.spring);

@@ -61,7 +61,7 @@ static int all(struct cloth_error *error, const char *path)
     struct mesh mesh, sheet = {0}, copy = {0};
     struct mesh_lattice lattice = {0};
     struct mesh_blocks blocks = {0};
-    struct mesh_moduli moduli = {1, 1, 1, 1, 0, NULL};
+    struct mesh_moduli moduli = {1, 1, 1, 1, 0, NULL, 0};
     static const uint32_t chain[] = {0, 1, 1, 2, 2, 3};
     static unsigned char used[64];
     int code;

@@ -68,7 +68,7 @@ static void check_edges(const struct mesh *mesh, const struct garment *garment)
 
 static void check_blocks(const struct mesh *mesh)
 {
-    struct mesh_moduli moduli = {1000, 1000, 1, 1, 0, NULL};
+    struct mesh_moduli moduli = {1000, 1000, 1, 1, 0, NULL, 0};
     struct mesh_lattice lattice;
     struct mesh_blocks blocks;
     unsigned char *used = malloc(mesh->n_vertices);

@@ -105,6 +105,12 @@ START_TEST(names_and_indices)
         {"density: 0.2, ", "",
          .error = ":6:15: material 'cotton' has no density and the cloth no mass_per_vertex; one "
                   "of them is expected"},
+        {"stretch: 50, ", "",
+         .error =
+             ":6:15: cloth 'sheet' has triangles, for which material 'cotton' has no stretch; a "
+             "finite number >= 0 or a list of 2 of them (N/m) is expected"},
+        {"stretch: 50, ", "stretch: 50, ea: -1, ",
+         .error = ":10:43: materials.cotton.ea is -1; a finite number >= 0 (N) is expected"},
         {"density: 0.2, stretch: 50", "like: wool",
          .error = ":10:18: materials.cotton.like is wool; rib_knit or silk or denim or "
                   "polycotton is expected"},

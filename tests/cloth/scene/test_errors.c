@@ -112,7 +112,7 @@ START_TEST(unknown_and_missing_keys)
            {"stretch: 50", "strech: 50",
             .error =
                 ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
-                "Allowed: like, density, model, stretch, shear, poisson, forces, bend, bending, "
+                "Allowed: like, density, model, stretch, ea, shear, poisson, forces, bend, bending, "
                 "damping, diagonals"},
            {"vertices: [11]", "vertex: [11]",
             .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, "

@@ -237,13 +237,13 @@ START_TEST(cloths_of_every_mesh)
         "  - {mesh: {file: a.obj}, material: cotton, mass_per_vertex: 0.5, velocity: [1, 2, 3],\n"
         "     cost: {factor: 3, box: [[2, 0, -1], [-1, 4, 1]]}}\n"
         "  - mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}\n"
-        "    material: cotton\n"
+        "    material: wire\n"
         "    transform: {scale: [1, 2, 3], rotate: [0, 0, 2, 0], translate: [0, 0, 5]}\n"
         "    pins: [{nearest: [0, 0, 4]}, {box: [[1, 1, 9], [-2, 0, 0]]}]\n"
         "  - {mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], triangles: [[2, 1, "
         "0]]}},\n"
         "     material: cotton, transform: {scale: 2}}\n"
-        "materials:\n");
+        "materials:\n  wire: {density: 1, ea: 7}\n");
     scene_write_file("a.obj", triangle, strlen(triangle));
     struct model model = scene_read_right(text, 0, NULL);
     ck_assert_uint_eq(model.n_cloths, 4);
@@ -257,6 +257,7 @@ START_TEST(cloths_of_every_mesh)
     same_vector(model.cloths[1].cost.box[1], 2, 4, 1);
     const struct model_cloth *chain = &model.cloths[2];
     ck_assert_uint_eq(chain->mesh.n_lone_edges, 1);
+    ck_assert_double_eq(model.materials[chain->material].ea, 7);
     same_vector(chain->mesh.position + 3, -1, 0, 5); /* turned by half a circle about y */
     ck_assert_int_eq(chain->pins[0].pick.kind, MODEL_PICK_NEAREST);
     same_vector(chain->pins[0].pick.point, 0, 0, 4);

@@ -77,6 +77,9 @@ chain='cloths[0].mesh.inline.vertices=[[0, 0, 0], [0, 0, 0]]'
 ok "an edge of no length" says 1 \
     "mass.yaml:3:20: cloth 'cloth1': vertices 0 and 1 (counted from 0) are 0 m apart; vertices that a spring joins need$(
     ) a finite distance above 0" mass.yaml --set "$chain" --set 'cloths[0].mass_per_vertex=1'
+ok "an edge of no length beside triangles" says 1 \
+    "mass.yaml:3:20: cloth 'cloth1': vertices 0 and 1 (counted from 0) are 0 m apart; the edge that joins them needs a length" mass.yaml \
+    --set "$chain" --set 'cloths[0].mass_per_vertex=1' --set materials.cotton.model=triangles
 changed fast '    pins.*' '    velocity: [0, 1000000, 0]'
 ok "a start that is too fast" says 1 \
     "fast.yaml:5:15: cloth 'cloth1' starts with the velocity (0, 1e+06, 0) m/s; less than 1e+06 m/s along each axis$(

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Those of the regions of a cloth, for its lattice. */
 static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_regions *regions,
@@ -20,13 +21,32 @@ static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_re
     return CLOTH_OK;
 }
 
+/* Edges beside triangles are in no lattice, which would refuse those without a length. */
+static int check_edges(const struct flow_springs *springs, uint32_t c, struct cloth_error *error)
+{
+    const struct model_cloth *cloth = springs->model->cloths + c;
+    const struct mesh_edges *edges = springs->elements->edges + c;
+    const double *position = model_rest(cloth)->position;
+    for (uint32_t e = 0; e < edges->n; e++) {
+        const struct mesh_edge *edge = edges->edge + e;
+        if (edge->opposite[0] == UINT32_MAX &&
+            !memcmp(position + 3 * (size_t)edge->a, position + 3 * (size_t)edge->b,
+                    3 * sizeof *position))
+            return model_fail(cloth->mesh_place, error,
+                              "cloth '%.60s': vertices %u and %u (counted from 0) are 0 m apart; "
+                              "the edge that joins them needs a length",
+                              cloth->name, edge->a, edge->b);
+    }
+    return CLOTH_OK;
+}
+
 static int make_cloth(struct flow_springs *springs, uint32_t c, struct cloth_error *error)
 {
     const struct model_cloth *cloth = springs->model->cloths + c;
     struct mesh_moduli moduli = model_moduli(model_material(springs->model, cloth, 0));
     struct cloth_error inner = {0};
     if (flow_has_triangles(springs->model, cloth))
-        return CLOTH_OK;
+        return check_edges(springs, c, error);
     int code = cloth->mask ? find_regions(springs, c, springs->regions + c, error) : CLOTH_OK;
     if (code)
         return code;

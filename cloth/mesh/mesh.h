@@ -21,7 +21,8 @@ struct mesh {
     uint32_t *face_corner; /* vertices of the polygons, as in the input */
 
     uint32_t n_triangles;
-    uint32_t *triangle; /* n_triangles x 3: polygons fanned from their first corner, in order */
+    uint32_t *triangle; /* n_triangles x 3: of the polygons, in order; a convex one is fanned from
+                         * its first corner, others are cut by clipping ears */
 
     uint32_t n_lone_edges;
     uint32_t *lone_edge; /* n_lone_edges x 2: edges given without triangles */
@@ -42,15 +43,16 @@ int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint3
 /* Reads v (x y z, anything after them ignored), vt, f (any polygon; v, v/vt, v//vn, v/vt/vn;
  * negative indices) and l (lone edges) of a Wavefront OBJ file; all else is skipped. Errors name
  * file and line: no vertices, numbers that are not numbers or not finite, indices out of range,
- * faces with fewer than 3 or repeated corners, an edge shared by more than two triangles
- * (non-manifold, at the third face), files beyond 2^31 vertices or corners. A line ended by `\`
- * goes on in the next and counts as the first. Codes: CLOTH_E_INPUT, CLOTH_E_IO (cannot be read),
+ * faces with fewer than 3 or repeated corners, polygons of more than 3 without area or that cross
+ * or touch themselves, an edge shared by more than two triangles (non-manifold, at the third face),
+ * a lone edge that stands twice, files beyond 2^31 vertices or corners. A line ended by `\` goes on
+ * in the next and counts as the first. Codes: CLOTH_E_INPUT, CLOTH_E_IO (cannot be read),
  * CLOTH_E_MEMORY. */
 int mesh_read_obj(struct mesh *mesh, const char *path, struct cloth_error *error);
 
 /* Takes copies of the arrays: vertices n x 3, edges n_edges x 2, triangles n_triangles x 3 (either
- * may be absent). Checks indices, repeated corners, finite positions and non-manifold edges as
- * mesh_read_obj does, naming the entry
+ * may be absent). Checks indices, repeated corners, finite positions, non-manifold edges and edges
+ * that stand twice as mesh_read_obj does, naming the entry
  * ("triangles[4]: ..."), all counted from 0. At least one vertex. No uv. */
 int mesh_inline(struct mesh *mesh, uint32_t n_vertices, const double *vertices, uint32_t n_edges,
                 const uint32_t *edges, uint32_t n_triangles, const uint32_t *triangles,

@@ -7,6 +7,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/mesh/detail/lines.c cloth/mesh/detail/lines.h \
 	cloth/mesh/detail/order.c cloth/mesh/detail/partition.c \
 	cloth/mesh/detail/pieces.c cloth/mesh/detail/pieces.h \
+	cloth/mesh/detail/polygon.c cloth/mesh/detail/polygon.h \
 	cloth/mesh/detail/sides.c cloth/mesh/detail/sides.h \
 	cloth/mesh/detail/sort.c cloth/mesh/detail/sort.h \
 	cloth/mesh/detail/vector.h \

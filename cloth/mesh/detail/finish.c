@@ -1,8 +1,9 @@
 /* A mesh that leaves here keeps every promise of mesh.h: corners exist and differ, triangles are
- * the faces fanned from their first corners in order, no edge has a third triangle. */
+ * the faces cut in order, no edge has a third triangle, no lone edge stands twice. */
 #include "cloth/mesh/detail/finish.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/mesh/detail/polygon.h"
 #include "cloth/mesh/detail/sides.h"
 
 #include <stdio.h>
@@ -88,7 +89,32 @@ static int check_edges(const struct mesh *mesh, const struct mesh_source *source
     return CLOTH_OK;
 }
 
-static int fan(struct mesh *mesh, struct cloth_error *error)
+static int refuse_polygon(const struct mesh *mesh, const struct mesh_source *source, uint32_t f,
+                          const struct mesh_polygon_fault *fault, struct cloth_error *error)
+{
+    const uint32_t *corner = mesh->face_corner + mesh->face_start[f];
+    const uint32_t n = mesh->face_start[f + 1] - mesh->face_start[f];
+    const struct place place = face_place(source, f);
+    if (fault->kind == MESH_POLYGON_TOO_LARGE)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s: the face is not convex and has %u corners; at most %d can be cut "
+                          "into triangles",
+                          place.text, n, MESH_MOST_CORNERS);
+    if (fault->kind == MESH_POLYGON_NO_AREA)
+        return cloth_fail(error, CLOTH_E_INPUT,
+                          "%s: the face has no area: its corners lie on a line, or it crosses "
+                          "itself",
+                          place.text);
+    const uint32_t *side = fault->side;
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "%s: the face crosses or touches itself where its sides between vertices %u "
+                      "and %u and between %u and %u meet; cut it into faces that do not",
+                      place.text, shown(source, corner[side[0]]),
+                      shown(source, corner[(side[0] + 1) % n]), shown(source, corner[side[1]]),
+                      shown(source, corner[(side[1] + 1) % n]));
+}
+
+static int cut_faces(struct mesh *mesh, const struct mesh_source *source, struct cloth_error *error)
 {
     size_t n = mesh->n_faces ? mesh->face_start[mesh->n_faces] - 2 * (size_t)mesh->n_faces : 0;
     mesh->triangle = cloth_alloc(3 * n, sizeof *mesh->triangle, error);
@@ -97,12 +123,14 @@ static int fan(struct mesh *mesh, struct cloth_error *error)
     uint32_t *to = mesh->triangle;
     for (uint32_t f = 0; f < mesh->n_faces; f++) {
         const uint32_t *corner = mesh->face_corner + mesh->face_start[f];
-        uint32_t n_corners = mesh->face_start[f + 1] - mesh->face_start[f];
-        for (uint32_t c = 2; c < n_corners; c++) {
-            *to++ = corner[0];
-            *to++ = corner[c - 1];
-            *to++ = corner[c];
-        }
+        const uint32_t n_corners = mesh->face_start[f + 1] - mesh->face_start[f];
+        struct mesh_polygon_fault fault;
+        const int code = mesh_polygon_cut(mesh->position, n_corners, corner, to, &fault, error);
+        if (code == CLOTH_E_INPUT)
+            return refuse_polygon(mesh, source, f, &fault, error);
+        if (code)
+            return code;
+        to += 3 * (size_t)(n_corners - 2);
     }
     mesh->n_triangles = (uint32_t)n;
     return CLOTH_OK;
@@ -119,12 +147,40 @@ static uint32_t face_of(const struct mesh *mesh, uint32_t triangle)
     return face;
 }
 
+/* An edge that stands twice would be one. That a triangle has it, too, is allowed. */
+static int check_twice(const struct mesh *mesh, const struct mesh_source *source,
+                       const struct mesh_sides *sides, struct cloth_error *error)
+{
+    const uint32_t first = 3 * mesh->n_triangles;
+    uint32_t before = 0, twice = UINT32_MAX;
+    for (uint32_t i = 0, end; i < sides->n; i = end) {
+        end = mesh_sides_run(sides, i);
+        for (uint32_t k = i + 1; k < end; k++)
+            if (sides->order[k - 1] >= first && sides->order[k] < twice) {
+                before = sides->order[k - 1];
+                twice = sides->order[k];
+            }
+    }
+    if (twice == UINT32_MAX)
+        return CLOTH_OK;
+    const uint32_t *pair = sides->pair + 2 * (size_t)twice;
+    const size_t at = before - first;
+    return cloth_fail(
+        error, CLOTH_E_INPUT,
+        "%s: the edge between vertices %u and %u stands here again, after %s %zu; give it once",
+        place_of(source, "edges", source->edge_line, twice - first).text, shown(source, pair[0]),
+        shown(source, pair[1]), source->path ? "line" : "entry",
+        source->path ? source->edge_line[at] : at);
+}
+
 static int check_manifold(const struct mesh *mesh, const struct mesh_source *source,
                           struct cloth_error *error)
 {
     struct mesh_sides sides;
     uint32_t third;
     int code = mesh_sides_sort(&sides, mesh, error);
+    if (!code)
+        code = check_twice(mesh, source, &sides, error);
     if (!code && mesh_sides_third(&sides, mesh->n_triangles, &third)) {
         const uint32_t *pair = sides.pair + 2 * (size_t)third;
         code = cloth_fail(error, CLOTH_E_INPUT,
@@ -145,6 +201,6 @@ int mesh_finish(struct mesh *mesh, const struct mesh_source *source, struct clot
     if (!code)
         code = check_edges(mesh, source, error);
     if (!code)
-        code = fan(mesh, error);
+        code = cut_faces(mesh, source, error);
     return code ? code : check_manifold(mesh, source, error);
 }

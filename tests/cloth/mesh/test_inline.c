@@ -78,6 +78,17 @@ START_TEST(wrong_entries)
 }
 END_TEST
 
+START_TEST(edges_that_stand_twice)
+{
+    fails(4, SQUARE, 3, (uint32_t[]){0, 1, 1, 2, 1, 0}, 0, NULL,
+          "edges[2]: the edge between vertices 0 and 1 stands here again, after entry 0; give it "
+          "once");
+    fails(4, SQUARE, 4, (uint32_t[]){0, 1, 1, 2, 2, 1, 1, 2}, 1, (uint32_t[]){0, 1, 2},
+          "edges[2]: the edge between vertices 1 and 2 stands here again, after entry 1; give it "
+          "once");
+}
+END_TEST
+
 START_TEST(too_large)
 {
     fails(2147483649u, SQUARE, 0, NULL, 0, NULL,
@@ -101,4 +112,5 @@ START_TEST(non_manifold)
 }
 END_TEST
 
-RUN("inline", copies, a_chain_and_a_point, wrong_entries, too_large, non_manifold)
+RUN("inline", copies, a_chain_and_a_point, wrong_entries, edges_that_stand_twice, too_large,
+    non_manifold)

@@ -2,6 +2,7 @@
 #include "tests/cloth/mesh/tools.h"
 
 #include <locale.h>
+#include <math.h>
 #include <stdlib.h>
 
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -15,7 +16,7 @@ static void corners_are(const struct mesh *mesh, size_t n, const uint32_t *corne
 START_TEST(polygons_are_fanned)
 {
     struct mesh mesh =
-        read_text(SQUARE "v 2 0 0\nv 2 2 0\nv 3 3 0\nf 3 4 1 2\nf 2 5 6\nf 6 5 7 4 3\n");
+        read_text(SQUARE "v 1 -1 0\nv 2 0 0\nv 0 -1 0\nf 3 4 1 2\nf 2 5 6\nf 6 5 7 4 3\n");
     const uint32_t start[] = {0, 4, 7, 12}, corner[] = {2, 3, 0, 1, 1, 4, 5, 5, 4, 6, 3, 2};
     const uint32_t fans[] = {2, 3, 0, 2, 0, 1, 1, 4, 5, 5, 4, 6, 5, 6, 3, 5, 3, 2};
     ck_assert_uint_eq(mesh.n_faces, 3);
@@ -153,10 +154,11 @@ END_TEST
 START_TEST(very_long_lines)
 {
     enum { N = 300000 }; /* corners of one face, over several of the reader's chunks */
-    size_t room = (size_t)N * 40, n = 0;
+    size_t room = (size_t)N * 80, n = 0;
     char *text = malloc(room);
     for (int i = 0; i < N; i++)
-        n += (size_t)snprintf(text + n, room - n, "v %d %d 0\n", i, i % 1000);
+        n += (size_t)snprintf(text + n, room - n, "v %.17g %.17g 0\n", cos(2 * M_PI * i / N),
+                              sin(2 * M_PI * i / N));
     n += (size_t)snprintf(text + n, room - n, "f");
     for (int i = 0; i < N; i++)
         n += (size_t)snprintf(text + n, room - n, i % 1000 ? " %d" : " \\\n%d", i + 1);

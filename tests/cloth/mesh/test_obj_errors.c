@@ -88,6 +88,10 @@ START_TEST(lone_edges)
     fails(SQUARE "l 1 2 2\n", "5: the edge joins vertex 2 to itself; its ends must differ");
     fails(SQUARE "l 1 2\nl 2 9\n", "6: there is no vertex 9; the mesh has the vertices 1 to 4");
     fails(SQUARE "l 1 two\n", "5: 'two' is not a corner");
+    fails(SQUARE "l 1 2 3\nl 4 3 2\n",
+          "6: the edge between vertices 2 and 3 stands here again, after line 5; give it once");
+    fails(SQUARE "f 1 2 3\nl 1 4\nl 1 2\n\nl 3 1 4\nl 4 3 2 1\n",
+          "9: the edge between vertices 1 and 4 stands here again, after line 6; give it once");
 }
 END_TEST
 

@@ -73,6 +73,27 @@ static void print_solves(FILE *file, const struct summary *summary)
     fprintf(file, "  momentum lost    %.3e kg m/s at most in a step\n", report->momentum_lost);
 }
 
+/* With every cause that there was. */
+static void print_halved(FILE *file, const struct summary *summary)
+{
+    static const char *const causes[FLOW_CAUSES] = {
+        [FLOW_CAUSE_SOLVE] = "for a solve that failed",
+        [FLOW_CAUSE_BOUNDS] = "for what left all bounds",
+        [FLOW_CAUSE_STRETCH] = "for stretch (time.stretch_growth, time.stretch_limit)",
+        [FLOW_CAUSE_ENERGY] = "for energy gained (time.energy_growth)"};
+    const struct flow_report *report = summary->report;
+    fprintf(file, "  shorter steps    down to h / %.0f; halved %" PRIu64 " times",
+            summary->model->h / report->shortest_step, report->steps_halved);
+    const char *before = ": ";
+    for (int i = 0; i < FLOW_CAUSES; i++) {
+        if (!report->halved_by[i])
+            continue;
+        fprintf(file, "%s%" PRIu64 " %s", before, report->halved_by[i], causes[i]);
+        before = ", ";
+    }
+    fputc('\n', file);
+}
+
 void summary_print(FILE *file, const struct summary *summary)
 {
     const struct flow_report *report = summary->report;
@@ -94,8 +115,7 @@ void summary_print(FILE *file, const struct summary *summary)
     if (!isnan(report->rest_seconds))
         fprintf(file, "  at rest          after %g s\n", report->rest_seconds);
     if (report->steps_halved)
-        fprintf(file, "  shorter steps    down to h / %.0f; halved %" PRIu64 " times\n",
-                model->h / report->shortest_step, report->steps_halved);
+        print_halved(file, summary);
     if (report->steps_retaken)
         fprintf(file, "  gained energy    %" PRIu64 " steps by bdf2, made anew by implicit_euler\n",
                 report->steps_retaken);
@@ -228,6 +248,16 @@ static void add_energies(struct output_report *json, const struct flow_report *r
     output_report_number(json, "torque_left", report->torque_left);
 }
 
+static void add_halved(struct output_report *json, const struct flow_report *report)
+{
+    const uint64_t *by = report->halved_by;
+    output_report_integer(json, "steps_halved", report->steps_halved);
+    output_report_integer(json, "steps_halved_solve", by[FLOW_CAUSE_SOLVE]);
+    output_report_integer(json, "steps_halved_bounds", by[FLOW_CAUSE_BOUNDS]);
+    output_report_integer(json, "steps_halved_stretch", by[FLOW_CAUSE_STRETCH]);
+    output_report_integer(json, "steps_halved_energy", by[FLOW_CAUSE_ENERGY]);
+}
+
 static void add_runtime(struct output_report *json, const struct summary *summary)
 {
     const duite_counters *counters = &summary->report->counters;
@@ -248,7 +278,7 @@ static void add_runtime(struct output_report *json, const struct summary *summar
     output_report_number(json, "communication_hidden_fraction", hidden_fraction(summary));
     output_report_number(json, "critical_path_seconds", summary->critical_path);
     output_report_number(json, "lower_bound_seconds", summary->lower_bound);
-    output_report_integer(json, "steps_halved", summary->report->steps_halved);
+    add_halved(json, summary->report);
     output_report_integer(json, "steps_retaken", summary->report->steps_retaken);
     output_report_integer(json, "peak_memory_bytes", summary->memory_bytes);
 }

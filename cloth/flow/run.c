@@ -209,6 +209,7 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     flow->n_vertices = flow->source.particles.n;
     flow->partition_hash = flow->source.blocks.hash;
     flow->inertia = flow_source_inertia(&flow->source);
+    flow->release = flow_source_release(&flow->source);
     warn(flow, &flow->source.particles);
     warn_of_air(flow);
     warn_of_moduli(flow);

@@ -16,6 +16,17 @@ struct flow_energy {
     double kinetic, elastic, gravity, loads;
 };
 
+/* Why a step is begun again with half its length: its solve failed; a position, velocity or edge is
+ * beyond all bounds or no number; an edge is stretched too far; it gained energy. The first that
+ * holds. */
+enum flow_cause {
+    FLOW_CAUSE_SOLVE,
+    FLOW_CAUSE_BOUNDS,
+    FLOW_CAUSE_STRETCH,
+    FLOW_CAUSE_ENERGY,
+    FLOW_CAUSES
+};
+
 /* What was run and how long it took; filled on every rank, the same on all of them but for times.
  */
 struct flow_report {
@@ -23,7 +34,8 @@ struct flow_report {
     uint64_t steps;                            /* made, of any length */
     uint64_t newton_steps, newton_unconverged; /* Newton steps; steps of time whose last Newton step
                                                   was not small enough; 0 where there is but one */
-    uint64_t steps_halved;  /* how often a step was given up and begun anew with half the length */
+    uint64_t steps_halved; /* how often a step was given up and begun again with half the length, */
+    uint64_t halved_by[FLOW_CAUSES]; /* and why */
     uint64_t steps_retaken; /* how often one by BDF2 gained energy and was made anew by implicit
                                Euler */
     uint64_t frames, cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */

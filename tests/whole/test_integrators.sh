@@ -96,6 +96,32 @@ ok "since steps that gain are halved" eval 'test "$(value steps_halved)" -gt 0 &
 ok "it gains more where it may" gains_more net 0.04 --set 'materials.net={density: 0.2, stretch: 5000, shear: 2500}' --set time.halving=on \
     --set 'cloths[0].mesh.grid={width: 1, height: 1, nx: 9, ny: 9}' --set time.energy_growth=0
 
+# ---- A stiff cloth that starts from rest: a gain is small if it is small against what its weight will set free.
+
+cat > stiff.yaml << 'END'
+schema: 1
+cloths:
+  - mesh: {grid: {width: 1, height: 1, nx: 20, ny: 20}}
+    material: tarp
+    pins: [{vertices: [0]}]
+materials: {tarp: {density: 0.2, stretch: 1.0e+6, shear: 1.0e+6}}
+time: {h: 0.01, end: 0.44, stretch_growth: 0}
+energies: steps
+END
+stiff() { # LEAST HALVED, MOST HALVED, SETTING...
+    least=$1 most=$2
+    shift 2
+    run stiff.yaml --report report.json "$@" || return 1
+    grep -E 'steps|energy_' report.json
+    halved=$(value steps_halved)
+    test "$halved" -ge "$least" && test "$halved" -le "$most" && test "$(value steps_halved_energy)" = "$halved" &&
+        test "$(value steps)" -le 100 && awk -v gained="$(value energy_gained)" 'BEGIN { exit !(gained <= 0.01 * 0.2 * 9.81 / 2) }'
+}
+ok "a stiff sheet that falls from a corner gains less than 1 % of its fall: no step is halved" stiff 0 0
+ok "from two corners it gains 11 %, and steps stay short for a while when one was halved" stiff 1 8 --set 'cloths[0].pins=[{vertices: [0, 19]}]'
+without_quiet() { "$DUITE_CLOTH" stiff.yaml --set 'cloths[0].pins=[{vertices: [0, 19]}]' > said; grep shorter said; }
+ok "the summary says what steps were halved for" eval "without_quiet | grep -q 'halved $(value steps_halved) times: $(value steps_halved) for energy gained (time.energy_growth)\$'"
+
 # ---- Newton steps
 
 newton() {

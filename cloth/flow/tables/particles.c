@@ -291,6 +291,41 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
         particle->load = particles->load[vertex];
 }
 
+/* Of the vertices of one cloth, the first of which is `first`. */
+static double release(const struct flow_particles *p, const struct model *model,
+                      const struct model_cloth *cloth, uint32_t first)
+{
+    struct flow_particle at;
+    phys_vec centre = {0};
+    double mass = 0, sum = 0;
+    for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
+        if (!p->used[v])
+            continue;
+        flow_particle_of(p, model, cloth, first, v, &at);
+        centre += at.mass * at.position;
+        mass += at.mass;
+    }
+    for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
+        if (!p->used[v] || !p->free[v])
+            continue;
+        flow_particle_of(p, model, cloth, first, v, &at);
+        const phys_vec away = at.position - centre / mass;
+        sum += 2 * sqrt(phys_dot(&at.load, &at.load) * phys_dot(&away, &away));
+    }
+    return sum;
+}
+
+double flow_source_release(const struct flow_source *source)
+{
+    double sum = 0;
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < source->model->n_cloths; c++) {
+        sum += release(&source->particles, source->model, source->model->cloths + c, first);
+        first += source->model->cloths[c].mesh.n_vertices;
+    }
+    return sum;
+}
+
 void flow_particles_free(struct flow_particles *particles)
 {
     free(particles->used);

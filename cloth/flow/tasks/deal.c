@@ -38,6 +38,7 @@ static int tell_head(const duite_call *call)
     memcpy(&head->model, flow->model, sizeof head->model);
     head->n_steps = flow->n_steps;
     head->inertia = flow->inertia;
+    head->release = flow->release;
     head->partition_hash = flow->partition_hash;
     head->n_vertices = flow->n_vertices;
     head->n_triangles = flow->n_triangles;
@@ -160,6 +161,7 @@ int flow_share_head(struct flow_state *state)
     flow->model = &flow->told;
     flow->n_steps = head->n_steps;
     flow->inertia = head->inertia;
+    flow->release = head->release;
     flow->partition_hash = head->partition_hash;
     flow->n_vertices = head->n_vertices;
     flow->n_triangles = head->n_triangles;

@@ -103,7 +103,8 @@ static void begin(struct flow_state *state)
     const struct flow_energy *start = &report->start;
     const double total = start->kinetic + start->elastic + start->gravity + start->loads;
     const bool told = state->flow->model->energy_steps;
-    state->guard = (struct flow_guard){.lowest = total, .most = start->kinetic + start->elastic};
+    state->guard = (struct flow_guard){
+        .lowest = total, .most = fmax(start->kinetic + start->elastic, state->flow->release)};
     report->energy_lowest = report->energy_highest = told ? total : NAN;
     report->energy_gained = told ? 0 : NAN;
 }

@@ -182,7 +182,7 @@ static int newton(struct flow_state *state, struct flow_args args)
         sum_up(told->status, last);
         told->steps++;
         told->converged = last[FLOW_CHANGE] <= small * last[FLOW_WHOLE];
-        if (told->converged || last[FLOW_WRONG] > 0)
+        if (told->converged || last[FLOW_FAILED] + last[FLOW_BEYOND] > 0)
             return DUITE_OK;
         code = search(state, args, last[FLOW_SLOPE]);
         if (code || told->steps == model->newton_steps)

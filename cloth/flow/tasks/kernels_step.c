@@ -23,7 +23,7 @@ int flow_check(const duite_call *call, const struct flow_table *t, const phys_ve
     const struct flow_args *args = flow_args_of(call);
     flow_note_stop(call, i);
     if (bad < t->n)
-        duite_out(call, i, double)[FLOW_WRONG] = 1;
+        duite_out(call, i, double)[FLOW_BEYOND] = 1;
     if (bad == t->n || !args->last)
         return 0;
     return duite_fail(
@@ -128,7 +128,7 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
     const struct solve_norms norms = solve_norms(t->n, t->matrix.diagonal, solved->dv, solved->r);
     status[FLOW_SIZE] = norms.size;
     status[FLOW_RESIDUAL] = norms.bound;
-    status[FLOW_WRONG] = scalars->outcome != SOLVE_OK;
+    status[FLOW_FAILED] = scalars->outcome != SOLVE_OK;
     if (flow_args_of(call)->block != 0)
         return;
     const double error = sqrt(solve_scalars_error(scalars, INFINITY)) + sqrt(scalars->drift);

@@ -9,6 +9,10 @@
 
 /* A step that gains energy in so many ticks is not made shorter still. */
 enum { LEAST_GUARDED = FLOW_TICKS / 16 };
+/* For so many ticks after one was halved for energy, steps do not grow back: longer steps strain
+ * the edges more, and the first long one would gain again what the short ones before it released.
+ */
+enum { CALM_AFTER_GAIN = 8 * FLOW_TICKS };
 
 struct flow_args flow_attempt_args(const struct flow_state *state)
 {
@@ -215,10 +219,28 @@ static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
     return FLOW_STRETCHED;
 }
 
-/* Takes the step back: it is to be made anew with half the length. */
-static int refuse(struct flow_state *state, const struct flow_verdict *verdict)
+/* The next step has half the length. Returns false where that is less than a tick. */
+static bool halve(struct flow_state *state, enum flow_cause cause)
 {
-    if (!state->flow->model->halving || !flow_grid_halve(&state->grid))
+    const bool halved = flow_grid_halve(&state->grid);
+    state->report->halved_by[cause] += halved;
+    return halved;
+}
+
+/* Why a verdict refuses a step. */
+static enum flow_cause cause_of(const double status[FLOW_STATUS],
+                                const struct flow_verdict *verdict)
+{
+    if (status[FLOW_FAILED] > 0)
+        return FLOW_CAUSE_SOLVE;
+    return verdict->failed || !isfinite(verdict->after) ? FLOW_CAUSE_BOUNDS : FLOW_CAUSE_STRETCH;
+}
+
+/* Takes the step back: it is to be made again with half the length. */
+static int refuse(struct flow_state *state, const double status[FLOW_STATUS],
+                  const struct flow_verdict *verdict)
+{
+    if (!state->flow->model->halving || !halve(state, cause_of(status, verdict)))
         return give_up(state, verdict);
     return restore(state);
 }
@@ -233,10 +255,12 @@ static bool can_lose(const struct flow_state *state)
 
 static int retake(struct flow_state *state, bool second)
 {
-    if (second)
+    if (second) {
         state->report->steps_retaken++;
-    else
-        flow_grid_halve(&state->grid);
+    } else {
+        halve(state, FLOW_CAUSE_ENERGY);
+        state->guard.calm = state->attempt.begin + CALM_AFTER_GAIN;
+    }
     return restore(state);
 }
 
@@ -257,7 +281,7 @@ static int await(struct flow_state *state, double status[FLOW_STATUS], struct fl
     if (code)
         return code;
     flow_implicit_status(state, status);
-    verdict->failed = status[FLOW_WRONG] > 0;
+    verdict->failed = status[FLOW_FAILED] + status[FLOW_BEYOND] > 0;
     return DUITE_OK;
 }
 
@@ -271,7 +295,8 @@ static int accept(struct flow_state *state, const double status[FLOW_STATUS],
     state->longest = verdict->after;
     if (state->longest > state->report->stretch_highest)
         state->report->stretch_highest = state->longest;
-    flow_grid_accept(&state->grid, flow_verdict_calm(verdict));
+    flow_grid_accept(&state->grid, flow_verdict_calm(verdict) &&
+                                       attempt.begin + attempt.length >= state->guard.calm);
     note(state, status);
     flow_energy_note(state, status[FLOW_TOUCHED] > 0);
     const int code = flow_watched(state);
@@ -295,7 +320,7 @@ static int settle(struct flow_state *state)
         return accept(state, status, &verdict);
     state->settled_forces = false;
     state->guessed = 0; /* dv is of a step that is not made */
-    return refused ? refuse(state, &verdict) : retake(state, second);
+    return refused ? refuse(state, status, &verdict) : retake(state, second);
 }
 
 /* The step that follows what is under way, if that is accepted. */

@@ -67,7 +67,7 @@ struct flow {
     struct model told;         /* without names, materials, cloths */
     uint32_t n_vertices, n_triangles;
     uint64_t n_steps, partition_hash;
-    double inertia;            /* kg m^2: flow_source_inertia */
+    double inertia, release;   /* kg m^2, J: flow_source_inertia, flow_source_release */
     struct flow_tables tables; /* shapes */
     void *shared;              /* planes, key frames, slots and copies that the above point to */
 
@@ -141,11 +141,12 @@ enum {
     FLOW_SIZE,     /* dv.D dv and */
     FLOW_RESIDUAL, /* r.D^-1 r, D the masses */
     FLOW_SHIFTED,  /* factors of blocks that were made with a shift or are of SSOR */
-    FLOW_WRONG,    /* solves that failed, rows that diverged */
-    FLOW_TOUCHED,  /* vertices that contact moved */
-    FLOW_SLOPE,    /* of a Newton step: dv.b before it, */
-    FLOW_CHANGE,   /* dv.M dv, */
-    FLOW_WHOLE,    /* (v - base_v).M (v - base_v) after it */
+    FLOW_FAILED,
+    FLOW_BEYOND,  /* blocks: whose solve failed; that have a row beyond all bounds */
+    FLOW_TOUCHED, /* vertices that contact moved */
+    FLOW_SLOPE,   /* of a Newton step: dv.b before it, */
+    FLOW_CHANGE,  /* dv.M dv, */
+    FLOW_WHOLE,   /* (v - base_v).M (v - base_v) after it */
     FLOW_STATUS
 };
 /* Indices into the peaks of a state that is watched, F64, each the largest of any block: square of
@@ -170,7 +171,7 @@ enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
 /* What all ranks are told before anything else. */
 struct flow_head {
     uint64_t n_steps, partition_hash;
-    double inertia;
+    double inertia, release;
     uint64_t shared_bytes;                                         /* of what they are told next */
     uint32_t n_vertices, n_triangles, n_blocks, n_slots, n_copies; /* of all blocks */
     uint32_t most_rows, most_slots, most_rim, most_entries;        /* of any block */

@@ -168,11 +168,20 @@ START_TEST(a_solve_that_converges_in_a_shorter_step)
     ck_assert_uint_gt(record.report.steps_halved, 0);
     ck_assert_uint_gt(record.report.steps, 5);
     ck_assert_uint_le(record.report.cg_iterations_max, 6);
+    ck_assert_uint_eq(record.report.halved_by[FLOW_CAUSE_SOLVE], record.report.steps_halved);
     ck_assert_uint_eq(record.frames, 6);
     record_free(&record);
     setup_free(&setup);
 }
 END_TEST
+
+/* One cause alone. */
+static void halved_by(const struct record *record, enum flow_cause cause)
+{
+    for (int i = 0; i < FLOW_CAUSES; i++)
+        ck_assert_uint_eq(record->report.halved_by[i],
+                          i == (int)cause ? record->report.steps_halved : 0);
+}
 
 static void fails(struct record *record, const struct model *model, const char *begin,
                   const char *part)
@@ -196,6 +205,7 @@ START_TEST(no_step_is_short_enough)
     setup.model.halving = true;
     setup_load(&setup, 3, 1e200, 0, 0);
     fails(&record, &setup.model, "step 1: conjugate gradients broke down", "not positive definite");
+    halved_by(&record, FLOW_CAUSE_SOLVE);
     record_free(&record);
     setup_free(&setup);
 
@@ -205,6 +215,16 @@ START_TEST(no_step_is_short_enough)
     fails(&record, &setup.model, "step 1: in 9.76563e-07 s the largest stretch of an edge grows",
           "up to 1 is allowed at most (time.stretch_limit)");
     ck_assert_uint_eq(record.report.steps, 0);
+    halved_by(&record, FLOW_CAUSE_STRETCH);
+    record_free(&record);
+    setup_free(&setup);
+
+    setup_sheet(&setup, 4);
+    setup.model.integrator = MODEL_EXPLICIT_EULER;
+    setup.model.halving = true;
+    setup_load(&setup, 3, 1e200, 0, 0);
+    fails(&record, &setup.model, "step 1: the velocity of vertex 3", "the run diverged");
+    halved_by(&record, FLOW_CAUSE_BOUNDS);
     record_free(&record);
     setup_free(&setup);
 }

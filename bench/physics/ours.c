@@ -42,8 +42,8 @@ static int read_model(struct model *model, const char *sheet, unsigned side, boo
     struct scene_set set[SETS] = {{0}};
     struct cloth_error error = {0};
     const bool explicit = !strcmp(sheet, "explicit");
-    snprintf(text[0], sizeof *text, "cloths[0].mesh.grid={width: 1, height: 1, nx: %u, ny: %u}",
-             side, side);
+    snprintf(text[0], sizeof *text,
+             "cloths[0].mesh.grid={width: 1, height: 1, nx: %u, ny: %u, cells: same}", side, side);
     snprintf(text[1], sizeof *text, "time={h: %s, end: %s, fps: 1, halving: off}",
              explicit ? "1e-7" : "0.001", explicit ? "1e-7" : "0.001");
     snprintf(text[2], sizeof *text, "integrator=%s",

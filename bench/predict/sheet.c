@@ -122,7 +122,7 @@ static int make_sheet(struct sheet *sheet, struct serve_request *request)
     sheet_model(sheet, side, (uint32_t)serve_number(request, "grain"));
     sheet->model.max_iterations = ITERATIONS;
     sheet->model.end = STEPS * sheet->model.h;
-    if (sheet_own_rank() == 0 && mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, &error))
+    if (sheet_own_rank() == 0 && mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, MESH_SAME, &error))
         return serve_fail("%s", error.text);
     return sheet_flow(sheet);
 }

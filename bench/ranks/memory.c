@@ -53,7 +53,7 @@ static int run(struct ranks_session *session, struct serve_request *request)
     duite *rt = NULL;
     const uint32_t side = (uint32_t)serve_number(request, "side");
     sheet_model(sheet, side, (uint32_t)serve_number(request, "grain"));
-    if (sheet_own_rank() == 0 && mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, &error))
+    if (sheet_own_rank() == 0 && mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, MESH_SAME, &error))
         return serve_fail("%s", error.text);
     int code = sheet_flow(sheet);
     if (code)

@@ -217,7 +217,7 @@ int sheet_ready(struct sheet *sheet, uint32_t side, uint32_t grain)
         return 0;
     sheet_free(sheet);
     sheet_model(sheet, side, grain);
-    if (mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, &error) ||
+    if (mesh_grid(&sheet->cloth.mesh, 1, 1, side, side, MESH_SAME, &error) ||
         flow_source_make(&sheet->source, &sheet->model, 1, &error) || make_tables(sheet, &error))
         return serve_fail("%s", error.text);
     const int code = allocate(sheet);

@@ -1,5 +1,6 @@
 /* A grid's numbering is a promise that hashes rest on: row-major, u fastest, two triangles a cell
- * in cell order, so that only its positions need to be stored. */
+ * in cell order, so that only its positions need to be stored. Which diagonal cuts a cell follows
+ * from the cell's place. */
 #include "cloth/base/memory.h"
 #include "cloth/mesh/detail/finish.h"
 #include "cloth/mesh/mesh.h"
@@ -56,7 +57,7 @@ static void place_vertices(struct mesh *mesh)
 }
 
 int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint32_t ny,
-              struct cloth_error *error)
+              enum mesh_cells cells, struct cloth_error *error)
 {
     *mesh = (struct mesh){0};
     int code = check_size(width, height, nx, ny, error);
@@ -68,15 +69,46 @@ int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint3
     }
     mesh->grid_width = width;
     mesh->grid_height = height;
+    mesh->grid_cells = cells;
     place_vertices(mesh);
     return CLOTH_OK;
+}
+
+/* How far from the nearer end of a row of n cells: the same for mirror images. */
+static uint32_t depth(uint32_t i, uint32_t n)
+{
+    return i < n - 1 - i ? i : n - 1 - i;
+}
+
+/* Whether the cell lies in the second half of a row of n. A cell in the middle does by turns, as
+ * its place across the row says. */
+static bool second_half(uint32_t i, uint32_t n, uint32_t across)
+{
+    const uint32_t mirrored = n - 1 - i;
+    return i == mirrored ? across % 2 : i > mirrored;
+}
+
+bool mesh_cell_turned(const struct mesh *mesh, uint32_t i, uint32_t j)
+{
+    const uint32_t across = mesh->grid_nx - 1, along = mesh->grid_ny - 1;
+    if (mesh->grid_cells == MESH_ALTERNATE)
+        return (i + j) % 2;
+    if (mesh->grid_cells == MESH_MIRRORED)
+        return second_half(i, across, depth(j, along)) != second_half(j, along, depth(i, across));
+    return false;
 }
 
 /* Wound so that the normals are +y. */
 static void grid_corners(const struct mesh *mesh, uint32_t t, uint32_t corner[3])
 {
-    const uint32_t nx = mesh->grid_nx, cell = t / 2;
-    const uint32_t v = cell / (nx - 1) * nx + cell % (nx - 1);
+    const uint32_t nx = mesh->grid_nx, i = t / 2 % (nx - 1), j = t / 2 / (nx - 1);
+    const uint32_t v = j * nx + i;
+    if (mesh_cell_turned(mesh, i, j)) {
+        corner[0] = v + 1;
+        corner[1] = t % 2 ? v + nx : v;
+        corner[2] = t % 2 ? v + nx + 1 : v + nx;
+        return;
+    }
     corner[0] = v;
     corner[1] = t % 2 ? v + nx + 1 : v + nx;
     corner[2] = t % 2 ? v + 1 : v + nx + 1;
@@ -88,6 +120,17 @@ void mesh_corners(const struct mesh *mesh, uint32_t t, uint32_t corner[3])
         grid_corners(mesh, t, corner);
     else
         memcpy(corner, mesh->triangle + 3 * (size_t)t, 3 * sizeof *corner);
+}
+
+uint32_t mesh_fourth(const struct mesh *mesh, uint32_t t)
+{
+    const uint32_t nx = mesh->grid_nx;
+    if (!nx)
+        return UINT32_MAX;
+    uint32_t corner[3];
+    grid_corners(mesh, t, corner);
+    const uint32_t first = t / 2 / (nx - 1) * nx + t / 2 % (nx - 1);
+    return 4 * first + 2 * nx + 2 - corner[0] - corner[1] - corner[2]; /* of the sum of all */
 }
 
 uint32_t mesh_face(const struct mesh *mesh, uint32_t f, uint32_t room[3], const uint32_t **corner)

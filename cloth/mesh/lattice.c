@@ -103,6 +103,8 @@ static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j)
     uint32_t nx = builder->mesh->grid_nx, ny = builder->mesh->grid_ny, a = j * nx + i;
     double along = j == 0 || j == ny - 1 ? 0.5 : 1; /* half where the row is the border */
     double across = i == 0 || i == nx - 1 ? 0.5 : 1;
+    const int both = builder->moduli->both_diagonals;
+    const struct mesh *mesh = builder->mesh;
     const struct {
         int exists;
         uint32_t b;
@@ -112,9 +114,11 @@ static int add_grid_vertex(struct builder *builder, uint32_t i, uint32_t j)
     } springs[] = {
         {i + 1 < nx, a + 1, MESH_STRETCH, 0, along},
         {i + 2 < nx, a + 2, MESH_BEND, 0, along},
-        {i > 0 && j + 1 < ny && builder->moduli->both_diagonals, a + nx - 1, MESH_SHEAR, 0, 1},
+        {i > 0 && j + 1 < ny && (both || mesh_cell_turned(mesh, i - 1, j)), a + nx - 1, MESH_SHEAR,
+         0, 1},
         {j + 1 < ny, a + nx, MESH_STRETCH, 1, across},
-        {i + 1 < nx && j + 1 < ny, a + nx + 1, MESH_SHEAR, 0, 1},
+        {i + 1 < nx && j + 1 < ny && (both || !mesh_cell_turned(mesh, i, j)), a + nx + 1,
+         MESH_SHEAR, 0, 1},
         {j + 2 < ny, a + 2 * nx, MESH_BEND, 1, across},
     };
     for (size_t s = 0; s < sizeof springs / sizeof *springs; s++) {

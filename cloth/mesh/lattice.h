@@ -4,9 +4,10 @@
 #include "cloth/mesh/mesh.h"
 
 /* The springs of a mesh, after the design's rules (docs/design.md):
- * grids: stretch along rows and columns, half of k on border edges; shear along one or both
- * diagonals of each cell; bend over two vertices along rows and columns, half of k along the
- * border; k is the modulus, N/m. other meshes: every edge of a triangle is stretch with k = modulus
+ * grids: stretch along rows and columns, half of k on border edges; shear along both
+ * diagonals of each cell or the one that cuts it; bend over two vertices along rows and columns,
+ * half of k along the border; k is the modulus, N/m. other meshes: every edge of a triangle is
+ * stretch with k = modulus
  * * area of its triangles / length^2; the vertices opposite an inner edge are joined by bend with k
  * = modulus * area of the two triangles / length^2; shear has none. lone edges that are no
  * triangle's: stretch with k = ea / length. Rest lengths are the distances in the mesh as

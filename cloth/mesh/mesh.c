@@ -70,6 +70,21 @@ void mesh_add_mass_of(const struct mesh *mesh, uint32_t triangle, double density
         mass[corner[i]] += third;
 }
 
+void mesh_add_cell_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass)
+{
+    const uint32_t fourth = mesh_fourth(mesh, triangle);
+    if (fourth == UINT32_MAX) {
+        mesh_add_mass_of(mesh, triangle, density, mass);
+        return;
+    }
+    uint32_t corner[3];
+    mesh_corners(mesh, triangle, corner);
+    const double quarter = mesh_area(mesh->position, corner) * density / 4;
+    for (size_t i = 0; i < 3; i++)
+        mass[corner[i]] += quarter;
+    mass[fourth] += quarter;
+}
+
 void mesh_add_mass(const struct mesh *mesh, double density, double *mass)
 {
     for (uint32_t t = 0; t < mesh->n_triangles; t++)

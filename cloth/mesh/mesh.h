@@ -3,8 +3,16 @@
 
 #include "cloth/base/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* Which diagonal cuts the cells of a grid in two triangles. SAME: that from vertex (i, j) to
+ * (i + 1, j + 1) in all; ALTERNATE: this one and the other by turns, as on a chessboard; MIRRORED:
+ * this one in the first quarter of the sheet, of which the others are mirror images at the lines
+ * through its middle. Where the number of cells along an axis is odd, those in the middle have no
+ * image: along this row or column of cells the diagonals go by turns. */
+enum mesh_cells { MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED };
 
 /* A mesh as it was given: vertices, polygons in the input's order and numbering, their triangles,
  * and edges that were given without triangles (chains). All arrays belong to the mesh. Of a grid
@@ -29,16 +37,20 @@ struct mesh {
 
     uint32_t grid_nx, grid_ny;      /* vertices in u and v of a grid; 0: not a grid */
     double grid_width, grid_height; /* m, before any transform */
+    enum mesh_cells grid_cells;
 };
 
 /* A flat sheet in the x-z plane (y = 0, +y its normal's side), width along x (u), height along z
  * (v), both in metres and centred on the origin; nx, ny >= 2 vertices, row-major, u fastest: vertex
- * j * nx + i. Two triangles a cell, cut along the diagonal from (i, j) to (i + 1, j + 1); faces are
+ * j * nx + i. Two triangles a cell, cut along the diagonal that `cells` says; faces are
  * these triangles, wound so that normals are +y. uv in metres from vertex 0. Errors: CLOTH_E_INPUT
  * for sizes that are not positive and finite, fewer than 2 vertices a side, more than 2^31 corners;
  * CLOTH_E_MEMORY. After an error the mesh is empty, here and in the next two functions. */
 int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint32_t ny,
-              struct cloth_error *error);
+              enum mesh_cells cells, struct cloth_error *error);
+
+/* Whether cell (i, j) of a grid is cut along the diagonal from (i + 1, j) to (i, j + 1). */
+bool mesh_cell_turned(const struct mesh *mesh, uint32_t i, uint32_t j);
 
 /* Reads v (x y z, anything after them ignored), vt, f (any polygon; v, v/vt, v//vn, v/vt/vn;
  * negative indices) and l (lone edges) of a Wavefront OBJ file; all else is skipped. Errors name
@@ -106,6 +118,12 @@ void mesh_edges_free(struct mesh_edges *edges);
 void mesh_add_mass(const struct mesh *mesh, double density, double *mass);
 /* The same of one triangle. */
 void mesh_add_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass);
+/* The corner that triangle t lacks of the cell of a grid that it is in; UINT32_MAX: no grid. */
+uint32_t mesh_fourth(const struct mesh *mesh, uint32_t t);
+/* The mass of one triangle, but of a grid a quarter of it on each corner of its cell: so the masses
+ * of a sheet do not depend on its diagonals. */
+void mesh_add_cell_mass_of(const struct mesh *mesh, uint32_t triangle, double density,
+                           double *mass);
 
 /* Regions of a mesh are bits in a mask by vertex. The last region that has all of n > 0 vertices;
  * -1: there is none. */

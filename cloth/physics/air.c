@@ -27,8 +27,8 @@ PHYS_INLINE void cross(const phys_vec *a, const phys_vec *b, phys_vec *c)
                     (*a)[0] * (*b)[1] - (*a)[1] * (*b)[0], 0};
 }
 
-/* A third of the force on a triangle. */
-static void push(const struct phys_air *air, const struct corner c[3], phys_vec *third)
+/* The part of the force on a triangle that each of so many corners takes. */
+static void push(const struct phys_air *air, const struct corner c[3], int corners, phys_vec *part)
 {
     const phys_vec wind = {air->wind[0], air->wind[1], air->wind[2], 0};
     const phys_vec u = wind - (c[0].v + c[1].v + c[2].v) / 3;
@@ -36,26 +36,27 @@ static void push(const struct phys_air *air, const struct corner c[3], phys_vec 
     phys_vec normal;
     cross(&a, &b, &normal);
     const double twice = length_of(&normal);
-    *third = (phys_vec){0};
+    *part = (phys_vec){0};
     if (!(twice > 0))
         return;
     normal /= twice;
     const phys_vec across = phys_dot(&u, &normal) * normal, along = u - across;
-    *third = air->density * twice / 12 *
-             (air->normal * length_of(&across) * across + air->tangent * length_of(&along) * along);
+    *part = air->density * twice / (4 * corners) *
+            (air->normal * length_of(&across) * across + air->tangent * length_of(&along) * along);
 }
 
 void phys_air_force(const struct phys_air *air, size_t n, const uint32_t (*corner)[4],
                     const struct phys_sight *sight, phys_vec *f)
 {
     for (size_t e = 0; e < n; e++) {
+        const int corners = corner[e][3] == PHYS_NO_CORNER ? 3 : 4;
         struct corner c[3];
-        phys_vec third;
+        phys_vec part;
         for (int i = 0; i < 3; i++)
             c[i] = corner_of(sight, corner[e][i]);
-        push(air, c, &third);
-        for (int i = 0; i < 3; i++)
+        push(air, c, corners, &part);
+        for (int i = 0; i < corners; i++)
             if (corner[e][i] < sight->n)
-                f[corner[e][i]] += third;
+                f[corner[e][i]] += part;
     }
 }

@@ -15,6 +15,11 @@ int flow_has_triangles(const struct model *model, const struct model_cloth *clot
     return model_material(model, cloth, 0)->model == MODEL_TRIANGLES;
 }
 
+int flow_has_cells(const struct model *model, const struct model_cloth *cloth)
+{
+    return cloth->mesh.grid_nx && !flow_has_triangles(model, cloth);
+}
+
 /* That bends as quadratic, or as hinges. Without a bending of its own a region has no rigidity. */
 static const struct model_material *bending_of(const struct model *model,
                                                const struct model_cloth *cloth)
@@ -149,6 +154,18 @@ struct walk {
     uint32_t cloth, first;
 };
 
+static void walk_cells(const struct walk *walk, const struct mesh *mesh)
+{
+    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
+        struct flow_element element = {walk->cloth, t, {0}, 4, FLOW_SAILS};
+        mesh_corners(mesh, t, element.corner);
+        element.corner[3] = mesh_fourth(mesh, t);
+        for (int i = 0; i < 4; i++)
+            element.corner[i] += walk->first;
+        walk->visit(walk->to, &element);
+    }
+}
+
 static void walk_triangles(const struct walk *walk, const struct mesh *mesh, enum flow_kind kind)
 {
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {
@@ -202,7 +219,9 @@ void flow_elements_each(const struct flow_elements *elements,
             walk_edges(&walk, elements->edges + c,
                        bending_of(model, cloth)->bending == MODEL_QUADRATIC,
                        damps_bending(model, cloth));
-        if (model_has_air(model))
+        if (model_has_air(model) && flow_has_cells(model, cloth))
+            walk_cells(&walk, &cloth->mesh);
+        else if (model_has_air(model))
             walk_triangles(&walk, &cloth->mesh, FLOW_SAILS);
         walk.first += cloth->mesh.n_vertices;
     }

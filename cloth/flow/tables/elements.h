@@ -5,8 +5,8 @@
 #include "cloth/flow/tables/tables.h"
 
 /* Elements of all cloths (cloth/physics/element.h): triangles, then the edges that bend, then
- * triangles once more as sails, cloth after cloth in the order of their meshes. Each kind is
- * numbered for itself. */
+ * triangles once more as sails (with the fourth corner of their cell, where there are cells), cloth
+ * after cloth in the order of their meshes. Each kind is numbered for itself. */
 struct flow_element {
     uint32_t cloth, number;      /* of its cloth's triangles or edges */
     uint32_t corner[4], corners; /* vertices of all cloths; how many */
@@ -22,6 +22,9 @@ struct flow_elements {
 /* Whether a cloth has elements besides springs. */
 int flow_has_triangles(const struct model *model, const struct model_cloth *cloth);
 int flow_has_bending(const struct model *model, const struct model_cloth *cloth);
+/* Whether mass and air are dealt out by the cells of its grid, not by triangles: of springs, which
+ * know no triangles. */
+int flow_has_cells(const struct model *model, const struct model_cloth *cloth);
 
 /* Finds the edges, and what is wrong with rest shapes. Errors: CLOTH_E_INPUT for triangles without
  * area and what does not suit its material, with the place; CLOTH_E_MEMORY. Local. */

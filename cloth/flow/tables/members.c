@@ -175,7 +175,9 @@ void flow_source_members(const struct flow_source *source, uint32_t block,
             flow_element_rest(&source->elements, element, &rest);
             fill_corners(source, t, image, element, list->corner[e],
                          list->at + (size_t)flow_pairs[kind] * e);
-            if (kind == FLOW_TRIANGLES) {
+            if (kind == FLOW_SAILS && element->corners < 4) {
+                list->corner[e][3] = PHYS_NO_CORNER;
+            } else if (kind == FLOW_TRIANGLES) {
                 list->corner[e][3] = rest.material;
                 list->vector[e] = (phys_vec){rest.gradient[0], rest.gradient[1], rest.gradient[2],
                                              rest.gradient[3]};

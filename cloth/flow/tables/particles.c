@@ -138,9 +138,11 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
     for (uint32_t t = 0; t < cloth->mesh.n_triangles && !(cloth->mass_per_vertex > 0); t++) {
         uint32_t corner[3];
         mesh_corners(&cloth->mesh, t, corner);
-        mesh_add_mass_of(model_rest(cloth), t,
-                         model->materials[model_material_of(cloth, 3, corner)].density,
-                         p->mass + first);
+        const double density = model->materials[model_material_of(cloth, 3, corner)].density;
+        if (flow_has_cells(model, cloth))
+            mesh_add_cell_mass_of(model_rest(cloth), t, density, p->mass + first);
+        else /* of a linear element, its lumped mass */
+            mesh_add_mass_of(model_rest(cloth), t, density, p->mass + first);
     }
     for (uint32_t i = 0; i < cloth->mesh.n_vertices && cloth->mass_per_vertex > 0; i++)
         p->mass[first + i] = cloth->mass_per_vertex;

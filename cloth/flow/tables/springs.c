@@ -122,6 +122,20 @@ static void join(const struct visitor *visitor, const struct mesh *mesh, uint32_
     visitor->visit(visitor->to, &spring);
 }
 
+/* Across the diagonals of cells, whose corners share the force of the air. */
+static void join_cells(const struct visitor *visitor, const struct mesh *mesh)
+{
+    const uint32_t nx = mesh->grid_nx;
+    for (uint32_t j = 0; j + 1 < mesh->grid_ny; j++)
+        for (uint32_t i = 0; i + 1 < nx; i++) {
+            const uint32_t v = j * nx + i;
+            if (mesh_cell_turned(mesh, i, j))
+                join(visitor, mesh, v, v + nx + 1, 0, 0);
+            else
+                join(visitor, mesh, v + 1, v + nx, 0, 0);
+        }
+}
+
 /* What the elements of a cloth join, and its edges without triangles, which are springs as in any
  * cloth. */
 static void each_joint(const struct flow_springs *springs, uint32_t c,
@@ -142,6 +156,8 @@ static void each_joint(const struct flow_springs *springs, uint32_t c,
             edge->opposite[0] != edge->opposite[1])
             join(visitor, mesh, edge->opposite[0], edge->opposite[1], 0, 0);
     }
+    if (model_has_air(model) && flow_has_cells(model, cloth))
+        join_cells(visitor, mesh);
 }
 
 void flow_springs_each(const struct flow_springs *springs,

@@ -20,6 +20,13 @@ static double memory_bytes(void)
     return pages > 0 && size > 0 ? (double)pages * (double)size : INFINITY;
 }
 
+static enum mesh_cells cells_of(const char *word)
+{
+    if (!strcmp(word, "same"))
+        return MESH_SAME;
+    return strcmp(word, "alternate") ? MESH_MIRRORED : MESH_ALTERNATE;
+}
+
 static int build_grid(struct mesh *mesh, const struct scene_tree *tree, int node,
                       struct cloth_error *error, struct cloth_error *inner)
 {
@@ -36,7 +43,8 @@ static int build_grid(struct mesh *mesh, const struct scene_tree *tree, int node
             "this machine has %.0f GB",
             (unsigned long long)nx * ny, need / 1e9, memory / 1e9);
     return mesh_grid(mesh, scene_tree_number(tree, node, "width"),
-                     scene_tree_number(tree, node, "height"), nx, ny, inner);
+                     scene_tree_number(tree, node, "height"), nx, ny,
+                     cells_of(scene_tree_text(tree, node, "cells")), inner);
 }
 
 /* The path of a file that a scene names: relative to the scene's folder. */

@@ -43,7 +43,7 @@ void setup_sheet(struct setup *s, uint32_t n)
     s->material.shear = 25;
     s->material.bend = 5;
     s->material.damping_stiffness = 0.01;
-    if (mesh_grid(&s->cloth.mesh, 1, 1, n, n, &error))
+    if (mesh_grid(&s->cloth.mesh, 1, 1, n, n, MESH_SAME, &error))
         die(error.text);
 }
 

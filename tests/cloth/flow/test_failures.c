@@ -181,12 +181,13 @@ START_TEST(no_mass)
     says(&record, CLOTH_E_INPUT, "; a finite number > 0 (kg) is expected");
     record_free(&record);
     setup_free(&setup);
-    setup_sheet(&setup, 2); /* 0, 2 and 3 on a line */
+    setup_sheet(&setup, 2);
+    mesh_free(&setup.cloth.mesh); /* a grid's cell would give all its corners a mass */
+    const double line[] = {0, 0, 0, 1, 0, 0, 2, 0, 2, 1, 0, 1}; /* 0, 2 and 3 */
+    const uint32_t triangles[] = {0, 2, 3, 0, 3, 1};
+    struct cloth_error error = {0};
+    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 4, line, 0, NULL, 2, triangles, &error), 0);
     setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
-    for (int c = 0; c < 3; c++)
-        setup.cloth.mesh.position[6 + c] = 2 * setup.cloth.mesh.position[9 + c];
-    for (int c = 0; c < 3; c++)
-        setup.cloth.mesh.position[c] = 0;
     record_run(&record, &setup.model);
     says(&record, CLOTH_E_INPUT,
          "a.yaml:4:9: mesh: triangle 0 of cloth 'test' (vertices 0, 2 and 3, ");

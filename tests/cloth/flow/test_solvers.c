@@ -238,7 +238,7 @@ static void run_in_units(double mass, double time, double length, double toleran
     struct cloth_error error = {0};
     setup_stiff(&setup, 12);
     mesh_free(&setup.cloth.mesh);
-    ck_assert_int_eq(mesh_grid(&setup.cloth.mesh, length, length, 12, 12, &error), 0);
+    ck_assert_int_eq(mesh_grid(&setup.cloth.mesh, length, length, 12, 12, MESH_SAME, &error), 0);
     const double force = mass * length / (time * time);
     setup.material.density *= mass / (length * length);
     setup.material.stretch *= force / length;
@@ -337,7 +337,7 @@ START_TEST(several_pieces)
     struct cloth_error error = {0};
     setup_sheet(&setup, 8);
     cloths[0] = cloths[1] = setup.cloth;
-    ck_assert_int_eq(mesh_grid(&cloths[1].mesh, 1, 2, 6, 9, &error), 0);
+    ck_assert_int_eq(mesh_grid(&cloths[1].mesh, 1, 2, 6, 9, MESH_SAME, &error), 0);
     cloths[1].velocity[0] = 3;
     setup.model.cloths = cloths;
     setup.model.n_cloths = 2;

@@ -37,9 +37,60 @@ START_TEST(numbering)
 }
 END_TEST
 
-START_TEST(triangles)
+/* Cells that are turned, row after row. */
+static void turns_are(enum mesh_cells cells, uint32_t nx, uint32_t ny, const char *turns)
 {
-    struct mesh mesh = grid(1, 1, 150, 150);
+    struct mesh mesh = grid_of(1, 1, nx, ny, cells);
+    for (uint32_t j = 0; j + 1 < ny; j++)
+        for (uint32_t i = 0; i + 1 < nx; i++)
+            ck_assert_int_eq(mesh_cell_turned(&mesh, i, j), *turns++ == '/');
+    mesh_free(&mesh);
+}
+
+START_TEST(diagonals)
+{
+    turns_are(MESH_SAME, 4, 3, "\\\\\\\\\\\\");
+    turns_are(MESH_ALTERNATE, 4, 3, "\\/\\/\\/");
+    turns_are(MESH_MIRRORED, 5, 5, "\\\\//\\\\////\\\\//\\\\");
+    turns_are(MESH_MIRRORED, 4, 5, "\\\\/\\///\\\\//\\"); /* the middle column by turns */
+    turns_are(MESH_MIRRORED, 5, 2, "\\/\\/");             /* the only row, too, from either end */
+    turns_are(MESH_MIRRORED, 2, 2, "\\");
+}
+END_TEST
+
+/* Where counts of cells are even, the mirror image of a cell is turned the other way. */
+START_TEST(mirror_images)
+{
+    const enum mesh_cells symmetric[] = {MESH_ALTERNATE, MESH_MIRRORED};
+    for (size_t k = 0; k < 2; k++) {
+        struct mesh mesh = grid_of(1, 1, 7, 9, symmetric[k]);
+        for (uint32_t j = 0; j < 8; j++) {
+            for (uint32_t i = 0; i < 6; i++) {
+                ck_assert(mesh_cell_turned(&mesh, i, j) != mesh_cell_turned(&mesh, 5 - i, j));
+                ck_assert(mesh_cell_turned(&mesh, i, j) != mesh_cell_turned(&mesh, i, 7 - j));
+            }
+        }
+        mesh_free(&mesh);
+    }
+}
+END_TEST
+
+START_TEST(turned_triangles)
+{
+    struct mesh mesh = grid_of(1, 1, 3, 2, MESH_ALTERNATE);
+    const uint32_t expected[][3] = {{0, 3, 4}, {0, 4, 1}, {2, 1, 4}, {2, 4, 5}};
+    for (uint32_t t = 0; t < 4; t++) {
+        uint32_t corner[3];
+        mesh_corners(&mesh, t, corner);
+        ck_assert_mem_eq(corner, expected[t], sizeof corner);
+    }
+    mesh_free(&mesh);
+}
+END_TEST
+
+static void triangles_of(enum mesh_cells cells)
+{
+    struct mesh mesh = grid_of(1, 1, 150, 150, cells);
     ck_assert_uint_eq(mesh.n_triangles, 44402);
     ck_assert_uint_eq(mesh.n_faces, 44402);
     for (uint32_t t = 0; t < mesh.n_triangles; t++) { /* y of (q - p) x (r - p) */
@@ -54,6 +105,13 @@ START_TEST(triangles)
         ck_assert_double_gt((q[2] - p[2]) * (r[0] - p[0]) - (q[0] - p[0]) * (r[2] - p[2]), 0);
     }
     mesh_free(&mesh);
+}
+
+START_TEST(triangles)
+{
+    triangles_of(MESH_SAME);
+    triangles_of(MESH_ALTERNATE);
+    triangles_of(MESH_MIRRORED);
 }
 END_TEST
 
@@ -90,8 +148,8 @@ START_TEST(wrong_sizes)
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         struct cloth_error error = {0};
         struct mesh mesh;
-        int code =
-            mesh_grid(&mesh, wrong[i].width, wrong[i].height, wrong[i].nx, wrong[i].ny, &error);
+        int code = mesh_grid(&mesh, wrong[i].width, wrong[i].height, wrong[i].nx, wrong[i].ny,
+                             MESH_SAME, &error);
         ck_assert_int_eq(code, CLOTH_E_INPUT);
         ck_assert_ptr_nonnull(strstr(error.text, wrong[i].says));
         ck_assert_ptr_null(mesh.position);
@@ -115,6 +173,30 @@ START_TEST(mass_of_vertices)
     ck_assert_double_eq_tol(mass[20], cell / 2, 1e-15);      /* three */
     free(mass);
     mesh_free(&mesh);
+}
+END_TEST
+
+START_TEST(mass_of_cells)
+{
+    const enum mesh_cells all[] = {MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED};
+    for (size_t k = 0; k < 3; k++) {
+        struct mesh mesh = grid_of(1.5, 0.8, 4, 3, all[k]);
+        double mass[12] = {1};
+        for (uint32_t t = 0; t < mesh.n_triangles; t++)
+            mesh_add_cell_mass_of(&mesh, t, 0.25, mass);
+        const double cell = 0.5 * 0.4 * 0.25;
+        ck_assert_double_eq_tol(mass[0], 1 + cell / 4, 1e-15);
+        ck_assert_double_eq_tol(mass[3], cell / 4, 1e-15);
+        ck_assert_double_eq_tol(mass[2], cell / 2, 1e-15);
+        ck_assert_double_eq_tol(mass[4], cell / 2, 1e-15);
+        ck_assert_double_eq_tol(mass[5], cell, 1e-15);
+        mesh_free(&mesh);
+    }
+    double third[3] = {0};
+    struct mesh one = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"); /* has no cells */
+    mesh_add_cell_mass_of(&one, 0, 6, third);
+    ck_assert_double_eq_tol(third[0], 1, 1e-15);
+    mesh_free(&one);
 }
 END_TEST
 
@@ -176,5 +258,6 @@ START_TEST(free_twice)
 }
 END_TEST
 
-RUN("grid", numbering, triangles, centred_to_the_bit, wrong_sizes, mass_of_vertices,
-    identity_keeps_bits, scale_then_rotate_then_translate, areas, free_twice)
+RUN("grid", numbering, diagonals, mirror_images, turned_triangles, triangles, mass_of_cells,
+    centred_to_the_bit, wrong_sizes, mass_of_vertices, identity_keeps_bits,
+    scale_then_rotate_then_translate, areas, free_twice)

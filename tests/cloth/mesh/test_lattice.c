@@ -92,6 +92,31 @@ START_TEST(grid_with_one_diagonal)
 }
 END_TEST
 
+/* The springs of a grid with one diagonal are the edges of its triangles. */
+START_TEST(one_diagonal_is_that_of_the_triangles)
+{
+    const enum mesh_cells all[] = {MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED};
+    for (size_t k = 0; k < 3; k++) {
+        struct cloth_error error = {0};
+        struct mesh mesh = grid_of(4, 6, 6, 5, all[k]);
+        struct mesh_lattice lattice = lattice_of(&mesh, 100, 10, 0, 0);
+        struct mesh_edges edges;
+        ck_assert_int_eq(mesh_edges_find(&edges, &mesh, &error), 0);
+        ck_assert_uint_eq(lattice.n, edges.n);
+        for (uint32_t e = 0; e < edges.n; e++) {
+            ck_assert_uint_eq(lattice.spring[e].a, edges.edge[e].a);
+            ck_assert_uint_eq(lattice.spring[e].b, edges.edge[e].b);
+        }
+        mesh_edges_free(&edges);
+        mesh_lattice_free(&lattice);
+        lattice = lattice_of(&mesh, 100, 10, 0, 1);
+        ck_assert_uint_eq(count(&lattice, MESH_SHEAR), 2 * 5 * 4);
+        mesh_lattice_free(&lattice);
+        mesh_free(&mesh);
+    }
+}
+END_TEST
+
 START_TEST(the_sheet)
 {
     struct mesh mesh = grid(1, 1, 150, 150);
@@ -233,6 +258,7 @@ START_TEST(no_area)
 }
 END_TEST
 
-RUN("lattice", grid_with_both_diagonals, grid_with_one_diagonal, the_sheet, small_grids,
-    without_stiffness_no_spring, lengths_as_positioned, triangle_meshes,
-    stretch_and_bend_of_the_same_vertices, no_length, no_area)
+RUN("lattice", grid_with_both_diagonals, grid_with_one_diagonal,
+    one_diagonal_is_that_of_the_triangles, the_sheet, small_grids, without_stiffness_no_spring,
+    lengths_as_positioned, triangle_meshes, stretch_and_bend_of_the_same_vertices, no_length,
+    no_area)

@@ -72,7 +72,7 @@ static int all(struct cloth_error *error, const char *path)
         ck_assert(mesh.uv && mesh.n_triangles == 32 && mesh.n_lone_edges == 1);
     if (!code && TRY(mesh_lattice_build(&lattice, &mesh, &moduli, error)))
         ck_assert(!lattice.spring && lattice.n == 0);
-    if (!code && TRY(mesh_grid(&sheet, 1, 1, 8, 8, error)))
+    if (!code && TRY(mesh_grid(&sheet, 1, 1, 8, 8, MESH_SAME, error)))
         ck_assert(!sheet.position && !sheet.triangle);
     if (!code && TRY(mesh_inline(&copy, 4, mesh.position, 1, chain, 1, mesh.triangle, error)))
         ck_assert(!copy.position && !copy.triangle);

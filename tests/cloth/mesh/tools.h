@@ -38,12 +38,19 @@ static inline struct mesh read_text(const char *text)
     return mesh;
 }
 
-static inline struct mesh grid(double width, double height, uint32_t nx, uint32_t ny)
+static inline struct mesh grid_of(double width, double height, uint32_t nx, uint32_t ny,
+                                  enum mesh_cells cells)
 {
     struct cloth_error error = {0};
     struct mesh mesh;
-    ck_assert_msg(mesh_grid(&mesh, width, height, nx, ny, &error) == CLOTH_OK, "%s", error.text);
+    int code = mesh_grid(&mesh, width, height, nx, ny, cells, &error);
+    ck_assert_msg(code == CLOTH_OK, "%s", error.text);
     return mesh;
+}
+
+static inline struct mesh grid(double width, double height, uint32_t nx, uint32_t ny)
+{
+    return grid_of(width, height, nx, ny, MESH_SAME);
 }
 
 static inline void keep_spring(void *to, const struct mesh_spring *spring)

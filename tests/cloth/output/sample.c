@@ -21,7 +21,8 @@ void sample_make(struct sample *sample)
     char quad[96];
     snprintf(quad, sizeof quad, "%s/quad.obj", sample->folder);
     sample_write(quad, QUAD, strlen(QUAD));
-    ck_assert_msg(mesh_grid(&sample->mesh[0], 1, 1, 4, 3, &error) == 0, "%s", error.text);
+    ck_assert_msg(mesh_grid(&sample->mesh[0], 1, 1, 4, 3, MESH_SAME, &error) == 0, "%s",
+                  error.text);
     ck_assert_msg(mesh_read_obj(&sample->mesh[1], quad, &error) == 0, "%s", error.text);
     sample->meshes[0] = &sample->mesh[0];
     sample->meshes[1] = &sample->mesh[1];

@@ -44,7 +44,8 @@ struct model_pick {
     enum { MODEL_PICK_VERTICES, MODEL_PICK_NEAREST, MODEL_PICK_BOX } kind;
     uint32_t n_vertices;
     uint32_t *vertices; /* of the cloth's mesh */
-    double point[3];    /* nearest: its nearest vertex after the transform, the first of equals */
+    double point[3];    /* nearest: its nearest vertex after the transform, the first of equals, */
+    double radius;      /* and all that are not farther than this, m; 0: it alone */
     double box[2][3];   /* box: every vertex inside or on it after the transform */
     char *place;
 };

@@ -94,6 +94,32 @@ alike() {
 }
 ok "the same bytes on threads and ranks" alike
 
+# ---- By radius: the vertex nearest to a point and all that are not farther from it, wherever vertices are picked.
+cat > round.yaml << 'END'
+schema: 1
+cloths:
+  - mesh: {grid: {width: 1, height: 1, nx: 11, ny: 11}}
+    transform: {translate: [0, 1, 0]}
+    material: cotton
+    pins: [{nearest: [0, 1, 0], radius: 0.1}, {nearest: [0.49, 3, 0.5], radius: 0.3}]
+    masses: [{nearest: [0, 1, 0], radius: 0.15, mass: 0.5}]
+    loads: [{nearest: [-0.5, 1, -0.5], radius: 0, force: [1, 0, 0]}, {nearest: [0, 1, 0], radius: 0.11, force: [0, 0, 2]}]
+    start: [{nearest: [0, 1, 0], radius: 0.1, translate: [0, 0.5, 0]}]
+materials: {cotton: {density: 0.2, stretch: 0, shear: 0}}
+time: {h: 0.01, end: 0.01}
+probes:
+  - {name: held, nearest: [0, 1, 0], radius: 0.1, values: [position, total]}
+  - {name: corner, nearest: [0.5, 1, 0.5], radius: 0.05, values: [reaction]}
+  - {name: pulled, nearest: [-0.5, 1, -0.5], radius: 0.1, values: [velocity]}
+END
+by_radius() { # 5 vertices are pinned in the middle and lifted, carry 5 of the 9 masses and 5 of the loads; 1 at the corner
+    run round.yaml --output out && tr ',' '\n' < out/probes.csv | grep -c '^held.*[xyz] ' | grep -qx 18 &&
+        near 1e-12 1.5 1.5 1.5 1.5 1.5 -10 "$(awk 'BEGIN { printf "%.17g", 9.81 * 5 * (0.5 + 0.002) }')" "$(awk 'BEGIN { printf "%.17g", 9.81 * 0.0005 }')" 0 0 \
+            $(last 'held.49.y [m]' 'held.59.y [m]' 'held.60.y [m]' 'held.61.y [m]' 'held.71.y [m]' 'held.total.rz [N]' 'held.total.ry [N]' 'corner.120.ry [N]' \
+                'pulled.1.vx [m/s]' 'pulled.11.vx [m/s]')
+}
+ok "pins, masses, loads, starts and probes by radius" by_radius
+
 # ---- Reactions: what the pin pushed over the steps, halved ones too, is what momentum changed, but for the weight.
 cat > jerk.yaml << 'END'
 schema: 1

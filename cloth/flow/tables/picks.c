@@ -1,5 +1,5 @@
-/* Which vertices a part of the scene means: those that it lists, the one nearest to a point, all in
- * a box. The last two mean used ones only. */
+/* Which vertices a part of the scene means: those that it lists, the one nearest to a point and all
+ * within a radius of that point, all in a box. The last two mean used ones only. */
 #include "cloth/flow/tables/source.h"
 
 int flow_no_vertex(const struct model_cloth *cloth, const char *what, uint32_t vertex,
@@ -28,7 +28,10 @@ static double square_distance(const double *a, const double *b)
     return phys_dot(&d, &d);
 }
 
-/* The used vertex nearest to the point, the first of equals. */
+/* A vertex at a distance of the radius is within it, however that was rounded. */
+static const double ROUNDED = 1 + 1e-9;
+
+/* The used vertex nearest to the point, the first of equals, and all within the radius. */
 static int pick_nearest(const struct flow_picking *picking, struct cloth_error *error)
 {
     const struct mesh *mesh = &picking->cloth->mesh;
@@ -46,7 +49,13 @@ static int pick_nearest(const struct flow_picking *picking, struct cloth_error *
         return model_fail(picking->pick->place, error,
                           "cloth '%.60s' has %s but neither a face nor an edge",
                           picking->cloth->name, picking->what);
-    picking->visit(picking->to, best);
+    const double radius = picking->pick->radius * ROUNDED;
+    for (uint32_t v = 0; v < mesh->n_vertices; v++) {
+        const double distance =
+            square_distance(mesh->position + 3 * (size_t)v, picking->pick->point);
+        if (v == best || (radius > 0 && picking->used[v] && distance <= radius * radius))
+            picking->visit(picking->to, v);
+    }
     return CLOTH_OK;
 }
 

@@ -33,6 +33,11 @@ int scene_build_regions(struct model_cloth *cloth, const struct model *model,
 int scene_build_check_moduli(const struct model_cloth *cloth, const struct model *model,
                              const struct scene_tree *tree, int node, struct cloth_error *error);
 
+/* The key radius of a map that picks vertices, 0 without one. Error: it is there without nearest.
+ */
+int scene_build_radius(double *radius, const struct scene_tree *tree, int node,
+                       struct cloth_error *error);
+
 /* What picks vertices: a map with one of the keys vertices, nearest, box. */
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error);

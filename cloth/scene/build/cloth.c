@@ -57,13 +57,25 @@ static int build_box(double (*box)[3], const struct scene_tree *tree, int node,
                            cloth->name);
 }
 
+int scene_build_radius(double *radius, const struct scene_tree *tree, int node,
+                       struct cloth_error *error)
+{
+    const int value = scene_tree_get(tree, node, "radius");
+    *radius = value ? scene_tree_number(tree, node, "radius") : 0;
+    if (!value || scene_tree_get(tree, node, "nearest"))
+        return CLOTH_OK;
+    return scene_tree_fail(tree, value, error,
+                           "radius is given without nearest, the point that it is measured from; "
+                           "both or neither are expected");
+}
+
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error)
 {
     const int vertices = scene_tree_get(tree, node, "vertices");
     const int nearest = scene_tree_get(tree, node, "nearest");
     pick->place = scene_build_place(tree, node, error);
-    if (!pick->place)
+    if (!pick->place || scene_build_radius(&pick->radius, tree, node, error))
         return error->code;
     if (vertices) {
         pick->kind = MODEL_PICK_VERTICES;

@@ -35,6 +35,8 @@ static int build_load(struct model_load *load, const struct scene_tree *tree, in
 {
     const int edges = scene_tree_get(tree, node, "edges");
     scene_tree_vector(tree, scene_tree_get(tree, node, "force"), 3, load->force);
+    if (edges && scene_build_radius(&load->pick.radius, tree, node, error))
+        return error->code;
     if (edges) {
         load->pick.place = scene_build_place(tree, node, error);
         return load->pick.place ? build_edges(load, tree, edges, cloth, error) : error->code;

@@ -67,6 +67,8 @@ static const struct scene_rule motion_keys[] = {
      .about = "in the mesh's numbering"}, \
     {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number, \
      .about = "the vertex nearest to a point"}, \
+    {"radius", SCENE_NUMBER, "m", .range = SCENE_NOT_NEGATIVE, \
+     .about = "of nearest: and all vertices within it"}, \
     {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point, \
      .about = "all vertices in the box between two corners"}
 /* clang-format on */

@@ -164,6 +164,15 @@ START_TEST(pins_by_place)
     for (size_t v = 0; v < 9; v++) /* row-major, from (-0.5, -0.5) */
         ck_assert_int_eq(record_at(&record, 10, v, 1) == 0, v == 6 || v == 2 || v == 5);
     record_free(&record);
+    pins[0].pick.radius = 0.1; /* nothing but the nearest one, far outside */
+    pins[1].pick = (struct model_pick){.kind = MODEL_PICK_NEAREST,
+                                       .point = {0.5, 0, -0.5},
+                                       .radius = 0.5}; /* and two neighbours */
+    record_run(&record, &setup.model);
+    ck_assert_msg(record.code == 0, "%s", record.error.text);
+    for (size_t v = 0; v < 9; v++)
+        ck_assert_int_eq(record_at(&record, 10, v, 1) == 0, v == 6 || v == 2 || v == 5 || v == 1);
+    record_free(&record);
     setup.cloth.pins = &setup.pin;
     setup_free(&setup);
 }

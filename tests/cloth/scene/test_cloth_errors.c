@@ -166,6 +166,9 @@ START_TEST(loads_that_cannot_be_made)
            {"vertices: [11]", "edges: [[3, 3]]",
             .error = ":8:26: an edge of a load joins vertex 3 to itself; two vertices are "
                      "expected"},
+           {"vertices: [11]", "edges: [[0, 1]], radius: 1",
+            .error = ":8:39: radius is given without nearest, the point that it is measured from; "
+                     "both or neither are expected"},
            {"vertices: [11], ", "",
             .error = ":8:13: cloths[0].loads[0] has no vertices or nearest or box or edges; one of "
                      "them is expected"});
@@ -297,6 +300,11 @@ START_TEST(probes_that_tell_nothing)
     EXPECT(
         {PROBE("{name: a}"),
          .error = ":12:10: probes[0] has no vertices or nearest or box; one of them is expected"},
+        {PROBE("{vertices: [0], radius: 1}"),
+         .error = ":12:34: radius is given without nearest, the point that it is measured from; "
+                  "both or neither are expected"},
+        {PROBE("{nearest: [0, 0, 0], radius: -0.1}"),
+         .error = ":12:39: probes[0].radius is -0.1; a finite number >= 0 (m) is expected"},
         {PROBE("{vertices: [0], nearest: [0, 0, 0]}"),
          .error = ":12:26: probes[0] has both vertices and nearest; one of vertices or nearest or "
                   "box is expected"},

@@ -116,7 +116,7 @@ START_TEST(unknown_and_missing_keys)
                 "damping, diagonals"},
            {"vertices: [11]", "vertex: [11]",
             .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, "
-                     "nearest, box, edges, force, course"},
+                     "nearest, radius, box, edges, force, course"},
            {"plane:", "plan:",
             .error =
                 ":11:14: plan is not a key of obstacles[0]; did you mean 'plane'? Allowed: plane"},

@@ -273,13 +273,14 @@ END_TEST
 
 START_TEST(starts_and_masses)
 {
-    struct model model = read_changed(
-        "material: cotton",
-        "material: cotton\n    masses: [{vertices: [3, 5], mass: 0.25}]\n"
-        "    start: [{nearest: [0, 0, 9]}, {box: [[1, 1, 1], [-1, -1, -1]], scale: 2,\n"
-        "             rotate: [0, 2, 0, 0], translate: [1, 2, 3], about: [4, 5, 6],\n"
-        "             velocity: [0, 0, 0], spin: [7, 8, 9],\n"
-        "             wave: {vector: [1, 2, 3], phase: 0.5, velocity: [4, 5, 6]}}]");
+    struct model model =
+        read_changed("material: cotton",
+                     "material: cotton\n    masses: [{vertices: [3, 5], mass: 0.25}]\n"
+                     "    start: [{nearest: [0, 0, 9], radius: 0.5}, {box: [[1, 1, 1], [-1, -1, "
+                     "-1]], scale: 2,\n"
+                     "             rotate: [0, 2, 0, 0], translate: [1, 2, 3], about: [4, 5, 6],\n"
+                     "             velocity: [0, 0, 0], spin: [7, 8, 9],\n"
+                     "             wave: {vector: [1, 2, 3], phase: 0.5, velocity: [4, 5, 6]}}]");
     const struct model_cloth *cloth = model.cloths;
     ck_assert_uint_eq(cloth->n_masses, 1);
     ck_assert_double_eq(cloth->masses[0].mass, 0.25);
@@ -287,6 +288,8 @@ START_TEST(starts_and_masses)
     ck_assert_uint_eq(cloth->n_starts, 2);
     const struct model_start *plain = cloth->starts, *full = cloth->starts + 1;
     ck_assert_int_eq(plain->pick.kind, MODEL_PICK_NEAREST);
+    ck_assert_double_eq(plain->pick.radius, 0.5);
+    ck_assert_double_eq(full->pick.radius, 0);
     same_place(plain->pick.place, ":8:13");
     ck_assert(!plain->has_velocity && full->has_velocity);
     same_vector(plain->transform.scale, 1, 1, 1);

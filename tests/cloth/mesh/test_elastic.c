@@ -8,7 +8,7 @@
 enum { SIDE = 7, MIDDLE = SIDE * SIDE / 2 };
 
 /* Of cells of a x b. */
-static struct mesh grid_of(double a, double b)
+static struct mesh elastic_grid(double a, double b)
 {
     return grid((SIDE - 1) * a, (SIDE - 1) * b, SIDE, SIDE);
 }
@@ -66,7 +66,7 @@ static void holds(double stretch, double weft, double shear, double bend, int bo
                   double b)
 {
     const struct mesh_moduli moduli = {stretch, shear, bend, both, weft - stretch, NULL, 0};
-    struct mesh mesh = grid_of(a, b);
+    struct mesh mesh = elastic_grid(a, b);
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &moduli);
     double c[3][3];
     stiffness(&mesh, &moduli, MIDDLE, a * b, c);
@@ -89,7 +89,7 @@ END_TEST
 static struct mesh_elastic of(double stretch, double shear, int both)
 {
     const struct mesh_moduli moduli = {stretch, shear, 0, both, 0, NULL, 0};
-    struct mesh mesh = grid_of(0.02, 0.02);
+    struct mesh mesh = elastic_grid(0.02, 0.02);
     const struct mesh_elastic found = mesh_elastic_of(&mesh, &moduli);
     mesh_free(&mesh);
     return found;

@@ -2,6 +2,7 @@
  * in cell order, so that only its positions need to be stored. Which diagonal cuts a cell follows
  * from the cell's place. */
 #include "cloth/base/memory.h"
+#include "cloth/mesh/detail/equilateral.h"
 #include "cloth/mesh/detail/finish.h"
 #include "cloth/mesh/mesh.h"
 
@@ -60,7 +61,9 @@ int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint3
               enum mesh_cells cells, struct cloth_error *error)
 {
     *mesh = (struct mesh){0};
-    int code = check_size(width, height, nx, ny, error);
+    int code = check_size(width, cells == MESH_EQUILATERAL ? width : height, nx, ny, error);
+    if (!code && cells == MESH_EQUILATERAL)
+        return mesh_equilateral(mesh, width, nx, ny, error);
     if (!code)
         code = make(mesh, nx, ny, error);
     if (code) {

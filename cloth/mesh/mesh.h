@@ -11,8 +11,9 @@
  * (i + 1, j + 1) in all; ALTERNATE: this one and the other by turns, as on a chessboard; MIRRORED:
  * this one in the first quarter of the sheet, of which the others are mirror images at the lines
  * through its middle. Where the number of cells along an axis is odd, those in the middle have no
- * image: along this row or column of cells the diagonals go by turns. */
-enum mesh_cells { MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED };
+ * image: along this row or column of cells the diagonals go by turns. EQUILATERAL: not cells but
+ * equilateral triangles, see mesh_grid. */
+enum mesh_cells { MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED, MESH_EQUILATERAL };
 
 /* A mesh as it was given: vertices, polygons in the input's order and numbering, their triangles,
  * and edges that were given without triangles (chains). All arrays belong to the mesh. Of a grid
@@ -43,11 +44,17 @@ struct mesh {
 /* A flat sheet in the x-z plane (y = 0, +y its normal's side), width along x (u), height along z
  * (v), both in metres and centred on the origin; nx, ny >= 2 vertices, row-major, u fastest: vertex
  * j * nx + i. Two triangles a cell, cut along the diagonal that `cells` says; faces are
- * these triangles, wound so that normals are +y. uv in metres from vertex 0. Errors: CLOTH_E_INPUT
+ * these triangles, wound so that normals are +y. uv in metres from vertex 0. MESH_EQUILATERAL: rows
+ * by turns have nx and nx - 1 vertices, so all triangles are equilateral, both sides are ragged and
+ * row j begins at vertex j * nx - j / 2; the height follows of the width, `height` is not read; to
+ * all others such a mesh is no grid, its arrays are stored. Errors: CLOTH_E_INPUT
  * for sizes that are not positive and finite, fewer than 2 vertices a side, more than 2^31 corners;
  * CLOTH_E_MEMORY. After an error the mesh is empty, here and in the next two functions. */
 int mesh_grid(struct mesh *mesh, double width, double height, uint32_t nx, uint32_t ny,
               enum mesh_cells cells, struct cloth_error *error);
+
+/* How far the rows of a sheet of equilateral triangles are from each other, m. */
+double mesh_row_distance(double width, uint32_t nx);
 
 /* Whether cell (i, j) of a grid is cut along the diagonal from (i + 1, j) to (i, j + 1). */
 bool mesh_cell_turned(const struct mesh *mesh, uint32_t i, uint32_t j);

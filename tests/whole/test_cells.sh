@@ -90,3 +90,28 @@ alike() {
     sag=$(strip 16 ', cells: same') && echo "$sag" && awk -v sag="${sag% *}" 'BEGIN { exit !(sag > 1.15 && sag < 1.25) }'
 }
 ok "with diagonals that are all alike it sags a fifth further" alike
+
+# ---- Equilateral triangles of springs: E is the modulus and nu 1/3 whichever way the sheet is pulled ----
+# Strained by e along x and held so, its energy is E e^2 / 2 (1 - nu^2) a square metre.
+pulled() { # DEGREES
+    awk -v turn="$1" 'BEGIN { OFMT = CONVFMT = "%.15g"; t = turn * 3.14159265358979 / 360
+        print "schema: 1\ngravity: [0, 0, 0]\ncloths:\n  - mesh: {grid: {width: 1, nx: 7, ny: 6, cells: equilateral}}\n    material: m"
+        print "    transform: {rotate: [" cos(t) ", 0, " sin(t) ", 0]}\n    pins: [{box: [[-9, -9, -9], [9, 9, 9]]}]"
+        print "    start: [{box: [[-9, -9, -9], [9, 9, 9]], scale: [1.00001, 1, 1]}]"
+        print "materials: {m: {density: 0.2, stretch: 1000}}\ntime: {h: 0.01, end: 0.01}"
+        print "probes: [{name: p, vertices: [0], values: [position]}]" }' > pulled.yaml
+    run pulled.yaml && area=$(awk 'BEGIN { printf "%.12g", 5 * 11 * sqrt(3) / 4 / 36 }') &&
+        near "equilateral springs pulled at $1 degrees" "$(last elastic)" "$(awk -v a="$area" 'BEGIN { printf "%.12g", 1000 * 1e-10 / 2 * 9 / 8 * a }')" 1e-4
+}
+for turn in 0 15 30 45 90; do
+    ok "a sheet of equilateral triangles pulled at $turn degrees" pulled $turn
+done
+even() {
+    printf 'schema: 1\ncloths: [{mesh: {grid: {width: 0.6, nx: 14, ny: 15, cells: equilateral}}, material: cotton, pins: [{nearest: [0, 0, 0], radius: 0.12}]}]
+time: {h: 0.01, end: 0.3, fps: 1}\nsolver: {stop: {mass_norm: 1.0e-7}}\nprobes: [{name: p, vertices: [0, 13, 189, 202], values: [position]}]\n' > even.yaml
+    run even.yaml || return 1
+    # shellcheck disable=SC2046 # four numbers
+    set -- $(last p.0.y p.13.y p.189.y p.202.y)
+    below "corners of an equilateral sheet" "$(echo "$@" | awk '{ for (i = 2; i <= 4; i++) { d = $i - $1; if (d < 0) d = -d; if (d > most) most = d } print most }')" 1e-6
+}
+ok "a sheet of equilateral triangles drapes symmetrically" even

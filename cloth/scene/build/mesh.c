@@ -24,7 +24,29 @@ static enum mesh_cells cells_of(const char *word)
 {
     if (!strcmp(word, "same"))
         return MESH_SAME;
+    if (!strcmp(word, "equilateral"))
+        return MESH_EQUILATERAL;
     return strcmp(word, "alternate") ? MESH_MIRRORED : MESH_ALTERNATE;
+}
+
+/* The height of a grid, m, which follows of its width where triangles are equilateral. */
+static int grid_height(double *height, const struct scene_tree *tree, int node,
+                       enum mesh_cells cells, uint32_t nx, uint32_t ny, struct cloth_error *error)
+{
+    const double near = 1e-3, width = scene_tree_number(tree, node, "width");
+    const double follows = mesh_row_distance(width, nx) * (ny - 1.0);
+    const int given = scene_tree_get(tree, node, "height");
+    *height = given ? scene_tree_number(tree, node, "height") : follows;
+    if (!given && cells != MESH_EQUILATERAL)
+        return scene_tree_fail(tree, node, error,
+                               "mesh.grid.height is missing; a finite number > 0 (m) is expected");
+    if (cells != MESH_EQUILATERAL || fabs(*height / follows - 1) <= near)
+        return CLOTH_OK;
+    return scene_tree_fail(
+        tree, given, error,
+        "mesh.grid.height is %g, but the height of %u rows of equilateral "
+        "triangles follows of the width and nx: %.6g m is expected, or no height",
+        *height, ny, follows);
 }
 
 static int build_grid(struct mesh *mesh, const struct scene_tree *tree, int node,
@@ -42,9 +64,12 @@ static int build_grid(struct mesh *mesh, const struct scene_tree *tree, int node
             "nx times ny is %llu vertices, which take %.0f GB of memory or more; "
             "this machine has %.0f GB",
             (unsigned long long)nx * ny, need / 1e9, memory / 1e9);
-    return mesh_grid(mesh, scene_tree_number(tree, node, "width"),
-                     scene_tree_number(tree, node, "height"), nx, ny,
-                     cells_of(scene_tree_text(tree, node, "cells")), inner);
+    const enum mesh_cells cells = cells_of(scene_tree_text(tree, node, "cells"));
+    double height;
+    const int code = grid_height(&height, tree, node, cells, nx, ny, error);
+    return code ? code
+                : mesh_grid(mesh, scene_tree_number(tree, node, "width"), height, nx, ny, cells,
+                            inner);
 }
 
 /* The path of a file that a scene names: relative to the scene's folder. */

@@ -13,15 +13,17 @@ static const struct scene_rule point = {
 static const struct scene_rule edge = {.type = SCENE_LIST, .length = 2, .inside = &vertex};
 static const struct scene_rule triangle = {.type = SCENE_LIST, .length = 3, .inside = &vertex};
 
-static const char *const cells[] = {"mirrored", "alternate", "same", NULL};
+static const char *const cells[] = {"mirrored", "alternate", "same", "equilateral", NULL};
 /* clang-format off */
 static const struct scene_rule grid_keys[] = {
     {"width", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE, .about = "along x"},
-    {"height", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE, .about = "along z"},
+    {"height", SCENE_NUMBER, "m", .range = SCENE_POSITIVE,
+     .about = "along z; left out where cells are equilateral, of which it follows"},
     {"nx", SCENE_INTEGER, .required = true, .least = 2, .about = "vertices along x"},
     {"ny", SCENE_INTEGER, .required = true, .least = 2, .about = "vertices along z"},
     {"cells", SCENE_CHOICE, .fallback = "mirrored", .words = cells,
-     .about = "how their diagonals run: mirrored at the middle lines of the sheet, by turns, alike"},
+     .about = "how their diagonals run: mirrored at the middle lines of the sheet, by turns, alike; "
+              "or equilateral triangles"},
     {0}};
 
 static const struct scene_rule inline_keys[] = {

@@ -176,6 +176,40 @@ START_TEST(mass_of_vertices)
 }
 END_TEST
 
+START_TEST(equilateral)
+{
+    struct mesh mesh = grid_of(2, 0, 5, 4, MESH_EQUILATERAL);
+    double mass[18] = {0}, uv[2];
+    ck_assert_uint_eq(mesh.n_vertices, 18);
+    ck_assert_uint_eq(mesh.n_triangles, 3 * 7);
+    ck_assert_uint_eq(mesh.grid_nx, 0);
+    for (uint32_t t = 0; t < mesh.n_triangles; t++) {
+        uint32_t c[3];
+        mesh_corners(&mesh, t, c);
+        for (int i = 0; i < 3; i++)
+            ck_assert_double_eq_tol(mesh_distance(mesh.position, c[i], c[(i + 1) % 3]), 0.5, 1e-15);
+        const double *p = mesh.position + 3 * c[0], *q = mesh.position + 3 * c[1],
+                     *r = mesh.position + 3 * c[2];
+        ck_assert_double_gt((q[2] - p[2]) * (r[0] - p[0]) - (q[0] - p[0]) * (r[2] - p[2]), 0);
+    }
+    for (uint32_t j = 0, v = 0; j < 4; j++) /* its own mirror image */
+        for (uint32_t i = 0, n = 5 - j % 2; i < n; i++, v++) {
+            ck_assert(mesh.position[3 * v] == -mesh.position[3 * (v + n - 1 - 2 * i)]);
+            ck_assert(mesh_uv(&mesh, v, uv));
+            ck_assert_double_eq_tol(uv[0], mesh.position[3 * v] + 1, 1e-15);
+            ck_assert_double_eq_tol(uv[1], j * sqrt(3) / 4, 1e-15);
+        }
+    ck_assert_double_eq(mesh.position[0], -1);
+    ck_assert_double_eq_tol(mesh.position[2], -3 * sqrt(3) / 8, 1e-15);
+    mesh_add_mass(&mesh, 1, mass);
+    ck_assert_double_eq_tol(mass[6], sqrt(3) / 16 * 2, 1e-15); /* six */
+    mesh_free(&mesh);
+    mesh = grid_of(1, 0, 2, 2, MESH_EQUILATERAL);
+    ck_assert_uint_eq(mesh.n_triangles, 1);
+    mesh_free(&mesh);
+}
+END_TEST
+
 START_TEST(mass_of_cells)
 {
     const enum mesh_cells all[] = {MESH_SAME, MESH_ALTERNATE, MESH_MIRRORED};
@@ -258,6 +292,6 @@ START_TEST(free_twice)
 }
 END_TEST
 
-RUN("grid", numbering, diagonals, mirror_images, turned_triangles, triangles, mass_of_cells,
-    centred_to_the_bit, wrong_sizes, mass_of_vertices, identity_keeps_bits,
+RUN("grid", numbering, equilateral, diagonals, mirror_images, turned_triangles, triangles,
+    mass_of_cells, centred_to_the_bit, wrong_sizes, mass_of_vertices, identity_keeps_bits,
     scale_then_rotate_then_translate, areas, free_twice)

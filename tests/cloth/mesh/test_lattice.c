@@ -117,6 +117,26 @@ START_TEST(one_diagonal_is_that_of_the_triangles)
 }
 END_TEST
 
+/* All springs alike, but half of it at the border: E = 2 / sqrt(3) k is the modulus. */
+START_TEST(equilateral_springs)
+{
+    struct cloth_error error = {0};
+    struct mesh mesh = grid_of(1, 0, 9, 8, MESH_EQUILATERAL);
+    struct mesh_lattice lattice = lattice_of(&mesh, 100, 10, 0, 1);
+    struct mesh_edges edges;
+    ck_assert_int_eq(mesh_edges_find(&edges, &mesh, &error), 0);
+    ck_assert_uint_eq(lattice.n, edges.n);
+    for (uint32_t e = 0; e < edges.n; e++) {
+        const double k = edges.edge[e].opposite[1] == UINT32_MAX ? 0.5 : 1;
+        ck_assert_double_eq_tol(lattice.spring[e].stiffness, k * 100 * sqrt(0.75), 1e-11);
+        ck_assert_double_eq_tol(lattice.spring[e].length, 0.125, 1e-15);
+    }
+    mesh_edges_free(&edges);
+    mesh_lattice_free(&lattice);
+    mesh_free(&mesh);
+}
+END_TEST
+
 START_TEST(the_sheet)
 {
     struct mesh mesh = grid(1, 1, 150, 150);
@@ -259,6 +279,6 @@ START_TEST(no_area)
 END_TEST
 
 RUN("lattice", grid_with_both_diagonals, grid_with_one_diagonal,
-    one_diagonal_is_that_of_the_triangles, the_sheet, small_grids, without_stiffness_no_spring,
-    lengths_as_positioned, triangle_meshes, stretch_and_bend_of_the_same_vertices, no_length,
-    no_area)
+    one_diagonal_is_that_of_the_triangles, equilateral_springs, the_sheet, small_grids,
+    without_stiffness_no_spring, lengths_as_positioned, triangle_meshes,
+    stretch_and_bend_of_the_same_vertices, no_length, no_area)

@@ -23,6 +23,14 @@ START_TEST(values_out_of_range)
         {"nx: 4", "nx: 1",
          .error =
              ":5:44: cloths[0].mesh.grid.nx is 1; a whole number from 2 to 4294967295 is expected"},
+        {"height: 2, ", "",
+         .error = ":5:18: mesh.grid.height is missing; a finite number > 0 (m) is expected"},
+        {"nx: 4, ny: 3", "nx: 4, ny: 3, cells: equilateral",
+         .error = ":5:37: mesh.grid.height is 2, but the height of 3 rows of equilateral triangles "
+                  "follows of the width and nx: 0.57735 m is expected, or no height"},
+        {"nx: 4, ny: 3", "nx: 4, ny: 3, cells: square",
+         .error = ":5:61: cloths[0].mesh.grid.cells is square; mirrored or alternate or same or "
+                  "equilateral is expected"},
         {"nx: 4, ny: 3", "nx: 65536, ny: 65536",
          .error = ":5:44: nx times ny is 4294967296; at most 2^31 vertices are possible"},
         {"schema: 1", "schema: 1\ngrain: 0",

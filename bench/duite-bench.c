@@ -45,7 +45,7 @@ static const struct argp_option OPTIONS[] = {
      "else",
      2},
     {"threads", THREADS, "N", 0, "cores for each subject (default: 2)", 3},
-    {"scheduler", SCHEDULER, "NAME", 0, "ours (default: steal)", 3},
+    {"scheduler", SCHEDULER, "NAME", 0, "which scheduler runs our tasks (default: steal)", 3},
     {0}};
 
 struct command {

@@ -31,6 +31,7 @@ enum {
     USAGE
 };
 
+/* argp sorts them by group and name. */
 static const struct argp_option OPTIONS[] = {
     {"output", OUTPUT, "DIR", 0, "write frames into this folder, which is made", 1},
     {"report", REPORT, "FILE", 0, "write the figures of the run as flat JSON", 1},
@@ -40,10 +41,11 @@ static const struct argp_option OPTIONS[] = {
      1},
     {"trace", TRACE, "FILE", 0,
      "write what each worker does when into FILE, and FILE.1, FILE.2, ... on the other ranks; for "
-     "duite-trace and duite-predict",
+     "duite-trace and duite-predict (default: DUITE_TRACE, else none)",
      1},
     {"trace-steps", TRACE_STEPS, "A:B", 0,
-     "only from step A up to, not including, step B; the first step is 0; either may be left out",
+     "trace only from step A up to, not including, step B; the first step is 0; either may be left "
+     "out",
      1},
     {"quiet", QUIET, NULL, 0, "neither progress nor summary", 1},
     {"end", END, "SECONDS", 0, "simulated time, instead of the scene's time.end", 2},
@@ -52,14 +54,23 @@ static const struct argp_option OPTIONS[] = {
      "change a value of the scene, such as time.h=0.002 or cloths[0].mesh.grid.nx=40; may be "
      "given several times",
      2},
-    {"threads", THREADS, "N", 0, "workers of each rank (default: its share of the cores)", 3},
+    {"threads", THREADS, "N", 0,
+     "workers of each rank (default: DUITE_THREADS, else its share of the cores)", 3},
     {"scheduler", SCHEDULER, "NAME", 0,
-     "which worker runs which task next (default: steal); this and the next two take ./FILE.so, "
-     "too",
+     "which worker runs which task next: a name, or a policy of your own as ./FILE.so (default: "
+     "DUITE_SCHEDULER, else steal)",
      3},
-    {"mapping", MAPPING, "NAME", 0, "which rank keeps which block (default: metis)", 3},
-    {"balance", BALANCE, "NAME", 0, "which tasks or blocks go to other ranks (default: none)", 3},
-    {"seed", SEED, "N", 0, "of all that is random in the policies (default: 1)", 3},
+    {"mapping", MAPPING, "NAME", 0,
+     "which rank keeps which block: a name, or a policy of your own as ./FILE.so (default: "
+     "DUITE_MAPPING, else metis)",
+     3},
+    {"balance", BALANCE, "NAME", 0,
+     "which tasks or blocks go to other ranks: a name, or a policy of your own as ./FILE.so "
+     "(default: "
+     "DUITE_BALANCE, else none)",
+     3},
+    {"seed", SEED, "N", 0, "of all that is random in the policies (default: DUITE_SEED, else 1)",
+     3},
     {"keys", KEYS, NULL, 0, "list the keys of scene files, with units, ranges and defaults", 4},
     {"help", '?', NULL, 0, "this text", 4},
     {"usage", USAGE, NULL, 0, "a short text", 4},

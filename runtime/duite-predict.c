@@ -57,7 +57,7 @@ static const struct argp_option OPTIONS[] = {
      "metis)",
      2},
     {"balance", BALANCE, "NAME", 0, "as of duite-cloth: none or migrate (default: none)", 2},
-    {"seed", SEED, "N", 0, "of what is random in them (default: 1)", 2},
+    {"seed", SEED, "N", 0, "of what is random in the policies (default: 1)", 2},
     {"paje", PAJE, "OUT", 0, "write the predicted run as a Paje trace", 3},
     {0}};
 

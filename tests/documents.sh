@@ -114,6 +114,21 @@ formats() { # without a word from the formatter
     groff -man -Tutf8 -ww -z "$page" 2> "$scratch/warnings" && cat "$scratch/warnings" && test ! -s "$scratch/warnings"
 }
 
+# argp sorts options by name: no text may lean on its place among the others.
+stands_alone() { # PROGRAM
+    "$1" --help > "$scratch/help" && test -s "$scratch/help" || return
+    ! grep -nEi 'likewise|\<(next|previous|following) (one|two|three|option)|\<(above|below)\>|\<in them\>|of its tasks|that each writes' "$scratch/help"
+}
+
+git_sees_sources_only() { # nothing that make leaves in its folders is untracked
+    git -C "$srcdir" status --porcelain -- tests bench runtime cloth > "$scratch/status" || return
+    sed -n 's/^?? //p' "$scratch/status" | while read -r file; do
+        case $(head -c 4 "$srcdir/$file" 2> /dev/null | tail -c 3) in ELF) echo "$file" ;; esac
+    done > "$scratch/programs"
+    cat "$scratch/programs"
+    test ! -s "$scratch/programs"
+}
+
 plan_later
 ok "docs/runtime.md quotes the examples as they are" quotes "$document"
 ok "a quotation that differs is seen" sees 's/ += x\[i\] \* y\[i\];/ += x[i] - y[i];/'
@@ -127,3 +142,15 @@ ok "duite.3 names every function, macro, code and mode" page_is_whole
 ok "no document names what is not there" page_invents_nothing
 ok "duite.3 formats without warnings" formats
 ok "every public function has a comment before it" commented
+for program in duite-cloth duite-view duite-trace duite-predict bench/duite-bench bench/compare bench/graph-run; do
+    if test -x $program; then
+        ok "every option in --help of $program says what it is by itself" stands_alone ./$program
+    else
+        skip "--help of $program" "not built"
+    fi
+done
+if git -C "$srcdir" rev-parse --is-inside-work-tree > /dev/null 2>&1; then
+    ok "git shows no program that make built" git_sees_sources_only
+else
+    skip "git shows no program that make built" "no sources of git"
+fi

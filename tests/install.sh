@@ -41,6 +41,15 @@ complete() { # everything that duite.h and duite_policy.h declare is there
     test -s "$scratch/declared" && test ! -s "$scratch/absent"
 }
 
+# Names that libduite.so hides would be anybody's in a static library.
+no_static_library() {
+    test -z "$(find "$prefix" -name '*.a')" || return
+    mkdir -p "$scratch/configured"
+    if (cd "$scratch/configured" && "$srcdir/configure" --enable-static) > "$scratch/said" 2>&1; then return 1; fi
+    cat "$scratch/said"
+    grep -q 'libduite is a shared library only' "$scratch/said"
+}
+
 uninstalled() {
     # shellcheck disable=SC2046 # a list of settings
     ${MAKE:-make} uninstall $(locations "$prefix") && test -z "$(find "$prefix" ! -type d)"
@@ -57,5 +66,6 @@ ok "and runs on 2 ranks" ranks 2 "$scratch/dot"
 ok "the man page is there" test -s "$prefix/share/man/man3/duite.3"
 ok "libduite.so exports duite_* only" exports_ours_only
 ok "libduite.so has everything that its headers declare" complete
+ok "there is no static library, and configure says why" no_static_library
 ok "make install DESTDIR" install_staged
 ok "make uninstall leaves no file" uninstalled

@@ -23,25 +23,32 @@ enum { ROUNDS = 256, SEED, OUTPUT, TIMEOUT, TASKS, COST, BYTES, STEPS, SET, LIST
 
 static const struct argp_option OPTIONS[] = {
     {"scheduler", LIST + SCHEDULER, "LIST", 0,
-     "names, with commas; all: every one; starpu:NAME: StarPU's on graphs (default: steal)", 1},
-    {"mapping", LIST + MAPPING, "LIST", 0, "likewise (default: metis)", 1},
-    {"balance", LIST + BALANCE, "LIST", 0, "likewise (default: none)", 1},
-    {"ranks", LIST + RANKS, "LIST", 0, "numbers (default: 1)", 1},
-    {"threads", LIST + THREADS, "LIST", 0, "numbers, of each rank (default: 2)", 1},
+     "schedulers, with commas between them; all: every one but shuffle; starpu:NAME: that of "
+     "StarPU, "
+     "on graphs (default: steal)",
+     1},
+    {"mapping", LIST + MAPPING, "LIST", 0,
+     "mappings, with commas between them; all: every one (default: metis)", 1},
+    {"balance", LIST + BALANCE, "LIST", 0,
+     "balancers, with commas between them; all: every one but scatter and wander (default: none)",
+     1},
+    {"ranks", LIST + RANKS, "LIST", 0, "numbers of ranks, with commas between them (default: 1)",
+     1},
+    {"threads", LIST + THREADS, "LIST", 0,
+     "numbers of threads of each rank, with commas between them (default: 2)", 1},
     {"grain", LIST + GRAIN, "LIST", 0,
      "of scenes: vertices a block; of synthetic graphs: how many times the cost of a task, of "
-     "which "
-     "there are as many times fewer; 0: the default (default: 0)",
+     "which there are as many times fewer; 0: the default (default: 0)",
      1},
-    {"set", SET, "KEY=VALUE", 0, "of scenes; may be given several times", 2},
-    {"tasks", TASKS, "N", 0, "of a synthetic graph (default: 1000)", 3},
-    {"cost", COST, "SECONDS", 0, "of its tasks (default: 1e-5)", 3},
-    {"bytes", BYTES, "N", 0, "that each writes (default: 4096)", 3},
+    {"set", SET, "KEY=VALUE", 0, "change a value of the scenes; may be given several times", 2},
+    {"tasks", TASKS, "N", 0, "tasks of a synthetic graph (default: 1000)", 3},
+    {"cost", COST, "SECONDS", 0, "what a task of a synthetic graph takes (default: 1e-5)", 3},
+    {"bytes", BYTES, "N", 0, "what a task of a synthetic graph writes (default: 4096)", 3},
     {"steps", STEPS, "N", 0, "rounds of a graph in a run (default: 10)", 3},
-    {"rounds", ROUNDS, "N", 0, "runs of everything (default: 10)", 4},
+    {"rounds", ROUNDS, "N", 0, "runs of each product (default: 10)", 4},
     {"seed", SEED, "N", 0, "of the order of runs (default: 1)", 4},
-    {"timeout", TIMEOUT, "SECONDS", 0, "of a run (default: 600)", 4},
-    {"output", OUTPUT, "DIR", 0, "for all files (default: comparison)", 4},
+    {"timeout", TIMEOUT, "SECONDS", 0, "most that a run may take (default: 600)", 4},
+    {"output", OUTPUT, "DIR", 0, "the folder of all files (default: comparison)", 4},
     {0}};
 
 /* ---- The command line ---- */

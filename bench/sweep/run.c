@@ -243,16 +243,22 @@ static int run(struct command *command)
 enum { SCHEDULER = 256, MAPPING, BALANCE, THREADS, TASKS, COST, BYTES, ROUNDS, SEED, REPORT, SAVE };
 
 static const struct argp_option OPTIONS[] = {
-    {"tasks", TASKS, "N", 0, "of a synthetic graph, about (default: 1000)", 1},
-    {"cost", COST, "SECONDS", 0, "of a task on average (default: 1e-5)", 1},
-    {"bytes", BYTES, "N", 0, "that a task writes (default: 4096)", 1},
+    {"tasks", TASKS, "N", 0, "tasks of a synthetic graph, about (default: 1000)", 1},
+    {"cost", COST, "SECONDS", 0,
+     "what a task of a synthetic graph takes on average (default: 1e-5)", 1},
+    {"bytes", BYTES, "N", 0, "what a task of a synthetic graph writes (default: 4096)", 1},
     {"seed", SEED, "N", 0, "of a random graph, and of policies (default: 1)", 1},
     {"save", SAVE, "FILE", 0, "write the graph, and run nothing", 1},
-    {"scheduler", SCHEDULER, "NAME", 0, "default: steal", 2},
-    {"mapping", MAPPING, "NAME", 0, "default: metis", 2},
-    {"balance", BALANCE, "NAME", 0, "default: none", 2},
-    {"threads", THREADS, "N", 0, "workers of each rank (default: its share of the cores)", 2},
-    {"rounds", ROUNDS, "N", 0, "that count, after two that do not (default: 10)", 3},
+    {"scheduler", SCHEDULER, "NAME", 0,
+     "which worker runs which task next (default: DUITE_SCHEDULER, else steal)", 2},
+    {"mapping", MAPPING, "NAME", 0,
+     "which rank keeps which object (default: DUITE_MAPPING, else metis)", 2},
+    {"balance", BALANCE, "NAME", 0,
+     "which tasks or objects go to other ranks (default: DUITE_BALANCE, else none)", 2},
+    {"threads", THREADS, "N", 0,
+     "workers of each rank (default: DUITE_THREADS, else its share of the cores)", 2},
+    {"rounds", ROUNDS, "N", 0,
+     "rounds of the graph that are measured, after two that are not (default: 10)", 3},
     {"report", REPORT, "FILE", 0, "where the figures go (default: standard output)", 3},
     {0}};
 
@@ -347,7 +353,6 @@ int main(int argc, char **argv)
         NULL,
         NULL,
         NULL};
-    command.options.balance = duite_balancer_find("none");
     argp_err_exit_status = 2;
     if (argp_parse(&argp, argc, argv, 0, NULL, &command))
         return 2;

@@ -93,6 +93,10 @@ ok "it is used, and changes nothing" same_as_steal 1 --scheduler ./near.so
 ok "nor on two ranks" same_as_steal 2 --scheduler ./near.so
 ok "three policies in a library" library three
 ok "all three are asked" talks 2 --scheduler ./three.so --mapping ./three.so --balance ./three.so
+by_the_environment() { (export DUITE_SCHEDULER=./three.so DUITE_MAPPING=./three.so DUITE_BALANCE=./three.so && talks "$@"); }
+ok "by the environment, too" by_the_environment 2
+report_names() { grep -q '"scheduler": "./three.so"' "$scratch/r.json" && grep -q '"balance": "./three.so"' "$scratch/r.json"; }
+ok "and the report names them" report_names
 ok "and change nothing" same_as_steal 2 --scheduler ./three.so --mapping ./three.so --balance ./three.so
 for mapping in block random; do ok "mapping $mapping changes nothing" same_as_steal 3 --mapping $mapping; done
 ok "a file that is not there" refused "duite-cloth: --scheduler ./no.so: the scheduler cannot be loaded: .*no.so" --scheduler ./no.so

@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+static const struct mesh_elastic NONE = {NAN, NAN, NAN, NAN};
+
 /* Of cells of a (m, along the warp) by b (m, along the weft), springs of N/m.
  *
  * With both diagonals the lattice is orthotropic: nothing couples shear to stretch. */
@@ -36,11 +38,16 @@ static struct mesh_elastic of_one(double warp, double weft, double diagonal, dou
 struct mesh_elastic mesh_elastic_of(const struct mesh *mesh, const struct mesh_moduli *moduli)
 {
     if (!mesh->grid_nx)
-        return (struct mesh_elastic){NAN, NAN, NAN, NAN};
+        return NONE;
     /* A bend spring of k over two cells is as stiff as four stretch springs of k over one. */
     const double warp = moduli->stretch + 4 * moduli->bend, weft = warp + moduli->weft_excess;
     const double a = mesh_distance(mesh->position, 0, 1);
     const double b = mesh_distance(mesh->position, 0, mesh->grid_nx);
-    return moduli->both_diagonals ? of_both(warp, weft, moduli->shear, a, b)
-                                  : of_one(warp, weft, moduli->shear, a, b);
+    if (moduli->both_diagonals)
+        return of_both(warp, weft, moduli->shear, a, b);
+    if (mesh->grid_cells == MESH_ALTERNATE) /* as many of each, and nothing couples any more */
+        return of_both(warp, weft, moduli->shear / 2, a, b);
+    if (mesh->grid_cells == MESH_MIRRORED && moduli->shear > 0)
+        return NONE;
+    return of_one(warp, weft, moduli->shear, a, b);
 }

@@ -86,6 +86,44 @@ START_TEST(every_lattice)
 }
 END_TEST
 
+/* Cells by turns: half of the vertices have four diagonals, the others none; a pair of neighbours
+ * has two cells. */
+START_TEST(cells_by_turns)
+{
+    const struct mesh_moduli moduli = {1000, 400, 60, 0, -700, NULL, 0};
+    struct cloth_error error = {0};
+    struct mesh mesh;
+    ck_assert_int_eq(mesh_grid(&mesh, 0.6, 1.5, SIDE, SIDE, MESH_ALTERNATE, &error), CLOTH_OK);
+    const struct mesh_elastic found = mesh_elastic_of(&mesh, &moduli);
+    double c[3][3], other[3][3];
+    stiffness(&mesh, &moduli, MIDDLE, 2 * 0.1 * 0.25, c);
+    stiffness(&mesh, &moduli, MIDDLE + 1, 2 * 0.1 * 0.25, other);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            c[i][j] += other[i][j];
+    is_inverse(&found, c);
+    mesh_free(&mesh);
+}
+END_TEST
+
+/* Mirrored ones with one diagonal are no uniform lattice; with both, or without any, they are. */
+START_TEST(mirrored_cells)
+{
+    struct mesh_moduli moduli = {1000, 400, 0, 0, 0, NULL, 0};
+    struct cloth_error error = {0};
+    struct mesh mesh;
+    ck_assert_int_eq(mesh_grid(&mesh, 1, 1, SIDE, SIDE, MESH_MIRRORED, &error), CLOTH_OK);
+    ck_assert(isnan(mesh_elastic_of(&mesh, &moduli).warp));
+    moduli.both_diagonals = 1;
+    near(mesh_elastic_of(&mesh, &moduli).shear, 400);
+    moduli.both_diagonals = 0;
+    moduli.shear = 0;
+    near(mesh_elastic_of(&mesh, &moduli).warp, 1000);
+    near(mesh_elastic_of(&mesh, &moduli).shear, 0);
+    mesh_free(&mesh);
+}
+END_TEST
+
 static struct mesh_elastic of(double stretch, double shear, int both)
 {
     const struct mesh_moduli moduli = {stretch, shear, 0, both, 0, NULL, 0};
@@ -161,5 +199,5 @@ START_TEST(without_shear_or_stretch)
 }
 END_TEST
 
-RUN("elastic", every_lattice, equilateral_triangles, square_cells, no_grid,
-    without_shear_or_stretch)
+RUN("elastic", every_lattice, cells_by_turns, mirrored_cells, equilateral_triangles, square_cells,
+    no_grid, without_shear_or_stretch)

@@ -68,7 +68,8 @@ static void put_args(FILE *file, const struct trace_event *event)
 
 static bool lasts(const struct trace_event *event)
 {
-    return event->kind <= TRACE_IDLE || event->kind == TRACE_MIGRATE || event->kind == TRACE_FLUSH;
+    return event->kind <= TRACE_IDLE || event->kind == TRACE_MIGRATE ||
+           event->kind == TRACE_FLUSH || event->kind == TRACE_MESSAGES;
 }
 
 static void put_nanoseconds(FILE *file, const char *key, int64_t t)

@@ -3,8 +3,9 @@
 
 #include <stdint.h>
 
-/* Trace files, version 1. A run on n ranks leaves n files: FILE of rank 0, and FILE.1, FILE.2, ...
- * of the others; those of one run have the same `run`.
+/* Trace files, version 2 (1 had no TRACE_MESSAGES, and is read, too). A run on n ranks leaves n
+ * files: FILE of rank 0, and FILE.1, FILE.2, ... of the others; those of one run have the same
+ * `run`.
  *
  * A file is a header, rewritten when the trace ends, and sections up to header.bytes, each a
  * trace_section and so many bytes behind it, a multiple of 8. All numbers are of the byte order and
@@ -13,7 +14,7 @@
  * was not written is counted in header.lost. */
 
 #define TRACE_MAGIC "duitetrc"
-enum { TRACE_VERSION = 1 };
+enum { TRACE_VERSION = 2 };
 #define TRACE_ORDER UINT32_C(0x01020304)
 
 struct trace_header {
@@ -65,6 +66,7 @@ enum trace_kind {
     TRACE_MIGRATE,  /* number: objects that moved; took: how long all of it took */
     TRACE_STEP,     /* number: the step that begins */
     TRACE_FLUSH,    /* events were written; number: bytes */
+    TRACE_MESSAGES, /* a worker that did not idle looked for messages, sent or took them */
     TRACE_KINDS
 };
 
@@ -77,7 +79,7 @@ enum {
 
 struct trace_event {
     uint64_t begin, took;
-    uint64_t within; /* TASK, OWN: of `took`, other tasks and idling inside of it */
+    uint64_t within; /* TASK, OWN: of `took`, other tasks, messages and idling inside of it */
     uint64_t number; /* of tasks: place in the fork order of the main program, from 1 */
     uint32_t kernel; /* place in the list of kernels */
     uint8_t kind, flags;

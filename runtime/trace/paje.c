@@ -155,7 +155,8 @@ static void add(void *context, const struct trace_seen *seen)
 {
     struct spans *spans = context;
     unsigned kind = seen->event->kind;
-    bool lasts = kind <= TRACE_IDLE || kind == TRACE_MIGRATE || kind == TRACE_FLUSH;
+    bool lasts = kind <= TRACE_IDLE || kind == TRACE_MIGRATE || kind == TRACE_FLUSH ||
+                 kind == TRACE_MESSAGES;
     spans->span[spans->n++] =
         (struct trace_span){.begin = seen->begin,
                             .end = lasts ? seen->end : seen->begin - 1,

@@ -91,8 +91,9 @@ static int check_header(struct source *source, uint32_t rank)
     if (header->order != TRACE_ORDER)
         return damaged(source, offsetof(struct trace_header, order),
                        "written on a machine with another order of bytes");
-    if (header->version != TRACE_VERSION) {
-        snprintf(text, sizeof text, "a trace of version %" PRIu32 "; this program reads version %d",
+    if (!header->version || header->version > TRACE_VERSION) {
+        snprintf(text, sizeof text,
+                 "a trace of version %" PRIu32 "; this program reads versions 1 to %d",
                  header->version, TRACE_VERSION);
         return damaged(source, offsetof(struct trace_header, version), text);
     }
@@ -356,8 +357,9 @@ double trace_when(const struct trace_run *run, uint32_t rank, uint64_t ticks)
 
 const char *trace_kind_name(unsigned kind)
 {
-    static const char *const names[] = {"",        "task",     "runtime", "idle", "steal", "send",
-                                        "receive", "delegate", "migrate", "step", "flush"};
+    static const char *const names[] = {"",        "task", "runtime", "idle",
+                                        "steal",   "send", "receive", "delegate",
+                                        "migrate", "step", "flush",   "messages"};
     return kind < TRACE_KINDS ? names[kind] : "";
 }
 

@@ -42,6 +42,8 @@ static void add(void *context, const struct trace_seen *seen)
         add_task(sums, event, seen->took - within);
     if (event->kind == TRACE_OWN)
         sums->own += seen->took - within;
+    if (event->kind == TRACE_MESSAGES)
+        sums->messaging += seen->took;
     if (event->kind == TRACE_FLUSH)
         sums->flush += seen->took;
     if (event->kind == TRACE_MIGRATE && !seen->rank)
@@ -151,6 +153,31 @@ static double ratio(double a, double b)
     return b > 0 ? a / b : 0;
 }
 
+/* The shares add up to the workers' time from the first event to the last one. */
+static void print_shares(const struct trace_sums *sums, double all, FILE *file)
+{
+    const double named = sums->busy + sums->own + sums->messaging + sums->flush + sums->idle;
+    const struct {
+        const char *name, *what;
+        double seconds;
+    } share[] = {
+        {"busy", "bodies of tasks", sums->busy},
+        {"own", "tasks of the runtime's own", sums->own},
+        {"messages", "MPI: looking for messages, sending and taking them", sums->messaging},
+        {"writing", "of the trace", sums->flush},
+        {"idle", "of that with messages awaited", sums->idle},
+        {"rest", "the runtime between tasks, the main program, start and end",
+         fmax(all - named, 0)}};
+    fputs("  of the workers' time\n", file);
+    for (size_t i = 0; i < sizeof share / sizeof *share; i++) {
+        fprintf(file, "    %-11s %5.1f %%  %s", share[i].name, 100 * ratio(share[i].seconds, all),
+                share[i].what);
+        if (!strcmp(share[i].name, "idle"))
+            fprintf(file, " %.1f %%", 100 * ratio(sums->exposed, all));
+        fputc('\n', file);
+    }
+}
+
 static void print_kernels(const struct trace_run *run, const struct trace_sums *sums, FILE *file)
 {
     fprintf(file, "  %-28s %10s %12s %12s %12s\n", "kernel", "tasks", "seconds", "mean us",
@@ -178,18 +205,15 @@ int trace_print(const struct trace_run *run, FILE *file)
             "  tasks         %" PRIu64 ", stolen %" PRIu64 ", chained %" PRIu64
             ", delegated %" PRIu64 "\n",
             sums.tasks, sums.stolen, sums.chained, sums.delegated);
-    fprintf(file, "  busy          %.1f %%, idle %.1f %%, of that with messages awaited %.1f %%\n",
-            100 * ratio(sums.busy, all), 100 * ratio(sums.idle, all),
-            100 * ratio(sums.exposed, all));
     fprintf(file, "  messages      %" PRIu64 ", %.3f MB\n", sums.messages,
             1e-6 * (double)sums.bytes);
     if (run->n_ranks > 1)
         fprintf(file, "  clocks        agree within %.3g us\n", 1e6 * run->bound);
-    fprintf(file, "  writing       %.6f s\n", sums.flush);
     if (run->lost)
         fprintf(file, "  LOST          %" PRIu64 " events or words of the program\n", run->lost);
     if (!run->whole)
         fputs("  NOT WHOLE     the run did not come to its end\n", file);
+    print_shares(&sums, all, file);
     print_kernels(run, &sums, file);
     trace_sums_free(&sums);
     return DUITE_OK;

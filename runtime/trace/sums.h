@@ -10,6 +10,7 @@ struct trace_sums {
     uint64_t tasks, stolen, chained, delegated, messages, bytes, received, migrated;
     double busy, idle, exposed, flush; /* s, over all workers; the last: of writing */
     double own;                        /* in the runtime's own tasks */
+    double messaging;                  /* looking for messages, sending and taking them */
     double first, last;                /* s: when the first event begins, and the last one ends */
     uint32_t workers;
     struct trace_kernel_sum {

@@ -40,10 +40,12 @@ struct work_worker {
     bool left_some;                  /* tasks in the heap from which it took one: another is to be
                                         woken */
     const struct graph_scope *waits; /* of the body that waits on top; NULL: none does */
-    uint64_t within;                 /* ticks of tasks and idling inside the body that runs */
+    uint64_t within;                 /* ticks of tasks, messages and idling inside the body that
+                                        runs */
     uint64_t gap;                    /* ticks between chained tasks, when last looked at */
     struct graph_task *next;         /* chained: to run directly after this one */
     uint64_t polled, idle_since;     /* when, in ticks; 0: busy */
+    uint64_t messaging;              /* when it began with messages, in ticks; 0: it does not */
     uint64_t awaited_then;           /* comm_awaited_ticks when it began to idle */
     double pause;
     duite_call call;
@@ -130,6 +132,10 @@ void work_note_task(struct work_worker *worker, const struct graph_task *task,
                     const struct work_ran *ran);
 bool work_note_relieve(struct work_worker *worker);
 void work_note_idle(struct work_worker *worker, uint64_t idle, uint64_t exposed);
+/* Around what a worker that does not idle does for messages: looks for them, sends, takes them.
+ * What begins within that is no other. Nothing below a microsecond is noted. */
+bool work_note_messages_begin(struct work_worker *worker);
+void work_note_messages_end(struct work_worker *worker, bool begun);
 void work_note_message(void *worker, bool sends, int peer, size_t bytes);
 
 /* Whether a scheduler names victims without an end, in one round: the main program will tell. */

@@ -38,6 +38,29 @@ void work_note_idle(struct work_worker *worker, uint64_t idle, uint64_t exposed)
                                                   .kind = TRACE_IDLE});
 }
 
+bool work_note_messages_begin(struct work_worker *worker)
+{
+    if (!worker->ring || worker->idle_since || worker->messaging)
+        return false;
+    worker->messaging = base_ticks();
+    return true;
+}
+
+void work_note_messages_end(struct work_worker *worker, bool begun)
+{
+    const double least = 1e-6; /* s: an event for each look would cost as much as the look */
+    if (!begun)
+        return;
+    const uint64_t took = base_ticks() - worker->messaging;
+    if (worker->pool->tick * (double)took >= least) {
+        worker->within += took;
+        trace_put(worker->ring, &(struct trace_event){.begin = worker->messaging,
+                                                      .took = took,
+                                                      .kind = TRACE_MESSAGES});
+    }
+    worker->messaging = 0;
+}
+
 void work_note_message(void *who, bool sends, int peer, size_t bytes)
 {
     const struct work_worker *worker = who;

@@ -82,7 +82,9 @@ static void on_ready(void *context, void *who, struct graph_task *task)
         return;
     }
     if (graph_is_channel(task)) {
+        const bool noted = work_note_messages_begin(worker);
         comm_channel_ready(pool->setup.comm, worker, task);
+        work_note_messages_end(worker, noted);
         return;
     }
     if (pool->balance && moves(worker, task))
@@ -146,7 +148,11 @@ static struct graph_task *find(struct work_worker *worker)
 bool work_poll(struct work_worker *worker)
 {
     struct comm *comm = worker->pool->setup.comm;
-    return comm && comm_poll(comm, worker);
+    if (!comm)
+        return false;
+    const bool noted = work_note_messages_begin(worker), came = comm_poll(comm, worker);
+    work_note_messages_end(worker, noted);
+    return came;
 }
 
 /* A chain moved to another worker takes all its data along: it stays as long as this one has

@@ -30,6 +30,18 @@ ok "traced on 2 ranks" eval 'limited "${MPIRUN:-mpirun}" --oversubscribe --bind-
     --set "cloths[0].pins=[]" --grain 100 --end 0.004 --threads 2 --balance scatter --quiet --trace "$scratch/ranks"'
 ok "events of 2 ranks add up, messages and delegated tasks too" ./duite-trace --check "$scratch/ranks"
 
+# Each share is there once; together they are the workers' time. On ranks some of it goes to messages.
+shares() { # FILE LEAST-OF-MESSAGES
+    ./duite-trace "$scratch/$1" > "$scratch/table"
+    cat "$scratch/table"
+    sed -n "/of the workers' time/,/kernel/p" "$scratch/table" | awk -v least="$2" '
+        /%/ { if ($1 in share) twice = 1; share[$1] = $2 + 0; sum += $2; n++ }
+        END { exit !(n == 6 && !twice && sum > 99.6 && sum < 100.4 && share["busy"] > 0 && share["own"] > 0 && "rest" in share &&
+            share["messages"] >= least && (least > 0 || share["messages"] == 0)) }'
+}
+ok "what the workers did adds up to their time" shares two 0
+ok "... on 2 ranks, too, where messages take some" shares ranks 0.1
+
 bounds() { # positive; the path not above the bound, the bound not above the run
     sed -n 's/.*"critical_path_seconds": \(.*\),/path \1/p; s/.*"lower_bound_seconds": \(.*\),/bound \1/p
         s/.*"graphs_recorded": \(.*\),/graphs \1/p' "$scratch/two.json" | tee "$scratch/bounds"
@@ -179,8 +191,11 @@ ok "an empty file" refused short "byte 0: "
 cp "$srcdir/README.md" "$scratch/foreign"
 ok "a foreign file" refused foreign "byte 0: this is no trace"
 cp "$scratch/two" "$scratch/newer"
-printf '\002' | dd of="$scratch/newer" bs=1 seek=8 conv=notrunc 2> /dev/null
-ok "a newer one" refused newer "byte 8: a trace of version 2"
+printf '\003' | dd of="$scratch/newer" bs=1 seek=8 conv=notrunc 2> /dev/null
+ok "a newer one" refused newer "byte 8: a trace of version 3; this program reads versions 1 to 2"
+cp "$scratch/two" "$scratch/older"
+printf '\001' | dd of="$scratch/older" bs=1 seek=8 conv=notrunc 2> /dev/null
+ok "an older one is read" ./duite-trace "$scratch/older"
 cp "$scratch/two" "$scratch/turned"
 printf '\001\002\003\004' | dd of="$scratch/turned" bs=1 seek=12 conv=notrunc 2> /dev/null
 ok "one of another order of bytes" refused turned "byte 12: written on a machine with another order of bytes"

@@ -8,12 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SLOTS = 1 << 28 };
-
+/* Slots are used one after the other, and an object has several words of the trace: a slot beyond
+ * their number is damage, not a reason to make room. */
 static uint32_t *slot_of(struct predict_program *p, uint32_t slot)
 {
     static uint32_t none;
-    if (slot >= MOST_SLOTS) {
+    if (slot >= p->graph->run->n_words) {
         p->damaged = true;
         return &none;
     }

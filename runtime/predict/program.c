@@ -246,7 +246,11 @@ static void turn(struct predict_program *p, bool on)
 static void entry(struct predict_program *p)
 {
     uint32_t first = predict_word(p);
-    size_t n = first >> 8;
+    size_t n = first >> 8; /* of things that have a word at least */
+    if (n > p->graph->run->n_words - p->at) {
+        p->damaged = true;
+        return;
+    }
     switch (first & 0xff) {
     case TRACE_OBJECT:
     case TRACE_VIEW:
@@ -315,6 +319,16 @@ static int walk(struct predict_program *p)
     return graph->failed ? base_no_memory("the graph of a trace") : DUITE_OK;
 }
 
+/* Tasks left an event each. Some more: for rounds without tasks, and tasks that did not run since
+ * others failed. */
+static uint64_t most_replayed(const struct trace_run *run)
+{
+    uint64_t n = 1000;
+    for (uint32_t r = 0; r < run->n_ranks; r++)
+        n += run->rank[r].n_events;
+    return n;
+}
+
 static bool prepare(struct predict_program *p)
 {
     struct predict_graph *graph = p->graph;
@@ -344,7 +358,7 @@ static bool prepare(struct predict_program *p)
 
 int predict_build(struct predict_graph *graph)
 {
-    struct predict_program p = {.graph = graph};
+    struct predict_program p = {.graph = graph, .most_replayed = most_replayed(graph->run)};
     int code = prepare(&p) ? walk(&p) : base_no_memory("the graph of a trace");
     graph->n_tasks = p.tasks;
     predict_moves_stop(&p);

@@ -17,8 +17,7 @@ static void forget(struct predict_recorded *recorded)
 
 static struct predict_recorded *take_place(struct predict_program *p, uint32_t name)
 {
-    enum { MOST = 1 << 20 };
-    p->damaged |= name >= MOST;
+    p->damaged |= name >= p->graph->run->n_words; /* a graph has several */
     while (p->n_recorded <= name && !p->damaged) {
         void *moved =
             base_grow(p->recorded, &p->recorded_capacity, p->n_recorded + 1, sizeof *p->recorded);
@@ -178,6 +177,14 @@ static void fork_round(struct predict_program *p, const struct predict_recorded 
         find_paths(graph);
 }
 
+/* More rounds than the file can have seen are damage. One without tasks counts as a task. */
+static bool is_seen(struct predict_program *p, const struct predict_recorded *recorded)
+{
+    p->replayed += recorded->n_calls ? recorded->n_calls : 1;
+    p->damaged |= p->replayed > p->most_replayed;
+    return !p->damaged;
+}
+
 static void rounds(struct predict_program *p, struct predict_recorded *recorded, uint32_t flag,
                    uint64_t most)
 {
@@ -189,7 +196,7 @@ static void rounds(struct predict_program *p, struct predict_recorded *recorded,
     graph->replays = true;
     for (uint64_t i = 0; i < most && !graph->failed; i++) {
         uint64_t first = p->forks + i * recorded->n_calls;
-        if (i && flagged && !ran(p, recorded, first))
+        if ((i && flagged && !ran(p, recorded, first)) || !is_seen(p, recorded))
             break;
         fork_round(p, recorded, bound, first);
         recorded->rounds++;

@@ -78,6 +78,16 @@ static int check_size(struct source *source)
     return damaged(source, source->size, text);
 }
 
+/* Of a run that came to its end each worker has its counters in the file, unless something was
+ * lost: then it is not predicted. */
+static size_t most_workers(const struct source *source)
+{
+    const size_t each = sizeof(struct trace_section) + sizeof(struct trace_counters);
+    const struct trace_header *header = source->rank->header;
+    const size_t most = source->size / each + 1;
+    return header->whole && !header->lost && most < MOST_WORKERS ? most : MOST_WORKERS;
+}
+
 static int check_header(struct source *source, uint32_t rank)
 {
     const struct trace_header *header = source->rank->header;
@@ -98,7 +108,7 @@ static int check_header(struct source *source, uint32_t rank)
         return damaged(source, offsetof(struct trace_header, version), text);
     }
     if (header->rank != rank || !header->n_ranks || !header->workers || !(header->tick > 0) ||
-        header->n_ranks > MOST_RANKS || header->workers > MOST_WORKERS)
+        header->n_ranks > MOST_RANKS || header->workers > most_workers(source))
         return damaged(source, offsetof(struct trace_header, rank),
                        "another rank, or nonsense, where this one was expected");
     if (rank && (header->run != first->run || header->n_ranks != first->n_ranks))
@@ -227,14 +237,24 @@ static int take_sections(struct source *source)
 
 /* ---- Files ---- */
 
+static int path_of(const char *file, uint32_t rank, char **path)
+{
+    int length = 0;
+    if (rank)
+        length = asprintf(path, "%s.%" PRIu32, file, rank);
+    else
+        *path = strdup(file);
+    return length < 0 || !*path ? base_no_memory("a trace") : DUITE_OK;
+}
+
 static int read_rank(struct trace_run *run, const char *file, uint32_t rank, bool partial)
 {
     char *path = NULL;
     struct trace_rank *own = &run->rank[rank];
-    if (rank ? asprintf(&path, "%s.%" PRIu32, file, rank) < 0 : !(path = strdup(file)))
-        return base_no_memory("a trace");
+    int code = path_of(file, rank, &path);
     struct source source = {.run = run, .rank = own, .path = path, .partial = partial};
-    int code = map(&source);
+    if (!code)
+        code = map(&source);
     if (!code)
         code = check_header(&source, rank);
     if (!code) {
@@ -283,10 +303,25 @@ static int look(const char *path, struct trace_header *header)
     return code;
 }
 
+/* So many ranks are there if the last one has a file: before room is made for all of them. */
+static int check_last(const char *file, uint32_t n_ranks)
+{
+    char *path = NULL;
+    int code = path_of(file, n_ranks - 1, &path);
+    if (!code && access(path, R_OK))
+        code = base_error(DUITE_E_SYSTEM,
+                          "%s cannot be read: %s; by its head the trace is of %" PRIu32 " ranks",
+                          path, strerror(errno), n_ranks);
+    free(path);
+    return code;
+}
+
 static int read_all(struct trace_run *run, const char *file, bool partial)
 {
     struct trace_header header;
     int code = look(file, &header);
+    if (!code)
+        code = check_last(file, header.n_ranks);
     if (code)
         return code;
     run->rank = base_alloc_zero(header.n_ranks * sizeof *run->rank);

@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 static void is(double value, double expected)
@@ -309,6 +310,65 @@ START_TEST(refusals)
 }
 END_TEST
 
+/* A number in a small file asks for no memory that the file has nothing for. */
+static void costs_little(struct trace_file *file)
+{
+    enum { MOST_KIB = 50 << 10 };
+    const struct predict_cluster one = foretell_machine(1, 1);
+    struct rusage before, after;
+    ck_assert_int_eq(getrusage(RUSAGE_SELF, &before), 0);
+    refused(file, &one, "damaged");
+    ck_assert_int_eq(getrusage(RUSAGE_SELF, &after), 0);
+    ck_assert_msg(after.ru_maxrss - before.ru_maxrss < MOST_KIB, "%ld KiB more",
+                  after.ru_maxrss - before.ru_maxrss);
+}
+
+START_TEST(a_far_slot_costs_little)
+{
+    struct trace_file file = foretell_begun(1, 8);
+    trace_file_object(&file, (1u << 28) - 1, 8);
+    costs_little(&file);
+}
+END_TEST
+
+/* The replay's rounds are words 3 and 4 of its entry, before the number of the last fork and the
+ * one object. */
+START_TEST(many_rounds_cost_little)
+{
+    const struct trace_file_node node = {FILE_RW, 1 * MS, 0, 1, {0}};
+    struct trace_file file = foretell_begun(1, 8);
+    trace_file_graph(&file, 1, 1, &node);
+    trace_file_replay(&file, 1, 1, &node, 2);
+    ck_assert_uint_eq(file.word[file.n_words - 5], 2);
+    file.word[file.n_words - 5] = 2000000;
+    costs_little(&file);
+}
+END_TEST
+
+START_TEST(a_far_graph_costs_little)
+{
+    struct trace_file file = foretell_begun(1, 8);
+    trace_file_word(&file, TRACE_GRAPH);
+    trace_file_word(&file, (1u << 20) - 1);
+    trace_file_word(&file, 0);
+    costs_little(&file);
+}
+END_TEST
+
+START_TEST(more_objects_than_words_cost_little)
+{
+    static const enum trace_call call[] = {TRACE_FORK, TRACE_HINT, TRACE_HOMES, TRACE_GRAPH,
+                                           TRACE_REPLAY};
+    for (size_t i = 0; i < sizeof call / sizeof *call; i++) {
+        struct trace_file file = foretell_begun(1, 8);
+        trace_file_word(&file, 0xffffff00u | call[i]);
+        for (int k = 0; k < 20; k++)
+            trace_file_word(&file, 0);
+        costs_little(&file);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("predict");
@@ -328,6 +388,10 @@ int main(void)
     tcase_add_test(cases, steady);
     tcase_add_test(cases, replicated);
     tcase_add_test(cases, schedulers);
+    tcase_add_test(cases, a_far_slot_costs_little);
+    tcase_add_test(cases, many_rounds_cost_little);
+    tcase_add_test(cases, a_far_graph_costs_little);
+    tcase_add_test(cases, more_objects_than_words_cost_little);
     tcase_add_test(cases, refusals);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

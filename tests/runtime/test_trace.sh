@@ -206,6 +206,14 @@ survives() { ./duite-trace "$scratch/damaged" > "$scratch/said" 2>&1 || test $? 
 ok "a damaged one" survives
 printf '\377' | dd of="$scratch/damaged" bs=1 seek=104 conv=notrunc 2> /dev/null
 ok "a damaged section" refused damaged "byte 104: "
+# Heads whose numbers nothing stands for: no room is made for them.
+ok "some steps on 2 threads, in a small file" eval 'cloth small --threads 2 --trace-steps 1:2 && test "$(wc -c < "$scratch/small")" -lt 200000'
+cp "$scratch/small" "$scratch/many"
+printf '\000\000\000\001' | dd of="$scratch/many" bs=1 seek=20 conv=notrunc 2> /dev/null
+ok "16777216 ranks" refused many "many[.]16777215 cannot be read: .* the trace is of 16777216 ranks"
+cp "$scratch/small" "$scratch/many"
+printf '\000\020\000\000' | dd of="$scratch/many" bs=1 seek=24 conv=notrunc 2> /dev/null
+ok "4096 workers" refused many "byte 16: .* nonsense"
 mv "$scratch/ranks.1" "$scratch/away"
 ok "a rank that is missing" refused ranks "ranks.1 cannot be read"
 cp "$scratch/two" "$scratch/ranks.1"

@@ -1,4 +1,5 @@
-/* What the graph asks of checking mode and of the communication, which it does not know. */
+/* What the graph asks of checking mode and of the communication, which it does not know; and what
+ * workers ask of the communication. */
 #include "runtime/workers/internal.h"
 
 int work_body(void *context, const duite_kernel *kernel, uint64_t number, duite_call *call)
@@ -23,4 +24,14 @@ int work_open(void *context, struct graph_channels *channels)
 void work_starved(void *context, const char *what)
 {
     comm_broke_memory(((struct work_pool *)context)->setup.comm, what);
+}
+
+bool work_poll(struct work_worker *worker)
+{
+    struct comm *comm = worker->pool->setup.comm;
+    if (!comm)
+        return false;
+    const bool noted = work_note_messages_begin(worker), came = comm_poll(comm, worker);
+    work_note_messages_end(worker, noted);
+    return came;
 }

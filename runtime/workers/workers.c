@@ -145,16 +145,6 @@ static struct graph_task *find(struct work_worker *worker)
     return task;
 }
 
-bool work_poll(struct work_worker *worker)
-{
-    struct comm *comm = worker->pool->setup.comm;
-    if (!comm)
-        return false;
-    const bool noted = work_note_messages_begin(worker), came = comm_poll(comm, worker);
-    work_note_messages_end(worker, noted);
-    return came;
-}
-
 /* A chain moved to another worker takes all its data along: it stays as long as this one has
  * nothing else to do. */
 static bool may_chain(struct work_worker *worker, unsigned length)

@@ -12,7 +12,7 @@
 /* --- lights.c: directions of light, each with a depth map of what the cloth keeps from it --- */
 
 /* A wide sun for soft shadows, and the sky. shaders.c counts on the same numbers. */
-enum { DRAW_SUN = 24, DRAW_SKY = 24, DRAW_LIGHTS = DRAW_SUN + DRAW_SKY, DRAW_MAP = 512 };
+enum { DRAW_SUN = 24, DRAW_SKY = 48, DRAW_LIGHTS = DRAW_SUN + DRAW_SKY, DRAW_MAP = 512 };
 
 /* As the shaders see it (std140). */
 struct draw_light_block {

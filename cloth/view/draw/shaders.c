@@ -6,7 +6,7 @@
 /* clang-format off */
 const char DRAW_COMMON[] =
     "#version 330 core\n"
-    "#define LIGHTS 48\n"
+    "#define LIGHTS 72\n"
     "#define SUN 24\n"
     "uniform mat4 clip;\n"
     "uniform vec3 eye;\n"
@@ -29,19 +29,25 @@ const char DRAW_COMMON[] =
     "    vec3 low = 12.92 * c, high = 1.055 * pow(max(c, 0.0), vec3(1.0 / 2.4)) - 0.055;\n"
     "    return vec4(mix(high, low, lessThan(c, vec3(0.0031308))) + (noise(p) - 0.5) / 255.0, 1.0);\n"
     "}\n"
-    /* Light that reaches both sides of a surface at `at`, as irradiance / pi. The sky is few directions: where it falls on
-     * what throws no shadow itself, its maps are blurred so that their edges melt. */
+    /* Light that reaches both sides of a surface at `at`, as irradiance / pi. Sun and sky are few directions: where they fall
+     * on what throws no shadow itself, their maps are blurred so that their edges melt. Each light takes the mean of four places
+     * in a square around the point, which is turned and sized for each light otherwise, and for each pixel: what varies evenly
+     * then has no grain. */
     "void gather(vec3 at, vec3 n, vec2 p, float blur, out vec3 front, out vec3 back)\n"
     "{\n"
     "    front = back = vec3(0.0);\n"
-    "    float turn = 6.2831853 * noise(p), grain = sqrt(noise(p.yx + 37.0));\n"
+    "    float turn = noise(p), grain = noise(p.yx + 37.0);\n"
     "    for (int i = 0; i < LIGHTS; i++) {\n"
     "        float c = dot(n, direction[i].xyz);\n"
     "        vec4 q = vec4(at + n * (c < 0.0 ? -bias.x : bias.x), 1.0);\n"
     "        vec3 m = vec3(dot(row[3 * i], q), dot(row[3 * i + 1], q), dot(row[3 * i + 2], q));\n"
-    "        float a = turn + 2.3999632 * float(i);\n"
-    "        m.xy += (i < SUN ? bias.y : bias.y * blur * grain) * vec2(cos(a), sin(a));\n"
-    "        vec3 e = colour[i].rgb * (abs(c) * texture(maps, vec4(m.xy, float(i), m.z)));\n"
+    "        float a = 6.2831853 * fract(turn + 0.7548777 * float(i));\n"
+    "        float r = sqrt(fract(grain + 0.5698403 * float(i)));\n"
+    "        vec2 o = (i < SUN ? min(blur, 2.0) : blur) * bias.y * r * vec2(cos(a), sin(a));\n"
+    "        float seen = 0.0;\n"
+    "        for (int k = 0; k < 4; k++, o = vec2(-o.y, o.x))\n"
+    "            seen += 0.25 * texture(maps, vec4(m.xy + o, float(i), m.z));\n"
+    "        vec3 e = colour[i].rgb * (abs(c) * seen);\n"
     "        if (c < 0.0) back += e; else front += e;\n"
     "    }\n"
     "}\n";
@@ -113,7 +119,7 @@ const char DRAW_GROUND_FRAGMENT[] =
     "    if (far >= 1.0)\n"
     "        discard;\n"
     "    vec3 lit, behind;\n"
-    "    gather(at, n, gl_FragCoord.xy, 8.0, lit, behind);\n"
+    "    gather(at, n, gl_FragCoord.xy, 5.0, lit, behind);\n"
     "    vec3 c = vec3(0.36, 0.355, 0.345) * lit;\n"
     "    shade = encode(mix(c, background(gl_FragCoord.xy), far), gl_FragCoord.xy);\n"
     "}\n";

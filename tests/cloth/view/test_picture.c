@@ -148,6 +148,39 @@ START_TEST(throws_a_shadow)
 }
 END_TEST
 
+static int near_cloth(int x, int y)
+{
+    int found = 0;
+    for (int j = -2; j < 3; j++)
+        for (int i = -2; i < 3; i++)
+            found |= is_cloth(x + i, y + j);
+    return found;
+}
+
+/* Neither grain nor edges of single lights: on the ground a pixel is the mean of its neighbours,
+ * but for rounding, noise of half a step against bands, and the bend of the shadow's border. */
+START_TEST(shadows_are_smooth)
+{
+    double sum = 0;
+    int n = 0;
+    draw(30, 1);
+    for (int y = HEIGHT / 2; y < HEIGHT - 2; y++)
+        for (int x = 2; x < WIDTH - 2; x++) {
+            if (near_cloth(x, y))
+                continue;
+            const int around = brightness(x - 1, y) + brightness(x + 1, y) + brightness(x, y - 1) +
+                               brightness(x, y + 1);
+            const double off = (brightness(x, y) - around / 4.0) / 3;
+            sum += off * off;
+            n++;
+        }
+    const double grain = sqrt(sum / n);
+    printf("# grain of the ground: %.2f of 255 on %d pixels\n", grain, n);
+    ck_assert_int_gt(n, 5000);
+    ck_assert_double_lt(grain, 1.5);
+}
+END_TEST
+
 START_TEST(front_and_back_differ)
 {
     unsigned char seen[2][3];
@@ -250,6 +283,7 @@ int main(void)
     tcase_add_checked_fixture(c, start, end);
     tcase_add_loop_test(c, cloth_is_where_the_camera_says, 0, 2);
     tcase_add_test(c, throws_a_shadow);
+    tcase_add_test(c, shadows_are_smooth);
     tcase_add_test(c, front_and_back_differ);
     tcase_add_test(c, draws_lines);
     tcase_add_test(c, png_holds_the_picture);

@@ -110,6 +110,16 @@ static void span(const double n[3], double u[3], double v[3])
         v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
 }
 
+/* The sky's directions are about sqrt(2 pi / n) radians apart, so that the shadows that they throw
+ * from a height are so much of it apart on the ground: blurred by 0.7 of that they melt into one.
+ * In units of the lights' own blur. */
+static double ground_blur(const struct view_scene *scene, double height)
+{
+    const double apart = sqrt(2 * acos(-1.0) / DRAW_SKY) * fabs(height);
+    const double unit = (double)scene->lights.block.bias[1] * 2 * (double)scene->mesh.radius;
+    return fmax(5, 0.7 * apart / unit);
+}
+
 /* A square around the foot of the cloth's centre, which fades before its edges; floors reach
  * farther than slopes. */
 static void draw_plane(const struct view_scene *scene, GLuint program, const double plane[6],
@@ -132,6 +142,7 @@ static void draw_plane(const struct view_scene *scene, GLuint program, const dou
     set_vector(program, "u", u, end);
     set_vector(program, "v", v, end);
     set_vector(program, "n", n, 1);
+    glUniform1f(glGetUniformLocation(program, "blur"), (float)ground_blur(scene, height));
     glUniform2f(glGetUniformLocation(program, "fade"), (float)(0.15 * end), (float)end);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }

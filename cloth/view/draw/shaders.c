@@ -112,6 +112,7 @@ const char DRAW_GROUND_FRAGMENT[] =
     "in vec3 at;\n"
     "uniform vec3 centre, n;\n"
     "uniform vec2 fade;\n"
+    "uniform float blur;\n"
     "out vec4 shade;\n"
     "void main()\n"
     "{\n"
@@ -119,7 +120,7 @@ const char DRAW_GROUND_FRAGMENT[] =
     "    if (far >= 1.0)\n"
     "        discard;\n"
     "    vec3 lit, behind;\n"
-    "    gather(at, n, gl_FragCoord.xy, 5.0, lit, behind);\n"
+    "    gather(at, n, gl_FragCoord.xy, blur, lit, behind);\n"
     "    vec3 c = vec3(0.36, 0.355, 0.345) * lit;\n"
     "    shade = encode(mix(c, background(gl_FragCoord.xy), far), gl_FragCoord.xy);\n"
     "}\n";

@@ -230,7 +230,7 @@ static const struct scene_rule material_keys[] = {
      .about = "what resists being stretched"},
     {"stretch", SCENE_NUMBER_OR_LIST, "N/m", .range = SCENE_NOT_NEGATIVE, .length = 2,
      .inside = &not_negative,
-     .about = "modulus of triangles or of springs along threads or edges: one, or of warp and weft"},
+     .about = "modulus of triangles, or along threads or edges: one, or those of warp and weft"},
     {"ea", SCENE_NUMBER, "N", .range = SCENE_NOT_NEGATIVE,
      .about = "force / strain of edges without triangles: chains, ropes"},
     {"shear", SCENE_NUMBER, "N/m", "0", .range = SCENE_NOT_NEGATIVE,

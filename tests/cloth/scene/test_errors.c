@@ -110,10 +110,9 @@ START_TEST(unknown_and_missing_keys)
             .error = ":12:18: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, "
                      "halving, stretch_growth, stretch_limit, energy_growth, rest"},
            {"stretch: 50", "strech: 50",
-            .error =
-                ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
-                "Allowed: like, density, model, stretch, ea, shear, poisson, forces, bend, bending, "
-                "damping, diagonals"},
+            .error = ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
+                     "Allowed: like, density, model, stretch, ea, shear, poisson, forces, bend, "
+                     "bending, damping, diagonals"},
            {"vertices: [11]", "vertex: [11]",
             .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, "
                      "nearest, radius, box, edges, force, course"},

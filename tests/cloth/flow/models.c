@@ -64,6 +64,12 @@ void setup_weight(struct setup *s)
     setup_pin(s, 1, (const uint32_t[]){0});
 }
 
+void setup_masses(const struct setup *s, double *mass)
+{
+    for (uint32_t t = 0; t < s->cloth.mesh.n_triangles; t++)
+        mesh_add_cell_mass_of(&s->cloth.mesh, t, s->material.density, mass);
+}
+
 void setup_pin(struct setup *s, uint32_t n, const uint32_t *vertices)
 {
     memcpy(s->pinned, vertices, n * sizeof *vertices);

@@ -26,6 +26,8 @@ void setup_sheet(struct setup *setup, uint32_t n);
  * the spring. */
 void setup_weight(struct setup *setup);
 
+/* Adds the masses (kg) that the vertices of a sheet of springs have: a quarter of each cell's. */
+void setup_masses(const struct setup *s, double *mass);
 void setup_pin(struct setup *setup, uint32_t n, const uint32_t *vertices);
 void setup_load(struct setup *setup, uint32_t vertex, double x, double y, double z);
 void setup_free(struct setup *setup);

@@ -68,7 +68,7 @@ static void check_fall(const struct guided *g, const struct record *r, const dou
     const struct model *model = &g->setup.model;
     double mass[VERTICES] = {0}, centre[3] = {0}, total = 0;
     double due[3] = {0.5 * g->setup.cloth.n_loads, -9.81 + 0.25 * g->setup.cloth.n_loads, 0};
-    mesh_add_mass(&g->setup.cloth.mesh, g->setup.material.density, mass);
+    setup_masses(&g->setup, mass);
     filter(&g->guide, due);
     for (size_t v = 0; v < VERTICES; v++) {
         double moved[3], along[3];

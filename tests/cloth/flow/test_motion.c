@@ -122,7 +122,7 @@ START_TEST(momentum_changes_by_force_and_residual)
     setup_load(&setup, 33, 0.02, -0.05, 0.03);
     record_run(&record, &setup.model);
     ck_assert_msg(record.code == 0, "%s", record.error.text);
-    mesh_add_mass(&setup.cloth.mesh, setup.material.density, mass);
+    setup_masses(&setup, mass);
     const double force[3] = {0.02, -0.05 - 9.81 * 0.2,
                              0.03}; /* the load, and the weight of 0.2 kg */
     for (size_t step = 1; step <= 20; step++) {

@@ -121,7 +121,7 @@ START_TEST(absolute_tolerance)
     double mass[36] = {0}, square = 0;
     setup_sheet(&setup, 6);
     setup.model.end = setup.model.h;
-    mesh_add_mass(&setup.cloth.mesh, setup.material.density, mass);
+    setup_masses(&setup, mass);
     setup_load(&setup, 8, 0.04, 0, 0);
     for (size_t v = 0; v < 36; v++)
         square += 9.81 * mass[v] * 9.81 * mass[v];

@@ -7,6 +7,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tables/members.c \
     cloth/flow/tables/neighbours.c \
     cloth/flow/tables/picks.c \
+    cloth/flow/tables/pieces.c \
     cloth/flow/tables/particles.c \
     cloth/flow/tables/starts.c \
     cloth/flow/tables/sides.c \
@@ -33,7 +34,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/tasks/kernels_energy.c \
     cloth/flow/tasks/kernels_explicit.c \
     cloth/flow/tasks/kernels_implicit.c \
-    cloth/flow/tasks/kernels_pins.c \
+    cloth/flow/tasks/kernels_pieces.c cloth/flow/tasks/kernels_pins.c \
     cloth/flow/tasks/kernels_report.c \
     cloth/flow/tasks/kernels_state.c \
     cloth/flow/tasks/kernels_step.c cloth/flow/tasks/kernels_system.c \

@@ -336,6 +336,7 @@ void flow_particles_free(struct flow_particles *particles)
     free(particles->motion);
     free(particles->varying);
     free(particles->guide);
+    free(particles->piece);
     free(particles->load);
     free(particles->start);
     *particles = (struct flow_particles){0};

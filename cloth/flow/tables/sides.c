@@ -261,6 +261,7 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *i
     fill_watched(source, t, &arrays);
     fill_numbered(source, t, source->particles.motion, t->n_moved, arrays.moved);
     fill_numbered(source, t, source->particles.guide, t->n_guided, arrays.guided);
+    fill_numbered(source, t, source->particles.piece, t->n_loose, arrays.loose);
     fill_varying(source, t, &arrays);
     fill_inner(t, side, &arrays);
     fill_cut(source, t, side + t->n_inner, &arrays);

@@ -131,6 +131,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         find_cost(source, shape);
         shape->n_moved = count_numbered(source, shape, source->particles.motion);
         shape->n_guided = count_numbered(source, shape, source->particles.guide);
+        shape->n_loose = count_numbered(source, shape, source->particles.piece);
         shape->n_varying = flow_varying_from(source, shape->first + shape->n) -
                            flow_varying_from(source, shape->first);
     }
@@ -148,6 +149,8 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
         code = flow_elements_make(&source->elements, model, error);
     if (!code)
         code = flow_springs_make(&source->springs, model, &source->elements, error);
+    if (!code && model_is_implicit(model))
+        code = flow_pieces_make(source, error);
     if (!code)
         code = cut(source, ranks, error);
     if (!code)

@@ -39,6 +39,7 @@ struct flow_particles {
     struct flow_odd unused, pinned, loaded; /* that no face or edge uses: all; pinned; loaded */
     unsigned char *used, *free;             /* free: 0 where a pin holds */
     uint32_t *motion, *guide;               /* number from 1, 0: none; NULL: there are none */
+    uint32_t n_pieces, *piece;              /* free ones: the same */
     double *mass;                           /* kg */
     phys_vec *load;                         /* N, gravity included; NULL: gravity alone */
     uint32_t n_varying;
@@ -186,6 +187,10 @@ void flow_source_table(const struct flow_source *source, uint32_t block, void *i
 /* Finds the neighbours, and the numbers of rows in rims (source->rim), when blocks and springs are
  * there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */
 int flow_source_meet(struct flow_source *source, struct cloth_error *error);
+
+/* Numbers the pieces of the model that no pin holds, when springs are there: vertices that springs
+ * or elements join. Error: CLOTH_E_MEMORY. Local. */
+int flow_pieces_make(struct flow_source *source, struct cloth_error *error);
 
 /* Finds what is watched, when blocks are there. Errors: as of flow_pick, and CLOTH_E_INPUT for
  * vertices that no face or edge uses; CLOTH_E_MEMORY. Local. */

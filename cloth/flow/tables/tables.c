@@ -61,6 +61,7 @@ static void lay(const struct flow_table *t, struct room *room, struct flow_image
     image->n_held = next(room, sizeof *image->n_held);
     image->moved = next(room, t->n_moved * sizeof *image->moved);
     image->guided = next(room, t->n_guided * sizeof *image->guided);
+    image->loose = next(room, t->n_loose * sizeof *image->loose);
     image->varying = next(room, t->n_varying * sizeof *image->varying);
     image->varying_force = next(room, t->n_varying * sizeof *image->varying_force);
     image->watched = next(room, t->n_watched * sizeof *image->watched);
@@ -95,6 +96,7 @@ void flow_table_open(struct flow_table *t, const void *image)
     t->watched = arrays.watched;
     t->moved = (const uint32_t(*)[2])arrays.moved;
     t->guided = (const uint32_t(*)[2])arrays.guided;
+    t->loose = (const uint32_t(*)[2])arrays.loose;
     t->varying = (const uint32_t(*)[2])arrays.varying;
     t->varying_force = arrays.varying_force;
     t->end = (const uint32_t(*)[2])arrays.end;

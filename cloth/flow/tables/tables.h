@@ -47,6 +47,7 @@ struct flow_table {
     uint32_t n_watched;       /* rows that probes are at */
     uint32_t n_moved;         /* rows that pins move */
     uint32_t n_guided;        /* rows that pins leave free along a guide */
+    uint32_t n_loose;         /* rows of pieces that no pin holds */
     uint32_t n_varying;       /* loads that vary */
     uint32_t lowest, highest; /* of its vertices */
     uint32_t n_slots;         /* neighbours */
@@ -66,6 +67,7 @@ struct flow_table {
     const uint32_t *watched;      /* n_watched: rows, ascending */
     const uint32_t (*moved)[2];   /* n_moved: row, ascending; number of its motion, from 1 */
     const uint32_t (*guided)[2];  /* n_guided: row, ascending; number of its guide, from 1 */
+    const uint32_t (*loose)[2];   /* n_loose: row, ascending; number of its piece, from 1 */
     const uint32_t (*varying)[2]; /* n_varying: row, ascending; number of its course, from 1 */
     const phys_vec *varying_force; /* n_varying: N, times the course */
     const uint32_t (*end)[2];      /* inner: rows; cut: row here, place in the neighbour's rim */
@@ -98,6 +100,7 @@ struct flow_image {
     uint32_t (*held)[2];                  /* n_held */
     uint32_t (*moved)[2];                 /* n_moved */
     uint32_t (*guided)[2];                /* n_guided */
+    uint32_t (*loose)[2];                 /* n_loose */
     uint32_t (*varying)[2];               /* n_varying */
     phys_vec *varying_force;              /* n_varying */
     uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_entries */, *rim;

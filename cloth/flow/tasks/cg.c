@@ -89,13 +89,34 @@ int flow_cg_start(struct flow_state *state)
     return flow_is_turned(state->flow) ? flow_turned_start(state, args) : fork_start(state, args);
 }
 
+/* Takes out of dv what the solve left of the momentum of free pieces. */
+static int fork_pieces(struct flow_state *state)
+{
+    struct flow_args here = flow_attempt_args(state);
+    int code = duite_set(state->rt, state->pieces, NULL);
+    for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++) {
+        const struct flow_objects *o = state->block + here.block;
+        if (state->flow->tables.block[here.block].n_loose)
+            code = DUITE_FORK(state->rt, &flow_piece_sums, &here, o->table, o->f, o->a, o->dv,
+                              state->pieces);
+    }
+    for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++) {
+        const struct flow_objects *o = state->block + here.block;
+        if (state->flow->tables.block[here.block].n_loose)
+            code = DUITE_FORK(state->rt, &flow_piece_shift, &here, o->table, o->a, state->pieces,
+                              o->dv, o->r);
+    }
+    return code;
+}
+
 int flow_cg_iterate(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
     const uint64_t each = model->form == MODEL_CLASSIC ? 2 : 1;
     const uint64_t passes = each * model->max_iterations + SOLVE_EXTRA;
     const uint64_t rounds = (passes + 1) / 2;
-    return duite_replay_while(state->rt, state->solve, state->scalars[0], rounds);
+    const int code = duite_replay_while(state->rt, state->solve, state->scalars[0], rounds);
+    return code || !state->head.n_pieces ? code : fork_pieces(state);
 }
 
 int flow_cg(struct flow_state *state)

@@ -17,7 +17,7 @@ enum {
 struct shape {
     uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_rim, n_held, lowest, highest;
     uint32_t joined, rim_start[SOLVE_MOST_PATCHES + 1];
-    uint32_t n_watched, n_moved, n_guided, n_varying, n_slots, n_copies, n_stiff,
+    uint32_t n_watched, n_moved, n_guided, n_loose, n_varying, n_slots, n_copies, n_stiff,
         n_elements[FLOW_KINDS], n_membranes;
     float cost;
 };
@@ -41,6 +41,7 @@ static int tell_head(const duite_call *call)
     head->release = flow->release;
     head->partition_hash = flow->partition_hash;
     head->n_vertices = flow->n_vertices;
+    head->n_pieces = source->particles.n_pieces;
     head->n_triangles = flow->n_triangles;
     head->n_blocks = source->blocks.n_blocks;
     head->n_slots = source->neighbours.n_slots;
@@ -99,6 +100,7 @@ static int tell_shared(const duite_call *call)
                               .n_watched = t->n_watched,
                               .n_moved = t->n_moved,
                               .n_guided = t->n_guided,
+                              .n_loose = t->n_loose,
                               .n_varying = t->n_varying,
                               .lowest = t->lowest,
                               .highest = t->highest,
@@ -199,6 +201,7 @@ static void unpack(struct flow_state *state)
                                                .n_watched = shape->n_watched,
                                                .n_moved = shape->n_moved,
                                                .n_guided = shape->n_guided,
+                                               .n_loose = shape->n_loose,
                                                .n_varying = shape->n_varying,
                                                .lowest = shape->lowest,
                                                .highest = shape->highest,

@@ -63,6 +63,9 @@ extern const duite_kernel
 extern const duite_kernel flow_scalars_turned; /* w next scalars, r scalars; all parts */
 extern const duite_kernel flow_scalars_coarse; /* w next scalars, w next motion, r scalars, r coarse
                                                   factor; all parts */
+/* After a solve, where there are free pieces (kernels_pieces.c). */
+extern const duite_kernel flow_piece_sums;  /* table, r b, r a, r dv, cw sums */
+extern const duite_kernel flow_piece_shift; /* table, r a, r sums, rw dv, rw r */
 extern const duite_kernel
     flow_velocity_dv; /* table, r f, r a, r dv, r r, rw v, w rim of v, r scalars, cw status */
 extern const duite_kernel flow_position; /* table, r v, rw x, w rim of x, cw status */

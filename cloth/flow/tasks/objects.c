@@ -123,6 +123,9 @@ void flow_objects_make(struct flow_state *state)
         make_shared(state, DUITE_F64, FLOW_SUMS, state->energies + i);
     make_shared(state, DUITE_F64, FLOW_STATUS, &state->trial);
     make_shared(state, DUITE_F64, 1, &state->slope);
+    if (state->head.n_pieces)
+        make_shared(state, DUITE_F64, FLOW_PIECE_SUMS * (size_t)state->head.n_pieces,
+                    &state->pieces);
     make_shared(state, DUITE_I64, FLOW_TELL, &state->told);
 }
 
@@ -160,8 +163,8 @@ int flow_objects_free(struct flow_state *state)
         code = code ? code : failed ? failed : too;
     }
     const duite_object integrator[] = {state->trial, state->slope, state->energies[0],
-                                       state->energies[1]};
-    const int first = release(state->rt, 4, integrator);
+                                       state->energies[1], state->pieces};
+    const int first = release(state->rt, 5, integrator);
     code = code ? code : first;
     const duite_object all[] = {
         state->sums[0],   state->sums[1], state->scalars[0], state->scalars[1], state->status[0],

@@ -152,8 +152,8 @@ enum {
 /* Indices into the peaks of a state that is watched, F64, each the largest of any block: square of
  * the speed, l / L of the springs that count for it, and minus that. */
 enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
-/* Numbers of a watched vertex: position, velocity, reaction. */
-enum { FLOW_SEEN = 9 };
+/* Numbers of a watched vertex: position, velocity, reaction; sums of a free piece. */
+enum { FLOW_SEEN = 9, FLOW_PIECE_SUMS = 8 };
 /* Energies, J, and after them the torque that uncorrected triangles leave, N m (kernels_energy.c).
  */
 enum {
@@ -175,7 +175,7 @@ struct flow_head {
     uint64_t shared_bytes;                                         /* of what they are told next */
     uint32_t n_vertices, n_triangles, n_blocks, n_slots, n_copies; /* of all blocks */
     uint32_t most_rows, most_slots, most_rim, most_entries;        /* of any block */
-    uint32_t most_copies;
+    uint32_t most_copies, n_pieces;
     uint64_t n_elements; /* of all blocks */
     struct model model;  /* pointers mean nothing elsewhere */
 };
@@ -238,7 +238,8 @@ struct flow_state {
     duite_graph solve; /* a round of conjugate gradients */
     duite_object sums[2], scalars[2], status[2], stretch[2], token, seconds, told;
     duite_object peaks[2], energy, energies[2]; /* energies: of steps */
-    duite_object trial, slope;                  /* of a Newton step: status, slope */
+    duite_object trial, slope, pieces; /* of a Newton step: status, slope; of a solve: what it left
+                                        * of free pieces, if there are any */
     struct flow_newton newton;
     uint32_t length; /* ticks of the last step accepted, and of the one before it; 0: none yet */
     uint32_t length_before;

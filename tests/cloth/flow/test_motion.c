@@ -106,9 +106,9 @@ static void momentum(const struct record *r, size_t step, const double *mass, do
     }
 }
 
-/* A coarse solve loses momentum: the largest loss of a step is what the report says, to roundoff.
- */
-START_TEST(momentum_changes_by_force_and_residual)
+/* A coarse solve leaves a residual, but no momentum of a sheet that nothing holds; the report says
+ * so, to roundoff. */
+START_TEST(momentum_changes_by_forces_alone)
 {
     const double h = 0.01;
     struct setup setup;
@@ -135,8 +135,9 @@ START_TEST(momentum_changes_by_force_and_residual)
         }
         most = sqrt(square) > most ? sqrt(square) : most;
     }
-    ck_assert_double_gt(most, 1e-6);
-    ck_assert_double_eq_tol(record.report.momentum_lost, most, 1e-13);
+    ck_assert_double_lt(most, 1e-13);
+    ck_assert_double_lt(record.report.momentum_lost, 1e-13);
+    ck_assert_double_gt(record.report.mass_norm_error, 1e-6);
     record_free(&record);
     setup_free(&setup);
 }
@@ -257,7 +258,7 @@ int main(void)
     tcase_add_test(cases, free_fall_explicit);
     tcase_add_test(cases, damped_spring_implicit);
     tcase_add_test(cases, damped_spring_explicit);
-    tcase_add_test(cases, momentum_changes_by_force_and_residual);
+    tcase_add_test(cases, momentum_changes_by_forces_alone);
     tcase_add_test(cases, no_momentum_is_lost_by_an_exact_solve);
     tcase_add_test(cases, a_sheet_lands_on_the_floor);
     suite_add_tcase(suite, cases);

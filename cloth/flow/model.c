@@ -64,6 +64,7 @@ void model_free(struct model *model)
     free(model->planes);
     free(model->name);
     free(model->h_place);
+    free(model->fps_place);
     *model = (struct model){0};
 }
 

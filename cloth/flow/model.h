@@ -220,9 +220,9 @@ struct model {
     uint32_t wind_course; /* that the wind is multiplied by, from 1; 0: it is constant */
     enum model_contact contact;
 
-    double h; /* s; time is an integer count of h/1024 */
-    char *h_place;
-    double end;   /* s; N = round(end / h) steps */
+    double h;                  /* s; time is an integer count of h/1024 */
+    char *h_place, *fps_place; /* where fps is the default: that of end */
+    double end;                /* s; N = round(end / h) steps */
     double fps;   /* frames a second; frame k follows the step that ends nearest to k / fps */
     bool halving; /* a step that fails is made anew with half the length, to h/1024; */
     double stretch_growth; /* so is one in which the largest length / rest length of stretch springs

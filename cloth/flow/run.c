@@ -3,6 +3,7 @@
 #include "cloth/flow/run.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/flow/long_steps.h"
 #include "cloth/flow/tasks/tasks.h"
 
 #include <math.h>
@@ -74,67 +75,6 @@ static void warn(struct flow *flow, const struct flow_particles *particles)
                  "they stay where they are without a pin");
     describe_odd(flow->warning[2], size, "loads on vertices", &particles->loaded,
                  "they move nothing");
-}
-
-/* An explicit step that lets vibrations grow is made all the same. */
-static int warn_of_h(struct flow *flow, struct cloth_error *error)
-{
-    const struct model *model = flow->model;
-    const char *name = model_integrator_name(model->integrator);
-    const char *place = model->h_place ? model->h_place : "h";
-    struct flow_limit limit;
-    if (model_is_implicit(model))
-        return CLOTH_OK;
-    if (flow_limit_find(&flow->source, &limit, error))
-        return CLOTH_E_MEMORY;
-    const double most = flow_limit_of(&limit, model->integrator), turn = model->h * limit.omega;
-    const size_t size = sizeof flow->warning[4];
-    if (!(most > 0))
-        snprintf(
-            flow->warning[4], size,
-            "%.200s: no step is short enough for %s without damping: the fastest vibration "
-            "(up to %g rad/s, at vertex %u of cloth '%.60s') can grow %g times in each of %g s",
-            place, name, limit.omega, limit.vertex, limit.cloth->name, sqrt(1 + turn * turn),
-            model->h);
-    else if (model->h > most)
-        snprintf(
-            flow->warning[4], size,
-            "%.200s: steps of %g s are beyond the limit of %s, %g s: the fastest vibration (up "
-            "to %g rad/s, at vertex %u of cloth '%.60s') can grow in each",
-            place, model->h, name, most, limit.omega, limit.vertex, limit.cloth->name);
-    return CLOTH_OK;
-}
-
-/* The longest step, s, in which the air's push on a cloth does not turn its velocity round and
- * more: the slope of the drag over the mass, rho C |u| / density, times h is to be below 2. At the
- * speed that the cloth starts with against the wind at its strongest. */
-static double air_limit(const struct model *model, const struct model_cloth *cloth)
-{
-    const double most = model_course_most(model, model->wind_course);
-    const struct phys_air *air = &model->air;
-    double density = INFINITY, square = 0;
-    for (uint32_t i = 0; i <= cloth->n_regions; i++)
-        density = fmin(density, model_material(model, cloth, i)->density);
-    for (int i = 0; i < 3; i++)
-        square += pow(most * air->wind[i] - cloth->velocity[i], 2);
-    if (!cloth->mesh.n_triangles || cloth->mass_per_vertex > 0)
-        return INFINITY;
-    return 2 * density / (air->density * fmax(air->normal, air->tangent) * sqrt(square));
-}
-
-/* Its push is that of the begin of a step, whatever the integrator. */
-static void warn_of_air(struct flow *flow)
-{
-    const struct model *model = flow->model;
-    for (uint32_t c = 0; model_has_air(model) && c < model->n_cloths && !flow->warning[5][0]; c++) {
-        const struct model_cloth *cloth = model->cloths + c;
-        const double most = air_limit(model, cloth);
-        if (model->h > most)
-            snprintf(flow->warning[5], sizeof flow->warning[5],
-                     "%.200s: steps of %g s are beyond the limit of the air, which is not in the "
-                     "matrix, %g s: its push on cloth '%.60s' can grow in each",
-                     model->h_place ? model->h_place : "h", model->h, most, cloth->name);
-    }
 }
 
 /* What a material says that its cloth has nothing for; NULL: nothing. A chain beside a grid may
@@ -211,11 +151,10 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     flow->inertia = flow_source_inertia(&flow->source);
     flow->release = flow_source_release(&flow->source);
     warn(flow, &flow->source.particles);
-    warn_of_air(flow);
     warn_of_moduli(flow);
     flow_turned_choose(flow, flow->source.blocks.n_blocks);
     if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||
-        warn_of_h(flow, error))
+        flow_warn_of_steps(flow, error))
         return CLOTH_E_MEMORY;
     return keep_rest(flow, &flow->source.particles, error);
 }

@@ -5,6 +5,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/probes.c \
 	cloth/output/cache.c \
 	cloth/output/report.c \
+	cloth/output/room.c \
 	cloth/output/files/files.h \
 	cloth/output/files/files.c \
 	cloth/output/files/json.h \

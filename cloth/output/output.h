@@ -35,6 +35,10 @@ struct output_setup {
 int output_open(struct output_frames **frames, const struct output_setup *setup,
                 struct cloth_error *error);
 
+/* Bytes that files in a folder may have, which need not be there yet, with those of an earlier run
+ * that would be replaced; infinite where the file system does not say. Local. */
+double output_room(const char *folder);
+
 /* Appends a frame: position is (all vertices) x 3, metres. Has the form of flow_output.frame,
  * context = frames. A frame that fails leaves the ones before it whole. */
 int output_frame(void *context, uint64_t frame, double time, const double *position,

@@ -100,6 +100,44 @@ refused "more frames than a disk holds" \
     "--set time.fps=1e12: time.fps * time.end is 4e+09 frames; at most 2147483647 are possible" scene.yaml --set time.fps=1e12
 refused "a grain of zero on the command line" \
     "--grain 0: grain is 0; a whole number from 1 to 4294967295 is expected" scene.yaml --grain 0
+# What would fill the disk is found before anything is written; what repeats itself, before the run.
+refused_room() { # RANKS ARGUMENT...: no room, with an estimate, and nothing is written
+    room_ranks=$1
+    shift
+    set -- "$DUITE_CLOTH" scene.yaml --output frames --report report.json --grain 20 "$@"
+    test "$room_ranks" = 1 || set -- ranks "$room_ranks" "$@"
+    status=0
+    "$@" > said.out 2> said.err < /dev/null || status=$?
+    cat said.err
+    test $status = 2 && test ! -e frames && test ! -e report.json && test "$(grep -c 'duite-cloth: ' said.err)" = 1 &&
+        grep -qE 'duite-cloth: --set time.fps=5e11: time.fps = 5e\+11 gives 2000000001 frames of 64 vertices up to 0.004 s: frames and probes take 1.58e\+03 GB, but frames has room for .* GB; give fewer frames, an earlier time.end, or another folder' said.err
+}
+# 1.6 TB; a disk that has so much would be filled for hours.
+if test "$(df -Pk . | awk 'NR == 2 { print ($4 < 1.4e9) }')" = 1; then
+    ok "frames that the disk has no room for" refused_room 1 --set time.fps=5e11
+    ok "frames that the disk has no room for, 2 ranks" refused_room 2 --set time.fps=5e11
+else
+    skip "frames that the disk has no room for" "this disk has room for 1.4 TB"
+fi
+warned() { # SENTENCE ARGUMENT...: a warning, and the run is made
+    warned_what="duite-cloth: warning: $1"
+    shift
+    rm -rf warned
+    limited "$DUITE_CLOTH" scene.yaml --quiet --output warned "$@" 2> said.err
+    status=$?
+    cat said.err
+    test $status = 0 && grep -qE "^$warned_what\$" said.err
+}
+ok "frames that are closer than steps" warned "--set time.fps=1e5: time.fps = 100000 gives 401 frames of 64 vertices up to 0.004 s, but there are 4 steps: each is shown 100 times; time.fps = 1000 shows each once" --set time.fps=1e5
+ok "frames between steps are fine" sh -c '"$0" scene.yaml --quiet --output fine --set time.fps=3000 2> said.err && test ! -s said.err' "$DUITE_CLOTH"
+ok "a cloth that is nearly nothing" warned "scene.yaml:8:11: in steps of 0.001 s the cloth is .* times stiffer than its mass \(vertex [0-9]+ of cloth 'cloth1'\): solves can fail, and the run can take up to 1024 times as many steps; give a density or mass .* times as large, or steps of at most .* s" \
+    --set materials.cotton.density=1e-12
+for mass in 1 2; do
+    test $mass = 1 && set -- || set -- --set 'cloths[0].mass_per_vertex=0.003'
+    ok "a wind that is too strong for the step, $mass" warned "--set time.h=0.01: steps of 0.01 s are beyond the limit of the air, which is not in the matrix, 0.00[0-9]* s: its push on cloth 'cloth1' can grow in each. It blows 1 m in a step, vertices are 0.125 m apart; give shorter steps or less wind" \
+        --set 'air={wind: [100, 0, 0]}' --set time.h=0.01 --set time.end=0.02 "$@"
+done
+
 changed key 'end: 0.004' 'end: 0.004, fsp: 30'
 refused "an unknown key" "key.yaml:8:30: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, halving, stretch_growth, stretch_limit, energy_growth, rest" key.yaml
 refused "an unknown key on the command line" \

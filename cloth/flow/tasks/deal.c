@@ -149,7 +149,7 @@ int flow_share_head(struct flow_state *state)
     if (code || duite_rank(state->rt) == 0)
         return code;
     flow->told = head->model;
-    flow->told.name = flow->told.h_place = NULL;
+    flow->told.name = flow->told.h_place = flow->told.fps_place = NULL;
     flow->told.n_materials = flow->told.n_cloths = 0;
     flow->told.materials = NULL;
     flow->told.cloths = NULL;

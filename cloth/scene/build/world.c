@@ -196,6 +196,9 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
     model->energy_growth = scene_tree_number(tree, time, "energy_growth");
     const int fps = scene_tree_get(tree, time, "fps");
     const bool by_default = scene_tree_node(tree, fps)->start_mark.index == SCENE_BY_DEFAULT;
+    model->fps_place = scene_build_place(tree, by_default ? end : fps, error);
+    if (!model->fps_place)
+        return error->code;
     double steps = model->end / model->h;
     if (steps < 0.5)
         return scene_tree_fail(tree, end, error,

@@ -1,7 +1,7 @@
 libduite_cloth_la_SOURCES += \
     cloth/flow/model.c cloth/flow/model.h \
     cloth/flow/long_steps.c cloth/flow/long_steps.h \
-    cloth/flow/run.c cloth/flow/run.h \
+    cloth/flow/run.c cloth/flow/run.h cloth/flow/warn.c \
     cloth/flow/tables/limit.c \
     cloth/flow/tables/loads.c \
     cloth/flow/tables/elements.c cloth/flow/tables/elements.h \

@@ -25,5 +25,6 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/region.c \
 	cloth/scene/build/start.c \
 	cloth/scene/build/motion.c \
+	cloth/scene/build/obstacle.c \
 	cloth/scene/build/probe.c
 EXTRA_DIST += docs/scene.md

@@ -190,6 +190,41 @@ ok "a course beyond all measure" beyond 'cloths[0].loads=[{vertices: [3], force:
 ok "a scene without end" says 1 "/dev/zero: larger than 256 MiB; a large mesh belongs into a file of its own" /dev/zero
 
 
+# ---- Planes that leave no room, meshes in other units, edges and polygons that mean something else than they look
+
+planes() { echo "obstacles=[{plane: {point: [0, 0, 0], normal: [0, 1, 0]}}, {plane: {point: [5, $1, 0], normal: [0, -3, 0]}}]"; }
+refused "planes that exclude each other" "--set $(planes -0.01): obstacles[1] and obstacles[0] face each other and overlap: around cloth 'cloth1' no point is on the free sides of both; turn a normal round, or move a plane" \
+    scene.yaml --grain 20 --set "$(planes -0.01)"
+quiet() { limited "$DUITE_CLOTH" scene.yaml --end 0.002 --quiet "$@" > said.out 2> said.err && cat said.err && test ! -s said.err; }
+ok "planes with room between them" quiet --set "$(planes 0.01)"
+ok "planes that touch" quiet --set "$(planes 0)"
+ok "planes that meet far from the cloth" quiet --set 'obstacles=[{plane: {point: [0, -0.1, 0], normal: [0, 1, 0]}}, {plane: {point: [0,
+    0.1, 0], normal: [0, -1, 0.001]}}]'
+
+printf 'v 0 0 0\nv 12 0 0\nv 12 0 9\nv 6 0 3\nv 0 0 9\nf 1 2 3 4 5\n' > mesh.obj # a shirt in decimetres
+extent() { # SENTENCE SCALE
+    limited "$DUITE_CLOTH" mesh.yaml --end 0.002 --quiet --set 'cloths[0].pins=[]' --set "cloths[0].transform.scale=$2" \
+        > said.out 2> said.err
+    cat said.err
+    test "$(cat said.err)" = "${1:+duite-cloth: warning: mesh.yaml:3:18: cloth 'cloth1' is $1: is its mesh in metres? transform.scale changes that (0.01 for centimetres)}"
+}
+ok "a shirt of 12 m" extent "12 m long in its largest extent, more than 10 m" 1
+ok "a shirt of 8 mm" extent "0.0084 m long in its largest extent, less than 0.01 m" 0.0007
+ok "a shirt of 1.2 m" extent "" 0.1
+
+crossed() { # SENTENCE LINE...: after four vertices
+    sentence=$1
+    shift
+    printf 'v 0 0 0\nv 1 0 0\nv 0 0 1\nv 2 0 2\n' > mesh.obj
+    printf '%s\n' "$@" >> mesh.obj
+    status=0
+    limited "$DUITE_CLOTH" mesh.yaml > said.out 2> said.err || status=$?
+    cat said.err
+    test $status = 2 && grep -qx "duite-cloth: mesh.yaml:3:18: mesh: mesh.obj:6: $sentence" said.err
+}
+ok "a polygon that crosses itself" crossed "the face crosses or touches itself where its sides between vertices 2 and 3 and between 4 and 1 meet; cut it into faces that do not" "" "f 1 2 3 4"
+ok "an edge given twice" crossed "the edge between vertices 1 and 2 stands here again, after line 5; give it once" "l 1 2 3" "l 4 2 1"
+
 # Paths longer than a sentence lose their middle, not what is wrong.
 long=$(printf '%0240d/%0240d/%0240d/%0240d/%0240d' 1 2 3 4 5)
 mkdir -p "$long" && cp step.yaml "$long/step.yaml"

@@ -72,8 +72,8 @@ struct flow {
     void *shared;              /* planes, key frames, slots and copies that the above point to */
 
     /* Rank 0 only. */
-    char warning[7][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli;
-                             empty: none */
+    char warning[8][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
+                             extents; empty: none */
     struct flow_source source; /* until the tables are dealt */
     uint32_t *vertex;          /* by place; from then on */
     struct flow_rest rest;
@@ -275,6 +275,9 @@ static inline bool flow_shows(const struct flow_state *state)
 {
     return state->output && state->output->frame;
 }
+
+/* Fills flow->warning; on rank 0, where the source is made. Errors: CLOTH_E_MEMORY. Local. */
+int flow_warn(struct flow *flow, struct cloth_error *error);
 
 /* Functions of the main program. Collective. They return 0 or what duite returned, which flow_run
  * turns into a sentence. */

@@ -11,6 +11,13 @@
 int scene_build_world(struct model *model, const struct scene_tree *tree,
                       struct cloth_error *error);
 
+/* The obstacles; and, when there are cloths, that no two obstacles exclude each other around one.
+ */
+int scene_build_obstacles(struct model *model, const struct scene_tree *tree,
+                          struct cloth_error *error);
+int scene_build_check_obstacles(const struct model *model, const struct scene_tree *tree,
+                                struct cloth_error *error);
+
 /* The cloths; after the world, since they name materials. */
 int scene_build_cloths(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);

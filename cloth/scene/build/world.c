@@ -152,31 +152,6 @@ static int build_materials(struct model *model, const struct scene_tree *tree,
     return code;
 }
 
-static int build_plane(struct model_plane *plane, const struct scene_tree *tree, int node,
-                       struct cloth_error *error)
-{
-    scene_tree_vector(tree, scene_tree_get(tree, node, "point"), 3, plane->point);
-    return scene_build_direction(plane->normal, "the normal of a plane", tree,
-                                 scene_tree_get(tree, node, "normal"), error);
-}
-
-static int build_obstacles(struct model *model, const struct scene_tree *tree,
-                           struct cloth_error *error)
-{
-    int list = scene_tree_get(tree, 1, "obstacles");
-    size_t n = scene_tree_length(tree, list);
-    model->planes = scene_build_array(n, sizeof *model->planes, error);
-    if (!model->planes)
-        return error->code;
-    model->n_planes = (uint32_t)n;
-    int code = CLOTH_OK;
-    for (size_t i = 0; !code && i < n; i++) {
-        int obstacle = scene_tree_item(tree, list, i);
-        code = build_plane(&model->planes[i], tree, scene_tree_get(tree, obstacle, "plane"), error);
-    }
-    return code;
-}
-
 static int build_time(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
 {
     int time = scene_tree_get(tree, 1, "time"), end = scene_tree_get(tree, time, "end");
@@ -321,5 +296,5 @@ int scene_build_world(struct model *model, const struct scene_tree *tree, struct
         code = build_air(model, tree, error);
     if (!code)
         code = build_materials(model, tree, error);
-    return code ? code : build_obstacles(model, tree, error);
+    return code ? code : scene_build_obstacles(model, tree, error);
 }

@@ -607,10 +607,10 @@ int duite_graph_free(duite *rt, duite_graph graph);
 /* ---- Traces ----
  *
  * With options.trace a run leaves the files trace, trace.1, trace.2 and so on, one a rank: what
- * each worker did when, and what the main program called. duite-trace turns them into the forms of
- * viewers, duite-predict works out what the run would take elsewhere. If the file cannot be made,
- * duite_start fails; if it cannot be written later on, the run goes on, what was written is kept,
- * and duite_trace_end tells. */
+ * each worker did when, and what the main program called. Files of these names are replaced.
+ * duite-trace turns them into the forms of viewers, duite-predict works out what the run would take
+ * elsewhere. If the file cannot be made, duite_start fails; if it cannot be written later on, or is
+ * removed or replaced, the run goes on, what was written is kept, and duite_trace_end tells. */
 
 /* Step `step` of the program begins, counted from 0: what was written down is brought to the file,
  * and recording begins or ends if options.trace_first or trace_end say so; just then it waits, like
@@ -619,8 +619,8 @@ int duite_graph_free(duite *rt, duite_graph graph);
 int duite_trace_step(duite *rt, uint64_t step);
 
 /* The trace ends; duite_stop sees to that, too. Waits for all tasks forked so far, as
- * duite_trace_step. DUITE_E_SYSTEM: this rank's file is not whole, for the reason that the sentence
- * tells. Does nothing without a trace, and the second time. Collective. */
+ * duite_trace_step. DUITE_E_SYSTEM: this rank's file is not whole, or is there no more, for the
+ * reason that the sentence tells. Does nothing without a trace, and the second time. Collective. */
 int duite_trace_end(duite *rt);
 
 /* What no schedule could have done better in the run of a trace that is closed on all ranks:

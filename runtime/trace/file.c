@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static bool write_all(int fd, const void *data, size_t bytes)
@@ -133,6 +134,17 @@ static bool make(struct trace *trace, const struct trace_setup *setup)
     return make_rings(trace) && trace->path && (trace->word || setup->rank);
 }
 
+/* A file that is there goes first: another run may still write to it, and must not write into
+ * ours. What is no file, a pipe or /dev/null, is written to as it is. */
+static int open_fresh(const char *path)
+{
+    struct stat there;
+    const bool is_file = lstat(path, &there) != 0 || S_ISREG(there.st_mode);
+    if (is_file && unlink(path) != 0 && errno != ENOENT)
+        return -1;
+    return open(path, O_WRONLY | O_CREAT | (is_file ? O_EXCL : O_TRUNC) | O_CLOEXEC, 0666);
+}
+
 int trace_open(struct trace **out, const struct trace_setup *setup)
 {
     struct trace *trace = *out = base_alloc_zero(sizeof *trace);
@@ -143,7 +155,7 @@ int trace_open(struct trace **out, const struct trace_setup *setup)
     pthread_mutex_init(&trace->lock, NULL);
     if (!make(trace, setup))
         return base_no_memory("the trace");
-    trace->fd = open(trace->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    trace->fd = open_fresh(trace->path);
     trace->bytes = sizeof trace->header;
     if (trace->fd < 0)
         trace->error = errno;
@@ -234,6 +246,14 @@ static void write_counters(struct trace *trace, const struct trace_counters *cou
                     1);
 }
 
+/* Whether the path still leads to what was written. */
+static bool is_there(const struct trace *trace)
+{
+    struct stat here, there;
+    return fstat(trace->fd, &here) == 0 && stat(trace->path, &there) == 0 &&
+           here.st_dev == there.st_dev && here.st_ino == there.st_ino;
+}
+
 int trace_close(struct trace *trace, const struct trace_counters *counters)
 {
     struct trace_header *header = &trace->header;
@@ -250,12 +270,17 @@ int trace_close(struct trace *trace, const struct trace_counters *counters)
     header->whole = 1;
     header->bytes = trace->bytes;
     write_header(trace);
+    const bool there = is_there(trace);
     if (close(trace->fd) && !trace->error)
         trace->error = errno;
     trace->fd = -1;
     pthread_mutex_unlock(&trace->lock);
-    if (!trace->error)
+    if (!trace->error && there)
         return DUITE_OK;
+    if (!there)
+        return base_error(DUITE_E_SYSTEM,
+                          "the trace %s was removed or replaced while the run wrote to it",
+                          trace->path);
     return base_error(DUITE_E_SYSTEM,
                       "the trace %s is not whole: %s; what was written before is kept", trace->path,
                       strerror(trace->error));

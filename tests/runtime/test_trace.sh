@@ -242,6 +242,40 @@ kept() { ./duite-trace "$scratch/full" > "$scratch/said" 2>&1 && cat "$scratch/s
 ok "what was written before is kept, and the loss counted" kept
 exits 2 "nothing is foretold from what is left" ./duite-predict "$scratch/full"
 
+# A run of hours that writes a trace, until it is told to stop; then its status and what it said.
+begin() { # FILE
+    "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --set 'cloths[0].mesh.grid={width: 1, height: 1, nx: 20, ny: 20}' \
+        --set 'cloths[0].pins=[]' --grain 100 --end 100000 --quiet --trace "$scratch/$1" --trace-steps :10 \
+        --report "$scratch/hours.json" 2> "$scratch/said" &
+    victim=$!
+    for wait in $(seq 300); do
+        test ! -s "$scratch/$1" || break
+        sleep 0.1
+    done
+}
+stop() { # STATUS: it ends with this one
+    kill -USR1 $victim
+    for wait in $(seq 300); do
+        kill -0 $victim 2> /dev/null || break
+        sleep 0.1
+    done
+    kill -9 $victim 2> /dev/null
+    status=0
+    wait $victim || status=$?
+    cat "$scratch/said"
+    test $status = "$1" && test -s "$scratch/hours.json"
+}
+removed() {
+    mkdir "$scratch/folder" && begin folder/trace && rm -r "$scratch/folder" && stop 1 &&
+        grep -q "^duite-cloth: the trace .*folder/trace was removed or replaced while the run wrote to it$" "$scratch/said"
+}
+ok "a trace that is removed is told of" removed
+replaced() { # the second run's is whole
+    begin shared && cloth shared --threads 2 --quiet && stop 1 && grep -q "shared was removed or replaced" "$scratch/said" &&
+        ./duite-trace --check "$scratch/shared"
+}
+ok "a trace that another run replaces" replaced
+
 killed() {
     cloth killed --end 20 & victim=$!
     for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do

@@ -15,6 +15,7 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -110,19 +111,26 @@ static int compare(const struct started *all, int n, int rank)
     return DUITE_OK;
 }
 
-/* Did all ranks come so far? */
+/* Did all ranks come so far? If not, the first of the ranks that failed worst says why. */
 static int agree_on_code(MPI_Comm mpi, int code)
 {
     struct {
         int code, rank;
     } own = {.code = code > 0 ? 0 : code}, worst = {0};
+    char why[1024] = "";
     MPI_Comm_rank(mpi, &own.rank);
     if (MPI_Allreduce(&own, &worst, 1, MPI_2INT, MPI_MINLOC, mpi))
         return base_error(DUITE_E_MPI, "MPI_Allreduce failed");
-    if (code || !worst.code)
+    if (!worst.code)
         return code;
-    return base_error(DUITE_E_DIFFERENT, "duite_start failed on rank %d: %s", worst.rank,
-                      duite_code_text(worst.code));
+    if (own.rank == worst.rank)
+        snprintf(why, sizeof why, "%s", duite_message());
+    if (MPI_Bcast(why, sizeof why, MPI_CHAR, worst.rank, mpi))
+        snprintf(why, sizeof why, "%s", duite_code_text(worst.code));
+    if (code)
+        return code;
+    return base_error(worst.code == DUITE_E_MEMORY ? DUITE_E_MEMORY : DUITE_E_DIFFERENT,
+                      "duite_start failed on rank %d: %s", worst.rank, why);
 }
 
 static struct started own_start(const duite *rt, const duite_options *options)

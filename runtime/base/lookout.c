@@ -2,6 +2,7 @@
 #include "runtime/base/lookout.h"
 
 #include "runtime/base/error.h"
+#include "runtime/base/thread.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -40,17 +41,19 @@ int base_lookout_start(struct base_lookout *lookout, const char *what, double se
     sigset_t all, before;
     *lookout = (struct base_lookout){.look = look, .context = context, .seconds = seconds};
     if (pthread_condattr_init(&monotonic))
-        return base_error(DUITE_E_SYSTEM, "cannot start %s", what);
+        return base_error(DUITE_E_SYSTEM, "cannot start %s: pthread_condattr_init", what);
     lookout->made = !pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC) &&
                     !pthread_cond_init(&lookout->wake, &monotonic);
     pthread_condattr_destroy(&monotonic);
     pthread_mutex_init(&lookout->lock, NULL);
     sigfillset(&all); /* signals are for the program's threads */
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    lookout->started =
-        lookout->made && !pthread_create(&lookout->thread, NULL, lookout_main, lookout);
+    const int code = lookout->made
+                         ? base_thread_start(&lookout->thread, what, lookout_main, lookout)
+                         : base_error(DUITE_E_SYSTEM, "cannot start %s: pthread_cond_init", what);
+    lookout->started = !code;
     pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return lookout->started ? DUITE_OK : base_error(DUITE_E_SYSTEM, "cannot start %s", what);
+    return code;
 }
 
 void base_lookout_stop(struct base_lookout *lookout)

@@ -16,7 +16,7 @@ struct base_lookout {
 };
 
 /* `what` it is, for the sentence: "the thread that watches". On failure base_lookout_stop is due
- * all the same, unless all of it is zero. Errors: DUITE_E_SYSTEM. */
+ * all the same, unless all of it is zero. Errors: memory, DUITE_E_SYSTEM. */
 int base_lookout_start(struct base_lookout *lookout, const char *what, double seconds,
                        void (*look)(void *context), void *context);
 

@@ -4,6 +4,7 @@
 
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
+#include "runtime/base/thread.h"
 #include "runtime/comm/internal.h"
 
 #include <errno.h>
@@ -136,10 +137,13 @@ int comm_pulse_start(struct comm *comm)
     pthread_condattr_destroy(&monotonic);
     sigfillset(&all); /* signals are for the program's threads */
     pthread_sigmask(SIG_SETMASK, &all, &signals);
-    pulse->started = pulse->made && !pthread_create(&pulse->thread, NULL, pulse_main, comm);
+    const char *what = "the thread of signs of life";
+    const int code = pulse->made
+                         ? base_thread_start(&pulse->thread, what, pulse_main, comm)
+                         : base_error(DUITE_E_SYSTEM, "cannot start %s: pthread_cond_init", what);
+    pulse->started = !code;
     pthread_sigmask(SIG_SETMASK, &signals, NULL);
-    return pulse->started ? DUITE_OK
-                          : base_error(DUITE_E_SYSTEM, "cannot start the thread of signs of life");
+    return code;
 }
 
 void comm_pulse_open(struct comm *comm, double seconds, const char *host)

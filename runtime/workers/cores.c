@@ -6,13 +6,23 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
+#include <errno.h>
 #include <hwloc.h>
 #include <pthread.h>
 #include <sched.h>
+#include <string.h>
 #include <xxhash.h>
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static hwloc_topology_t topology; /* NULL: not loaded; `lock` */
+
+/* By errno. */
+static int refuse(const char *call)
+{
+    const int reason = errno;
+    return base_error(reason == ENOMEM ? DUITE_E_MEMORY : DUITE_E_SYSTEM,
+                      "the machine's topology cannot be read: %s: %s", call, strerror(reason));
+}
 
 /* The calling thread holds the lock. */
 static int load(void)
@@ -21,14 +31,15 @@ static int load(void)
     if (topology)
         return DUITE_OK;
     if (hwloc_topology_init(&new))
-        return base_error(DUITE_E_SYSTEM, "hwloc cannot start");
+        return refuse("hwloc_topology_init");
     hwloc_topology_set_all_types_filter(new, HWLOC_TYPE_FILTER_KEEP_STRUCTURE);
     hwloc_topology_set_io_types_filter(new, HWLOC_TYPE_FILTER_KEEP_NONE);
     hwloc_topology_set_type_filter(new, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL);
     hwloc_topology_set_type_filter(new, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL);
     if (hwloc_topology_load(new)) {
+        const int code = refuse("hwloc_topology_load");
         hwloc_topology_destroy(new);
-        return base_error(DUITE_E_SYSTEM, "hwloc cannot read the machine's topology");
+        return code;
     }
     topology = new;
     return DUITE_OK;

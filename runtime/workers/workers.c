@@ -6,11 +6,13 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
+#include "runtime/base/thread.h"
 #include "runtime/sched/front.h"
 #include "runtime/workers/cores.h"
 #include "runtime/workers/internal.h"
 
 #include <sched.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Tasks run one after another without a look at the queues while something lies there; and among
@@ -364,9 +366,11 @@ static int start_threads(struct work_pool *pool)
     sched_getaffinity(0, sizeof pool->worker[0].binding, &pool->worker[0].binding);
     for (pool->started = 1; pool->started < pool->setup.threads; pool->started++) {
         struct work_worker *worker = &pool->worker[pool->started];
-        if (pthread_create(&worker->thread, NULL, thread_main, worker))
-            return base_error(DUITE_E_SYSTEM, "cannot start worker thread %u of %u", pool->started,
-                              pool->setup.threads);
+        char what[64];
+        snprintf(what, sizeof what, "worker thread %u of %u", pool->started, pool->setup.threads);
+        const int code = base_thread_start(&worker->thread, what, thread_main, worker);
+        if (code)
+            return code;
     }
     work_cores_bind(pool->worker[0].unit);
     return DUITE_OK;

@@ -19,7 +19,7 @@ tests_negative_ranks_memory_graphs_LDADD = libduite_core.la
 tests_negative_ranks_memory_graphs_LDFLAGS = $(STARVE_WRAPS)
 tests_negative_ranks_system_SOURCES = tests/negative/ranks_system.c $(MISUSE)
 tests_negative_ranks_system_LDADD = libduite_core.la
-tests_negative_ranks_system_LDFLAGS = -Wl,--wrap=pthread_create
+tests_negative_ranks_system_LDFLAGS = -Wl,--wrap=pthread_create,--wrap=mmap
 check_PROGRAMS += tests/negative/ranks_lost
 tests_negative_ranks_lost_SOURCES = tests/negative/ranks_lost.c $(MISUSE)
 tests_negative_ranks_lost_LDADD = libduite_core.la

@@ -9,9 +9,11 @@
 #include <pthread.h>
 #include <stdint.h>
 #include <string.h>
+#include <sys/mman.h>
 
 static int rank, ranks;
 static int threads_left; /* until one is refused */
+static int full;         /* there is no room for a stack either */
 
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
                           void *(*body)(void *), void *context);
@@ -22,6 +24,37 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
                           void *(*body)(void *), void *context)
 {
     return threads_left-- > 0 ? __real_pthread_create(thread, attributes, body, context) : EAGAIN;
+}
+
+void *__real_mmap(void *at, size_t bytes, int protection, int flags, int file, off_t offset);
+void *__wrap_mmap(void *at, size_t bytes, int protection, int flags, int file, off_t offset);
+
+void *__wrap_mmap(void *at, size_t bytes, int protection, int flags, int file, off_t offset)
+{
+    if (!full)
+        return __real_mmap(at, bytes, protection, flags, file, offset);
+    errno = ENOMEM;
+    return MAP_FAILED;
+}
+
+/* All ranks are told that there is no memory, for what, and how much it would be. */
+static void no_room_for_a_thread(void)
+{
+    duite_options options = misuse_options(MPI_COMM_WORLD);
+    duite *rt;
+
+    options.threads = 4;
+    full = rank == ranks - 1;
+    for (int granted = 0; granted < 3; granted++) {
+        threads_left = full ? granted : 1000;
+        tap_case(duite_start(&rt, &options) == DUITE_E_MEMORY && !rt,
+                 "memory for a thread is refused on the last rank");
+        tap_case(strstr(duite_message(), "out of memory for ") &&
+                     strstr(duite_message(), ": pthread_create cannot map its stack of ") &&
+                     (full || strstr(duite_message(), "duite_start failed on rank ")),
+                 "with a sentence on every rank");
+    }
+    full = 0;
 }
 
 static void threads_refused(void)
@@ -36,9 +69,8 @@ static void threads_refused(void)
         const int expected = rank == ranks - 1 ? DUITE_E_SYSTEM : DUITE_E_DIFFERENT;
 
         tap_case(code == expected && !rt, "a thread is refused on the last rank");
-        tap_case(strstr(duite_message(),
-                        rank == ranks - 1 ? "cannot start" : duite_code_text(DUITE_E_SYSTEM)) !=
-                     NULL,
+        tap_case(strstr(duite_message(), "cannot start ") &&
+                     strstr(duite_message(), ": pthread_create: "),
                  "with a sentence on every rank");
     }
     threads_left = 1000;
@@ -84,6 +116,7 @@ int main(void)
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    no_room_for_a_thread();
     threads_refused();
     if (ranks > 1) { /* one rank needs no mapping */
         wrong_mapping(ranks, DUITE_E_ARGUMENT, "a mapping to a rank there is not");

@@ -3,7 +3,6 @@
 #include "cloth/flow/run.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/flow/long_steps.h"
 #include "cloth/flow/tasks/tasks.h"
 
 #include <math.h>

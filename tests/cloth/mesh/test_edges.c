@@ -62,7 +62,7 @@ END_TEST
 START_TEST(lone_edges_join)
 {
     struct mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\n"
-                                 "f 1 2 3\nl 5 4 5\nl 4 2\nl 2 1\n");
+                                 "f 1 2 3\nl 5 4\nl 4 2\nl 2 1\n");
     struct mesh_edges edges = edges_of(&mesh);
     ck_assert_uint_eq(edges.n, 5); /* three sides, 3-4 once, 1-3 */
     const struct mesh_edge *lone = find(&edges, 3, 4), *shared = find(&edges, 0, 1);

@@ -44,7 +44,8 @@ enum {
     DUITE_E_ACCESS =
         -5, /* number of objects or type does not fit the kernel; one object twice in a task */
     DUITE_E_MPI = -6, /* an MPI call failed, or MPI gives less thread support than SERIALIZED */
-    DUITE_E_DIFFERENT = -7, /* the ranks run different programs: other kernels, forks or options */
+    DUITE_E_DIFFERENT = -7, /* the ranks run different programs: other kernels, forks or options, or
+                               a mapping that gives other homes */
     DUITE_E_STATE = -8, /* a call that is not allowed here: from a task's body, another thread or a
                            build, or between duite_mpi_begin and duite_mpi_end */
     DUITE_E_NOT_FREED = -9, /* stop found objects or graphs that were not freed */

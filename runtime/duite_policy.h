@@ -13,7 +13,10 @@
  * runtime decides in their place, tasks in the shared queue, nothing moves, so that what was forked
  * is still run. DUITE_E_ARGUMENT and a sentence with the policy, the function, rank and worker: on
  * one rank from the next get, wait or stop; on several all of them end, as if memory had run out.
- * The time in which the process was stopped does not count. */
+ * The time in which the process was stopped does not count.
+ *
+ * A function under the guard that calls exit ends the process with EXIT_FAILURE, whatever status it
+ * asked for, and standard error names the policy and the function. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -71,8 +74,8 @@ typedef struct duite_near {
 typedef struct duite_scheduler {
     const char *name;
     const char *summary;
-    size_t state_size; /* bytes of private state a worker; zeroed before start; used by that worker
-                          only */
+    size_t state_size; /* bytes of private state a worker, at most 2^30; zeroed before start; used
+                          by that worker only */
 
     /* Prepares the state of one worker. Optional. */
     void (*start)(void *state, unsigned worker, unsigned n_workers, uint64_t seed);
@@ -135,7 +138,10 @@ typedef struct duite_mapping {
     const char *name;
     const char *summary;
     /* Writes home[n], each in 0 .. n_ranks - 1. Deterministic: called with the same graph on every
-     * rank. Returns 0, or a duite code. */
+     * rank; where two ranks got different homes, the next blocking call that depends on them, at
+     * the latest duite_wait or duite_stop, is DUITE_E_DIFFERENT. Returns 0, or a duite code: then
+     * the next get, wait or stop of every rank returns it and names the mapping and, on the other
+     * ranks, the rank; only duite_stop is left. */
     int (*map)(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
     /* Maps blocks anew, knowing the tasks: home[n_blocks] has the present homes, and blocks whose
      * home is changed move. Asked at the beginning of the first replay of each graph, and, unless
@@ -192,8 +198,8 @@ typedef struct duite_blocks {
 typedef struct duite_balancer {
     const char *name;
     const char *summary;
-    size_t state_size; /* bytes of private state a worker; zeroed before start; used by that worker
-                          only */
+    size_t state_size; /* bytes of private state a worker, at most 2^30; zeroed before start; used
+                          by that worker only */
 
     /* Prepares the state of one worker. Optional, as are the others; without any of them nothing
      * moves. */

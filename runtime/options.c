@@ -5,6 +5,7 @@
 
 #include "runtime/balance/balance.h"
 #include "runtime/base/error.h"
+#include "runtime/base/policy.h"
 #include "runtime/map/map.h"
 #include "runtime/sched/sched.h"
 
@@ -76,6 +77,17 @@ duite_options duite_options_default(void)
                            .bind = 1};
 }
 
+static int policy_too_large(const duite_scheduler *scheduler, const duite_balancer *balance)
+{
+    const bool schedules = scheduler->state_size > BASE_MOST_STATE;
+    return base_error(DUITE_E_ARGUMENT,
+                      "duite_start: the %s %s wants a state of %zu bytes for each worker "
+                      "(state_size); at most %zu are given",
+                      schedules ? "scheduler" : "balancer",
+                      schedules ? scheduler->name : balance->name,
+                      schedules ? scheduler->state_size : balance->state_size, BASE_MOST_STATE);
+}
+
 int options_check(const duite_options *options)
 {
     if (!options)
@@ -131,6 +143,8 @@ static int check_policies(const duite_options *options)
     if (!b || !b->name || !b->victim != !b->give)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: no balancer, or one with only one of victim and give");
+    if (s->state_size > BASE_MOST_STATE || b->state_size > BASE_MOST_STATE)
+        return policy_too_large(s, b);
     return DUITE_OK;
 }
 

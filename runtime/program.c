@@ -61,6 +61,8 @@ int program_settle(duite *rt)
     int code = map_settle(&rt->graph.table, &rt->mapping, rt->seed);
     if (!code)
         trace_settled(rt->trace, table);
+    else if (rt->comm && code != DUITE_E_MEMORY)     /* of which program_remember makes more */
+        comm_broke(rt->comm, code, duite_message()); /* other ranks may have homes now */
     return code;
 }
 

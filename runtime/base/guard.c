@@ -1,7 +1,8 @@
 /* A caller's mark is written by its thread alone, and by the handler on it. The handler runs on the
  * thread that it is about, so it sees the mark as the thread left it: it jumps only out of the very
  * call that was found standing, and never out of anything of ours. One thread at a time is taken
- * out of a call, in the whole process. */
+ * out of a call, in the whole process. The guards there are stand in a list, for the function that
+ * runs when the process exits: a policy that calls exit must not pass for a program that ended. */
 #include "runtime/base/guard.h"
 
 #include "runtime/base/error.h"
@@ -10,9 +11,11 @@
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <time.h>
+#include <unistd.h>
 
-enum { SIGNAL = SIGURG, MOST_PAUSES = 100 };
+enum { SIGNAL = SIGURG, MOST_PAUSES = 100, WHERE = 64 };
 
 static pthread_mutex_t taking = PTHREAD_MUTEX_INITIALIZER;
 static _Atomic(struct base_caller *) wanted; /* under the lock above */
@@ -53,6 +56,76 @@ static bool take_out(struct base_caller *caller)
     return !is_in(caller, call);
 }
 
+/* " (rank 1, worker 2)", or nothing where there are no ranks. */
+static const char *where(const struct base_guard *guard, const struct base_caller *caller,
+                         char text[WHERE])
+{
+    text[0] = 0;
+    if (guard->rank >= 0)
+        snprintf(text, WHERE, " (rank %d, worker %u)", guard->rank,
+                 (unsigned)(caller - guard->caller));
+    return text;
+}
+
+/* ---- Exits ---- */
+
+static pthread_mutex_t listing = PTHREAD_MUTEX_INITIALIZER;
+static struct base_guard *guards; /* under the lock above */
+
+static const struct base_caller *inside_of(const struct base_guard *guard)
+{
+    for (unsigned i = 0; i < guard->n; i++)
+        if (atomic_load(&guard->caller[i].inside) &&
+            pthread_equal(guard->caller[i].thread, pthread_self()))
+            return &guard->caller[i];
+    return NULL;
+}
+
+/* The thread that exits does so in a call. */
+static void on_exit_of_policy(void)
+{
+    const struct base_caller *caller = NULL;
+    char text[WHERE];
+    pthread_mutex_lock(&listing);
+    for (const struct base_guard *guard = guards; guard && !caller; guard = guard->next)
+        caller = inside_of(guard);
+    pthread_mutex_unlock(&listing);
+    if (!caller)
+        return;
+    const struct base_guarded *what = atomic_load(&caller->inside);
+    fprintf(stderr, "duite: %s %.200s: its %s called exit%s; this process ends with status %d\n",
+            what->kind, atomic_load(&caller->policy), what->function,
+            where(caller->guard, caller, text), EXIT_FAILURE);
+    fflush(NULL);
+    _exit(EXIT_FAILURE);
+}
+
+static void watch_exits(void)
+{
+    atexit(on_exit_of_policy); /* if it cannot, an exit passes as before */
+}
+
+static void enlist(struct base_guard *guard)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, watch_exits);
+    pthread_mutex_lock(&listing);
+    guard->next = guards;
+    guards = guard;
+    pthread_mutex_unlock(&listing);
+}
+
+static void delist(const struct base_guard *guard)
+{
+    pthread_mutex_lock(&listing);
+    struct base_guard **at = &guards;
+    while (*at && *at != guard)
+        at = &(*at)->next;
+    if (*at)
+        *at = guard->next;
+    pthread_mutex_unlock(&listing);
+}
+
 /* ---- Looks ---- */
 
 static void tell(struct base_guard *guard)
@@ -67,14 +140,12 @@ static void tell(struct base_guard *guard)
 static void write_sentence(struct base_guard *guard, const struct base_caller *caller,
                            const struct base_guarded *what)
 {
-    char where[64] = "";
-    if (guard->rank >= 0)
-        snprintf(where, sizeof where, " (rank %d, worker %u)", guard->rank,
-                 (unsigned)(caller - guard->caller));
+    char text[WHERE];
     snprintf(guard->sentence, sizeof guard->sentence,
              "%s %.200s: its %s did not return for %g s%s; a policy that needs longer is given it "
              "by policy_seconds, or DUITE_POLICY_SECONDS in the environment",
-             what->kind, atomic_load(&caller->policy), what->function, guard->seconds, where);
+             what->kind, atomic_load(&caller->policy), what->function, guard->seconds,
+             where(guard, caller, text));
 }
 
 /* Its call stands. */
@@ -128,6 +199,7 @@ int base_guard_start(struct base_guard **out, double seconds, unsigned n, int ra
     pthread_sigmask(SIG_BLOCK, NULL, &before);
     guard->blocked = sigismember(&before, SIGNAL) == 1;
     base_guard_here(&guard->caller[0]);
+    enlist(guard);
     return base_lookout_start(&guard->lookout, "the guard of policies", seconds / BASE_GUARD_LOOKS,
                               look, guard);
 }
@@ -145,6 +217,7 @@ void base_guard_stop(struct base_guard *guard)
     if (!guard)
         return;
     base_lookout_stop(&guard->lookout);
+    delist(guard);
     if (guard->blocked)
         mask(SIG_BLOCK);
     pthread_mutex_destroy(&guard->lock);

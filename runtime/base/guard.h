@@ -13,7 +13,8 @@
  * is handled for that moment only), and the handler jumps back to where the call was made. So no
  * thread is lost, and nobody waits for ever; what the function held is lost. From then on the guard
  * is over: no such function is called any more, and who asks decides without it. Time is counted in
- * looks, so that the time in which this process itself was stopped is nobody's.
+ * looks, so that the time in which this process itself was stopped is nobody's. A function that
+ * calls exit is named, too, and the process then ends with EXIT_FAILURE, whatever it asked for.
  *
  *     if (sigsetjmp(caller->back, 0) || !base_guard_enters(caller, &PLACE, policy->name))
  *         return what_is_always_right;
@@ -52,7 +53,8 @@ struct base_guard {
     bool blocked; /* the signal, in the thread that started the guard */
     bool deaf;    /* a thread that takes no signals was told of */
     char sentence[400];
-    pthread_mutex_t lock; /* of the next two */
+    struct base_guard *next; /* of all in this process */
+    pthread_mutex_t lock;    /* of the next two */
     void (*tell)(void *context, const char *sentence);
     void *context;
 };

@@ -2,6 +2,10 @@
 #define DUITE_BASE_POLICY_H
 
 #include <stdbool.h>
+#include <stddef.h>
+
+/* Bytes of private state that a policy may want for each worker. */
+#define BASE_MOST_STATE ((size_t)1 << 30)
 
 /* The policies of one kind: the built-in ones, in the same order in both lists. */
 struct base_policies {

@@ -48,6 +48,8 @@ static void settle(struct comm *comm)
         comm->calls.to_hear += i == comm->rank ? 0 : words[i].questions;
         if (words[i].fingerprint != words[0].fingerprint)
             tell_difference(comm, i);
+        else if (words[i].homes != words[0].homes)
+            comm_homes_differ(comm, 0, i);
     }
     comm_calls_agreed(comm);
 }
@@ -77,6 +79,7 @@ static void put_word(struct comm *comm, const struct comm_word *own)
     struct comm_word *word = &comm->words[comm->n_ranks];
     *word = *own;
     word->questions = comm->calls.questions;
+    word->homes = comm->graph->table.homes;
 }
 
 int comm_agree(struct comm *comm, const struct comm_word *own, struct comm_word **all,

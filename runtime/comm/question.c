@@ -42,6 +42,7 @@ bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint)
     struct comm_called *call = logged(calls, number);
     call->number = number;
     call->fingerprint = fingerprint;
+    call->homes = comm->graph->table.homes;
     snprintf(call->name, sizeof call->name, "%s", name);
     atomic_store_explicit(&calls->made, number, memory_order_release);
     return number - atomic_load_explicit(&calls->agreed, memory_order_relaxed) == COMM_LOGGED_CALLS;
@@ -61,6 +62,16 @@ void comm_waits(struct comm *comm, bool waits)
     atomic_store_explicit(&calls->waits, number, memory_order_release);
 }
 
+void comm_homes_differ(struct comm *comm, int a, int b)
+{
+    char sentence[300];
+    snprintf(sentence, sizeof sentence,
+             "the mapping gave objects other homes on rank %d than on rank %d: its function `map` "
+             "must write the same homes on every rank, whatever the rank, the time or the machine",
+             a, b);
+    comm_broke(comm, DUITE_E_DIFFERENT, sentence);
+}
+
 /* Breaks if this rank's call of that number was another one. False: it did not come to it yet. */
 static bool answer(struct comm *comm, int asker, const struct comm_called *theirs)
 {
@@ -71,8 +82,11 @@ static bool answer(struct comm *comm, int asker, const struct comm_called *their
     if (theirs->number <= atomic_load_explicit(&calls->agreed, memory_order_relaxed))
         return true;
     const struct comm_called *ours = logged(calls, theirs->number);
-    if (ours->fingerprint == theirs->fingerprint && !strcmp(ours->name, theirs->name))
+    if (ours->fingerprint == theirs->fingerprint && !strcmp(ours->name, theirs->name)) {
+        if (ours->homes != theirs->homes)
+            comm_homes_differ(comm, comm->rank, asker);
         return true;
+    }
     snprintf(sentence, sizeof sentence,
              "ranks %d and %d forked different tasks, made different objects, or made different "
              "calls: the blocking call of number %llu is %s on rank %d and %s on rank %d",

@@ -16,6 +16,7 @@ enum { COMM_LOGGED_CALLS = 1024 };
 
 struct comm_called {
     uint64_t number, fingerprint; /* number: from 1 on */
+    uint64_t homes;               /* data_table.homes */
     char name[48];
 };
 
@@ -44,6 +45,9 @@ void comm_calls_stop(struct comm_calls *calls);
 
 /* Under the lock: asks what there is to ask, and looks at what was asked. */
 void comm_question_ask(struct comm *comm);
+
+/* Breaks, since the mapping is not the same on two ranks. */
+void comm_homes_differ(struct comm *comm, int a, int b);
 
 /* Under the lock: a question came. */
 void comm_question_hear(struct comm *comm, struct data_packet *packet);

@@ -51,6 +51,7 @@ struct data_table {
     size_t n_unsettled, unsettled_capacity;
     uint32_t *blocks; /* a rank: leaders that got their home there so far */
     uint64_t settled; /* objects that got a home by the mapping so far */
+    uint64_t homes;   /* a hash of these homes: the same on every rank */
 };
 
 int data_table_start(struct data_table *table, int n_ranks);

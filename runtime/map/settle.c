@@ -175,8 +175,11 @@ static void move_in(struct data_table *table, const struct nodes *nodes)
 {
     for (size_t i = 0; i < table->n_unsettled; i++) {
         uint32_t slot = table->unsettled[i].slot;
-        if (table->unsettled[i].leader == slot)
-            data_object_settle(table, slot, nodes->home[nodes->node[i]]);
+        if (table->unsettled[i].leader != slot)
+            continue;
+        uint64_t state = table->homes ^ (uint64_t)nodes->home[nodes->node[i]];
+        table->homes = duite_random(&state);
+        data_object_settle(table, slot, nodes->home[nodes->node[i]]);
     }
     for (size_t i = 0; i < table->n_unsettled; i++)
         data_object_join(table, table->unsettled[i].slot, table->unsettled[i].leader);

@@ -3,6 +3,7 @@
 
 #include "runtime/balance/front.h"
 #include "runtime/base/error.h"
+#include "runtime/base/policy.h"
 #include "runtime/map/front.h"
 #include "runtime/sched/front.h"
 
@@ -35,6 +36,12 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
         return base_error(DUITE_E_ARGUMENT,
                           "the seconds of a policy (DUITE_POLICY_SECONDS) are no number from 0 to "
                           "1e9");
+    if (c->scheduler->state_size > BASE_MOST_STATE ||
+        (c->balance && c->balance->state_size > BASE_MOST_STATE))
+        return base_error(DUITE_E_ARGUMENT,
+                          "the scheduler or the balancer wants a state (state_size) of more than "
+                          "%zu bytes",
+                          BASE_MOST_STATE);
     if (!(c->message >= 0))
         return base_error(DUITE_E_ARGUMENT, "the cost of a message is a number >= 0");
     if (c->balance && (c->balance->victim || c->balance->place))

@@ -140,6 +140,11 @@ START_TEST(malformed_policies)
     scheduler = *duite_scheduler_find("fifo");
     scheduler.name = NULL;
     refuses_options(&options, "scheduler");
+    scheduler = *duite_scheduler_find("fifo");
+    scheduler.name = "large";
+    for (scheduler.state_size = SIZE_MAX; scheduler.state_size > SIZE_MAX - 200;
+         scheduler.state_size -= 8)
+        refuses_options(&options, "the scheduler large wants a state of 184467440737095");
     options = misuse_options(MPI_COMM_WORLD);
     options.mapping = NULL;
     refuses_options(&options, "mapping");
@@ -153,6 +158,9 @@ START_TEST(malformed_policies)
     options.balance = &balance;
     balance.give = NULL;
     refuses_options(&options, "balancer");
+    balance = *duite_balancer_find("delegate");
+    balance.state_size = SIZE_MAX;
+    refuses_options(&options, "the balancer delegate wants a state of 18446744073709551615 bytes");
     balance = *duite_balancer_find("none");
     balance.name = NULL;
     refuses_options(&options, "balancer");

@@ -1,6 +1,8 @@
 /* Ends in the middle of its work, without a stop, with the status given: rank 0 at once, or all
- * ranks with --all. Messages are on their way meanwhile, and workers poll. */
+ * ranks with --all; or in a function of a policy, --map or --place. Messages are on their
+ * way meanwhile, and workers poll. */
 #include <duite.h>
+#include <duite_policy.h>
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +18,43 @@ static int step(const duite_call *call)
 static const duite_kernel STEP = {.name = "step", .body = step, .access = {DUITE_RW}};
 static const duite_kernel *const KERNELS[] = {&STEP, NULL};
 
+/* ---- Policies that exit ---- */
+
+static int status, calls;
+
+static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+{
+    (void)graph;
+    (void)n_ranks;
+    (void)seed;
+    (void)home;
+    exit(status);
+}
+
+static unsigned place(void *state, const duite_ready *task)
+{
+    (void)state;
+    (void)task;
+    if (__atomic_add_fetch(&calls, 1, __ATOMIC_RELAXED) == TASKS / 4)
+        exit(status);
+    return DUITE_SHARED_QUEUE;
+}
+
+static void choose(duite_options *options, const char *function)
+{
+    static duite_mapping mapping;
+    static duite_scheduler scheduler;
+    mapping = *options->mapping;
+    scheduler = *duite_scheduler_find("fifo");
+    mapping.name = scheduler.name = "leaving";
+    mapping.map = map;
+    scheduler.place = place;
+    if (!strcmp(function, "--map"))
+        options->mapping = &mapping;
+    if (!strcmp(function, "--place"))
+        options->scheduler = &scheduler;
+}
+
 int main(int argc, char **argv)
 {
     duite *rt;
@@ -23,6 +62,9 @@ int main(int argc, char **argv)
     duite_options options = duite_options_default();
     if (argc < 2)
         return 99;
+    status = atoi(argv[1]);
+    if (argc > 2)
+        choose(&options, argv[2]);
     options.kernels = KERNELS;
     options.threads = 2;
     if (duite_start(&rt, &options))
@@ -31,8 +73,8 @@ int main(int argc, char **argv)
         duite_new(rt, DUITE_I64, 1, &chain[i]);
     for (int i = 0; i < TASKS; i++)
         duite_fork_at(rt, (i / CHAINS) % duite_ranks(rt), &STEP, NULL, 1, &chain[i % CHAINS]);
-    if (duite_rank(rt) == 0 || (argc > 2 && !strcmp(argv[2], "--all")))
-        exit(atoi(argv[1]));
+    if (argc > 2 ? !strcmp(argv[2], "--all") : duite_rank(rt) == 0)
+        exit(status);
     duite_wait(rt);
     return 97;
 }

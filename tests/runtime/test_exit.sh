@@ -13,3 +13,21 @@ for round in $(seq $times); do
     exits 5 "both ranks" ranks 2 tests/runtime/ranks_exit 5 --all
 done
 not_ok_expected "both ranks without a failure: mpirun tells" ranks 2 tests/runtime/ranks_exit 0 --all
+
+# A policy has no say in how the program ends: that looks like a failure, and says which one it was.
+leaves() { # SENTENCE COMMAND...
+    sentence=$1
+    shift
+    status=0
+    "$@" 2> "$scratch/said" || status=$?
+    cat "$scratch/said"
+    echo "exit status $status"
+    test $status = 1 && grep -q "^duite: $sentence" "$scratch/said"
+}
+ok "exit in a scheduler" leaves "scheduler leaving: its place called exit (rank 0, worker [0-9]*); this process ends with status 1" \
+    limited tests/runtime/ranks_exit 0 --place
+ok "exit in a scheduler on 2 ranks" leaves "scheduler leaving: its place called exit (rank [01], worker" \
+    ranks 2 tests/runtime/ranks_exit 0 --place
+ok "exit in a mapping on 2 ranks" leaves "mapping leaving: its map called exit (rank [01], worker 0)" \
+    ranks 2 tests/runtime/ranks_exit 0 --map
+ok "exit in a scheduler with a status" leaves "scheduler leaving: its place called exit" limited tests/runtime/ranks_exit 3 --place

@@ -1,0 +1,7 @@
+#!/bin/sh
+# Mappings that fail on some rank, and such that are not the same on all.
+. "${srcdir:-.}/tests/support/tap.sh"
+plan_later
+
+DUITE_TIMEOUT=${DUITE_TIMEOUT:-60}
+ok "wrong mappings on 2 ranks" ranks 2 tests/runtime/ranks_mappings

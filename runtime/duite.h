@@ -312,7 +312,9 @@ const char *const *duite_balancer_names(void);
  * for options.stuck_seconds no task of this rank began or ended and no message came. Then this rank
  * writes to standard error, in at most 20 lines, what the main program waits for, which bodies run,
  * which tasks wait for them, which for objects from which rank. A long body looks the same; nothing
- * is changed or ended. A further one is told once it lasts twice as long. */
+ * is changed or ended. A further one is told once it lasts twice as long. Tasks that wait for
+ * nothing which can be found are told of, too: a body may have written beyond its objects, and
+ * DUITE_CHECK=accesses names such a body. */
 
 /* A lost rank: on several ranks a thread of each gives the next rank a sign of life sixteen times
  * in options.lost_seconds, however busy its workers are. A rank that died, was cut off, or was

@@ -95,7 +95,8 @@ static void tell_waiters(struct page *page, const struct graph_task *task, uint3
              words_of(page, task).text, i);
 }
 
-static void tell_bodies(struct page *page, bool held)
+/* Returns how many run. */
+static unsigned tell_bodies(struct page *page, bool held)
 {
     struct work_pool *pool = page->pool;
     unsigned n = 0;
@@ -118,6 +119,7 @@ static void tell_bodies(struct page *page, bool held)
     }
     if (!n)
         line(page, "no worker runs a task");
+    return n;
 }
 
 /* ---- Messages ---- */
@@ -210,11 +212,16 @@ void work_tell(struct work_pool *pool, double seconds)
                                        .channel = tell_channel};
     pthread_mutex_lock(&pool->watch.lock);
     tell_main(&page, seconds);
-    tell_bodies(&page, hold_workers(pool));
+    const unsigned bodies = tell_bodies(&page, hold_workers(pool)), before = page.lines;
     if (pool->setup.comm)
         comm_look(pool->setup.comm, &looker);
     graph_away_look(pool->setup.graph, tell_away, &page);
-    line(&page, "unfinished tasks of this rank: %llu", (unsigned long long)unfinished(pool));
+    const uint64_t left = unfinished(pool);
+    line(&page, "unfinished tasks of this rank: %llu", (unsigned long long)left);
+    if (left && !bodies && page.lines == before + 1 && !page.left_out)
+        line(&page, "they wait for nothing that duite knows of: a body may have written beyond its "
+                    "objects and overwritten duite's memory; run again with DUITE_CHECK=accesses "
+                    "in the environment, which names such a body");
     atomic_store_explicit(&pool->watched, 0, memory_order_release);
     pthread_mutex_unlock(&pool->watch.lock);
     if (page.left_out)

@@ -48,6 +48,33 @@ case_of "a body that naps in a replay" ranks 2 $stuck 2 0 2 0 replay
 tells "0: worker [01].* runs task [0-9]* (kernel nap)"
 tells "1: kernel take of a recorded graph waits for a message that has not come from rank 0"
 
+# What a body overwrote beyond its object was a task's: nobody knows any more what that waits for.
+overrun() {
+    timeout --kill-after=10 ${DUITE_TIMEOUT:-300} tests/runtime/overrun &
+    job=$!
+    for _ in $(seq 600); do
+        grep -q "unfinished tasks of this rank" "$scratch/output" && break
+        kill -0 $job || return 1
+        sleep 0.1
+    done
+    kill -KILL $job
+    wait $job || true
+}
+case "${SANITIZER:-}" in
+    ?*) skip "a body that writes beyond its object" "the sanitizer stops it" ;;
+    *)
+        case_of "a body that writes beyond its object" overrun
+        tells "0: no worker runs a task"
+        tells "0: they wait for nothing that duite knows of: a body may have written beyond its objects .* DUITE_CHECK=accesses .*" ;;
+esac
+named() {
+    status=0
+    DUITE_CHECK=accesses limited tests/runtime/overrun || status=$?
+    test $status = 1
+}
+case_of "checking mode fails it" named
+ok "and names the body" grep -q "kernel step.* goes beyond parameter 0: to byte 64 of 64" "$scratch/told"
+
 DUITE_STUCK_SECONDS=0
 case_of "nobody watches" ranks 2 $stuck 2 0 0.5 0 get
 ok "tells nothing" quiet

@@ -35,7 +35,6 @@ static int load(void)
     hwloc_topology_set_all_types_filter(new, HWLOC_TYPE_FILTER_KEEP_STRUCTURE);
     hwloc_topology_set_io_types_filter(new, HWLOC_TYPE_FILTER_KEEP_NONE);
     hwloc_topology_set_type_filter(new, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL);
-    hwloc_topology_set_type_filter(new, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL);
     if (hwloc_topology_load(new)) {
         const int code = refuse("hwloc_topology_load");
         hwloc_topology_destroy(new);

@@ -14,9 +14,9 @@ static int find_kernel(const struct graph *graph, const duite_kernel *kernel, ui
 {
     if (!kernel)
         return base_error(DUITE_E_ARGUMENT, "duite_fork: no kernel");
-    for (*index = 0; *index < graph->n_kernels; ++*index)
-        if (graph->kernels[*index] == kernel)
-            return DUITE_OK;
+    *index = graph_kernel_index(graph, kernel);
+    if (*index < graph->n_kernels)
+        return DUITE_OK;
     return base_error(DUITE_E_KERNEL, "kernel %s was not listed at start",
                       kernel->name ? kernel->name : "without a name");
 }

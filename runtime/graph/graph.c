@@ -62,6 +62,25 @@ static int check_unique(const duite_kernel *const kernels[], uint32_t index)
     return DUITE_OK;
 }
 
+/* The places of all kernels by their addresses; at most half of them are taken. */
+static int index_kernels(struct graph *graph)
+{
+    graph->kernel_mask = 3;
+    while (graph->kernel_mask < 2 * (uint64_t)graph->n_kernels)
+        graph->kernel_mask = 2 * graph->kernel_mask + 1;
+    graph->kernel_place =
+        base_alloc_zero(((size_t)graph->kernel_mask + 1) * sizeof *graph->kernel_place);
+    if (!graph->kernel_place)
+        return base_no_memory("the list of kernels");
+    for (uint32_t i = 0; i < graph->n_kernels; i++) {
+        uint32_t at = graph_kernel_hash(graph->kernels[i]);
+        while (graph->kernel_place[at & graph->kernel_mask])
+            at++;
+        graph->kernel_place[at & graph->kernel_mask] = i + 1;
+    }
+    return DUITE_OK;
+}
+
 static int take_kernels(struct graph *graph, const duite_kernel *const *kernels,
                         const duite_law *const *laws)
 {
@@ -83,7 +102,7 @@ static int take_kernels(struct graph *graph, const duite_kernel *const *kernels,
         if (code)
             return code;
     }
-    return DUITE_OK;
+    return index_kernels(graph);
 }
 
 int graph_start(struct graph *graph, int rank, int n_ranks, const duite_kernel *const *kernels,
@@ -123,6 +142,7 @@ void graph_stop(struct graph *graph)
     }
     base_free(graph->fixed);
     base_free(graph->kernels);
+    base_free(graph->kernel_place);
     data_table_stop(&graph->table);
     pthread_mutex_destroy(&graph->lock);
 }

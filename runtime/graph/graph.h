@@ -208,6 +208,7 @@ struct graph {
         uint32_t n, postponed;
     } * fixed;
     uint32_t n_kernels;
+    uint32_t *kernel_place, kernel_mask; /* by address, open addressing: index in `kernels` + 1 */
     bool paths; /* plans are to know the paths of their tasks; set before the first of them */
     _Atomic int given_up; /* bodies do not run any more */
     struct graph_hooks hooks;

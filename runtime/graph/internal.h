@@ -64,6 +64,24 @@ int graph_gather(struct graph_scope *scope, void *worker, struct data_object *ob
                  struct data_sum *sum, struct data_piece *leaf);
 void graph_run_gather(struct graph_task *task);
 
+/* Where a search for a kernel begins in the table of their addresses. */
+static inline uint32_t graph_kernel_hash(const duite_kernel *kernel)
+{
+    return (uint32_t)((uint64_t)(uintptr_t)kernel * 0x9e3779b97f4a7c15u >> 32);
+}
+
+/* The index of a kernel in the list given at start; n_kernels: it is not there. */
+static inline uint32_t graph_kernel_index(const struct graph *graph, const duite_kernel *kernel)
+{
+    for (uint32_t at = graph_kernel_hash(kernel);; at++) {
+        const uint32_t found = graph->kernel_place[at & graph->kernel_mask];
+        if (!found)
+            return graph->n_kernels;
+        if (graph->kernels[found - 1] == kernel)
+            return found - 1;
+    }
+}
+
 /* What a fork adds to the fingerprint: begins with its kernel's index and the rank it names, and
  * goes on with each object. */
 static inline uint64_t graph_fork_hash(uint32_t kernel, int at)

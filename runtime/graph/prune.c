@@ -15,9 +15,7 @@ static inline bool is_write(duite_mode mode)
 /* Makes it the kernel of graph->prune, if its tasks are plain. */
 static bool find_kernel(struct graph *graph, const duite_kernel *kernel)
 {
-    uint32_t i = 0, n = 0;
-    while (i < graph->n_kernels && graph->kernels[i] != kernel)
-        i++;
+    uint32_t i = graph_kernel_index(graph, kernel), n = 0;
     if (i == graph->n_kernels || kernel->replicated || graph->fixed[i].n > MOST)
         return false;
     struct graph_prune prune = {

@@ -54,7 +54,7 @@ void work_ran_out(struct work_worker *worker)
 void work_idles(struct work_worker *worker, uint64_t now)
 {
     const struct comm *comm = worker->pool->setup.comm;
-    worker->idle_since = now;
+    worker->idle_since = worker->looked = now;
     worker->awaited_then = comm ? comm_awaited_ticks(comm) : 0;
 }
 

@@ -113,14 +113,16 @@ static void moment(struct work_worker *worker, struct wait *wait)
     uint64_t now = base_ticks();
     if (!worker->idle_since)
         work_idles(worker, now);
+    const bool crowded = work_is_crowded(worker, now);
     uint64_t since = now - worker->idle_since;
     if (since < pool->spin_ticks) {
         work_pause_core();
-    } else if (since < pool->spin_ticks + pool->yield_ticks) {
+    } else if (since < pool->spin_ticks + pool->yield_ticks && !crowded) {
         sched_yield();
     } else {
         struct timespec pause = {.tv_nsec = (long)(1e9 * worker->pause)};
         nanosleep(&pause, NULL);
+        worker->looked = base_ticks();
         if (worker->pause < LONGEST_PAUSE_SECONDS)
             worker->pause *= 2;
         wait->refused = 0;

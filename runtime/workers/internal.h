@@ -46,6 +46,8 @@ struct work_worker {
     struct graph_task *next;         /* chained: to run directly after this one */
     uint64_t polled, idle_since;     /* when, in ticks; 0: busy */
     uint64_t messaging;              /* when it began with messages, in ticks; 0: it does not */
+    uint64_t looked, crowded_until;  /* in ticks, see spin.c */
+    long switches;                   /* of its thread, that it did not want; -1: not counted yet */
     uint64_t awaited_then;           /* comm_awaited_ticks when it began to idle */
     double pause;
     duite_call call;
@@ -162,6 +164,11 @@ void work_ran_out(struct work_worker *worker);
 bool work_poll(struct work_worker *worker);
 /* Idling begins, now in ticks. */
 void work_idles(struct work_worker *worker, uint64_t now);
+/* One idle look, now in ticks: whether other programs use this worker's core. Then waiting is to
+ * sleep: see spin.c. */
+bool work_is_crowded(struct work_worker *worker, uint64_t now);
+/* Idles without sleeping for the first moments; false once it is time to sleep. */
+bool work_spins(struct work_worker *worker);
 /* Something happened: idling begins anew. */
 void work_stir(struct work_worker *worker);
 /* The worker has something to do again: it leaves the seat to one that sleeps. */

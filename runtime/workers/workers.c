@@ -243,29 +243,6 @@ void work_busy_again(struct work_worker *worker)
     work_wake_one(worker->pool, DUITE_NO_QUEUE);
 }
 
-/* Spins, or gives way, for the first moments; false once it is time to sleep. */
-static bool spin(struct work_worker *worker)
-{
-    const struct work_pool *pool = worker->pool;
-    uint64_t now = base_ticks();
-    if (!worker->idle_since) {
-        work_idles(worker, now);
-        work_ran_out(worker);
-    }
-    uint64_t since = now - worker->idle_since;
-    if (since < pool->spin_ticks) {
-        work_pause_core();
-        return true;
-    }
-    uint64_t yields = !worker->polls                  ? 0
-                      : comm_awaits(pool->setup.comm) ? pool->await_ticks
-                      : pool->spin_ticks              ? 0
-                                                      : pool->yield_ticks;
-    if (since < yields)
-        sched_yield();
-    return since < yields;
-}
-
 /* Sleeps until woken, or for so many seconds if they are > 0. Returns a task if there was one at
  * the last look; does not sleep if nobody polls. */
 static struct graph_task *doze(struct work_worker *worker, double seconds,
@@ -281,6 +258,7 @@ static struct graph_task *doze(struct work_worker *worker, double seconds,
         work_park_cancel(&worker->park);
     else
         work_park_sleep(&worker->park, seconds);
+    worker->looked = base_ticks();
     atomic_fetch_sub(&pool->parked, 1);
     return task;
 }
@@ -292,7 +270,7 @@ static void idle(struct work_worker *worker, const struct work_wish *wish)
     bool polls = take_seat(worker);
     if (polls && pool->balance && worker->idle_since)
         work_beg(worker, base_ticks() - worker->idle_since);
-    if (spin(worker))
+    if (work_spins(worker))
         return;
     struct graph_task *task = doze(worker, polls || wish->unheard ? worker->pause : 0, wish);
     if (worker->pause < LONGEST_PAUSE_SECONDS)
@@ -350,6 +328,7 @@ static bool prepare(struct work_pool *pool, unsigned index, int unit)
     worker->state = pool->states + index * lines * BASE_LINE;
     worker->ring = trace_ring(setup->trace, index);
     worker->pause = WORK_FIRST_PAUSE_SECONDS;
+    worker->switches = -1;
     worker->call = (duite_call){
         .context = setup->context, .rt = setup->rt, .rank = setup->graph->rank, .worker = index};
     be_caller(worker, 0);

@@ -1,0 +1,139 @@
+/* Two ranks that answer each other in a replay, beside loops that never end on the same two cores:
+ * a rank that waits must not give its core away again and again. It is counted how often
+ * sched_yield did. Run under mpirun. */
+#include <duite.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+enum { CORES = 2, LOOPS = 8, ROUNDS = 400, WORK = 50000, MOST_GIVEN = ROUNDS / 40 };
+
+static pid_t loop[LOOPS];
+static long given;
+static int counts;
+
+static long switches(void)
+{
+    struct rusage usage;
+
+    return getrusage(RUSAGE_THREAD, &usage) ? 0 : usage.ru_nivcsw;
+}
+
+/* Instead of the C library's: counts the calls in which another program got the core. */
+int sched_yield(void)
+{
+    const long before = switches();
+    const int code = (int)syscall(SYS_sched_yield);
+
+    if (counts && switches() > before)
+        given++;
+    return code;
+}
+
+/* This process, and the loops that it starts, use two cores only. */
+static int share_cores(void)
+{
+    cpu_set_t all, some;
+    int n = 0;
+
+    CPU_ZERO(&some);
+    if (sched_getaffinity(0, sizeof all, &all))
+        return 0;
+    for (size_t core = 0; core < CPU_SETSIZE && n < CORES; core++)
+        if (CPU_ISSET(core, &all)) {
+            CPU_SET(core, &some);
+            n++;
+        }
+    return n == CORES && !sched_setaffinity(0, sizeof some, &some);
+}
+
+static void start_loops(void)
+{
+    for (int i = 0; i < LOOPS; i++) {
+        loop[i] = fork();
+        if (loop[i])
+            continue;
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        for (volatile int on = 1; on;)
+            ;
+        _exit(0);
+    }
+}
+
+static void end_loops(void)
+{
+    for (int i = 0; i < LOOPS; i++)
+        if (loop[i] > 0)
+            kill(loop[i], SIGKILL);
+}
+
+/* Takes some 100 us, so that the rounds take many slices of the loops. */
+static int next(const duite_call *call)
+{
+    for (volatile int i = 0; i < WORK; i++)
+        ;
+    duite_out(call, 0, int32_t)[0] = 1 + duite_in(call, 1, int32_t)[0];
+    return 0;
+}
+
+static const duite_kernel NEXT = {.name = "next", .body = next, .access = {DUITE_W, DUITE_R}};
+
+/* There and back. */
+static int answer(duite *rt, void *context)
+{
+    const duite_object *object = context;
+    int code = duite_fork_at(rt, 1, &NEXT, NULL, 2, (duite_object[]){object[1], object[0]});
+
+    return code | duite_fork_at(rt, 0, &NEXT, NULL, 2, (duite_object[]){object[0], object[1]});
+}
+
+static int run(duite *rt)
+{
+    duite_object object[2];
+    duite_graph graph;
+    int32_t value = 0;
+    int code = duite_new(rt, DUITE_I32, 1, &object[0]) | duite_new(rt, DUITE_I32, 1, &object[1]);
+
+    code |= duite_graph_new(rt, answer, object, &graph);
+    code |= duite_replay(rt, graph, 1) | duite_wait(rt);
+    counts = 1;
+    code |= duite_replay(rt, graph, ROUNDS) | duite_wait(rt);
+    counts = 0;
+    code |= duite_get(rt, object[0], &value) || value != 2 * (ROUNDS + 1);
+    code |= duite_graph_free(rt, graph);
+    return code | duite_free(rt, object[0]) | duite_free(rt, object[1]);
+}
+
+int main(void)
+{
+    static const duite_kernel *const KERNELS[] = {&NEXT, NULL};
+    const char *rank = getenv("OMPI_COMM_WORLD_RANK");
+    duite_options options = duite_options_default();
+    duite *rt;
+
+    if (!share_cores()) {
+        fprintf(stderr, "fewer than %d cores\n", CORES);
+        return 77;
+    }
+    options.kernels = KERNELS;
+    options.threads = 1;
+    if (duite_start(&rt, &options)) {
+        fprintf(stderr, "%s\n", duite_message());
+        return 3;
+    }
+    if (rank && *rank == '0')
+        start_loops();
+    const int code = run(rt);
+    end_loops();
+    if (given > MOST_GIVEN)
+        fprintf(stderr, "rank %d gave its core away %ld times in %d rounds, not %d at most\n",
+                duite_rank(rt), given, ROUNDS, MOST_GIVEN);
+    const int stopped = duite_stop(&rt);
+    return code || stopped || given > MOST_GIVEN;
+}

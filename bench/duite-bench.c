@@ -1,5 +1,6 @@
 /* The command line of duite-bench. Started by itself, as a subject, it serves instead. */
 #include "bench/bench.h"
+#include "bench/loops.h"
 #include "bench/report.h"
 
 #include <config.h>
@@ -271,7 +272,9 @@ static int run(const struct command *command, struct measure *measure)
         if (!chosen(command, *one))
             continue;
         plan(command, *one, measure);
-        failed = measure_run(measure, (*one)->name, rounds(command, *one), &seed, settings);
+        failed = loops_start(measure->loops) ||
+                 measure_run(measure, (*one)->name, rounds(command, *one), &seed, settings);
+        loops_end();
         if (!failed)
             report_all(measure, verdicts);
         measure_free(measure);

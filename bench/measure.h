@@ -50,7 +50,8 @@ struct measure {
     struct measure_series series[MEASURE_SERIES];
     struct measure_metric metric[MEASURE_METRICS];
     size_t n_series, n_metrics;
-    bool full; /* more were planned than there is room for: an error of the case */
+    unsigned loops; /* busy processes on each core meanwhile, see bench/loops.h */
+    bool full;      /* more were planned than there is room for: an error of the case */
 };
 
 /* A new series; shared processes are those of equal shape. The command in printf form. */

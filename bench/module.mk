@@ -5,11 +5,11 @@ BENCH_RIVALS =
 BENCH_STATE = bench/cg/state.c bench/cg/state.h
 BENCH_SHARED = bench/problem.c bench/problem.h bench/serve.c bench/serve.h
 check_LTLIBRARIES += bench/libbench.la
-bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench/load.h bench/measure.c bench/measure.h \
+bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench/load.h bench/loops.c bench/loops.h bench/measure.c bench/measure.h \
 	bench/program.c bench/program.h bench/report.c bench/report.h bench/subject.c bench/subject.h \
 	bench/tasks/tasks.c bench/tasks/tasks.h bench/tasks/bytes.c bench/tasks/chain.c bench/tasks/fib.c \
 	bench/tasks/granularity.c bench/tasks/growth.c bench/tasks/independent.c bench/tasks/stencil.c \
-	bench/tasks/wake.c bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/memory.c bench/ranks/migrate.c bench/ranks/ranks.c \
+	bench/tasks/wake.c bench/ranks/cg.c bench/ranks/delegate.c bench/ranks/forks.c bench/ranks/loaded.c bench/ranks/memory.c bench/ranks/migrate.c bench/ranks/ranks.c \
 	bench/ranks/ranks.h bench/ranks/sheet.c bench/ranks/sheet.h bench/ranks/stencil.c bench/ranks/twin.c \
 	bench/cg/bench.c bench/cg/cg.h bench/cg/frames.c bench/cg/make.c bench/cg/ours.c bench/cg/plans.c bench/cg/states.c \
 	bench/cg/system.c \

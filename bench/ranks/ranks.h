@@ -40,7 +40,7 @@ struct twin_traffic {
 /* Solves by so many iterations, on this rank's part of the blocks; compares with the answer. */
 int twin_solve(struct sheet *sheet, uint32_t count, double *seconds, struct twin_traffic *traffic);
 
-extern const struct bench_case ranks_cg, ranks_stencil, ranks_forks, ranks_memory, ranks_delegate,
-    ranks_migrate;
+extern const struct bench_case ranks_cg, ranks_stencil, ranks_loaded, ranks_forks, ranks_memory,
+    ranks_delegate, ranks_migrate;
 
 #endif

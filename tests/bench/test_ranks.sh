@@ -21,6 +21,7 @@ cg_hosts2_vs_twin <= 1.1
 cg_bytes_vs_twin <= 1.03
 cg_messages_vs_twin <= 1
 stencil_step_vs_twin <= 2
+loaded_r2_vs_twin <= 1.2
 record_us_per_task <= 1
 prune_ns_per_task <= 20
 memory_r4_vs_r1 <= 0.35

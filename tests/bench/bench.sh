@@ -31,7 +31,7 @@ lie_told() {
     shift 2
     liars_bench bench "$rival" || return 99
     status=0
-    LIAR=wrong DUITE_TIMEOUT=60 limited "$scratch/bench/duite-bench" "$@" > "$scratch/said" 2>&1 || status=$?
+    LIAR=wrong limited "$scratch/bench/duite-bench" "$@" > "$scratch/said" 2>&1 || status=$?
     cat "$scratch/said"
     test $status = 1 && grep -q "$series, $rival.*: wrong answer" "$scratch/said"
 }

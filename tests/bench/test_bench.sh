@@ -8,7 +8,7 @@ plan_later
 # What a user chose for programs of duite in general, even if it makes no sense, is not what is measured.
 tasks_in_full() {
     (export DUITE_SCHEDULER=nobody DUITE_MAPPING=nowhere DUITE_BALANCE=never DUITE_THREADS=none DUITE_SEED=no DUITE_TRACE=/no/such/folder/trace
-     DUITE_TIMEOUT=120 limited "$bench" tasks "$@")
+     limited "$bench" tasks "$@")
 }
 tasks() { tasks_in_full --quick "$@"; }
 
@@ -75,13 +75,13 @@ no_targets() { # OPTION...: other sizes or threads have none
 lied_to_in_full() { # ROLE OPTION...
     role=$1
     shift
-    LIAR=$role DUITE_TIMEOUT=120 limited "$scratch/bench/duite-bench" tasks --only stencil "$@"
+    LIAR=$role limited "$scratch/bench/duite-bench" tasks --only stencil "$@"
 }
 lied_to() { lied_to_in_full "$@" --quick; }
 
 # Four rounds after the first: two pairs, each there and back; of five orders not all are the same.
 there_and_back() {
-    LIAR=log LIAR_LOG=$scratch/log DUITE_TIMEOUT=120 \
+    LIAR=log LIAR_LOG=$scratch/log \
         limited "$scratch/turns/duite-bench" tasks --quick --only stencil --repeats 4 || return 1
     awk 'NR % 5 == 1 { round++ }
          { there[round] = there[round] " " $1; back[round] = " " $1 back[round] }

@@ -5,7 +5,7 @@
 . "${srcdir:-.}/tests/bench/bench.sh"
 plan_later
 
-bench_cg() { DUITE_TIMEOUT=200 limited "$bench" cg --states "$scratch/states" "$@"; }
+bench_cg() { limited "$bench" cg --states "$scratch/states" "$@"; }
 
 all_listed() {
     bench_cg --quick --repeats 1 > "$scratch/lines" 2> "$scratch/said" || { cat "$scratch/said" && return 1; }
@@ -82,7 +82,7 @@ not_saved() {
 }
 not_of_cg() {
     status=0
-    DUITE_TIMEOUT=60 limited "$bench" tasks --quick --system "$scratch/saved" > "$scratch/said" 2>&1 || status=$?
+    limited "$bench" tasks --quick --system "$scratch/saved" > "$scratch/said" 2>&1 || status=$?
     cat "$scratch/said"
     test $status = 2 && grep -q -e "--system is of cg" "$scratch/said"
 }

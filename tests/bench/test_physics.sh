@@ -4,7 +4,7 @@
 . "${srcdir:-.}/tests/bench/bench.sh"
 plan_later
 
-physics() { DUITE_TIMEOUT=100 limited "$bench" physics "$@"; }
+physics() { limited "$bench" physics "$@"; }
 
 all_listed() {
     physics --quick --repeats 1 > "$scratch/lines" 2> "$scratch/said" || { cat "$scratch/said" && return 1; }
@@ -27,7 +27,7 @@ formula_printed() { physics --list | grep -q '^explicit: .*5 x 24 + 3 x 8 a vert
 lied_to() { # the loop that the triad is part of is the liar
     liars_bench bench && mkdir -p "$scratch/bench/cg" && cp tests/bench/liar "$scratch/bench/cg/twin" || return 99
     status=0
-    LIAR=wrong DUITE_TIMEOUT=60 limited "$scratch/bench/duite-bench" physics --quick --repeats 1 --only explicit > "$scratch/said" 2>&1 ||
+    LIAR=wrong limited "$scratch/bench/duite-bench" physics --quick --repeats 1 --only explicit > "$scratch/said" 2>&1 ||
         status=$?
     cat "$scratch/said"
     test $status = 1 && grep -q "explicit, openmp.*: wrong answer" "$scratch/said"

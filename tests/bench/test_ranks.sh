@@ -5,7 +5,7 @@
 . "${srcdir:-.}/tests/bench/bench.sh"
 plan_later
 
-bench_ranks() { DUITE_TIMEOUT=120 limited "$bench" ranks "$@"; }
+bench_ranks() { limited "$bench" ranks "$@"; }
 
 all_listed() {
     bench_ranks --quick --repeats 1 > "$scratch/lines" || return 1

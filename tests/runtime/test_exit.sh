@@ -3,7 +3,6 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-DUITE_TIMEOUT=${DUITE_TIMEOUT:-60}
 times=2
 if quick; then times=1; fi
 for round in $(seq $times); do

@@ -4,7 +4,6 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-DUITE_TIMEOUT=${DUITE_TIMEOUT:-60}
 for n in 1 2 3; do
     ok "mappings see tasks on $n ranks" ranks $n tests/runtime/ranks_tasks
 done

@@ -3,7 +3,6 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-DUITE_TIMEOUT=${DUITE_TIMEOUT:-60}
 for n in 1 2 3; do
     ok "views on $n ranks" ranks $n tests/runtime/ranks_views
 done

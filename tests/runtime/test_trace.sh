@@ -248,18 +248,10 @@ begin() { # FILE
         --set 'cloths[0].pins=[]' --grain 100 --end 100000 --quiet --trace "$scratch/$1" --trace-steps :10 \
         --report "$scratch/hours.json" 2> "$scratch/said" &
     victim=$!
-    for wait in $(seq 300); do
-        test ! -s "$scratch/$1" || break
-        sleep 0.1
-    done
+    awaits $victim test -s "$scratch/$1"
 }
 stop() { # STATUS: it ends with this one
     kill -USR1 $victim
-    for wait in $(seq 300); do
-        kill -0 $victim 2> /dev/null || break
-        sleep 0.1
-    done
-    kill -9 $victim 2> /dev/null
     status=0
     wait $victim || status=$?
     cat "$scratch/said"
@@ -276,12 +268,11 @@ replaced() { # the second run's is whole
 }
 ok "a trace that another run replaces" replaced
 
+has_begun() { test -s "$scratch/killed" && test "$(wc -c < "$scratch/killed")" -ge 100000; }
 killed() {
-    cloth killed --end 20 & victim=$!
-    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-        sleep 0.1
-        test ! -s "$scratch/killed" || test "$(wc -c < "$scratch/killed")" -lt 100000 || break
-    done
+    (exec "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --set 'cloths[0].mesh.grid={width: 1, height: 1, nx: 30, ny: 30}' \
+        --set 'cloths[0].pins=[]' --grain 100 --end 20 --quiet --trace "$scratch/killed") & victim=$!
+    awaits $victim has_begun
     kill -9 $victim
     wait $victim || true
     refused killed "byte 28: the run did not come to its end" && ./duite-trace --partial "$scratch/killed" | grep "NOT WHOLE"

@@ -8,8 +8,10 @@
 #     skip_all REASON                  ends the script as skipped (77)
 # and the plan and the exit status follow at its end. What COMMAND prints is kept in $scratch/output, and shown as
 # TAP comments when the case fails. Also:
-#     ranks N COMMAND...               COMMAND under mpirun on N ranks, at most $DUITE_TIMEOUT seconds (default 300)
+#     ranks N COMMAND...               COMMAND under mpirun on N ranks, at most $DUITE_TIMEOUT seconds (default 1800): an
+#                                      end for what hangs, far above what any command takes on a busy machine
 #     limited COMMAND...               COMMAND with the same time limit
+#     awaits PID COMMAND...            waits until COMMAND passes, as long as the process lives: no time limit of its own
 #     quick                            whether only the quick subset is wanted (DUITE_QUICK=1)
 #     skip_unless FILE                 skip_all unless the program FILE was built
 #     install_duite PREFIX             make install there, whatever configure was told; `locations PREFIX` are its settings
@@ -100,7 +102,16 @@ skip_unless() { test -x "$1" || skip_all "$1 is not built"; }
 
 quick() { test "${DUITE_QUICK:-}" = 1; }
 
-limited() { timeout --kill-after=10 "${DUITE_TIMEOUT:-300}" "$@"; }
+limited() { timeout --kill-after=10 "${DUITE_TIMEOUT:-1800}" "$@"; }
+
+awaits() {
+    tap_awaited=$1
+    shift
+    until "$@" 2> /dev/null; do
+        kill -0 "$tap_awaited" 2> /dev/null || return 1
+        sleep 0.1
+    done
+}
 
 ranks() {
     tap_n=$1

@@ -10,7 +10,7 @@
 
 __attribute__((constructor)) static void prepare(void)
 {
-    setenv("CK_DEFAULT_TIMEOUT", "120", 0);
+    setenv("CK_DEFAULT_TIMEOUT", "1200", 0);
     setenv("HWLOC_HIDE_ERRORS", "2", 0);
     setenv("HWLOC_COMPONENTS", "-gl", 0); /* as in mpi.sh */
     if (geteuid() == 0) {

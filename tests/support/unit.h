@@ -19,7 +19,7 @@
  *     }
  *
  * Each case runs in a process of its own, so that a crash fails one case; under mpirun all run in
- * the one process that MPI knows. A case may take 120 seconds. */
+ * the one process that MPI knows. A case that takes 20 minutes is taken to hang. */
 
 #include <check.h>
 

@@ -22,24 +22,15 @@ two="${MPIRUN:-mpirun} --oversubscribe --bind-to none -n 2"
 host=$(uname -n)
 dead=$(sh -c 'echo $$') # a process that was
 
-await() { # COMMAND...: until it succeeds, or half a minute is over
-    for _ in $(seq 300); do
-        "$@" && return 0
-        sleep 0.1
-    done
-    return 1
-}
 over() { ! kill -0 "$1" 2> /dev/null; }
 begin() { # COMMAND...: a run of hours, in the background, that has frames
     rm -rf frames
     "$@" "$DUITE_CLOTH" scene.yaml --threads 1 --quiet --output frames > first 2>&1 &
     job=$!
-    await test -e frames/cloth.pc2
+    awaits $job test -e frames/cloth.pc2
 }
 stop() { # PROCESS: a run of hours that goes well
     kill -USR1 "$1"
-    await over "$1"
-    kill -KILL "$1" 2> /dev/null
     status=0
     wait "$1" || status=$?
     test $status = 0 && test ! -e frames/duite.lock
@@ -71,11 +62,11 @@ at_once() { # of two runs that begin together one goes on
         "$DUITE_CLOTH" scene.yaml --threads 1 --quiet --output frames > run$number 2>&1 &
         eval "run$number=$!"
     done
-    await eval 'over $run1 || over $run2'
+    awaits $$ eval 'over $run1 || over $run2'
     over $run1 && set -- $run1 $run2 1 || set -- $run2 $run1 2
     status=0
     wait "$1" || status=$?
-    await test -e frames/cloth.pc2
+    awaits "$1" test -e frames/cloth.pc2
     echo "exit status $status"
     cat run1 run2
     test $status = 2 && grep -q "another run writes into this folder" "run$3" && stop "$2"
@@ -98,7 +89,7 @@ replaced() {
 }
 ok "a lock of a dead process" replaced
 killed() { # SIGNAL: ends a run; whether it leaves its lock
-    begin env && kill -s "$1" $job && await over $job
+    begin env && kill -s "$1" $job && awaits $$ over $job
     wait $job
     echo "exit status $?"
     test -e frames/duite.lock

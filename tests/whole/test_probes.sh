@@ -98,12 +98,10 @@ ok "a run that does not rest says so" restless
 
 # ---- What goes wrong
 
+has_rows() { test "$(wc -l < killed/probes.csv)" -gt 30; }
 killed() { # rows up to then are whole
     "$DUITE_CLOTH" sheet.yaml --quiet --output killed --end 1000 & pid=$!
-    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30; do
-        test "$(wc -l 2> /dev/null < killed/probes.csv)" -gt 30 2> /dev/null && break
-        sleep 0.3
-    done
+    awaits $pid has_rows
     kill -TERM $pid && wait $pid
     rows=$(($(wc -l < killed/probes.csv) - 1))
     test $rows -ge 30 && whole killed/probes.csv $rows && tail -c 1 killed/probes.csv | cmp - newline

@@ -28,19 +28,8 @@ echo $$ > pid.${OMPI_COMM_WORLD_RANK:-0}
 exec "$@"
 END
 
-await() { # COMMAND...: until it succeeds, or the run is over, or half a minute is
-    for _ in $(seq 300); do
-        "$@" && return 0
-        kill -0 $job 2> /dev/null || return 1
-        sleep 0.1
-    done
-    return 1
-}
-ended() { ! kill -0 $job 2> /dev/null; }
 rows() { test -e frames/probes.csv && test "$(wc -l < frames/probes.csv)" -gt "$1"; }
 ends_well() { # of the run in the background: status 0, though it would take hours
-    await ended
-    kill -KILL $job 2> /dev/null
     status=0
     wait $job || status=$?
     echo "exit status $status"
@@ -53,7 +42,7 @@ begin() { # COMMAND...: in the background, until it has made three steps
     rm -rf frames pid.* stopped.json
     "$@" sh rank "$DUITE_CLOTH" scene.yaml --threads 2 --output frames --report stopped.json > printed 2> complained &
     job=$!
-    await rows 3
+    awaits $job rows 3
 }
 whole() { # frames 0 and 1, the second of the step that the run ended with; the same bits as a run that ends there
     set -- $(sed -n 's/^duite-cloth: stopped as asked by SIGUSR1 after step \([0-9]*\), at .* of 100000 s; the last frame is 1$/\1/p' complained)
@@ -76,7 +65,7 @@ due() { # a frame that is due is not written twice
     rm -rf frames
     "$DUITE_CLOTH" dense.yaml --output frames > printed 2> complained &
     job=$!
-    await rows 3 && kill -USR1 $job && ends_well || return 1
+    awaits $job rows 3 && kill -USR1 $job && ends_well || return 1
     set -- $(sed -n 's/^duite-cloth: stopped as asked by SIGUSR1 after step \([0-9]*\), .*; the last frame is \([0-9]*\)$/\1 \2/p' complained)
     tail -n 2 frames/frames.csv
     test "$1" = "$2" && test "$(tail -n 1 frames/frames.csv | cut -d , -f 1)" = "$2"

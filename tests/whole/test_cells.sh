@@ -59,7 +59,7 @@ drapes() { # WHAT MOST CELLS MATERIAL
     run drape.yaml && below "$1" "$(unlike)" "$2"
 }
 springs='density: 0.2, stretch: 500, shear: 100, bending: {rigidity: 1.0e-5}'
-ok "cotton drapes symmetrically" drapes "mirrored cotton" 1e-6 '' 'like: cotton'
+ok "a rib knit drapes symmetrically" drapes "a mirrored rib knit" 1e-6 '' 'like: rib_knit'
 ok "springs with one diagonal a cell do" drapes "mirrored springs" 1e-6 '' "$springs, diagonals: one"
 ok "with cells by turns, too" drapes "alternating springs" 1e-6 ', cells: alternate' "$springs, diagonals: one"
 leans() {
@@ -107,7 +107,7 @@ for turn in 0 15 30 45 90; do
     ok "a sheet of equilateral triangles pulled at $turn degrees" pulled $turn
 done
 even() {
-    printf 'schema: 1\ncloths: [{mesh: {grid: {width: 0.6, nx: 14, ny: 15, cells: equilateral}}, material: cotton, pins: [{nearest: [0, 0, 0], radius: 0.12}]}]
+    printf 'schema: 1\ncloths: [{mesh: {grid: {width: 0.6, nx: 14, ny: 15, cells: equilateral}}, material: rib_knit, pins: [{nearest: [0, 0, 0], radius: 0.12}]}]
 time: {h: 0.01, end: 0.3, fps: 1}\nsolver: {stop: {mass_norm: 1.0e-7}}\nprobes: [{name: p, vertices: [0, 13, 189, 202], values: [position]}]\n' > even.yaml
     run even.yaml || return 1
     # shellcheck disable=SC2046 # four numbers

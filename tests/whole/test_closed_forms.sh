@@ -74,7 +74,7 @@ cloths:
     masses: [{vertices: [1], mass: 2}]
     velocity: [2, 0, 0]
     name: short
-materials: {wire: {density: 1, stretch: 1, damping: {mass: 3}}}
+materials: {wire: {density: 1, ea: 1, damping: {mass: 3}}}
 time: {h: 0.01, end: 0.5}
 solver: {stop: {relative: 1e-13}}
 probes: [{name: p, cloth: long, vertices: [0, 1, 2]}, {name: q, cloth: short, vertices: [0, 1]}]

@@ -15,7 +15,7 @@ cloths:
     pins: [{vertices: [0, 7]}]
 materials:
   cotton: {density: 0.2, stretch: 500, damping: {mass: 1}}
-time: {h: 0.001, end: 100000, fps: 1000}
+time: {h: 0.001, end: 5000, fps: 1000}
 grain: 20
 END
 two="${MPIRUN:-mpirun} --oversubscribe --bind-to none -n 2"

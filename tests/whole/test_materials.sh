@@ -112,7 +112,7 @@ lattice() { # A B MATERIAL LOADS
 schema: 1
 gravity: [0, 0, 0]
 cloths:
-  - mesh: {grid: {width: $(awk -v a="$1" 'BEGIN { print 4 * a }'), height: $(awk -v b="$2" 'BEGIN { print 3 * b }'), nx: 5, ny: 4}}
+  - mesh: {grid: {width: $(awk -v a="$1" 'BEGIN { print 4 * a }'), height: $(awk -v b="$2" 'BEGIN { print 3 * b }'), nx: 5, ny: 4, cells: same}}
     material: m
     loads: [$4]
 materials:

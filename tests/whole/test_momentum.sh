@@ -37,7 +37,7 @@ cloths:
     velocity: [1, 0.5, 0.25]
     start: [{vertices: [3], translate: [0.1, 0, 0.1]}]
     pins: [{vertices: [1]}]
-materials: {m: {density: 0.2, stretch: 5000, shear: 1000, damping: {stiffness: 0.005, mass: 0.5, viscous: 0.001}}}
+materials: {m: {density: 0.2, stretch: 5000, ea: 5000, shear: 1000, damping: {stiffness: 0.005, mass: 0.5, viscous: 0.001}}}
 time: {h: 0.01, end: 0.3, energy_growth: 0, stretch_growth: 0}
 grain: 30
 probes:
@@ -65,7 +65,7 @@ ok "without a preconditioner, by a loose stop" keeps 1e-12 free --set solver.pre
 ok "by Newton steps" keeps 1e-12 free --set newton.steps=4
 ok "with contact in the solve, which nothing meets" keeps 1e-12 free --set contact=filter --set 'obstacles=[{plane: {point: [0, -9, 0], normal: [0, 1, 0]}}]'
 ok "triangles" keeps 1e-12 free --set 'materials.m={density: 0.2, model: triangles, stretch: 5000, shear: 1000, damping: {stiffness: 0.005, mass: 0.5, viscous: 0.001}}' \
-    --set 'cloths[2].material=n' --set 'materials.n={density: 0.2, stretch: 5000}'
+    --set 'cloths[2].material=n' --set 'materials.n={density: 0.2, ea: 5000}'
 
 same() { # the same bits on ranks and threads
     run two.yaml --report report.json && one=$(value state_hash) && run two.yaml --threads 3 --report report.json && threads=$(value state_hash) &&
@@ -93,7 +93,7 @@ cloths:
     mass_per_vertex: 0.1
     start: [{vertices: [1], translate: [3.94784e-6, 0, 0], velocity: [0, 6.283185307179586, 0]}]
     pins: [{vertices: [0]}]
-materials: {m: {density: 0.2, stretch: 1.0e+6}}
+materials: {m: {density: 0.2, ea: 1.0e+6}}
 time: {h: 0.01, end: 1, stretch_growth: 0, energy_growth: 0}
 newton: {steps: 100, tolerance: 1.0e-10}
 solver: {stop: {relative: 1.0e-13}}

@@ -29,7 +29,7 @@ static const char *const base =
     "materials:\n"
     "  springs: {density: 0.2, stretch: 50, shear: 25, bend: 5, damping: {viscous: 0.001, mass: "
     "0.1, stiffness: 0.01}}\n"
-    "  undamped: {density: 0.2, stretch: 50}\n"
+    "  undamped: {density: 0.2, stretch: 50, ea: 50}\n"
     "  hinges: {density: 0.2, stretch: 50, shear: 25, bending: {rigidity: 0.001}}\n"
     "  quadratic: {density: 0.2, stretch: 50, shear: 25, bending: {model: quadratic, rigidity: "
     "[0.001, 0.002]}}\n"

@@ -28,9 +28,10 @@ enum { EXPLORE_THREADS = 6 };
 /* One operation of the code, by where it stands, done otherwise: a planted bug. */
 enum explore_change {
     EXPLORE_NOTHING,
-    EXPLORE_DROP, /* it does not happen; a load reads 0, a compare-and-exchange fails */
-    EXPLORE_RELAX /* memory_order_relaxed; an exchange is a store, a compare-and-exchange does not
-                     compare */
+    EXPLORE_DROP,   /* it does not happen; a load reads 0, a compare-and-exchange fails */
+    EXPLORE_RELAX,  /* memory_order_relaxed; an exchange is a store, a compare-and-exchange does not
+                      compare */
+    EXPLORE_REORDER /* memory_order_relaxed and no more: the operation stays what it is */
 };
 
 struct explore_plant {

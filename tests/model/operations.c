@@ -8,6 +8,12 @@ static bool releases(memory_order order)
            order == memory_order_seq_cst;
 }
 
+/* The order in which an operation with that plant is done. */
+static memory_order order_with(enum explore_change change, memory_order order)
+{
+    return change == EXPLORE_RELAX || change == EXPLORE_REORDER ? memory_order_relaxed : order;
+}
+
 uint64_t explore_load(struct explore_place place, memory_order order)
 {
     (void)order;
@@ -32,8 +38,7 @@ void explore_store(struct explore_place place, uint64_t value, memory_order orde
     enum explore_change change = machine_change(place.function, place.what);
     if (change == EXPLORE_DROP)
         return;
-    if (change == EXPLORE_RELAX)
-        order = memory_order_relaxed;
+    order = order_with(change, order);
     if (order == memory_order_seq_cst)
         modify(MACHINE_EXCHANGE, place, value, 0, order);
     else
@@ -45,15 +50,17 @@ uint64_t explore_exchange(struct explore_place place, uint64_t value, memory_ord
     enum explore_change change = machine_change(place.function, place.what);
     if (change == EXPLORE_RELAX)
         machine_store(place, value, false);
-    return change ? 0 : modify(MACHINE_EXCHANGE, place, value, 0, order);
+    if (change == EXPLORE_RELAX || change == EXPLORE_DROP)
+        return 0;
+    return modify(MACHINE_EXCHANGE, place, value, 0, order_with(change, order));
 }
 
 uint64_t explore_add(struct explore_place place, uint64_t value, memory_order order)
 {
     enum explore_change change = machine_change(place.function, place.what);
-    if (change == EXPLORE_RELAX)
-        order = memory_order_relaxed;
-    return change == EXPLORE_DROP ? 0 : modify(MACHINE_ADD, place, value, 0, order);
+    if (change == EXPLORE_DROP)
+        return 0;
+    return modify(MACHINE_ADD, place, value, 0, order_with(change, order));
 }
 
 bool explore_compare(struct explore_place place, uint64_t *expected, uint64_t value,
@@ -66,7 +73,7 @@ bool explore_compare(struct explore_place place, uint64_t *expected, uint64_t va
         modify(MACHINE_EXCHANGE, place, value, 0, memory_order_relaxed);
         return true;
     }
-    uint64_t old = modify(MACHINE_COMPARE, place, value, *expected, order);
+    uint64_t old = modify(MACHINE_COMPARE, place, value, *expected, order_with(change, order));
     bool same = old == *expected;
     *expected = old;
     return same;

@@ -21,13 +21,12 @@ static struct {
     struct data_object object;
     struct data_version *version;
     _Atomic int written, done[READERS]; /* by the producer, by each reader */
-    int readers;                        /* how many there are */
     int ran[TASKS], freed;
 } its;
 
 static void all_done(void)
 {
-    for (int i = 0; i < its.readers; i++)
+    for (int i = 0; i < READERS; i++)
         explore_check(atomic_load_explicit(&its.done[i], memory_order_relaxed));
 }
 
@@ -93,7 +92,7 @@ static void fork_writer(void)
 
 static void fork_readers(void)
 {
-    for (int i = 0; i < its.readers; i++)
+    for (int i = 0; i < READERS; i++)
         fork_reader(i);
 }
 
@@ -126,7 +125,6 @@ static void rename_away(void)
 static void start(void)
 {
     memset(&its, 0, sizeof its);
-    its.readers = READERS;
     its.graph.hooks.ready = ready;
     its.object = (struct data_object){.type = DUITE_F64, .most = 1};
     its.object.current = its.version = data_object_version(&its.object);
@@ -137,20 +135,20 @@ static void start_read(void)
 {
     start();
     produce();
-    for (int i = 0; i < its.readers; i++)
+    for (int i = 0; i < READERS; i++)
         data_version_hold(its.version);
 }
 
 static void end_read(void)
 {
-    for (int i = 0; i < its.readers; i++)
+    for (int i = 0; i < READERS; i++)
         explore_check(its.ran[i] == 1);
     explore_check(!its.freed);
 }
 
 static void end_freed(void)
 {
-    for (int i = 0; i < its.readers; i++)
+    for (int i = 0; i < READERS; i++)
         explore_check(its.ran[i] == 1);
     explore_check(its.freed == 1);
 }

@@ -14,9 +14,11 @@
 static pid_t loop[LOOPS_MOST];
 static unsigned n;
 
-static void run_for_ever(void)
+static void run_for_ever(pid_t parent)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) /* it ended before */
+        _exit(0);
     for (volatile int on = 1; on;)
         ;
 }
@@ -24,11 +26,14 @@ static void run_for_ever(void)
 int loops_start(unsigned a_core)
 {
     const unsigned wanted = a_core * subject_cores();
+    const pid_t parent = getpid();
     fflush(NULL);
-    while (n < wanted && n < LOOPS_MOST) {
+    if (wanted > LOOPS_MOST)
+        return fprintf(stderr, "duite-bench: %u loops are more than %d\n", wanted, LOOPS_MOST), 1;
+    while (n < wanted) {
         loop[n] = fork();
         if (loop[n] == 0)
-            run_for_ever();
+            run_for_ever(parent);
         if (loop[n] < 0) {
             fprintf(stderr, "duite-bench: loop %u of %u does not start: %s\n", n + 1, wanted,
                     strerror(errno));

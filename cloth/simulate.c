@@ -220,10 +220,10 @@ static bool check_stop(struct run *run)
     return wanted;
 }
 
-/* What frames and rows of probes take on the disk, bytes, at most. */
+/* What frames and rows of probes, in steps of h, take on the disk, bytes. */
 static double output_bytes(const struct run *run)
 {
-    enum { NUMBER = 20, INDEX = 24 }; /* characters of a number with 17 digits; of a frame's line */
+    enum { NUMBER = 26, INDEX = 24 }; /* characters of a number with 17 digits; of a frame's line */
     const struct model *model = &run->model;
     const double frames = floor(model->fps * model->end) + 1, steps = model->end / model->h;
     const char *header = flow_header(run->flow);
@@ -284,9 +284,11 @@ static int prepare(struct run *run)
     if (run->rank == 0 && run->model.n_probes && !options->output)
         fprintf(stderr, "duite-cloth: warning: the scene has probes, whose table is written into "
                         "the folder of --output; there is none\n");
-    if (run->rank == 0 && options->save_system)
+    if (run->rank == 0 && options->output)
+        check_room(run, &error);
+    if (!error.code && run->rank == 0 && options->save_system)
         open_system(run, &error);
-    if (!error.code && run->rank == 0 && options->output && !check_room(run, &error))
+    if (!error.code && run->rank == 0 && options->output)
         open_output(run, &error);
     return agree(run, &error);
 }

@@ -96,8 +96,10 @@ static const char *difference(const struct started *a, const struct started *b)
         return "schedulers" EITHER("scheduler", "DUITE_SCHEDULER");
     if (a->mapping != b->mapping)
         return "mappings" EITHER("mapping", "DUITE_MAPPING");
-    if (a->traced != b->traced || a->first != b->first || a->end != b->end)
+    if (a->traced != b->traced)
         return "traces" EITHER("trace", "DUITE_TRACE");
+    if (a->first != b->first || a->end != b->end)
+        return "traced steps: options.trace_first and options.trace_end";
     return a->balance != b->balance ? "balancers" EITHER("balance", "DUITE_BALANCE") : NULL;
 }
 

@@ -15,8 +15,9 @@
  * one rank from the next get, wait or stop; on several all of them end, as if memory had run out.
  * The time in which the process was stopped does not count.
  *
- * A function under the guard that calls exit ends the process with EXIT_FAILURE, whatever status it
- * asked for, and standard error names the policy and the function. */
+ * A function under the guard (policy_seconds is not 0) that calls exit ends the process with
+ * EXIT_FAILURE, whatever status it asked for, and standard error names the policy and the function.
+ */
 
 #include <stddef.h>
 #include <stdint.h>

@@ -300,6 +300,16 @@ static void look_for_others(struct compare *compare, size_t round, double *most)
     compare_journal_warn(compare, warning);
 }
 
+/* Whether there is anything left to run. */
+static bool is_left(const struct compare *compare)
+{
+    for (size_t i = 0; i < compare->n; i++)
+        for (size_t round = 0; round < compare->rounds; round++)
+            if (!compare->config[i].run[round].done)
+                return true;
+    return false;
+}
+
 static int run_all(struct compare *compare)
 {
     char text[200];
@@ -307,8 +317,9 @@ static int run_all(struct compare *compare)
     size_t *order = calloc(compare->n, sizeof *order);
     int failed = !order;
     load_begin(&compare->load);
-    compare_journal_warn(
-        compare, load_warn_average(compare->load.average, compare->load.cores, text, sizeof text));
+    if (is_left(compare))
+        compare_journal_warn(compare, load_warn_average(compare->load.average, compare->load.cores,
+                                                        text, sizeof text));
     printf("%zu configurations, %zu rounds, order from seed %" PRIu64 "\n", compare->n,
            compare->rounds, compare->seed);
     for (size_t round = 0; round < compare->rounds && !failed; round++) {

@@ -143,6 +143,7 @@ static int execute(const struct compare *compare, struct line *line)
     int status = 1;
     snprintf(log, sizeof log, "%s/run.log", compare->folder);
     fflush(NULL);
+    unlink(log); /* the last run's: one that cannot be started says nothing */
     pid_t child = fork();
     if (!child) {
         environment_forget();
@@ -151,7 +152,7 @@ static int execute(const struct compare *compare, struct line *line)
         execvp(line->word[0], line->word);
         _exit(127);
     }
-    return child < 0 || waitpid(child, &status, 0) < 0 ? 1 : status;
+    return child < 0 || waitpid(child, &status, 0) < 0 ? 1 << 8 : status;
 }
 
 /* The value behind "key": in a flat object; NULL: it is not there. */

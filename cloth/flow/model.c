@@ -96,7 +96,7 @@ void model_parts(const struct model *model, uint32_t material, bool *triangles, 
         const struct model_cloth *cloth = model->cloths + c;
         const bool has = has_material(cloth, material);
         *triangles = *triangles || (has && cloth->mesh.n_triangles);
-        *edges = *edges || (has && cloth->mesh.n_lone_edges);
+        *edges = *edges || (has && cloth->mesh.n_bare_edges);
     }
 }
 
@@ -114,7 +114,7 @@ struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
     if (m->model == MODEL_TRIANGLES)
         return (struct mesh_elastic){m->stretch, model_weft(m), m->shear, m->poisson};
     for (uint32_t c = 0; c < model->n_cloths; c++) {
-        if (!has_material(model->cloths + c, material))
+        if (!has_material(model->cloths + c, material) || !model->cloths[c].mesh.n_triangles)
             continue;
         const struct mesh_moduli moduli = model_moduli(m);
         const struct mesh_elastic one = mesh_elastic_of(model_rest(model->cloths + c), &moduli);

@@ -34,7 +34,8 @@ struct mesh {
                          * its first corner, others are cut by clipping ears */
 
     uint32_t n_lone_edges;
-    uint32_t *lone_edge; /* n_lone_edges x 2: edges given without triangles */
+    uint32_t n_bare_edges; /* of these, that no triangle has: they come first */
+    uint32_t *lone_edge;   /* n_lone_edges x 2: edges given without triangles */
 
     uint32_t grid_nx, grid_ny;      /* vertices in u and v of a grid; 0: not a grid */
     double grid_width, grid_height; /* m, before any transform */

@@ -171,9 +171,10 @@ static int take(const struct output_lock *lock, const char *folder, struct cloth
     if (locked && !is_stale(&holder))
         return refuse(folder, lock->path, &holder, error);
     if (write_lock(lock->take) != 0) {
+        if (errno != EEXIST)
+            return output_refuse(error, "write", lock->take);
         read_holder(lock->take, &holder);
-        return errno == EEXIST ? refuse(folder, lock->take, &holder, error)
-                               : output_refuse(error, "write", lock->take);
+        return refuse(folder, lock->take, &holder, error);
     }
     const int code = replace(lock, folder, note, error);
     unlink(lock->take);

@@ -99,10 +99,11 @@ int output_cache_frame(struct output_cache *cache, uint64_t frame, double *posit
 void output_cache_close(struct output_cache *cache);
 
 /* Writes a system for other solvers, in Matrix Market form (Boisvert, Pozo & Remington 1996), into
- * a folder that is there (output_lock_take): matrix.mtx (S A S + I - S: symmetric, its lower triangle, one entry a
- * place, column by column), and as arrays rhs.mtx (S b), solution.mtx (dv), mass.mtx (of each
- * unknown; 0 where held), position.mtx (after the step). Unknown 3 i + c is component c of vertex
- * i, both from 0. Files of these names are replaced. Errors as of output_open. Local. */
+ * a folder that is there (output_lock_take): matrix.mtx (S A S + I - S: symmetric, its lower
+ * triangle, one entry a place, column by column), and as arrays rhs.mtx (S b), solution.mtx (dv),
+ * mass.mtx (of each unknown; 0 where held), position.mtx (after the step). Unknown 3 i + c is
+ * component c of vertex i, both from 0. Files of these names are replaced. Errors as of
+ * output_open. Local. */
 int output_system(const char *folder, const struct solve_system *system, struct cloth_error *error);
 
 /* Reads such a system back, as pairs of blocks, to be freed by solve_system_free: S A S of it is

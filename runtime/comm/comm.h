@@ -72,7 +72,7 @@ struct comm_looker {
     /* Of a recorded graph: one that has not come; or, if it sends, that waits for its buffer. */
     void (*channel)(void *context, const struct graph_channel *channel);
 };
-void comm_look(struct comm *comm, const struct comm_looker *looker);
+bool comm_look(struct comm *comm, const struct comm_looker *looker);
 
 /* A number that changes with each message that comes or goes. */
 uint64_t comm_movement(struct comm *comm);

@@ -24,11 +24,11 @@ static bool lock_soon(struct comm *comm)
     return false;
 }
 
-void comm_look(struct comm *comm, const struct comm_looker *looker)
+bool comm_look(struct comm *comm, const struct comm_looker *looker)
 {
     comm_arrivals_look(&comm->arrivals, looker->awaited, looker->context);
     if (!lock_soon(comm))
-        return;
+        return false;
     for (int i = 0; i < comm->sends.n; i++) {
         const struct graph_task *task = comm->sends.what[i];
         if (task->kind == GRAPH_SEND)
@@ -36,4 +36,5 @@ void comm_look(struct comm *comm, const struct comm_looker *looker)
     }
     comm_channels_look(comm, looker);
     comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
+    return true;
 }

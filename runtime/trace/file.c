@@ -139,10 +139,10 @@ static bool make(struct trace *trace, const struct trace_setup *setup)
 static int open_fresh(const char *path)
 {
     struct stat there;
-    const bool is_file = lstat(path, &there) != 0 || S_ISREG(there.st_mode);
-    if (is_file && unlink(path) != 0 && errno != ENOENT)
-        return -1;
-    return open(path, O_WRONLY | O_CREAT | (is_file ? O_EXCL : O_TRUNC) | O_CLOEXEC, 0666);
+    bool fresh = lstat(path, &there) != 0 || S_ISREG(there.st_mode);
+    if (fresh && unlink(path) != 0 && errno != ENOENT)
+        fresh = false; /* the folder keeps the file: then it is written anew where it is */
+    return open(path, O_WRONLY | O_CREAT | (fresh ? O_EXCL : O_TRUNC) | O_CLOEXEC, 0666);
 }
 
 int trace_open(struct trace **out, const struct trace_setup *setup)
@@ -246,12 +246,12 @@ static void write_counters(struct trace *trace, const struct trace_counters *cou
                     1);
 }
 
-/* Whether the path still leads to what was written. */
+/* Whether some name still leads to what was written; the program may have changed its folder, so
+ * the path may not any more. */
 static bool is_there(const struct trace *trace)
 {
-    struct stat here, there;
-    return fstat(trace->fd, &here) == 0 && stat(trace->path, &there) == 0 &&
-           here.st_dev == there.st_dev && here.st_ino == there.st_ino;
+    struct stat here;
+    return fstat(trace->fd, &here) == 0 && here.st_nlink > 0;
 }
 
 int trace_close(struct trace *trace, const struct trace_counters *counters)

@@ -213,12 +213,11 @@ void work_tell(struct work_pool *pool, double seconds)
     pthread_mutex_lock(&pool->watch.lock);
     tell_main(&page, seconds);
     const unsigned bodies = tell_bodies(&page, hold_workers(pool)), before = page.lines;
-    if (pool->setup.comm)
-        comm_look(pool->setup.comm, &looker);
+    const bool looked = !pool->setup.comm || comm_look(pool->setup.comm, &looker);
     graph_away_look(pool->setup.graph, tell_away, &page);
     const uint64_t left = unfinished(pool);
     line(&page, "unfinished tasks of this rank: %llu", (unsigned long long)left);
-    if (left && !bodies && page.lines == before + 1 && !page.left_out)
+    if (looked && left && !bodies && page.lines == before + 1 && !page.left_out)
         line(&page, "they wait for nothing that duite knows of: a body may have written beyond its "
                     "objects and overwritten duite's memory; run again with DUITE_CHECK=accesses "
                     "in the environment, which names such a body");

@@ -220,12 +220,21 @@ static void fall_asleep(struct work_park *park, double seconds)
 #define work_enters(worker, task)         NULL
 #define work_leaves(worker, below)        ((void)(below))
 
+/* No other program runs on these cores. */
+#include <sys/resource.h>
+#define getrusage(who, usage) ((usage)->ru_nivcsw = 0)
+
+#include "runtime/base/thread.h"
+#define base_thread_start(thread, what, run, context)                                              \
+    ((void)(what), pthread_create(thread, NULL, run, context))
+
 #define work_park_announce announce
 #define work_park_sleep    fall_asleep
 #include "runtime/workers/count.c"
 #include "runtime/workers/hooks.c"
 #include "runtime/workers/main.c"
 #include "runtime/workers/note.c"
+#include "runtime/workers/spin.c"
 #include "runtime/workers/workers.c"
 
 #ifndef REAL_QUEUES

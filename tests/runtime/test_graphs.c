@@ -391,7 +391,6 @@ int main(void)
     Suite *suite = suite_create("graphs");
     TCase *replays = tcase_create("replays");
 
-    tcase_set_timeout(replays, 120);
     tcase_add_test(replays, stencil_as_by_hand);
     tcase_add_test(replays, counters_of_replays);
     tcase_add_test(replays, sums_have_the_same_bits);

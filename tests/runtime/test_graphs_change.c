@@ -223,7 +223,6 @@ int main(void)
     Suite *suite = suite_create("graphs that change");
     TCase *changes = tcase_create("changes");
 
-    tcase_set_timeout(changes, 120);
     tcase_add_test(changes, arguments_change);
     tcase_add_test(changes, objects_change);
     tcase_add_test(changes, recorded_anew);

@@ -3,5 +3,4 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-DUITE_TIMEOUT=${DUITE_TIMEOUT:-60}
 ok "wrong mappings on 2 ranks" ranks 2 tests/runtime/ranks_mappings

@@ -15,7 +15,6 @@ memcheck() {
         --num-callers=40 --keep-debuginfo=yes --error-exitcode=9 --suppressions="$srcdir/tests/support/valgrind.supp" "$@"
 }
 
-DUITE_TIMEOUT=${DUITE_TIMEOUT:-1200}
 if test "${1:-}" = --long; then
     for n in 1 2; do
         memcheck $n tests/runtime/random_programs --base 4${n}000000 --programs $((1000 / n))

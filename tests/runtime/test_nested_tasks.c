@@ -367,7 +367,6 @@ int main(void)
     TCase *cases = tcase_create("tasks that fork");
 
     tcase_add_checked_fixture(cases, begin, end);
-    tcase_set_timeout(cases, 120);
     tcase_add_test(cases, depth);
     tcase_add_loop_test(cases, memory, 0, 3);
     tcase_add_test(cases, sizes);

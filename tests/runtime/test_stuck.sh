@@ -50,13 +50,9 @@ tells "1: kernel take of a recorded graph waits for a message that has not come 
 
 # What a body overwrote beyond its object was a task's: nobody knows any more what that waits for.
 overrun() {
-    timeout --kill-after=10 ${DUITE_TIMEOUT:-300} tests/runtime/overrun &
+    tests/runtime/overrun &
     job=$!
-    for _ in $(seq 600); do
-        grep -q "unfinished tasks of this rank" "$scratch/output" && break
-        kill -0 $job || return 1
-        sleep 0.1
-    done
+    awaits $job grep -q "unfinished tasks of this rank" "$scratch/output" || return 1
     kill -KILL $job
     wait $job || true
 }

@@ -16,8 +16,6 @@ pictures() {
 plan_later
 unset MAKEFLAGS MFLAGS MAKELEVEL # a make of its own
 rm -rf demo
-DUITE_TIMEOUT=1800
-export DUITE_TIMEOUT
 ok "make demo" limited "${MAKE:-make}" demo
 ok "it ran to its end" report steps 320
 ok "on two ranks" report ranks 2

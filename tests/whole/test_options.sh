@@ -260,4 +260,7 @@ ok "bend of triangles" idle "bend is of springs" scene.yaml --set materials.cott
 ok "shear of a mesh without rows" idle "shear is of the springs of grids" scene.yaml --set "$one" --set 'cloths[0].pins=[]' --set materials.cotton.shear=1
 chain='cloths[0]={mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}, material: cotton, mass_per_vertex: 1}'
 ok "EA of a sheet" idle "ea is of edges without triangles" scene.yaml --set materials.cotton.ea=1
+side='cloths[0]={mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], edges: [[0, 1]], triangles: [[0, 1, 2]]}}, material: cotton}'
+ok "EA of an edge that is a triangle's side" idle "ea is of edges without triangles" scene.yaml --set "$side" --set materials.cotton.ea=1
+ok "an edge that is a triangle's side needs none" "$DUITE_CLOTH" scene.yaml --end 0.01 --quiet --set "$side"
 ok "stretch of a chain" idle "stretch is of triangles and threads" scene.yaml --set "$chain" --set materials.cotton.ea=1

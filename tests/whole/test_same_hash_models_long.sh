@@ -6,8 +6,6 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless tests/whole/same_hash
 plan_later
-DUITE_TIMEOUT=1800
-export DUITE_TIMEOUT
 
 cat > "$scratch/world.yaml" << 'END'
 schema: 1

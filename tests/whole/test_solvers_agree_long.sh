@@ -5,7 +5,6 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 skip_unless "$DUITE_CLOTH"
 scene=$srcdir/cloth/scenes/sheet.yaml
-DUITE_TIMEOUT=1500
 
 simulate() { # TOLERANCE PRECONDITIONER
     limited "$DUITE_CLOTH" "$scene" --threads 2 --set time.end=0.1 --set "solver={preconditioner: $2, stop: {relative: $1}}" \

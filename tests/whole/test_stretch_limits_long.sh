@@ -5,8 +5,6 @@
 skip_unless "$DUITE_CLOTH"
 plan_later
 cd "$scratch" || exit 99
-DUITE_TIMEOUT=1800
-export DUITE_TIMEOUT
 exec 3>&1
 
 value() { sed -n "s/^ *\"$1\": *\"\{0,1\}\([^\",]*\).*/\1/p" report.json; }

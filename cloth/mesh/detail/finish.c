@@ -173,7 +173,33 @@ static int check_twice(const struct mesh *mesh, const struct mesh_source *source
         source->path ? source->edge_line[at] : at);
 }
 
-static int check_manifold(const struct mesh *mesh, const struct mesh_source *source,
+/* Of the lone edges those that no triangle has come first, else as they were. Uses up the sides. */
+static int put_bare_first(struct mesh *mesh, struct mesh_sides *sides, struct cloth_error *error)
+{
+    const uint32_t first = 3 * mesh->n_triangles, n = mesh->n_lone_edges;
+    uint32_t *sorted = cloth_alloc(n, 2 * sizeof *sorted, error), *next = sorted;
+    if (!sorted)
+        return CLOTH_E_MEMORY;
+    for (uint32_t i = 0, end; i < sides->n; i = end) { /* a run's sides of triangles come first */
+        end = mesh_sides_run(sides, i);
+        for (uint32_t k = i + 1; k < end && sides->order[i] < first; k++)
+            sides->pair[2 * (size_t)sides->order[k]] = UINT32_MAX;
+    }
+    for (int bare = 1; bare >= 0; bare--) {
+        for (uint32_t e = 0; e < n; e++)
+            if ((sides->pair[2 * (size_t)(first + e)] != UINT32_MAX) == bare) {
+                *next++ = mesh->lone_edge[2 * (size_t)e];
+                *next++ = mesh->lone_edge[2 * (size_t)e + 1];
+            }
+        if (bare)
+            mesh->n_bare_edges = (uint32_t)((next - sorted) / 2);
+    }
+    free(mesh->lone_edge);
+    mesh->lone_edge = sorted;
+    return CLOTH_OK;
+}
+
+static int check_manifold(struct mesh *mesh, const struct mesh_source *source,
                           struct cloth_error *error)
 {
     struct mesh_sides sides;
@@ -189,6 +215,8 @@ static int check_manifold(const struct mesh *mesh, const struct mesh_source *sou
                           face_place(source, face_of(mesh, third / 3)).text, shown(source, pair[0]),
                           shown(source, pair[1]));
     }
+    if (!code)
+        code = put_bare_first(mesh, &sides, error);
     mesh_sides_free(&sides);
     return code;
 }

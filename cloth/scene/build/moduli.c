@@ -59,7 +59,7 @@ static int check_triangles(const struct check *check)
 static int check_edges(const struct check *check)
 {
     const struct mesh *mesh = &check->cloth->mesh;
-    const uint32_t n = all_have(check, "ea") ? 0 : mesh->n_lone_edges;
+    const uint32_t n = all_have(check, "ea") ? 0 : mesh->n_bare_edges;
     for (uint32_t e = 0; e < n; e++) {
         const uint32_t material =
             model_material_of(check->cloth, 2, mesh->lone_edge + 2 * (size_t)e);

@@ -383,7 +383,6 @@ int main(int argc, char **argv)
         return 99;
     Suite *suite = suite_create("checking mode");
     TCase *cases = tcase_create("kernels");
-    tcase_set_timeout(cases, 600);
     tcase_add_test(cases, materials);
     tcase_add_test(cases, pins);
     tcase_add_test(cases, contact);

@@ -15,8 +15,8 @@ bin_PROGRAMS += duite-cloth
 dist_man_MANS += cloth/duite-cloth.1
 duite_cloth_SOURCES = \
 	cloth/duite-cloth.c \
-	cloth/simulate.h \
-	cloth/simulate.c \
+	cloth/room.h cloth/simulate.h \
+	cloth/room.c cloth/simulate.c \
 	cloth/summary.h \
 	cloth/summary.c
 duite_cloth_LDADD = libduite_cloth.la libduite_core.la

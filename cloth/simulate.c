@@ -1,7 +1,9 @@
 /* Between duite_start and duite_stop MPI belongs to the runtime; before and after, the ranks agree
  * here about errors, so that all of them leave by the same way and one of them prints. */
 #include "cloth/simulate.h"
+
 #include "cloth/output/output.h"
+#include "cloth/room.h"
 #include "cloth/summary.h"
 
 #include <math.h>
@@ -91,7 +93,7 @@ static int lock_folder(struct output_lock **lock, const char *folder, struct clo
 {
     struct cloth_error note = {0};
     const int code = output_lock_take(lock, folder, &note, error);
-    if (note.code)
+    if (note.code && !code)
         fprintf(stderr, "duite-cloth: warning: %s\n", note.text);
     return code;
 }
@@ -220,50 +222,6 @@ static bool check_stop(struct run *run)
     return wanted;
 }
 
-/* What frames and rows of probes, in steps of h, take on the disk, bytes. */
-static double output_bytes(const struct run *run)
-{
-    enum { NUMBER = 26, INDEX = 24 }; /* characters of a number with 17 digits; of a frame's line */
-    const struct model *model = &run->model;
-    const double frames = floor(model->fps * model->end) + 1, steps = model->end / model->h;
-    const char *header = flow_header(run->flow);
-    double columns = header ? 1 : 0;
-    for (; header && *header; header++)
-        columns += *header == ',';
-    return frames * (3 * sizeof(float) * (double)flow_vertices(run->flow) + INDEX) +
-           steps * columns * NUMBER;
-}
-
-/* Before anything is written: whether it fits, and whether so much is meant. */
-static int check_room(const struct run *run, struct cloth_error *error)
-{
-    const double MUCH = 10e9, OFTEN = 10;
-    const struct model *model = &run->model;
-    const char *place = model->fps_place ? model->fps_place : "fps";
-    const double bytes = output_bytes(run), room = output_room(run->options->output);
-    const double frames = floor(model->fps * model->end) + 1, steps = model->end / model->h;
-    char what[200];
-    snprintf(what, sizeof what, "time.fps = %g gives %.0f frames of %llu vertices up to %g s",
-             model->fps, frames, (unsigned long long)flow_vertices(run->flow), model->end);
-    if (bytes > room && !(model->rest.speed > 0))
-        return cloth_fail(
-            error, CLOTH_E_INPUT,
-            "%.300s: %s: frames and probes take %.3g GB, but %.200s has room for %.3g "
-            "GB; give fewer frames, an earlier time.end, or another folder",
-            place, what, 1e-9 * bytes, run->options->output, 1e-9 * room);
-    if (bytes > fmin(MUCH, room))
-        fprintf(
-            stderr,
-            "duite-cloth: warning: %.300s: %s: frames and probes take up to %.3g GB in %.200s\n",
-            place, what, 1e-9 * bytes, run->options->output);
-    if (frames > OFTEN * steps)
-        fprintf(stderr,
-                "duite-cloth: warning: %.300s: %s, but there are %.0f steps: each is shown %.0f "
-                "times; time.fps = %g shows each once\n",
-                place, what, steps, frames / steps, 1 / model->h);
-    return CLOTH_OK;
-}
-
 /* All that can be wrong with the input, then the folder of frames. */
 static int prepare(struct run *run)
 {
@@ -285,7 +243,7 @@ static int prepare(struct run *run)
         fprintf(stderr, "duite-cloth: warning: the scene has probes, whose table is written into "
                         "the folder of --output; there is none\n");
     if (run->rank == 0 && options->output)
-        check_room(run, &error);
+        room_check(&run->model, run->flow, options->output, &error);
     if (!error.code && run->rank == 0 && options->save_system)
         open_system(run, &error);
     if (!error.code && run->rank == 0 && options->output)

@@ -328,8 +328,8 @@ const char *const *duite_balancer_names(void);
  * ranks its workers call MPI at any time until duite_stop: a program that calls MPI meanwhile needs
  * MPI_THREAD_MULTIPLE. One runtime at a time in a process, unless it has MPI_THREAD_MULTIPLE.
  * Collective over comm. On failure *rt is NULL on all ranks; where another rank failed, the code is
- * DUITE_E_MEMORY if it had no memory, else DUITE_E_DIFFERENT, and the sentence is that of the rank,
- * with its number. */
+ * DUITE_E_MEMORY if it had no memory, else DUITE_E_DIFFERENT, and the sentence is that of
+ * the rank that failed, with its number. */
 int duite_start(duite **rt, const duite_options *options);
 
 /* Waits for all tasks, ends the workers and frees everything; start and stop may repeat (MPI, if

@@ -228,9 +228,10 @@ struct model {
     double stretch_growth; /* so is one in which the largest length / rest length of stretch springs
                               grows by more, */
     double stretch_limit;  /* or that ends with a larger one; 0: no limit */
-    double energy_growth;  /* part of the largest energy of motion and strain so far; of the model
-                              that is guarded a step that ends so much above an earlier energy is
-                              made anew, by BDF2 by implicit Euler, else shorter; 0: by any */
+    double energy_growth;  /* part of flow_source_release or the largest energy of motion and strain
+                              so far; of the model  that is guarded a step that ends so much above an
+                              earlier energy is  made anew, by BDF2 by implicit Euler, else shorter;
+                              0: by any */
     struct model_rest rest;
     enum model_integrator integrator;
     uint32_t newton_steps;   /* at most, of a step of an implicit one; 0: as 1, one linear step */

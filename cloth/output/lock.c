@@ -30,9 +30,11 @@ static char *_Atomic held[MOST]; /* paths of the locks of this process, for the 
 /* Ends the process as the signal would have without a handler. */
 static void end_by(int number)
 {
-    for (int i = 0; i < MOST; i++)
-        if (held[i])
-            unlink(held[i]);
+    for (int i = 0; i < MOST; i++) {
+        const char *path = held[i];
+        if (path)
+            unlink(path);
+    }
     signal(number, SIG_DFL);
     raise(number);
 }
@@ -153,8 +155,10 @@ static int replace(const struct output_lock *lock, const char *folder, struct cl
     }
     if (write_lock(lock->path) == 0)
         return CLOTH_OK;
-    return errno == EEXIST ? refuse(folder, lock->path, &(struct holder){.process = 0}, error)
-                           : output_refuse(error, "write", lock->path);
+    if (errno != EEXIST)
+        return output_refuse(error, "write", lock->path);
+    read_holder(lock->path, &holder);
+    return refuse(folder, lock->path, &holder, error);
 }
 
 static int take(const struct output_lock *lock, const char *folder, struct cloth_error *note,

@@ -116,8 +116,8 @@ enum { COMM_MOST_SUMS = sizeof(struct data_failure) / sizeof(double) };
 
 /* What the ranks tell one another when they wait for all: each its own, `all` one a rank. */
 struct comm_word {
-    uint64_t forks, fingerprint; /* to be the same on all */
-    uint64_t homes, questions;   /* the comm's own; homes: to be the same on all */
+    uint64_t forks, fingerprint, homes; /* to be the same on all; homes is set by the comm */
+    uint64_t questions;                 /* the comm's own */
     uint64_t failed; /* number + 1 of this rank's first failed task in fork order, or 0 */
     union {
         struct data_failure failure;

@@ -65,10 +65,12 @@ void comm_waits(struct comm *comm, bool waits)
 void comm_homes_differ(struct comm *comm, int a, int b)
 {
     char sentence[300];
-    snprintf(sentence, sizeof sentence,
-             "the mapping gave objects other homes on rank %d than on rank %d: its function `map` "
-             "must write the same homes on every rank, whatever the rank, the time or the machine",
-             a, b);
+    snprintf(
+        sentence, sizeof sentence,
+        "the mapping gave objects other homes on rank %d than on rank %d: its function `map` "
+        "must write the same homes on every rank, and may not look at the rank, the time or the "
+        "machine",
+        a, b);
     comm_broke(comm, DUITE_E_DIFFERENT, sentence);
 }
 

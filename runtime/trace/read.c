@@ -78,8 +78,8 @@ static int check_size(struct source *source)
     return damaged(source, source->size, text);
 }
 
-/* Of a run that came to its end each worker has its counters in the file, unless something was
- * lost: then it is not predicted. */
+/* Each worker's counters are in the file of a run that came to its end. Only a file that lost
+ * something may lack them, and such a file is not predicted. */
 static size_t most_workers(const struct source *source)
 {
     const size_t each = sizeof(struct trace_section) + sizeof(struct trace_counters);

@@ -1,7 +1,6 @@
 #!/bin/sh
 # A C++17 program as a user writes it: it compiles against an installed duite with pkg-config's flags alone, without a warning, and
-# runs; so does one that includes mpi.h and
-# duite_policy.h before duite.h.
+# runs; so does one that includes mpi.h and duite_policy.h before duite.h.
 . "${srcdir:-.}/tests/support/tap.sh"
 test -z "${SANITIZER:-}" || skip_all "the sanitizers are those of the C compiler"
 # shellcheck disable=SC2086 # a compiler and its options

@@ -13,7 +13,7 @@ for round in $(seq $times); do
 done
 not_ok_expected "both ranks without a failure: mpirun tells" ranks 2 tests/runtime/ranks_exit 0 --all
 
-# A policy has no say in how the program ends: that looks like a failure, and says which one it was.
+# A policy must not end the program: its exit becomes a failure that names the policy.
 leaves() { # SENTENCE COMMAND...
     sentence=$1
     shift

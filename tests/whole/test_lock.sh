@@ -66,7 +66,7 @@ at_once() { # of two runs that begin together one goes on
     over $run1 && set -- $run1 $run2 1 || set -- $run2 $run1 2
     status=0
     wait "$1" || status=$?
-    awaits "$1" test -e frames/cloth.pc2
+    awaits "$2" test -e frames/cloth.pc2
     echo "exit status $status"
     cat run1 run2
     test $status = 2 && grep -q "another run writes into this folder" "run$3" && stop "$2"

@@ -1,8 +1,9 @@
 /* What a solve leaves of a free piece's momentum. A solve ends with a residual r = b - A dv, and
  * the sum of r over the rows of a piece that nothing holds is momentum that the step lost. The
  * entries of A cancel in that sum, so that it is of the rows alone: b - D dv - w x dv, D the
- * diagonal besides entries, w the turn (cloth/solve/format.h). What moves as a whole by c feels D c
- * + w x c alone: the c that takes the sum away is exact, and needs no iteration. */
+ * diagonal besides entries, w the turn (cloth/solve/format.h). A row of what moves as a whole by c
+ * feels D c - w x c alone, and w cancels over a piece: the c that takes the sum away is exact, and
+ * needs no iteration. */
 #include "cloth/flow/tasks/bodies.h"
 
 /* What is summed over a piece: the lost momentum, its turn, its D, kg, and how many of its rows
@@ -76,7 +77,7 @@ static int piece_shift(const duite_call *call)
         if (values.turn)
             solve_cross(values.turn + row, &shift, &turned);
         dv[row] += shift;
-        r[row] -= t->matrix.diagonal[row] * shift + turned;
+        r[row] -= t->matrix.diagonal[row] * shift - turned;
     }
     return 0;
 }

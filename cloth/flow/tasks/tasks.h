@@ -10,7 +10,6 @@
 #include "cloth/solve/coarse.h"
 #include "cloth/solve/local.h"
 
-#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <xxhash.h>

@@ -288,8 +288,10 @@ static const struct scene_rule time_keys[] = {
     {"stretch_limit", SCENE_NUMBER, .fallback = "0", .range = SCENE_NOT_NEGATIVE,
      .about = "and no step may stretch beyond, length / length at rest; 0: no limit"},
     {"energy_growth", SCENE_NUMBER, .fallback = "0.005", .range = SCENE_NOT_NEGATIVE,
-     .about = "an implicit step may end so much above an earlier energy, as part of that of motion "
-              "and strain, where nothing does work on the cloth; 0: by any"},
+     .about =
+         "an implicit step may end so much above an earlier energy, where nothing does work on "
+         "the cloth, as part of the energy of motion and strain, or of what weights and loads "
+         "can set free; 0: by any"},
     {"rest", SCENE_MAP, .inside = rest_keys, .about = "the run ends when the cloth is at rest"},
     {0}};
 

@@ -1,0 +1,51 @@
+/* An estimate: steps that are halved add rows of probes, and a run that comes to rest ends early.
+ */
+#include "cloth/room.h"
+
+#include "cloth/flow/run.h"
+#include "cloth/output/output.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* What frames and rows of probes, in steps of h, take on the disk, bytes. */
+static double output_bytes(const struct model *model, const struct flow *flow)
+{
+    enum { NUMBER = 26, INDEX = 24 }; /* characters of a number with 17 digits; of a frame's line */
+    const double frames = floor(model->fps * model->end) + 1, steps = model->end / model->h;
+    const char *header = flow_header(flow);
+    double columns = header ? 1 : 0;
+    for (; header && *header; header++)
+        columns += *header == ',';
+    return frames * (3 * sizeof(float) * (double)flow_vertices(flow) + INDEX) +
+           steps * columns * NUMBER;
+}
+
+int room_check(const struct model *model, const struct flow *flow, const char *folder,
+               struct cloth_error *error)
+{
+    const double MUCH = 10e9, OFTEN = 10;
+    const char *place = model->fps_place ? model->fps_place : "fps";
+    const double bytes = output_bytes(model, flow), room = output_room(folder);
+    const double frames = floor(model->fps * model->end) + 1, steps = model->end / model->h;
+    char what[200];
+    snprintf(what, sizeof what, "time.fps = %g gives %.0f frames of %llu vertices up to %g s",
+             model->fps, frames, (unsigned long long)flow_vertices(flow), model->end);
+    if (bytes > room && !(model->rest.speed > 0))
+        return cloth_fail(
+            error, CLOTH_E_INPUT,
+            "%.300s: %s: frames and probes take %.3g GB, but %.200s has room for %.3g "
+            "GB; give fewer frames, an earlier time.end, or another folder",
+            place, what, 1e-9 * bytes, folder, 1e-9 * room);
+    if (bytes > fmin(MUCH, room))
+        fprintf(
+            stderr,
+            "duite-cloth: warning: %.300s: %s: frames and probes take up to %.3g GB in %.200s\n",
+            place, what, 1e-9 * bytes, folder);
+    if (frames > OFTEN * steps)
+        fprintf(stderr,
+                "duite-cloth: warning: %.300s: %s, but there are %.0f steps: each is shown %.0f "
+                "times; time.fps = %g shows each once\n",
+                place, what, steps, frames / steps, 1 / model->h);
+    return CLOTH_OK;
+}

@@ -20,8 +20,8 @@ void solve_basis(size_t n, const double *free, const phys_vec *position, phys_ve
  * these are not along axes, the rows. Lane 3 of a row says which: 1 for x, 2 for y, 4 for z. */
 void solve_basis_filter(size_t n, const phys_vec *filter, phys_vec *basis);
 
-/* The diagonal block that rows from .. to - 1 and the entries among them make, row by row, own[3 k +
- * c][3 l + d]: function k along axis c. */
+/* The diagonal block that rows from .. to - 1 and the entries among them make, row by row, own[3 k
+ * + c][3 l + d]: function k along axis c. */
 void solve_couple(const struct solve_block *block, size_t from, size_t to, const void *values,
                   const phys_vec *basis, double own[SOLVE_COUPLING]);
 

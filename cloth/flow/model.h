@@ -230,7 +230,7 @@ struct model {
     double stretch_limit;  /* or that ends with a larger one; 0: no limit */
     double energy_growth;  /* part of flow_source_release or the largest energy of motion and strain
                               so far; of the model  that is guarded a step that ends so much above an
-                              earlier energy is  made anew, by BDF2 by implicit Euler, else shorter;
+                              earlier energy is taken again, by BDF2 by implicit Euler, else shorter;
                               0: by any */
     struct model_rest rest;
     enum model_integrator integrator;

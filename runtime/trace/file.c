@@ -141,7 +141,7 @@ static int open_fresh(const char *path)
     struct stat there;
     bool fresh = lstat(path, &there) != 0 || S_ISREG(there.st_mode);
     if (fresh && unlink(path) != 0 && errno != ENOENT)
-        fresh = false; /* the folder keeps the file: then it is written anew where it is */
+        fresh = false; /* the folder keeps the file: then it is written over where it is */
     return open(path, O_WRONLY | O_CREAT | (fresh ? O_EXCL : O_TRUNC) | O_CLOEXEC, 0666);
 }
 

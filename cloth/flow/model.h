@@ -229,7 +229,7 @@ struct model {
                               grows by more, */
     double stretch_limit;  /* or that ends with a larger one; 0: no limit */
     double energy_growth;  /* part of flow_source_release or the largest energy of motion and strain
-                              so far; of the model  that is guarded a step that ends so much above an
+                              so far: where that is guarded, a step that ends so much above an
                               earlier energy is taken again, by BDF2 by implicit Euler, else shorter;
                               0: by any */
     struct model_rest rest;

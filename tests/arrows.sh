@@ -64,7 +64,7 @@ plant() {
 plan_later
 ok "every include points downwards" arrows "$srcdir"
 ok "finds runtime including cloth" plant runtime/base/planted.c '"cloth/base/error.h"'
-ok "finds an upward include in the runtime" plant runtime/base/planted.h '"runtime/graph/task.h"'
+ok "finds an upward include in the runtime" plant runtime/base/planted.h '"runtime/task/task.h"'
 ok "finds a folder beside it" plant runtime/sched/planted.c '"runtime/map/planted.h"'
 ok "finds a header for users that includes ours" plant runtime/duite.h '"runtime/base/error.h"'
 ok "finds duite.h below flow" plant cloth/solve/planted.c '<duite.h>'

@@ -8,7 +8,7 @@
 #include "runtime/check/region.h"
 #include "runtime/data/mode.h"
 #include "runtime/data/sum.h"
-#include "runtime/graph/graph.h"
+#include "runtime/task/task.h"
 
 #include <pthread.h>
 #include <setjmp.h>
@@ -293,7 +293,7 @@ int check_call(struct check *check, const struct check_task *task, duite_call *c
     struct frame first = {
         .outer = current, .task = task, .call = call, .region = region, .param = param};
     int code = run(&first, FILL[0]);
-    if (!code && repeatable(task->kernel, n) && !graph_body_forked(call)) {
+    if (!code && repeatable(task->kernel, n) && !task_body_forked(call)) {
         struct frame second = first;
         second.region = region + n + 1;
         second.param = param + n + 1;

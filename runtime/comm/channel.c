@@ -15,7 +15,7 @@
 enum { CHECKED_TURN = 16 };
 
 struct side {
-    const struct graph_channel *channel;
+    const struct plan_channel *channel;
     struct comm_group *group;
     unsigned char *buffer[2];
     MPI_Request request[2];
@@ -115,7 +115,7 @@ static int take_tags(struct comm_channels *channels, int n)
 
 static bool post_receive(struct comm *comm, struct side *side, size_t turn)
 {
-    const struct graph_channel *channel = side->channel;
+    const struct plan_channel *channel = side->channel;
     MPI_Request *request = &side->request[turn % 2];
     bool large = channel->bytes > INT_MAX;
     size_t count = large ? (channel->bytes + 63) / 64 : channel->bytes;
@@ -124,7 +124,7 @@ static bool post_receive(struct comm *comm, struct side *side, size_t turn)
     return comm_mpi_ok(comm, mpi, "MPI_Irecv");
 }
 
-static struct comm_group *new_group(struct comm *comm, struct graph_channels *channels)
+static struct comm_group *new_group(struct comm *comm, struct plan_channels *channels)
 {
     struct comm_group *group = base_alloc_zero(sizeof *group + channels->n * sizeof group->side[0]);
     if (!group)
@@ -156,7 +156,7 @@ static void lock(struct comm *comm)
 }
 
 /* A plan is let go: what was posted for another round will not come. */
-static void close_channels(struct graph_channels *channels)
+static void close_channels(struct plan_channels *channels)
 {
     struct comm_group *group = channels->own, **link;
     struct comm *comm = group->comm;
@@ -178,7 +178,7 @@ static void close_channels(struct graph_channels *channels)
 }
 
 /* Under the lock. */
-static int open_group(struct comm *comm, struct comm_group *group, struct graph_channels *channels)
+static int open_group(struct comm *comm, struct comm_group *group, struct plan_channels *channels)
 {
     int first = take_tags(&comm->channels, channels->phases + 1);
     if (!first)
@@ -203,7 +203,7 @@ static int open_group(struct comm *comm, struct comm_group *group, struct graph_
                : base_no_memory("messages to come");
 }
 
-int comm_channels_open(struct comm *comm, struct graph_channels *channels)
+int comm_channels_open(struct comm *comm, struct plan_channels *channels)
 {
     struct comm_group *group = new_group(comm, channels);
     if (!group)
@@ -219,9 +219,9 @@ int comm_channels_open(struct comm *comm, struct graph_channels *channels)
 
 /* ---- Messages ---- */
 
-void comm_channel_post(struct comm *comm, struct graph_task *node)
+void comm_channel_post(struct comm *comm, struct task *node)
 {
-    struct graph_task *first = atomic_load_explicit(&comm->channels.ready, memory_order_relaxed);
+    struct task *first = atomic_load_explicit(&comm->channels.ready, memory_order_relaxed);
     do
         node->next = first;
     while (!atomic_compare_exchange_weak_explicit(&comm->channels.ready, &first, node,
@@ -229,17 +229,16 @@ void comm_channel_post(struct comm *comm, struct graph_task *node)
     atomic_thread_fence(memory_order_seq_cst); /* as in comm_send */
 }
 
-static void push(struct graph_task **list, struct graph_task *node)
+static void push(struct task **list, struct task *node)
 {
     node->next = *list;
     *list = node;
 }
 
 /* Once communication is broken messages end as if they had been sent. */
-static void start_send(struct comm *comm, struct graph_task *node, struct side *side,
-                       struct graph_task **over)
+static void start_send(struct comm *comm, struct task *node, struct side *side, struct task **over)
 {
-    const struct graph_channel *channel = side->channel;
+    const struct plan_channel *channel = side->channel;
     MPI_Request *request = &side->request[side->turn % 2];
     int free = 1;
     if (!comm_is_broken(comm) && *request != MPI_REQUEST_NULL &&
@@ -250,12 +249,12 @@ static void start_send(struct comm *comm, struct graph_task *node, struct side *
         return;
     }
     if (comm_is_broken(comm)) {
-        graph_channel_lost(node);
+        plan_channel_lost(node);
         push(over, node);
         return;
     }
     void *buffer = side->buffer[side->turn % 2];
-    size_t bytes = graph_channel_pack(node, buffer);
+    size_t bytes = plan_channel_pack(node, buffer);
     bool large = channel->bytes > INT_MAX;
     int count = (int)(large ? (bytes + 63) / 64 : bytes);
     MPI_Datatype type = large ? comm->line : MPI_BYTE;
@@ -270,11 +269,10 @@ static void start_send(struct comm *comm, struct graph_task *node, struct side *
     push(over, node);
 }
 
-static void await(struct comm *comm, struct graph_task *node, struct side *side,
-                  struct graph_task **over)
+static void await(struct comm *comm, struct task *node, struct side *side, struct task **over)
 {
     if (comm->channels.lost) {
-        graph_channel_lost(node);
+        plan_channel_lost(node);
         push(over, node);
         return;
     }
@@ -283,11 +281,11 @@ static void await(struct comm *comm, struct graph_task *node, struct side *side,
     side->request[side->turn % 2] = MPI_REQUEST_NULL;
 }
 
-static void start(struct comm *comm, struct graph_task *nodes, struct graph_task **over)
+static void start(struct comm *comm, struct task *nodes, struct task **over)
 {
     while (nodes) {
-        struct graph_task *node = nodes;
-        struct side *side = graph_channel_of(node)->own;
+        struct task *node = nodes;
+        struct side *side = plan_channel_of(node)->own;
         nodes = node->next;
         if (side->channel->sends)
             start_send(comm, node, side, over);
@@ -307,7 +305,7 @@ static bool received(struct comm *comm, int mpi)
     return false;
 }
 
-static void receive(struct comm *comm, struct graph_task **over)
+static void receive(struct comm *comm, struct task **over)
 {
     struct comm_requests *awaited = &comm->channels.awaited;
     int done;
@@ -315,7 +313,7 @@ static void receive(struct comm *comm, struct graph_task **over)
         return;
     for (int i = 0; i < done; i++) {
         struct side *side = awaited->what[awaited->n + i];
-        graph_channel_unpack(side->channel->node, side->buffer[side->turn % 2]);
+        plan_channel_unpack(side->channel->node, side->buffer[side->turn % 2]);
         atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
         comm_note(comm, false, side->channel->peer, side->channel->bytes);
         post_receive(comm, side, side->turn++);
@@ -323,14 +321,14 @@ static void receive(struct comm *comm, struct graph_task **over)
     }
 }
 
-struct graph_task *comm_channels_pass(struct comm *comm, struct graph_task *over)
+struct task *comm_channels_pass(struct comm *comm, struct task *over)
 {
     struct comm_channels *channels = &comm->channels;
     int before = channels->awaited.n;
     if (atomic_load_explicit(&channels->ready, memory_order_relaxed))
         start(comm, atomic_exchange_explicit(&channels->ready, NULL, memory_order_acquire), &over);
     if (channels->stalled) {
-        struct graph_task *nodes = channels->stalled;
+        struct task *nodes = channels->stalled;
         channels->stalled = NULL;
         start(comm, nodes, &over);
     }
@@ -348,8 +346,8 @@ void comm_channels_look(struct comm *comm, const struct comm_looker *looker)
         const struct side *side = awaited->what[i];
         looker->channel(looker->context, side->channel);
     }
-    for (const struct graph_task *node = comm->channels.stalled; node; node = node->next)
-        looker->channel(looker->context, graph_channel_of(node));
+    for (const struct task *node = comm->channels.stalled; node; node = node->next)
+        looker->channel(looker->context, plan_channel_of(node));
 }
 
 void comm_channels_give_up(struct comm *comm)

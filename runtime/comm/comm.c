@@ -7,7 +7,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"
-#include "runtime/graph/away.h"
+#include "runtime/offload/away.h"
 
 #include <sched.h>
 #include <stdlib.h>
@@ -15,8 +15,8 @@
 /* What one poll found, delivered after the lock is let go. */
 struct found {
     struct data_packet *packets;
-    struct graph_task *sent;
-    struct graph_task *nodes; /* of channels, that are through */
+    struct task *sent;
+    struct task *nodes; /* of channels, that are through */
     bool any;
 };
 
@@ -39,7 +39,7 @@ static int prepare(struct comm *comm)
     return comm_pulse_start(comm);
 }
 
-int comm_start(struct comm **out, MPI_Comm mpi, struct graph *graph)
+int comm_start(struct comm **out, MPI_Comm mpi, struct task_graph *graph)
 {
     struct comm *comm = *out = base_alloc_zero(sizeof *comm);
     if (!comm)
@@ -112,9 +112,9 @@ bool comm_stop(struct comm *comm)
 
 /* ---- Sending ---- */
 
-void comm_send(struct comm *comm, struct graph_task *task)
+void comm_send(struct comm *comm, struct task *task)
 {
-    struct graph_task *first = atomic_load_explicit(&comm->posts, memory_order_relaxed);
+    struct task *first = atomic_load_explicit(&comm->posts, memory_order_relaxed);
     do
         task->next = first;
     while (!atomic_compare_exchange_weak_explicit(&comm->posts, &first, task, memory_order_release,
@@ -130,11 +130,11 @@ bool comm_posted(struct comm *comm)
 }
 
 /* False: it was not sent, and never will be. */
-static bool start_send(struct comm *comm, struct graph_task *task)
+static bool start_send(struct comm *comm, struct task *task)
 {
     if (comm_is_broken(comm))
         return false;
-    struct data_packet *packet = graph_send_packet(task);
+    struct data_packet *packet = task_send_packet(task);
     MPI_Request *request = packet ? comm_requests_place(&comm->sends) : NULL;
     if (!request) {
         comm_broke_memory(comm, "a message");
@@ -151,7 +151,7 @@ static bool start_send(struct comm *comm, struct graph_task *task)
     return true;
 }
 
-static void push_sent(struct found *found, struct graph_task *task)
+static void push_sent(struct found *found, struct task *task)
 {
     task->next = found->sent;
     found->sent = task;
@@ -159,16 +159,16 @@ static void push_sent(struct found *found, struct graph_task *task)
 
 static void start_sends(struct comm *comm, struct found *found)
 {
-    struct graph_task *posts = atomic_exchange_explicit(&comm->posts, NULL, memory_order_acquire);
-    struct graph_task *in_order = NULL;
+    struct task *posts = atomic_exchange_explicit(&comm->posts, NULL, memory_order_acquire);
+    struct task *in_order = NULL;
     while (posts) {
-        struct graph_task *next = posts->next;
+        struct task *next = posts->next;
         posts->next = in_order;
         in_order = posts;
         posts = next;
     }
     while (in_order) {
-        struct graph_task *task = in_order;
+        struct task *task = in_order;
         in_order = task->next;
         found->any = true;
         if (!start_send(comm, task))
@@ -256,25 +256,25 @@ static void receive(struct comm *comm, struct found *found)
     }
 }
 
-static void deliver_to(struct comm *comm, void *worker, struct comm_target target,
+static void deliver_to(struct comm *comm, struct worker *worker, struct comm_target target,
                        struct data_packet *packet)
 {
     if (target.version)
-        graph_arrived(comm->graph, worker, target.version, packet);
+        task_arrived(comm->graph, worker, target.version, packet);
     else
-        graph_pieces_arrived(comm->graph, worker, target.sum, packet);
+        task_pieces_arrived(comm->graph, worker, target.sum, packet);
 }
 
 /* A task of another rank; once communication is broken nobody waits for it. */
-static void deliver_guest(struct comm *comm, void *worker, struct data_packet *packet)
+static void deliver_guest(struct comm *comm, struct worker *worker, struct data_packet *packet)
 {
-    if (!comm_is_broken(comm) && graph_guest_arrived(comm->graph, worker, packet))
+    if (!comm_is_broken(comm) && offload_guest_arrived(comm->graph, worker, packet))
         return;
     data_packet_free(packet);
     comm_broke_memory(comm, "a task of another rank");
 }
 
-static void deliver_value(struct comm *comm, void *worker, struct data_packet *packet)
+static void deliver_value(struct comm *comm, struct worker *worker, struct data_packet *packet)
 {
     struct comm_target target = {0};
     switch (comm_arrivals_take(&comm->arrivals, packet, &target)) {
@@ -289,7 +289,7 @@ static void deliver_value(struct comm *comm, void *worker, struct data_packet *p
     }
 }
 
-static void deliver(struct comm *comm, void *worker, struct found *found)
+static void deliver(struct comm *comm, struct worker *worker, struct found *found)
 {
     while (found->packets) {
         struct data_packet *packet = found->packets;
@@ -297,25 +297,25 @@ static void deliver(struct comm *comm, void *worker, struct found *found)
         if (packet->kind == DATA_GUEST)
             deliver_guest(comm, worker, packet);
         else if (packet->kind == DATA_RESULT)
-            graph_came_home(comm->graph, worker, packet);
+            offload_came_home(comm->graph, worker, packet);
         else
             deliver_value(comm, worker, packet);
     }
     while (found->nodes) {
-        struct graph_task *node = found->nodes;
+        struct task *node = found->nodes;
         found->nodes = node->next;
-        graph_finish(comm->graph, worker, node);
+        task_finish(comm->graph, worker, node);
     }
     while (found->sent) {
-        struct graph_task *task = found->sent;
+        struct task *task = found->sent;
         found->sent = task->next;
         data_packet_free(task->send->packet);
-        graph_finish(comm->graph, worker, task);
+        task_finish(comm->graph, worker, task);
     }
 }
 
-int comm_expect(struct comm *comm, void *worker, struct data_key key, struct comm_target target,
-                uint32_t packets)
+int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
+                struct comm_target target, uint32_t packets)
 {
     struct data_packet *early;
     if (!comm_arrivals_expect(&comm->arrivals, key, target, packets, &early))
@@ -339,7 +339,7 @@ void comm_let_go(struct comm *comm)
     comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
 }
 
-void comm_give_up(struct comm *comm, void *worker)
+void comm_give_up(struct comm *comm, struct worker *worker)
 {
     struct comm_target target;
     comm_hold(comm);
@@ -347,11 +347,11 @@ void comm_give_up(struct comm *comm, void *worker)
     comm_unlock(comm);
     while (comm_arrivals_close(&comm->arrivals, &target)) {
         if (target.version)
-            graph_lost(comm->graph, worker, target.version);
+            task_lost(comm->graph, worker, target.version);
         else
-            graph_pieces_lost(comm->graph, worker, target.sum);
+            task_pieces_lost(comm->graph, worker, target.sum);
     }
-    graph_away_lost(comm->graph, worker);
+    offload_away_lost(comm->graph, worker);
 }
 
 uint64_t comm_stuck(struct comm *comm)
@@ -381,7 +381,7 @@ static void look_around(struct comm *comm, struct found *found)
     comm_farewell_say(comm);
 }
 
-static bool pass(struct comm *comm, void *worker, bool looks)
+static bool pass(struct comm *comm, struct worker *worker, bool looks)
 {
     bool any = false, outer = passing;
     passing = true;
@@ -403,7 +403,7 @@ static bool pass(struct comm *comm, void *worker, bool looks)
     return any;
 }
 
-bool comm_poll(struct comm *comm, void *worker)
+bool comm_poll(struct comm *comm, struct worker *worker)
 {
     return pass(comm, worker, true);
 }
@@ -413,14 +413,14 @@ bool comm_awaits(struct comm *comm)
     return atomic_load_explicit(&comm->channels.awaits, memory_order_relaxed);
 }
 
-void comm_channel_ready(struct comm *comm, void *worker, struct graph_task *node)
+void comm_channel_ready(struct comm *comm, struct worker *worker, struct task *node)
 {
     comm_channel_post(comm, node);
     if (!passing)
         pass(comm, worker, false);
 }
 
-void comm_part(struct comm *comm, void *worker)
+void comm_part(struct comm *comm, struct worker *worker)
 {
     const double moment = 0.1;
     for (double since = base_seconds(); base_seconds() - since < moment; sched_yield())

@@ -2,7 +2,7 @@
 #define DUITE_COMM_COMM_H
 
 #include "runtime/comm/arrivals.h"
-#include "runtime/graph/graph.h"
+#include "runtime/task/task.h"
 
 #include <mpi.h>
 
@@ -16,14 +16,14 @@ struct comm;
 
 /* On mpi, which stays the caller's and is for these messages only. Local. Errors: DUITE_E_MPI,
  * memory; comm_stop is due all the same. */
-int comm_start(struct comm **comm, MPI_Comm mpi, struct graph *graph);
+int comm_start(struct comm **comm, MPI_Comm mpi, struct task_graph *graph);
 
 /* Before comm_open, on all ranks alike: a rank of which nothing is heard for so many seconds (0:
  * any time) is lost. host: of the rank before this one, in a ring. comm NULL is fine. */
 void comm_ring(struct comm *comm, double seconds, const char *host);
 
 /* Before comm_open: to be told of each message that a worker sends or receives, with its bytes. */
-typedef void comm_told(void *worker, bool sends, int peer, size_t bytes);
+typedef void comm_told(struct worker *worker, bool sends, int peer, size_t bytes);
 void comm_tell(struct comm *comm, comm_told *tell);
 
 /* From now on messages are sent and received; `asks`: ranks may ask others for tasks, the same on
@@ -38,28 +38,28 @@ bool comm_stop(struct comm *comm);
 
 /* Posts a ready SEND, which is finished once it is sent. The next poll sends it; comm_posted: there
  * is something to send. Any thread. */
-void comm_send(struct comm *comm, struct graph_task *task);
+void comm_send(struct comm *comm, struct task *task);
 bool comm_posted(struct comm *comm);
 
-/* Opens the channels of a recorded graph (graph_hooks.open). Main thread, all ranks alike. Errors:
+/* Opens the channels of a recorded graph (work_open). Main thread, all ranks alike. Errors:
  * DUITE_E_MPI, memory. */
-int comm_channels_open(struct comm *comm, struct graph_channels *channels);
+int comm_channels_open(struct comm *comm, struct plan_channels *channels);
 
 /* A node of a channel is ready: sends what it sends right now, or awaits its message; it is
  * finished when that is through. Any thread. */
-void comm_channel_ready(struct comm *comm, void *worker, struct graph_task *node);
+void comm_channel_ready(struct comm *comm, struct worker *worker, struct task *node);
 
 /* Messages of recorded graphs are awaited. Any thread. */
 bool comm_awaits(struct comm *comm);
 
 /* The packets of that key belong to a version, or to a sum; those that came already are delivered.
  * Main thread. */
-int comm_expect(struct comm *comm, void *worker, struct data_key key, struct comm_target target,
-                uint32_t packets);
+int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
+                struct comm_target target, uint32_t packets);
 
 /* Sends, receives, delivers and finishes what can be. Returns whether anything happened. Any
  * thread. */
-bool comm_poll(struct comm *comm, void *worker);
+bool comm_poll(struct comm *comm, struct worker *worker);
 
 /* Calls back with all that is awaited (see comm_arrivals_look) and what is being sent, as far as
  * MPI can be asked right now. A task that waits for something awaited stays as it is during the
@@ -68,9 +68,9 @@ struct comm_looker {
     void *context;
     void (*awaited)(void *context, const struct data_key *key, const struct comm_target *target,
                     uint32_t packets);
-    void (*sending)(void *context, const struct graph_send *send);
+    void (*sending)(void *context, const struct task_send *send);
     /* Of a recorded graph: one that has not come; or, if it sends, that waits for its buffer. */
-    void (*channel)(void *context, const struct graph_channel *channel);
+    void (*channel)(void *context, const struct plan_channel *channel);
 };
 bool comm_look(struct comm *comm, const struct comm_looker *looker);
 
@@ -155,7 +155,7 @@ bool comm_is_cut(struct comm *comm);
 
 /* It is broken for that reason: polls for a moment, so that the farewells of this rank go out. Main
  * thread. */
-void comm_part(struct comm *comm, void *worker);
+void comm_part(struct comm *comm, struct worker *worker);
 
 /* The caller alone calls MPI from the one to the other: nothing is sent or received. Main thread.
  */
@@ -163,7 +163,7 @@ void comm_hold(struct comm *comm);
 void comm_let_go(struct comm *comm);
 
 /* It is broken: whatever is expected is taken for lost. Main thread. */
-void comm_give_up(struct comm *comm, void *worker);
+void comm_give_up(struct comm *comm, struct worker *worker);
 
 /* SENDs that MPI itself will not finish any more, since it failed. */
 uint64_t comm_stuck(struct comm *comm);

@@ -15,7 +15,7 @@ void comm_broke(struct comm *comm, int code, const char *sentence)
     comm->reason.code = code;
     snprintf(comm->reason.sentence, sizeof comm->reason.sentence, "%s", sentence);
     atomic_store(&comm->broken, code);
-    comm->graph->hooks.notify(comm->graph->hooks.context);
+    work_notify(comm->graph->pool);
 }
 
 void comm_broke_memory(struct comm *comm, const char *what)

@@ -18,10 +18,10 @@ enum { COMM_PACKETS, COMM_SIGNS, COMM_CHANNELS };
 struct comm {
     MPI_Comm mpi;
     MPI_Datatype line; /* 64 bytes: see data_packet_lines */
-    struct graph *graph;
+    struct task_graph *graph;
     int rank, n_ranks;
     atomic_flag lock;
-    _Atomic(struct graph_task *) posts;
+    _Atomic(struct task *) posts;
     struct comm_requests sends, receives; /* touched by the holder of `lock` only */
     struct comm_arrivals arrivals;
     struct comm_channels channels;
@@ -31,8 +31,8 @@ struct comm {
     struct comm_farewells farewells;
     struct comm_pulse pulse;
     struct comm_calls calls;
-    comm_told *tell; /* NULL: nobody */
-    void *worker;    /* under the lock: who passes */
+    comm_told *tell;       /* NULL: nobody */
+    struct worker *worker; /* under the lock: who passes */
     bool may_ask;
     struct comm_asks asks;
     uint64_t entered;                       /* collective calls */

@@ -30,8 +30,8 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker)
     if (!lock_soon(comm))
         return false;
     for (int i = 0; i < comm->sends.n; i++) {
-        const struct graph_task *task = comm->sends.what[i];
-        if (task->kind == GRAPH_SEND)
+        const struct task *task = comm->sends.what[i];
+        if (task->kind == TASK_SEND)
             looker->sending(looker->context, task->send);
     }
     comm_channels_look(comm, looker);

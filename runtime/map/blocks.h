@@ -1,7 +1,7 @@
 #ifndef DUITE_MAP_BLOCKS_H
 #define DUITE_MAP_BLOCKS_H
 
-#include "runtime/graph/record.h"
+#include "runtime/plan/record.h"
 
 /* Blocks: objects that live together, a leader with all that follow it (their home and their number
  * there are the same), as long as one of them is alive; and what recorded tasks carry from one to
@@ -40,7 +40,7 @@ struct map_traffic {
 
 /* Adds what a record's forks carry in so many rounds. Errors: memory. */
 int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks,
-                    const struct graph_record *record, double rounds);
+                    const struct plan_record *record, double rounds);
 /* Adds that a task which runs for one block reads so many bytes of another. False without memory.
  */
 bool map_traffic_read(struct map_traffic *traffic, uint32_t own, uint32_t other, double bytes);

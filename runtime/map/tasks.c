@@ -7,7 +7,7 @@
 
 #define GUESSED_SECONDS 1e-6
 
-static bool is_asked(const struct graph_tasks *tasks, size_t i)
+static bool is_asked(const struct plan_tasks *tasks, size_t i)
 {
     return tasks->kernel[i] && !(tasks->cost[i] > 0);
 }
@@ -15,7 +15,7 @@ static bool is_asked(const struct graph_tasks *tasks, size_t i)
 /* The seconds of a block are those of its tasks that do not say them, each the same. */
 static bool share_out(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
 {
-    struct graph_tasks *all = &tasks->tasks;
+    struct plan_tasks *all = &tasks->tasks;
     double *asked = base_alloc_zero((n_blocks + 1) * sizeof *asked);
     if (!asked)
         return false;
@@ -32,7 +32,7 @@ static bool share_out(struct map_tasks *tasks, size_t n_blocks, const double *se
     return true;
 }
 
-static void guess(struct graph_tasks *tasks)
+static void guess(struct plan_tasks *tasks)
 {
     double sum = 0, known = 0;
     for (size_t i = 0; i < tasks->n; i++) {
@@ -46,7 +46,7 @@ static void guess(struct graph_tasks *tasks)
 
 int map_tasks_complete(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
 {
-    struct graph_tasks *all = &tasks->tasks;
+    struct plan_tasks *all = &tasks->tasks;
     if (!share_out(tasks, n_blocks, seconds))
         return base_no_memory("the tasks of a recorded graph");
     guess(all);
@@ -60,19 +60,19 @@ int map_tasks_complete(struct map_tasks *tasks, size_t n_blocks, const double *s
     return DUITE_OK;
 }
 
-int map_tasks_find(struct map_tasks *tasks, const struct graph_record *record,
+int map_tasks_find(struct map_tasks *tasks, const struct plan_record *record,
                    const struct map_blocks *blocks, const double *seconds)
 {
-    struct graph_tasks *all = &tasks->tasks;
+    struct plan_tasks *all = &tasks->tasks;
     *tasks = (struct map_tasks){0};
-    int code = graph_record_tasks(record, all);
+    int code = plan_record_tasks(record, all);
     if (code)
         return code;
     tasks->block = base_alloc((all->n + 1) * sizeof *tasks->block);
     if (!tasks->block)
         return base_no_memory("the tasks of a recorded graph");
     for (size_t i = 0; i < all->n; i++)
-        tasks->block[i] = all->owner[i] == GRAPH_NOBODY
+        tasks->block[i] = all->owner[i] == PLAN_NOBODY
                               ? DUITE_NO_BLOCK
                               : blocks->of[record->object[all->owner[i]].bound.slot];
     return map_tasks_complete(tasks, blocks->n, seconds);
@@ -80,6 +80,6 @@ int map_tasks_find(struct map_tasks *tasks, const struct graph_record *record,
 
 void map_tasks_free(struct map_tasks *tasks)
 {
-    graph_tasks_free(&tasks->tasks);
+    plan_tasks_free(&tasks->tasks);
     base_free(tasks->block);
 }

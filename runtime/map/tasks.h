@@ -1,21 +1,21 @@
 #ifndef DUITE_MAP_TASKS_H
 #define DUITE_MAP_TASKS_H
 
-#include "runtime/graph/record.h"
 #include "runtime/map/blocks.h"
+#include "runtime/plan/record.h"
 
 #include <duite_policy.h>
 
 /* A round of a record as mappings see it. */
 struct map_tasks {
     duite_task_graph graph; /* n, cost, block and the rows are filled in; points into the rest */
-    struct graph_tasks tasks;
+    struct plan_tasks tasks;
     uint32_t *block;
     bool guessed; /* some of the program's tasks did not say what they cost */
 };
 
 /* seconds: of each block, as measured. Errors: memory; map_tasks_free is due all the same. */
-int map_tasks_find(struct map_tasks *tasks, const struct graph_record *record,
+int map_tasks_find(struct map_tasks *tasks, const struct plan_record *record,
                    const struct map_blocks *blocks, const double *seconds);
 /* The rest of it, where `block` and all but unknown costs of `tasks` are there. Errors: memory. */
 int map_tasks_complete(struct map_tasks *tasks, size_t n_blocks, const double *seconds);

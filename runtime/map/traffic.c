@@ -26,19 +26,19 @@ bool map_traffic_read(struct map_traffic *traffic, uint32_t own, uint32_t other,
 }
 
 int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks,
-                    const struct graph_record *record, double rounds)
+                    const struct plan_record *record, double rounds)
 {
     const struct data_object *objects = record->graph->table.object;
     bool fine = true;
     for (size_t i = 0; i < record->n_forks && fine; i++) {
-        const struct graph_recorded_fork *fork = &record->fork[i];
-        uint32_t owner = graph_recorded_owner(record, fork);
-        if (owner == GRAPH_NOBODY)
+        const struct plan_recorded_fork *fork = &record->fork[i];
+        uint32_t owner = plan_recorded_owner(record, fork);
+        if (owner == PLAN_NOBODY)
             continue;
         uint32_t own = blocks->of[record->object[owner].bound.slot];
         for (uint32_t k = 0; k < fork->n && fine; k++) {
             uint32_t slot = record->object[record->use[fork->first + k]].bound.slot;
-            if (graph_recorded_mode(record->graph, fork, k) != DUITE_W)
+            if (plan_recorded_mode(record->graph, fork, k) != DUITE_W)
                 fine = map_traffic_read(traffic, own, blocks->of[slot],
                                         rounds * (double)objects[slot].room);
         }

@@ -3,7 +3,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/graph/graph.h"
+#include "runtime/task/task.h"
 #include "runtime/trace/export.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@ duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
     const bool warm = ran != PREDICT_NONE && ran / m->cluster->cores == n->host;
     return (duite_ready){.kernel = n->kernel < run->n_kernels
                                        ? run->kernel_name[n->kernel]
-                                       : graph_own_name(n->kernel - run->n_kernels),
+                                       : task_own_name(n->kernel - run->n_kernels),
                          .number = n->number,
                          .block = n->block,
                          .priority = n->priority,

@@ -1,8 +1,8 @@
 /* The tasks that ran as a graph of Graphviz: what each waited for, on the ranks on which it ran. */
 #include "runtime/predict/graph.h"
 
-#include "runtime/graph/graph.h"
 #include "runtime/sched/sched.h"
+#include "runtime/task/task.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -24,7 +24,7 @@ static void put_node(const struct predict_graph *graph, size_t i, FILE *file)
         fputs("label=\"", file);
         put_name(file, node->kernel < run->n_kernels
                            ? run->kernel_name[node->kernel]
-                           : graph_own_name(node->kernel - run->n_kernels));
+                           : task_own_name(node->kernel - run->n_kernels));
         if (node->number)
             fprintf(file, " %" PRIu64, node->number);
         if (node->kind == PREDICT_TASK)

@@ -4,7 +4,7 @@
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/graph/graph.h"
+#include "runtime/task/task.h"
 
 #include <stdlib.h>
 
@@ -171,7 +171,7 @@ static void make_pieces(struct predict_graph *graph, uint32_t object)
         if (host == home)
             continue;
         if (graph->piece[host] == PREDICT_NONE)
-            graph->piece[host] = add_own(graph, PREDICT_TASK, host, GRAPH_PIECES, 0);
+            graph->piece[host] = add_own(graph, PREDICT_TASK, host, TASK_PIECES, 0);
         predict_edge(graph, graph->link[i].node, graph->piece[host]);
     }
 }
@@ -244,7 +244,7 @@ static void close_sum(struct predict_graph *graph, uint32_t object)
     if (!all)
         send_pieces(graph, object);
     uint32_t sum = add_own(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, all ? 0 : (uint32_t)home,
-                           graph->replays ? GRAPH_NODE_SUM : GRAPH_COMBINE, 0);
+                           graph->replays ? TASK_NODE_SUM : TASK_COMBINE, 0);
     if (graph->failed)
         return;
     join_reader(graph, fetched, sum, object);
@@ -268,7 +268,7 @@ static void gather_view(struct predict_graph *graph, uint32_t view)
     const struct predict_object *o = &graph->object[parent];
     int host = o->holder == PREDICT_ALL ? o->home : o->holder;
     uint32_t task = add_own(graph, PREDICT_TASK, (uint32_t)host,
-                            graph->replays ? GRAPH_NODE_VIEW : GRAPH_VIEW, 0);
+                            graph->replays ? TASK_NODE_VIEW : TASK_VIEW, 0);
     if (graph->failed)
         return;
     graph->linked = false;

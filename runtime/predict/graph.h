@@ -21,7 +21,7 @@ enum predict_kind {
 
 struct predict_node {
     uint64_t number;
-    uint32_t kernel; /* of kernels; beyond them: the runtime's own, by graph_kind */
+    uint32_t kernel; /* of kernels; beyond them: the runtime's own, by task_type */
     uint32_t host, block;
     int32_t priority; /* of messages: packets that it adds */
     float seconds, cost, path;
@@ -84,7 +84,7 @@ struct predict_graph {
     size_t n_packets, packets_capacity;
     uint32_t *piece; /* by host: this rank's part of a sum that is being closed */
     uint32_t *began; /* by host: the node that begins or ends a replay there */
-    double own[64];  /* by graph_kind: s of the runtime's own tasks */
+    double own[64];  /* by task_type: s of the runtime's own tasks */
     uint32_t round;  /* the first node of this round of a replay, or NONE */
     uint32_t flag;   /* the node that decided on this round, or NONE */
     double overhead; /* s between two tasks, */

@@ -142,7 +142,7 @@ static double bytes_of(const struct round *r, uint32_t place)
     return (double)r->p->graph->object[r->recorded->bound[object]].bytes;
 }
 
-static bool fill_rows(const struct round *r, struct graph_tasks *tasks)
+static bool fill_rows(const struct round *r, struct plan_tasks *tasks)
 {
     size_t at = 0;
     size_t *writer = base_alloc_zero((r->n_places + 1) * sizeof *writer); /* plus 1 */
@@ -167,7 +167,7 @@ static bool fill_rows(const struct round *r, struct graph_tasks *tasks)
 static bool hand_over(const struct round *r, struct map_tasks *tasks)
 {
     static const duite_kernel program = {.name = "of the program"};
-    struct graph_tasks *all = &tasks->tasks;
+    struct plan_tasks *all = &tasks->tasks;
     const size_t n = all->n = r->n;
     *tasks = (struct map_tasks){.tasks = {.n = n}};
     all->kernel = base_alloc_zero((n + 1) * sizeof *all->kernel);

@@ -6,7 +6,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/graph/replay.h"
+#include "runtime/plan/replay.h"
 #include "runtime/sched/front.h"
 
 #include <math.h>
@@ -63,7 +63,7 @@ static void start(struct predict_machine *m, uint32_t node, uint32_t worker)
     m->busy += (double)n->seconds;
     m->ran[worker] = node;
     if (n->placed)
-        m->warm[n->placed - 1] = (double)n->seconds >= GRAPH_WARM_SECONDS ? worker : PREDICT_NONE;
+        m->warm[n->placed - 1] = (double)n->seconds >= PLAN_WARM_SECONDS ? worker : PREDICT_NONE;
     if (m->state[worker] == IDLE)
         m->idle[n->host]--;
     m->state[worker] = BUSY;

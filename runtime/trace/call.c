@@ -159,12 +159,12 @@ static uint32_t place_of(struct trace *trace, const duite_kernel *kernel)
     return trace->last_index;
 }
 
-void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct graph_how *how,
+void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct task_options *how,
                 size_t n, const duite_object *objects)
 {
     if (!keeps_now(trace))
         return;
-    bool plain = how->at == GRAPH_ANYWHERE && !how->priority && !(how->cost > 0);
+    bool plain = how->at == TASK_ANYWHERE && !how->priority && !(how->cost > 0);
     if (!begin(trace, plain ? TRACE_FORK : TRACE_FORKED, n))
         return;
     put(trace, place_of(trace, kernel));
@@ -207,7 +207,7 @@ void trace_wait(struct trace *trace, uint64_t from)
 
 /* ---- Recorded graphs ---- */
 
-void trace_graph(struct trace *trace, uint32_t name, const struct graph_record *record)
+void trace_graph(struct trace *trace, uint32_t name, const struct plan_record *record)
 {
     if (!keeps(trace) || !begin(trace, TRACE_GRAPH, record->n_objects))
         return;
@@ -216,7 +216,7 @@ void trace_graph(struct trace *trace, uint32_t name, const struct graph_record *
         put(trace, record->object[i].recorded.slot);
     put(trace, (uint32_t)record->n_forks);
     for (size_t i = 0; i < record->n_forks; i++) {
-        const struct graph_recorded_fork *fork = &record->fork[i];
+        const struct plan_recorded_fork *fork = &record->fork[i];
         put(trace, fork->kernel);
         put(trace, fork->n);
         put(trace, (uint32_t)fork->how.at);
@@ -227,7 +227,7 @@ void trace_graph(struct trace *trace, uint32_t name, const struct graph_record *
     }
 }
 
-void trace_replay(struct trace *trace, uint32_t name, const struct graph_record *record,
+void trace_replay(struct trace *trace, uint32_t name, const struct plan_record *record,
                   const duite_object *flag, uint64_t rounds)
 {
     if (!keeps_now(trace) || !begin(trace, TRACE_REPLAY, record->n_objects))

@@ -57,7 +57,7 @@ struct trace_kernel {
 /* What happened on a worker. Times are ticks of its rank's clock. */
 enum trace_kind {
     TRACE_TASK = 1, /* a body; kernel, number */
-    TRACE_OWN,      /* a task of the runtime's own; kernel: its place among graph_kind */
+    TRACE_OWN,      /* a task of the runtime's own; kernel: its place among task_type */
     TRACE_IDLE,     /* without a task; within: of that, messages were awaited */
     TRACE_STEAL,    /* of a task; kernel: from which worker */
     TRACE_SEND,     /* number: bytes; kernel: to which rank */

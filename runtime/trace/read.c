@@ -4,7 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/graph/graph.h"
+#include "runtime/task/task.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -403,7 +403,7 @@ const char *trace_event_name(const struct trace_run *run, const struct trace_eve
     if (event->kind == TRACE_TASK)
         return run->kernel_name[event->kernel];
     if (event->kind == TRACE_OWN)
-        return graph_own_name(event->kernel);
+        return task_own_name(event->kernel);
     return trace_kind_name(event->kind);
 }
 

@@ -2,7 +2,7 @@
 #define DUITE_TRACE_TRACE_H
 
 #include "runtime/data/object.h"
-#include "runtime/graph/record.h"
+#include "runtime/plan/record.h"
 #include "runtime/trace/ring.h"
 
 #include <mpi.h>
@@ -69,14 +69,14 @@ void trace_settled(struct trace *trace, const struct data_table *table);
 /* Homes of objects that moved. */
 void trace_moved(struct trace *trace, const struct data_table *table, const uint32_t *slots,
                  size_t n);
-void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct graph_how *how,
+void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct task_options *how,
                 size_t n, const duite_object *objects);
 void trace_set(struct trace *trace, duite_object name);
 void trace_get(struct trace *trace, duite_object name, int rank, uint64_t from);
 void trace_wait(struct trace *trace, uint64_t from);
-void trace_graph(struct trace *trace, uint32_t name, const struct graph_record *record);
+void trace_graph(struct trace *trace, uint32_t name, const struct plan_record *record);
 /* Before it begins; rounds: at most. */
-void trace_replay(struct trace *trace, uint32_t name, const struct graph_record *record,
+void trace_replay(struct trace *trace, uint32_t name, const struct plan_record *record,
                   const duite_object *flag, uint64_t rounds);
 
 #endif

@@ -7,7 +7,7 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/graph/away.h"
+#include "runtime/offload/away.h"
 #include "runtime/workers/internal.h"
 #include "runtime/workers/spent.h"
 
@@ -41,7 +41,7 @@ struct work_balance {
 int work_balance_start(struct work_balance **out, struct work_pool *pool)
 {
     const duite_balancer *balancer = pool->setup.balancer;
-    const struct graph *graph = pool->setup.graph;
+    const struct task_graph *graph = pool->setup.graph;
     unsigned n = pool->setup.threads;
     *out = NULL;
     bool measures = pool->setup.measures || (balancer && balancer->migrate);
@@ -85,13 +85,13 @@ void work_balance_stop(struct work_pool *pool)
     base_free(balance);
 }
 
-static void *state_of(const struct work_worker *worker)
+static void *state_of(const struct worker *worker)
 {
     const struct work_balance *balance = worker->pool->balance;
     return balance->states + worker->index * balance->stride;
 }
 
-void work_balance_caller(struct work_worker *worker, unsigned caller)
+void work_balance_caller(struct worker *worker, unsigned caller)
 {
     const struct work_pool *pool = worker->pool;
     if (pool->balance)
@@ -101,16 +101,16 @@ void work_balance_caller(struct work_worker *worker, unsigned caller)
 
 /* ---- What a task costs ---- */
 
-static void learn_block(struct work_spent *spent, const struct graph_task *task, uint64_t ticks)
+static void learn_block(struct work_spent *spent, const struct task *task, uint64_t ticks)
 {
     uint32_t block;
-    if (graph_follows(task, &block))
+    if (task_follows(task, &block))
         work_spend(spent, block, ticks);
     else
         work_spend_else(spent, ticks);
 }
 
-void work_learn(struct work_worker *worker, const struct graph_task *task, uint64_t ticks)
+void work_learn(struct worker *worker, const struct task *task, uint64_t ticks)
 {
     const struct work_balance *balance = worker->pool->balance;
     _Atomic uint64_t *cost = &balance->cost[worker->index * balance->row + task->kernel];
@@ -161,11 +161,11 @@ static double cost_of(const struct work_pool *pool, uint32_t kernel)
 }
 
 /* False: it may not go. */
-static bool describe(const struct work_pool *pool, const struct graph_task *task, duite_leaf *leaf)
+static bool describe(const struct work_pool *pool, const struct task *task, duite_leaf *leaf)
 {
-    const struct graph *graph = pool->setup.graph;
+    const struct task_graph *graph = pool->setup.graph;
     size_t bytes;
-    if (!graph_may_go(graph, task, &bytes))
+    if (!offload_may_go(graph, task, &bytes))
         return false;
     *leaf = (duite_leaf){.kernel = graph->kernels[task->kernel]->name,
                          .number = task->number,
@@ -175,11 +175,11 @@ static bool describe(const struct work_pool *pool, const struct graph_task *task
     return true;
 }
 
-static bool send(struct work_worker *worker, struct graph_task *task, int to)
+static bool send(struct worker *worker, struct task *task, int to)
 {
     bool nested;
-    const uint64_t number = graph_main_number(task, &nested);
-    if (!graph_send_away(worker->pool->setup.graph, worker, task, to))
+    const uint64_t number = task_main_number(task, &nested);
+    if (!offload_send(worker->pool->setup.graph, worker, task, to))
         return false;
     work_bump(&worker->counts.delegated, 1);
     trace_mark(worker->ring, TRACE_DELEGATE, (uint32_t)to, number);
@@ -188,8 +188,7 @@ static bool send(struct work_worker *worker, struct graph_task *task, int to)
 
 /* It goes to who asks before its own worker can take it: of a tree whose tasks become ready a few
  * at a time hardly a leaf would be left between two tasks. */
-static bool given_at_once(struct work_worker *worker, struct graph_task *task,
-                          const duite_leaf *leaf)
+static bool given_at_once(struct worker *worker, struct task *task, const duite_leaf *leaf)
 {
     const struct work_pool *pool = worker->pool;
     size_t others = work_queue_size(&worker->queue) + work_queue_size(&pool->shared);
@@ -205,7 +204,7 @@ static bool given_at_once(struct work_worker *worker, struct graph_task *task,
     return given;
 }
 
-bool work_placed_away(struct work_worker *worker, struct graph_task *task)
+bool work_placed_away(struct worker *worker, struct task *task)
 {
     const struct work_pool *pool = worker->pool;
     const duite_balancer *balancer = pool->balance->balancer;
@@ -224,16 +223,16 @@ bool work_placed_away(struct work_worker *worker, struct graph_task *task)
 /* ---- Giving ---- */
 
 struct gift {
-    struct work_worker *worker;
+    struct worker *worker;
     duite_asked asked;
 };
 
 /* Oldest first: the owner works on the newest. What is not given goes back in its old order. */
-static void give_or_keep(struct gift *gift, struct work_queue *queue, struct graph_task *task)
+static void give_or_keep(struct gift *gift, struct work_queue *queue, struct task *task)
 {
     const struct work_pool *pool = gift->worker->pool;
     while (task) {
-        struct graph_task *next = task->next;
+        struct task *next = task->next;
         duite_leaf leaf;
         if (describe(pool, task, &leaf) &&
             pool->balance->balancer->give(state_of(gift->worker), &gift->asked, &leaf) &&
@@ -247,7 +246,7 @@ static void give_or_keep(struct gift *gift, struct work_queue *queue, struct gra
 
 static void give_from(struct gift *gift, struct work_queue *queue)
 {
-    struct graph_task *taken = NULL, *task;
+    struct task *taken = NULL, *task;
     for (unsigned i = 0; i < DEPTH && (task = work_queue_take(queue, DUITE_NEWEST)); i++) {
         task->next = taken;
         taken = task;
@@ -256,7 +255,7 @@ static void give_from(struct gift *gift, struct work_queue *queue)
     give_or_keep(gift, queue, taken);
 }
 
-static void give(struct work_worker *worker, const struct comm_asker *asker, unsigned *given)
+static void give(struct worker *worker, const struct comm_asker *asker, unsigned *given)
 {
     struct work_pool *pool = worker->pool;
     struct gift gift = {.worker = worker, .asked = {.rank = asker->rank, .idle = asker->idle}};
@@ -272,7 +271,7 @@ static void give(struct work_worker *worker, const struct comm_asker *asker, uns
     *given = gift.asked.given;
 }
 
-void work_serve(struct work_worker *worker)
+void work_serve(struct worker *worker)
 {
     struct work_balance *balance = worker->pool->balance;
     struct comm *comm = worker->pool->setup.comm;
@@ -294,13 +293,13 @@ void work_serve(struct work_worker *worker)
 /* ---- Asking ---- */
 
 /* Unless the last question still stands. */
-static void ask(struct work_worker *worker)
+static void ask(struct worker *worker)
 {
     struct work_pool *pool = worker->pool;
     struct work_balance *balance = pool->balance;
     uint64_t now = base_ticks();
     double seconds = 0;
-    if (!balance->balancer->victim || graph_has_given_up(pool->setup.graph) ||
+    if (!balance->balancer->victim || task_has_given_up(pool->setup.graph) ||
         now < atomic_load_explicit(&balance->next, memory_order_relaxed))
         return;
     unsigned attempt = atomic_load_explicit(&balance->attempt, memory_order_relaxed);
@@ -321,25 +320,25 @@ static void ask(struct work_worker *worker)
         work_stir(worker);
 }
 
-void work_beg(struct work_worker *worker, uint64_t idle)
+void work_beg(struct worker *worker, uint64_t idle)
 {
     if (idle >= worker->pool->balance->first_ask)
         ask(worker);
 }
 
-void work_guest_came(struct work_balance *balance, const struct graph_task *guest)
+void work_guest_came(struct work_balance *balance, const struct task *guest)
 {
-    atomic_store_explicit(&balance->giver, graph_guest_home(guest), memory_order_relaxed);
+    atomic_store_explicit(&balance->giver, offload_guest_home(guest), memory_order_relaxed);
     atomic_store_explicit(&balance->attempt, 0, memory_order_relaxed);
     atomic_store_explicit(&balance->next, 0, memory_order_relaxed);
 }
 
-bool work_begins(struct work_worker *worker, const struct graph_task *task)
+bool work_begins(struct worker *worker, const struct task *task)
 {
     const struct work_pool *pool = worker->pool;
-    if (task->kind != GRAPH_GUEST)
+    if (task->kind != TASK_GUEST)
         return false;
-    uint64_t guests = graph_guests(pool->setup.graph);
+    uint64_t guests = offload_guests(pool->setup.graph);
     size_t ready = work_queue_size(&worker->queue) + work_queue_size(&pool->shared);
     bool last = guests <= STOCK * pool->setup.threads && ready < guests;
     if (last)

@@ -1,7 +1,7 @@
 #ifndef DUITE_WORKERS_BALANCE_H
 #define DUITE_WORKERS_BALANCE_H
 
-#include "runtime/graph/graph.h"
+#include "runtime/task/task.h"
 
 #include <duite_policy.h>
 
@@ -10,32 +10,32 @@
  * nothing, or on one rank, has none of this (NULL). */
 struct work_balance;
 struct work_pool;
-struct work_worker;
+struct worker;
 
 /* The pool has its setup and its workers. *balance NULL: nothing moves. Errors: memory. */
 int work_balance_start(struct work_balance **balance, struct work_pool *pool);
 void work_balance_stop(struct work_pool *pool); /* it may have none */
 
 /* From now on this caller of the guard asks the worker's balancer, if there is one. */
-void work_balance_caller(struct work_worker *worker, unsigned caller);
+void work_balance_caller(struct worker *worker, unsigned caller);
 
 /* A task became ready: true if it was sent to another rank. */
-bool work_placed_away(struct work_worker *worker, struct graph_task *task);
+bool work_placed_away(struct worker *worker, struct task *task);
 
 /* A task of another rank came. */
-void work_guest_came(struct work_balance *balance, const struct graph_task *guest);
+void work_guest_came(struct work_balance *balance, const struct task *guest);
 
 /* A task is about to run: one of the last of other ranks', with nothing else here, is the moment to
  * ask for more. Whether that took time. */
-bool work_begins(struct work_worker *worker, const struct graph_task *task);
+bool work_begins(struct worker *worker, const struct task *task);
 
 /* The body of a task took so many ticks. */
-void work_learn(struct work_worker *worker, const struct graph_task *task, uint64_t ticks);
+void work_learn(struct worker *worker, const struct task *task, uint64_t ticks);
 
 /* Between tasks: gives to those who ask. */
-void work_serve(struct work_worker *worker);
+void work_serve(struct worker *worker);
 
 /* The worker, which polls for all that idle, has nothing to do since so many ticks: asks. */
-void work_beg(struct work_worker *worker, uint64_t idle);
+void work_beg(struct worker *worker, uint64_t idle);
 
 #endif

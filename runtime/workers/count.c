@@ -29,10 +29,8 @@ static bool is_enough(const struct work_pool *pool)
     return awaited && awaited - over(pool) < (wanted ? wanted : 1);
 }
 
-void work_over(void *context, void *who, int tasks)
+void work_over(struct work_pool *pool, struct worker *worker, int tasks)
 {
-    struct work_pool *pool = context;
-    struct work_worker *worker = who;
     _Atomic uint64_t *count = tasks < 0 ? &worker->counts.more : &worker->counts.over;
     uint64_t before = atomic_load_explicit(count, memory_order_relaxed);
     atomic_store_explicit(count, before + (uint64_t)abs(tasks), memory_order_release);
@@ -40,25 +38,25 @@ void work_over(void *context, void *who, int tasks)
         work_notify(pool);
 }
 
-void work_ran_out(struct work_worker *worker)
+void work_ran_out(struct worker *worker)
 {
     struct work_pool *pool = worker->pool;
     if (!worker->index)
         return;
     /* Against the main thread, which says what it waits for and then adds up. */
     atomic_thread_fence(memory_order_seq_cst);
-    if (is_enough(pool) || graph_has_given_up(pool->setup.graph))
+    if (is_enough(pool) || task_has_given_up(pool->setup.graph))
         work_notify(pool);
 }
 
-void work_idles(struct work_worker *worker, uint64_t now)
+void work_idles(struct worker *worker, uint64_t now)
 {
     const struct comm *comm = worker->pool->setup.comm;
     worker->idle_since = worker->looked = now;
     worker->awaited_then = comm ? comm_awaited_ticks(comm) : 0;
 }
 
-void work_stir(struct work_worker *worker)
+void work_stir(struct worker *worker)
 {
     const struct comm *comm = worker->pool->setup.comm;
     if (worker->idle_since) {
@@ -86,7 +84,7 @@ static bool is_reached(void *context)
 
 void work_throttle(struct work_pool *pool, uint64_t most)
 {
-    const struct graph *graph = pool->setup.graph;
+    const struct task_graph *graph = pool->setup.graph;
     if (graph->tasks < pool->look)
         return;
     uint64_t left = work_unfinished(pool);

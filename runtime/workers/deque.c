@@ -43,7 +43,7 @@ static struct work_ring *grow(struct work_deque *deque, struct work_ring *ring, 
     if (!larger)
         return NULL;
     for (int64_t i = oldest; i < newest; i++) {
-        struct graph_task *task =
+        struct task *task =
             atomic_load_explicit(&ring->slot[(uint64_t)i & ring->mask], memory_order_relaxed);
         atomic_store_explicit(&larger->slot[(uint64_t)i & larger->mask], task,
                               memory_order_relaxed);
@@ -57,7 +57,7 @@ int64_t work_deque_end(const struct work_deque *deque)
     return atomic_load_explicit(&deque->newest, memory_order_relaxed);
 }
 
-bool work_deque_fill(struct work_deque *deque, int64_t newest, struct graph_task *task)
+bool work_deque_fill(struct work_deque *deque, int64_t newest, struct task *task)
 {
     struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
     if (newest - deque->seen > (int64_t)ring->mask) {
@@ -76,7 +76,7 @@ void work_deque_show(struct work_deque *deque, int64_t newest)
     atomic_exchange_explicit(&deque->newest, newest, memory_order_seq_cst);
 }
 
-bool work_deque_push(struct work_deque *deque, struct graph_task *task)
+bool work_deque_push(struct work_deque *deque, struct task *task)
 {
     int64_t newest = work_deque_end(deque);
     if (!work_deque_fill(deque, newest, task))
@@ -85,7 +85,7 @@ bool work_deque_push(struct work_deque *deque, struct graph_task *task)
     return true;
 }
 
-struct graph_task *work_deque_take_newest(struct work_deque *deque)
+struct task *work_deque_take_newest(struct work_deque *deque)
 {
     int64_t newest = atomic_load_explicit(&deque->newest, memory_order_relaxed) - 1;
     struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_relaxed);
@@ -97,7 +97,7 @@ struct graph_task *work_deque_take_newest(struct work_deque *deque)
         atomic_store_explicit(&deque->newest, newest + 1, memory_order_relaxed);
         return NULL;
     }
-    struct graph_task *task =
+    struct task *task =
         atomic_load_explicit(&ring->slot[(uint64_t)newest & ring->mask], memory_order_relaxed);
     if (oldest < newest)
         return task;
@@ -108,7 +108,7 @@ struct graph_task *work_deque_take_newest(struct work_deque *deque)
     return task;
 }
 
-struct graph_task *work_deque_take_oldest(struct work_deque *deque, bool *again)
+struct task *work_deque_take_oldest(struct work_deque *deque, bool *again)
 {
     int64_t oldest = atomic_load_explicit(&deque->oldest, memory_order_seq_cst);
     int64_t newest = atomic_load_explicit(&deque->newest, memory_order_seq_cst);
@@ -116,7 +116,7 @@ struct graph_task *work_deque_take_oldest(struct work_deque *deque, bool *again)
     if (oldest >= newest)
         return NULL;
     struct work_ring *ring = atomic_load_explicit(&deque->ring, memory_order_acquire);
-    struct graph_task *task =
+    struct task *task =
         atomic_load_explicit(&ring->slot[(uint64_t)oldest & ring->mask], memory_order_relaxed);
     if (atomic_compare_exchange_strong_explicit(&deque->oldest, &oldest, oldest + 1,
                                                 memory_order_seq_cst, memory_order_relaxed))

@@ -2,12 +2,12 @@
 #include "runtime/workers/heap.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/graph/graph.h"
+#include "runtime/task/task.h"
 
 #include <stdlib.h>
 
 struct work_ranked {
-    struct graph_task *task;
+    struct task *task;
     uint64_t came;
     int32_t priority;
     float path;
@@ -44,14 +44,14 @@ static bool before(const struct work_ranked *a, const struct work_ranked *b)
     return a->path != b->path ? a->path > b->path : a->came < b->came;
 }
 
-bool work_heap_push(struct work_heap *heap, struct graph_task *task)
+bool work_heap_push(struct work_heap *heap, struct task *task)
 {
     size_t i = atomic_load_explicit(&heap->n, memory_order_relaxed);
     void *moved = base_grow(heap->entry, &heap->capacity, i + 1, sizeof *heap->entry);
     if (!moved)
         return false;
     heap->entry = moved;
-    struct work_ranked new = {task, heap->came++, task->priority, graph_task_path(task)};
+    struct work_ranked new = {task, heap->came++, task->priority, task_path(task)};
     atomic_store_explicit(&heap->n, i + 1, memory_order_relaxed);
     for (; i && before(&new, &heap->entry[(i - 1) / 2]); i = (i - 1) / 2)
         heap->entry[i] = heap->entry[(i - 1) / 2];
@@ -59,12 +59,12 @@ bool work_heap_push(struct work_heap *heap, struct graph_task *task)
     return true;
 }
 
-struct graph_task *work_heap_pop(struct work_heap *heap)
+struct task *work_heap_pop(struct work_heap *heap)
 {
     size_t n = atomic_load_explicit(&heap->n, memory_order_relaxed), i = 0;
     if (!n)
         return NULL;
-    struct graph_task *first = heap->entry[0].task;
+    struct task *first = heap->entry[0].task;
     struct work_ranked last = heap->entry[--n];
     atomic_store_explicit(&heap->n, n, memory_order_relaxed);
     for (size_t child = 1; child < n; child = 2 * i + 1) {

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct graph_task;
+struct task;
 
 /* Tasks by priority; of equals the one with the longest path, then the one that came first. Whoever
  * holds `busy` may look inside; `n` anybody may read. */
@@ -26,8 +26,8 @@ bool work_heap_enter(struct work_heap *heap);
 void work_heap_leave(struct work_heap *heap);
 
 /* For who entered. False without memory: the task is not in it. */
-bool work_heap_push(struct work_heap *heap, struct graph_task *task);
+bool work_heap_push(struct work_heap *heap, struct task *task);
 /* For who entered. NULL: empty. */
-struct graph_task *work_heap_pop(struct work_heap *heap);
+struct task *work_heap_pop(struct work_heap *heap);
 
 #endif

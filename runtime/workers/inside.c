@@ -19,7 +19,7 @@ enum {
 
 /* What a waiting worker knows. */
 struct wait {
-    const struct graph_scope *scope;
+    const struct task_scope *scope;
     unsigned refused; /* tasks taken from others in vain since the last pause */
     bool paused;      /* just now */
     int64_t barren;   /* the mark of its own queue when nothing in it might run, or NOT_BARREN */
@@ -27,20 +27,19 @@ struct wait {
 
 /* The newest of a queue of this worker that may run; the others keep their places, and those who
  * did not find them meanwhile look again. */
-static struct graph_task *dig(struct work_pool *pool, struct work_queue *queue,
-                              const struct graph_scope *scope, unsigned depth)
+static struct task *dig(struct work_pool *pool, struct work_queue *queue,
+                        const struct task_scope *scope, unsigned depth)
 {
-    struct graph_task *aside = NULL, *task = NULL;
+    struct task *aside = NULL, *task = NULL;
     bool hidden = false;
-    while (depth-- && (task = work_queue_take(queue, DUITE_NEWEST)) &&
-           !graph_may_run(scope, task)) {
+    while (depth-- && (task = work_queue_take(queue, DUITE_NEWEST)) && !task_may_run(scope, task)) {
         task->next = aside;
         aside = task;
         task = NULL;
         hidden = true;
     }
     while (aside) {
-        struct graph_task *next = aside->next;
+        struct task *next = aside->next;
         work_queue_push(queue, aside);
         aside = next;
     }
@@ -51,16 +50,16 @@ static struct graph_task *dig(struct work_pool *pool, struct work_queue *queue,
 
 /* The same of the shared queue, a few at its new end; and one at the old end, which goes to the
  * new one, so that all come by. */
-static struct graph_task *dig_shared(struct work_pool *pool, const struct graph_scope *scope)
+static struct task *dig_shared(struct work_pool *pool, const struct task_scope *scope)
 {
     struct work_queue *queue = &pool->shared;
-    struct graph_task *task = NULL;
+    struct task *task = NULL;
     if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_acquire))
         return NULL;
     task = dig(pool, queue, scope, SHARED_DEPTH);
     if (!task) {
         task = work_queue_take(queue, DUITE_OLDEST);
-        if (task && !graph_may_run(scope, task)) {
+        if (task && !task_may_run(scope, task)) {
             work_queue_push(queue, task);
             task = NULL;
         }
@@ -70,17 +69,17 @@ static struct graph_task *dig_shared(struct work_pool *pool, const struct graph_
 }
 
 /* Takes from another; what may not run here is left where everybody looks. */
-static struct graph_task *steal_from(struct work_worker *worker, unsigned victim, struct wait *wait)
+static struct task *steal_from(struct worker *worker, unsigned victim, struct wait *wait)
 {
     struct work_pool *pool = worker->pool;
     if (victim == worker->index)
         return NULL;
-    struct graph_task *task = work_queue_steal(&pool->worker[victim].queue, &worker->queue);
+    struct task *task = work_queue_steal(&pool->worker[victim].queue, &worker->queue);
     if (!task)
         return NULL;
     work_bump(&worker->counts.stolen, 1);
     trace_mark(worker->ring, TRACE_STEAL, victim, 0);
-    if (graph_may_run(wait->scope, task))
+    if (task_may_run(wait->scope, task))
         return task;
     wait->refused++;
     work_queue_put(&pool->shared, task);
@@ -90,10 +89,10 @@ static struct graph_task *steal_from(struct work_worker *worker, unsigned victim
 
 /* Of the scheduler's victims; of all, when it has waited for long: what it waits for may lie with
  * one that waits for what lies here. */
-static struct graph_task *steal(struct work_worker *worker, struct wait *wait)
+static struct task *steal(struct worker *worker, struct wait *wait)
 {
     struct work_pool *pool = worker->pool;
-    struct graph_task *task = NULL;
+    struct task *task = NULL;
     for (unsigned attempt = 0; !task && wait->refused < MOST_REFUSED; attempt++) {
         unsigned victim = pool->setup.scheduler->victim(worker->state, attempt);
         if (victim >= pool->setup.threads || work_is_endless(pool, attempt))
@@ -107,7 +106,7 @@ static struct graph_task *steal(struct work_worker *worker, struct wait *wait)
 }
 
 /* Nothing to do for a moment. Nobody wakes a worker that waits in a body: it sleeps briefly. */
-static void moment(struct work_worker *worker, struct wait *wait)
+static void moment(struct worker *worker, struct wait *wait)
 {
     const struct work_pool *pool = worker->pool;
     uint64_t now = base_ticks();
@@ -130,10 +129,10 @@ static void moment(struct work_worker *worker, struct wait *wait)
     }
 }
 
-static struct graph_task *find(struct work_worker *worker, struct wait *wait)
+static struct task *find(struct worker *worker, struct wait *wait)
 {
     struct work_pool *pool = worker->pool;
-    struct graph_task *task = NULL;
+    struct task *task = NULL;
     if (wait->barren < 0 || wait->barren != work_queue_mark(&worker->queue)) {
         task = dig(pool, &worker->queue, wait->scope, UINT32_MAX);
         wait->barren = task ? NOT_BARREN : work_queue_mark(&worker->queue);
@@ -147,15 +146,15 @@ static struct graph_task *find(struct work_worker *worker, struct wait *wait)
     return task;
 }
 
-void work_inside(struct work_worker *worker, const struct graph_scope *scope,
-                 bool (*done)(void *context), void *context)
+void work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
+                 void *context)
 {
-    const struct graph_scope *outer = worker->waits;
+    const struct task_scope *outer = worker->waits;
     struct comm *comm = worker->pool->setup.comm;
     struct wait wait = {.scope = scope, .barren = NOT_BARREN};
     worker->waits = scope;
     while (!done(context) && !(comm && comm_broken(comm))) {
-        struct graph_task *task = find(worker, &wait);
+        struct task *task = find(worker, &wait);
         if (task) {
             work_busy_again(worker);
             work_run(worker, task);

@@ -1,7 +1,7 @@
 #ifndef DUITE_WORKERS_INTERNAL_H
 #define DUITE_WORKERS_INTERNAL_H
 
-#include "runtime/graph/replay.h"
+#include "runtime/plan/replay.h"
 #include "runtime/workers/balance.h"
 #include "runtime/workers/near.h"
 #include "runtime/workers/park.h"
@@ -27,32 +27,32 @@ struct counts {
     _Atomic uint64_t busy, idle, exposed; /* ticks; the last: idle while messages were awaited */
 };
 
-struct work_worker {
+struct worker {
     struct work_queue queue;
     struct work_park park;
     struct work_pool *pool;
     struct trace_ring *ring; /* of the trace; NULL: there is none */
     void *state;             /* of the scheduler */
     unsigned index;
-    bool finishing;                  /* a task of this worker makes others ready right now */
-    bool may_chain;                  /* ... and may run one of them next */
-    bool polls;                      /* holds the seat */
-    bool left_some;                  /* tasks in the heap from which it took one: another is to be
-                                        woken */
-    const struct graph_scope *waits; /* of the body that waits on top; NULL: none does */
-    uint64_t within;                 /* ticks of tasks, messages and idling inside the body that
-                                        runs */
-    uint64_t gap;                    /* ticks between chained tasks, when last looked at */
-    struct graph_task *next;         /* chained: to run directly after this one */
-    uint64_t polled, idle_since;     /* when, in ticks; 0: busy */
-    uint64_t messaging;              /* when it began with messages, in ticks; 0: it does not */
-    uint64_t looked, crowded_until;  /* in ticks, see spin.c */
-    long switches;                   /* of its thread, that it did not want; -1: not counted yet */
-    uint64_t awaited_then;           /* comm_awaited_ticks when it began to idle */
+    bool finishing;                 /* a task of this worker makes others ready right now */
+    bool may_chain;                 /* ... and may run one of them next */
+    bool polls;                     /* holds the seat */
+    bool left_some;                 /* tasks in the heap from which it took one: another is to be
+                                       woken */
+    const struct task_scope *waits; /* of the body that waits on top; NULL: none does */
+    uint64_t within;                /* ticks of tasks, messages and idling inside the body that
+                                       runs */
+    uint64_t gap;                   /* ticks between chained tasks, when last looked at */
+    struct task *next;              /* chained: to run directly after this one */
+    uint64_t polled, idle_since;    /* when, in ticks; 0: busy */
+    uint64_t messaging;             /* when it began with messages, in ticks; 0: it does not */
+    uint64_t looked, crowded_until; /* in ticks, see spin.c */
+    long switches;                  /* of its thread, that it did not want; -1: not counted yet */
+    uint64_t awaited_then;          /* comm_awaited_ticks when it began to idle */
     double pause;
     duite_call call;
     struct counts counts;
-    _Atomic(const struct graph_task *) runs; /* whose body runs, for the one who watches */
+    _Atomic(const struct task *) runs; /* whose body runs, for the one who watches */
     pthread_t thread;
     int unit;          /* to be bound to, or -1 */
     cpu_set_t binding; /* of worker 0 before start */
@@ -60,7 +60,7 @@ struct work_worker {
 
 struct work_pool {
     struct work_setup setup;
-    struct work_worker *worker; /* setup.threads of them */
+    struct worker *worker; /* setup.threads of them */
     unsigned char *states;
     double tick; /* seconds */
     uint64_t poll_ticks, spin_ticks, yield_ticks, await_ticks;
@@ -88,16 +88,15 @@ static inline void work_bump(_Atomic uint64_t *count, uint64_t by)
 }
 
 /* Whose body runs, from now on; returns whose did: a body that waits has others on top of it. */
-static inline const struct graph_task *work_enters(struct work_worker *worker,
-                                                   const struct graph_task *task)
+static inline const struct task *work_enters(struct worker *worker, const struct task *task)
 {
-    const struct graph_task *below = atomic_load_explicit(&worker->runs, memory_order_relaxed);
-    atomic_store_explicit(&worker->runs, graph_has_body(task) ? task : NULL, memory_order_release);
+    const struct task *below = atomic_load_explicit(&worker->runs, memory_order_relaxed);
+    atomic_store_explicit(&worker->runs, task_has_body(task) ? task : NULL, memory_order_release);
     return below;
 }
 
 /* The worker's task is over, but nothing of it was published or freed yet. */
-static inline void work_leaves(struct work_worker *worker, const struct graph_task *below)
+static inline void work_leaves(struct worker *worker, const struct task *below)
 {
     atomic_store_explicit(&worker->runs, below, memory_order_release);
     atomic_signal_fence(memory_order_seq_cst); /* the watcher has the fence: see watch.c */
@@ -130,60 +129,50 @@ struct work_ran {
 
 /* What the trace is told, if there is one. Of a task before it is finished; whether the ring was
  * full, and may have been written; idle for so many ticks since idle_since. */
-void work_note_task(struct work_worker *worker, const struct graph_task *task,
-                    const struct work_ran *ran);
-bool work_note_relieve(struct work_worker *worker);
-void work_note_idle(struct work_worker *worker, uint64_t idle, uint64_t exposed);
+void work_note_task(struct worker *worker, const struct task *task, const struct work_ran *ran);
+bool work_note_relieve(struct worker *worker);
+void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed);
 /* Around what a worker that does not idle does for messages: looks for them, sends, takes them.
  * What begins within that is no other. Nothing below a microsecond is noted. */
-bool work_note_messages_begin(struct work_worker *worker);
-void work_note_messages_end(struct work_worker *worker, bool begun);
-void work_note_message(void *worker, bool sends, int peer, size_t bytes);
+bool work_note_messages_begin(struct worker *worker);
+void work_note_messages_end(struct worker *worker, bool begun);
+void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes);
 
 /* Whether a scheduler names victims without an end, in one round: the main program will tell. */
 bool work_is_endless(struct work_pool *pool, unsigned attempt);
 /* Looks for work once; idles for a moment if there is none. */
-void work_look(struct work_worker *worker, const struct work_wish *wish);
+void work_look(struct worker *worker, const struct work_wish *wish);
 /* Runs the task and what it chains. */
-void work_run(struct work_worker *worker, struct graph_task *task);
+void work_run(struct worker *worker, struct task *task);
 /* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal
  * it. What it is woken for was made known by a sequentially consistent read-modify-write, or before
  * a fence, against the announcement of a sleeper. */
 void work_wake_one(struct work_pool *pool, unsigned queue);
-/* Hooks of the graph, under their names in graph_hooks. */
-void work_over(void *context, void *worker, int tasks);
-void work_notify(void *context);
-int work_body(void *context, const duite_kernel *kernel, uint64_t number, duite_call *call);
-int work_expect(void *context, void *worker, struct data_key key, int from,
-                struct data_version *version, struct data_sum *sum, uint32_t packets);
-int work_open(void *context, struct graph_channels *channels);
-void work_starved(void *context, const char *what);
 /* The worker finds no task: does the main thread wait for just that? */
-void work_ran_out(struct work_worker *worker);
+void work_ran_out(struct worker *worker);
 /* Sends and receives; whether anything happened. */
-bool work_poll(struct work_worker *worker);
+bool work_poll(struct worker *worker);
 /* Idling begins, now in ticks. */
-void work_idles(struct work_worker *worker, uint64_t now);
+void work_idles(struct worker *worker, uint64_t now);
 /* One idle look, now in ticks: whether other programs use this worker's core. Then waiting is to
  * sleep: see spin.c. */
-bool work_is_crowded(struct work_worker *worker, uint64_t now);
+bool work_is_crowded(struct worker *worker, uint64_t now);
 /* Idles without sleeping for the first moments; false once it is time to sleep. */
-bool work_spins(struct work_worker *worker);
+bool work_spins(struct worker *worker);
 /* Something happened: idling begins anew. */
-void work_stir(struct work_worker *worker);
+void work_stir(struct worker *worker);
 /* The worker has something to do again: it leaves the seat to one that sleeps. */
-void work_busy_again(struct work_worker *worker);
+void work_busy_again(struct worker *worker);
 
 /* A task took so many ticks. In replays of short ones, nothing is warm and nothing is looked up. */
-static inline void work_warms(const struct work_worker *worker, const struct graph_task *task,
-                              uint64_t took)
+static inline void work_warms(const struct worker *worker, const struct task *task, uint64_t took)
 {
-    if (task->kind != GRAPH_NODE)
+    if (task->kind != TASK_NODE)
         return;
-    if ((double)took * worker->pool->tick >= GRAPH_WARM_SECONDS)
-        graph_task_warms(task, worker->index + 1);
+    if ((double)took * worker->pool->tick >= PLAN_WARM_SECONDS)
+        plan_task_warms(task, worker->index + 1);
     else if (atomic_load_explicit(&task->node->plan->warm, memory_order_relaxed))
-        graph_task_warms(task, 0);
+        plan_task_warms(task, 0);
 }
 
 #endif

@@ -48,7 +48,7 @@ void work_idle_ends(struct work_pool *pool)
 
 void work_tick(struct work_pool *pool)
 {
-    struct work_worker *worker = &pool->worker[0];
+    struct worker *worker = &pool->worker[0];
     struct comm *comm = pool->setup.comm;
     if (!comm)
         return;
@@ -61,12 +61,12 @@ void work_tick(struct work_pool *pool)
         work_serve(worker);
 }
 
-struct work_worker *work_main(struct work_pool *pool)
+struct worker *work_main(struct work_pool *pool)
 {
     return &pool->worker[0];
 }
 
 bool work_may_fork(struct work_pool *pool)
 {
-    return pthread_equal(pthread_self(), pool->main) && !graph_running(pool->setup.graph);
+    return pthread_equal(pthread_self(), pool->main) && !task_running(pool->setup.graph);
 }

@@ -1,28 +1,27 @@
 /* What workers tell the trace. Each writes to its own ring, and nothing where there is none. */
 #include "runtime/workers/internal.h"
 
-void work_note_task(struct work_worker *worker, const struct graph_task *task,
-                    const struct work_ran *ran)
+void work_note_task(struct worker *worker, const struct task *task, const struct work_ran *ran)
 {
-    if (graph_has_body(task) && !ran->body)
+    if (task_has_body(task) && !ran->body)
         return; /* poison kept it from running */
     bool nested;
     struct trace_event event = {.begin = ran->start,
                                 .took = ran->took,
                                 .within = ran->within,
-                                .number = graph_main_number(task, &nested),
+                                .number = task_main_number(task, &nested),
                                 .kernel = ran->body ? task->kernel : ran->kind,
                                 .kind = ran->body ? TRACE_TASK : TRACE_OWN};
     if (nested)
         event.flags |= TRACE_NESTED;
-    if (task->kind == GRAPH_GUEST)
+    if (task->kind == TASK_GUEST)
         event.flags |= TRACE_GUEST;
     if (ran->chained)
         event.flags |= TRACE_CHAINED;
     trace_put(worker->ring, &event);
 }
 
-bool work_note_relieve(struct work_worker *worker)
+bool work_note_relieve(struct worker *worker)
 {
     bool full = trace_is_full(worker->ring);
     if (full)
@@ -30,7 +29,7 @@ bool work_note_relieve(struct work_worker *worker)
     return full;
 }
 
-void work_note_idle(struct work_worker *worker, uint64_t idle, uint64_t exposed)
+void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed)
 {
     trace_put(worker->ring, &(struct trace_event){.begin = worker->idle_since,
                                                   .took = idle,
@@ -38,7 +37,7 @@ void work_note_idle(struct work_worker *worker, uint64_t idle, uint64_t exposed)
                                                   .kind = TRACE_IDLE});
 }
 
-bool work_note_messages_begin(struct work_worker *worker)
+bool work_note_messages_begin(struct worker *worker)
 {
     if (!worker->ring || worker->idle_since || worker->messaging)
         return false;
@@ -46,7 +45,7 @@ bool work_note_messages_begin(struct work_worker *worker)
     return true;
 }
 
-void work_note_messages_end(struct work_worker *worker, bool begun)
+void work_note_messages_end(struct worker *worker, bool begun)
 {
     const double least = 1e-6; /* s: an event for each look would cost as much as the look */
     if (!begun)
@@ -61,9 +60,8 @@ void work_note_messages_end(struct work_worker *worker, bool begun)
     worker->messaging = 0;
 }
 
-void work_note_message(void *who, bool sends, int peer, size_t bytes)
+void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes)
 {
-    const struct work_worker *worker = who;
     if (worker)
         trace_mark(worker->ring, sends ? TRACE_SEND : TRACE_RECEIVE, (uint32_t)peer, bytes);
 }

@@ -18,30 +18,30 @@ void work_queue_stop(struct work_queue *queue)
     work_heap_stop(&queue->heap);
 }
 
-void work_queue_put(struct work_queue *queue, struct graph_task *task)
+void work_queue_put(struct work_queue *queue, struct task *task)
 {
-    struct graph_task *first = atomic_load_explicit(&queue->inbox, memory_order_relaxed);
+    struct task *first = atomic_load_explicit(&queue->inbox, memory_order_relaxed);
     do
         task->next = first;
     while (!atomic_compare_exchange_weak_explicit(&queue->inbox, &first, task, memory_order_seq_cst,
                                                   memory_order_relaxed));
 }
 
-void work_queue_push(struct work_queue *queue, struct graph_task *task)
+void work_queue_push(struct work_queue *queue, struct task *task)
 {
     if (!work_deque_push(&queue->deque, task))
         work_queue_put(queue, task); /* no memory for a larger ring: the inbox has no bound */
 }
 
 /* The inbox, oldest first. */
-static struct graph_task *empty_inbox(struct work_queue *queue)
+static struct task *empty_inbox(struct work_queue *queue)
 {
     if (!atomic_load_explicit(&queue->inbox, memory_order_relaxed))
         return NULL;
-    struct graph_task *task = atomic_exchange_explicit(&queue->inbox, NULL, memory_order_acquire);
-    struct graph_task *oldest = NULL;
+    struct task *task = atomic_exchange_explicit(&queue->inbox, NULL, memory_order_acquire);
+    struct task *oldest = NULL;
     while (task) {
-        struct graph_task *next = task->next;
+        struct task *next = task->next;
         task->next = oldest;
         oldest = task;
         task = next;
@@ -51,7 +51,7 @@ static struct graph_task *empty_inbox(struct work_queue *queue)
 
 /* A list, oldest first. What finds no memory for a larger ring goes to the inbox, which has no
  * bound. */
-static void push_all(struct work_queue *queue, struct graph_task *task)
+static void push_all(struct work_queue *queue, struct task *task)
 {
     int64_t newest = work_deque_end(&queue->deque);
     for (; task && work_deque_fill(&queue->deque, newest, task); newest++)
@@ -59,34 +59,34 @@ static void push_all(struct work_queue *queue, struct graph_task *task)
     if (newest != work_deque_end(&queue->deque))
         work_deque_show(&queue->deque, newest);
     while (task) {
-        struct graph_task *next = task->next;
+        struct task *next = task->next;
         work_queue_put(queue, task);
         task = next;
     }
 }
 
-static struct graph_task *take_oldest(struct work_deque *deque)
+static struct task *take_oldest(struct work_deque *deque)
 {
     bool again = true;
-    struct graph_task *task = NULL;
+    struct task *task = NULL;
     while (again)
         task = work_deque_take_oldest(deque, &again);
     return task;
 }
 
 /* NULL: the heap is empty, or another one is at it. */
-static struct graph_task *take_ranked(struct work_heap *heap)
+static struct task *take_ranked(struct work_heap *heap)
 {
     if (!atomic_load_explicit(&heap->n, memory_order_relaxed) || !work_heap_enter(heap))
         return NULL;
-    struct graph_task *task = work_heap_pop(heap);
+    struct task *task = work_heap_pop(heap);
     work_heap_leave(heap);
     return task;
 }
 
-static struct graph_task *take_highest(struct work_queue *queue)
+static struct task *take_highest(struct work_queue *queue)
 {
-    struct graph_task *task = take_oldest(&queue->deque);
+    struct task *task = take_oldest(&queue->deque);
     if (!work_heap_enter(&queue->heap))
         return task;
     while (task && work_heap_push(&queue->heap, task))
@@ -99,24 +99,24 @@ static struct graph_task *take_highest(struct work_queue *queue)
 
 /* A scheduler may serve by priority now and otherwise later: what lies in the heap is found by all
  * ways, and who goes round the queue from its old end to the new one comes by all of it. */
-static struct graph_task *take(struct work_queue *queue, duite_end end)
+static struct task *take(struct work_queue *queue, duite_end end)
 {
     push_all(queue, empty_inbox(queue));
     if (end == DUITE_HIGHEST)
         return take_highest(queue);
     if (end == DUITE_NEWEST) {
-        struct graph_task *task = work_deque_take_newest(&queue->deque);
+        struct task *task = work_deque_take_newest(&queue->deque);
         return task ? task : take_ranked(&queue->heap);
     }
-    struct graph_task *task = take_ranked(&queue->heap);
+    struct task *task = take_ranked(&queue->heap);
     return task ? task : take_oldest(&queue->deque);
 }
 
-struct graph_task *work_queue_take(struct work_queue *queue, duite_end end)
+struct task *work_queue_take(struct work_queue *queue, duite_end end)
 {
     if (work_queue_is_empty(queue)) /* an idle worker asks all the time */
         return NULL;
-    struct graph_task *task = take(queue, end);
+    struct task *task = take(queue, end);
     /* A ring that could not grow leaves tasks in the inbox: run them from there. */
     if (!task && (task = empty_inbox(queue)))
         push_all(queue, task->next);
@@ -130,9 +130,9 @@ int64_t work_queue_mark(struct work_queue *queue)
     return atomic_load_explicit(&queue->deque.newest, memory_order_relaxed);
 }
 
-struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end end)
+struct task *work_queue_take_shared(struct work_queue *queue, duite_end end)
 {
-    struct graph_task *task;
+    struct task *task;
     if (work_queue_is_empty(queue))
         return NULL;
     do {
@@ -147,9 +147,9 @@ struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end en
     return task;
 }
 
-struct graph_task *work_queue_steal(struct work_queue *victim, struct work_queue *own)
+struct task *work_queue_steal(struct work_queue *victim, struct work_queue *own)
 {
-    struct graph_task *task = take_ranked(&victim->heap);
+    struct task *task = take_ranked(&victim->heap);
     if (!task)
         task = take_oldest(&victim->deque);
     if (task || !(task = empty_inbox(victim)))

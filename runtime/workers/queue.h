@@ -1,7 +1,7 @@
 #ifndef DUITE_WORKERS_QUEUE_H
 #define DUITE_WORKERS_QUEUE_H
 
-#include "runtime/graph/graph.h"
+#include "runtime/task/task.h"
 #include "runtime/workers/deque.h"
 #include "runtime/workers/heap.h"
 
@@ -13,7 +13,7 @@
 struct work_queue {
     struct work_deque deque;
     struct work_heap heap;
-    _Alignas(64) _Atomic(struct graph_task *) inbox; /* linked by next, newest first */
+    _Alignas(64) _Atomic(struct task *) inbox; /* linked by next, newest first */
     atomic_flag token;
 };
 
@@ -21,19 +21,19 @@ bool work_queue_start(struct work_queue *queue); /* false without memory */
 void work_queue_stop(struct work_queue *queue);
 
 /* Anybody. */
-void work_queue_put(struct work_queue *queue, struct graph_task *task);
+void work_queue_put(struct work_queue *queue, struct task *task);
 /* The owner, without the detour over the inbox. */
-void work_queue_push(struct work_queue *queue, struct graph_task *task);
+void work_queue_push(struct work_queue *queue, struct task *task);
 /* The owner. NULL: empty. */
-struct graph_task *work_queue_take(struct work_queue *queue, duite_end end);
+struct task *work_queue_take(struct work_queue *queue, duite_end end);
 /* The owner. Never the same after something was pushed or put and before it is taken; -1 or more.
  */
 int64_t work_queue_mark(struct work_queue *queue);
 /* Anybody, of a queue without owner. NULL: empty, or another one is at it and will look again. */
-struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end end);
+struct task *work_queue_take_shared(struct work_queue *queue, duite_end end);
 /* A thief, who may take the whole inbox of a busy owner: all but the first go to the thief's own
  * queue. */
-struct graph_task *work_queue_steal(struct work_queue *victim, struct work_queue *own);
+struct task *work_queue_steal(struct work_queue *victim, struct work_queue *own);
 
 /* Anybody; a look without order. */
 static inline bool work_queue_is_empty(const struct work_queue *queue)

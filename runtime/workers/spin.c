@@ -21,7 +21,7 @@ enum { LOST_FACTOR = 100 };
 
 /* Whether the kernel took the core away since the last time this was asked: a long look may have
  * moved a long message. A thread that never was counted says no. */
-static bool was_switched(struct work_worker *worker)
+static bool was_switched(struct worker *worker)
 {
     struct rusage usage;
     if (getrusage(RUSAGE_THREAD, &usage))
@@ -31,7 +31,7 @@ static bool was_switched(struct work_worker *worker)
     return more;
 }
 
-bool work_is_crowded(struct work_worker *worker, uint64_t now)
+bool work_is_crowded(struct worker *worker, uint64_t now)
 {
     const uint64_t gap = now - worker->looked;
     worker->looked = now;
@@ -41,7 +41,7 @@ bool work_is_crowded(struct work_worker *worker, uint64_t now)
 }
 
 /* Ticks for which a poller gives way. */
-static uint64_t give_way_ticks(const struct work_worker *worker)
+static uint64_t give_way_ticks(const struct worker *worker)
 {
     const struct work_pool *pool = worker->pool;
     if (!worker->polls)
@@ -51,7 +51,7 @@ static uint64_t give_way_ticks(const struct work_worker *worker)
     return pool->spin_ticks ? 0 : pool->yield_ticks;
 }
 
-bool work_spins(struct work_worker *worker)
+bool work_spins(struct worker *worker)
 {
     const struct work_pool *pool = worker->pool;
     const uint64_t now = base_ticks();

@@ -1,7 +1,7 @@
 /* What is told of a standstill. Bodies that run, and messages that are awaited, are what all other
  * tasks wait for; both are held where they are during the look (work_leaves, comm_look), and with
  * them the tasks that wait for them. */
-#include "runtime/graph/away.h"
+#include "runtime/offload/away.h"
 #include "runtime/workers/internal.h"
 
 #include <linux/membarrier.h>
@@ -41,9 +41,9 @@ struct words {
     char text[120];
 };
 
-static struct words words_of(const struct page *page, const struct graph_task *task)
+static struct words words_of(const struct page *page, const struct task *task)
 {
-    const struct graph *graph = page->pool->setup.graph;
+    const struct task_graph *graph = page->pool->setup.graph;
     struct words words = {"a task of duite (a get, a sum or a message)"};
     if (task->kernel < graph->n_kernels)
         snprintf(words.text, sizeof words.text, "task %llu (kernel %.60s)",
@@ -71,10 +71,10 @@ static bool hold_workers(struct work_pool *pool)
 /* The first in fork order of the program's tasks among some, and how many more there are. */
 static struct words crowd(const struct page *page, const struct data_waiter *waiter)
 {
-    const struct graph_task *first = graph_who_waits(waiter);
+    const struct task *first = task_who_waits(waiter);
     unsigned more = 0;
     while ((waiter = waiter->next)) {
-        const struct graph_task *task = graph_who_waits(waiter);
+        const struct task *task = task_who_waits(waiter);
         bool of_program = task->kernel != UINT32_MAX;
         if (of_program && (first->kernel == UINT32_MAX || task->number < first->number))
             first = task;
@@ -85,9 +85,9 @@ static struct words crowd(const struct page *page, const struct data_waiter *wai
     return words;
 }
 
-static void tell_waiters(struct page *page, const struct graph_task *task, uint32_t i)
+static void tell_waiters(struct page *page, const struct task *task, uint32_t i)
 {
-    const struct graph_access *access = &task->access[i];
+    const struct task_access *access = &task->access[i];
     bool writes = access->waiter.mode == DUITE_W || access->waiter.mode == DUITE_RW;
     const struct data_waiter *waiter = writes ? data_version_waiters(access->out) : NULL;
     if (waiter)
@@ -101,8 +101,7 @@ static unsigned tell_bodies(struct page *page, bool held)
     struct work_pool *pool = page->pool;
     unsigned n = 0;
     for (unsigned i = 0; i < pool->setup.threads; i++) {
-        const struct graph_task *task =
-            atomic_load_explicit(&pool->worker[i].runs, memory_order_acquire);
+        const struct task *task = atomic_load_explicit(&pool->worker[i].runs, memory_order_acquire);
         if (!task)
             continue;
         if (n++ >= MOST_BODIES)
@@ -112,9 +111,8 @@ static unsigned tell_bodies(struct page *page, bool held)
                  held ? words_of(page, task).text : "a task");
     }
     for (unsigned i = 0; i < pool->setup.threads && held; i++) {
-        const struct graph_task *task =
-            atomic_load_explicit(&pool->worker[i].runs, memory_order_acquire);
-        for (uint32_t k = 0; task && task->kind == GRAPH_BODY && k < task->n; k++)
+        const struct task *task = atomic_load_explicit(&pool->worker[i].runs, memory_order_acquire);
+        for (uint32_t k = 0; task && task->kind == TASK_BODY && k < task->n; k++)
             tell_waiters(page, task, k);
     }
     if (!n)
@@ -140,16 +138,16 @@ static void tell_awaited(void *context, const struct data_key *key,
          target->from);
 }
 
-static void tell_sending(void *context, const struct graph_send *send)
+static void tell_sending(void *context, const struct task_send *send)
 {
     line(context, "object %u.%u, version %llu, is on its way to rank %d, which has not taken it",
          send->key.slot, send->key.generation, (unsigned long long)send->key.number, send->to);
 }
 
-static void tell_channel(void *context, const struct graph_channel *channel)
+static void tell_channel(void *context, const struct plan_channel *channel)
 {
     struct page *page = context;
-    const struct graph *graph = page->pool->setup.graph;
+    const struct task_graph *graph = page->pool->setup.graph;
     if (channel->sends) {
         line(page,
              "a recorded graph's message to rank %d waits until that rank has taken an earlier one",
@@ -157,7 +155,7 @@ static void tell_channel(void *context, const struct graph_channel *channel)
         return;
     }
     unsigned more;
-    const struct graph_task *task = graph_channel_waits(channel->node, &more);
+    const struct task *task = plan_channel_waits(channel->node, &more);
     struct words words = {"a task of duite"};
     if (task)
         snprintf(words.text, sizeof words.text, "kernel %.60s", graph->kernels[task->kernel]->name);
@@ -167,7 +165,7 @@ static void tell_channel(void *context, const struct graph_channel *channel)
 }
 
 /* A task that another rank runs; it stays away as long as it is looked at. */
-static void tell_away(void *context, const struct graph_task *task, int rank)
+static void tell_away(void *context, const struct task *task, int rank)
 {
     struct page *page = context;
     line(page, "%s is on rank %d, which has not sent what it leaves", words_of(page, task).text,
@@ -214,7 +212,7 @@ void work_tell(struct work_pool *pool, double seconds)
     tell_main(&page, seconds);
     const unsigned bodies = tell_bodies(&page, hold_workers(pool)), before = page.lines;
     const bool looked = !pool->setup.comm || comm_look(pool->setup.comm, &looker);
-    graph_away_look(pool->setup.graph, tell_away, &page);
+    offload_away_look(pool->setup.graph, tell_away, &page);
     const uint64_t left = unfinished(pool);
     line(&page, "unfinished tasks of this rank: %llu", (unsigned long long)left);
     if (looked && left && !bodies && page.lines == before + 1 && !page.left_out)

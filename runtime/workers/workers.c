@@ -28,17 +28,17 @@ enum { MOST_ATTEMPTS = 64, MOST_ATTEMPTS_A_WORKER = 16 };
 
 /* ---- Ready tasks ---- */
 
-static duite_ready describe(const struct graph *graph, const struct graph_task *task)
+static duite_ready describe(const struct task_graph *graph, const struct task *task)
 {
     const char *name =
-        graph_has_body(task) ? graph->kernels[task->kernel]->name : graph_own_name(task->kind);
+        task_has_body(task) ? graph->kernels[task->kernel]->name : task_own_name(task->kind);
     return (duite_ready){.kernel = name,
                          .number = task->number,
                          .block = task->block,
                          .priority = task->priority,
                          .cost = task->cost,
-                         .path = graph_task_path(task),
-                         .warm = graph_task_warm(task)};
+                         .path = task_path(task),
+                         .warm = plan_task_warm(task)};
 }
 
 void work_wake_one(struct work_pool *pool, unsigned queue)
@@ -51,7 +51,7 @@ void work_wake_one(struct work_pool *pool, unsigned queue)
             return;
 }
 
-static void place(struct work_worker *worker, struct graph_task *task, const duite_ready *ready)
+static void place(struct worker *worker, struct task *task, const duite_ready *ready)
 {
     struct work_pool *pool = worker->pool;
     unsigned queue = pool->setup.scheduler->place(worker->state, ready);
@@ -68,22 +68,20 @@ static void place(struct work_worker *worker, struct graph_task *task, const dui
 }
 
 /* Whether the task goes to another rank. */
-static bool moves(struct work_worker *worker, struct graph_task *task)
+static bool moves(struct worker *worker, struct task *task)
 {
-    if (task->kind == GRAPH_GUEST)
+    if (task->kind == TASK_GUEST)
         work_guest_came(worker->pool->balance, task);
     return work_placed_away(worker, task);
 }
 
-static void on_ready(void *context, void *who, struct graph_task *task)
+void work_ready(struct work_pool *pool, struct worker *worker, struct task *task)
 {
-    struct work_pool *pool = context;
-    struct work_worker *worker = who;
-    if (graph_to_send(task)) {
+    if (task_to_send(task)) {
         comm_send(pool->setup.comm, task);
         return;
     }
-    if (graph_is_channel(task)) {
+    if (task_is_channel(task)) {
         const bool noted = work_note_messages_begin(worker);
         comm_channel_ready(pool->setup.comm, worker, task);
         work_note_messages_end(worker, noted);
@@ -93,15 +91,16 @@ static void on_ready(void *context, void *who, struct graph_task *task)
         return;
     duite_ready ready = describe(pool->setup.graph, task);
     if (worker->may_chain && !worker->next && pool->setup.scheduler->chain(worker->state, &ready) &&
-        (!worker->waits || graph_may_run(worker->waits, task)))
+        (!worker->waits || task_may_run(worker->waits, task)))
         worker->next = task;
     else
         place(worker, task, &ready);
 }
 
-void work_notify(void *context)
+void work_notify(struct work_pool *pool)
 {
-    struct work_pool *pool = context;
+    if (!pool)
+        return;
     atomic_thread_fence(memory_order_seq_cst);
     work_park_wake(&pool->worker[0].park);
 }
@@ -116,7 +115,7 @@ bool work_is_endless(struct work_pool *pool, unsigned attempt)
     return true;
 }
 
-static void count_steal(struct work_worker *worker, unsigned victim)
+static void count_steal(struct worker *worker, unsigned victim)
 {
     const struct work_near *near = &worker->pool->near;
     work_bump(&worker->counts.stolen, 1);
@@ -124,13 +123,13 @@ static void count_steal(struct work_worker *worker, unsigned victim)
     trace_mark(worker->ring, TRACE_STEAL, victim, 0);
 }
 
-static struct graph_task *find(struct work_worker *worker)
+static struct task *find(struct worker *worker)
 {
     struct work_pool *pool = worker->pool;
     const duite_scheduler *scheduler = pool->setup.scheduler;
     duite_end end = scheduler->serve(worker->state);
     struct work_queue *queue = &worker->queue;
-    struct graph_task *task = work_queue_take(queue, end);
+    struct task *task = work_queue_take(queue, end);
     if (!task)
         task = work_queue_take_shared(queue = &pool->shared, end);
     for (unsigned attempt = 0; !task; attempt++) {
@@ -149,7 +148,7 @@ static struct graph_task *find(struct work_worker *worker)
 
 /* A chain moved to another worker takes all its data along: it stays as long as this one has
  * nothing else to do. */
-static bool may_chain(struct work_worker *worker, unsigned length)
+static bool may_chain(struct worker *worker, unsigned length)
 {
     return length % LONGEST_CHAIN ||
            (worker->index && !worker->waits && work_queue_is_empty(&worker->queue) &&
@@ -158,7 +157,7 @@ static bool may_chain(struct work_worker *worker, unsigned length)
 
 /* When the chained task after this one begins: reading the clock costs as much as all else that
  * lies between two short tasks, so mostly that time is taken to be what it was before. */
-static uint64_t next_start(struct work_worker *worker, unsigned length, uint64_t end)
+static uint64_t next_start(struct worker *worker, unsigned length, uint64_t end)
 {
     if (!worker->pool->setup.comm && length % CLOCKED)
         return end + worker->gap;
@@ -167,10 +166,10 @@ static uint64_t next_start(struct work_worker *worker, unsigned length, uint64_t
     return now;
 }
 
-void work_run(struct work_worker *worker, struct graph_task *task)
+void work_run(struct worker *worker, struct task *task)
 {
     struct work_pool *pool = worker->pool;
-    struct graph *graph = pool->setup.graph;
+    struct task_graph *graph = pool->setup.graph;
     struct comm *comm = pool->setup.comm;
     if (worker->left_some) {
         atomic_thread_fence(memory_order_seq_cst);
@@ -183,9 +182,9 @@ void work_run(struct work_worker *worker, struct graph_task *task)
             start = base_ticks();
         uint64_t outer = worker->within;
         worker->within = 0;
-        const struct graph_task *below = work_enters(worker, task);
+        const struct task *below = work_enters(worker, task);
         uint32_t kind = task->kind;
-        bool body = graph_run(graph, worker, task, &worker->call);
+        bool body = task_run(graph, worker, task, &worker->call);
         work_leaves(worker, below);
         uint64_t end = base_ticks(), took = end > start ? end - start : 0;
         uint64_t own = took > worker->within ? took - worker->within : 0;
@@ -200,10 +199,10 @@ void work_run(struct work_worker *worker, struct graph_task *task)
             work_learn(worker, task, own);
         worker->finishing = true;
         worker->may_chain = may_chain(worker, length);
-        if (graph_to_send(task))
+        if (task_to_send(task))
             comm_send(comm, task);
         else
-            graph_finish(graph, worker, task);
+            task_finish(graph, worker, task);
         worker->finishing = false;
         worker->may_chain = false;
         if (comm && (comm_posted(comm) || end - worker->polled > pool->poll_ticks)) {
@@ -224,7 +223,7 @@ void work_run(struct work_worker *worker, struct graph_task *task)
 
 /* Among idle workers one keeps polling: it holds the seat until it gets busy. Returns whether that
  * is this one. */
-static bool take_seat(struct work_worker *worker)
+static bool take_seat(struct worker *worker)
 {
     struct work_pool *pool = worker->pool;
     if (pool->setup.comm && !worker->polls &&
@@ -233,7 +232,7 @@ static bool take_seat(struct work_worker *worker)
     return worker->polls;
 }
 
-void work_busy_again(struct work_worker *worker)
+void work_busy_again(struct worker *worker)
 {
     work_stir(worker);
     if (!worker->polls)
@@ -245,14 +244,13 @@ void work_busy_again(struct work_worker *worker)
 
 /* Sleeps until woken, or for so many seconds if they are > 0. Returns a task if there was one at
  * the last look; does not sleep if nobody polls. */
-static struct graph_task *doze(struct work_worker *worker, double seconds,
-                               const struct work_wish *wish)
+static struct task *doze(struct worker *worker, double seconds, const struct work_wish *wish)
 {
     struct work_pool *pool = worker->pool;
     bool polled = worker->polls;
     atomic_fetch_add(&pool->parked, 1);
     work_park_announce(&worker->park);
-    struct graph_task *task = find(worker);
+    struct task *task = find(worker);
     if (task || atomic_load(&pool->stop) || (wish->done && wish->done(wish->context)) ||
         (!polled && take_seat(worker)))
         work_park_cancel(&worker->park);
@@ -264,7 +262,7 @@ static struct graph_task *doze(struct work_worker *worker, double seconds,
 }
 
 /* Nothing to do: one moment of idling. */
-static void idle(struct work_worker *worker, const struct work_wish *wish)
+static void idle(struct worker *worker, const struct work_wish *wish)
 {
     struct work_pool *pool = worker->pool;
     bool polls = take_seat(worker);
@@ -272,7 +270,7 @@ static void idle(struct work_worker *worker, const struct work_wish *wish)
         work_beg(worker, base_ticks() - worker->idle_since);
     if (work_spins(worker))
         return;
-    struct graph_task *task = doze(worker, polls || wish->unheard ? worker->pause : 0, wish);
+    struct task *task = doze(worker, polls || wish->unheard ? worker->pause : 0, wish);
     if (worker->pause < LONGEST_PAUSE_SECONDS)
         worker->pause *= 2;
     if (!task)
@@ -281,9 +279,9 @@ static void idle(struct work_worker *worker, const struct work_wish *wish)
     work_run(worker, task);
 }
 
-void work_look(struct work_worker *worker, const struct work_wish *wish)
+void work_look(struct worker *worker, const struct work_wish *wish)
 {
-    struct graph_task *task = find(worker);
+    struct task *task = find(worker);
     if (task) {
         work_busy_again(worker);
         work_run(worker, task);
@@ -295,7 +293,7 @@ void work_look(struct work_worker *worker, const struct work_wish *wish)
 }
 
 /* From now on this caller of the guard asks the worker's scheduler. */
-static void be_caller(struct work_worker *worker, unsigned caller)
+static void be_caller(struct worker *worker, unsigned caller)
 {
     const struct work_setup *setup = &worker->pool->setup;
     sched_front_state(setup->scheduler, worker->state, base_guard_caller(setup->guard, caller));
@@ -303,7 +301,7 @@ static void be_caller(struct work_worker *worker, unsigned caller)
 
 static void *thread_main(void *argument)
 {
-    struct work_worker *worker = argument;
+    struct worker *worker = argument;
     struct work_pool *pool = worker->pool;
     work_cores_bind(worker->unit);
     base_guard_here(base_guard_caller(pool->setup.guard, worker->index));
@@ -320,7 +318,7 @@ static void *thread_main(void *argument)
 static bool prepare(struct work_pool *pool, unsigned index, int unit)
 {
     const struct work_setup *setup = &pool->setup;
-    struct work_worker *worker = &pool->worker[index];
+    struct worker *worker = &pool->worker[index];
     size_t lines = (setup->scheduler->state_size + BASE_LINE - 1) / BASE_LINE + 1;
     worker->pool = pool;
     worker->index = index;
@@ -344,7 +342,7 @@ static int start_threads(struct work_pool *pool)
 {
     sched_getaffinity(0, sizeof pool->worker[0].binding, &pool->worker[0].binding);
     for (pool->started = 1; pool->started < pool->setup.threads; pool->started++) {
-        struct work_worker *worker = &pool->worker[pool->started];
+        struct worker *worker = &pool->worker[pool->started];
         char what[64];
         snprintf(what, sizeof what, "worker thread %u of %u", pool->started, pool->setup.threads);
         const int code = base_thread_start(&worker->thread, what, thread_main, worker);
@@ -379,14 +377,8 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
         fine = prepare(pool, i, setup->cores ? setup->cores[i] : -1);
     if (fine)
         fine = !work_balance_start(&pool->balance, pool);
-    setup->graph->hooks = (struct graph_hooks){.context = pool,
-                                               .ready = on_ready,
-                                               .notify = work_notify,
-                                               .over = work_over,
-                                               .body = setup->check ? work_body : NULL,
-                                               .expect = work_expect,
-                                               .open = work_open,
-                                               .starved = work_starved};
+    setup->graph->pool = pool;
+    setup->graph->checks = setup->check != NULL;
     if (setup->trace && setup->comm)
         comm_tell(setup->comm, work_note_message);
     int code = fine ? start_threads(pool) : base_no_memory("the workers");
@@ -394,16 +386,11 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     return code ? code : watched;
 }
 
-static void tell_nobody(void *context)
-{
-    (void)context;
-}
-
 void work_stop(struct work_pool *pool)
 {
     if (!pool)
         return;
-    pool->setup.graph->hooks.notify = tell_nobody; /* communication may break later still */
+    pool->setup.graph->pool = NULL; /* communication may break later still */
     atomic_store(&pool->stop, 1);
     work_watch_stop(pool);
     for (unsigned i = 1; i < pool->started; i++) {

@@ -4,7 +4,7 @@
 #include "runtime/base/guard.h"
 #include "runtime/check/check.h"
 #include "runtime/comm/comm.h"
-#include "runtime/graph/graph.h"
+#include "runtime/task/task.h"
 #include "runtime/trace/trace.h"
 
 #include <duite_policy.h>
@@ -14,13 +14,13 @@
  * those of the victims the scheduler names), polls for messages between tasks, and when it finds
  * nothing spins for a while and then sleeps; one of the idle ones keeps polling. */
 struct work_pool;
-struct work_worker;
+struct worker;
 
 struct work_setup {
-    struct graph *graph; /* its hooks are set by work_start */
-    struct comm *comm;   /* NULL: one rank */
-    struct check *check; /* NULL: bodies are called directly */
-    struct trace *trace; /* NULL: nobody writes down what happens */
+    struct task_graph *graph; /* its `pool` is set by work_start */
+    struct comm *comm;        /* NULL: one rank */
+    struct check *check;      /* NULL: bodies are called directly */
+    struct trace *trace;      /* NULL: nobody writes down what happens */
     const duite_scheduler *scheduler;
     const duite_balancer *balancer; /* NULL: nothing moves */
     struct base_guard *guard;       /* of those of the two that are fronts; NULL: neither is */
@@ -41,7 +41,7 @@ int work_start(struct work_pool **pool, const struct work_setup *setup);
 void work_stop(struct work_pool *pool);
 
 /* Worker 0, for calls by the main thread. */
-struct work_worker *work_main(struct work_pool *pool);
+struct worker *work_main(struct work_pool *pool);
 
 /* What the main program waits for, for those who ask when nothing moves: words, or a version. */
 struct work_why {
@@ -60,10 +60,10 @@ void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)
 void work_drain(struct work_pool *pool, bool (*done)(void *context), void *context);
 
 /* Works until done(context) in the middle of a body, with whose scope it waits: runs tasks that
- * graph_may_run on top of it, on its stack. Returns early if communication broke. The worker whose
+ * task_may_run on top of it, on its stack. Returns early if communication broke. The worker whose
  * body it is. */
-void work_inside(struct work_worker *worker, const struct graph_scope *scope,
-                 bool (*done)(void *context), void *context);
+void work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
+                 void *context);
 
 /* One look around by the main thread: a task or a poll; idles a moment if there is nothing. */
 void work_once(struct work_pool *pool);

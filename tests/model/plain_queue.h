@@ -12,7 +12,7 @@ struct plain {
     _Atomic uint64_t pushed, put, taken;
 };
 
-static struct graph_task *plain_task(uint64_t bit);
+static struct task *plain_task(uint64_t bit);
 
 static struct plain *plain(struct work_queue *queue)
 {
@@ -30,7 +30,7 @@ void work_queue_stop(struct work_queue *queue)
     (void)queue;
 }
 
-void work_queue_put(struct work_queue *queue, struct graph_task *task)
+void work_queue_put(struct work_queue *queue, struct task *task)
 {
     struct plain *all = plain(queue);
     uint64_t bit = (uint64_t)1 << task->number;
@@ -40,7 +40,7 @@ void work_queue_put(struct work_queue *queue, struct graph_task *task)
         atomic_fetch_add(&all->put, bit);
 }
 
-void work_queue_push(struct work_queue *queue, struct graph_task *task)
+void work_queue_push(struct work_queue *queue, struct task *task)
 {
     struct plain *all = plain(queue);
     uint64_t before = atomic_load_explicit(&all->pushed, memory_order_relaxed);
@@ -48,7 +48,7 @@ void work_queue_push(struct work_queue *queue, struct graph_task *task)
                              memory_order_seq_cst);
 }
 
-static struct graph_task *plain_take(struct work_queue *queue)
+static struct task *plain_take(struct work_queue *queue)
 {
     struct plain *all = plain(queue);
     for (;;) {
@@ -65,19 +65,19 @@ static struct graph_task *plain_take(struct work_queue *queue)
     }
 }
 
-struct graph_task *work_queue_take(struct work_queue *queue, duite_end end)
+struct task *work_queue_take(struct work_queue *queue, duite_end end)
 {
     (void)end;
     return plain_take(queue);
 }
 
-struct graph_task *work_queue_take_shared(struct work_queue *queue, duite_end end)
+struct task *work_queue_take_shared(struct work_queue *queue, duite_end end)
 {
     (void)end;
     return plain_take(queue);
 }
 
-struct graph_task *work_queue_steal(struct work_queue *victim, struct work_queue *own)
+struct task *work_queue_steal(struct work_queue *victim, struct work_queue *own)
 {
     (void)own;
     return plain_take(victim);

@@ -11,7 +11,7 @@ static unsigned allocations; /* that still succeed */
 
 enum { TASKS = 12 };
 
-struct graph_task {
+struct task {
     int taken;
 };
 
@@ -28,11 +28,11 @@ struct play {
 static const struct play *play;
 static struct {
     struct work_deque deque;
-    struct graph_task task[TASKS];
+    struct task task[TASKS];
     int pushed;
 } its;
 
-static void got(struct graph_task *task)
+static void got(struct task *task)
 {
     if (task)
         explore_check(++task->taken == 1);
@@ -63,7 +63,7 @@ static void start(void)
 /* What nobody took is still there, and nothing else. */
 static void end(void)
 {
-    struct graph_task *task;
+    struct task *task;
     while ((task = work_deque_take_newest(&its.deque)))
         got(task);
     for (int i = 0; i < TASKS; i++)

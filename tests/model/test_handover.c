@@ -10,11 +10,11 @@
 enum { POSTS = 4 };
 
 static struct {
-    struct graph graph;
+    struct task_graph graph;
     struct comm *comm;
-    struct graph_task *task[POSTS];
+    struct task *task[POSTS];
     struct data_packet packet[POSTS];
-    struct graph_send send[POSTS];
+    struct task_send send[POSTS];
     int sent[POSTS], finished[POSTS];
     int turns;        /* of the wait for a collective call */
     _Atomic int over; /* the other thread has polled */
@@ -23,7 +23,7 @@ static struct {
 
 /* ---- What comm calls ---- */
 
-static void finished(const struct graph_task *task)
+static void finished(const struct task *task)
 {
     its.finished[task->number]++;
 }
@@ -76,13 +76,13 @@ bool comm_channels_stop(struct comm *comm)
     return true;
 }
 
-void comm_channel_post(struct comm *comm, struct graph_task *node)
+void comm_channel_post(struct comm *comm, struct task *node)
 {
     (void)comm;
     (void)node;
 }
 
-struct graph_task *comm_channels_pass(struct comm *comm, struct graph_task *over)
+struct task *comm_channels_pass(struct comm *comm, struct task *over)
 {
     (void)comm;
     return over;
@@ -93,12 +93,53 @@ void comm_channels_give_up(struct comm *comm)
     (void)comm;
 }
 
-#define graph_send_packet(task)                                ((task)->send->packet)
-#define graph_finish(graph, worker, task)                      ((void)(worker), finished(task))
-#define graph_arrived(...)                                     success(0, __VA_ARGS__)
-#define graph_pieces_arrived(...)                              success(0, __VA_ARGS__)
-#define graph_lost(...)                                        success(0, __VA_ARGS__)
-#define graph_pieces_lost(...)                                 success(0, __VA_ARGS__)
+/* Nobody waits for tasks here: nothing of the workers is linked. */
+void work_ready(struct work_pool *pool, struct worker *worker, struct task *task)
+{
+    (void)pool, (void)worker, (void)task;
+}
+
+void work_over(struct work_pool *pool, struct worker *worker, int tasks)
+{
+    (void)pool, (void)worker, (void)tasks;
+}
+
+void work_notify(struct work_pool *pool)
+{
+    (void)pool;
+}
+
+int work_check_body(struct work_pool *pool, const duite_kernel *kernel, uint64_t number,
+                    duite_call *call)
+{
+    (void)pool, (void)kernel, (void)number, (void)call;
+    return DUITE_OK;
+}
+
+int work_expect(struct work_pool *pool, struct worker *worker, struct data_key key, int from,
+                struct data_version *version, struct data_sum *sum, uint32_t packets)
+{
+    (void)pool, (void)worker, (void)key, (void)from, (void)version, (void)sum, (void)packets;
+    return DUITE_OK;
+}
+
+int work_open(struct work_pool *pool, struct plan_channels *channels)
+{
+    (void)pool, (void)channels;
+    return DUITE_OK;
+}
+
+void work_starved(struct work_pool *pool, const char *what)
+{
+    (void)pool, (void)what;
+}
+
+#define task_send_packet(task)                                 ((task)->send->packet)
+#define task_finish(graph, worker, task)                       ((void)(worker), finished(task))
+#define task_arrived(...)                                      success(0, __VA_ARGS__)
+#define task_pieces_arrived(...)                               success(0, __VA_ARGS__)
+#define task_lost(...)                                         success(0, __VA_ARGS__)
+#define task_pieces_lost(...)                                  success(0, __VA_ARGS__)
 #define data_packet_free(packet)                               ((void)(packet))
 #define MPI_Comm_rank(comm, rank)                              one_rank(rank)
 #define MPI_Comm_size(comm, size)                              one_rank(size)

@@ -27,16 +27,16 @@ struct play {
 static const struct play *play;
 static struct {
     struct work_queue queue, own[THREADS]; /* own: the thieves' */
-    struct graph_task *task[TASKS];
+    struct task *task[TASKS];
     int taken[TASKS], made[THREADS];
 } its;
 
-static struct graph_task *make(unsigned self)
+static struct task *make(unsigned self)
 {
     return its.task[self * EACH + (unsigned)its.made[self]++];
 }
 
-static bool got(const struct graph_task *task)
+static bool got(const struct task *task)
 {
     for (int i = 0; i < TASKS && task; i++)
         if (its.task[i] == task)

@@ -13,9 +13,9 @@
 enum { TASKS = 4 };
 
 static struct {
-    struct graph graph;
+    struct task_graph graph;
     struct work_pool *pool;
-    struct graph_task *task[TASKS];
+    struct task *task[TASKS];
     int ran[TASKS];
     uint64_t ticks[EXPLORE_THREADS];
     _Atomic int n_over, done;   /* tasks; 1 when all are */
@@ -40,7 +40,7 @@ static int nothing(void)
 }
 
 /* The task among a function's arguments. */
-static struct graph_task *task_in(int n, const void *const *argument)
+static struct task *task_in(int n, const void *const *argument)
 {
     for (int i = 0; i < n; i++)
         for (int j = 0; j < TASKS; j++)
@@ -56,12 +56,12 @@ static void receive(int message)
     explore_check(message == its.sent - 1);
 }
 
-static bool run_task(const struct graph_task *task)
+static bool run_task(const struct task *task)
 {
     its.ran[task->number]++;
     if (its.copies) {
         atomic_store_explicit(&its.copied, 1, memory_order_release);
-        its.graph.hooks.notify(its.graph.hooks.context);
+        work_notify(its.graph.pool);
     }
     if (its.long_body && task->number == 0) {
         receive(1);
@@ -70,18 +70,18 @@ static bool run_task(const struct graph_task *task)
     return true;
 }
 
-static void finish_task(void *worker, const struct graph_task *task)
+static void finish_task(struct worker *worker, const struct task *task)
 {
     atomic_store(&its.over[task->number], 1);
     if (atomic_fetch_add(&its.n_over, 1) + 1 == (int)its.graph.tasks)
         atomic_store(&its.done, 1);
-    its.graph.hooks.over(its.graph.hooks.context, worker, 1);
+    work_over(its.graph.pool, worker, 1);
 }
 
 #define TASK_IN(...)                                                                               \
     task_in(sizeof(const void *[]){__VA_ARGS__} / sizeof(void *), (const void *[]){__VA_ARGS__})
-#define graph_run(...)                    run_task(TASK_IN(__VA_ARGS__))
-#define graph_finish(graph, worker, task) finish_task(worker, TASK_IN(task))
+#define task_run(...)                    run_task(TASK_IN(__VA_ARGS__))
+#define task_finish(graph, worker, task) finish_task(worker, TASK_IN(task))
 
 bool comm_posted(struct comm *comm)
 {
@@ -95,7 +95,7 @@ int comm_broken(struct comm *comm)
     return 0;
 }
 
-bool comm_poll(struct comm *comm, void *worker)
+bool comm_poll(struct comm *comm, struct worker *worker)
 {
     (void)comm;
     int next = atomic_load_explicit(&its.received, memory_order_acquire);
@@ -103,24 +103,24 @@ bool comm_poll(struct comm *comm, void *worker)
         !atomic_compare_exchange_strong_explicit(&its.received, &next, next + 1,
                                                  memory_order_acq_rel, memory_order_relaxed))
         return false;
-    its.graph.hooks.ready(its.graph.hooks.context, worker, its.task[next]);
+    work_ready(its.graph.pool, worker, its.task[next]);
     return true;
 }
 
-void comm_send(struct comm *comm, struct graph_task *task)
+void comm_send(struct comm *comm, struct task *task)
 {
     (void)comm;
     (void)task;
 }
 
-void comm_channel_ready(struct comm *comm, void *worker, struct graph_task *node)
+void comm_channel_ready(struct comm *comm, struct worker *worker, struct task *node)
 {
     (void)comm;
     (void)worker;
     (void)node;
 }
 
-int comm_channels_open(struct comm *comm, struct graph_channels *channels)
+int comm_channels_open(struct comm *comm, struct plan_channels *channels)
 {
     (void)comm;
     (void)channels;
@@ -162,8 +162,8 @@ uint64_t comm_awaited_ticks(const struct comm *comm)
     return 0;
 }
 
-int comm_expect(struct comm *comm, void *worker, struct data_key key, struct comm_target target,
-                uint32_t packets)
+int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
+                struct comm_target target, uint32_t packets)
 {
     (void)comm;
     (void)worker;
@@ -231,14 +231,14 @@ static void fall_asleep(struct work_park *park, double seconds)
 #define work_park_announce announce
 #define work_park_sleep    fall_asleep
 #include "runtime/workers/count.c"
-#include "runtime/workers/hooks.c"
 #include "runtime/workers/main.c"
 #include "runtime/workers/note.c"
+#include "runtime/workers/serve.c"
 #include "runtime/workers/spin.c"
 #include "runtime/workers/workers.c"
 
 #ifndef REAL_QUEUES
-static struct graph_task *plain_task(uint64_t bit)
+static struct task *plain_task(uint64_t bit)
 {
     return its.task[__builtin_ctzll(bit)];
 }
@@ -255,7 +255,7 @@ static void begin(void)
     memset(&its, 0, sizeof its);
     for (int i = 0; i < TASKS; i++) {
         its.task[i] = explore_alloc(sizeof *its.task[i]);
-        its.task[i]->kind = GRAPH_COPY;
+        its.task[i]->kind = TASK_COPY;
         its.task[i]->number = (uint64_t)i;
     }
 }
@@ -275,7 +275,7 @@ static void start_workers(unsigned threads, const duite_scheduler *scheduler, bo
 
 static void ready(int task)
 {
-    its.graph.hooks.ready(its.graph.hooks.context, work_main(its.pool), its.task[task]);
+    work_ready(its.graph.pool, work_main(its.pool), its.task[task]);
 }
 
 static void stop(int tasks)

@@ -1,4 +1,4 @@
-/* Versions of an object (runtime/data/version.h, runtime/graph/depend.c): a reader sees all that
+/* Versions of an object (runtime/data/version.h, runtime/task/depend.c): a reader sees all that
  * its producer wrote, whether it waits or comes later, and nobody overwrites or frees the bytes
  * before each reader has done with them.
  *
@@ -12,12 +12,13 @@ static void given(const void *memory);
 #define base_pool_give(memory, size) ((void)(size), given(memory))
 
 #include "runtime/data/version.c"
-#include "runtime/graph/depend.c"
+#define work_ready ready
+#include "runtime/task/depend.c"
 
 enum { READERS = 2, WRITER = READERS, TASKS = READERS + 1 };
 
 static struct {
-    struct graph graph;
+    struct task_graph graph;
     struct data_object object;
     struct data_version *version;
     _Atomic int written, done[READERS]; /* by the producer, by each reader */
@@ -43,12 +44,12 @@ static void read_version(int i)
     explore_check(++its.ran[i] == 1);
     explore_check(atomic_load_explicit(&its.written, memory_order_relaxed));
     atomic_store_explicit(&its.done[i], 1, memory_order_relaxed);
-    graph_release(&its.graph, NULL, its.version);
+    task_release(&its.graph, NULL, its.version);
 }
 
-static void ready(void *context, void *worker, struct graph_task *task)
+void ready(struct work_pool *pool, struct worker *worker, struct task *task)
 {
-    (void)context;
+    (void)pool;
     (void)worker;
     if (task->number < WRITER) {
         read_version((int)task->number);
@@ -64,12 +65,12 @@ static void ready(void *context, void *worker, struct graph_task *task)
 static void produce(void)
 {
     atomic_store_explicit(&its.written, 1, memory_order_relaxed);
-    graph_publish(&its.graph, NULL, its.version);
+    task_publish(&its.graph, NULL, its.version);
 }
 
-static struct graph_task *task_new(int number)
+static struct task *new_task(int number)
 {
-    struct graph_task *task = graph_task_make(&its.graph.root, GRAPH_BODY, 1, 0);
+    struct task *task = task_make(&its.graph.root, TASK_BODY, 1, 0);
     task->number = (uint64_t)number;
     return task;
 }
@@ -77,17 +78,17 @@ static struct graph_task *task_new(int number)
 static void fork_reader(int i)
 {
     uint32_t done = 0;
-    struct graph_task *task = task_new(i);
-    graph_read(task, 0, its.version, &done);
-    graph_settled(&its.graph, NULL, task, done);
+    struct task *task = new_task(i);
+    task_read(task, 0, its.version, &done);
+    task_settled(&its.graph, NULL, task, done);
 }
 
 static void fork_writer(void)
 {
     uint32_t done = 0;
-    struct graph_task *task = task_new(WRITER);
-    graph_overwrite(&its.graph, task, 0, &its.object, its.version, &done);
-    graph_settled(&its.graph, NULL, task, done);
+    struct task *task = new_task(WRITER);
+    task_overwrite(&its.graph, task, 0, &its.object, its.version, &done);
+    task_settled(&its.graph, NULL, task, done);
 }
 
 static void fork_readers(void)
@@ -117,7 +118,7 @@ static void rename_away(void)
 {
     its.version->renamed = true;
     its.version->rename_bytes = &its.graph.rename_bytes;
-    graph_release(&its.graph, NULL, its.version);
+    task_release(&its.graph, NULL, its.version);
 }
 
 /* ---- Before and after ---- */
@@ -125,7 +126,6 @@ static void rename_away(void)
 static void start(void)
 {
     memset(&its, 0, sizeof its);
-    its.graph.hooks.ready = ready;
     its.object = (struct data_object){.type = DUITE_F64, .most = 1};
     its.object.current = its.version = data_object_version(&its.object);
 }

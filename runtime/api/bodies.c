@@ -1,0 +1,175 @@
+/* The calls of a running body: the same as the main program's, on its own scope. Nothing is
+ * collective here. An error of a call that returns at once is remembered for the body's next get or
+ * wait, and else fails the body. */
+#include "runtime/api/instance.h"
+
+#include "runtime/base/error.h"
+
+#include <stdio.h>
+#include <string.h>
+
+struct duite_call_private *inside_body(const duite *rt)
+{
+    return rt ? task_running(&rt->graph) : NULL;
+}
+
+static int remember(struct duite_call_private *body, int code)
+{
+    if (!code || body->remembered)
+        return code;
+    body->remembered = code;
+    snprintf(body->sentence, sizeof body->sentence, "%s", duite_message());
+    return code;
+}
+
+/* May it call anything? Not once memory ran out in a fork, in whatever task. */
+static int enter(const struct duite_call_private *body, const char *call)
+{
+    int broken = atomic_load_explicit(&body->graph->broken, memory_order_relaxed);
+    if (!broken)
+        return DUITE_OK;
+    return base_error(broken, "%s: an earlier call failed beyond repair (%s)", call,
+                      duite_code_text(broken));
+}
+
+static int recall(struct duite_call_private *body)
+{
+    int code = body->remembered;
+    body->remembered = DUITE_OK;
+    return code ? base_error(code, "%s", body->sentence) : DUITE_OK;
+}
+
+int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t most,
+               bool sized, duite_object *object)
+{
+    if (!object)
+        return remember(body, base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the object",
+                                         sized ? "duite_new_sized" : "duite_new"));
+    int code = enter(body, sized ? "duite_new_sized" : "duite_new");
+    if (!code)
+        code = task_make_object(body, type, count, most, sized, object);
+    return remember(body, code);
+}
+
+int inside_free(struct duite_call_private *body, duite_object object)
+{
+    int code = enter(body, "duite_free");
+    if (!code)
+        code = task_check_call(body, "duite_free", object, DUITE_RWP);
+    if (!code && task_lent(body, object))
+        code = base_error(DUITE_E_RIGHT, "duite_free: the object is the caller's");
+    if (!code)
+        code = task_free_object(task_inside(body), body->worker, object);
+    return remember(body, code);
+}
+
+int inside_fork(struct duite_call_private *body, const duite_how *how, const duite_kernel *kernel,
+                const void *args, size_t n, const duite_object *objects)
+{
+    struct task_options own = {.at = TASK_ANYWHERE};
+    int code = enter(body, "duite_fork");
+    if (!code && how && how->at)
+        code = base_error(DUITE_E_STATE,
+                          "duite_fork_with: the children of a task run on its rank (%d), none can "
+                          "be named",
+                          body->graph->rank);
+    if (how) {
+        own.priority = how->priority;
+        own.cost = how->cost > 0 ? how->cost : 0;
+    }
+    struct task_scope *scope = code ? NULL : task_inside(body);
+    if (!code)
+        code =
+            scope ? task_fork(scope, body->worker, &own, kernel, args, n, objects) : DUITE_E_MEMORY;
+    return remember(body, code);
+}
+
+int inside_set(struct duite_call_private *body, duite_object object, const void *values,
+               const size_t *count, const char *call)
+{
+    int code = enter(body, call);
+    if (!code)
+        code = task_check_call(body, call, object, DUITE_W);
+    if (!code)
+        code = task_set_object(task_inside(body), body->worker, object, values, count);
+    return remember(body, code);
+}
+
+/* Waiting ended early: everything did. */
+static int broken(const struct duite_call_private *body)
+{
+    return base_error(DUITE_E_MPI,
+                      "communication between the ranks broke while a task of kernel %s waited",
+                      body->graph->kernels[body->task->kernel]->name);
+}
+
+static bool there(void *context)
+{
+    return data_version_ready(context);
+}
+
+/* The value of the version, or how many bytes it has. */
+static int read_value(struct duite_call_private *body, struct data_version *version, void *values,
+                      size_t *bytes)
+{
+    struct task_scope *scope = task_inside(body);
+    if (!data_version_ready(version))
+        work_inside(body->worker, scope, there, version);
+    if (!data_version_ready(version))
+        return broken(body);
+    task_close_segment(scope);
+    if (version->poisoned)
+        return task_failure_error(body->graph, version->failure);
+    *bytes = version->packet->bytes;
+    if (values)
+        memcpy(values, data_payload(version->packet), *bytes);
+    return DUITE_OK;
+}
+
+static int get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
+               const char *call)
+{
+    struct data_version *version = NULL;
+    size_t bytes = 0, size;
+    int code = enter(body, call);
+    if (!code)
+        code = task_check_call(body, call, object, DUITE_R);
+    if (!code && !values && !count)
+        code = base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
+    if (!code)
+        code = task_see(task_inside(body), body->worker, object, &version, &size);
+    if (code)
+        return code;
+    code = read_value(body, version, values, &bytes);
+    if (!code && count)
+        *count = bytes / size;
+    return code;
+}
+
+int inside_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
+               const char *call)
+{
+    int code = get(body, object, values, count, call);
+    int before = recall(body);
+    return before ? before : code;
+}
+
+static bool alone(void *context)
+{
+    return task_alone(context);
+}
+
+int inside_wait(struct duite_call_private *body)
+{
+    struct task_scope *scope = body->scope;
+    if (!scope)
+        return recall(body);
+    if (!task_alone(scope))
+        work_inside(body->worker, scope, alone, scope);
+    if (!task_alone(scope))
+        return broken(body);
+    task_close_segment(scope);
+    int code = recall(body);
+    const struct data_failure *failure = code ? NULL : task_first_failure(scope);
+    return failure ? task_failure_error(body->graph, failure) : code;
+}

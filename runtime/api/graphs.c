@@ -1,0 +1,352 @@
+/* Recorded graphs as the main program knows them: a slot's generation is odd while a graph lives in
+ * it. Before a replay the graph is recorded anew if it names objects that are gone; then its rounds
+ * go where they can run: to the plan, or through the forks of the dynamic path. */
+#include "runtime/api/instance.h"
+
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+struct recorded_graph {
+    duite_build *build;
+    void *context;
+    struct plan_record *record; /* NULL: the slot is free */
+    uint32_t generation;
+    uint64_t replays; /* since recorded_each was called last */
+    uint64_t begun;   /* all of them */
+    uint64_t map_at;  /* of these: see program_migrate */
+};
+
+int recorded_failed(duite *rt, int code)
+{
+    struct plan_record *record = rt->building;
+    if (record->failed)
+        return code;
+    record->failed = code;
+    snprintf(record->sentence, sizeof record->sentence, "%s", duite_message());
+    return code;
+}
+
+int recorded_left(const duite *rt)
+{
+    for (size_t i = 0; i < rt->n_recorded; i++)
+        if (rt->recorded[i].record)
+            return base_error(DUITE_E_NOT_FREED, "recorded graph %zu was not freed", i + 1);
+    return DUITE_OK;
+}
+
+void recorded_stop(duite *rt)
+{
+    for (size_t i = 0; i < rt->n_recorded; i++)
+        if (rt->recorded[i].record)
+            plan_record_free(rt->recorded[i].record, NULL);
+    free(rt->recorded);
+}
+
+static struct recorded_graph *find(duite *rt, duite_graph name)
+{
+    struct recorded_graph *found =
+        name.slot && name.slot <= rt->n_recorded ? &rt->recorded[name.slot - 1] : NULL;
+    if (found && found->generation == name.generation && name.generation % 2)
+        return found;
+    base_error(DUITE_E_OBJECT, "recorded graph %u.%u %s", name.slot, name.generation,
+               found && name.generation < found->generation ? "was freed" : "was never made");
+    return NULL;
+}
+
+/* A slot with an empty record; 0 without memory. */
+static uint32_t take_slot(duite *rt)
+{
+    size_t slot = 0;
+    while (slot < rt->n_recorded && rt->recorded[slot].record)
+        slot++;
+    void *moved = base_grow(rt->recorded, &rt->recorded_capacity, slot + 1, sizeof *rt->recorded);
+    struct plan_record *record = moved ? plan_record_new(&rt->graph) : NULL;
+    if (moved)
+        rt->recorded = moved;
+    if (!record)
+        return 0;
+    if (slot == rt->n_recorded)
+        rt->recorded[rt->n_recorded++].generation = 0;
+    rt->recorded[slot].record = record;
+    rt->recorded[slot].replays = rt->recorded[slot].begun = rt->recorded[slot].map_at = 0;
+    rt->recorded[slot].generation++;
+    return (uint32_t)slot + 1;
+}
+
+static void free_slot(duite *rt, struct recorded_graph *slot)
+{
+    plan_record_free(slot->record, work_main(rt->pool));
+    slot->record = NULL;
+    slot->generation++;
+}
+
+/* Calls build. */
+static int record(duite *rt, struct recorded_graph *slot)
+{
+    struct plan_record *record = slot->record;
+    plan_record_clear(record, work_main(rt->pool));
+    rt->building = record;
+    rt->graphs_recorded++;
+    int code = slot->build(rt, slot->context);
+    rt->building = NULL;
+    if (record->failed)
+        code = base_error(record->failed, "%s", record->sentence);
+    else if (code)
+        base_error(code, "the build function of a graph returned %d", code);
+    if (code)
+        plan_record_clear(record, work_main(rt->pool));
+    else
+        plan_record_end(record);
+    if (!code)
+        trace_graph(rt->trace, (uint32_t)(slot - rt->recorded), record);
+    return code;
+}
+
+int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *graph)
+{
+    if (graph)
+        *graph = DUITE_NO_GRAPH;
+    int code = program_enter(rt, "duite_graph_new");
+    if (code)
+        return code;
+    if (!build || !graph)
+        return program_remember(rt, base_error(DUITE_E_ARGUMENT, "duite_graph_new: no %s",
+                                               build ? "place for the graph" : "build function"));
+    code = program_settle(rt);
+    uint32_t slot = code ? 0 : take_slot(rt);
+    if (!slot)
+        return program_remember(rt, code ? code : base_no_memory("a recorded graph"));
+    struct recorded_graph *made = &rt->recorded[slot - 1];
+    made->build = build;
+    made->context = context;
+    code = record(rt, made);
+    if (code)
+        free_slot(rt, made);
+    else
+        *graph = (duite_graph){slot, made->generation};
+    return program_remember(rt, code);
+}
+
+int duite_graph_free(duite *rt, duite_graph graph)
+{
+    int code = program_enter(rt, "duite_graph_free");
+    if (code)
+        return code;
+    struct recorded_graph *found = find(rt, graph);
+    if (!found)
+        return program_remember(rt, DUITE_E_OBJECT);
+    task_mix(&rt->graph, graph.slot);
+    free_slot(rt, found);
+    return DUITE_OK;
+}
+
+int duite_graph_args(duite *rt, duite_graph graph, size_t k, const void *args)
+{
+    int code = program_enter(rt, "duite_graph_args");
+    if (code)
+        return code;
+    const struct recorded_graph *found = find(rt, graph);
+    return program_remember(rt, found ? plan_record_args(found->record, k, args) : DUITE_E_OBJECT);
+}
+
+int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_object object)
+{
+    int code = program_enter(rt, "duite_graph_bind");
+    if (code)
+        return code;
+    const struct recorded_graph *found = find(rt, graph);
+    return program_remember(rt, found ? plan_record_bind(found->record, recorded, object)
+                                      : DUITE_E_OBJECT);
+}
+
+int duite_graph_print(duite *rt, duite_graph graph, FILE *file)
+{
+    int code = program_enter(rt, "duite_graph_print");
+    if (code)
+        return code;
+    const struct recorded_graph *found = find(rt, graph);
+    if (!found)
+        return DUITE_E_OBJECT;
+    if (!file)
+        return base_error(DUITE_E_ARGUMENT, "duite_graph_print: no file");
+    return plan_record_print(found->record, file);
+}
+
+/* ---- Replays ---- */
+
+static int check_rounds(const struct plan_record *record, uint64_t rounds)
+{
+    uint64_t most = UINT64_C(1) << PLAN_MAX_TASKS_BITS;
+    if (rounds <= most / (record->n_forks + 1))
+        return DUITE_OK;
+    return base_error(DUITE_E_ARGUMENT, "%llu rounds of %zu tasks are more than 2^%d",
+                      (unsigned long long)rounds, record->n_forks, PLAN_MAX_TASKS_BITS);
+}
+
+int recorded_each(duite *rt, int (*visit)(void *context, const struct plan_record *, double),
+                  void *context)
+{
+    int code = DUITE_OK;
+    for (size_t i = 0; i < rt->n_recorded && !code; i++) {
+        struct recorded_graph *graph = &rt->recorded[i];
+        const double replays = (double)graph->replays;
+        graph->replays = 0;
+        if (replays > 0 && graph->record && plan_record_fits(graph->record))
+            code =
+                visit(context, graph->record, replays * (double)plan_replay_rounds(graph->record));
+    }
+    return code;
+}
+
+/* The graph fits what it is bound to, and its objects live where they are to. */
+static int prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds)
+{
+    int code = program_settle(rt);
+    if (!code && !plan_record_fits(slot->record))
+        code = record(rt, slot);
+    if (!code)
+        code = plan_record_distinct(slot->record);
+    if (!code)
+        code = check_rounds(slot->record, rounds);
+    if (!code)
+        code = program_migrate(rt, slot->record, slot->begun, &slot->map_at);
+    slot->replays += !code;
+    slot->begun += !code;
+    return code;
+}
+
+static int fork_rounds(duite *rt, struct plan_record *record, uint64_t rounds)
+{
+    int code = DUITE_OK;
+    for (uint64_t i = 0; i < rounds && !code; i++) {
+        code = plan_replay_fork(record, work_main(rt->pool));
+        record->rounds += !code;
+        work_tick(rt->pool);
+        if (!code)
+            program_throttle(rt);
+    }
+    return code;
+}
+
+static int replay_plan(duite *rt, struct plan_record *record, const duite_object *flag,
+                       uint64_t rounds)
+{
+    int code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
+    if (!code)
+        program_throttle(rt);
+    return code;
+}
+
+static int replay(duite *rt, struct plan_record *record, uint64_t rounds)
+{
+    uint64_t before, after;
+    plan_replay_split(record, NULL, rounds, &before, &after);
+    record->rounds = 0;
+    record->by_plan = rounds > before + after;
+    int code = fork_rounds(rt, record, before);
+    if (!code && record->by_plan)
+        code = replay_plan(rt, record, NULL, rounds - before - after);
+    return code ? code : fork_rounds(rt, record, after);
+}
+
+int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
+{
+    int code = program_enter(rt, "duite_replay");
+    if (code)
+        return code;
+    struct recorded_graph *found = find(rt, graph);
+    if (!found)
+        return program_remember(rt, DUITE_E_OBJECT);
+    task_mix(&rt->graph, graph.slot);
+    task_mix(&rt->graph, rounds);
+    code = prepare(rt, found, rounds);
+    if (!code)
+        trace_replay(rt->trace, graph.slot - 1, found->record, NULL, rounds);
+    return program_remember(rt, code ? code : replay(rt, found->record, rounds));
+}
+
+/* Rounds of the dynamic path, the flag read after each. */
+static int fork_while(duite *rt, struct plan_record *record, duite_object flag, uint64_t most)
+{
+    const struct data_object *object = data_object_find(&rt->graph.table, flag);
+    uint64_t forks = rt->graph.root.forks;
+    duite_type type = object->type;
+    void *values = base_alloc(object->room);
+    bool holds = true;
+    size_t count;
+    int code = values ? DUITE_OK : base_no_memory("a flag");
+    while (!code && holds && record->rounds < most) {
+        code = fork_rounds(rt, record, 1);
+        if (!code) /* a failure is told by the next wait */
+            holds = !program_get(rt, flag, TASK_ANYWHERE, values, &count, "duite_replay_while") &&
+                    count && plan_flag_holds(type, values);
+        if (!code && instance_is_broken(rt))
+            code = rt->comm ? comm_broken(rt->comm) : rt->graph.broken;
+    }
+    rt->graph.root.forks = forks + most * record->n_calls;
+    base_free(values);
+    return code;
+}
+
+static int replay_while(duite *rt, struct plan_record *record, duite_object flag, uint64_t most)
+{
+    uint64_t before, after;
+    if (!data_object_find(&rt->graph.table, flag))
+        return DUITE_E_OBJECT;
+    plan_replay_split(record, &flag, most, &before, &after);
+    record->rounds = 0;
+    record->by_plan = most > before;
+    if (!record->by_plan)
+        return fork_while(rt, record, flag, most);
+    return replay_plan(rt, record, &flag, most);
+}
+
+int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t most)
+{
+    int code = program_enter(rt, "duite_replay_while");
+    if (code)
+        return code;
+    struct recorded_graph *found = find(rt, graph);
+    if (!found)
+        return program_remember(rt, DUITE_E_OBJECT);
+    task_mix(&rt->graph, graph.slot);
+    task_mix(&rt->graph, most);
+    task_mix(&rt->graph, (uint64_t)flag.slot << 32 | flag.generation);
+    code = prepare(rt, found, most);
+    if (!code && !most)
+        code = base_error(DUITE_E_ARGUMENT, "duite_replay_while: at most 0 rounds");
+    if (!code)
+        trace_replay(rt->trace, graph.slot - 1, found->record, &flag, most);
+    return program_remember(rt, code ? code : replay_while(rt, found->record, flag, most));
+}
+
+static bool is_over(void *context)
+{
+    return plan_replay_over(context);
+}
+
+int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
+{
+    int code = program_enter(rt, "duite_graph_rounds");
+    if (code)
+        return code;
+    const struct recorded_graph *found = find(rt, graph);
+    if (!found)
+        return DUITE_E_OBJECT;
+    if (!rounds)
+        return base_error(DUITE_E_ARGUMENT, "duite_graph_rounds: nowhere to put the number");
+    const uint64_t from = rt->trace ? base_ticks() : 0;
+    work_until(rt->pool, &(struct work_why){"duite_graph_rounds", "the last replay", NULL}, is_over,
+               found->record);
+    trace_wait(rt->trace, from);
+    if (!plan_replay_over(found->record)) {
+        instance_give_up(rt);
+        return comm_broken(rt->comm);
+    }
+    *rounds = plan_replay_rounds(found->record);
+    return DUITE_OK;
+}

@@ -1,0 +1,134 @@
+#ifndef DUITE_INSTANCE_H
+#define DUITE_INSTANCE_H
+
+#include "runtime/balance/front.h"
+#include "runtime/comm/comm.h"
+#include "runtime/map/front.h"
+#include "runtime/plan/record.h"
+#include "runtime/sched/front.h"
+#include "runtime/task/task.h"
+#include "runtime/trace/trace.h"
+#include "runtime/workers/workers.h"
+
+/* A running runtime: the parts, and the errors that the next get, wait or stop still has to tell.
+ * Main thread only. */
+struct duite {
+    MPI_Comm mpi;
+    struct task_graph graph;
+    struct comm *comm;   /* NULL: one rank */
+    struct check *check; /* NULL: not in checking mode */
+    struct work_pool *pool;
+    struct trace *trace;      /* NULL: nothing is written down */
+    bool traced;              /* the trace is closed */
+    struct base_guard *guard; /* of policies that are not ours; NULL: all are, or none is guarded */
+    struct sched_front scheduler;
+    struct balance_front balancer;
+    struct map_front mapping;
+    const duite_balancer *balance;
+    uint64_t seed;
+    size_t window;
+    unsigned threads;
+    int oversubscribed;
+    bool unguarded;                  /* that the guard is over was told */
+    bool mpi_held;                   /* by the program: between duite_mpi_begin and duite_mpi_end */
+    int remembered;                  /* code of a failed fork, new, ... */
+    char sentence[1024];             /* of `remembered` */
+    struct recorded_graph *recorded; /* by slot, from 1 on */
+    size_t n_recorded, recorded_capacity;
+    struct plan_record *building; /* the one that build forks into, or NULL */
+    uint64_t graphs_recorded;
+    struct instance_migration {
+        uint64_t replays, due; /* so far; the number of those before the next look at the homes */
+        uint64_t looked;       /* replays before the last look; */
+        double since;          /* when it was over, on the clock of this rank; */
+        double took;           /* seconds */
+        uint64_t objects;      /* that moved so far; the same on all ranks */
+    } migration;
+};
+
+/* True once nothing but stop is left: memory ran out in a fork, the ranks differ, a message was
+ * lost. */
+bool instance_is_broken(const duite *rt);
+
+/* It is broken: tells the other ranks, awaits nothing any more, and returns when no task is left.
+ * Does nothing the second time. */
+void instance_give_up(duite *rt);
+
+/* May a start try these? The rest of them may be wrong on one rank alone: all ranks agree
+ * nevertheless. Errors: arguments. */
+int options_check(const duite_options *options);
+int options_check_rest(const duite_options *options);
+
+/* Policies that are not ours are asked under a guard from now on: *scheduler and *balancer, as the
+ * options say, become fronts. The runtime knows its ranks and threads. Local. Errors: memory,
+ * DUITE_E_SYSTEM. */
+int policies_guard(duite *rt, const duite_options *options, const duite_scheduler **scheduler,
+                   const duite_balancer **balancer);
+/* All ranks have started: the end of the guard is the end of all. */
+void policies_begin(duite *rt);
+/* This rank stops: the others, which do, too, would not hear of it any more. */
+void policies_end(duite *rt);
+
+/* ---- Shared by program.c, objects.c and recorded.c ---- */
+
+/* May this call be made now? */
+int program_enter(duite *rt, const char *call);
+/* The same, even while a graph is recorded. */
+int program_enter_any(duite *rt, const char *call);
+/* Keeps an error for the next get, wait or stop, or, inside build, for who called it. Returns code.
+ */
+int program_remember(duite *rt, int code);
+/* Settles the homes of all objects. */
+int program_settle(duite *rt);
+/* Works while more tasks than the window allows are unfinished. Called after forks. */
+void program_throttle(duite *rt);
+/* Waits until all ranks made this call, found that they forked the same, and have no task left that
+ * was forked before it. */
+int program_meet(duite *rt, const char *call);
+/* Exchanges words: own, whose head is filled in; *words, one a rank. There are several ranks. */
+int program_agree(duite *rt, const struct work_why *why, struct comm_word *own,
+                  struct comm_word **words);
+/* The `replay`-th replay of a recorded graph begins, from 0: if it is time, blocks of objects move
+ * where the mapping, or the balancer, wants them. `*map_at`: the replay before which the mapping is
+ * to see its tasks (again); it begins with 0. */
+int program_migrate(duite *rt, const struct plan_record *record, uint64_t replay, uint64_t *map_at);
+/* duite_wait, under the name of who calls it. */
+int program_wait(duite *rt, const char *call);
+/* The trace ends, if there is one that did not: as duite_trace_end, under the name of who calls. */
+int traced_end(duite *rt, const char *call);
+/* Recording begins. All ranks have started. */
+void traced_begin(duite *rt);
+/* Opens the trace that the options want. Local. */
+int traced_open(duite *rt, const duite_options *options);
+
+/* Copies to the values, or tells the count, whichever is wanted here. */
+int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
+                const char *call);
+
+/* Adds what all graphs carried since the last time between blocks, each as often as its rounds ran:
+ * visit is called with the record and the number of rounds. No replay is on its way. Errors: its
+ * own. */
+int recorded_each(duite *rt, int (*visit)(void *context, const struct plan_record *, double),
+                  void *context);
+
+/* Keeps the first error of a call inside build. Returns code. */
+int recorded_failed(duite *rt, int code);
+/* DUITE_E_NOT_FREED if graphs are left. */
+int recorded_left(const duite *rt);
+/* Frees all graphs; no task is left. */
+void recorded_stop(duite *rt);
+/* The body that runs on this thread, or NULL; and its calls (inside.c). */
+struct duite_call_private *inside_body(const duite *rt);
+int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t most,
+               bool sized, duite_object *object);
+int inside_free(struct duite_call_private *body, duite_object object);
+int inside_fork(struct duite_call_private *body, const duite_how *how, const duite_kernel *kernel,
+                const void *args, size_t n, const duite_object *objects);
+int inside_set(struct duite_call_private *body, duite_object object, const void *values,
+               const size_t *count, const char *call);
+/* Copies to the values, or tells the count. */
+int inside_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
+               const char *call);
+int inside_wait(struct duite_call_private *body);
+
+#endif

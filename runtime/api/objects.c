@@ -1,0 +1,163 @@
+/* The main program's calls that make, place and free objects (a body's go to inside.c). What they
+ * say is part of the fingerprint, since every rank must say the same. */
+#include "runtime/api/instance.h"
+
+#include "runtime/base/error.h"
+#include "runtime/data/view.h"
+#include "runtime/map/map.h"
+
+#include <string.h>
+
+int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (object)
+        *object = DUITE_NO_OBJECT;
+    if (body)
+        return inside_new(body, type, count, count, false, object);
+    int code = program_enter(rt, "duite_new");
+    if (code)
+        return code;
+    if (!object)
+        return program_remember(
+            rt, base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
+    task_mix(&rt->graph, count);
+    task_mix(&rt->graph, (uint64_t)type);
+    code = data_object_new(&rt->graph.table, type, count, object);
+    if (!code)
+        trace_object(rt->trace, &rt->graph.table, *object);
+    return program_remember(rt, code);
+}
+
+int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite_object *object)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (object)
+        *object = DUITE_NO_OBJECT;
+    if (body)
+        return inside_new(body, type, count, most, true, object);
+    int code = program_enter(rt, "duite_new_sized");
+    if (code)
+        return code;
+    if (!object)
+        return program_remember(
+            rt, base_error(DUITE_E_ARGUMENT, "duite_new_sized: nowhere to put the object"));
+    task_mix(&rt->graph, count);
+    task_mix(&rt->graph, most);
+    task_mix(&rt->graph, (uint64_t)type);
+    code = data_object_new_sized(&rt->graph.table, type, count, most, object);
+    if (!code)
+        trace_object(rt->trace, &rt->graph.table, *object);
+    return program_remember(rt, code);
+}
+
+static void mix_name(duite *rt, duite_object object)
+{
+    task_mix(&rt->graph, (uint64_t)object.slot << 32 | object.generation);
+}
+
+int duite_view(duite *rt, duite_object object, size_t n, const size_t *indices, duite_object *view)
+{
+    if (view)
+        *view = DUITE_NO_OBJECT;
+    int code = program_enter(rt, "duite_view");
+    if (code)
+        return code;
+    if (!view)
+        return program_remember(
+            rt, base_error(DUITE_E_ARGUMENT, "duite_view: nowhere to put the view"));
+    mix_name(rt, object);
+    task_mix(&rt->graph, n);
+    for (size_t i = 0; indices && i < n; i++)
+        task_mix(&rt->graph, indices[i]);
+    code = data_view_new(&rt->graph.table, object, n, indices, view);
+    if (!code)
+        trace_object(rt->trace, &rt->graph.table, *view);
+    return program_remember(rt, code);
+}
+
+static void mix_double(duite *rt, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    task_mix(&rt->graph, bits);
+}
+
+static void mix_hint(duite *rt, duite_object object, double weight, size_t n,
+                     const duite_object *neighbours, const double *edge_weights)
+{
+    mix_name(rt, object);
+    mix_double(rt, weight);
+    task_mix(&rt->graph, n);
+    for (size_t i = 0; i < n && neighbours; i++)
+        mix_name(rt, neighbours[i]);
+    for (size_t i = 0; i < n && edge_weights; i++)
+        mix_double(rt, edge_weights[i]);
+}
+
+int duite_hint(duite *rt, duite_object object, double weight, size_t n,
+               const duite_object *neighbours, const double *edge_weights)
+{
+    int code = program_enter(rt, "duite_hint");
+    if (code)
+        return code;
+    mix_hint(rt, object, weight, n, neighbours, edge_weights);
+    code = map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights);
+    if (!code)
+        trace_hint(rt->trace, object, weight, n, neighbours, edge_weights);
+    return program_remember(rt, code);
+}
+
+int duite_follow(duite *rt, duite_object object, duite_object leader)
+{
+    int code = program_enter(rt, "duite_follow");
+    if (code)
+        return code;
+    mix_name(rt, object);
+    mix_name(rt, leader);
+    code = map_follow(&rt->graph.table, object, leader);
+    if (!code)
+        trace_follow(rt->trace, object, leader);
+    return program_remember(rt, code);
+}
+
+int duite_home(duite *rt, duite_object object)
+{
+    if (program_enter_any(rt, "duite_home") || program_settle(rt))
+        return -1;
+    const struct data_object *found = data_object_find(&rt->graph.table, object);
+    return found ? found->home : -1;
+}
+
+/* Whether something of the object is here. */
+static bool is_here(const duite *rt, const struct data_object *object)
+{
+    int rank = rt->graph.rank;
+    return object->home == rank || object->holder == rank || object->current || object->sum;
+}
+
+int duite_touches(duite *rt, duite_object object)
+{
+    if (program_enter_any(rt, "duite_touches") || program_settle(rt))
+        return 1;
+    struct data_table *table = &rt->graph.table;
+    const struct data_object *found = data_object_find(table, object);
+    if (!found || is_here(rt, found))
+        return 1;
+    return found->view && is_here(rt, &table->object[found->view->parent]);
+}
+
+int duite_free(duite *rt, duite_object object)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_free(body, object);
+    int code = program_enter(rt, "duite_free");
+    if (!code)
+        code = program_remember(rt, program_settle(rt));
+    if (!code)
+        code = program_remember(rt, task_free_object(&rt->graph.root, work_main(rt->pool), object));
+    if (!code)
+        trace_freed(rt->trace, object);
+    return code;
+}

@@ -1,0 +1,194 @@
+/* What a runtime is started with: the defaults, and what is refused. The environment is read with
+ * the defaults, so that what the program sets goes before it; a value of it that makes no sense
+ * leaves a default that is refused unless the program replaces it. */
+#include "runtime/api/instance.h"
+
+#include "runtime/balance/balance.h"
+#include "runtime/base/error.h"
+#include "runtime/base/policy.h"
+#include "runtime/map/map.h"
+#include "runtime/sched/sched.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_THREADS = 4096 };
+
+/* What no program means: the environment's number makes no sense. */
+static const unsigned NO_THREADS = UINT_MAX;
+static const uint64_t NO_SEED = UINT64_MAX;
+
+/* A number of the environment, or -1 if it is none. */
+static double seconds_of(const char *text, double otherwise)
+{
+    char *end;
+    if (!text)
+        return otherwise;
+    double seconds = strtod(text, &end);
+    return end == text || *end ? -1 : seconds;
+}
+
+/* A whole number of the environment, or `wrong` if it is none up to `most`. */
+static uint64_t number_of(const char *text, uint64_t otherwise, uint64_t most, uint64_t wrong)
+{
+    char *end;
+    if (!text)
+        return otherwise;
+    if (*text < '0' || *text > '9')
+        return wrong;
+    errno = 0;
+    const uint64_t number = strtoull(text, &end, 10);
+    return *end || errno || number > most ? wrong : number;
+}
+
+static unsigned environment_threads(void)
+{
+    return (unsigned)number_of(getenv("DUITE_THREADS"), 0, MOST_THREADS, NO_THREADS);
+}
+
+static uint64_t environment_seed(void)
+{
+    return number_of(getenv("DUITE_SEED"), 1, NO_SEED - 1, NO_SEED);
+}
+
+duite_options duite_options_default(void)
+{
+    const char *scheduler = getenv("DUITE_SCHEDULER"), *mapping = getenv("DUITE_MAPPING"),
+               *balance = getenv("DUITE_BALANCE");
+    const char *check = getenv("DUITE_CHECK");
+    return (duite_options){.comm = MPI_COMM_WORLD,
+                           .check = !check                       ? 0
+                                    : !strcmp(check, "accesses") ? 1
+                                                                 : -1,
+                           .threads = environment_threads(),
+                           .scheduler = scheduler ? duite_scheduler_find(scheduler) : &sched_steal,
+                           .mapping = mapping ? duite_mapping_find(mapping) : &map_metis,
+                           .balance = balance ? duite_balancer_find(balance) : &balance_none,
+                           .seed = environment_seed(),
+                           .trace = getenv("DUITE_TRACE"),
+                           .stuck_seconds = seconds_of(getenv("DUITE_STUCK_SECONDS"), 60),
+                           .lost_seconds = seconds_of(getenv("DUITE_LOST_SECONDS"), 8),
+                           .policy_seconds = seconds_of(getenv("DUITE_POLICY_SECONDS"), 10),
+                           .spin_seconds = 100e-6,
+                           .trace_end = UINT64_MAX,
+                           .bind = 1};
+}
+
+static int policy_too_large(const duite_scheduler *scheduler, const duite_balancer *balance)
+{
+    const bool schedules = scheduler->state_size > BASE_MOST_STATE;
+    return base_error(DUITE_E_ARGUMENT,
+                      "duite_start: the %s %s wants a state of %zu bytes for each worker "
+                      "(state_size); at most %zu are given",
+                      schedules ? "scheduler" : "balancer",
+                      schedules ? scheduler->name : balance->name,
+                      schedules ? scheduler->state_size : balance->state_size, BASE_MOST_STATE);
+}
+
+int options_check(const duite_options *options)
+{
+    if (!options)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: no options; begin with duite_options_default()");
+    if (options->comm == MPI_COMM_NULL)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: the communicator is MPI_COMM_NULL");
+    return DUITE_OK;
+}
+
+/* The environment names a policy that cannot be found; its sentence is that of the search. */
+static int no_policy(const char *variable)
+{
+    char why[1024];
+    snprintf(why, sizeof why, "%s", duite_message());
+    return base_error(DUITE_E_ARGUMENT, "duite_start: %s=%s in the environment: %s", variable,
+                      getenv(variable), why);
+}
+
+/* What the environment chose, and the program left as it is. */
+static int check_environment(const duite_options *options)
+{
+    const char *scheduler = getenv("DUITE_SCHEDULER"), *mapping = getenv("DUITE_MAPPING"),
+               *balance = getenv("DUITE_BALANCE");
+    if (!options->scheduler && scheduler && !duite_scheduler_find(scheduler))
+        return no_policy("DUITE_SCHEDULER");
+    if (!options->mapping && mapping && !duite_mapping_find(mapping))
+        return no_policy("DUITE_MAPPING");
+    if (!options->balance && balance && !duite_balancer_find(balance))
+        return no_policy("DUITE_BALANCE");
+    if (options->threads == NO_THREADS && environment_threads() == NO_THREADS)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: DUITE_THREADS=%s in the environment: a whole number from 0 "
+                          "to %d is expected; 0: the rank's share of the cores",
+                          getenv("DUITE_THREADS"), MOST_THREADS);
+    if (options->seed == NO_SEED && environment_seed() == NO_SEED)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: DUITE_SEED=%s in the environment: a whole number from 0 to "
+                          "%" PRIu64 " is expected",
+                          getenv("DUITE_SEED"), NO_SEED - 1);
+    return DUITE_OK;
+}
+
+static int check_policies(const duite_options *options)
+{
+    const duite_scheduler *s = options->scheduler;
+    if (!s || !s->name || !s->place || !s->serve || !s->victim || !s->chain)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: no scheduler, or one without all its functions");
+    if (!options->mapping || !options->mapping->name || !options->mapping->map)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: no mapping");
+    const duite_balancer *b = options->balance;
+    if (!b || !b->name || !b->victim != !b->give)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: no balancer, or one with only one of victim and give");
+    if (s->state_size > BASE_MOST_STATE || b->state_size > BASE_MOST_STATE)
+        return policy_too_large(s, b);
+    return DUITE_OK;
+}
+
+static int check_seconds(const duite_options *options)
+{
+    if (!(options->spin_seconds >= 0))
+        return base_error(DUITE_E_ARGUMENT, "duite_start: spin_seconds is not >= 0");
+    if (!(options->stuck_seconds >= 0 && options->stuck_seconds <= 1e9))
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: stuck_seconds (or DUITE_STUCK_SECONDS) is not a number "
+                          "from 0 to 1e9");
+    if (!(options->lost_seconds >= 0 && options->lost_seconds <= 1e9))
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: lost_seconds (or DUITE_LOST_SECONDS) is not a number "
+                          "from 0 to 1e9");
+    if (!(options->policy_seconds >= 0 && options->policy_seconds <= 1e9))
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: policy_seconds (or DUITE_POLICY_SECONDS) is not a number "
+                          "from 0 to 1e9");
+    return DUITE_OK;
+}
+
+int options_check_rest(const duite_options *options)
+{
+    if (!options->kernels)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: no list of kernels");
+    int code = check_environment(options);
+    if (!code)
+        code = check_policies(options);
+    if (!code)
+        code = check_seconds(options);
+    if (code)
+        return code;
+    if (options->threads > MOST_THREADS)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: %u threads are more than %d",
+                          options->threads, MOST_THREADS);
+    if (options->check < 0)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_start: DUITE_CHECK has no such mode; there is \"accesses\"");
+    if (options->trace && !*options->trace)
+        return base_error(
+            DUITE_E_ARGUMENT,
+            "duite_start: trace (or DUITE_TRACE in the environment) is an empty name");
+    if (options->trace && options->trace_first > options->trace_end)
+        return base_error(DUITE_E_ARGUMENT, "duite_start: trace_first is after trace_end");
+    return DUITE_OK;
+}

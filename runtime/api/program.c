@@ -1,0 +1,235 @@
+/* The calls of the main program (a body's go to inside.c): each checks that it may be made, settles
+ * the homes of new objects where they matter, and leaves the work to graph/. An error of a call
+ * that returns at once is remembered for the next get, wait or stop. */
+#include "runtime/api/instance.h"
+
+#include "runtime/base/error.h"
+#include "runtime/map/map.h"
+
+#include <stdio.h>
+
+int program_enter_any(duite *rt, const char *call)
+{
+    if (!rt)
+        return base_error(DUITE_E_ARGUMENT, "%s: no runtime", call);
+    if (!work_may_fork(rt->pool))
+        return base_error(DUITE_E_STATE, "%s is for the main thread, outside of bodies", call);
+    if (rt->graph.broken)
+        return base_error(rt->graph.broken,
+                          "%s: an earlier call failed beyond repair (%s); only duite_stop is left",
+                          call, duite_code_text(rt->graph.broken));
+    if (rt->mpi_held)
+        return program_remember(
+            rt,
+            base_error(DUITE_E_STATE, "%s: not between duite_mpi_begin and duite_mpi_end", call));
+    if (!rt->comm || !comm_broken(rt->comm))
+        return DUITE_OK;
+    instance_give_up(rt); /* once the program knows of it no body finds its context gone */
+    return comm_broken(rt->comm);
+}
+
+int program_enter(duite *rt, const char *call)
+{
+    int code = program_enter_any(rt, call);
+    if (code || !rt->building)
+        return code;
+    return program_remember(rt,
+                            base_error(DUITE_E_STATE, "%s: not while a graph is recorded", call));
+}
+
+int program_remember(duite *rt, int code)
+{
+    if (code && rt->building)
+        return recorded_failed(rt, code);
+    if (code == DUITE_E_MEMORY && rt->comm)
+        rt->graph.broken = code; /* the other ranks did what this one could not */
+    if (rt->graph.broken)
+        instance_give_up(rt);
+    if (!code || rt->remembered)
+        return code;
+    rt->remembered = code;
+    snprintf(rt->sentence, sizeof rt->sentence, "%s", duite_message());
+    return code;
+}
+
+int program_settle(duite *rt)
+{
+    const struct data_table *table = &rt->graph.table;
+    if (!table->n_unsettled)
+        return DUITE_OK;
+    trace_settles(rt->trace, table);
+    int code = map_settle(&rt->graph.table, &rt->mapping, rt->seed);
+    if (!code)
+        trace_settled(rt->trace, table);
+    else if (rt->comm && code != DUITE_E_MEMORY)     /* of which program_remember makes more */
+        comm_broke(rt->comm, code, duite_message()); /* other ranks may have homes now */
+    return code;
+}
+
+/* ---- MPI of the program's own ---- */
+
+int duite_mpi_begin(duite *rt)
+{
+    const int code = program_enter(rt, "duite_mpi_begin");
+    if (code)
+        return code;
+    if (rt->comm)
+        comm_hold(rt->comm);
+    rt->mpi_held = true;
+    return DUITE_OK;
+}
+
+int duite_mpi_end(duite *rt)
+{
+    if (!rt)
+        return base_error(DUITE_E_ARGUMENT, "duite_mpi_end: no runtime");
+    if (!work_may_fork(rt->pool))
+        return base_error(DUITE_E_STATE, "duite_mpi_end is for the main thread, outside of bodies");
+    if (!rt->mpi_held)
+        return base_error(DUITE_E_STATE, "duite_mpi_end: duite_mpi_begin was not called");
+    rt->mpi_held = false;
+    if (rt->comm)
+        comm_let_go(rt->comm);
+    return DUITE_OK;
+}
+
+/* ---- Tasks ---- */
+
+/* This ends: of all unfinished tasks of all ranks, take the first in fork order. What it waits for
+ * was forked before it, runs, and is over. A rank that has not come to its fork yet, and so does
+ * not send what it needs, is not throttled: all tasks it has are even earlier, so they are over.
+ * Contributions do not wait for the access that combines them, and what combines waits for
+ * earlier tasks only. Messages go on, since a throttled rank sends and receives as it works. */
+void program_throttle(duite *rt)
+{
+    if (rt->window)
+        work_throttle(rt->pool, rt->window);
+}
+
+static int fork_task(duite *rt, const struct task_options *how, const duite_kernel *kernel,
+                     const void *args, size_t n, const duite_object *objects)
+{
+    if (rt->building)
+        return program_remember(rt, plan_record_fork(rt->building, how, kernel, args, n, objects));
+    int code = program_settle(rt);
+    if (!code)
+        code = task_fork(&rt->graph.root, work_main(rt->pool), how, kernel, args, n, objects);
+    if (!code)
+        trace_fork(rt->trace, kernel, how, n, objects);
+    work_tick(rt->pool);
+    if (!code)
+        program_throttle(rt);
+    return program_remember(rt, code);
+}
+
+/* Whether the task is none of this rank's business: then it is forked. Messages are looked after
+ * now and then all the same. */
+static bool pruned(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
+                   const duite_object *objects)
+{
+    enum { FORKS_A_TICK = 32 };
+    if (!rt || !rt->comm || rt->building || rt->graph.table.n_unsettled || rt->graph.broken ||
+        !work_may_fork(rt->pool) || !task_prune(&rt->graph, kernel, args, n, objects))
+        return false;
+    trace_fork(rt->trace, kernel, &(struct task_options){.at = TASK_ANYWHERE}, n, objects);
+    if (rt->graph.root.forks % FORKS_A_TICK == 0)
+        work_tick(rt->pool);
+    return true;
+}
+
+int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
+               const duite_object *objects)
+{
+    if (pruned(rt, kernel, args, n, objects))
+        return DUITE_OK;
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_fork(body, NULL, kernel, args, n, objects);
+    int code = program_enter_any(rt, "duite_fork");
+    return code ? code
+                : fork_task(rt, &(struct task_options){.at = TASK_ANYWHERE}, kernel, args, n,
+                            objects);
+}
+
+int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
+                  const duite_object *objects)
+{
+    int code = program_enter_any(rt, "duite_fork_at");
+    if (code)
+        return code;
+    if (rank < 0)
+        return program_remember(
+            rt, base_error(DUITE_E_ARGUMENT, "duite_fork_at: there is no rank %d", rank));
+    return fork_task(rt, &(struct task_options){.at = rank}, kernel, args, n, objects);
+}
+
+int duite_fork_with(duite *rt, const duite_how *how, const duite_kernel *kernel, const void *args,
+                    size_t n, const duite_object *objects)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_fork(body, how, kernel, args, n, objects);
+    int code = program_enter_any(rt, "duite_fork_with");
+    if (code)
+        return code;
+    struct task_options own = {.at = TASK_ANYWHERE};
+    if (how)
+        own = (struct task_options){.at = how->at ? *how->at : TASK_ANYWHERE,
+                                    .priority = how->priority,
+                                    .cost = how->cost > 0 ? how->cost : 0};
+    if (how && how->at && own.at < 0)
+        return program_remember(
+            rt, base_error(DUITE_E_ARGUMENT, "duite_fork_with: there is no rank %d", own.at));
+    return fork_task(rt, &own, kernel, args, n, objects);
+}
+
+static int set(duite *rt, duite_object object, const void *values, const size_t *count,
+               const char *call)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_set(body, object, values, count, call);
+    int code = program_enter_any(rt, call);
+    if (!code && rt->building)
+        return program_remember(rt, plan_record_set(rt->building, object, values, count));
+    if (!code)
+        code = program_remember(rt, program_settle(rt));
+    if (!code)
+        code = program_remember(
+            rt, task_set_object(&rt->graph.root, work_main(rt->pool), object, values, count));
+    if (!code)
+        trace_set(rt->trace, object);
+    return code;
+}
+
+int duite_set(duite *rt, duite_object object, const void *values)
+{
+    return set(rt, object, values, NULL, "duite_set");
+}
+
+int duite_set_sized(duite *rt, duite_object object, const void *values, size_t count)
+{
+    return set(rt, object, values, &count, "duite_set_sized");
+}
+
+/* ---- Who am I ---- */
+
+int duite_rank(const duite *rt)
+{
+    return rt ? rt->graph.rank : -1;
+}
+
+int duite_ranks(const duite *rt)
+{
+    return rt ? rt->graph.n_ranks : -1;
+}
+
+unsigned duite_threads(const duite *rt)
+{
+    return rt ? rt->threads : 0;
+}
+
+int duite_oversubscribed(const duite *rt)
+{
+    return rt ? rt->oversubscribed : 0;
+}

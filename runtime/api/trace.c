@@ -1,0 +1,117 @@
+/* The trace as the main program sees it: it is opened with the workers, recording changes between
+ * steps while no task is left, and it is closed before the workers go. */
+#include "runtime/api/instance.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/predict/predict.h"
+#include "runtime/sched/sched.h"
+
+#include <math.h>
+
+int traced_open(duite *rt, const duite_options *options)
+{
+    return trace_open(&rt->trace, &(struct trace_setup){.file = options->trace,
+                                                        .first = options->trace_first,
+                                                        .end = options->trace_end,
+                                                        .rank = rt->graph.rank,
+                                                        .n_ranks = rt->graph.n_ranks,
+                                                        .workers = rt->threads,
+                                                        .kernels = rt->graph.kernels,
+                                                        .n_kernels = rt->graph.n_kernels});
+}
+
+void traced_begin(duite *rt)
+{
+    if (!rt->trace)
+        return;
+    trace_align(rt->trace, rt->mpi);
+    if (trace_wants_all(rt->trace))
+        trace_switch(rt->trace, true, 0, 0);
+}
+
+/* Waits for all as duite_wait does, and the trace says so: else what came before would seem to have
+ * taken the main program so long to fork. */
+static int meet(duite *rt, const char *call)
+{
+    const uint64_t from = base_ticks();
+    const int code = program_meet(rt, call);
+    trace_wait(rt->trace, from);
+    return code;
+}
+
+int duite_trace_step(duite *rt, uint64_t step)
+{
+    int code = program_enter(rt, "duite_trace_step");
+    if (code || !rt->trace || rt->traced)
+        return code;
+    bool wants = trace_wants(rt->trace, step);
+    if (wants != trace_is_on(rt->trace)) {
+        code = meet(rt, "duite_trace_step");
+        trace_flush(rt->trace);
+        trace_switch(rt->trace, wants, step, rt->graph.root.forks);
+    }
+    work_note(rt->pool,
+              &(struct trace_event){.begin = base_ticks(), .number = step, .kind = TRACE_STEP});
+    trace_flush(rt->trace);
+    return code;
+}
+
+static int close_file(duite *rt)
+{
+    struct trace_counters *counters = base_alloc_zero(rt->threads * sizeof *counters);
+    if (counters)
+        work_note_counters(rt->pool, counters);
+    if (trace_is_on(rt->trace))
+        trace_switch(rt->trace, false, 0, rt->graph.root.forks);
+    int code = trace_close(rt->trace, counters);
+    base_free(counters);
+    return code;
+}
+
+int traced_end(duite *rt, const char *call)
+{
+    if (!rt->trace || rt->traced)
+        return DUITE_OK;
+    int code = meet(rt, call);
+    if (rt->comm && !code) {
+        comm_hold(rt->comm);
+        trace_align(rt->trace, rt->mpi);
+        comm_let_go(rt->comm);
+    }
+    rt->traced = true;
+    const int closed = close_file(rt);
+    return code ? code : closed;
+}
+
+int duite_trace_end(duite *rt)
+{
+    int code = program_enter(rt, "duite_trace_end");
+    return code ? code : traced_end(rt, "duite_trace_end");
+}
+
+int duite_trace_bounds(const char *trace, double *critical_path, double *lower_bound)
+{
+    struct trace_run *run;
+    struct predict_result result;
+    if (!trace || !critical_path || !lower_bound)
+        return base_error(DUITE_E_ARGUMENT, "duite_trace_bounds: no %s",
+                          trace ? "place for the bounds" : "trace");
+    int code = trace_read(&run, trace, false);
+    if (code)
+        return code;
+    const struct predict_cluster cluster = {.hosts = run->n_ranks,
+                                            .cores = 1,
+                                            .bandwidth = INFINITY,
+                                            .capacity = INFINITY,
+                                            .core_speed = 1,
+                                            .scheduler = &sched_steal};
+    code = predict(run, &cluster, &result, NULL);
+    if (!code) {
+        *critical_path = result.critical_path;
+        *lower_bound =
+            fmax(result.critical_path, result.work / trace_first_worker(run, run->n_ranks));
+    }
+    trace_run_free(run);
+    return code;
+}

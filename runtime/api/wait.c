@@ -1,0 +1,284 @@
+/* The calls of the main program that block: gets, waits and sums over all ranks. All ranks make the
+ * same ones; each enters a log of them, so that differences are found even where one rank waits for
+ * data that no other one thinks of sending. */
+#include "runtime/api/instance.h"
+
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+
+#include <stdio.h>
+
+/* The remembered error, or that a policy did not return; each is told once. */
+static int recall(duite *rt)
+{
+    int code = rt->remembered;
+    rt->remembered = DUITE_OK;
+    if (code)
+        return base_error(code, "%s", rt->sentence);
+    code = rt->unguarded ? DUITE_OK : base_guard_code(rt->guard);
+    rt->unguarded = rt->unguarded || code;
+    return code;
+}
+
+static bool copy_done(void *context)
+{
+    return atomic_load_explicit(&((struct task_copy *)context)->done, memory_order_acquire);
+}
+
+static void between(void *context)
+{
+    work_once(context);
+}
+
+/* What this rank tells the others: what it forked, and what failed. */
+static struct comm_word own_word(const struct task_graph *graph)
+{
+    struct comm_word own = {.forks = graph->root.forks, .fingerprint = graph->fingerprint};
+    const struct data_failure *first = graph->root.failure;
+    if (first) {
+        own.failed = first->number + 1;
+        own.failure = *first;
+    }
+    return own;
+}
+
+int program_agree(duite *rt, const struct work_why *why, struct comm_word *own,
+                  struct comm_word **words)
+{
+    own->forks = rt->graph.root.forks;
+    own->fingerprint = rt->graph.fingerprint;
+    work_waits(rt->pool, why);
+    int code = comm_agree(rt->comm, own, words, between, rt->pool);
+    work_waits(rt->pool, NULL);
+    work_idle_ends(rt->pool);
+    if (code)
+        instance_give_up(rt);
+    return code;
+}
+
+static int agree(duite *rt, const struct work_why *why, struct comm_word **words)
+{
+    struct comm_word own = own_word(&rt->graph);
+    return program_agree(rt, why, &own, words);
+}
+
+/* This rank makes a call that blocks, as all do. */
+static int enter_blocking(duite *rt, const char *call)
+{
+    struct comm_word *words;
+    if (!rt->comm)
+        return DUITE_OK;
+    for (const char *c = call; *c; c++)
+        task_mix(&rt->graph, (unsigned char)*c);
+    const struct work_why why = {call, "the other ranks to come to it", NULL};
+    return comm_call(rt->comm, call, rt->graph.fingerprint) ? agree(rt, &why, &words) : DUITE_OK;
+}
+
+/* Works until the copy is there. */
+static void await(duite *rt, const struct work_why *why, struct task_copy *copy)
+{
+    if (rt->comm)
+        comm_waits(rt->comm, true);
+    work_until(rt->pool, why, copy_done, copy);
+    if (rt->comm)
+        comm_waits(rt->comm, false);
+    if (!copy_done(copy))
+        instance_give_up(rt); /* the task that would have copied is over, then */
+}
+
+/* Copies to the values, or tells the count, whichever is wanted here. */
+int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
+                const char *call)
+{
+    bool here = rank == TASK_ANYWHERE || rank == rt->graph.rank;
+    struct task_copy copy = {.values = values};
+    int code = program_settle(rt);
+    if (!code)
+        code = task_copy(&rt->graph, work_main(rt->pool), object, rank, &copy);
+    work_tick(rt->pool);
+    if (code == DUITE_E_MEMORY)
+        return program_remember(rt, code);
+    if (!code)
+        code = enter_blocking(rt, call);
+    if (code || !here)
+        return code;
+    const struct data_key key = task_version_of(&rt->graph, object);
+    await(rt, &(struct work_why){call, NULL, &key}, &copy);
+    if (rt->comm && comm_broken(rt->comm))
+        return comm_broken(rt->comm);
+    if (!values && !count) /* found out only now: the other ranks count on this one */
+        return base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the answer", call);
+    if (copy.failure)
+        return task_failure_error(&rt->graph, copy.failure);
+    if (count)
+        *count = copy.bytes / data_type_size(data_object_find(&rt->graph.table, object)->type);
+    return DUITE_OK;
+}
+
+/* The get does its work, whatever was remembered. */
+static int get_and_recall(duite *rt, duite_object object, int rank, void *values, size_t *count,
+                          const char *call)
+{
+    int code = program_enter(rt, call);
+    if (code)
+        return code;
+    const uint64_t from = rt->trace ? base_ticks() : 0;
+    code = program_get(rt, object, rank, values, count, call);
+    trace_get(rt->trace, object, rank, from);
+    int before = recall(rt);
+    return before ? before : code;
+}
+
+int duite_get(duite *rt, duite_object object, void *values)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_get(body, object, values, NULL, "duite_get");
+    return get_and_recall(rt, object, TASK_ANYWHERE, values, NULL, "duite_get");
+}
+
+int duite_get_count(duite *rt, duite_object object, size_t *count)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_get(body, object, NULL, count, "duite_get_count");
+    return get_and_recall(rt, object, TASK_ANYWHERE, NULL, count, "duite_get_count");
+}
+
+int duite_get_at(duite *rt, duite_object object, int rank, void *values)
+{
+    if (rank < 0)
+        return base_error(DUITE_E_ARGUMENT, "duite_get_at: there is no rank %d", rank);
+    return get_and_recall(rt, object, rank, values, NULL, "duite_get_at");
+}
+
+static bool drained(void *context)
+{
+    return !work_unfinished(context);
+}
+
+/* The failure that is first in fork order among those of n ranks, or NULL. */
+static const struct data_failure *first_failure(const struct comm_word *words, int n)
+{
+    const struct comm_word *first = NULL;
+    for (int i = 0; i < n; i++)
+        if (words[i].failed && (!first || words[i].failed < first->failed))
+            first = &words[i];
+    return first ? &first->failure : NULL;
+}
+
+int program_meet(duite *rt, const char *call)
+{
+    struct comm_word *words;
+    work_tick(rt->pool);
+    /* Before anything is waited for: did all ranks fork the same? */
+    int code = enter_blocking(rt, "duite_wait");
+    if (rt->comm && !code)
+        code = agree(rt, &(struct work_why){call, "the other ranks to come to it", NULL}, &words);
+    if (!code)
+        work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, drained,
+                   rt->pool);
+    return code;
+}
+
+/* No task's: after all that are. */
+#define POLICY_FAILED UINT64_MAX
+
+/* What this rank tells when all its tasks are over: a scheduler that never ended a round, too. */
+static struct comm_word last_word(const duite *rt)
+{
+    struct comm_word own = own_word(&rt->graph);
+    const char *endless = work_endless(rt->pool);
+    if (own.failed || !endless)
+        return own;
+    own.failed = POLICY_FAILED;
+    own.failure = (struct data_failure){
+        .code = DUITE_E_ARGUMENT, .rank = rt->graph.rank, .number = POLICY_FAILED};
+    snprintf(own.failure.text, sizeof own.failure.text, "%s", endless);
+    return own;
+}
+
+int program_wait(duite *rt, const char *call)
+{
+    struct duite_call_private *body = inside_body(rt);
+    if (body)
+        return inside_wait(body);
+    int code = program_enter(rt, call);
+    if (code)
+        return code;
+    struct task_graph *graph = &rt->graph;
+    code = program_meet(rt, call);
+    if (code)
+        return code;
+    struct comm_word own = last_word(rt), *words = &own;
+    const struct work_why why = {call, "the tasks of other ranks", NULL};
+    if (rt->comm && (code = program_agree(rt, &why, &own, &words)))
+        return code;
+    work_idle_ends(rt->pool);
+    code = recall(rt);
+    const struct data_failure *failure = first_failure(words, graph->n_ranks);
+    if (code || !failure)
+        return code;
+    if (failure->number == POLICY_FAILED)
+        return base_error(failure->code,
+                          "scheduler %s names victims without an end (seen on rank %d): its victim "
+                          "has to return DUITE_NO_QUEUE at last",
+                          failure->text, failure->rank);
+    task_first_failure(&graph->root); /* told */
+    return task_failure_error(graph, failure);
+}
+
+int duite_wait(duite *rt)
+{
+    const uint64_t from = rt && rt->trace ? base_ticks() : 0;
+    const int code = program_wait(rt, "duite_wait");
+    if (rt && !inside_body(rt))
+        trace_wait(rt->trace, from);
+    return code;
+}
+
+/* ---- Counters ---- */
+
+int duite_count_all(duite *rt, duite_counters *counters)
+{
+    int code = program_enter(rt, "duite_count_all");
+    if (code || !counters)
+        return code ? code
+                    : base_error(DUITE_E_ARGUMENT, "duite_count_all: nowhere to put the counters");
+    duite_counters own = {0};
+    work_count(rt->pool, &own);
+    if (rt->comm)
+        comm_count(rt->comm, &own.messages, &own.bytes);
+    struct comm_word word = {
+        .sums = {(double)own.tasks, (double)own.placed, (double)own.stolen, (double)own.chained,
+                 (double)own.messages, (double)own.bytes, own.busy, own.idle,
+                 (double)atomic_load_explicit(&rt->graph.renamed, memory_order_relaxed),
+                 (double)own.delegated, own.awaited, own.exposed, (double)own.stolen_far}};
+    const double *sums = word.sums;
+    code = enter_blocking(rt, "duite_count_all");
+    word.forks = rt->graph.root.forks;
+    word.fingerprint = rt->graph.fingerprint;
+    work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
+    if (rt->comm && !code)
+        code = comm_sum(rt->comm, &word, 13, between, rt->pool);
+    work_waits(rt->pool, NULL);
+    work_idle_ends(rt->pool);
+    if (code)
+        instance_give_up(rt);
+    *counters = (duite_counters){.tasks = (uint64_t)sums[0],
+                                 .placed = (uint64_t)sums[1],
+                                 .stolen = (uint64_t)sums[2],
+                                 .chained = (uint64_t)sums[3],
+                                 .messages = (uint64_t)sums[4],
+                                 .bytes = (uint64_t)sums[5],
+                                 .busy = sums[6],
+                                 .idle = sums[7],
+                                 .renamed = (uint64_t)sums[8],
+                                 .delegated = (uint64_t)sums[9],
+                                 .awaited = sums[10],
+                                 .exposed = sums[11],
+                                 .stolen_far = (uint64_t)sums[12],
+                                 .graphs_recorded = rt->graphs_recorded,
+                                 .migrated = rt->migration.objects};
+    return code;
+}

@@ -1,0 +1,143 @@
+/* The messages of a plan. A message has all values that a round makes on one rank for another in
+ * one phase, in the order of the node's uses, which is the same on both sides; what is poisoned has
+ * its failure at the end instead. A node that sends or receives is ready like any other: when what
+ * it sends is made, or when nobody reads any more what it overwrites. */
+#include "runtime/plan/replay.h"
+#include "runtime/task/internal.h"
+
+#include <string.h>
+
+struct message {
+    uint32_t failures; /* behind the values */
+    uint32_t unused;   /* keeps the values on a multiple of 8 */
+};
+
+struct message_failure {
+    uint64_t use; /* of the node */
+    struct data_failure failure;
+};
+
+static const struct data_failure lost = {
+    .code = DUITE_E_MPI, .kernel = UINT32_MAX, .text = "communication between the ranks broke"};
+
+static size_t room_of(const struct plan_place *place)
+{
+    return (place->bytes + 7) / 8 * 8;
+}
+
+static size_t bytes_of_values(const struct plan *plan, const struct task *task)
+{
+    const struct plan_node_use *use = plan->use + task->node->first_use;
+    size_t bytes = 0;
+    for (uint32_t i = 0; i < task->n; i++)
+        bytes += room_of(&plan->place[use[i].place]);
+    return bytes;
+}
+
+size_t plan_channel_room(const struct plan *plan, const struct task *task)
+{
+    return sizeof(struct message) + bytes_of_values(plan, task) +
+           task->n * sizeof(struct message_failure);
+}
+
+struct plan_channel *plan_channel_of(const struct task *task)
+{
+    return task->node->channel;
+}
+
+const struct task *plan_channel_waits(const struct task *task, unsigned *more)
+{
+    const struct plan_node *node = task->node;
+    const struct task *one = NULL;
+    *more = 0;
+    for (uint32_t i = node->n_cyclic; i < node->n_next; i++) {
+        if (node->next[i]->kernel == UINT32_MAX)
+            continue;
+        *more += one != NULL;
+        one = one ? one : node->next[i];
+    }
+    return one;
+}
+
+/* As plan_node_run begins: from now on the node counts for its next round. */
+static struct plan *begin(struct task *task)
+{
+    atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
+    return task->node->plan;
+}
+
+static size_t pack_failures(const struct plan *plan, const struct task *task,
+                            struct message *message, char *at)
+{
+    const struct plan_node_use *use = plan->use + task->node->first_use;
+    for (uint32_t i = 0; i < task->n; i++) {
+        const struct data_failure *failure = plan->place[use[i].place].failure;
+        struct message_failure told = {.use = i};
+        if (!failure)
+            continue;
+        told.failure = *failure;
+        memcpy(at + message->failures++ * sizeof told, &told, sizeof told);
+    }
+    return message->failures * sizeof(struct message_failure);
+}
+
+size_t plan_channel_pack(struct task *task, void *bytes)
+{
+    const struct plan *plan = begin(task);
+    const struct plan_node_use *use = plan->use + task->node->first_use;
+    struct message *message = bytes;
+    char *at = (char *)(message + 1);
+    for (uint32_t i = 0; i < task->n; i++) {
+        const struct plan_place *place = &plan->place[use[i].place];
+        size_t room = room_of(place);
+        if (place->data)
+            memcpy(at, place->data, place->bytes);
+        memset(at + place->bytes, 0, room - place->bytes);
+        at += room;
+    }
+    *message = (struct message){0};
+    if (atomic_load_explicit(&plan->tainted, memory_order_relaxed))
+        at += pack_failures(plan, task, message, at);
+    return (size_t)(at - (char *)bytes);
+}
+
+/* Poisons, or heals, what came. */
+static void unpack_failures(struct plan *plan, const struct task *task,
+                            const struct message *message, const char *at)
+{
+    const struct plan_node_use *use = plan->use + task->node->first_use;
+    for (uint32_t i = 0; i < task->n; i++)
+        plan->place[use[i].place].failure = NULL;
+    for (uint32_t i = 0; i < message->failures; i++) {
+        struct message_failure told;
+        memcpy(&told, at + i * sizeof told, sizeof told);
+        plan->place[use[told.use].place].failure = task_fail(plan->graph, &told.failure, false);
+    }
+    if (message->failures)
+        atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+}
+
+void plan_channel_unpack(struct task *task, const void *bytes)
+{
+    struct plan *plan = begin(task);
+    const struct plan_node_use *use = plan->use + task->node->first_use;
+    const struct message *message = bytes;
+    const char *at = (const char *)(message + 1);
+    for (uint32_t i = 0; i < task->n; i++) {
+        const struct plan_place *place = &plan->place[use[i].place];
+        memcpy(place->data, at, place->bytes);
+        at += room_of(place);
+    }
+    if (message->failures || atomic_load_explicit(&plan->tainted, memory_order_relaxed))
+        unpack_failures(plan, task, message, at);
+}
+
+void plan_channel_lost(struct task *task)
+{
+    struct plan *plan = begin(task);
+    const struct plan_node_use *use = plan->use + task->node->first_use;
+    atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+    for (uint32_t i = 0; i < task->n; i++)
+        if (use[i].writes)
+            plan->place[use[i].place].failure = &lost;
+}

@@ -1,0 +1,334 @@
+/* A plan is written once, from a draft; afterwards only bindings, arguments and what runs change
+ * it. It lives as long as its record or a replay of it. */
+#include "runtime/plan/draft.h"
+#include "runtime/task/internal.h"
+
+#include "runtime/base/memory.h"
+#include "runtime/data/view.h"
+
+#include <string.h>
+
+/* Of a whole replay on one rank. */
+static duite_mode mode_of(const struct plan_record *record,
+                          const struct plan_recorded_object *object)
+{
+    if (plan_recorded_gathers(record->object, object))
+        return DUITE_W;
+    if (!object->written && !object->sums)
+        return DUITE_R;
+    return object->reads_old ? DUITE_RW : DUITE_W;
+}
+
+static void fill_places(struct plan *plan, const struct plan_draft *draft, const duite_object *flag)
+{
+    const struct plan_record *record = draft->record;
+    for (size_t i = 0; i < record->n_objects; i++) {
+        const struct plan_recorded_object *object = &record->object[i];
+        plan->place[i] = (struct plan_place){
+            .type = object->type, .mode = mode_of(record, object), .count = object->count};
+    }
+    if (plan->n_objects > record->n_objects) {
+        const struct data_object *object = &record->graph->table.object[flag->slot];
+        plan->place[record->n_objects] =
+            (struct plan_place){.type = object->type, .mode = DUITE_R, .count = object->count};
+    }
+    for (size_t i = 0; i < plan->n_objects && plan->words; i++)
+        plan->place[i].mode = plan_mode(plan, i);
+    for (size_t i = plan->n_objects; i < plan->n_places; i++) {
+        const struct plan_place *whole = &plan->place[draft->place[i].object];
+        plan->place[i] = (struct plan_place){
+            .type = whole->type, .count = whole->count, .law = draft->place[i].law};
+    }
+    for (size_t i = 0; i < plan->n_places; i++)
+        plan->place[i].bytes = plan->place[i].count * data_type_size(plan->place[i].type);
+}
+
+/* For all that is used and is no object's from outside. */
+static bool alloc_buffers(struct plan *plan)
+{
+    static unsigned char used;
+    size_t bytes = 0;
+    for (size_t i = 0; i < plan->n_uses; i++)
+        plan->place[plan->use[i].place].data = &used;
+    for (int fill = 0; fill < 2; fill++) {
+        bytes = 0;
+        for (size_t i = 0; i < plan->n_places; i++) {
+            struct plan_place *place = &plan->place[i];
+            if (place->mode != DUITE_NONE || !place->data)
+                continue;
+            if (fill)
+                place->data = plan->buffers + bytes;
+            bytes += (place->bytes + 63) / 64 * 64;
+        }
+        if (!fill && !(plan->buffers = base_alloc(bytes + 1)))
+            return false;
+    }
+    for (size_t i = 0; i < plan->n_places; i++)
+        if (plan->place[i].data == &used)
+            plan->place[i].data = NULL;
+    return true;
+}
+
+static void fill_params(struct plan *plan)
+{
+    for (size_t i = 0; i < plan->n_uses; i++) {
+        struct plan_place *place = &plan->place[plan->use[i].place];
+        plan->param[i] = (duite_param){
+            .data = place->data, .count = place->count, .type = place->type, .most = place->count};
+        place->n_params++;
+    }
+    size_t at = 0;
+    for (size_t i = 0; i < plan->n_places; i++) {
+        plan->place[i].first_param = at;
+        at += plan->place[i].n_params;
+        plan->place[i].n_params = 0;
+    }
+    for (size_t i = 0; i < plan->n_uses; i++) {
+        struct plan_place *place = &plan->place[plan->use[i].place];
+        plan->param_of[place->first_param + place->n_params++] = (uint32_t)i;
+    }
+}
+
+/* The owner rule. */
+static uint32_t owner(const struct plan *plan, const struct plan_draft_node *node)
+{
+    uint32_t first_read = PLAN_NO_PLACE;
+    for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
+        const struct plan_node_use *use = &plan->use[i];
+        if (use->place < plan->n_objects && use->writes)
+            return use->place;
+        if (use->place < plan->n_objects && first_read == PLAN_NO_PLACE)
+            first_read = use->place;
+    }
+    return first_read;
+}
+
+/* The one that a node gathers. */
+static struct data_view *hold_view(const struct plan *plan, const struct plan_record *record,
+                                   const struct plan_node *node)
+{
+    uint32_t view = plan->use[node->first_use + 1].place;
+    return data_view_hold(record->graph->table.object[record->object[view].recorded.slot].view);
+}
+
+/* What a task or a set is given; at_home: it runs for an object. */
+static void fill_call(struct plan *plan, const struct plan_record *record,
+                      const struct plan_draft_node *from, struct task *task, bool at_home)
+{
+    struct plan_node *node = task->node;
+    const struct plan_recorded_fork *fork = &record->fork[from->fork];
+    node->args = fork->zeros ? NULL : plan->args + fork->args;
+    if (from->kind == TASK_NODE_SET)
+        return;
+    const duite_kernel *kernel = record->graph->kernels[fork->kernel];
+    task->kernel = fork->kernel;
+    task->placed = at_home && !kernel->replicated && fork->how.at == TASK_ANYWHERE;
+    task->priority = fork->how.priority;
+    task->cost = (float)fork->how.cost;
+    node->args = kernel->args_size ? plan->args + fork->args : NULL;
+    uint32_t stamp = task_new_stamp();
+    for (uint32_t k = 0; k < fork->n; k++) {
+        node->param[k].object = (duite_object){TASK_LOCAL_NAME | k, stamp};
+        node->n_leaves += plan->place[plan->use[node->first_use + k].place].law != NULL;
+    }
+}
+
+static void fill_node(struct plan *plan, const struct plan_draft *draft, size_t i)
+{
+    const struct plan_record *record = draft->record;
+    const struct plan_draft_node *from = &draft->node[i];
+    struct task *task = plan_task(plan, i);
+    struct plan_node *node = (void *)(plan->nodes + i * PLAN_NODE_BYTES + PLAN_NODE_AT);
+    *task = (struct task){.n = (uint32_t)from->n_uses,
+                          .kind = from->kind,
+                          .kernel = UINT32_MAX,
+                          .priority = INT32_MAX,
+                          .scope = &record->graph->root,
+                          .node = node};
+    *node = (struct plan_node){.plan = plan,
+                               .param = plan->param + from->first_use,
+                               .n_next = from->n_next,
+                               .n_cyclic = from->n_next_cyclic,
+                               .steady = from->within + from->cyclic,
+                               .first_use = (uint32_t)from->first_use,
+                               .sink = from->n_next == from->n_next_cyclic};
+    plan->first[i] = from->within;
+    plan->call[i] = record->n_forks ? record->fork[from->fork].call : 0;
+    plan->owner[i] = owner(plan, from);
+    if (!from->within)
+        plan->root[plan->n_roots++] = task;
+    plan->n_sinks += node->sink;
+    plan->n_filled++;
+    if (from->kind == TASK_NODE_VIEW)
+        node->view = hold_view(plan, record, node);
+    if (from->kind == TASK_NODE_SUM || from->kind == TASK_NODE_PARTIAL) {
+        node->tree = &plan->tree[plan->n_trees++];
+        plan->tree[plan->n_trees - 1] =
+            (struct plan_tree){from->law, plan->merge + from->first_merge, from->n_merges};
+    }
+    if (from->kind == TASK_NODE || from->kind == TASK_NODE_SET)
+        fill_call(plan, record, from, task, plan->owner[i] != PLAN_NO_PLACE);
+    if (from->kind == TASK_NODE && draft->path)
+        task->path = draft->path[from->fork];
+}
+/* Successors in one row, those of the next round before those of the same. */
+static void fill_next(struct plan *plan, const struct plan_draft *draft)
+{
+    struct task **at = plan->next;
+    for (size_t i = 0; i < plan->n_nodes; i++) {
+        struct plan_node *node = plan_task(plan, i)->node;
+        node->next = at;
+        at += node->n_next;
+        node->n_next = 0;
+    }
+    for (int within = 0; within < 2; within++)
+        for (size_t i = 0; i < draft->n_edges; i++) {
+            const struct plan_draft_edge *edge = &draft->edge[i];
+            struct plan_node *node = plan_task(plan, edge->from)->node;
+            bool sends = draft->node[edge->to].kind == TASK_NODE_SEND;
+            if (sends && !edge->cyclic)
+                node->urgent = draft->node[edge->from].kind != TASK_NODE;
+            if (edge->cyclic != within)
+                node->next[node->n_next++] = plan_task(plan, edge->to);
+        }
+}
+
+static size_t count_trees(const struct plan_draft *draft)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < draft->n_nodes; i++)
+        n += draft->node[i].kind == TASK_NODE_SUM || draft->node[i].kind == TASK_NODE_PARTIAL;
+    return n;
+}
+
+static bool alloc_arrays(struct plan *plan, const struct plan_draft *draft)
+{
+    plan->nodes = base_alloc(plan->n_nodes * PLAN_NODE_BYTES + 1);
+    plan->root = base_alloc((plan->n_nodes + 1) * sizeof(struct task *));
+    plan->next = base_alloc((draft->n_edges + 1) * sizeof(struct task *));
+    plan->first = base_alloc((plan->n_nodes + 1) * sizeof *plan->first);
+    plan->call = base_alloc((plan->n_nodes + 1) * sizeof *plan->call);
+    plan->owner = base_alloc((plan->n_nodes + 1) * sizeof *plan->owner);
+    plan->use = base_alloc((plan->n_uses + 1) * sizeof *plan->use);
+    plan->param = base_alloc((plan->n_uses + 1) * sizeof *plan->param);
+    plan->param_of = base_alloc((plan->n_uses + 1) * sizeof *plan->param_of);
+    plan->place = base_alloc((plan->n_places + 1) * sizeof *plan->place);
+    plan->args = base_alloc(draft->record->args_bytes + 1);
+    plan->merge = base_alloc(draft->n_merges * sizeof *plan->merge + 1);
+    plan->tree = base_alloc(count_trees(draft) * sizeof *plan->tree + 1);
+    return plan->nodes && plan->root && plan->next && plan->first && plan->call && plan->owner &&
+           plan->use && plan->param && plan->param_of && plan->place && plan->args && plan->merge &&
+           plan->tree;
+}
+
+static bool fill(struct plan *plan, const struct plan_draft *draft, const duite_object *flag)
+{
+    const struct plan_record *record = draft->record;
+    plan->n_nodes = draft->n_nodes;
+    plan->n_uses = draft->n_uses;
+    plan->n_places = draft->n_places;
+    plan->n_calls = record->n_calls;
+    if (!alloc_arrays(plan, draft))
+        return false;
+    memcpy(plan->use, draft->use, plan->n_uses * sizeof *plan->use);
+    if (draft->n_merges)
+        memcpy(plan->merge, draft->merge, draft->n_merges * sizeof *plan->merge);
+    fill_places(plan, draft, flag);
+    if (!alloc_buffers(plan))
+        return false;
+    fill_params(plan);
+    if (record->args_bytes)
+        memcpy(plan->args, record->args, record->args_bytes);
+    for (size_t i = 0; i < plan->n_nodes; i++)
+        fill_node(plan, draft, i);
+    fill_next(plan, draft);
+    return true;
+}
+
+/* The place of the flag among the objects; behind them if it is none of them. */
+static size_t find_flag(const struct plan_record *record, duite_object flag)
+{
+    size_t place = 0;
+    while (place < record->n_objects && (record->object[place].bound.slot != flag.slot ||
+                                         record->object[place].bound.generation != flag.generation))
+        place++;
+    return place;
+}
+
+bool plan_fits(const struct plan *plan, const struct plan_record *record, const duite_object *flag)
+{
+    if (plan->decides != (flag != NULL) || !plan_at_home(plan, record))
+        return false;
+    if (!flag)
+        return true;
+    const struct plan_place *place = &plan->place[plan->flag_place];
+    const struct data_object *object = &record->graph->table.object[flag->slot];
+    return plan->flag_place == find_flag(record, *flag) && place->type == object->type &&
+           place->count == object->count;
+}
+
+struct plan *plan_new(const struct plan_record *record, const duite_object *flag)
+{
+    struct plan *plan = base_alloc_zero(sizeof *plan);
+    struct plan_draft draft = {.record = record, .decides = flag != NULL};
+    if (!plan)
+        return NULL;
+    atomic_init(&plan->refs, 1);
+    plan->graph = record->graph;
+    plan->decides = flag != NULL;
+    plan->flag_place = flag ? find_flag(record, *flag) : 0;
+    plan->n_objects = record->n_objects + (flag && plan->flag_place == record->n_objects);
+    bool fine = record->graph->n_ranks > 1
+                    ? plan_spread(plan, &draft, flag)
+                    : plan_draft_make(&draft, plan->n_objects, plan->flag_place);
+    if (fine && plan->graph->paths)
+        fine = (draft.path = plan_record_paths(record)) != NULL;
+    fine = fine && fill(plan, &draft, flag);
+    if (fine && plan->words)
+        fine = !plan_open(plan, &draft);
+    plan_draft_free(&draft);
+    if (fine)
+        return plan;
+    plan_release(plan);
+    return NULL;
+}
+
+void plan_release(struct plan *plan)
+{
+    if (atomic_fetch_sub_explicit(&plan->refs, 1, memory_order_acq_rel) != 1)
+        return;
+    if (plan->channels.close)
+        plan->channels.close(&plan->channels);
+    for (size_t i = 0; i < plan->n_filled; i++)
+        if (plan_task(plan, i)->kind == TASK_NODE_VIEW)
+            data_view_release(plan_task(plan, i)->node->view);
+    base_free(plan->nodes);
+    base_free(plan->root);
+    base_free(plan->next);
+    base_free(plan->first);
+    base_free(plan->call);
+    base_free(plan->owner);
+    base_free(plan->use);
+    base_free(plan->param);
+    base_free(plan->param_of);
+    base_free(plan->place);
+    base_free(plan->args);
+    base_free(plan->buffers);
+    base_free(plan->merge);
+    base_free(plan->tree);
+    base_free(plan->channels.channel);
+    base_free(plan->enter);
+    base_free(plan->end);
+    base_free(plan->home);
+    base_free(plan);
+}
+
+void plan_drop(struct plan *plan, struct worker *worker)
+{
+    if (!plan)
+        return;
+    if (plan->turn.current)
+        task_release(plan->graph, worker, plan->turn.current);
+    plan->turn.current = NULL;
+    plan_release(plan);
+}

@@ -1,0 +1,127 @@
+/* A plan of several ranks: each has its own nodes, and agrees with the others, without asking, on
+ * which object's value must be where when a round begins, and where it is when the last one is
+ * over. What is not written stays where it is read; of what is written, the value lies before and
+ * after each round where its last writer runs, and goes from there to who reads it first. */
+#include "runtime/plan/spread.h"
+#include "runtime/task/internal.h"
+
+#include "runtime/base/memory.h"
+
+#include <string.h>
+
+static bool alloc_sets(struct plan *plan, size_t words)
+{
+    size_t bytes = plan->n_objects * words * sizeof(uint64_t);
+    plan->words = words;
+    plan->enter = base_alloc_zero(bytes + 1);
+    plan->end = base_alloc_zero(bytes + 1);
+    plan->home = base_alloc(plan->n_objects * sizeof *plan->home + 1);
+    return plan->enter && plan->end && plan->home;
+}
+
+/* A view that is gathered within the round is nobody's from outside. */
+static void take_sets(struct plan *plan, const struct spread *spread)
+{
+    const struct plan_record *record = spread->record;
+    size_t bytes = plan->words * sizeof(uint64_t);
+    for (uint32_t i = 0; i < plan->n_objects; i++) {
+        uint64_t *enter = plan->enter + i * plan->words, *end = plan->end + i * plan->words;
+        uint32_t maker = spread_maker(spread, i);
+        plan->home[i] = spread->home[i];
+        if (maker == SPREAD_NONE) {
+            memcpy(enter, spread_need(spread, i), bytes);
+        } else if (!plan_recorded_gathers(record->object, &record->object[i])) {
+            memcpy(end, spread_set(spread, maker), bytes);
+            if (record->object[i].reads_old)
+                memcpy(enter, end, bytes);
+        }
+    }
+    for (size_t n = 0; n < spread->round->n_nodes; n++)
+        if ((int)spread->phase[n] >= plan->channels.phases)
+            plan->channels.phases = (int)spread->phase[n] + 1;
+}
+
+bool plan_spread(struct plan *plan, struct plan_draft *draft, const duite_object *flag)
+{
+    struct plan_draft round = {.record = draft->record, .decides = draft->decides};
+    struct spread spread = {.graph = plan->graph, .record = draft->record, .round = &round};
+    bool fine = plan_draft_round(&round, plan->n_objects, plan->flag_place) &&
+                spread_make(&spread, flag) && alloc_sets(plan, spread.words) &&
+                spread_local(&spread, draft) && plan_draft_edges(draft);
+    if (fine)
+        take_sets(plan, &spread);
+    spread_free(&spread);
+    plan_draft_free(&round);
+    return fine;
+}
+
+int plan_open(struct plan *plan, const struct plan_draft *draft)
+{
+    struct plan_channels *channels = &plan->channels;
+    channels->channel = base_alloc((draft->n_channels + 1) * sizeof *channels->channel);
+    if (!channels->channel)
+        return DUITE_E_MEMORY;
+    channels->n = draft->n_channels;
+    for (size_t i = 0; i < draft->n_nodes; i++) {
+        struct task *task = plan_task(plan, i);
+        if (!task_is_channel(task))
+            continue;
+        const struct plan_draft_channel *from = &draft->channel[draft->node[i].channel];
+        struct plan_channel *channel = &channels->channel[draft->node[i].channel];
+        *channel = (struct plan_channel){.node = task,
+                                         .peer = from->peer,
+                                         .tag = (int)from->phase,
+                                         .sends = from->sends,
+                                         .bytes = plan_channel_room(plan, task)};
+        task->node->channel = channel;
+    }
+    return work_open(plan->graph->pool, channels);
+}
+
+bool plan_at_home(const struct plan *plan, const struct plan_record *record)
+{
+    const struct data_object *objects = plan->graph->table.object;
+    for (size_t i = 0; plan->words && i < record->n_objects; i++)
+        if (objects[record->object[i].bound.slot].home != plan->home[i])
+            return false;
+    return true;
+}
+
+static bool is_in(const struct plan *plan, const uint64_t *sets, size_t i, int rank)
+{
+    return spread_has(sets + i * plan->words, rank);
+}
+
+int plan_fetch(const struct plan *plan, struct worker *worker, size_t i, struct data_object *object)
+{
+    int code = DUITE_OK;
+    for (int rank = 0; rank < plan->graph->n_ranks && !code; rank++)
+        if (is_in(plan, plan->enter, i, rank))
+            code = task_fetch(plan->graph, worker, object, rank);
+    return code;
+}
+
+bool plan_moves(const struct plan *plan, size_t i, struct data_object *object)
+{
+    int holder = -1;
+    for (int rank = plan->graph->n_ranks; rank-- > 0;)
+        if (is_in(plan, plan->end, i, rank) && holder != object->home)
+            holder = rank;
+    if (holder < 0)
+        return false;
+    object->number++;
+    data_object_moved(object, holder);
+    for (int rank = 0; rank < plan->graph->n_ranks; rank++)
+        if (rank != holder && is_in(plan, plan->end, i, rank))
+            data_object_add_copy(&plan->graph->table, object, rank);
+    return true;
+}
+
+duite_mode plan_mode(const struct plan *plan, size_t i)
+{
+    int rank = plan->graph->rank;
+    bool enters = is_in(plan, plan->enter, i, rank);
+    if (is_in(plan, plan->end, i, rank))
+        return enters ? DUITE_RW : DUITE_W;
+    return enters ? DUITE_R : DUITE_NONE;
+}

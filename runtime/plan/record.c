@@ -1,0 +1,352 @@
+/* A record is whole or not begun: a call of build that fails leaves nothing behind. What build
+ * named stays as it was (`recorded`); replays use what is bound to it. Arguments lie in one block,
+ * which plans copy; what changes later is told to a plan as a list of changes. */
+#include "runtime/plan/replay.h"
+#include "runtime/task/internal.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/data/mode.h"
+#include "runtime/data/view.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct plan_record *plan_record_new(struct task_graph *graph)
+{
+    struct plan_record *record = base_alloc_zero(sizeof *record);
+    if (record)
+        record->graph = graph;
+    return record;
+}
+
+void plan_record_forget_changes(struct plan_record *record)
+{
+    while (record->changes) {
+        struct plan_change *next = record->changes->next;
+        base_free(record->changes);
+        record->changes = next;
+    }
+}
+
+void plan_record_clear(struct plan_record *record, struct worker *worker)
+{
+    struct task_graph *graph = record->graph;
+    plan_drop(record->plan, worker);
+    plan_record_forget_changes(record);
+    free(record->fork);
+    free(record->use);
+    free(record->args);
+    free(record->call);
+    free(record->object);
+    free(record->names);
+    base_free(record->index);
+    *record = (struct plan_record){.graph = graph};
+}
+
+void plan_record_free(struct plan_record *record, struct worker *worker)
+{
+    plan_record_clear(record, worker);
+    base_free(record);
+}
+
+/* ---- What build calls ---- */
+
+/* Room for one more fork with n objects and so many bytes of arguments, and for the index. */
+static bool reserve(struct plan_record *record, size_t n, size_t bytes)
+{
+    const struct data_table *table = &record->graph->table;
+    if (!record->index) {
+        record->n_slots = table->n_slots;
+        record->index = base_alloc_zero(record->n_slots * sizeof *record->index);
+    }
+#define ROOM(array, capacity, more)                                                                \
+    ((moved = base_grow(record->array, &record->capacity, more, sizeof *record->array)) &&         \
+     ((record->array = moved), true))
+    void *moved;
+    return record->index && ROOM(fork, forks_capacity, record->n_forks + 1) &&
+           ROOM(call, calls_capacity, record->n_calls + 1) &&
+           ROOM(use, uses_capacity, record->n_uses + n + 1) && ROOM(names, names_capacity, n + 1) &&
+           ROOM(object, objects_capacity, record->n_objects + 2 * n + 1) &&
+           ROOM(args, args_capacity, record->args_bytes + bytes + 1);
+#undef ROOM
+}
+
+static struct plan_recorded_object *find(const struct plan_record *record, duite_object name)
+{
+    uint32_t index = name.slot < record->n_slots ? record->index[name.slot] : 0;
+    struct plan_recorded_object *object = index ? &record->object[index - 1] : NULL;
+    bool found = object && object->named && object->recorded.generation == name.generation;
+    return found ? object : NULL;
+}
+
+static uint32_t index_of(struct plan_record *record, duite_object name)
+{
+    const struct data_object *object = &record->graph->table.object[name.slot];
+    uint32_t *index = &record->index[name.slot];
+    if (!*index) {
+        record->object[record->n_objects] = (struct plan_recorded_object){.recorded = name,
+                                                                          .bound = name,
+                                                                          .type = object->type,
+                                                                          .count = object->most,
+                                                                          .sized = object->sized};
+        *index = (uint32_t)++record->n_objects;
+    }
+    return *index - 1;
+}
+
+static void note(struct plan_recorded_object *object, duite_mode mode)
+{
+    if (mode == DUITE_CW) {
+        object->leads |= !object->read && !object->written;
+        object->reads_old |= !object->read && !object->written;
+        object->sums = object->trails = true;
+        return;
+    }
+    object->reads_old |= mode != DUITE_W && !object->written;
+    object->read |= mode == DUITE_R;
+    object->written |= mode != DUITE_R;
+    object->trails = false;
+}
+
+/* A fork reads the views that it names before it does anything to their objects. */
+static void use_view(struct plan_record *record, duite_object name)
+{
+    const struct data_table *table = &record->graph->table;
+    const struct data_view *view = table->object[name.slot].view;
+    if (!view)
+        return;
+    uint32_t parent = index_of(record, data_object_name(table, &table->object[view->parent]));
+    note(&record->object[parent], DUITE_R);
+    record->object[index_of(record, name)].parent = parent + 1;
+    record->views = true;
+}
+
+static void use(struct plan_record *record, duite_object name, duite_mode mode)
+{
+    uint32_t index = index_of(record, name);
+    record->use[record->n_uses++] = index;
+    record->object[index].named = true;
+    note(&record->object[index], mode);
+}
+
+duite_mode plan_recorded_mode(const struct task_graph *graph, const struct plan_recorded_fork *fork,
+                              uint32_t k)
+{
+    return fork->kernel == PLAN_SETS
+               ? DUITE_W
+               : task_immediate(data_mode_of(graph->kernels[fork->kernel], k));
+}
+
+uint32_t plan_recorded_owner(const struct plan_record *record,
+                             const struct plan_recorded_fork *fork)
+{
+    uint32_t first_read = PLAN_NOBODY;
+    if (fork->how.at != TASK_ANYWHERE || fork->kernel == PLAN_SETS ||
+        record->graph->kernels[fork->kernel]->replicated)
+        return PLAN_NOBODY;
+    for (uint32_t k = 0; k < fork->n; k++) {
+        duite_mode mode = plan_recorded_mode(record->graph, fork, k);
+        uint32_t object = record->use[fork->first + k];
+        if (mode == DUITE_W || mode == DUITE_RW)
+            return object;
+        if (mode == DUITE_R && first_read == PLAN_NOBODY)
+            first_read = object;
+    }
+    return first_read;
+}
+
+/* The object that it runs for keeps its home, and so does whatever is bound to it. */
+static void stay(struct plan_record *record, const struct plan_recorded_fork *fork)
+{
+    uint32_t owner = plan_recorded_owner(record, fork);
+    if (owner == PLAN_NOBODY)
+        return;
+    struct plan_recorded_object *object = &record->object[owner];
+    object->stays = true;
+    record->graph->table.object[object->bound.slot].stays = true;
+}
+
+/* The bytes of the arguments are still to be written. */
+static struct plan_recorded_fork *append(struct plan_record *record, uint32_t kernel,
+                                         const struct task_options *how, size_t n,
+                                         const duite_object *objects, size_t bytes)
+{
+    size_t whole = (bytes + 15) / 16 * 16;
+    if (record->n_forks >= UINT32_MAX / 8 || record->n_uses + n >= UINT32_MAX / 8 ||
+        !reserve(record, n, whole)) {
+        base_no_memory("a recorded graph");
+        return NULL;
+    }
+    struct plan_recorded_fork *fork = &record->fork[record->n_forks++];
+    *fork = (struct plan_recorded_fork){.kernel = kernel,
+                                        .how = *how,
+                                        .n = (uint32_t)n,
+                                        .call = (uint32_t)record->n_calls,
+                                        .first = record->n_uses,
+                                        .args = record->args_bytes};
+    record->args_bytes += whole;
+    task_mix(record->graph, (uint64_t)kernel << 32 | (uint32_t)how->at);
+    for (size_t i = 0; i < n; i++)
+        use_view(record, objects[i]);
+    for (size_t i = 0; i < n; i++) {
+        task_mix(record->graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
+        use(record, objects[i], plan_recorded_mode(record->graph, fork, (uint32_t)i));
+    }
+    return fork;
+}
+
+int plan_record_fork(struct plan_record *record, const struct task_options *how,
+                     const duite_kernel *kernel, const void *args, size_t n,
+                     const duite_object *objects)
+{
+    uint32_t index;
+    int code = task_check_fork(&record->graph->root, how->at, kernel, args, n, objects, &index);
+    if (code)
+        return code;
+    task_unmark(&record->graph->root, n, objects);
+    for (size_t i = 0; i < n; i++)
+        record->forked |= task_postponed(data_mode_of(kernel, i));
+    struct plan_recorded_fork *fork = append(record, index, how, n, objects, kernel->args_size);
+    if (!fork)
+        return DUITE_E_MEMORY;
+    if (kernel->args_size)
+        memcpy(record->args + fork->args, args, kernel->args_size);
+    if (kernel->stays)
+        stay(record, fork);
+    record->call[record->n_calls++] = record->n_forks - 1;
+    return DUITE_OK;
+}
+
+int plan_record_set(struct plan_record *record, duite_object name, const void *values,
+                    const size_t *wanted)
+{
+    const struct data_object *object = data_object_find(&record->graph->table, name);
+    if (!object)
+        return DUITE_E_OBJECT;
+    size_t count = wanted ? *wanted : object->most;
+    size_t bytes = values ? count * data_type_size(object->type) : 0;
+    int code = task_set_check(record->graph, object, name, count);
+    if (code)
+        return code;
+    struct plan_recorded_fork *fork =
+        append(record, PLAN_SETS, &(struct task_options){.at = TASK_ANYWHERE}, 1, &name, bytes);
+    if (!fork)
+        return DUITE_E_MEMORY;
+    task_mix(record->graph, count);
+    fork->zeros = !values;
+    fork->count = count;
+    if (bytes)
+        memcpy(record->args + fork->args, values, bytes);
+    return DUITE_OK;
+}
+
+void plan_record_end(struct plan_record *record)
+{
+    record->whole = true;
+    for (size_t i = 0; i < record->n_objects; i++) {
+        const struct plan_recorded_object *object = &record->object[i];
+        record->forked |= object->sized || (object->leads && object->trails);
+        record->trails |= object->trails;
+    }
+}
+
+/* ---- Between replays ---- */
+
+int plan_record_args(struct plan_record *record, size_t k, const void *args)
+{
+    if (k >= record->n_calls)
+        return base_error(DUITE_E_ARGUMENT, "duite_graph_args: there is no fork %zu, only %zu", k,
+                          record->n_calls);
+    const struct plan_recorded_fork *fork = &record->fork[record->call[k]];
+    size_t bytes = record->graph->kernels[fork->kernel]->args_size;
+    if (bytes && !args)
+        return base_error(DUITE_E_ARGUMENT,
+                          "duite_graph_args: fork %zu (kernel %s) needs %zu bytes", k,
+                          record->graph->kernels[fork->kernel]->name, bytes);
+    if (!bytes)
+        return DUITE_OK;
+    if (record->plan) {
+        struct plan_change *change = base_alloc(sizeof *change + bytes);
+        if (!change)
+            return base_no_memory("arguments of a recorded graph");
+        *change = (struct plan_change){record->changes, fork->args, bytes};
+        memcpy(change->args, args, bytes);
+        record->changes = change;
+    }
+    memcpy(record->args + fork->args, args, bytes);
+    return DUITE_OK;
+}
+
+int plan_record_bind(struct plan_record *record, duite_object recorded, duite_object name)
+{
+    struct plan_recorded_object *object = find(record, recorded);
+    const struct data_object *other = data_object_find(&record->graph->table, name);
+    if (!other)
+        return DUITE_E_OBJECT;
+    if (!object)
+        return base_error(DUITE_E_BINDING,
+                          "duite_graph_bind: object %u.%u, to become %u.%u, is not one that the "
+                          "graph was recorded with",
+                          recorded.slot, recorded.generation, name.slot, name.generation);
+    if (other->type != object->type || other->most != object->count ||
+        other->sized != object->sized)
+        return base_error(
+            DUITE_E_BINDING,
+            "duite_graph_bind: object %u.%u has %s%zu elements (%s), and object %u.%u, "
+            "bound to it, has %s%zu (%s)",
+            recorded.slot, recorded.generation, object->sized ? "at most " : "", object->count,
+            data_type_name(object->type), name.slot, name.generation,
+            other->sized ? "at most " : "", other->most, data_type_name(other->type));
+    if (object->written || object->sums) {
+        int code = data_view_refuse(&record->graph->table, other, "duite_graph_bind");
+        if (code)
+            return code;
+    }
+    task_mix(record->graph, (uint64_t)recorded.slot << 32 | recorded.generation);
+    task_mix(record->graph, (uint64_t)name.slot << 32 | name.generation);
+    object->bound = name;
+    record->graph->table.object[name.slot].stays |= object->stays;
+    record->rebound = true;
+    return DUITE_OK;
+}
+
+bool plan_record_fits(const struct plan_record *record)
+{
+    const struct data_table *table = &record->graph->table;
+    for (size_t i = 0; i < record->n_objects; i++) {
+        duite_object bound = record->object[i].bound;
+        if (table->object[bound.slot].generation != bound.generation)
+            return false;
+    }
+    return record->whole;
+}
+
+/* Marks each bound object with the place it is bound to, plus one. */
+int plan_record_distinct(struct plan_record *record)
+{
+    struct data_table *table = &record->graph->table;
+    int code = DUITE_OK;
+    if (!record->rebound)
+        return code;
+    for (size_t i = 0; i < record->n_objects; i++)
+        table->object[record->object[i].bound.slot].mark = 0;
+    for (size_t i = 0; i < record->n_objects && !code; i++) {
+        const struct plan_recorded_object *object = &record->object[i];
+        uint64_t *mark = &table->object[object->bound.slot].mark;
+        if (!object->named)
+            continue;
+        if (*mark)
+            code = base_error(DUITE_E_BINDING,
+                              "objects %u.%u and %u.%u of a recorded graph are both bound to %u.%u",
+                              record->object[*mark - 1].recorded.slot,
+                              record->object[*mark - 1].recorded.generation, object->recorded.slot,
+                              object->recorded.generation, object->bound.slot,
+                              object->bound.generation);
+        *mark = i + 1;
+    }
+    for (size_t i = 0; i < record->n_objects; i++)
+        table->object[record->object[i].bound.slot].mark = 0;
+    record->rebound = code != DUITE_OK;
+    return code;
+}

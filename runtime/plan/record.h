@@ -1,0 +1,179 @@
+#ifndef DUITE_GRAPH_RECORD_H
+#define DUITE_GRAPH_RECORD_H
+
+#include "runtime/task/task.h"
+
+#include <stdio.h>
+
+/* Recorded graphs: what a build function forked, kept to be replayed.
+ *
+ * The record is the program's view: forks in order, with the objects and arguments that the next
+ * replay uses. From it comes a plan (replay.h), which one rank replays by itself; any number of
+ * ranks can fork the record round by round instead, with the same results. Main thread only. */
+
+#define PLAN_SETS UINT32_MAX /* in place of a kernel: a duite_set */
+
+struct plan_record;
+
+struct plan_recorded_fork {
+    uint32_t kernel; /* index in the list given at start */
+    uint32_t n;
+    struct task_options how;
+    uint32_t call; /* forks before it, sets left out */
+    size_t first;  /* of its n objects in `use` */
+    size_t args;   /* where its arguments, or the values it sets, lie in `args` */
+    bool zeros;    /* it sets zeros */
+    size_t count;  /* elements it sets */
+};
+
+struct plan_recorded_object {
+    duite_object recorded, bound; /* as named by build, and what the next replay takes instead */
+    duite_type type;
+    size_t count;       /* at most */
+    bool sized;         /* its size changes */
+    bool read, written; /* by something else than a contribution */
+    bool sums;          /* contributed to */
+    bool reads_old;     /* the first access is not a w */
+    bool leads, trails; /* contributions before any other access in a round, and after all others */
+    bool named;         /* by a fork or set; else by its views only, and cannot be bound */
+    bool stays;         /* tasks that must stay run for it */
+    uint32_t parent;    /* of a view: the place of its object in `object`, plus 1; else 0 */
+};
+
+struct plan;
+
+#define PLAN_NOBODY UINT32_MAX
+
+/* The owner rule: the place in record->object that a fork runs for; PLAN_NOBODY: for none, or
+ * where it says, or everywhere. */
+uint32_t plan_recorded_owner(const struct plan_record *record,
+                             const struct plan_recorded_fork *fork);
+
+/* The mode in which a fork, with its descendants, uses its k-th object. */
+duite_mode plan_recorded_mode(const struct task_graph *graph, const struct plan_recorded_fork *fork,
+                              uint32_t k);
+
+/* The recorded object is a view of one that the graph writes: rounds gather it. */
+static inline bool plan_recorded_gathers(const struct plan_recorded_object *objects,
+                                         const struct plan_recorded_object *object)
+{
+    if (!object->parent)
+        return false;
+    const struct plan_recorded_object *parent = &objects[object->parent - 1];
+    return parent->written || parent->sums;
+}
+
+/* Arguments that changed since the last replay; one block of memory. */
+struct plan_change {
+    struct plan_change *next;
+    size_t at, bytes; /* in the plan's copy of the arguments */
+    unsigned char args[];
+};
+
+struct plan_record {
+    struct task_graph *graph;
+    struct plan_recorded_fork *fork;
+    size_t n_forks, forks_capacity;
+    uint32_t *use; /* objects of all forks, as indices in `object` */
+    size_t n_uses, uses_capacity;
+    unsigned char *args;
+    size_t args_bytes, args_capacity;
+    size_t *call; /* the forks that are not sets: these have numbers */
+    size_t n_calls, calls_capacity;
+    struct plan_recorded_object *object;
+    size_t n_objects, objects_capacity;
+    uint32_t *index; /* by slot: place in `object`, plus 1 */
+    size_t n_slots;
+    duite_object *names; /* for the objects of one fork */
+    size_t names_capacity;
+    bool whole;   /* build came to its end */
+    bool rebound; /* since the bindings were last found to be different objects */
+    bool forked;  /* has no plan: contributions of one round and of the next make one sum, the size
+                     of an object changes, or a right is postponed */
+    bool views;   /* reads views */
+    bool trails;  /* some object's contributions end the round: they stay open after the last */
+    int failed;   /* code of the first call of build that failed */
+    char sentence[512]; /* of it */
+    struct plan *plan;
+    struct plan_change *changes; /* since the last replay of the plan */
+    uint64_t rounds;             /* of the last replay, but for those of the plan */
+    bool by_plan;                /* there were some of the plan */
+};
+
+enum { PLAN_MAX_TASKS_BITS = 48 }; /* rounds times forks of one replay are below 2^48 */
+
+/* An empty record; NULL without memory. */
+struct plan_record *plan_record_new(struct task_graph *graph);
+/* Replays of it may be on their way. */
+void plan_record_free(struct plan_record *record, struct worker *worker);
+/* Forgets everything recorded, bindings among it: build is called again. */
+void plan_record_clear(struct plan_record *record, struct worker *worker);
+
+/* The next plan is made from the arguments as they are. */
+void plan_record_forget_changes(struct plan_record *record);
+
+/* What build calls. Errors as of task_fork and task_set_object, nothing is recorded then. */
+int plan_record_fork(struct plan_record *record, const struct task_options *how,
+                     const duite_kernel *kernel, const void *args, size_t n,
+                     const duite_object *objects);
+int plan_record_set(struct plan_record *record, duite_object object, const void *values,
+                    const size_t *count);
+/* Build is over. */
+void plan_record_end(struct plan_record *record);
+
+/* New arguments of the k-th fork of build. Errors: DUITE_E_ARGUMENT, memory. */
+int plan_record_args(struct plan_record *record, size_t k, const void *args);
+/* Errors: DUITE_E_OBJECT, DUITE_E_BINDING. */
+int plan_record_bind(struct plan_record *record, duite_object recorded, duite_object object);
+
+/* One round of it: its tasks and what the runtime adds (sets, sums, views) in order, and who reads
+ * whose results. Says nothing of ranks. */
+struct plan_tasks {
+    size_t n;
+    const duite_kernel **kernel; /* n: of a task of the program, else NULL */
+    double *cost;    /* n: seconds, as its fork says; 0: not said, or not the program's */
+    uint32_t *owner; /* n: the place in record->object that it runs for, or PLAN_NOBODY */
+    size_t *start;   /* n + 1: of its rows */
+    uint32_t *from;  /* whose result it reads: before it, or, not before it, of the last round */
+    double *bytes;   /* of it */
+};
+
+/* Errors: memory; plan_tasks_free is due all the same. */
+int plan_record_tasks(const struct plan_record *record, struct plan_tasks *tasks);
+void plan_tasks_free(struct plan_tasks *tasks);
+
+/* By fork: seconds on the longest path from it to the end of the round, see duite_ready.path; to be
+ * freed by base_free. NULL without memory. */
+float *plan_record_paths(const struct plan_record *record);
+
+/* Writes the record as dot, with the objects of the next replay. Errors: memory, DUITE_E_SYSTEM. */
+int plan_record_print(const struct plan_record *record, FILE *file);
+
+/* Was it recorded, and do all bound objects exist? */
+bool plan_record_fits(const struct plan_record *record);
+/* DUITE_E_BINDING if two recorded objects are bound to one. */
+int plan_record_distinct(struct plan_record *record);
+
+/* ---- Replays: every rank, fork order ---- */
+
+/* How many of the rounds must be forked, before and after those of the plan, since contributions
+ * cross the edges between them; all of them come before, if nothing is left for the plan. */
+void plan_replay_split(const struct plan_record *record, const duite_object *flag, uint64_t rounds,
+                       uint64_t *before, uint64_t *after);
+
+/* Forks all tasks once. */
+int plan_replay_fork(struct plan_record *record, struct worker *worker);
+
+/* Replays the plan: so many rounds, or while the first element of the flag is not zero, at most so
+ * many. One rank. */
+int plan_replay_plan(struct plan_record *record, struct worker *worker, const duite_object *flag,
+                     uint64_t rounds);
+
+/* Are all replays of the plan over? Then the rounds of the last one. */
+bool plan_replay_over(const struct plan_record *record);
+uint64_t plan_replay_rounds(const struct plan_record *record);
+
+/* Is the first element something else than zero? */
+bool plan_flag_holds(duite_type type, const void *values);
+
+#endif

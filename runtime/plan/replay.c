@@ -1,0 +1,344 @@
+/* Running a plan. A node belongs to nobody but the worker that runs it, from the moment its counter
+ * came to nothing until it told its last successor; by then it counts for its next round already.
+ * The counter goes back to `steady` before that: none of those that count for the next round has
+ * run (see replay_draft.c). A replay is over when all sinks of its last round are: each other node
+ * of any round comes before one of these, and a node that still has successors to tell keeps one of
+ * them waiting. So what tells last, and what counts the sinks, touches nothing of the plan
+ * afterwards.
+ *
+ * Poison is kept by place, under the same dependences as the bytes. It is looked at only once
+ * something failed: what sees the effects of a failure sees `tainted`. */
+#include "runtime/plan/replay.h"
+#include "runtime/task/internal.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/data/view.h"
+
+#include <string.h>
+
+/* With a flag the number of rounds is not known beforehand: each sink of each round takes one, and
+ * the node that decides to stop takes the rest. */
+static const int64_t UNKNOWN = INT64_C(1) << 62;
+
+/* ---- Beginning and end ---- */
+
+static void move_place(struct plan *plan, struct plan_place *place, void *data)
+{
+    if (place->data == data)
+        return;
+    place->data = data;
+    for (size_t i = 0; i < place->n_params; i++)
+        plan->param[plan->param_of[place->first_param + i]].data = data;
+}
+
+/* The bytes that an object's version has now, and its poison; rounds work on them in place. False
+ * without memory. */
+static bool bind(struct plan *plan, struct task_access *access, struct plan_place *place)
+{
+    struct data_version *in = access->in;
+    struct data_packet *packet = in ? data_version_packet(in) : NULL;
+    place->failure = in && place->mode != DUITE_W ? data_version_failure(in) : NULL;
+    if (place->mode == DUITE_NONE)
+        return true;
+    if (place->failure)
+        atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+    if (place->mode != DUITE_R) {
+        if (in)
+            data_version_free(in);
+        access->in = NULL;
+        if (!packet)
+            packet = data_packet_new(place->bytes, false);
+        access->out->packet = packet;
+        if (!packet)
+            return false;
+    }
+    move_place(plan, place, packet ? data_payload(packet) : NULL);
+    return true;
+}
+
+static void change_args(struct plan *plan, struct plan_change *change)
+{
+    if (!change)
+        return;
+    struct plan_change *oldest = NULL;
+    while (change) {
+        struct plan_change *next = change->next;
+        change->next = oldest;
+        oldest = change;
+        change = next;
+    }
+    while (oldest) {
+        struct plan_change *next = oldest->next;
+        memcpy(plan->args + oldest->at, oldest->args, oldest->bytes);
+        base_free(oldest);
+        oldest = next;
+    }
+}
+
+static void reset_nodes(struct plan *plan, const struct plan_replay *replay)
+{
+    for (size_t i = 0; i < plan->n_nodes; i++) {
+        struct task *task = plan_task(plan, i);
+        uint32_t owner = plan->owner[i];
+        atomic_store_explicit(&task->pending, plan->first[i], memory_order_relaxed);
+        task->number = replay->number + plan->call[i];
+        task->block = owner == PLAN_NO_PLACE ? (uint32_t)task->number : replay->block[owner];
+        task->node->round = 0;
+    }
+}
+
+void plan_replay_run(struct task *task)
+{
+    struct plan_replay *replay = task->replay;
+    struct plan *plan = replay->plan;
+    bool fine = true;
+    plan->replay = task;
+    plan->last = replay->rounds - 1;
+    plan->stop = false;
+    atomic_store_explicit(&plan->warm, false, memory_order_relaxed);
+    atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
+    atomic_store_explicit(&plan->left, plan->decides ? UNKNOWN : (int64_t)plan->n_sinks,
+                          memory_order_relaxed);
+    change_args(plan, replay->changes);
+    for (size_t i = plan->n_objects; i < plan->n_places; i++)
+        plan->place[i].failure = NULL;
+    for (size_t i = 0; i < plan->n_objects; i++)
+        fine &= bind(plan, &task->access[i], &plan->place[i]);
+    if (task->access[plan->n_objects].in) /* the turn */
+        data_version_free(task->access[plan->n_objects].in);
+    task->access[plan->n_objects].in = NULL;
+    reset_nodes(plan, replay);
+    if (fine)
+        return;
+    const struct data_failure *failure = task_fail_memory(task);
+    for (size_t i = 0; i < plan->n_objects; i++)
+        plan->place[i].failure = failure;
+    replay->rounds = 0;
+    if (plan->words)
+        work_starved(plan->graph->pool, "a replay");
+}
+
+static void end(struct task_graph *graph, struct worker *worker, struct plan *plan, uint64_t rounds)
+{
+    struct task *task = plan->replay;
+    for (size_t i = 0; i < plan->n_objects; i++)
+        if (task->access[i].out)
+            data_version_poison(task->access[i].out, plan->place[i].failure);
+    atomic_store_explicit(&plan->rounds, rounds, memory_order_relaxed);
+    atomic_fetch_add_explicit(&plan->over, 1, memory_order_release);
+    work_notify(graph->pool);
+    task_over(graph, worker, task); /* the next replay may begin */
+    plan_release(plan);
+}
+
+/* What a message waits for is not queued behind other tasks: it runs here and now. (What it makes
+ * ready is a node that sends, and tasks.) */
+static void ready(struct task_graph *graph, struct worker *worker, struct task *task)
+{
+    if (!task->node->urgent) {
+        work_ready(graph->pool, worker, task);
+        return;
+    }
+    plan_node_run(graph, worker, task, NULL);
+    plan_node_finish(graph, worker, task);
+}
+
+void plan_replay_start(struct task_graph *graph, struct worker *worker, struct task *task)
+{
+    struct plan *plan = task->replay->plan;
+    size_t n = task->replay->rounds ? plan->n_roots : 0;
+    if (!n)
+        end(graph, worker, plan, task->replay->rounds);
+    for (size_t i = 0; i < n; i++)
+        ready(graph, worker, plan->root[i]);
+}
+
+/* ---- Nodes ---- */
+
+static const struct data_failure *find_poison(const struct plan *plan, const struct task *task)
+{
+    const struct plan_node_use *use = plan->use + task->node->first_use;
+    const struct data_failure *failure = NULL;
+    for (uint32_t i = 0; i < task->n; i++)
+        if (use[i].reads)
+            failure = data_first(failure, plan->place[use[i].place].failure);
+    return failure;
+}
+
+/* Poisons, or heals, what the node writes. */
+static void set_poison(struct plan *plan, const struct task *task,
+                       const struct data_failure *failure)
+{
+    const struct plan_node_use *use = plan->use + task->node->first_use;
+    for (uint32_t i = 0; i < task->n; i++)
+        if (use[i].writes)
+            plan->place[use[i].place].failure = failure;
+}
+
+/* What bodies find under cw. */
+static void clear_leaves(const struct plan *plan, const struct task *task)
+{
+    const struct plan_node_use *use = plan->use + task->node->first_use;
+    for (uint32_t i = 0; i < task->n; i++) {
+        const struct plan_place *place = &plan->place[use[i].place];
+        if (!place->law)
+            continue;
+        if (place->law->neutral)
+            place->law->neutral(place->data, place->count, place->type);
+        else
+            memset(place->data, 0, place->bytes);
+    }
+}
+
+/* The body forked tasks on objects of its own and on what it read. */
+static void leave_scope(struct task_scope *scope, struct worker *worker,
+                        const struct data_failure *failure)
+{
+    task_scope_fail(scope, failure);
+    task_scope_end(scope, worker);
+}
+
+static bool run_body(struct task_graph *graph, struct worker *worker, struct task *task,
+                     const duite_call *call)
+{
+    const struct plan_node *node = task->node;
+    struct plan *plan = node->plan;
+    bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
+    const struct data_failure *failure = tainted ? find_poison(plan, task) : NULL;
+    if (!failure)
+        failure = task_given_up(graph);
+    bool runs = !failure;
+    if (runs) {
+        if (node->n_leaves)
+            clear_leaves(plan, task);
+        struct task_scope *scope = NULL;
+        failure = task_call_body(graph, worker, task, node->args, node->param, &scope, call);
+        if (scope)
+            leave_scope(scope, worker, failure);
+    }
+    if (failure)
+        atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
+    if (tainted || failure)
+        set_poison(plan, task, failure);
+    return runs;
+}
+
+static void run_set(struct task *task)
+{
+    struct plan *plan = task->node->plan;
+    struct plan_place *place = &plan->place[plan->use[task->node->first_use].place];
+    if (task->node->args)
+        memcpy(place->data, task->node->args, place->bytes);
+    else
+        memset(place->data, 0, place->bytes);
+    if (atomic_load_explicit(&plan->tainted, memory_order_relaxed))
+        place->failure = NULL;
+}
+
+static void merge(const struct plan_node *node)
+{
+    const struct plan_tree *tree = node->tree;
+    const duite_param *param = node->param;
+    for (size_t i = 0; i < tree->n; i++)
+        tree->law->combine(param[tree->merge[i].left].data, param[tree->merge[i].right].data,
+                           param->count, param->type);
+}
+
+/* The first parameter of a sum is the object, the others are the pieces. */
+static void run_sum(struct task *task)
+{
+    struct plan_node *node = task->node;
+    struct plan *plan = node->plan;
+    const duite_param *param = node->param;
+    bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
+    const struct data_failure *failure = tainted ? find_poison(plan, task) : NULL;
+    if (failure) {
+        set_poison(plan, task, failure);
+        return;
+    }
+    merge(node);
+    if (task->kind == TASK_NODE_SUM)
+        node->tree->law->combine(param[0].data, param[1].data, param->count, param->type);
+}
+
+/* A view, or a copy. */
+static void run_view(struct task *task)
+{
+    struct plan_node *node = task->node;
+    const duite_param *param = node->param; /* from, to */
+    bool tainted = atomic_load_explicit(&node->plan->tainted, memory_order_relaxed);
+    const struct data_failure *failure = tainted ? find_poison(node->plan, task) : NULL;
+    if (tainted)
+        set_poison(node->plan, task, failure);
+    if (failure)
+        return;
+    if (task->kind == TASK_NODE_VIEW)
+        data_view_gather(node->view, data_type_size(param->type), param[0].data, param[1].data);
+    else
+        memcpy(param[1].data, param[0].data, param->count * data_type_size(param->type));
+}
+
+bool plan_flag_holds(duite_type type, const void *values)
+{
+    static const char zero[8];
+    switch (type) {
+    case DUITE_F32:
+        return *(const float *)values != 0;
+    case DUITE_F64:
+        return *(const double *)values != 0;
+    default:
+        return memcmp(values, zero, data_type_size(type)) != 0;
+    }
+}
+
+static void run_flag(struct task_graph *graph, struct task *task)
+{
+    struct plan *plan = task->node->plan;
+    bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
+    plan->stop = task->node->round == plan->last || task_given_up(graph) ||
+                 (tainted && find_poison(plan, task)) ||
+                 !plan_flag_holds(task->node->param->type, task->node->param->data);
+    if (plan->stop)
+        plan->last = task->node->round;
+}
+
+bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task *task,
+                   const duite_call *call)
+{
+    atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
+    if (task->kind == TASK_NODE)
+        return run_body(graph, worker, task, call);
+    if (task->kind == TASK_NODE_SET)
+        run_set(task);
+    else if (task->kind == TASK_NODE_SUM || task->kind == TASK_NODE_PARTIAL)
+        run_sum(task);
+    else if (task->kind == TASK_NODE_VIEW || task->kind == TASK_NODE_COPY)
+        run_view(task);
+    else
+        run_flag(graph, task);
+    return false;
+}
+
+void plan_node_finish(struct task_graph *graph, struct worker *worker, struct task *task)
+{
+    struct plan_node *node = task->node;
+    struct plan *plan = node->plan;
+    struct task **next = node->next, **stop = next + node->n_next;
+    uint64_t round = node->round++;
+    bool decides = task->kind == TASK_NODE_FLAG;
+    bool last = plan->decides ? decides && plan->stop : round == plan->last;
+    int64_t counts = node->sink && (plan->decides || last);
+    if (decides && last) /* the other sinks take one a round, and so did this one until now */
+        counts = UNKNOWN - (int64_t)((round + 1) * plan->n_sinks - 1);
+    task->number += plan->n_calls;
+    for (next += last ? node->n_cyclic : 0; next < stop; next++) {
+        _Atomic uint32_t *pending = &(*next)->pending;
+        /* The last one needs no atomic subtraction: nobody else has the counter then. */
+        if (atomic_load_explicit(pending, memory_order_acquire) == 1 ||
+            atomic_fetch_sub_explicit(pending, 1, memory_order_acq_rel) == 1)
+            ready(graph, worker, *next);
+    }
+    if (counts && atomic_fetch_sub_explicit(&plan->left, counts, memory_order_acq_rel) == counts)
+        end(graph, worker, plan, plan->last + 1);
+}

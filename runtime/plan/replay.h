@@ -1,0 +1,180 @@
+#ifndef DUITE_GRAPH_REPLAY_H
+#define DUITE_GRAPH_REPLAY_H
+
+#include "runtime/plan/record.h"
+
+/* A plan: a record compiled to flat arrays, of several ranks for this one's part. Used by this
+ * folder only. */
+
+/* A step of a sum: parameter `left` becomes law(left, right). */
+struct plan_merge {
+    uint32_t left, right;
+};
+
+/* All steps of a node that adds. */
+struct plan_tree {
+    const duite_law *law;
+    const struct plan_merge *merge;
+    size_t n;
+};
+
+/* What a node does to a place. */
+struct plan_node_use {
+    uint32_t place;
+    bool reads, writes;
+};
+
+/* The part of a node that is not a task's; it lies in the cache line behind the task. */
+struct plan_node {
+    struct plan *plan;
+    union {
+        void *args;                   /* or what a set writes; NULL: zeros */
+        struct data_view *view;       /* NODE_VIEW: held */
+        struct plan_channel *channel; /* NODE_SEND, NODE_RECEIVE */
+        const struct plan_tree *tree; /* NODE_SUM, NODE_PARTIAL */
+    };
+    duite_param *param; /* task->n */
+    struct task **next; /* n_next tasks that wait for it, those of the next round first */
+    uint32_t n_next, n_cyclic;
+    uint32_t steady;    /* predecessors in this round and the last one */
+    uint32_t first_use; /* its uses, one a parameter: task->n */
+    uint32_t n_leaves;  /* parameters to be cleared: contributions */
+    bool sink;          /* nothing of its round waits for it */
+    bool urgent;        /* no task of the program, and a message waits for it */
+    uint64_t round;     /* the one it runs next */
+};
+
+/* Bytes that nodes use: first the objects of the record and the flag, if it is none of them, then
+ * the buffers of contributions, of what comes from other ranks, and of copies. */
+struct plan_place {
+    void *data;
+    const struct data_failure *failure; /* poison; kept only once the plan is tainted */
+    duite_type type;
+    duite_mode mode; /* of the whole replay on this rank: r, w or rw; none for buffers, and for
+                        objects whose values neither come from outside nor stay here */
+    size_t count, bytes;
+    const duite_law *law;         /* of a contribution */
+    size_t first_param, n_params; /* in param_of: those that point here */
+    _Atomic uint32_t warm;        /* see duite_ready.warm */
+};
+
+struct plan_draft;
+
+struct plan {
+    _Atomic uint32_t refs; /* the record, and each replay on its way */
+    struct task_graph *graph;
+    _Atomic bool warm; /* something became so in this replay */
+    size_t n_filled;   /* nodes that were made so far */
+    size_t n_nodes, n_calls, n_uses, n_roots, n_sinks, n_places;
+    size_t n_objects;     /* places that are objects */
+    unsigned char *nodes; /* the tasks: PLAN_NODE_BYTES each */
+    struct task **root;   /* those without predecessors in their own round */
+    struct task **next;
+    uint32_t *first; /* by node: predecessors in the first round */
+    uint32_t *call;  /* by node: tasks forked before it, which gives its number */
+    uint32_t *owner; /* by node: the place it runs for, or PLAN_NO_PLACE */
+    struct plan_node_use *use;
+    duite_param *param; /* one a use */
+    uint32_t *param_of;
+    struct plan_place *place;
+    unsigned char *args, *buffers;
+    struct plan_merge *merge;
+    struct plan_tree *tree;
+    size_t n_trees;
+    /* Of several ranks. */
+    struct plan_channels channels;
+    size_t words;          /* of a set of ranks; 0: there is one rank */
+    uint64_t *enter, *end; /* by object: the ranks whose rounds begin with it, that have it after */
+    int *home;             /* by object: when the plan was made */
+    bool decides; /* the last node reads a flag and decides whether there is another round */
+    size_t flag_place;
+    /* Main thread only. */
+    struct data_object turn; /* written by each replay: one waits for the other */
+    uint64_t started;        /* replays */
+    /* Of the replay that runs. */
+    struct task *replay;
+    uint64_t last;                 /* the last round, or the last that the flag can ask for */
+    bool stop;                     /* said by the deciding node */
+    _Atomic uint64_t over, rounds; /* replays that are over; rounds of the last of them */
+    _Alignas(64) _Atomic uint32_t tainted; /* something is poisoned */
+    _Alignas(64) _Atomic int64_t left;     /* sinks to come, see plan_node_finish */
+};
+
+/* A replay on its way: what its task carries. */
+struct plan_replay {
+    struct plan *plan;
+    uint64_t rounds;             /* or the most of them */
+    uint64_t number;             /* of the first task */
+    struct plan_change *changes; /* oldest last; owned */
+    uint32_t block[];            /* by place */
+};
+
+#define PLAN_NO_PLACE UINT32_MAX
+
+#define PLAN_NODE_AT    ((sizeof(struct task) + 63) / 64 * 64)
+#define PLAN_NODE_BYTES (PLAN_NODE_AT + (sizeof(struct plan_node) + 63) / 64 * 64)
+
+static inline struct task *plan_task(const struct plan *plan, size_t i)
+{
+    return (struct task *)(void *)(plan->nodes + i * PLAN_NODE_BYTES);
+}
+
+/* The place that a node runs for, by the owner rule; NULL: none. */
+static inline struct plan_place *plan_node_place(const struct task *task)
+{
+    const struct plan *plan = task->node->plan;
+    const size_t at = (size_t)((const unsigned char *)task - plan->nodes) / PLAN_NODE_BYTES;
+    return plan->owner[at] == PLAN_NO_PLACE ? NULL : &plan->place[plan->owner[at]];
+}
+
+/* What takes less is over before another core has its data: it leaves nothing warm. */
+#define PLAN_WARM_SECONDS 2e-6
+
+/* Tells whose caches may have what the node runs for: 1 and the worker, or 0. All workers read what
+ * this writes: it is written only where it changes. */
+static inline void plan_task_warms(const struct task *task, uint32_t warm)
+{
+    struct plan_place *place = plan_node_place(task);
+    if (place && atomic_load_explicit(&place->warm, memory_order_relaxed) != warm)
+        atomic_store_explicit(&place->warm, warm, memory_order_relaxed);
+    if (warm && !atomic_load_explicit(&task->node->plan->warm, memory_order_relaxed))
+        atomic_store_explicit(&task->node->plan->warm, true, memory_order_relaxed);
+}
+
+/* See duite_ready.warm. */
+static inline uint32_t plan_task_warm(const struct task *task)
+{
+    if (task->kind != TASK_NODE ||
+        !atomic_load_explicit(&task->node->plan->warm, memory_order_relaxed))
+        return 0;
+    const struct plan_place *place = plan_node_place(task);
+    return place ? atomic_load_explicit(&place->warm, memory_order_relaxed) : 0;
+}
+
+/* Compiles a record for a fixed number of rounds, or with a flag: an object of the record that is
+ * bound to it, or one more if there is none. Time and memory are linear in the record. NULL without
+ * memory. */
+struct plan *plan_new(const struct plan_record *record, const duite_object *flag);
+/* Could plan_new have made this plan? */
+bool plan_fits(const struct plan *plan, const struct plan_record *record, const duite_object *flag);
+/* Of several ranks: makes the draft of this rank's part; later, with all nodes there, opens the
+ * channels. */
+bool plan_spread(struct plan *plan, struct plan_draft *draft, const duite_object *flag);
+int plan_open(struct plan *plan, const struct plan_draft *draft);
+/* The mode of a whole replay on this rank. */
+duite_mode plan_mode(const struct plan *plan, size_t i);
+/* Sees to it that all ranks whose rounds begin with an object's value get it. */
+int plan_fetch(const struct plan *plan, struct worker *worker, size_t i,
+               struct data_object *object);
+/* The object has a new version where the plan leaves it. False: the plan does not write it. */
+bool plan_moves(const struct plan *plan, size_t i, struct data_object *object);
+/* Bytes of a node's message with all its failures. */
+size_t plan_channel_room(const struct plan *plan, const struct task *task);
+/* Whether the homes are those that the plan was made for. */
+bool plan_at_home(const struct plan *plan, const struct plan_record *record);
+
+/* The record lets go of its plan; a replay is over. NULL is fine. */
+void plan_drop(struct plan *plan, struct worker *worker);
+void plan_release(struct plan *plan);
+
+#endif

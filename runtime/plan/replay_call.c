@@ -1,0 +1,203 @@
+/* Replays as the main program asks for them. To the rest of the graph a replay of a plan is one
+ * task that reads or writes each of its objects; forked rounds are tasks like any other. Both leave
+ * the same bytes, the same poison and the same numbers of tasks. */
+#include "runtime/plan/replay.h"
+#include "runtime/task/internal.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/data/view.h"
+
+/* Do open contributions go on in the first round? */
+static bool goes_on(const struct plan_record *record)
+{
+    for (size_t i = 0; i < record->n_objects; i++)
+        if (record->object[i].leads &&
+            record->graph->table.object[record->object[i].bound.slot].leaves)
+            return true;
+    return false;
+}
+
+/* A plan knows the views that were recorded: nothing is bound in their place, or in that of their
+ * objects, and no other object by a view. */
+static bool views_changed(const struct plan_record *record, const duite_object *flag)
+{
+    const struct data_object *objects = record->graph->table.object;
+    bool changed = flag && objects[flag->slot].view;
+    for (size_t i = 0; i < record->n_objects && !changed; i++) {
+        duite_object bound = record->object[i].bound, recorded = record->object[i].recorded;
+        if (bound.slot != recorded.slot || bound.generation != recorded.generation)
+            changed = record->views || objects[bound.slot].view;
+    }
+    return changed;
+}
+
+void plan_replay_split(const struct plan_record *record, const duite_object *flag, uint64_t rounds,
+                       uint64_t *before, uint64_t *after)
+{
+    bool begins = rounds && goes_on(record);
+    bool forked = record->forked || (flag && record->graph->table.object[flag->slot].sized) ||
+                  views_changed(record, flag);
+    /* A flag's own contributions end with the round, since it is read. */
+    for (size_t i = 0; flag && i < record->n_objects; i++)
+        forked |=
+            record->object[i].trails && (record->object[i].bound.slot != flag->slot ||
+                                         record->object[i].bound.generation != flag->generation);
+    forked |= flag && begins;
+    *before = forked ? rounds : begins;
+    *after = !flag && !forked && record->trails && rounds > *before;
+}
+
+int plan_replay_fork(struct plan_record *record, struct worker *worker)
+{
+    struct task_graph *graph = record->graph;
+    int code = DUITE_OK;
+    for (size_t i = 0; i < record->n_forks && !code; i++) {
+        const struct plan_recorded_fork *fork = &record->fork[i];
+        unsigned char *args = record->args + fork->args;
+        duite_object *objects = record->names;
+        for (uint32_t k = 0; k < fork->n; k++)
+            objects[k] = record->object[record->use[fork->first + k]].bound;
+        if (fork->kernel == PLAN_SETS)
+            code = task_set_object(&graph->root, worker, objects[0], fork->zeros ? NULL : args,
+                                   &fork->count);
+        else
+            code = task_fork(&graph->root, worker, &fork->how, graph->kernels[fork->kernel], args,
+                             fork->n, objects);
+    }
+    return code;
+}
+
+/* The record's plan, made anew if it does not fit. */
+static struct plan *plan_for(struct plan_record *record, struct worker *worker,
+                             const duite_object *flag)
+{
+    if (record->plan && plan_fits(record->plan, record, flag))
+        return record->plan;
+    plan_drop(record->plan, worker);
+    plan_record_forget_changes(record);
+    return record->plan = plan_new(record, flag);
+}
+
+/* The object that place i of the plan stands for, or the turn. */
+static struct data_object *object_at(const struct plan_record *record, size_t i,
+                                     const duite_object *flag)
+{
+    if (i == record->plan->n_objects)
+        return &record->plan->turn;
+    duite_object name = i < record->n_objects ? record->object[i].bound : *flag;
+    return &record->graph->table.object[name.slot];
+}
+
+/* Before an object is used: all ranks know where its value must be now, and where it will be. The
+ * copies of ranks that do not write it are stale. */
+static int move(const struct plan *plan, struct worker *worker, size_t i,
+                struct data_object *object, duite_mode mode)
+{
+    struct task_graph *graph = plan->graph;
+    int code = object->leaves ? task_close_sum(&graph->root, worker, object) : DUITE_OK;
+    if (!code && plan->words && i < plan->n_objects)
+        code = plan_fetch(plan, worker, i, object);
+    if (code || mode == DUITE_R)
+        return code;
+    if (mode != DUITE_W && mode != DUITE_NONE && !task_local(graph, object))
+        return DUITE_E_MEMORY;
+    if (plan->words && i < plan->n_objects) {
+        if (plan_moves(plan, i, object) && mode == DUITE_NONE)
+            task_forget(graph, worker, object);
+        return DUITE_OK;
+    }
+    object->number++;
+    data_object_moved(object, graph->rank);
+    return DUITE_OK;
+}
+
+/* One access of the replay's task: as that of any task on one rank. */
+static int use(struct task_graph *graph, struct task *task, size_t i, duite_mode mode,
+               struct data_object *object, uint32_t *done)
+{
+    struct data_version *version = object->current;
+    task->access[i].waiter.mode = mode;
+    if (mode == DUITE_NONE) {
+        *done += 1;
+        return DUITE_OK;
+    }
+    if (mode != DUITE_W && !(version = task_local(graph, object)))
+        return DUITE_E_MEMORY;
+    if (mode == DUITE_R) {
+        task_read(task, i, version, done);
+        return DUITE_OK;
+    }
+    return task_overwrite(graph, task, i, object, version, done);
+}
+
+/* Views that the rounds read but do not gather. */
+static int gather_all(struct plan_record *record, struct worker *worker)
+{
+    int code = DUITE_OK;
+    for (size_t i = 0; i < record->n_objects && record->views && !code; i++)
+        if (!plan_recorded_gathers(record->object, &record->object[i]))
+            code = task_view_gather(record->graph, worker,
+                                    &record->graph->table.object[record->object[i].bound.slot]);
+    return code;
+}
+
+static int use_all(struct plan_record *record, struct worker *worker, struct task *task,
+                   const duite_object *flag)
+{
+    struct task_graph *graph = record->graph;
+    struct plan *plan = record->plan;
+    uint32_t done = 0;
+    for (size_t i = 0; i <= plan->n_objects; i++) {
+        duite_mode mode = i < plan->n_objects ? plan->place[i].mode : DUITE_W;
+        struct data_object *object = object_at(record, i, flag);
+        if (i < plan->n_objects)
+            task->replay->block[i] = object->block;
+        int code = move(plan, worker, i, object, mode);
+        if (!code)
+            code = use(graph, task, i, mode, object, &done);
+        if (code) {
+            task_void(graph, worker, task, i, done);
+            return code;
+        }
+    }
+    plan->started++;
+    atomic_fetch_add_explicit(&plan->refs, 1, memory_order_relaxed);
+    record->changes = NULL;
+    task_settled(graph, worker, task, done);
+    return DUITE_OK;
+}
+
+int plan_replay_plan(struct plan_record *record, struct worker *worker, const duite_object *flag,
+                     uint64_t rounds)
+{
+    struct task_graph *graph = record->graph;
+    struct plan *plan = plan_for(record, worker, flag);
+    if (!plan)
+        return base_no_memory("a recorded graph");
+    int code = gather_all(record, worker);
+    if (code)
+        return code;
+    struct task *task =
+        task_new(&graph->root, TASK_REPLAY, plan->n_objects + 1,
+                 sizeof *task->replay + plan->n_objects * sizeof task->replay->block[0]);
+    if (!task)
+        return DUITE_E_MEMORY;
+    *task->replay = (struct plan_replay){plan, rounds, graph->root.forks + 1, record->changes};
+    graph->root.forks += rounds * record->n_calls;
+    return use_all(record, worker, task, flag);
+}
+
+bool plan_replay_over(const struct plan_record *record)
+{
+    const struct plan *plan = record->plan;
+    return !record->by_plan ||
+           atomic_load_explicit(&plan->over, memory_order_acquire) == plan->started;
+}
+
+uint64_t plan_replay_rounds(const struct plan_record *record)
+{
+    return record->rounds + (record->by_plan
+                                 ? atomic_load_explicit(&record->plan->rounds, memory_order_relaxed)
+                                 : 0);
+}

@@ -1,0 +1,41 @@
+#ifndef DUITE_TASK_ABOVE_H
+#define DUITE_TASK_ABOVE_H
+
+#include "runtime/data/sum.h"
+#include "runtime/data/version.h"
+
+#include <duite.h>
+
+/* What task/, plan/ and offload/ ask of the workers and of the communication. They know these by
+ * their names alone: workers/ defines the functions. `worker` is whoever calls. */
+struct plan_channels;
+struct task;
+struct work_pool;
+struct worker;
+
+/* A task may run. A SEND may be posted, and ends with task_finish when its bytes are gone; so do
+ * NODE_SEND and NODE_RECEIVE when their message is written or read. */
+void work_ready(struct work_pool *pool, struct worker *worker, struct task *task);
+
+/* So many more tasks of the main program are over; -1: there is one more to come. */
+void work_over(struct work_pool *pool, struct worker *worker, int tasks);
+
+/* Something the main program may be waiting for happened. pool NULL: nobody waits any more. */
+void work_notify(struct work_pool *pool);
+
+/* Checking mode: calls the body of the task with that number, and returns its code. */
+int work_check_body(struct work_pool *pool, const duite_kernel *kernel, uint64_t number,
+                    duite_call *call);
+
+/* The version or the pieces of that key come from that rank, or from several (-1): each packet is
+ * handed to task_arrived or task_pieces_arrived. 0, or DUITE_E_MEMORY. */
+int work_expect(struct work_pool *pool, struct worker *worker, struct data_key key, int from,
+                struct data_version *version, struct data_sum *sum, uint32_t packets);
+
+/* Opens channels, which all ranks do alike. Main thread. Errors: memory, DUITE_E_MPI. */
+int work_open(struct work_pool *pool, struct plan_channels *channels);
+
+/* Memory ran out for something that other ranks wait for: the work of all ends. */
+void work_starved(struct work_pool *pool, const char *what);
+
+#endif

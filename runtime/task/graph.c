@@ -1,0 +1,252 @@
+/* The life of the graph itself, its kernels, and the failures of tasks, which are kept until stop
+ * so that poison can point at them. */
+#include "runtime/task/internal.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct task_failure {
+    struct task_failure *next;
+    struct data_failure failure;
+};
+
+/* What runs on several ranks leaves the same everywhere, and nothing else. */
+static int check_replicated(const duite_kernel *kernel)
+{
+    const char *why = kernel->side_effects ? "has side effects" : NULL;
+    for (uint32_t i = 0; i <= DUITE_MAX_ACCESS && !why; i++) {
+        duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : kernel->rest;
+        if (mode == DUITE_CW)
+            why = "accumulates (cw), which would count once for each rank";
+        else if (task_postponed(mode))
+            why = "has a postponed mode: its children would run once for each rank";
+    }
+    return kernel->replicated && why
+               ? base_error(DUITE_E_KERNEL, "kernel %s is replicated, but %s", kernel->name, why)
+               : DUITE_OK;
+}
+
+static int check_kernel(const duite_kernel *kernel, uint32_t index, struct task_fixed *fixed)
+{
+    if (!kernel->name || !kernel->name[0])
+        return base_error(DUITE_E_KERNEL, "kernel %u of the list has no name", index);
+    if (!kernel->body)
+        return base_error(DUITE_E_KERNEL, "kernel %s has no body", kernel->name);
+    *fixed = (struct task_fixed){0};
+    for (uint32_t i = 0; i < DUITE_MAX_ACCESS; i++) {
+        duite_mode mode = kernel->access[i];
+        if ((int)mode < DUITE_NONE || mode > DUITE_CWP)
+            return base_error(DUITE_E_KERNEL, "kernel %s: parameter %u has no such mode: %d",
+                              kernel->name, i, (int)mode);
+        if (mode != DUITE_NONE && i != fixed->n)
+            return base_error(DUITE_E_KERNEL, "kernel %s: parameter %u has a mode after DUITE_NONE",
+                              kernel->name, i);
+        fixed->n += mode != DUITE_NONE;
+        fixed->postponed += task_postponed(mode);
+    }
+    if ((int)kernel->rest < DUITE_NONE || kernel->rest > DUITE_CWP)
+        return base_error(DUITE_E_KERNEL, "kernel %s: `rest` has no such mode: %d", kernel->name,
+                          (int)kernel->rest);
+    return check_replicated(kernel);
+}
+
+static int check_unique(const duite_kernel *const kernels[], uint32_t index)
+{
+    for (uint32_t i = 0; i < index; i++)
+        if (!strcmp(kernels[i]->name, kernels[index]->name))
+            return base_error(DUITE_E_KERNEL, "two kernels of the list have the name %s",
+                              kernels[i]->name);
+    return DUITE_OK;
+}
+
+/* The places of all kernels by their addresses; at most half of them are taken. */
+static int index_kernels(struct task_graph *graph)
+{
+    graph->kernel_mask = 3;
+    while (graph->kernel_mask < 2 * (uint64_t)graph->n_kernels)
+        graph->kernel_mask = 2 * graph->kernel_mask + 1;
+    graph->kernel_place =
+        base_alloc_zero(((size_t)graph->kernel_mask + 1) * sizeof *graph->kernel_place);
+    if (!graph->kernel_place)
+        return base_no_memory("the list of kernels");
+    for (uint32_t i = 0; i < graph->n_kernels; i++) {
+        uint32_t at = task_kernel_hash(graph->kernels[i]);
+        while (graph->kernel_place[at & graph->kernel_mask])
+            at++;
+        graph->kernel_place[at & graph->kernel_mask] = i + 1;
+    }
+    return DUITE_OK;
+}
+
+static int take_kernels(struct task_graph *graph, const duite_kernel *const *kernels,
+                        const duite_law *const *laws)
+{
+    size_t n = 0;
+    while (kernels[n])
+        n++;
+    graph->kernels = base_alloc(n * sizeof graph->kernels[0]);
+    graph->fixed = base_alloc(n * sizeof *graph->fixed);
+    if (!graph->kernels || !graph->fixed)
+        return base_no_memory("the list of kernels");
+    memcpy(graph->kernels, kernels, n * sizeof graph->kernels[0]);
+    graph->n_kernels = (uint32_t)n;
+    for (uint32_t i = 0; i < n; i++) {
+        int code = check_kernel(graph->kernels[i], i, &graph->fixed[i]);
+        if (!code)
+            code = check_unique(graph->kernels, i);
+        if (!code)
+            code = data_law_check_kernel(graph->kernels[i], laws);
+        if (code)
+            return code;
+    }
+    return index_kernels(graph);
+}
+
+int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
+                     const duite_kernel *const *kernels, const duite_law *const *laws)
+{
+    memset(graph, 0, sizeof *graph);
+    graph->rank = rank;
+    graph->n_ranks = n_ranks;
+    graph->root.graph = graph;
+    graph->root.top = &graph->root;
+    atomic_init(&graph->given_up, 0);
+    atomic_init(&graph->rename_bytes, 0);
+    atomic_init(&graph->renamed, 0);
+    atomic_init(&graph->guests, 0);
+    pthread_mutex_init(&graph->lock, NULL); /* cannot fail with default attributes */
+    int code = data_table_start(&graph->table, n_ranks);
+    if (!code)
+        code = data_laws_check(laws);
+    return code ? code : take_kernels(graph, kernels, laws);
+}
+
+void task_graph_stop(struct task_graph *graph)
+{
+    for (uint32_t slot = 1; slot < graph->table.n_slots; slot++) {
+        struct data_object *object = &graph->table.object[slot];
+        task_forget(graph, NULL, object);
+        if (object->sum)
+            data_sum_free(object->sum);
+    }
+    for (struct data_sum *sum = graph->unclosed, *next; sum; sum = next) {
+        next = sum->next;
+        data_sum_free(sum);
+    }
+    for (struct task_failure *node = graph->failures, *next; node; node = next) {
+        next = node->next;
+        base_free(node);
+    }
+    base_free(graph->fixed);
+    base_free(graph->kernels);
+    base_free(graph->kernel_place);
+    data_table_stop(&graph->table);
+    pthread_mutex_destroy(&graph->lock);
+}
+
+/* Keeps a failure and tells it to the scope, unless that is NULL, and to all above. */
+static const struct data_failure *keep(struct task_graph *graph, const struct data_failure *failure,
+                                       struct task_scope *scope)
+{
+    static const struct data_failure unrecorded = {
+        .code = DUITE_E_MEMORY, .text = "and there was no memory to record which task failed"};
+    struct task_failure *node = base_alloc(sizeof *node);
+    if (node)
+        node->failure = *failure;
+    const struct data_failure *kept = node ? &node->failure : &unrecorded;
+    pthread_mutex_lock(&graph->lock);
+    if (node) {
+        node->next = graph->failures;
+        graph->failures = node;
+    }
+    for (; scope; scope = scope->parent)
+        scope->failure = data_first(scope->failure, kept);
+    pthread_mutex_unlock(&graph->lock);
+    return kept;
+}
+
+const struct data_failure *task_fail_below(struct task_graph *graph,
+                                           const struct data_failure *failure,
+                                           struct task_scope *scope)
+{
+    return keep(graph, failure, scope);
+}
+
+const struct data_failure *task_fail(struct task_graph *graph, const struct data_failure *failure,
+                                     bool report)
+{
+    return keep(graph, failure, report ? &graph->root : NULL);
+}
+
+/* The task's place in the reference order. What a body does after a wait comes after the children
+ * before it. A guest's place goes on from the one it has at home. */
+void task_failure_place(struct data_failure *failure, const struct task *task,
+                        const struct task_scope *inner)
+{
+    uint64_t index[sizeof failure->path];
+    uint32_t depth = task->scope->depth, most = sizeof index / sizeof index[0];
+    const struct data_failure *home = offload_guest_place(task->scope->top);
+    if (depth && depth <= most)
+        index[depth - 1] = task->number;
+    failure->number = task->number;
+    for (const struct task_scope *scope = task->scope; scope->depth; scope = scope->parent) {
+        failure->number = scope->number;
+        if (scope->depth > 1 && scope->depth - 2 < most)
+            index[scope->depth - 2] = scope->number;
+    }
+    if (home) {
+        failure->number = home->number;
+        failure->path_length = home->path_length;
+        memcpy(failure->path, home->path, sizeof home->path);
+    }
+    for (uint32_t i = 0; i < depth && i < most; i++)
+        data_path_add(failure, index[i]);
+    if (inner && inner->segment)
+        data_path_add(failure, inner->segment);
+}
+
+const struct data_failure *task_fail_task(const struct task *task, const struct task_scope *inner,
+                                          struct data_failure *failure)
+{
+    struct task_graph *graph = task->scope->graph;
+    failure->rank = graph->rank;
+    failure->kernel = task->kernel;
+    task_failure_place(failure, task, inner);
+    return keep(graph, failure, task->scope);
+}
+
+const struct data_failure *task_fail_memory(const struct task *task)
+{
+    struct data_failure failure = {.code = DUITE_E_MEMORY, .text = "no memory for what it writes"};
+    return task_fail_task(task, NULL, &failure);
+}
+
+struct data_packet *task_poison_packet(struct data_key key, const struct data_failure *failure)
+{
+    struct data_packet *packet = data_packet_new(sizeof *failure, false);
+    if (!packet)
+        return NULL;
+    packet->key = key;
+    packet->kind = DATA_POISON;
+    memcpy(data_payload(packet), failure, sizeof *failure);
+    return packet;
+}
+
+struct data_key task_version_of(const struct task_graph *graph, duite_object object)
+{
+    return task_key(graph, &graph->table.object[object.slot]);
+}
+
+int task_failure_error(const struct task_graph *graph, const struct data_failure *failure)
+{
+    const char *kernel =
+        failure->kernel < graph->n_kernels ? graph->kernels[failure->kernel]->name : "of duite";
+    char place[120];
+    data_path_print(failure, place, sizeof place);
+    return base_error(failure->code, "task %s (kernel %s) failed on rank %d with code %d%s%s",
+                      place, kernel, failure->rank, failure->code, failure->text[0] ? ": " : "",
+                      failure->text);
+}

@@ -1,0 +1,254 @@
+#ifndef DUITE_GRAPH_INTERNAL_H
+#define DUITE_GRAPH_INTERNAL_H
+
+#include "runtime/task/task.h"
+
+/* Shared by the files of this folder only. */
+
+/* A task with n accesses and `extra` bytes behind them (task_rest); pending is n + 1; counted
+ * as unfinished. NULL without memory: then the graph is broken. */
+struct task *task_new(struct task_scope *scope, enum task_type kind, size_t n, size_t extra);
+
+/* The same, not counted. NULL without memory: nothing else happened. */
+struct task *task_make(struct task_scope *scope, enum task_type kind, size_t n, size_t extra);
+
+/* Takes `done` and the hold of the fork from pending; the task is ready if nothing is left. */
+void task_settled(struct task_graph *graph, struct worker *worker, struct task *task,
+                  uint32_t done);
+
+/* What the waiter waited for is there. NULL is fine. */
+void task_wake(struct task_graph *graph, struct worker *worker, struct data_waiter *waiter);
+
+/* The version is there: wakes its readers, releases the producer's hold. */
+void task_publish(struct task_graph *graph, struct worker *worker, struct data_version *version);
+/* The same, but an heir that may have the version now is returned. */
+struct data_waiter *task_produced(struct task_graph *graph, struct worker *worker,
+                                  struct data_version *version);
+
+/* Makes access i of the task a reader of `version`, or its heir that writes the new version
+ * returned by task_overwrite. *done grows by one if there is nothing to wait for. */
+void task_read(struct task *task, size_t i, struct data_version *version, uint32_t *done);
+int task_overwrite(struct task_graph *graph, struct task *task, size_t i,
+                   struct data_object *object, struct data_version *version, uint32_t *done);
+
+/* A w is about to overwrite the current version on this rank: returns the version to be
+ * overwritten, or NULL if there are to be fresh bytes. */
+struct data_version *task_rename(struct task_graph *graph, struct worker *worker,
+                                 struct data_object *object);
+
+/* This rank's copy of the current version, which is to be here or on its way (task_fetch); zeros
+ * if it was never written. NULL: out of memory, broken. */
+struct data_version *task_local(struct task_graph *graph, struct data_object *object);
+
+/* Sees to it that rank `to` gets the current version: sends, awaits, or notes that others do. */
+int task_fetch(struct task_graph *graph, struct worker *worker, struct data_object *object, int to);
+/* The same for all ranks. */
+int task_fetch_all(struct task_graph *graph, struct worker *worker, struct data_object *object);
+
+/* The object may be a view: sees to it that it has the elements that the forks so far leave in its
+ * parent, before it is read. */
+int task_view_gather(struct task_graph *graph, struct worker *worker, struct data_object *object);
+
+/* The object has a new version on another rank: this rank's copy is stale. */
+void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object);
+
+/* Contributions: adds a leaf for access i (task NULL: it runs elsewhere, on rank `at`) after ending
+ * a run of another law, and ends the run of them. */
+int task_contribute(struct task_scope *scope, struct worker *worker, struct data_object *object,
+                    const duite_law *law, int at, struct task *task, size_t i);
+int task_close_sum(struct task_scope *scope, struct worker *worker, struct data_object *object);
+void task_run_combine(struct task *task);
+void task_run_pieces(struct task *task);
+/* The contributions of a task's children become `leaf` of `sum`, the one it is a contribution to.
+ */
+int task_gather(struct task_scope *scope, struct worker *worker, struct data_object *object,
+                struct data_sum *sum, struct data_piece *leaf);
+void task_run_gather(struct task *task);
+
+/* Where a search for a kernel begins in the table of their addresses. */
+static inline uint32_t task_kernel_hash(const duite_kernel *kernel)
+{
+    return (uint32_t)((uint64_t)(uintptr_t)kernel * 0x9e3779b97f4a7c15u >> 32);
+}
+
+/* The index of a kernel in the list given at start; n_kernels: it is not there. */
+static inline uint32_t task_kernel_index(const struct task_graph *graph, const duite_kernel *kernel)
+{
+    for (uint32_t at = task_kernel_hash(kernel);; at++) {
+        const uint32_t found = graph->kernel_place[at & graph->kernel_mask];
+        if (!found)
+            return graph->n_kernels;
+        if (graph->kernels[found - 1] == kernel)
+            return found - 1;
+    }
+}
+
+/* What a fork adds to the fingerprint: begins with its kernel's index and the rank it names, and
+ * goes on with each object. */
+static inline uint64_t task_fork_hash(uint32_t kernel, int at)
+{
+    return (uint64_t)kernel << 32 | (uint32_t)at;
+}
+static inline uint64_t task_fork_hash_on(uint64_t hash, duite_object name)
+{
+    return hash * 0x9e3779b97f4a7c15u + ((uint64_t)name.generation << 32 | name.slot);
+}
+
+/* ---- Nesting ---- */
+
+static inline bool task_postponed(duite_mode mode)
+{
+    return mode >= DUITE_RP;
+}
+/* The mode that makes the same dependences. */
+static inline duite_mode task_immediate(duite_mode mode)
+{
+    return task_postponed(mode) ? (duite_mode)(mode - DUITE_RP + DUITE_R) : mode;
+}
+const char *task_mode_name(duite_mode mode);
+
+/* The scope of a task that has room for n postponed parameters. NULL without memory. */
+struct task_scope *task_scope_new(const struct task *task, size_t n);
+/* Access i of the task, a postponed parameter, moves into its scope: the object with its version,
+ * and `out` or a leaf of `sum`, to be passed back at the end. */
+void task_lend(struct task *task, size_t i, const struct data_object *object,
+               struct data_version *version, struct data_version *out);
+/* The object that became of a postponed parameter: access->lent. */
+const struct data_object *task_lent_object(const struct task_scope *scope, size_t lent);
+/* The task of the scope failed, or met poison: so does all that it leaves. */
+void task_scope_fail(struct task_scope *scope, const struct data_failure *failure);
+/* The body is over, or never ran: what the children leave goes to the scope above, poisoned if the
+ * scope was told of a failure. */
+void task_scope_end(struct task_scope *scope, struct worker *worker);
+/* A task of the scope is over with its descendants, or a value was passed on. */
+void task_left(struct task_graph *graph, struct task_scope *scope, struct worker *worker);
+/* The object of that name, with the right held on it; NULL with the error's sentence set. */
+struct data_object *task_find_object(struct task_scope *scope, duite_object name,
+                                     duite_mode *right);
+/* Takes the name of an object that the task made out of use. */
+void task_drop(struct task_scope *scope, struct data_object *object);
+/* The slots of the names that bodies use: parameters first, then the objects they made. */
+#define TASK_LOCAL_NAME UINT32_C(0x80000000)
+/* Their generations: numbers that no other task or object of this process has had for 2^32 of them.
+ * Threads draw them in batches. */
+uint32_t task_new_stamp(void);
+/* Passes the value on to which the waiter of a version without task belongs. Returns the heir of
+ * the version it became, if that has no more holds. */
+struct data_waiter *task_pass(struct worker *worker, struct data_waiter *waiter);
+/* Whether a child may have the object with this mode. For the sentence: the call, or its kernel,
+ * and which parameter it is. */
+int task_check_right(struct task_scope *scope, const char *call, size_t i, duite_object name,
+                     duite_mode wanted);
+/* DUITE_E_RIGHT: a child contributes by another law than that of the contribution it is part of. */
+int task_wrong_law(const struct task_scope *scope, const duite_kernel *kernel, size_t i,
+                   duite_object name);
+/* A body begins, and ends: meanwhile calls on this thread are this body's. */
+void task_body_begins(struct duite_call_private *body);
+void task_body_ends(struct duite_call_private *body);
+
+/* ---- Failures ---- */
+
+/* What a BODY writes by this access: w or rw. */
+static inline struct data_version *task_written(const struct task_access *access)
+{
+    return access->waiter.mode == DUITE_W || access->waiter.mode == DUITE_RW ? access->out : NULL;
+}
+
+/* The body is over: what it wrote has the sizes it said. */
+void task_size_close(struct task *task, const duite_param *param);
+
+/* Keeps a failure until stop; `report`: the next wait tells it. Never NULL. */
+const struct data_failure *task_fail(struct task_graph *graph, const struct data_failure *failure,
+                                     bool report);
+/* The same of a task, with its scope or NULL: its place is filled in; the waits of all scopes above
+ * tell it, too. */
+const struct data_failure *task_fail_task(const struct task *task, const struct task_scope *inner,
+                                          struct data_failure *failure);
+/* Its place: number and path. */
+void task_failure_place(struct data_failure *failure, const struct task *task,
+                        const struct task_scope *inner);
+/* The failure of a descendant of this scope, whose place it has: the waits of the scope and of all
+ * above tell it. */
+const struct data_failure *task_fail_below(struct task_graph *graph,
+                                           const struct data_failure *failure,
+                                           struct task_scope *scope);
+/* The failure of a task for want of memory. */
+const struct data_failure *task_fail_memory(const struct task *task);
+struct data_packet *task_poison_packet(struct data_key key, const struct data_failure *failure);
+
+/* Fits a fork kernel, arguments and objects? Then *index is the kernel's. The objects are marked as
+ * named by the next fork; task_unmark takes this back. */
+int task_check_fork(struct task_scope *scope, int at, const duite_kernel *kernel, const void *args,
+                    size_t n, const duite_object *objects, uint32_t *index);
+void task_unmark(struct task_scope *scope, size_t n, const duite_object *objects);
+
+/* May the object be set to so many elements? */
+int task_set_check(const struct task_graph *graph, const struct data_object *object,
+                   duite_object name, size_t count);
+
+/* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
+ */
+void task_void(struct task_graph *graph, struct worker *worker, struct task *task, size_t made,
+               uint32_t done);
+
+/* Why nothing runs any more, or NULL. */
+const struct data_failure *task_given_up(struct task_graph *graph);
+/* What did not come since communication broke. */
+const struct data_failure *task_lost_failure(void);
+
+/* Calls the body; returns its failure, or NULL. An error of its calls that it did not look at is
+ * one. *scope is what its children may use: NULL if it has none, also afterwards if it did not get
+ * one. */
+const struct data_failure *task_call_body(struct task_graph *graph, struct worker *worker,
+                                          struct task *task, const void *args,
+                                          const duite_param *param, struct task_scope **scope,
+                                          const duite_call *call);
+
+/* A replay: binds the objects; starts the first round. */
+void plan_replay_run(struct task *task);
+void plan_replay_start(struct task_graph *graph, struct worker *worker, struct task *task);
+/* A node of a replay: runs it, returns whether a body ran; tells its successors. */
+bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task *task,
+                   const duite_call *call);
+void plan_node_finish(struct task_graph *graph, struct worker *worker, struct task *task);
+
+/* ---- On other ranks: see away.h, parcel.h ---- */
+
+/* The place of the guest that has this top, or NULL: it is the main program's. */
+const struct data_failure *offload_guest_place(const struct task_scope *top);
+/* Whether parameter i of a guest changes its size. */
+bool offload_guest_sized(const struct task *task, size_t i);
+/* A guest: runs, returns whether a body ran; the body is over; so are its descendants; it is sent.
+ */
+bool offload_guest_run(struct task_graph *graph, struct worker *worker, struct task *task,
+                       const duite_call *call);
+void offload_guest_finish(struct worker *worker, struct task *task);
+void offload_guest_over(struct task_scope *above, struct worker *worker);
+void offload_guest_gone(struct task_graph *graph, struct task *task);
+/* A task that went away is sent. */
+void offload_away_sent(struct task_graph *graph, struct worker *worker, struct task *task);
+/* A task that is back does what its body would have done; result NULL: it is lost. */
+void offload_run_result(struct task_graph *graph, struct task *task, struct data_packet *result);
+/* Gives the parameters, prepared for a body, what it left; or its failure. */
+const struct data_failure *offload_take_result(const struct task *task, duite_param *param,
+                                               struct data_packet *result);
+
+/* Publishes what a task wrote, releases what it read, frees it. */
+void task_over(struct task_graph *graph, struct worker *worker, struct task *task);
+
+/* Of an object of the main program. */
+static inline struct data_key task_key(const struct task_graph *graph,
+                                       const struct data_object *object)
+{
+    duite_object name = data_object_name(&graph->table, object);
+    return (struct data_key){name.slot, name.generation, object->number};
+}
+
+/* Out of memory in the middle of a fork: the ranks no longer agree on what was forked. */
+static inline int task_break(struct task_graph *graph)
+{
+    graph->broken = DUITE_E_MEMORY;
+    return DUITE_E_MEMORY;
+}
+
+#endif

@@ -1,0 +1,299 @@
+/* Contributions: leaves run wherever their tasks do, without waiting for one another or for the
+ * object; the first other access closes the run, and then the leaves are combined where the
+ * object's value is (its holder). */
+#include "runtime/task/internal.h"
+
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+
+#include <string.h>
+
+/* A piece on its way: where it stands in the tree; the values follow all of these, each filled up
+ * to a multiple of 16 bytes. */
+struct piece_place {
+    uint64_t first;
+    uint32_t level, absent; /* absent: without a value, though there is room for one */
+};
+
+static const struct data_failure no_memory = {
+    .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "there was no memory for contributions"};
+
+static int contribute(struct task_graph *graph, struct data_object *object, int at,
+                      struct task *task, size_t i)
+{
+    bool adder = object->holder == graph->rank;
+    if (!object->sum && (adder || task)) {
+        object->sum = data_sum_new(graph->n_ranks, object->law, object->type, object->count);
+        if (!object->sum) {
+            base_no_memory("contributions");
+            return task_break(graph);
+        }
+    }
+    uint64_t first = object->leaves++;
+    if (adder && !task)
+        data_sum_sender(object->sum, at);
+    if (!task)
+        return DUITE_OK;
+    struct task_access *access = &task->access[i];
+    access->sum = object->sum;
+    access->leaf = data_sum_leaf(object->sum, first);
+    if (access->leaf)
+        return DUITE_OK;
+    atomic_store_explicit(&object->sum->lost, &no_memory, memory_order_relaxed);
+    base_no_memory("a contribution");
+    return task_break(graph);
+}
+
+int task_contribute(struct task_scope *scope, struct worker *worker, struct data_object *object,
+                    const duite_law *law, int at, struct task *task, size_t i)
+{
+    int code = DUITE_OK;
+    if (object->leaves && object->law != law)
+        code = task_close_sum(scope, worker, object);
+    object->law = law;
+    return code ? code : contribute(scope->graph, object, at, task, i);
+}
+
+/* A task that waits for all contributions, which leave the object; pending counts them as one.
+ * Without memory they stay there until stop. */
+static struct task *closer(struct task_scope *scope, struct data_object *object,
+                           enum task_type kind, size_t n)
+{
+    struct task *task = task_new(scope, kind, n, sizeof *task->sum);
+    if (!task)
+        return NULL;
+    *task->sum =
+        (struct task_sum){.waiter.back = (uint32_t)((char *)&task->sum->waiter - (char *)task),
+                          .sum = object->sum,
+                          .send.to = object->holder};
+    if (!scope->depth)
+        task->sum->send.key = task_key(scope->graph, object);
+    task->block = object->block;
+    atomic_fetch_add_explicit(&task->pending, 1, memory_order_relaxed);
+    object->sum->closer = &task->sum->waiter;
+    object->sum = NULL;
+    return task;
+}
+
+static int expect_pieces(struct task_graph *graph, struct worker *worker, struct task_sum *closing)
+{
+    struct data_sum *sum = closing->sum;
+    atomic_fetch_add_explicit(&sum->pending, sum->senders, memory_order_relaxed);
+    if (!work_expect(graph->pool, worker, closing->send.key, -1, NULL, sum, sum->senders))
+        return DUITE_OK;
+    atomic_store_explicit(&sum->lost, &no_memory, memory_order_relaxed);
+    atomic_fetch_sub_explicit(&sum->pending, sum->senders, memory_order_relaxed);
+    return task_break(graph);
+}
+
+static int combine_here(struct task_scope *scope, struct worker *worker, struct data_object *object)
+{
+    struct task_graph *graph = scope->graph;
+    struct data_sum *sum = object->sum;
+    struct data_version *version = task_local(graph, object);
+    struct task *task = version ? closer(scope, object, TASK_COMBINE, 1) : NULL;
+    if (!task)
+        return DUITE_E_MEMORY;
+    uint32_t done = 0;
+    task->access[0].waiter.mode = DUITE_RW;
+    int code = task_overwrite(graph, task, 0, object, version, &done);
+    if (code) { /* the contributions are dropped once they are all there */
+        task->n = 0;
+        done = 1;
+    } else if (sum->senders) {
+        code = expect_pieces(graph, worker, task->sum);
+    }
+    task_wake(graph, worker, data_sum_release(sum));
+    task_settled(graph, worker, task, done);
+    return code;
+}
+
+static int send_pieces(struct task_scope *scope, struct worker *worker, struct data_object *object)
+{
+    struct task_graph *graph = scope->graph;
+    struct data_sum *sum = object->sum;
+    struct task *task = closer(scope, object, TASK_PIECES, 0);
+    if (!task)
+        return DUITE_E_MEMORY;
+    task_wake(graph, worker, data_sum_release(sum));
+    task_settled(graph, worker, task, 0);
+    return DUITE_OK;
+}
+
+/* The contributions to an object of a task, which there is no memory to combine, are kept until
+ * stop: their tasks may still run. */
+static void keep_unclosed(struct task_graph *graph, struct data_object *object)
+{
+    struct data_sum *sum = object->sum;
+    object->sum = NULL;
+    object->leaves = 0;
+    if (!sum)
+        return;
+    pthread_mutex_lock(&graph->lock);
+    sum->next = graph->unclosed;
+    graph->unclosed = sum;
+    pthread_mutex_unlock(&graph->lock);
+}
+
+int task_gather(struct task_scope *scope, struct worker *worker, struct data_object *object,
+                struct data_sum *outer, struct data_piece *leaf)
+{
+    struct task_graph *graph = scope->graph;
+    struct data_sum *sum = object->sum;
+    struct task *task = closer(scope, object, TASK_GATHER, 1);
+    if (!task) {
+        keep_unclosed(graph, object);
+        return DUITE_E_MEMORY;
+    }
+    task->access[0].waiter.mode = DUITE_CW;
+    task->access[0].sum = outer;
+    task->access[0].leaf = leaf;
+    object->leaves = 0;
+    task_wake(graph, worker, data_sum_release(sum));
+    task_settled(graph, worker, task, 1);
+    return DUITE_OK;
+}
+
+int task_close_sum(struct task_scope *scope, struct worker *worker, struct data_object *object)
+{
+    struct task_graph *graph = scope->graph;
+    int code = DUITE_OK;
+    object->number++;
+    if (object->holder == graph->rank) {
+        code = combine_here(scope, worker, object);
+    } else {
+        if (object->sum)
+            code = send_pieces(scope, worker, object);
+        task_forget(graph, worker, object);
+    }
+    if (code && scope->depth)
+        keep_unclosed(graph, object);
+    object->leaves = 0;
+    data_object_moved(object, object->holder);
+    return code;
+}
+
+void task_run_combine(struct task *task)
+{
+    struct task_sum *sum = task->sum;
+    if (!task->n) {
+        data_sum_free(sum->sum);
+        return;
+    }
+    struct data_version *in = task->access[0].in, *out = task->access[0].out;
+    struct data_piece **pieces;
+    size_t n;
+    int code;
+    const struct data_failure *failure = data_sum_reduce(sum->sum, &pieces, &n, &code);
+    out->packet = data_version_packet(in);
+    failure = code ? task_fail_memory(task) : data_first(data_version_failure(in), failure);
+    data_version_free(in);
+    data_version_poison(out, failure);
+    if (!failure)
+        data_sum_finish(sum->sum, pieces, n, data_payload(out->packet));
+    base_free(pieces);
+    data_sum_free(sum->sum);
+}
+
+void task_run_gather(struct task *task)
+{
+    struct data_sum *sum = task->sum->sum;
+    struct data_piece *leaf = task->access[0].leaf, **pieces;
+    size_t n;
+    int code;
+    const struct data_failure *failure = data_sum_reduce(sum, &pieces, &n, &code);
+    if (code)
+        failure = task_fail_memory(task);
+    leaf->failure = data_first(leaf->failure, failure);
+    if (!leaf->failure)
+        data_piece_take(leaf, data_sum_fold(sum, pieces, n));
+    base_free(pieces);
+    data_sum_free(sum);
+}
+
+static struct data_packet *pack(const struct task_sum *sum, struct data_piece *const *pieces,
+                                size_t n)
+{
+    size_t bytes = sum->sum->count * data_type_size(sum->sum->type);
+    size_t stride = (bytes + 15) / 16 * 16;
+    struct data_packet *packet = data_packet_new(n * (sizeof(struct piece_place) + stride), false);
+    if (!packet)
+        return NULL;
+    packet->key = sum->send.key;
+    packet->kind = DATA_PIECES;
+    packet->pieces = (uint32_t)n;
+    struct piece_place *places = data_payload(packet);
+    char *values = (char *)(places + n);
+    for (size_t i = 0; i < n; i++) {
+        size_t present = pieces[i]->value ? bytes : 0;
+        places[i] = (struct piece_place){pieces[i]->first, pieces[i]->level, !present};
+        if (present)
+            memcpy(values + i * stride, pieces[i]->value, bytes);
+        memset(values + i * stride + present, 0, stride - present);
+    }
+    return packet;
+}
+
+void task_run_pieces(struct task *task)
+{
+    struct task_sum *sum = task->sum;
+    struct data_piece **pieces;
+    struct data_packet *packet = NULL;
+    size_t n;
+    int code;
+    const struct data_failure *failure = data_sum_reduce(sum->sum, &pieces, &n, &code);
+    if (!code && !failure)
+        packet = pack(sum, pieces, n);
+    if (!packet)
+        packet = task_poison_packet(sum->send.key, failure ? failure : task_fail_memory(task));
+    base_free(pieces);
+    data_sum_free(sum->sum);
+    sum->send.packet = packet; /* NULL is noticed by whoever sends */
+    task->kind = TASK_SEND;
+    task->send = &sum->send;
+}
+
+/* Takes over the piece and its packet. Without memory for it the sum must not be taken for
+ * complete. */
+static bool add_piece(struct task_graph *graph, struct data_sum *sum, struct data_piece piece)
+{
+    struct data_piece *node = data_piece_new();
+    if (!node) {
+        const struct data_failure *failure = task_fail(graph, &no_memory, true);
+        atomic_store_explicit(&sum->lost, failure, memory_order_relaxed);
+        data_packet_free(piece.packet);
+        return false;
+    }
+    *node = piece;
+    data_sum_arrive(sum, node);
+    return true;
+}
+
+/* The first piece owns the packet, whose bytes all of them share. */
+static void add_pieces(struct task_graph *graph, struct data_sum *sum, struct data_packet *packet)
+{
+    uint32_t n = packet->pieces;
+    struct piece_place *places = data_payload(packet);
+    char *values = (char *)(places + n);
+    size_t stride = packet->bytes / n - sizeof *places;
+    for (uint32_t i = 0; i < n; i++)
+        if (!add_piece(graph, sum,
+                       (struct data_piece){.first = places[i].first,
+                                           .level = places[i].level,
+                                           .packet = i ? NULL : packet,
+                                           .value = places[i].absent ? NULL : values + i * stride}))
+            return;
+}
+
+void task_pieces_arrived(struct task_graph *graph, struct worker *worker, struct data_sum *sum,
+                         struct data_packet *packet)
+{
+    if (packet->kind == DATA_POISON) {
+        const struct data_failure *failure = task_fail(graph, data_payload(packet), false);
+        add_piece(graph, sum, (struct data_piece){.failure = failure});
+        data_packet_free(packet);
+    } else {
+        add_pieces(graph, sum, packet);
+    }
+    task_wake(graph, worker, data_sum_release(sum));
+}

@@ -1,0 +1,419 @@
+#ifndef DUITE_GRAPH_GRAPH_H
+#define DUITE_GRAPH_GRAPH_H
+
+#include "runtime/data/object.h"
+#include "runtime/task/above.h"
+
+#include <duite_policy.h>
+#include <pthread.h>
+#include <stdatomic.h>
+
+/* Tasks and what they wait for, on one rank.
+ *
+ * The main thread forks: it derives from the accesses, in fork order, which rank runs a task, which
+ * versions it reads and makes here, and which of them must be sent or awaited. Workers run what is
+ * ready and publish what it wrote. Nothing but versions and sums joins the two sides. */
+
+enum task_type {
+    TASK_BODY,    /* a task of the program */
+    TASK_COMBINE, /* combines the contributions with an object */
+    TASK_PIECES,  /* combines this rank's contributions, and turns into the SEND of them */
+    TASK_GATHER,  /* combines the contributions of a task's children into one of its own */
+    TASK_SEND,    /* sends a version or pieces to another rank */
+    TASK_VIEW,    /* writes a view's elements from its object */
+    TASK_COPY,    /* duite_get: copies a version to the main program */
+    TASK_MOVE,    /* an object that moves here has come: nothing is left to do */
+    TASK_VOID,    /* memory ran out while it was forked: does not run, and poisons what it writes */
+    TASK_AWAY,    /* a BODY that runs on another rank */
+    TASK_GUEST,   /* a task of another rank that runs here */
+    TASK_RESULT,  /* a GUEST that is over: sends what it left */
+    TASK_REPLAY,  /* replays of a recorded graph: begins them; over when the last round is */
+    /* Nodes of a replay: */
+    TASK_NODE,         /* a task of the program */
+    TASK_NODE_SET,     /* duite_set */
+    TASK_NODE_SUM,     /* combines contributions with an object */
+    TASK_NODE_PARTIAL, /* combines this rank's contributions as far as they go */
+    TASK_NODE_COPY,    /* copies a value that is about to be overwritten, or came from elsewhere */
+    TASK_NODE_VIEW,    /* writes a view's elements from its object */
+    TASK_NODE_FLAG,    /* decides whether there is another round */
+    TASK_NODE_SEND,    /* sends a message to another rank, */
+    TASK_NODE_RECEIVE  /* or awaits one: both are the communication's to run */
+};
+
+struct task_scope;
+
+/* One parameter of a task: half a cache line. Everything else about the object is said by the
+ * versions, the sum, or, if it is postponed, by the task's scope. */
+struct task_access {
+    struct data_waiter waiter; /* waits for `in`, as a reader or as its heir; its mode is that of
+                                  the access */
+    union {
+        struct data_version *in; /* read or overwritten; NULL: a w without bytes to reuse */
+        struct data_piece *leaf; /* cw: this task's part of the sum */
+        size_t lent;             /* postponed: its place in the task's scope */
+    };
+    union {
+        struct data_version *out; /* w, rw: what is written; r: NULL */
+        struct data_sum *sum;     /* cw: what is contributed to; NULL: it was lent */
+    };
+};
+
+/* One cache line, then the accesses, then, on a multiple of 16 bytes, arguments or what the union
+ * points to. */
+struct task {
+    _Atomic uint32_t pending; /* accesses that wait, and 1 while it is being forked */
+    uint32_t n;
+    struct task *next; /* a link for whoever holds the task: queues, lists */
+    union {
+        struct task_scope *inner;    /* BODY, VOID: what its children may use, or NULL */
+        struct task_sum *sum;        /* COMBINE, PIECES, GATHER */
+        struct task_send *send;      /* SEND, AWAY, RESULT */
+        struct offload_guest *guest; /* GUEST */
+        struct data_view *view;      /* VIEW: held */
+        struct task_copy *copy;      /* COPY */
+        struct plan_replay *replay;  /* REPLAY */
+        struct plan_node *node;      /* NODE... */
+    };
+    struct task_scope *scope; /* where it was forked */
+    uint64_t number;          /* in fork order among the tasks of its scope */
+    uint32_t kernel;          /* index in the list given at start */
+    uint32_t block;           /* for schedulers: of the object that it runs for */
+    int32_t priority;
+    float cost; /* seconds; 0: not said */
+    union {
+        uint32_t grains; /* of all of it, TASK_GRAIN bytes each */
+        float path;      /* NODE...: seconds from its begin to the end of the round, or 0 */
+    };
+    enum task_type kind : 16;
+    unsigned pinned : 1; /* its fork named a rank: no other one runs it */
+    unsigned placed : 1; /* by the home of an object, whose block it has: it moves with that */
+    struct task_access access[];
+};
+
+enum { TASK_GRAIN = 16, TASK_MAX_OBJECTS = 1 << 26 /* of a task */ };
+
+/* What lies behind the accesses: of a BODY its copy of the arguments. n is as when it was made. */
+static inline void *task_rest(struct task *task, size_t n)
+{
+    return (char *)task + sizeof *task + n * sizeof task->access[0];
+}
+
+static inline float task_path(const struct task *task)
+{
+    return task->kind >= TASK_NODE ? task->path : 0;
+}
+
+/* SEND: a version and where it goes. */
+struct task_send {
+    struct data_key key;
+    int to;
+    struct data_packet *packet; /* NULL: the version that the task reads, as it lies */
+};
+
+/* COMBINE, PIECES and GATHER: the contributions to close. */
+struct task_sum {
+    struct data_waiter waiter; /* waits for them all */
+    struct data_sum *sum;
+    struct task_send send; /* the version they make; PIECES: to the rank that adds */
+};
+
+/* COPY: where a value goes. `done` is set last. */
+struct task_copy {
+    void *values; /* NULL: nowhere */
+    size_t bytes; /* how many there were */
+    const struct data_failure *failure;
+    _Atomic int done;
+};
+
+/* Where tasks are forked: the main program, or a task. A task's scope (nest.c) holds the objects
+ * that its children may use, each the same chain of versions as the main program's; it lives until
+ * all of its descendants are over. While the body runs the scope is its worker's alone; afterwards
+ * nobody forks here, and only `unfinished` and `failure` change. */
+struct task_scope {
+    struct task_graph *graph;
+    struct task_scope *parent;   /* where its task was forked; NULL: the main program, or a guest's
+                                     `above` */
+    struct task_scope *top;      /* the last of the parents: the main program's, or a guest's */
+    _Atomic uint64_t unfinished; /* tasks forked here, each with its descendants; values to be
+                                    passed to the scope above; 1 while the body runs. Of the main
+                                    program: see work_over */
+    uint64_t forks;              /* so far; inside a task waits count, too */
+    const struct data_failure *failure; /* first in reference order since the last wait; `lock` */
+    uint64_t number;                    /* of its task; as are: */
+    uint32_t block;
+    bool placed;
+    uint64_t segment; /* `forks` at the last wait of the body */
+    uint32_t depth;   /* 0: the main program */
+    bool outward;     /* its children may wait for tasks outside of it */
+};
+
+/* A recorded graph's message of one round to or from another rank: fixed in size and order, so that
+ * it needs no name but its tag and its turn. */
+struct plan_channel {
+    struct task *node; /* SEND or RECEIVE */
+    int peer;
+    int tag; /* to begin with the phase; who opens the channels adds a number of their own */
+    bool sends;
+    size_t bytes; /* room for a message; without failures to tell it is shorter */
+    void *own;    /* of who opens */
+};
+
+/* All of one plan, with messages of so many phases on all ranks. Closed by whoever lets go of the
+ * plan last, from any thread. */
+struct plan_channels {
+    struct plan_channel *channel;
+    size_t n;
+    int phases;
+    void (*close)(struct plan_channels *channels); /* set when they are opened */
+    void *own;
+};
+
+/* A SEND writes its message, which has so many bytes; a RECEIVE reads it, or poisons all that it
+ * would have brought. Afterwards the node is to be finished. Any worker. */
+size_t plan_channel_pack(struct task *node, void *message);
+void plan_channel_unpack(struct task *node, const void *message);
+void plan_channel_lost(struct task *node);
+/* Of a SEND or RECEIVE. */
+struct plan_channel *plan_channel_of(const struct task *node);
+/* One of the program's tasks that wait in this round for a RECEIVE, or NULL, and how many more do.
+ * The replay must not go on meanwhile. */
+const struct task *plan_channel_waits(const struct task *node, unsigned *more);
+
+struct task_graph {
+    /* Read by all workers, with every task. */
+    int rank, n_ranks;
+    const duite_kernel **kernels;
+    struct task_fixed { /* parameters in each kernel's `access` */
+        uint32_t n, postponed;
+    } * fixed;
+    uint32_t n_kernels;
+    uint32_t *kernel_place, kernel_mask; /* by address, open addressing: index in `kernels` + 1 */
+    bool paths; /* plans are to know the paths of their tasks; set before the first of them */
+    _Atomic int given_up;   /* bodies do not run any more */
+    bool checks;            /* bodies are called by work_check_body */
+    struct work_pool *pool; /* who runs the tasks; NULL: nobody yet, or no more */
+    /* The main thread's, written with every fork: on cache lines of its own. */
+    _Alignas(
+        64) struct task_scope root; /* the main program; its `forks` are the same on all ranks */
+    uint64_t fingerprint;           /* of the main program's forks since the last wait */
+    uint64_t tasks;                 /* of this rank that it forked, or that serve it */
+    struct task_prune { /* the kernel of the last task that may be none of this rank's */
+        const duite_kernel *kernel;
+        uint32_t index, n, owner; /* in the list; objects, and which of them it runs for */
+        unsigned reads, writes;   /* a bit an object; no other use */
+    } prune;
+    uint64_t rename_most; /* limit of `rename_bytes` */
+    struct data_table table;
+    /* Seldom used. */
+    _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
+    _Atomic uint64_t rename_bytes;   /* of packets that exist since a w did not wait */
+    _Atomic uint64_t renamed;        /* such w */
+    _Atomic uint64_t guests;         /* tasks of other ranks that are here */
+    pthread_mutex_t lock;            /* of the rest, and of the failures of scopes */
+    struct task_failure *failures;
+    struct offload_away *away; /* tasks on other ranks */
+    bool away_closed;          /* no more of them */
+    struct data_sum *unclosed; /* of tasks that are over: there was no memory to combine them */
+};
+
+/* kernels: ended by NULL, checked, the list copied; laws likewise, or NULL, not kept. `pool` and
+ * `checks` are set by whoever runs the tasks. Errors: DUITE_E_KERNEL, DUITE_E_LAW, memory;
+ * task_graph_stop is due all the same. */
+int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
+                     const duite_kernel *const *kernels, const duite_law *const *laws);
+/* No task is left. Frees everything, objects that were not freed among it. */
+void task_graph_stop(struct task_graph *graph);
+
+/* ---- Main thread, collective; the homes of all objects are settled ---- */
+
+/* Makes something that all ranks do alike part of the fingerprint, if there are others. Forks,
+ * sets, frees and copies do so themselves. */
+static inline void task_mix(struct task_graph *graph, uint64_t value)
+{
+    if (graph->n_ranks == 1)
+        return;
+    uint64_t state = graph->fingerprint ^ value;
+    graph->fingerprint = duite_random(&state);
+}
+
+/* ---- Main thread with the graph's root as scope: collective, the homes of all objects are
+ * settled. Or a body with its own scope: local; the task forked runs here. ---- */
+
+/* What a fork says of how its task runs. Priority and cost are the running rank's; they do not
+ * belong to the fingerprint. */
+enum { TASK_ANYWHERE = -1 };
+struct task_options {
+    int at; /* a rank, or TASK_ANYWHERE */
+    int32_t priority;
+    double cost; /* seconds; 0: not said */
+};
+
+/* Forks a task of the main program if it touches nothing of this rank, neither the task nor what it
+ * names: then there is only something to note. False: nothing was done, task_fork is due. Main
+ * thread; collective with task_fork on other ranks; the homes of all objects are settled. */
+bool task_prune(struct task_graph *graph, const duite_kernel *kernel, const void *args, size_t n,
+                const duite_object *objects);
+
+int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *how,
+              const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects);
+/* Overwrites with a copy of *count values, or with zeros if they are NULL, without waiting for
+ * anything. count NULL: as many as the object has at most. Errors: objects, DUITE_E_SIZE, memory.
+ */
+int task_set_object(struct task_scope *scope, struct worker *worker, duite_object object,
+                    const void *values, const size_t *count);
+int task_free_object(struct task_scope *scope, struct worker *worker, duite_object object);
+
+/* Starts copying an object to `copy` on rank `to`, or on all ranks with TASK_ANYWHERE. The caller
+ * waits for copy->done on the ranks it goes to. Main thread only. */
+int task_copy(struct task_graph *graph, struct worker *worker, duite_object object, int to,
+              struct task_copy *copy);
+/* The version of the object that the forks so far leave, which is or will be here and stays the
+ * object's until the body's next call; and the size of an element in bytes. Body only. */
+int task_see(struct task_scope *scope, struct worker *worker, duite_object object,
+             struct data_version **version, size_t *size);
+/* Releases a hold and wakes the heir. */
+void task_release(struct task_graph *graph, struct worker *worker, struct data_version *version);
+
+/* ---- A running body ---- */
+
+struct duite_call_private {
+    struct duite_call_private *outer; /* the body that waits below on this thread */
+    struct task_graph *graph;
+    struct worker *worker;
+    struct task *task;
+    const duite_param *param; /* as the runtime keeps them */
+    struct task_scope *scope; /* what its children may use, or NULL as long as it has none */
+    int refused;        /* code of a duite_resize that failed, or 0: it fails with that at least */
+    int remembered;     /* the first error of its calls that it may not have looked at */
+    char sentence[204]; /* of `remembered` */
+    char text[sizeof((struct data_failure *)0)->text]; /* what it says of its failure */
+};
+
+/* The body that runs on this thread for this graph, or NULL. */
+struct duite_call_private *task_running(const struct task_graph *graph);
+
+/* Whether a body, running or just over, forked a task or made an object. */
+static inline bool task_body_forked(const duite_call *call)
+{
+    return call->own->scope != NULL;
+}
+
+/* The scope of a running body, made when it is first asked for. NULL without memory. */
+struct task_scope *task_inside(struct duite_call_private *body);
+
+/* Makes an object of `count` zeros, and at most `most` elements if its size changes, that belongs
+ * to the task. Errors: type, count, memory. */
+int task_make_object(struct duite_call_private *body, duite_type type, size_t count, size_t most,
+                     bool sized, duite_object *name);
+
+/* All tasks forked in this scope are over, with their descendants. */
+bool task_alone(struct task_scope *scope);
+
+/* What a body does from now on comes after the tasks it forked so far. */
+void task_close_segment(struct task_scope *scope);
+
+/* The first failure among the tasks of this scope and their descendants since the last time, or
+ * NULL. */
+const struct data_failure *task_first_failure(struct task_scope *scope);
+
+/* DUITE_E_RIGHT or DUITE_E_OBJECT if a child of the body could not have the object with this mode.
+ */
+int task_check_call(struct duite_call_private *body, const char *call, duite_object object,
+                    duite_mode wanted);
+/* Whether the object, whose name was checked, is a parameter of the body. */
+bool task_lent(const struct duite_call_private *body, duite_object object);
+
+/* Whether a body that waits in `scope` may have this task run on top of it: a descendant; or, if
+ * its descendants may wait for tasks outside, one that comes earlier in the reference order; or any
+ * of a guest's, if it is none itself. */
+bool task_may_run(const struct task_scope *scope, const struct task *task);
+
+/* ---- Any worker ---- */
+
+/* Runs a ready task (not a SEND), which task_finish then ends. `call` has context, rt, rank and
+ * worker set. Returns whether a body ran. */
+bool task_run(struct task_graph *graph, struct worker *worker, struct task *task,
+              const duite_call *call);
+
+/* Whether bodies do not run any more. */
+static inline bool task_has_given_up(const struct task_graph *graph)
+{
+    return atomic_load_explicit(&graph->given_up, memory_order_relaxed);
+}
+
+/* It is to be sent now: it was made for that, or turned into it. */
+static inline bool task_to_send(const struct task *task)
+{
+    return task->kind == TASK_SEND || task->kind == TASK_AWAY || task->kind == TASK_RESULT;
+}
+
+/* The task whose link it is, if it is a task that waits. */
+static inline const struct task *task_who_waits(const struct data_waiter *waiter)
+{
+    return (const struct task *)(const void *)((const char *)waiter - waiter->back);
+}
+
+/* Whether it is run by who communicates. */
+static inline bool task_is_channel(const struct task *task)
+{
+    return task->kind >= TASK_NODE_SEND;
+}
+
+/* Whether a task of the main program, or the one that this descends from, runs where it does for an
+ * object's home; then that one's block. */
+static inline bool task_follows(const struct task *task, uint32_t *block)
+{
+    const struct task_scope *scope = task->scope;
+    *block = task->block;
+    if (!scope->depth)
+        return task->placed;
+    while (scope->depth > 1)
+        scope = scope->parent;
+    *block = scope->block;
+    return scope->placed;
+}
+
+/* The number of the main program's task that it is or descends from, of whatever rank; nested: it
+ * descends. */
+uint64_t task_main_number(const struct task *task, bool *nested);
+
+/* What a task without a body is called. */
+const char *task_own_name(uint32_t kind);
+
+/* Whether the task calls a body of the program. */
+static inline bool task_has_body(const struct task *task)
+{
+    return task->kind == TASK_BODY || task->kind == TASK_NODE || task->kind == TASK_GUEST;
+}
+
+/* The task is over: publishes what it wrote, makes its successors ready, frees it. */
+void task_finish(struct task_graph *graph, struct worker *worker, struct task *task);
+
+/* A packet came for an expected version or sum; the callee owns it. */
+void task_arrived(struct task_graph *graph, struct worker *worker, struct data_version *version,
+                  struct data_packet *packet);
+void task_pieces_arrived(struct task_graph *graph, struct worker *worker, struct data_sum *sum,
+                         struct data_packet *packet);
+
+/* What was expected will not come: poison in its place. */
+void task_lost(struct task_graph *graph, struct worker *worker, struct data_version *version);
+void task_pieces_lost(struct task_graph *graph, struct worker *worker, struct data_sum *sum);
+
+/* The bytes of a ready SEND, under its key: the version itself, or send->packet, which the caller
+ * frees once it is sent. NULL without memory. */
+struct data_packet *task_send_packet(struct task *send);
+
+/* The object gets another home, and the value that the forks so far leave goes there, if it is
+ * where it was made or last written by a task of its old home, which frees it: nobody else would.
+ * What is being contributed to stays until it is overwritten. No task is left on any rank. Main
+ * thread, collective. Errors: memory. */
+int task_move_object(struct task_graph *graph, struct worker *worker, struct data_object *object,
+                     int home);
+
+/* The version that the forks so far leave. Main thread; the object exists. */
+struct data_key task_version_of(const struct task_graph *graph, duite_object object);
+
+/* Sets the sentence of a failure; returns its code. */
+int task_failure_error(const struct task_graph *graph, const struct data_failure *failure);
+
+#endif

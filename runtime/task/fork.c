@@ -66,12 +66,10 @@ static int check_law(const duite_kernel *kernel, size_t i, const struct data_obj
 enum { FEW = 16 };
 struct sketch {
     uint32_t kernel;                 /* index in the list given at start */
-    uint32_t owner;                  /* the parameter it runs for; NOBODY: it only accumulates */
+    uint32_t owner;                  /* the parameter it runs for, or TASK_NOBODY */
     bool views;                      /* some are views */
     struct data_object *object[FEW]; /* the first ones */
 };
-
-#define NOBODY UINT32_MAX
 
 /* Object i, whose name was checked. */
 static struct data_object *object_of(struct task_scope *scope, const struct sketch *sketch,
@@ -224,27 +222,19 @@ static int check_rights(struct task_scope *scope, const duite_kernel *kernel, si
     return code;
 }
 
-/* The objects, and the owner rule. */
 static int check_objects(struct task_scope *scope, const duite_kernel *kernel, size_t n,
                          const duite_object *objects, struct sketch *sketch)
 {
-    uint32_t first_read = NOBODY;
-    sketch->owner = NOBODY;
+    const struct task_fixed *fixed = &scope->graph->fixed[sketch->kernel];
+    sketch->owner = fixed->owner[n > fixed->n];
     sketch->views = false;
     for (uint32_t i = 0; i < n; i++) {
-        duite_mode mode = data_mode_of(kernel, i), same = task_immediate(mode);
-        int code = check_object(scope, kernel, i, mode, objects[i], sketch);
+        int code = check_object(scope, kernel, i, data_mode_of(kernel, i), objects[i], sketch);
         if (code) {
             task_unmark(scope, i, objects);
             return code;
         }
-        if ((same == DUITE_W || same == DUITE_RW) && sketch->owner == NOBODY)
-            sketch->owner = i;
-        if (same == DUITE_R && first_read == NOBODY)
-            first_read = i;
     }
-    if (sketch->owner == NOBODY)
-        sketch->owner = first_read;
     return DUITE_OK;
 }
 
@@ -323,7 +313,7 @@ static int fork_checked(struct task_scope *scope, struct worker *worker,
 {
     struct task_graph *graph = scope->graph;
     const duite_kernel *kernel = graph->kernels[sketch->kernel];
-    struct data_object *own = sketch->owner == NOBODY
+    struct data_object *own = sketch->owner == TASK_NOBODY
                                   ? NULL
                                   : object_of(scope, sketch, sketch->owner, objects[sketch->owner]);
     int code = sketch->views ? gather_views(scope, worker, sketch, n, objects) : DUITE_OK;
@@ -331,13 +321,14 @@ static int fork_checked(struct task_scope *scope, struct worker *worker,
         return code;
     struct task *task = NULL;
     uint32_t done = 0;
-    int at = how->at;
-    if (at == TASK_ANYWHERE)
-        at = scope->depth || kernel->replicated ? graph->rank : own ? own->home : 0;
+    int at = scope->depth ? graph->rank
+                          : task_owner_rank(how->at, kernel->replicated, own ? own->home : -1);
+    if (at == TASK_EVERYWHERE)
+        at = graph->rank;
     if (at == graph->rank && !(task = body_task(scope, worker, how, sketch->kernel, args, n)))
         return DUITE_E_MEMORY;
     if (task && own)
-        give_block(task, own, how->at == TASK_ANYWHERE && !kernel->replicated);
+        give_block(task, own, task_owner_decides(how->at, kernel->replicated));
     for (size_t i = 0; i < n; i++) {
         struct data_object *object = object_of(scope, sketch, i, objects[i]);
         duite_mode mode = data_mode_of(kernel, i);

@@ -50,6 +50,8 @@ static int check_kernel(const duite_kernel *kernel, uint32_t index, struct task_
     if ((int)kernel->rest < DUITE_NONE || kernel->rest > DUITE_CWP)
         return base_error(DUITE_E_KERNEL, "kernel %s: `rest` has no such mode: %d", kernel->name,
                           (int)kernel->rest);
+    fixed->owner[0] = task_owner(kernel->access, kernel->rest, fixed->n);
+    fixed->owner[1] = task_owner(kernel->access, kernel->rest, (size_t)fixed->n + 1);
     return check_replicated(kernel);
 }
 

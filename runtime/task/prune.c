@@ -19,17 +19,14 @@ static bool find_kernel(struct task_graph *graph, const duite_kernel *kernel)
     if (i == graph->n_kernels || kernel->replicated || graph->fixed[i].n > MOST)
         return false;
     struct task_prune prune = {
-        .kernel = kernel, .index = i, .n = graph->fixed[i].n, .owner = graph->fixed[i].n};
+        .kernel = kernel, .index = i, .n = graph->fixed[i].n, .owner = graph->fixed[i].owner[0]};
     for (; n < prune.n; n++) {
         duite_mode mode = kernel->access[n];
         if (task_immediate(mode) == DUITE_CW)
             return false;
         prune.reads |= (unsigned)(task_immediate(mode) != DUITE_W) << n;
         prune.writes |= (unsigned)is_write(mode) << n;
-        if (is_write(mode) && prune.owner == prune.n)
-            prune.owner = n;
     }
-    prune.owner %= prune.n ? prune.n : 1; /* it writes nothing: the first that it reads */
     graph->prune = prune;
     return true;
 }
@@ -69,7 +66,7 @@ bool task_prune(struct task_graph *graph, const duite_kernel *kernel, const void
     if (n != prune.n || !n || !objects || (kernel->args_size && !args) ||
         !look(graph, n, objects, found, &hash))
         return false;
-    int at = found[prune.owner]->home;
+    int at = task_owner_rank(TASK_ANYWHERE, false, found[prune.owner]->home);
     if (at == graph->rank)
         return false;
     for (size_t i = 0; i < n; i++) {

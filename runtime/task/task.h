@@ -3,6 +3,7 @@
 
 #include "runtime/data/object.h"
 #include "runtime/task/above.h"
+#include "runtime/task/owner.h"
 
 #include <duite_policy.h>
 #include <pthread.h>
@@ -185,6 +186,7 @@ struct task_graph {
     const duite_kernel **kernels;
     struct task_fixed { /* parameters in each kernel's `access` */
         uint32_t n, postponed;
+        uint32_t owner[2]; /* which of n objects, of more than n, a task runs for: see owner.h */
     } * fixed;
     uint32_t n_kernels;
     uint32_t *kernel_place, kernel_mask; /* by address, open addressing: index in `kernels` + 1 */
@@ -241,7 +243,6 @@ static inline void task_mix(struct task_graph *graph, uint64_t value)
 
 /* What a fork says of how its task runs. Priority and cost are the running rank's; they do not
  * belong to the fingerprint. */
-enum { TASK_ANYWHERE = -1 };
 struct task_options {
     int at; /* a rank, or TASK_ANYWHERE */
     int32_t priority;

@@ -1,0 +1,43 @@
+#ifndef DUITE_TASK_OWNER_H
+#define DUITE_TASK_OWNER_H
+
+#include <duite.h>
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* The owner rule: for which of its objects a task runs, and on which rank. It stands here and
+ * nowhere else: forks, forks that are only noted, recorded graphs, their plans and the predictor
+ * all ask these functions. Pure; any thread. */
+
+enum {
+    TASK_ANYWHERE = -1,  /* a fork that names no rank */
+    TASK_EVERYWHERE = -2 /* runs on all ranks */
+};
+#define TASK_NOBODY UINT32_MAX
+
+/* The parameter that a task with n objects runs for: the first one that it writes (w, rw), else the
+ * first one that it reads; TASK_NOBODY if it only accumulates. Postponed modes count like those
+ * without delay. `access` has DUITE_MAX_ACCESS modes or is ended by DUITE_NONE; further parameters
+ * have the mode `rest`. */
+uint32_t task_owner(const duite_mode *access, duite_mode rest, size_t n);
+
+/* Whether the home of that object says where a task of the main program runs: its fork names no
+ * rank, and its kernel is not replicated. */
+static inline bool task_owner_decides(int at, bool replicated)
+{
+    return at == TASK_ANYWHERE && !replicated;
+}
+
+/* The rank that runs a task of the main program, or TASK_EVERYWHERE. home: that of the object that
+ * it runs for; negative if it runs for none. */
+static inline int task_owner_rank(int at, bool replicated, int home)
+{
+    if (replicated)
+        return TASK_EVERYWHERE;
+    if (!task_owner_decides(at, replicated))
+        return at;
+    return home < 0 ? 0 : home;
+}
+
+#endif

@@ -11,7 +11,7 @@
 #include "runtime/map/map.h"
 #include "runtime/offload/away.h"
 #include "runtime/sched/sched.h"
-#include "runtime/workers/cores.h"
+#include "runtime/workers/topology.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

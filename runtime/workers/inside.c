@@ -18,7 +18,7 @@ enum {
 #define LONGEST_PAUSE_SECONDS 2e-4
 
 /* What a waiting worker knows. */
-struct wait {
+struct inside_wait {
     const struct task_scope *scope;
     unsigned refused; /* tasks taken from others in vain since the last pause */
     bool paused;      /* just now */
@@ -27,8 +27,8 @@ struct wait {
 
 /* The newest of a queue of this worker that may run; the others keep their places, and those who
  * did not find them meanwhile look again. */
-static struct task *dig(struct work_pool *pool, struct work_queue *queue,
-                        const struct task_scope *scope, unsigned depth)
+static struct task *inside_dig(struct work_pool *pool, struct work_queue *queue,
+                               const struct task_scope *scope, unsigned depth)
 {
     struct task *aside = NULL, *task = NULL;
     bool hidden = false;
@@ -50,13 +50,13 @@ static struct task *dig(struct work_pool *pool, struct work_queue *queue,
 
 /* The same of the shared queue, a few at its new end; and one at the old end, which goes to the
  * new one, so that all come by. */
-static struct task *dig_shared(struct work_pool *pool, const struct task_scope *scope)
+static struct task *inside_dig_shared(struct work_pool *pool, const struct task_scope *scope)
 {
     struct work_queue *queue = &pool->shared;
     struct task *task = NULL;
     if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_acquire))
         return NULL;
-    task = dig(pool, queue, scope, SHARED_DEPTH);
+    task = inside_dig(pool, queue, scope, SHARED_DEPTH);
     if (!task) {
         task = work_queue_take(queue, DUITE_OLDEST);
         if (task && !task_may_run(scope, task)) {
@@ -69,7 +69,8 @@ static struct task *dig_shared(struct work_pool *pool, const struct task_scope *
 }
 
 /* Takes from another; what may not run here is left where everybody looks. */
-static struct task *steal_from(struct worker *worker, unsigned victim, struct wait *wait)
+static struct task *inside_steal_from(struct worker *worker, unsigned victim,
+                                      struct inside_wait *wait)
 {
     struct work_pool *pool = worker->pool;
     if (victim == worker->index)
@@ -89,7 +90,7 @@ static struct task *steal_from(struct worker *worker, unsigned victim, struct wa
 
 /* Of the scheduler's victims; of all, when it has waited for long: what it waits for may lie with
  * one that waits for what lies here. */
-static struct task *steal(struct worker *worker, struct wait *wait)
+static struct task *inside_steal(struct worker *worker, struct inside_wait *wait)
 {
     struct work_pool *pool = worker->pool;
     struct task *task = NULL;
@@ -97,16 +98,16 @@ static struct task *steal(struct worker *worker, struct wait *wait)
         unsigned victim = pool->setup.scheduler->victim(worker->state, attempt);
         if (victim >= pool->setup.threads || work_is_endless(pool, attempt))
             break;
-        task = steal_from(worker, victim, wait);
+        task = inside_steal_from(worker, victim, wait);
     }
     for (unsigned i = 0; !task && wait->paused && i < pool->setup.threads; i++)
-        task = steal_from(worker, i, wait);
+        task = inside_steal_from(worker, i, wait);
     wait->paused = false;
     return task;
 }
 
 /* Nothing to do for a moment. Nobody wakes a worker that waits in a body: it sleeps briefly. */
-static void moment(struct worker *worker, struct wait *wait)
+static void inside_idle(struct worker *worker, struct inside_wait *wait)
 {
     const struct work_pool *pool = worker->pool;
     uint64_t now = base_ticks();
@@ -129,18 +130,18 @@ static void moment(struct worker *worker, struct wait *wait)
     }
 }
 
-static struct task *find(struct worker *worker, struct wait *wait)
+static struct task *inside_find(struct worker *worker, struct inside_wait *wait)
 {
     struct work_pool *pool = worker->pool;
     struct task *task = NULL;
     if (wait->barren < 0 || wait->barren != work_queue_mark(&worker->queue)) {
-        task = dig(pool, &worker->queue, wait->scope, UINT32_MAX);
+        task = inside_dig(pool, &worker->queue, wait->scope, UINT32_MAX);
         wait->barren = task ? NOT_BARREN : work_queue_mark(&worker->queue);
     }
     if (!task)
-        task = dig_shared(pool, wait->scope);
+        task = inside_dig_shared(pool, wait->scope);
     if (!task)
-        task = steal(worker, wait);
+        task = inside_steal(worker, wait);
     worker->left_some =
         task && (work_queue_ranks(&worker->queue) || work_queue_ranks(&pool->shared));
     return task;
@@ -151,18 +152,18 @@ void work_inside(struct worker *worker, const struct task_scope *scope, bool (*d
 {
     const struct task_scope *outer = worker->waits;
     struct comm *comm = worker->pool->setup.comm;
-    struct wait wait = {.scope = scope, .barren = NOT_BARREN};
+    struct inside_wait wait = {.scope = scope, .barren = NOT_BARREN};
     worker->waits = scope;
     while (!done(context) && !(comm && comm_broken(comm))) {
-        struct task *task = find(worker, &wait);
+        struct task *task = inside_find(worker, &wait);
         if (task) {
             work_busy_again(worker);
             work_run(worker, task);
-            wait = (struct wait){.scope = scope, .barren = NOT_BARREN};
+            wait = (struct inside_wait){.scope = scope, .barren = NOT_BARREN};
         } else if (work_poll(worker)) {
             work_busy_again(worker);
         } else {
-            moment(worker, &wait);
+            inside_idle(worker, &wait);
         }
     }
     work_busy_again(worker);

@@ -3,9 +3,9 @@
 
 #include "runtime/plan/replay.h"
 #include "runtime/workers/balance.h"
-#include "runtime/workers/near.h"
 #include "runtime/workers/park.h"
 #include "runtime/workers/queue.h"
+#include "runtime/workers/topology.h"
 #include "runtime/workers/watch.h"
 #include "runtime/workers/workers.h"
 
@@ -13,11 +13,7 @@
 
 /* Shared by the files of this folder only. */
 
-/* A poller without a core of its own gives way for so long before it pauses. */
-#define WORK_YIELD_SECONDS 1e-4
-/* A rank in the middle of a replay does so for longer: its neighbours are, too, and if each sleeps
- * until the other wakes, they go on doing so. */
-#define WORK_AWAIT_SECONDS       1e-2
+/* A worker that sleeps for short pauses begins with this one; each is twice as long as the last. */
 #define WORK_FIRST_PAUSE_SECONDS 2e-5
 
 struct counts {
@@ -35,18 +31,18 @@ struct worker {
     void *state;             /* of the scheduler */
     unsigned index;
     bool finishing;                 /* a task of this worker makes others ready right now */
-    bool may_chain;                 /* ... and may run one of them next */
-    bool polls;                     /* holds the seat */
+    bool may_chain;                 /* ... and may run one of them inline, as its next */
+    bool polls;                     /* is the poller */
     bool left_some;                 /* tasks in the heap from which it took one: another is to be
                                        woken */
     const struct task_scope *waits; /* of the body that waits on top; NULL: none does */
     uint64_t within;                /* ticks of tasks, messages and idling inside the body that
                                        runs */
-    uint64_t gap;                   /* ticks between chained tasks, when last looked at */
-    struct task *next;              /* chained: to run directly after this one */
+    uint64_t gap;                   /* ticks between inline tasks, when last looked at */
+    struct task *next;              /* inline: to run directly after this one */
     uint64_t polled, idle_since;    /* when, in ticks; 0: busy */
     uint64_t messaging;             /* when it began with messages, in ticks; 0: it does not */
-    uint64_t looked, crowded_until; /* in ticks, see spin.c */
+    uint64_t looked, crowded_until; /* in ticks, see idle.c */
     long switches;                  /* of its thread, that it did not want; -1: not counted yet */
     uint64_t awaited_then;          /* comm_awaited_ticks when it began to idle */
     double pause;
@@ -74,8 +70,8 @@ struct work_pool {
     _Atomic int endless;             /* the scheduler named victims without an end */
     _Atomic int watched;             /* somebody reads the tasks that run: they must not go on */
     _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
-    _Alignas(64) _Atomic int seat;   /* taken by the idle worker that polls */
-    /* Of the throttled main thread, see count.c. */
+    _Alignas(64) _Atomic int poller; /* 1: an idle worker polls */
+    /* Of the throttled main thread, see main.c. */
     uint64_t look;                        /* how many tasks it forks before it counts again */
     _Alignas(64) _Atomic uint64_t wanted; /* fewer unfinished tasks than that, or 0 */
     _Atomic uint64_t awaited;             /* by the main thread that waits: all these, or 0 */
@@ -124,45 +120,62 @@ struct work_wish {
 struct work_ran {
     uint64_t start, took, within;
     uint32_t kind; /* before: a sum may have turned into its message */
-    bool body, chained;
+    bool body, inlined;
 };
 
-/* What the trace is told, if there is one. Of a task before it is finished; whether the ring was
- * full, and may have been written; idle for so many ticks since idle_since. */
+/* ---- worker.c ---- */
+
+/* A thread of ours; the worker. Works until the pool stops. */
+void *work_thread(void *worker);
+/* A task, or NULL: in its own queue, in the shared one, or with a victim of the scheduler. */
+struct task *work_find(struct worker *worker);
+/* Whether a scheduler names victims without an end, in one round: the main program will tell. */
+bool work_is_endless(struct work_pool *pool, unsigned attempt);
+/* Looks for work once; idles for a moment if there is none. */
+void work_look(struct worker *worker, const struct work_wish *wish);
+/* Runs the task and those that run inline after it. */
+void work_run(struct worker *worker, struct task *task);
+/* Sends and receives; whether anything happened. */
+bool work_poll(struct worker *worker);
+/* From now on this caller of the guard asks the worker's scheduler. */
+void work_scheduler_caller(struct worker *worker, unsigned caller);
+
+/* ---- idle.c ---- */
+
+/* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal
+ * it. What it is woken for was made known by a sequentially consistent read-modify-write, or before
+ * a fence, against the announcement of a sleeper. */
+void work_wake_one(struct work_pool *pool, unsigned queue);
+/* Nothing to do: one moment of idling. */
+void work_idle(struct worker *worker, const struct work_wish *wish);
+/* Idling begins, now in ticks. */
+void work_idles(struct worker *worker, uint64_t now);
+/* Something happened: idling begins anew. */
+void work_stir(struct worker *worker);
+/* The worker has something to do again: if it is the poller, one that sleeps becomes it. */
+void work_busy_again(struct worker *worker);
+/* One idle look, now in ticks: whether other programs use this worker's core. Then waiting is to
+ * sleep. */
+bool work_is_crowded(struct worker *worker, uint64_t now);
+
+/* ---- main.c ---- */
+
+/* The worker finds no task: does the main thread wait for just that? */
+void work_ran_out(struct worker *worker);
+
+/* ---- report.c: for the trace, if there is one ---- */
+
+/* A task that ran and is not finished yet. */
 void work_note_task(struct worker *worker, const struct task *task, const struct work_ran *ran);
+/* Whether the ring was full: then this worker may have written it to the file. */
 bool work_note_relieve(struct worker *worker);
+/* The worker idled for so many ticks since idle_since. */
 void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed);
 /* Around what a worker that does not idle does for messages: looks for them, sends, takes them.
  * What begins within that is no other. Nothing below a microsecond is noted. */
 bool work_note_messages_begin(struct worker *worker);
 void work_note_messages_end(struct worker *worker, bool begun);
 void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes);
-
-/* Whether a scheduler names victims without an end, in one round: the main program will tell. */
-bool work_is_endless(struct work_pool *pool, unsigned attempt);
-/* Looks for work once; idles for a moment if there is none. */
-void work_look(struct worker *worker, const struct work_wish *wish);
-/* Runs the task and what it chains. */
-void work_run(struct worker *worker, struct task *task);
-/* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal
- * it. What it is woken for was made known by a sequentially consistent read-modify-write, or before
- * a fence, against the announcement of a sleeper. */
-void work_wake_one(struct work_pool *pool, unsigned queue);
-/* The worker finds no task: does the main thread wait for just that? */
-void work_ran_out(struct worker *worker);
-/* Sends and receives; whether anything happened. */
-bool work_poll(struct worker *worker);
-/* Idling begins, now in ticks. */
-void work_idles(struct worker *worker, uint64_t now);
-/* One idle look, now in ticks: whether other programs use this worker's core. Then waiting is to
- * sleep: see spin.c. */
-bool work_is_crowded(struct worker *worker, uint64_t now);
-/* Idles without sleeping for the first moments; false once it is time to sleep. */
-bool work_spins(struct worker *worker);
-/* Something happened: idling begins anew. */
-void work_stir(struct worker *worker);
-/* The worker has something to do again: it leaves the seat to one that sleeps. */
-void work_busy_again(struct worker *worker);
 
 /* A task took so many ticks. In replays of short ones, nothing is warm and nothing is looked up. */
 static inline void work_warms(const struct worker *worker, const struct task *task, uint64_t took)

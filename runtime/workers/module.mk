@@ -1,3 +1,4 @@
-libduite_la_SOURCES += runtime/workers/balance.c runtime/workers/balance.h runtime/workers/main.c runtime/workers/note.c runtime/workers/cores.c runtime/workers/cores.h runtime/workers/count.c runtime/workers/deque.c \
-	runtime/workers/deque.h runtime/workers/serve.c runtime/workers/heap.c runtime/workers/heap.h runtime/workers/inside.c runtime/workers/internal.h runtime/workers/near.c runtime/workers/near.h runtime/workers/park.c runtime/workers/park.h runtime/workers/queue.c \
-	runtime/workers/queue.h runtime/workers/spent.c runtime/workers/spent.h runtime/workers/spin.c runtime/workers/tell.c runtime/workers/watch.c runtime/workers/watch.h runtime/workers/workers.c runtime/workers/workers.h
+libduite_la_SOURCES += runtime/workers/balance.c runtime/workers/balance.h runtime/workers/deque.c runtime/workers/deque.h runtime/workers/heap.c runtime/workers/heap.h \
+	runtime/workers/idle.c runtime/workers/inside.c runtime/workers/internal.h runtime/workers/main.c runtime/workers/park.c runtime/workers/park.h runtime/workers/pool.c \
+	runtime/workers/queue.c runtime/workers/queue.h runtime/workers/report.c runtime/workers/spent.c runtime/workers/spent.h runtime/workers/tell.c runtime/workers/topology.c \
+	runtime/workers/topology.h runtime/workers/watch.c runtime/workers/watch.h runtime/workers/worker.c runtime/workers/workers.h

@@ -1,4 +1,4 @@
-/* Sleeping and waking (runtime/workers/park.c and workers.c): no task waits while all who could run
+/* Sleeping and waking (runtime/workers/park.c, worker.c, idle.c, main.c and pool.c): no task waits while all who could run
  * it sleep for ever, no message while nobody polls, each task runs once, and a stop ends. The
  * workers are the real ones: thread 0 is the main thread, the others are those that work_start
  * makes. Queues are plain_queue.h's, or with REAL_QUEUES the real ones. */
@@ -8,7 +8,7 @@
 
 #include "runtime/base/clock.h"
 #include "runtime/sched/sched.h"
-#include "runtime/workers/cores.h"
+#include "runtime/workers/topology.h"
 
 enum { TASKS = 4 };
 
@@ -192,13 +192,13 @@ int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
 /* A plant that is no operation of its own: the announcement comes after the last look. */
 static void announce(struct work_park *park)
 {
-    if (!explore_planted("doze", "the announcement"))
+    if (!explore_planted("idle_sleep", "the announcement"))
         work_park_announce(park);
 }
 
 static void fall_asleep(struct work_park *park, double seconds)
 {
-    if (explore_planted("doze", "the announcement"))
+    if (explore_planted("idle_sleep", "the announcement"))
         work_park_announce(park);
     work_park_sleep(park, seconds);
 }
@@ -230,12 +230,11 @@ static void fall_asleep(struct work_park *park, double seconds)
 
 #define work_park_announce announce
 #define work_park_sleep    fall_asleep
-#include "runtime/workers/count.c"
+#include "runtime/workers/idle.c"
 #include "runtime/workers/main.c"
-#include "runtime/workers/note.c"
-#include "runtime/workers/serve.c"
-#include "runtime/workers/spin.c"
-#include "runtime/workers/workers.c"
+#include "runtime/workers/pool.c"
+#include "runtime/workers/report.c"
+#include "runtime/workers/worker.c"
 
 #ifndef REAL_QUEUES
 static struct task *plain_task(uint64_t bit)
@@ -365,7 +364,7 @@ static void wait_two(void)
 
 /* ---- With messages: nobody is woken by them ---- */
 
-/* Idles twice, as in a collective call, and may take the seat; then does something else: the other
+/* Idles twice, as in a collective call, and may become the poller; then does something else: the other
  * thread must receive. */
 static void idle_then_leave(void)
 {
@@ -431,19 +430,19 @@ static const struct {
     const struct explore_case small;
     struct explore_plant plant;
 } plants[] = {
-    {SERVED("one task for another", leave_one), {"doze", "the announcement", EXPLORE_DROP}},
+    {SERVED("one task for another", leave_one), {"idle_sleep", "the announcement", EXPLORE_DROP}},
     {SERVED("one task for another", leave_one), {"work_park_wake", "lock", EXPLORE_DROP}},
     {SERVED("one task for another", leave_one), {"work_park_wake", "condition", EXPLORE_DROP}},
-    {CASE("start, stop", start_stop), {"doze", "&pool->stop", EXPLORE_DROP}},
+    {CASE("start, stop", start_stop), {"idle_sleep", "&pool->stop", EXPLORE_DROP}},
 #ifndef REAL_QUEUES /* there it takes too long */
     {SERVED("one task for another", leave_one), {"work_queue_put", "the put", EXPLORE_RELAX}},
-    {SERVED("one task waited for", wait_one), {"is_enough", "&pool->awaited", EXPLORE_DROP}},
+    {SERVED("one task waited for", wait_one), {"main_has_enough", "&pool->awaited", EXPLORE_DROP}},
     {SERVED("main polled, and leaves", idle_then_leave),
-     {"work_busy_again", "&worker->pool->seat", EXPLORE_RELAX}},
+     {"work_busy_again", "&worker->pool->poller", EXPLORE_RELAX}},
     {SERVED("main polled, and leaves", idle_then_leave),
-     {"work_busy_again", "&worker->pool->seat", EXPLORE_DROP}},
+     {"work_busy_again", "&worker->pool->poller", EXPLORE_DROP}},
     {LARGE("the poller gets busy", wait_beside),
-     {"work_busy_again", "&worker->pool->seat", EXPLORE_DROP}},
+     {"work_busy_again", "&worker->pool->poller", EXPLORE_DROP}},
 #endif
 };
 

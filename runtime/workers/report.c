@@ -1,5 +1,38 @@
-/* What workers tell the trace. Each writes to its own ring, and nothing where there is none. */
+/* What workers report: counts for the program, events for the trace. Each worker writes its own
+ * counts and its own ring alone; whoever reads the counts of all adds them up. */
 #include "runtime/workers/internal.h"
+
+/* ---- Counts ---- */
+
+void work_count(struct work_pool *pool, duite_counters *counters)
+{
+    for (unsigned i = 0; i < pool->setup.threads; i++) {
+        struct counts *counts = &pool->worker[i].counts;
+        counters->tasks += atomic_load_explicit(&counts->tasks, memory_order_relaxed);
+        counters->placed += atomic_load_explicit(&counts->placed, memory_order_relaxed);
+        counters->stolen += atomic_load_explicit(&counts->stolen, memory_order_relaxed);
+        counters->stolen_far += atomic_load_explicit(&counts->far, memory_order_relaxed);
+        counters->chained += atomic_load_explicit(&counts->chained, memory_order_relaxed);
+        counters->delegated += atomic_load_explicit(&counts->delegated, memory_order_relaxed);
+        counters->busy +=
+            pool->tick * (double)atomic_load_explicit(&counts->busy, memory_order_relaxed);
+        counters->idle +=
+            pool->tick * (double)atomic_load_explicit(&counts->idle, memory_order_relaxed);
+        counters->exposed +=
+            pool->tick * (double)atomic_load_explicit(&counts->exposed, memory_order_relaxed);
+    }
+    if (pool->setup.comm)
+        counters->awaited =
+            pool->setup.threads * pool->tick * (double)comm_awaited_ticks(pool->setup.comm);
+}
+
+const char *work_endless(const struct work_pool *pool)
+{
+    bool endless = atomic_load_explicit(&pool->endless, memory_order_relaxed);
+    return endless ? pool->setup.scheduler->name : NULL;
+}
+
+/* ---- The trace ---- */
 
 void work_note_task(struct worker *worker, const struct task *task, const struct work_ran *ran)
 {
@@ -16,7 +49,7 @@ void work_note_task(struct worker *worker, const struct task *task, const struct
         event.flags |= TRACE_NESTED;
     if (task->kind == TASK_GUEST)
         event.flags |= TRACE_GUEST;
-    if (ran->chained)
+    if (ran->inlined)
         event.flags |= TRACE_CHAINED;
     trace_put(worker->ring, &event);
 }

@@ -1,7 +1,10 @@
-/* Everything about cores is asked at start. The machine's topology takes hwloc most of a
- * millisecond, twenty times all else that a start does: it is loaded once in a process, and kept
- * for the next. */
-#include "runtime/workers/cores.h"
+/* Cores of the machine, and how far the workers on them are from each other: all of it is asked at
+ * start. hwloc takes most of a millisecond for the machine's topology, twenty times all else that a
+ * start does. So a process loads it once and keeps it.
+ *
+ * Every worker's row of others has all of them, nearest first; equally near ones begin with the
+ * next number, so that workers which go by the row alone do not all try the same one first. */
+#include "runtime/workers/topology.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -13,11 +16,13 @@
 #include <string.h>
 #include <xxhash.h>
 
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static hwloc_topology_t topology; /* NULL: not loaded; `lock` */
+/* ---- Cores ---- */
+
+static pthread_mutex_t topology_lock = PTHREAD_MUTEX_INITIALIZER;
+static hwloc_topology_t topology; /* NULL: not loaded; `topology_lock` */
 
 /* By errno. */
-static int refuse(const char *call)
+static int topology_refuse(const char *call)
 {
     const int reason = errno;
     return base_error(reason == ENOMEM ? DUITE_E_MEMORY : DUITE_E_SYSTEM,
@@ -25,18 +30,18 @@ static int refuse(const char *call)
 }
 
 /* The calling thread holds the lock. */
-static int load(void)
+static int topology_load(void)
 {
     hwloc_topology_t new;
     if (topology)
         return DUITE_OK;
     if (hwloc_topology_init(&new))
-        return refuse("hwloc_topology_init");
+        return topology_refuse("hwloc_topology_init");
     hwloc_topology_set_all_types_filter(new, HWLOC_TYPE_FILTER_KEEP_STRUCTURE);
     hwloc_topology_set_io_types_filter(new, HWLOC_TYPE_FILTER_KEEP_NONE);
     hwloc_topology_set_type_filter(new, HWLOC_OBJ_CORE, HWLOC_TYPE_FILTER_KEEP_ALL);
     if (hwloc_topology_load(new)) {
-        const int code = refuse("hwloc_topology_load");
+        const int code = topology_refuse("hwloc_topology_load");
         hwloc_topology_destroy(new);
         return code;
     }
@@ -44,14 +49,14 @@ static int load(void)
     return DUITE_OK;
 }
 
-__attribute__((destructor)) static void unload(void)
+__attribute__((destructor)) static void topology_unload(void)
 {
     if (topology)
         hwloc_topology_destroy(topology);
 }
 
 /* Those that this process may use now. */
-static int list(struct work_cores *cores)
+static int cores_list(struct work_cores *cores)
 {
     hwloc_bitmap_t allowed = hwloc_bitmap_alloc();
     if (!allowed)
@@ -81,11 +86,11 @@ static int list(struct work_cores *cores)
 int work_cores_find(struct work_cores *cores)
 {
     *cores = (struct work_cores){0};
-    pthread_mutex_lock(&lock);
-    int code = load();
+    pthread_mutex_lock(&topology_lock);
+    int code = topology_load();
     if (!code)
-        code = list(cores);
-    pthread_mutex_unlock(&lock);
+        code = cores_list(cores);
+    pthread_mutex_unlock(&topology_lock);
     if (!code && !cores->n)
         code = base_error(DUITE_E_SYSTEM, "hwloc finds no core that this process may use");
     if (code)
@@ -104,12 +109,12 @@ void work_cores_free(struct work_cores *cores)
 unsigned work_cores_distance(int a, int b)
 {
     unsigned distance = 0;
-    pthread_mutex_lock(&lock);
+    pthread_mutex_lock(&topology_lock);
     hwloc_obj_t one = hwloc_get_pu_obj_by_os_index(topology, (unsigned)a),
                 other = hwloc_get_pu_obj_by_os_index(topology, (unsigned)b);
     for (; one && other && !hwloc_bitmap_isincluded(other->cpuset, one->cpuset); one = one->parent)
         distance++;
-    pthread_mutex_unlock(&lock);
+    pthread_mutex_unlock(&topology_lock);
     return one && other ? distance : 0;
 }
 
@@ -121,4 +126,47 @@ void work_cores_bind(int unit)
     CPU_ZERO(&set);
     CPU_SET((size_t)unit, &set);
     sched_setaffinity(0, sizeof set, &set);
+}
+
+/* ---- Workers and their distances ---- */
+
+/* Insertion keeps equals in the order in which they come. */
+static void near_fill_row(struct work_near *near, unsigned worker)
+{
+    unsigned others = near->n - 1;
+    unsigned *row = near->by_nearness + 2 * (size_t)worker * others, *distance = row + others;
+    for (unsigned step = 1; step <= others; step++) {
+        unsigned other = (worker + step) % near->n, at = step - 1;
+        unsigned far = near->distance[worker * near->n + other];
+        for (; at && distance[at - 1] > far; at--) {
+            row[at] = row[at - 1];
+            distance[at] = distance[at - 1];
+        }
+        row[at] = other;
+        distance[at] = far;
+    }
+    near->of[worker] = (duite_near){.n = others, .worker = row, .distance = distance};
+}
+
+bool work_near_start(struct work_near *near, unsigned n, const int *cores)
+{
+    near->n = n;
+    near->distance = base_alloc_zero((size_t)n * n * sizeof *near->distance);
+    near->by_nearness = base_alloc_zero(2 * (size_t)n * n * sizeof *near->by_nearness);
+    near->of = base_alloc_zero(n * sizeof *near->of);
+    if (!near->distance || !near->by_nearness || !near->of)
+        return false;
+    for (unsigned i = 0; i < n && cores; i++)
+        for (unsigned j = 0; j < n; j++)
+            near->distance[i * n + j] = work_cores_distance(cores[i], cores[j]);
+    for (unsigned i = 0; i < n; i++)
+        near_fill_row(near, i);
+    return true;
+}
+
+void work_near_stop(struct work_near *near)
+{
+    base_free(near->distance);
+    base_free(near->by_nearness);
+    base_free(near->of);
 }

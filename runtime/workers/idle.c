@@ -1,0 +1,190 @@
+/* How an idle worker waits: it spins, then gives way, then sleeps until somebody wakes it. Of the
+ * idle workers of a rank one is the poller: it looks for messages and sleeps for short pauses only,
+ * so no message waits while a worker idles. A worker that gets busy leaves that to another one.
+ *
+ * On a core of its own a worker gives way by sched_yield. On a core that busy programs use as well
+ * it does not: sched_yield gives the core away for a slice of each of the others (15 to 60 ms
+ * beside four), and the message comes meanwhile. It spins for a moment, since a neighbour that has
+ * a core at the same time answers at once, and then sleeps.
+ *
+ * A worker notices such a core by a gap between two idle looks in which the kernel took the core
+ * away. For LOST_FACTOR times as long it does not give way: so waiting this way costs at most one
+ * part in LOST_FACTOR of the time, and a worker whose core is free again soon waits as before. */
+#include "runtime/base/clock.h"
+#include "runtime/workers/internal.h"
+
+#include <sched.h>
+#include <sys/resource.h>
+
+enum { LOST_FACTOR = 100 };
+
+/* The longest pause of a poller that sleeps. */
+#define LONGEST_PAUSE_SECONDS 1e-3
+
+/* A gap that counts; and how long a rank in the middle of a replay spins on a crowded core: while
+ * its neighbour has a core, too, messages come within that. */
+#define LOST_SECONDS    2e-4
+#define CROWDED_SECONDS 5e-4
+
+/* ---- Waking ---- */
+
+void work_wake_one(struct work_pool *pool, unsigned queue)
+{
+    if (!atomic_load_explicit(&pool->parked, memory_order_seq_cst))
+        return;
+    unsigned n = pool->setup.threads, first = queue < n ? queue : 0;
+    for (unsigned i = 0; i < n; i++)
+        if (work_park_wake(&pool->worker[(first + i) % n].park))
+            return;
+}
+
+void work_notify(struct work_pool *pool)
+{
+    if (!pool)
+        return;
+    atomic_thread_fence(memory_order_seq_cst);
+    work_park_wake(&pool->worker[0].park);
+}
+
+/* ---- The poller ---- */
+
+/* Makes the idle worker the poller if there is none. Returns whether it is. */
+static bool poller_take(struct worker *worker)
+{
+    struct work_pool *pool = worker->pool;
+    if (pool->setup.comm && !worker->polls &&
+        !atomic_load_explicit(&pool->poller, memory_order_relaxed))
+        worker->polls = !atomic_exchange_explicit(&pool->poller, 1, memory_order_relaxed);
+    return worker->polls;
+}
+
+void work_busy_again(struct worker *worker)
+{
+    work_stir(worker);
+    if (!worker->polls)
+        return;
+    worker->polls = false;
+    atomic_exchange_explicit(&worker->pool->poller, 0, memory_order_seq_cst);
+    work_wake_one(worker->pool, DUITE_NO_QUEUE);
+}
+
+/* ---- Idle time ---- */
+
+void work_idles(struct worker *worker, uint64_t now)
+{
+    const struct comm *comm = worker->pool->setup.comm;
+    worker->idle_since = worker->looked = now;
+    worker->awaited_then = comm ? comm_awaited_ticks(comm) : 0;
+}
+
+void work_stir(struct worker *worker)
+{
+    const struct comm *comm = worker->pool->setup.comm;
+    if (worker->idle_since) {
+        uint64_t idle = base_ticks() - worker->idle_since;
+        uint64_t exposed = comm ? comm_awaited_ticks(comm) - worker->awaited_then : 0;
+        work_bump(&worker->counts.idle, idle);
+        work_bump(&worker->counts.exposed, exposed);
+        worker->within += idle;
+        work_note_idle(worker, idle, exposed);
+    }
+    worker->idle_since = 0;
+    worker->pause = WORK_FIRST_PAUSE_SECONDS;
+}
+
+/* ---- Spinning ---- */
+
+/* Whether the kernel took the core away since the last time this was asked: a long look may have
+ * moved a long message. A thread that never was counted says no. */
+static bool core_was_taken(struct worker *worker)
+{
+    struct rusage usage;
+    if (getrusage(RUSAGE_THREAD, &usage))
+        return false;
+    const bool more = worker->switches >= 0 && usage.ru_nivcsw > worker->switches;
+    worker->switches = usage.ru_nivcsw;
+    return more;
+}
+
+bool work_is_crowded(struct worker *worker, uint64_t now)
+{
+    const uint64_t gap = now - worker->looked;
+    worker->looked = now;
+    if ((double)gap * worker->pool->tick > LOST_SECONDS && core_was_taken(worker))
+        worker->crowded_until = now + LOST_FACTOR * gap;
+    return now < worker->crowded_until;
+}
+
+/* Ticks for which a poller gives way. */
+static uint64_t poller_yield_ticks(const struct worker *worker)
+{
+    const struct work_pool *pool = worker->pool;
+    if (!worker->polls)
+        return 0;
+    if (comm_awaits(pool->setup.comm))
+        return pool->await_ticks;
+    return pool->spin_ticks ? 0 : pool->yield_ticks;
+}
+
+/* Idles without sleeping for the first moments; false once it is time to sleep. */
+static bool idle_spin(struct worker *worker)
+{
+    const struct work_pool *pool = worker->pool;
+    const uint64_t now = base_ticks();
+    if (!worker->idle_since) {
+        work_idles(worker, now);
+        work_ran_out(worker);
+    }
+    const bool crowded = work_is_crowded(worker, now);
+    const uint64_t since = now - worker->idle_since;
+    if (since < pool->spin_ticks) {
+        work_pause_core();
+        return true;
+    }
+    const uint64_t ticks = poller_yield_ticks(worker);
+    if (crowded) {
+        work_pause_core();
+        return pool->spin_ticks && ticks && (double)since * pool->tick < CROWDED_SECONDS;
+    }
+    if (since < ticks)
+        sched_yield();
+    return since < ticks;
+}
+
+/* ---- Sleeping ---- */
+
+/* Sleeps until woken, or for so many seconds if they are > 0. Returns a task if there was one at
+ * the last look; does not sleep if nobody polls. */
+static struct task *idle_sleep(struct worker *worker, double seconds, const struct work_wish *wish)
+{
+    struct work_pool *pool = worker->pool;
+    bool polled = worker->polls;
+    atomic_fetch_add(&pool->parked, 1);
+    work_park_announce(&worker->park);
+    struct task *task = work_find(worker);
+    if (task || atomic_load(&pool->stop) || (wish->done && wish->done(wish->context)) ||
+        (!polled && poller_take(worker)))
+        work_park_cancel(&worker->park);
+    else
+        work_park_sleep(&worker->park, seconds);
+    worker->looked = base_ticks();
+    atomic_fetch_sub(&pool->parked, 1);
+    return task;
+}
+
+void work_idle(struct worker *worker, const struct work_wish *wish)
+{
+    struct work_pool *pool = worker->pool;
+    bool polls = poller_take(worker);
+    if (polls && pool->balance && worker->idle_since)
+        work_beg(worker, base_ticks() - worker->idle_since);
+    if (idle_spin(worker))
+        return;
+    struct task *task = idle_sleep(worker, polls || wish->unheard ? worker->pause : 0, wish);
+    if (worker->pause < LONGEST_PAUSE_SECONDS)
+        worker->pause *= 2;
+    if (!task)
+        return;
+    work_busy_again(worker);
+    work_run(worker, task);
+}

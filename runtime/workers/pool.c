@@ -1,0 +1,159 @@
+/* Starting and stopping the workers of a rank, and what its graph asks of checking mode and of the
+ * communication, which it does not know. A pool that failed half-way is stopped by the same path as
+ * a whole one. */
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/base/thread.h"
+#include "runtime/sched/front.h"
+#include "runtime/workers/internal.h"
+#include "runtime/workers/topology.h"
+
+#include <sched.h>
+#include <stdio.h>
+
+/* Between polls while there is work. */
+#define POLL_SECONDS 5e-6
+/* A poller without a core of its own gives way for so long before it pauses. */
+#define YIELD_SECONDS 1e-4
+/* A rank in the middle of a replay does so for longer: its neighbours are, too, and if each sleeps
+ * until the other wakes, they go on doing so. */
+#define AWAIT_SECONDS 1e-2
+
+/* ---- Start ---- */
+
+void work_scheduler_caller(struct worker *worker, unsigned caller)
+{
+    const struct work_setup *setup = &worker->pool->setup;
+    sched_front_state(setup->scheduler, worker->state, base_guard_caller(setup->guard, caller));
+}
+
+static bool worker_prepare(struct work_pool *pool, unsigned index, int unit)
+{
+    const struct work_setup *setup = &pool->setup;
+    struct worker *worker = &pool->worker[index];
+    size_t lines = (setup->scheduler->state_size + BASE_LINE - 1) / BASE_LINE + 1;
+    worker->pool = pool;
+    worker->index = index;
+    worker->unit = unit;
+    worker->state = pool->states + index * lines * BASE_LINE;
+    worker->ring = trace_ring(setup->trace, index);
+    worker->pause = WORK_FIRST_PAUSE_SECONDS;
+    worker->switches = -1;
+    worker->call = (duite_call){
+        .context = setup->context, .rt = setup->rt, .rank = setup->graph->rank, .worker = index};
+    work_scheduler_caller(worker, 0);
+    if (setup->scheduler->start)
+        setup->scheduler->start(worker->state, index, setup->threads, setup->seed);
+    if (setup->scheduler->look)
+        setup->scheduler->look(worker->state, work_near_of(&pool->near, index));
+    bool queue = work_queue_start(&worker->queue);
+    return work_park_start(&worker->park) && queue;
+}
+
+static int pool_start_threads(struct work_pool *pool)
+{
+    sched_getaffinity(0, sizeof pool->worker[0].binding, &pool->worker[0].binding);
+    for (pool->started = 1; pool->started < pool->setup.threads; pool->started++) {
+        struct worker *worker = &pool->worker[pool->started];
+        char what[64];
+        snprintf(what, sizeof what, "worker thread %u of %u", pool->started, pool->setup.threads);
+        const int code = base_thread_start(&worker->thread, what, work_thread, worker);
+        if (code)
+            return code;
+    }
+    work_cores_bind(pool->worker[0].unit);
+    return DUITE_OK;
+}
+
+static void pool_set_ticks(struct work_pool *pool)
+{
+    pool->tick = base_tick_seconds();
+    pool->poll_ticks = (uint64_t)(POLL_SECONDS / pool->tick);
+    pool->spin_ticks = (uint64_t)(pool->setup.spin_seconds / pool->tick);
+    pool->yield_ticks = (uint64_t)(YIELD_SECONDS / pool->tick);
+    pool->await_ticks = (uint64_t)(AWAIT_SECONDS / pool->tick);
+}
+
+int work_start(struct work_pool **out, const struct work_setup *setup)
+{
+    unsigned n = setup->threads;
+    size_t lines = (setup->scheduler->state_size + BASE_LINE - 1) / BASE_LINE + 1;
+    struct work_pool *pool = *out = base_alloc_zero(sizeof *pool);
+    if (!pool)
+        return base_no_memory("the workers");
+    pool->setup = *setup;
+    pool->setup.cores = NULL; /* the caller's: copied to the workers */
+    pool->main = pthread_self();
+    pool_set_ticks(pool);
+    pool->worker = base_alloc_zero(n * sizeof pool->worker[0]);
+    pool->states = base_alloc_zero(n * lines * BASE_LINE);
+    setup->graph->paths = setup->scheduler->paths;
+    bool fine = pool->worker && pool->states && work_near_start(&pool->near, n, setup->cores) &&
+                work_queue_start(&pool->shared);
+    for (unsigned i = 0; i < n && fine; i++)
+        fine = worker_prepare(pool, i, setup->cores ? setup->cores[i] : -1);
+    if (fine)
+        fine = !work_balance_start(&pool->balance, pool);
+    setup->graph->pool = pool;
+    setup->graph->checks = setup->check != NULL;
+    if (setup->trace && setup->comm)
+        comm_tell(setup->comm, work_note_message);
+    int code = fine ? pool_start_threads(pool) : base_no_memory("the workers");
+    int watched = work_watch_start(pool, code ? 0 : setup->stuck_seconds);
+    return code ? code : watched;
+}
+
+/* ---- Stop ---- */
+
+void work_stop(struct work_pool *pool)
+{
+    if (!pool)
+        return;
+    pool->setup.graph->pool = NULL; /* communication may break later still */
+    atomic_store(&pool->stop, 1);
+    work_watch_stop(pool);
+    for (unsigned i = 1; i < pool->started; i++) {
+        atomic_thread_fence(memory_order_seq_cst);
+        work_park_wake(&pool->worker[i].park);
+        pthread_join(pool->worker[i].thread, NULL);
+    }
+    if (pool->started && pool->worker[0].unit >= 0)
+        sched_setaffinity(0, sizeof pool->worker[0].binding, &pool->worker[0].binding);
+    for (unsigned i = 0; pool->worker && i < pool->setup.threads; i++) {
+        work_queue_stop(&pool->worker[i].queue);
+        if (pool->worker[i].pool)
+            work_park_stop(&pool->worker[i].park);
+    }
+    work_queue_stop(&pool->shared);
+    work_balance_stop(pool);
+    work_near_stop(&pool->near);
+    base_free(pool->worker);
+    base_free(pool->states);
+    base_free(pool);
+}
+
+/* ---- What the graph asks: task/above.h ---- */
+
+int work_check_body(struct work_pool *pool, const duite_kernel *kernel, uint64_t number,
+                    duite_call *call)
+{
+    return check_call(pool->setup.check, &(struct check_task){kernel, number}, call);
+}
+
+int work_expect(struct work_pool *pool, struct worker *worker, struct data_key key, int from,
+                struct data_version *version, struct data_sum *sum, uint32_t packets)
+{
+    const struct comm_target target = {version, sum, from};
+    return comm_expect(pool->setup.comm, worker, key, target, packets);
+}
+
+int work_open(struct work_pool *pool, struct plan_channels *channels)
+{
+    return comm_channels_open(pool->setup.comm, channels);
+}
+
+void work_starved(struct work_pool *pool, const char *what)
+{
+    comm_broke_memory(pool->setup.comm, what);
+}

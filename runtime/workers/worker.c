@@ -1,0 +1,260 @@
+/* A worker owns its queue, its scheduler's state and its counters; others reach it through its
+ * inbox and its park only. One turn of its loop: it finds a task (in its own queue, the shared one,
+ * or with a victim that the scheduler names), runs it and what runs inline after it, and looks for
+ * messages in between; without a task it idles (idle.c). */
+#include "runtime/base/clock.h"
+#include "runtime/base/pool.h"
+#include "runtime/sched/front.h"
+#include "runtime/workers/internal.h"
+
+/* Tasks run inline, one after another without a look at the queues, while something lies there; and
+ * among these, those before which the clock is read. */
+enum { LONGEST_INLINE = 64, CLOCKED = 16 };
+
+/* Tries of a scheduler that names victims, in one round. */
+enum { MOST_ATTEMPTS = 64, MOST_ATTEMPTS_A_WORKER = 16 };
+
+/* ---- Ready: a task goes to a queue ---- */
+
+static duite_ready ready_describe(const struct task_graph *graph, const struct task *task)
+{
+    const char *name =
+        task_has_body(task) ? graph->kernels[task->kernel]->name : task_own_name(task->kind);
+    return (duite_ready){.kernel = name,
+                         .number = task->number,
+                         .block = task->block,
+                         .priority = task->priority,
+                         .cost = task->cost,
+                         .path = task_path(task),
+                         .warm = plan_task_warm(task)};
+}
+
+static void ready_place(struct worker *worker, struct task *task, const duite_ready *ready)
+{
+    struct work_pool *pool = worker->pool;
+    unsigned queue = pool->setup.scheduler->place(worker->state, ready);
+    work_bump(&worker->counts.placed, 1);
+    /* What the main thread forks is left for others to take all at once, which costs both sides
+     * less than a deque that one fills as the other empties it. */
+    if (queue == worker->index && worker->finishing)
+        work_queue_push(&worker->queue, task);
+    else if (queue < pool->setup.threads)
+        work_queue_put(&pool->worker[queue].queue, task);
+    else
+        work_queue_put(&pool->shared, task);
+    work_wake_one(pool, queue);
+}
+
+/* Whether the task went to another rank. */
+static bool ready_goes_away(struct worker *worker, struct task *task)
+{
+    if (task->kind == TASK_GUEST)
+        work_guest_came(worker->pool->balance, task);
+    return work_placed_away(worker, task);
+}
+
+void work_ready(struct work_pool *pool, struct worker *worker, struct task *task)
+{
+    if (task_to_send(task)) {
+        comm_send(pool->setup.comm, task);
+        return;
+    }
+    if (task_is_channel(task)) {
+        const bool noted = work_note_messages_begin(worker);
+        comm_channel_ready(pool->setup.comm, worker, task);
+        work_note_messages_end(worker, noted);
+        return;
+    }
+    if (pool->balance && ready_goes_away(worker, task))
+        return;
+    duite_ready ready = ready_describe(pool->setup.graph, task);
+    if (worker->may_chain && !worker->next && pool->setup.scheduler->chain(worker->state, &ready) &&
+        (!worker->waits || task_may_run(worker->waits, task)))
+        worker->next = task;
+    else
+        ready_place(worker, task, &ready);
+}
+
+/* ---- Find ---- */
+
+bool work_is_endless(struct work_pool *pool, unsigned attempt)
+{
+    if (attempt < MOST_ATTEMPTS + MOST_ATTEMPTS_A_WORKER * pool->setup.threads)
+        return false;
+    atomic_store_explicit(&pool->endless, 1, memory_order_relaxed);
+    return true;
+}
+
+static void steal_count(struct worker *worker, unsigned victim)
+{
+    const struct work_near *near = &worker->pool->near;
+    work_bump(&worker->counts.stolen, 1);
+    work_bump(&worker->counts.far, work_near_is_far(near, worker->index, victim));
+    trace_mark(worker->ring, TRACE_STEAL, victim, 0);
+}
+
+/* A task, or NULL: in its own queue, the shared one, a victim's. */
+static struct task *worker_find(struct worker *worker)
+{
+    struct work_pool *pool = worker->pool;
+    const duite_scheduler *scheduler = pool->setup.scheduler;
+    duite_end end = scheduler->serve(worker->state);
+    struct work_queue *queue = &worker->queue;
+    struct task *task = work_queue_take(queue, end);
+    if (!task)
+        task = work_queue_take_shared(queue = &pool->shared, end);
+    for (unsigned attempt = 0; !task; attempt++) {
+        unsigned victim = scheduler->victim(worker->state, attempt);
+        if (victim >= pool->setup.threads || work_is_endless(pool, attempt))
+            break;
+        if (victim == worker->index)
+            continue;
+        task = work_queue_steal(queue = &pool->worker[victim].queue, &worker->queue);
+        if (task)
+            steal_count(worker, victim);
+    }
+    worker->left_some = task && work_queue_ranks(queue);
+    return task;
+}
+
+/* ---- Run ---- */
+
+bool work_poll(struct worker *worker)
+{
+    struct comm *comm = worker->pool->setup.comm;
+    if (!comm)
+        return false;
+    const bool noted = work_note_messages_begin(worker), came = comm_poll(comm, worker);
+    work_note_messages_end(worker, noted);
+    return came;
+}
+
+/* Tasks that run inline, moved to another worker, take all their data along: they stay as long as
+ * this one has nothing else to do. */
+static bool inline_goes_on(struct worker *worker, unsigned length)
+{
+    return length % LONGEST_INLINE ||
+           (worker->index && !worker->waits && work_queue_is_empty(&worker->queue) &&
+            work_queue_is_empty(&worker->pool->shared));
+}
+
+/* When the inline task after this one begins: reading the clock costs as much as all else that lies
+ * between two short tasks, so mostly that time is taken to be what it was before. */
+static uint64_t inline_start(struct worker *worker, unsigned length, uint64_t end)
+{
+    if (!worker->pool->setup.comm && length % CLOCKED)
+        return end + worker->gap;
+    uint64_t now = base_ticks();
+    worker->gap = now - end;
+    return now;
+}
+
+/* Runs the task's body and adds up what it took: of its time in the body, `own` is what its worker
+ * spent neither in other tasks nor idle meanwhile. Returns when it was over. The task is not
+ * finished yet. */
+static uint64_t run_body(struct worker *worker, struct task *task, uint64_t start, bool inlined)
+{
+    struct work_pool *pool = worker->pool;
+    uint64_t outer = worker->within;
+    worker->within = 0;
+    const struct task *below = work_enters(worker, task);
+    uint32_t kind = task->kind;
+    bool body = task_run(pool->setup.graph, worker, task, &worker->call);
+    work_leaves(worker, below);
+    uint64_t end = base_ticks(), took = end > start ? end - start : 0;
+    uint64_t own = took > worker->within ? took - worker->within : 0;
+    work_warms(worker, task, took);
+    if (worker->ring)
+        work_note_task(worker, task,
+                       &(struct work_ran){start, took, took - own, kind, body, inlined});
+    worker->within = outer + took;
+    work_bump(&worker->counts.tasks, body);
+    work_bump(&worker->counts.busy, body ? own : 0);
+    if (pool->balance && body)
+        work_learn(worker, task, own);
+    return end;
+}
+
+/* What the task leaves becomes ready: one of these tasks may be the worker's next. */
+static void run_finish(struct worker *worker, struct task *task, unsigned length)
+{
+    struct work_pool *pool = worker->pool;
+    worker->finishing = true;
+    worker->may_chain = inline_goes_on(worker, length);
+    if (task_to_send(task))
+        comm_send(pool->setup.comm, task);
+    else
+        task_finish(pool->setup.graph, worker, task);
+    worker->finishing = false;
+    worker->may_chain = false;
+}
+
+/* Between two tasks: messages, and tasks for ranks that asked, now and then. */
+static void run_poll(struct worker *worker, struct comm *comm, uint64_t now)
+{
+    if (!comm_posted(comm) && now - worker->polled <= worker->pool->poll_ticks)
+        return;
+    worker->polled = now;
+    work_poll(worker);
+    if (worker->pool->balance)
+        work_serve(worker);
+}
+
+void work_run(struct worker *worker, struct task *task)
+{
+    struct work_pool *pool = worker->pool;
+    struct comm *comm = pool->setup.comm;
+    if (worker->left_some) {
+        atomic_thread_fence(memory_order_seq_cst);
+        work_wake_one(pool, DUITE_NO_QUEUE);
+    }
+    worker->left_some = false;
+    uint64_t start = base_ticks();
+    for (unsigned length = 1; task; length++) {
+        if (pool->balance && work_begins(worker, task))
+            start = base_ticks();
+        uint64_t end = run_body(worker, task, start, length > 1);
+        run_finish(worker, task, length);
+        if (comm)
+            run_poll(worker, comm, end);
+        task = worker->next;
+        worker->next = NULL;
+        work_bump(&worker->counts.chained, task != NULL);
+        bool wrote = worker->ring && work_note_relieve(worker);
+        start = wrote ? base_ticks() : inline_start(worker, length, end);
+    }
+}
+
+/* ---- The loop ---- */
+
+struct task *work_find(struct worker *worker)
+{
+    return worker_find(worker);
+}
+
+void work_look(struct worker *worker, const struct work_wish *wish)
+{
+    struct task *task = worker_find(worker);
+    if (task) {
+        work_busy_again(worker);
+        work_run(worker, task);
+    } else if (work_poll(worker)) {
+        work_stir(worker);
+    } else {
+        work_idle(worker, wish);
+    }
+}
+
+void *work_thread(void *argument)
+{
+    struct worker *worker = argument;
+    struct work_pool *pool = worker->pool;
+    work_cores_bind(worker->unit);
+    base_guard_here(base_guard_caller(pool->setup.guard, worker->index));
+    work_scheduler_caller(worker, worker->index);
+    work_balance_caller(worker, worker->index);
+    while (!atomic_load_explicit(&pool->stop, memory_order_acquire))
+        work_look(worker, &(struct work_wish){0});
+    base_pool_thread_end();
+    return NULL;
+}

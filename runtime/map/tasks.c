@@ -9,7 +9,7 @@
 
 static bool is_asked(const struct plan_tasks *tasks, size_t i)
 {
-    return tasks->kernel[i] && !(tasks->cost[i] > 0);
+    return tasks->program[i] && !(tasks->cost[i] > 0);
 }
 
 /* The seconds of a block are those of its tasks that do not say them, each the same. */
@@ -72,7 +72,7 @@ int map_tasks_find(struct map_tasks *tasks, const struct plan_record *record,
     if (!tasks->block)
         return base_no_memory("the tasks of a recorded graph");
     for (size_t i = 0; i < all->n; i++)
-        tasks->block[i] = all->owner[i] == PLAN_NOBODY
+        tasks->block[i] = all->owner[i] == PLAN_NONE
                               ? DUITE_NO_BLOCK
                               : blocks->of[record->object[all->owner[i]].bound.slot];
     return map_tasks_complete(tasks, blocks->n, seconds);

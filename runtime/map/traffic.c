@@ -33,12 +33,13 @@ int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks
     for (size_t i = 0; i < record->n_forks && fine; i++) {
         const struct plan_recorded_fork *fork = &record->fork[i];
         uint32_t owner = plan_recorded_owner(record, fork);
-        if (owner == PLAN_NOBODY)
+        if (owner == PLAN_NONE)
             continue;
         uint32_t own = blocks->of[record->object[owner].bound.slot];
         for (uint32_t k = 0; k < fork->n && fine; k++) {
-            uint32_t slot = record->object[record->use[fork->first + k]].bound.slot;
-            if (plan_recorded_mode(record->graph, fork, k) != DUITE_W)
+            const struct plan_access *access = &record->access[fork->first + k];
+            uint32_t slot = record->object[access->object].bound.slot;
+            if (access->mode != DUITE_W)
                 fine = map_traffic_read(traffic, own, blocks->of[slot],
                                         rounds * (double)objects[slot].room);
         }

@@ -4,10 +4,8 @@
  * version, which nobody writes to; who would write on from there gets a copy first. What is
  * overwritten before its message can go is copied aside. The edges follow from these places as on
  * one rank. */
-#include "runtime/plan/spread.h"
-#include "runtime/task/internal.h"
-
 #include "runtime/base/memory.h"
+#include "runtime/plan/spread.h"
 
 #include <stdlib.h>
 
@@ -17,7 +15,7 @@ typedef uint64_t moment;
 #define NEVER UINT64_MAX
 
 struct channel {
-    struct plan_draft_channel is;
+    struct plan_round_channel is;
     uint32_t next;      /* of the same peer and way, plus 1 */
     moment ready;       /* all that it carries is made */
     size_t first, last; /* items, plus 1 */
@@ -35,7 +33,7 @@ struct item {
 
 struct local {
     const struct spread *spread;
-    struct plan_draft *draft;
+    struct plan_round *draft;
     struct channel *channel;
     size_t n_channels, channels_capacity;
     uint32_t *heads; /* by peer and way: the first channel, plus 1 */
@@ -47,7 +45,7 @@ struct local {
     uint32_t *own;                /* by object: the version in its own place */
     size_t *leaf;                 /* by contribution: its place here, plus 1; 0: none yet */
     struct spread_piece *piece;   /* scratch: those of one sum */
-    struct plan_draft_piece *merge;
+    struct plan_subtree *merge;
     uint32_t *order; /* channels that send, by the moment they are ready */
     size_t n_sends, next_channel;
     bool failed;
@@ -118,7 +116,7 @@ static void move_version(struct local *l, uint32_t version, moment made)
 static void move_pieces(struct local *l, size_t n)
 {
     const struct spread *spread = l->spread;
-    const struct plan_draft_node *node = &spread->round->node[n];
+    const struct plan_round_node *node = &spread->round->node[n];
     const struct plan_node_use *use = &spread->round->use[node->first_use];
     const uint64_t *set = spread_set(spread, n);
     size_t pieces = spread_pieces(spread, n, l->piece);
@@ -141,15 +139,15 @@ static void move_pieces(struct local *l, size_t n)
 static void move_all(struct local *l)
 {
     const struct spread *spread = l->spread;
-    const struct plan_draft *round = spread->round;
+    const struct plan_round *round = spread->round;
     for (uint32_t i = 0; i < round->n_objects; i++) {
         l->own[i] = i;
         move_version(l, i, 0);
     }
     for (size_t n = 0; n < round->n_nodes; n++) {
-        const struct plan_draft_node *node = &round->node[n];
+        const struct plan_round_node *node = &round->node[n];
         bool here = spread_runs(spread, n, spread->rank);
-        if (node->kind == TASK_NODE_SUM)
+        if (node->kind == PLAN_SUM)
             move_pieces(l, n);
         for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
             if (spread->makes[i] == SPREAD_NONE)
@@ -167,14 +165,12 @@ static void move_all(struct local *l)
 
 static size_t new_place(struct local *l, uint32_t object, const duite_law *law)
 {
-    size_t place = l->draft->n_places++;
-    l->draft->place[place] = (struct plan_draft_place){.object = object, .law = law};
-    return place;
+    return plan_round_buffer(l->draft, object, law);
 }
 
 static size_t leaf_place(struct local *l, size_t round_place)
 {
-    const struct plan_draft *round = l->spread->round;
+    const struct plan_round *round = l->spread->round;
     size_t *leaf = &l->leaf[round_place - round->n_objects];
     if (!*leaf)
         *leaf = 1 + new_place(l, round->place[round_place].object, round->place[round_place].law);
@@ -183,9 +179,10 @@ static size_t leaf_place(struct local *l, size_t round_place)
 
 static void add_copy(struct local *l, size_t fork, size_t from, size_t to)
 {
-    struct plan_draft_node *node = plan_draft_node(l->draft, TASK_NODE_COPY, fork);
-    plan_draft_use(l->draft, node, from, true, false);
-    plan_draft_use(l->draft, node, to, false, true);
+    struct plan_round_node *node = plan_round_add(l->draft, PLAN_COPY, fork);
+    node->owner = l->draft->place[from].object;
+    plan_round_use(l->draft, node, from, true, false);
+    plan_round_use(l->draft, node, to, false, true);
 }
 
 static int by_moment(const void *a, const void *b, void *context)
@@ -199,7 +196,7 @@ static int by_moment(const void *a, const void *b, void *context)
 /* The channels of the draft, and memory for what is received. */
 static void begin(struct local *l)
 {
-    struct plan_draft *draft = l->draft;
+    struct plan_round *draft = l->draft;
     for (uint32_t i = 0; i < l->n_channels; i++) {
         draft->channel[i] = l->channel[i].is;
         if (l->channel[i].is.sends)
@@ -221,11 +218,10 @@ static void begin(struct local *l)
 static void add_channel(struct local *l, uint32_t channel, size_t fork)
 {
     bool sends = l->channel[channel].is.sends;
-    struct plan_draft_node *node =
-        plan_draft_node(l->draft, sends ? TASK_NODE_SEND : TASK_NODE_RECEIVE, fork);
+    struct plan_round_node *node = plan_round_add(l->draft, sends ? PLAN_SEND : PLAN_RECEIVE, fork);
     node->channel = channel;
     for (size_t i = l->channel[channel].first; i; i = l->item[i - 1].next)
-        plan_draft_use(l->draft, node, l->item[i - 1].place, sends, !sends);
+        plan_round_use(l->draft, node, l->item[i - 1].place, sends, !sends);
 }
 
 /* What was made at this moment is copied aside if it is overwritten before its message goes; the
@@ -265,7 +261,7 @@ static size_t read_place(const struct local *l, uint32_t version)
 static void bring_home(struct local *l, size_t n)
 {
     const struct spread *spread = l->spread;
-    const struct plan_draft_node *node = &spread->round->node[n];
+    const struct plan_round_node *node = &spread->round->node[n];
     for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
         if (spread->makes[i] == SPREAD_NONE || spread->reads[i] == SPREAD_NONE)
             continue;
@@ -276,39 +272,39 @@ static void bring_home(struct local *l, size_t n)
 }
 
 /* The contributions of this rank become pieces where that takes more than one. */
-static void add_partial(struct local *l, const struct plan_draft_node *node, size_t pieces)
+static void add_partial(struct local *l, const struct plan_round_node *node, size_t pieces)
 {
-    const struct plan_draft *round = l->spread->round;
+    const struct plan_round *round = l->spread->round;
     const struct plan_node_use *leaf = &round->use[node->first_use + 1];
-    struct plan_draft_node *made = NULL;
+    struct plan_round_node *made = NULL;
     for (size_t i = 0; i < pieces; i++) {
         const struct spread_piece *piece = &l->piece[i];
         if (piece->rank != l->spread->rank || piece->n == 1)
             continue;
         if (!made)
-            made = plan_draft_node(l->draft, TASK_NODE_PARTIAL, node->fork);
+            made = plan_round_add(l->draft, PLAN_PARTIAL, node->fork);
         made->law = round->place[leaf->place].law;
         size_t n = 0;
         for (uint32_t k = 0; k < piece->n; k++) {
             uint64_t first = piece->tree.first + k;
-            l->merge[n] =
-                (struct plan_draft_piece){.first = first, .param = (uint32_t)made->n_uses};
-            plan_draft_use(l->draft, made, leaf_place(l, leaf[first].place), true, true);
-            n = plan_draft_push(l->draft, made, l->merge, n);
+            l->merge[n] = (struct plan_subtree){.first = first, .param = (uint32_t)made->n_uses};
+            plan_round_use(l->draft, made, leaf_place(l, leaf[first].place), true, true);
+            n = plan_reduce_push(l->draft, made, l->merge, n);
         }
-        plan_draft_fold(l->draft, made, l->merge, n);
+        plan_reduce_fold(l->draft, made, l->merge, n);
     }
 }
 
 /* All pieces, own ones and received ones, and the object. */
-static void add_whole(struct local *l, const struct plan_draft_node *node, size_t pieces)
+static void add_whole(struct local *l, const struct plan_round_node *node, size_t pieces)
 {
-    const struct plan_draft *round = l->spread->round;
+    const struct plan_round *round = l->spread->round;
     const struct plan_node_use *leaf = &round->use[node->first_use + 1];
-    struct plan_draft_node *made = plan_draft_node(l->draft, TASK_NODE_SUM, node->fork);
+    struct plan_round_node *made = plan_round_add(l->draft, PLAN_SUM, node->fork);
+    made->owner = node->owner;
     size_t n = 0;
     made->law = round->place[leaf->place].law;
-    plan_draft_use(l->draft, made, round->use[node->first_use].place, true, true);
+    plan_round_use(l->draft, made, round->use[node->first_use].place, true, true);
     for (size_t i = 0; i < pieces; i++) {
         const struct spread_piece *piece = &l->piece[i];
         size_t place;
@@ -322,19 +318,20 @@ static void add_whole(struct local *l, const struct plan_draft_node *node, size_
                 l->next_piece++;
             place = l->item[l->next_piece++].place;
         }
-        plan_draft_use(l->draft, made, place, true, true);
-        n = plan_draft_push(l->draft, made, l->merge, n);
+        plan_round_use(l->draft, made, place, true, true);
+        n = plan_reduce_push(l->draft, made, l->merge, n);
     }
-    plan_draft_fold(l->draft, made, l->merge, n);
+    plan_reduce_fold(l->draft, made, l->merge, n);
 }
 
 /* A task, a set, a view or the flag. */
 static void add_plain(struct local *l, size_t n)
 {
     const struct spread *spread = l->spread;
-    const struct plan_draft *round = spread->round;
-    const struct plan_draft_node *node = &round->node[n];
-    struct plan_draft_node *made = plan_draft_node(l->draft, node->kind, node->fork);
+    const struct plan_round *round = spread->round;
+    const struct plan_round_node *node = &round->node[n];
+    struct plan_round_node *made = plan_round_add(l->draft, node->kind, node->fork);
+    made->owner = node->owner;
     for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
         const struct plan_node_use *use = &round->use[i];
         size_t place = use->place;
@@ -342,7 +339,7 @@ static void add_plain(struct local *l, size_t n)
             place = leaf_place(l, use->place);
         else if (!use->writes)
             place = read_place(l, spread->reads[i]);
-        plan_draft_use(l->draft, made, place, use->reads, use->writes);
+        plan_round_use(l->draft, made, place, use->reads, use->writes);
     }
 }
 
@@ -365,14 +362,14 @@ static size_t cut(struct local *l, size_t n)
 static void add_nodes(struct local *l)
 {
     const struct spread *spread = l->spread;
-    const struct plan_draft *round = spread->round;
+    const struct plan_round *round = spread->round;
     for (uint32_t i = 0; i < l->n_channels; i++)
         if (!l->channel[i].is.sends)
             add_channel(l, i, 0);
     send_at(l, 0, 0);
     for (size_t n = 0; n < round->n_nodes; n++) {
-        const struct plan_draft_node *node = &round->node[n];
-        bool sum = node->kind == TASK_NODE_SUM, here = spread_runs(spread, n, spread->rank);
+        const struct plan_round_node *node = &round->node[n];
+        bool sum = node->kind == PLAN_SUM, here = spread_runs(spread, n, spread->rank);
         size_t pieces = sum && !spread_is_dead(spread, n) ? cut(l, n) : 0;
         if (sum)
             add_partial(l, node, pieces);
@@ -393,7 +390,7 @@ static void add_nodes(struct local *l)
 static bool alloc(struct local *l)
 {
     const struct spread *spread = l->spread;
-    const struct plan_draft *round = spread->round;
+    const struct plan_round *round = spread->round;
     size_t leaves = round->n_places - round->n_objects + 1;
     l->heads = base_alloc_zero(2 * (size_t)spread->n_ranks * sizeof *l->heads);
     l->replica = base_alloc(spread->n_versions * sizeof *l->replica + 1);
@@ -411,12 +408,13 @@ static bool alloc(struct local *l)
 
 static bool room(struct local *l)
 {
-    const struct plan_draft *round = l->spread->round;
+    const struct plan_round *round = l->spread->round;
     size_t nodes = round->n_nodes, uses = round->n_uses, items = l->n_items;
     l->order = base_alloc((l->n_channels + 1) * sizeof *l->order);
     return l->order &&
-           plan_draft_room(l->draft, 2 * nodes + uses + items + l->n_channels, 5 * uses + 3 * items,
-                           round->n_places + items, 2 * uses + 1, l->n_channels);
+           (l->draft->channel = base_alloc((l->n_channels + 1) * sizeof *l->draft->channel)) &&
+           plan_round_room(l->draft, 2 * nodes + uses + items + l->n_channels, 5 * uses + 3 * items,
+                           round->n_places + items, 2 * uses + 1);
 }
 
 static void free_local(struct local *l)
@@ -433,10 +431,10 @@ static void free_local(struct local *l)
     base_free(l->order);
 }
 
-bool spread_local(const struct spread *spread, struct plan_draft *draft)
+bool spread_local(const struct spread *spread, struct plan_round *draft)
 {
     struct local l = {.spread = spread, .draft = draft};
-    draft->n_places = draft->n_objects = spread->round->n_objects;
+    draft->source = spread->round->source;
     bool fine = alloc(&l);
     if (fine)
         move_all(&l);

@@ -1,6 +1,6 @@
-/* A recorded graph as dot: the nodes and edges of a draft, the same on any number of ranks, whether
- * a plan would be made of it or not. */
-#include "runtime/plan/draft.h"
+/* A recorded graph as dot: the nodes and edges of its round, the same on any number of ranks,
+ * whether a plan would be made of it or not. */
+#include "runtime/plan/record.h"
 
 #include "runtime/base/error.h"
 #include "runtime/data/law.h"
@@ -32,7 +32,7 @@ static void print_fork(const struct plan_record *record, const struct plan_recor
         fprintf(file, "\\nat rank %d", fork->how.at);
     for (uint32_t k = 0; k < fork->n; k++) {
         duite_mode mode = sets ? DUITE_W : data_mode_of(kernel, k);
-        print_use(record, record->use[fork->first + k], mode, file);
+        print_use(record, record->access[fork->first + k].object, mode, file);
         if (task_immediate(mode) == DUITE_CW) {
             fputs(" ", file);
             print_name(file, data_law_of(kernel, k)->name);
@@ -40,27 +40,27 @@ static void print_fork(const struct plan_record *record, const struct plan_recor
     }
 }
 
-static void print_draft(const struct plan_draft *draft, FILE *file)
+static void print_round(const struct plan_record *record, const struct plan_round *round,
+                        FILE *file)
 {
-    const struct plan_record *record = draft->record;
     fputs("digraph duite {\n    node [shape=box];\n", file);
-    for (size_t i = 0; i < draft->n_nodes; i++) {
-        const struct plan_draft_node *node = &draft->node[i];
+    for (size_t i = 0; i < round->n_nodes; i++) {
+        const struct plan_round_node *node = &round->node[i];
         fprintf(file, "    n%zu [label=\"", i);
-        if (node->kind == TASK_NODE_SUM) {
+        if (node->kind == PLAN_SUM) {
             fputs("duite_sum", file);
-            print_use(record, draft->use[node->first_use].place, DUITE_RW, file);
-        } else if (node->kind == TASK_NODE_VIEW) {
+            print_use(record, round->use[node->first_use].place, DUITE_RW, file);
+        } else if (node->kind == PLAN_VIEW) {
             fputs("duite_view", file);
-            print_use(record, draft->use[node->first_use].place, DUITE_R, file);
-            print_use(record, draft->use[node->first_use + 1].place, DUITE_W, file);
+            print_use(record, round->use[node->first_use].place, DUITE_R, file);
+            print_use(record, round->use[node->first_use + 1].place, DUITE_W, file);
         } else {
             print_fork(record, &record->fork[node->fork], file);
         }
-        fputs(node->kind == TASK_NODE ? "\"];\n" : "\", shape=ellipse];\n", file);
+        fputs(node->kind == PLAN_TASK ? "\"];\n" : "\", shape=ellipse];\n", file);
     }
-    for (size_t i = 0; i < draft->n_edges; i++) {
-        const struct plan_draft_edge *edge = &draft->edge[i];
+    for (size_t i = 0; i < round->n_edges; i++) {
+        const struct plan_round_edge *edge = &round->edge[i];
         fprintf(file, "    n%u -> n%u%s;\n", edge->from, edge->to,
                 edge->cyclic ? " [style=dashed, constraint=false]" : "");
     }
@@ -69,13 +69,16 @@ static void print_draft(const struct plan_draft *draft, FILE *file)
 
 int plan_record_print(const struct plan_record *record, FILE *file)
 {
-    struct plan_draft draft = {.record = record};
+    struct plan_source source;
+    struct plan_round round = {0};
     int code = DUITE_OK;
-    if (!plan_draft_make(&draft, record->n_objects, 0))
+    if (!plan_record_source(record, NULL, &source) || !plan_lower(&round, &source) ||
+        !plan_edges(&round))
         code = base_no_memory("a recorded graph");
     else
-        print_draft(&draft, file);
-    plan_draft_free(&draft);
+        print_round(record, &round, file);
+    plan_round_free(&round);
+    plan_source_free(&source);
     if (!code && (fflush(file) || ferror(file)))
         code = base_error(DUITE_E_SYSTEM, "duite_graph_print: the file cannot be written");
     return code;

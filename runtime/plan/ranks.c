@@ -2,6 +2,7 @@
  * which object's value must be where when a round begins, and where it is when the last one is
  * over. What is not written stays where it is read; of what is written, the value lies before and
  * after each round where its last writer runs, and goes from there to who reads it first. */
+#include "runtime/plan/replay.h"
 #include "runtime/plan/spread.h"
 #include "runtime/task/internal.h"
 
@@ -41,33 +42,31 @@ static void take_sets(struct plan *plan, const struct spread *spread)
             plan->channels.phases = (int)spread->phase[n] + 1;
 }
 
-bool plan_spread(struct plan *plan, struct plan_draft *draft, const duite_object *flag)
+bool plan_spread(struct plan *plan, const struct plan_round *round, struct plan_round *part,
+                 const struct plan_record *record, const duite_object *flag)
 {
-    struct plan_draft round = {.record = draft->record, .decides = draft->decides};
-    struct spread spread = {.graph = plan->graph, .record = draft->record, .round = &round};
-    bool fine = plan_draft_round(&round, plan->n_objects, plan->flag_place) &&
-                spread_make(&spread, flag) && alloc_sets(plan, spread.words) &&
-                spread_local(&spread, draft) && plan_draft_edges(draft);
+    struct spread spread = {.graph = plan->graph, .record = record, .round = round};
+    bool fine =
+        spread_make(&spread, flag) && alloc_sets(plan, spread.words) && spread_local(&spread, part);
     if (fine)
         take_sets(plan, &spread);
     spread_free(&spread);
-    plan_draft_free(&round);
     return fine;
 }
 
-int plan_open(struct plan *plan, const struct plan_draft *draft)
+int plan_open(struct plan *plan, const struct plan_round *part)
 {
     struct plan_channels *channels = &plan->channels;
-    channels->channel = base_alloc((draft->n_channels + 1) * sizeof *channels->channel);
+    channels->channel = base_alloc((part->n_channels + 1) * sizeof *channels->channel);
     if (!channels->channel)
         return DUITE_E_MEMORY;
-    channels->n = draft->n_channels;
-    for (size_t i = 0; i < draft->n_nodes; i++) {
+    channels->n = part->n_channels;
+    for (size_t i = 0; i < part->n_nodes; i++) {
         struct task *task = plan_task(plan, i);
         if (!task_is_channel(task))
             continue;
-        const struct plan_draft_channel *from = &draft->channel[draft->node[i].channel];
-        struct plan_channel *channel = &channels->channel[draft->node[i].channel];
+        const struct plan_round_channel *from = &part->channel[part->node[i].channel];
+        struct plan_channel *channel = &channels->channel[part->node[i].channel];
         *channel = (struct plan_channel){.node = task,
                                          .peer = from->peer,
                                          .tag = (int)from->phase,

@@ -6,6 +6,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/data/law.h"
 #include "runtime/data/mode.h"
 #include "runtime/data/view.h"
 
@@ -35,7 +36,7 @@ void plan_record_clear(struct plan_record *record, struct worker *worker)
     plan_drop(record->plan, worker);
     plan_record_forget_changes(record);
     free(record->fork);
-    free(record->use);
+    free(record->access);
     free(record->args);
     free(record->call);
     free(record->object);
@@ -66,7 +67,8 @@ static bool reserve(struct plan_record *record, size_t n, size_t bytes)
     void *moved;
     return record->index && ROOM(fork, forks_capacity, record->n_forks + 1) &&
            ROOM(call, calls_capacity, record->n_calls + 1) &&
-           ROOM(use, uses_capacity, record->n_uses + n + 1) && ROOM(names, names_capacity, n + 1) &&
+           ROOM(access, accesses_capacity, record->n_accesses + n + 1) &&
+           ROOM(names, names_capacity, n + 1) &&
            ROOM(object, objects_capacity, record->n_objects + 2 * n + 1) &&
            ROOM(args, args_capacity, record->args_bytes + bytes + 1);
 #undef ROOM
@@ -122,45 +124,29 @@ static void use_view(struct plan_record *record, duite_object name)
     record->views = true;
 }
 
-static void use(struct plan_record *record, duite_object name, duite_mode mode)
+static void use(struct plan_record *record, duite_object name, duite_mode mode,
+                const duite_law *law)
 {
     uint32_t index = index_of(record, name);
-    record->use[record->n_uses++] = index;
+    record->access[record->n_accesses++] = (struct plan_access){index, mode, law};
     record->object[index].named = true;
     note(&record->object[index], mode);
-}
-
-duite_mode plan_recorded_mode(const struct task_graph *graph, const struct plan_recorded_fork *fork,
-                              uint32_t k)
-{
-    return fork->kernel == PLAN_SETS
-               ? DUITE_W
-               : task_immediate(data_mode_of(graph->kernels[fork->kernel], k));
 }
 
 uint32_t plan_recorded_owner(const struct plan_record *record,
                              const struct plan_recorded_fork *fork)
 {
-    uint32_t first_read = PLAN_NOBODY;
     if (fork->how.at != TASK_ANYWHERE || fork->kernel == PLAN_SETS ||
         record->graph->kernels[fork->kernel]->replicated)
-        return PLAN_NOBODY;
-    for (uint32_t k = 0; k < fork->n; k++) {
-        duite_mode mode = plan_recorded_mode(record->graph, fork, k);
-        uint32_t object = record->use[fork->first + k];
-        if (mode == DUITE_W || mode == DUITE_RW)
-            return object;
-        if (mode == DUITE_R && first_read == PLAN_NOBODY)
-            first_read = object;
-    }
-    return first_read;
+        return PLAN_NONE;
+    return plan_owner(record->access + fork->first, fork->n);
 }
 
 /* The object that it runs for keeps its home, and so does whatever is bound to it. */
 static void stay(struct plan_record *record, const struct plan_recorded_fork *fork)
 {
     uint32_t owner = plan_recorded_owner(record, fork);
-    if (owner == PLAN_NOBODY)
+    if (owner == PLAN_NONE)
         return;
     struct plan_recorded_object *object = &record->object[owner];
     object->stays = true;
@@ -173,7 +159,7 @@ static struct plan_recorded_fork *append(struct plan_record *record, uint32_t ke
                                          const duite_object *objects, size_t bytes)
 {
     size_t whole = (bytes + 15) / 16 * 16;
-    if (record->n_forks >= UINT32_MAX / 8 || record->n_uses + n >= UINT32_MAX / 8 ||
+    if (record->n_forks >= UINT32_MAX / 8 || record->n_accesses + n >= UINT32_MAX / 8 ||
         !reserve(record, n, whole)) {
         base_no_memory("a recorded graph");
         return NULL;
@@ -183,15 +169,17 @@ static struct plan_recorded_fork *append(struct plan_record *record, uint32_t ke
                                         .how = *how,
                                         .n = (uint32_t)n,
                                         .call = (uint32_t)record->n_calls,
-                                        .first = record->n_uses,
+                                        .first = record->n_accesses,
                                         .args = record->args_bytes};
     record->args_bytes += whole;
     task_mix(record->graph, (uint64_t)kernel << 32 | (uint32_t)how->at);
     for (size_t i = 0; i < n; i++)
         use_view(record, objects[i]);
+    const duite_kernel *body = kernel == PLAN_SETS ? NULL : record->graph->kernels[kernel];
     for (size_t i = 0; i < n; i++) {
+        duite_mode mode = body ? task_immediate(data_mode_of(body, i)) : DUITE_W;
         task_mix(record->graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
-        use(record, objects[i], plan_recorded_mode(record->graph, fork, (uint32_t)i));
+        use(record, objects[i], mode, mode == DUITE_CW ? data_law_of(body, i) : NULL);
     }
     return fork;
 }

@@ -1,6 +1,7 @@
 #ifndef DUITE_GRAPH_RECORD_H
 #define DUITE_GRAPH_RECORD_H
 
+#include "runtime/plan/passes.h"
 #include "runtime/task/task.h"
 
 #include <stdio.h>
@@ -20,7 +21,7 @@ struct plan_recorded_fork {
     uint32_t n;
     struct task_options how;
     uint32_t call; /* forks before it, sets left out */
-    size_t first;  /* of its n objects in `use` */
+    size_t first;  /* of its n objects in `access` */
     size_t args;   /* where its arguments, or the values it sets, lie in `args` */
     bool zeros;    /* it sets zeros */
     size_t count;  /* elements it sets */
@@ -42,16 +43,10 @@ struct plan_recorded_object {
 
 struct plan;
 
-#define PLAN_NOBODY UINT32_MAX
-
-/* The owner rule: the place in record->object that a fork runs for; PLAN_NOBODY: for none, or
- * where it says, or everywhere. */
+/* The place in record->object that a fork runs for by the owner rule; PLAN_NONE: it is a set, or
+ * runs for none, or where it says, or everywhere. */
 uint32_t plan_recorded_owner(const struct plan_record *record,
                              const struct plan_recorded_fork *fork);
-
-/* The mode in which a fork, with its descendants, uses its k-th object. */
-duite_mode plan_recorded_mode(const struct task_graph *graph, const struct plan_recorded_fork *fork,
-                              uint32_t k);
 
 /* The recorded object is a view of one that the graph writes: rounds gather it. */
 static inline bool plan_recorded_gathers(const struct plan_recorded_object *objects,
@@ -74,8 +69,8 @@ struct plan_record {
     struct task_graph *graph;
     struct plan_recorded_fork *fork;
     size_t n_forks, forks_capacity;
-    uint32_t *use; /* objects of all forks, as indices in `object` */
-    size_t n_uses, uses_capacity;
+    struct plan_access *access; /* of all forks */
+    size_t n_accesses, accesses_capacity;
     unsigned char *args;
     size_t args_bytes, args_capacity;
     size_t *call; /* the forks that are not sets: these have numbers */
@@ -126,21 +121,17 @@ int plan_record_args(struct plan_record *record, size_t k, const void *args);
 /* Errors: DUITE_E_OBJECT, DUITE_E_BINDING. */
 int plan_record_bind(struct plan_record *record, duite_object recorded, duite_object object);
 
-/* One round of it: its tasks and what the runtime adds (sets, sums, views) in order, and who reads
- * whose results. Says nothing of ranks. */
-struct plan_tasks {
-    size_t n;
-    const duite_kernel **kernel; /* n: of a task of the program, else NULL */
-    double *cost;    /* n: seconds, as its fork says; 0: not said, or not the program's */
-    uint32_t *owner; /* n: the place in record->object that it runs for, or PLAN_NOBODY */
-    size_t *start;   /* n + 1: of its rows */
-    uint32_t *from;  /* whose result it reads: before it, or, not before it, of the last round */
-    double *bytes;   /* of it */
-};
+/* The record as plain data, with a flag or NULL. It points into the record's accesses, which must
+ * stay meanwhile. False without memory; plan_source_free is due all the same. */
+bool plan_record_source(const struct plan_record *record, const duite_object *flag,
+                        struct plan_source *source);
+void plan_source_free(struct plan_source *source);
 
-/* Errors: memory; plan_tasks_free is due all the same. */
+/* The place of a flag among the objects; behind them if it is none of them. */
+uint32_t plan_record_flag(const struct plan_record *record, duite_object flag);
+
+/* What mappings see of a round of it. Errors: memory; plan_tasks_free is due all the same. */
 int plan_record_tasks(const struct plan_record *record, struct plan_tasks *tasks);
-void plan_tasks_free(struct plan_tasks *tasks);
 
 /* By fork: seconds on the longest path from it to the end of the round, see duite_ready.path; to be
  * freed by base_free. NULL without memory. */

@@ -1,7 +1,7 @@
 /* Running a plan. A node belongs to nobody but the worker that runs it, from the moment its counter
  * came to nothing until it told its last successor; by then it counts for its next round already.
  * The counter goes back to `steady` before that: none of those that count for the next round has
- * run (see replay_draft.c). A replay is over when all sinks of its last round are: each other node
+ * run (see edges.c). A replay is over when all sinks of its last round are: each other node
  * of any round comes before one of these, and a node that still has successors to tell keeps one of
  * them waiting. So what tells last, and what counts the sinks, touches nothing of the plan
  * afterwards.
@@ -83,7 +83,7 @@ static void reset_nodes(struct plan *plan, const struct plan_replay *replay)
         uint32_t owner = plan->owner[i];
         atomic_store_explicit(&task->pending, plan->first[i], memory_order_relaxed);
         task->number = replay->number + plan->call[i];
-        task->block = owner == PLAN_NO_PLACE ? (uint32_t)task->number : replay->block[owner];
+        task->block = owner == PLAN_NONE ? (uint32_t)task->number : replay->block[owner];
         task->node->round = 0;
     }
 }

@@ -6,22 +6,11 @@
 /* A plan: a record compiled to flat arrays, of several ranks for this one's part. Used by this
  * folder only. */
 
-/* A step of a sum: parameter `left` becomes law(left, right). */
-struct plan_merge {
-    uint32_t left, right;
-};
-
 /* All steps of a node that adds. */
 struct plan_tree {
     const duite_law *law;
     const struct plan_merge *merge;
     size_t n;
-};
-
-/* What a node does to a place. */
-struct plan_node_use {
-    uint32_t place;
-    bool reads, writes;
 };
 
 /* The part of a node that is not a task's; it lies in the cache line behind the task. */
@@ -58,8 +47,6 @@ struct plan_place {
     _Atomic uint32_t warm;        /* see duite_ready.warm */
 };
 
-struct plan_draft;
-
 struct plan {
     _Atomic uint32_t refs; /* the record, and each replay on its way */
     struct task_graph *graph;
@@ -72,7 +59,7 @@ struct plan {
     struct task **next;
     uint32_t *first; /* by node: predecessors in the first round */
     uint32_t *call;  /* by node: tasks forked before it, which gives its number */
-    uint32_t *owner; /* by node: the place it runs for, or PLAN_NO_PLACE */
+    uint32_t *owner; /* by node: the place it runs for, or PLAN_NONE */
     struct plan_node_use *use;
     duite_param *param; /* one a use */
     uint32_t *param_of;
@@ -109,8 +96,6 @@ struct plan_replay {
     uint32_t block[];            /* by place */
 };
 
-#define PLAN_NO_PLACE UINT32_MAX
-
 #define PLAN_NODE_AT    ((sizeof(struct task) + 63) / 64 * 64)
 #define PLAN_NODE_BYTES (PLAN_NODE_AT + (sizeof(struct plan_node) + 63) / 64 * 64)
 
@@ -124,7 +109,7 @@ static inline struct plan_place *plan_node_place(const struct task *task)
 {
     const struct plan *plan = task->node->plan;
     const size_t at = (size_t)((const unsigned char *)task - plan->nodes) / PLAN_NODE_BYTES;
-    return plan->owner[at] == PLAN_NO_PLACE ? NULL : &plan->place[plan->owner[at]];
+    return plan->owner[at] == PLAN_NONE ? NULL : &plan->place[plan->owner[at]];
 }
 
 /* What takes less is over before another core has its data: it leaves nothing warm. */
@@ -157,10 +142,11 @@ static inline uint32_t plan_task_warm(const struct task *task)
 struct plan *plan_new(const struct plan_record *record, const duite_object *flag);
 /* Could plan_new have made this plan? */
 bool plan_fits(const struct plan *plan, const struct plan_record *record, const duite_object *flag);
-/* Of several ranks: makes the draft of this rank's part; later, with all nodes there, opens the
- * channels. */
-bool plan_spread(struct plan *plan, struct plan_draft *draft, const duite_object *flag);
-int plan_open(struct plan *plan, const struct plan_draft *draft);
+/* Of several ranks: makes this rank's part of a round, without edges; later, with all nodes there,
+ * opens the channels. */
+bool plan_spread(struct plan *plan, const struct plan_round *round, struct plan_round *part,
+                 const struct plan_record *record, const duite_object *flag);
+int plan_open(struct plan *plan, const struct plan_round *part);
 /* The mode of a whole replay on this rank. */
 duite_mode plan_mode(const struct plan *plan, size_t i);
 /* Sees to it that all ranks whose rounds begin with an object's value get it. */

@@ -57,7 +57,7 @@ int plan_replay_fork(struct plan_record *record, struct worker *worker)
         unsigned char *args = record->args + fork->args;
         duite_object *objects = record->names;
         for (uint32_t k = 0; k < fork->n; k++)
-            objects[k] = record->object[record->use[fork->first + k]].bound;
+            objects[k] = record->object[record->access[fork->first + k].object].bound;
         if (fork->kernel == PLAN_SETS)
             code = task_set_object(&graph->root, worker, objects[0], fork->zeros ? NULL : args,
                                    &fork->count);

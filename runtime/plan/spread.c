@@ -10,8 +10,6 @@
  * that make what it carries. So a packet waits for packets of lower phases only, never in a ring.
  */
 #include "runtime/plan/spread.h"
-#include "runtime/task/internal.h"
-
 #include "runtime/base/memory.h"
 
 #include <string.h>
@@ -36,7 +34,7 @@ void spread_free(struct spread *spread)
 
 static bool alloc(struct spread *spread)
 {
-    const struct plan_draft *round = spread->round;
+    const struct plan_round *round = spread->round;
     size_t nodes = round->n_nodes + 1, uses = round->n_uses + 1, objects = round->n_objects + 1;
     size_t versions = uses + objects, leaves = round->n_places - round->n_objects + 1;
     spread->at = base_alloc(nodes * sizeof *spread->at);
@@ -60,14 +58,14 @@ static bool alloc(struct spread *spread)
 
 static void find_versions(struct spread *spread)
 {
-    const struct plan_draft *round = spread->round;
+    const struct plan_round *round = spread->round;
     for (uint32_t i = 0; i < round->n_objects; i++) {
         spread->version[i] = (struct spread_version){.object = i};
         spread->last[i] = i;
     }
     spread->n_versions = round->n_objects;
     for (size_t n = 0; n < round->n_nodes; n++) {
-        const struct plan_draft_node *node = &round->node[n];
+        const struct plan_round_node *node = &round->node[n];
         for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
             const struct plan_node_use *use = &round->use[i];
             spread->reads[i] = spread->makes[i] = SPREAD_NONE;
@@ -103,44 +101,31 @@ bool spread_is_there(const struct spread *spread, uint32_t version, int rank)
 
 /* ---- Who runs what ---- */
 
-/* Of a task, as fork_checked in fork.c has it. */
-static int owner(const struct spread *spread, const struct plan_draft_node *node)
+static int owner(const struct spread *spread, const struct plan_round_node *node)
 {
-    const struct plan_draft *round = spread->round;
-    int first_read = -1;
-    for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
-        const struct plan_node_use *use = &round->use[i];
-        if (use->place >= round->n_objects)
-            continue;
-        if (use->writes)
-            return spread->home[use->place];
-        if (first_read < 0)
-            first_read = spread->home[use->place];
-    }
-    return first_read < 0 ? 0 : first_read;
+    return node->owner == PLAN_NONE ? 0 : spread->home[node->owner];
 }
 
-static int rank_of_task(const struct spread *spread, const struct plan_draft_node *node)
+static int rank_of_task(const struct spread *spread, const struct plan_round_node *node)
 {
-    const struct plan_recorded_fork *fork = &spread->record->fork[node->fork];
-    if (spread->graph->kernels[fork->kernel]->replicated)
+    const struct plan_source_fork *fork = &spread->round->source->fork[node->fork];
+    if (fork->replicated)
         return SPREAD_MANY;
-    return fork->how.at != TASK_ANYWHERE ? fork->how.at : owner(spread, node);
+    return fork->at != PLAN_BY_OWNER ? fork->at : owner(spread, node);
 }
 
-static int rank_of(const struct spread *spread, const struct plan_draft_node *node)
+static int rank_of(const struct spread *spread, const struct plan_round_node *node)
 {
     const struct plan_node_use *use = &spread->round->use[node->first_use];
     uint32_t maker;
     switch (node->kind) {
-    case TASK_NODE:
+    case PLAN_TASK:
         return rank_of_task(spread, node);
-    case TASK_NODE_SUM: {
-        const struct plan_recorded_object *object = &spread->record->object[use->place];
-        size_t bytes = object->count * data_type_size(object->type);
+    case PLAN_SUM: {
+        size_t bytes = spread->round->source->object[use->place].bytes;
         return bytes <= SMALL_SUM_BYTES ? SPREAD_MANY : spread->home[use->place];
     }
-    case TASK_NODE_VIEW:
+    case PLAN_VIEW:
         maker = spread_maker(spread, spread->reads[node->first_use]);
         return maker == SPREAD_NONE ? spread->home[use->place] : spread->at[maker];
     default:
@@ -151,18 +136,18 @@ static int rank_of(const struct spread *spread, const struct plan_draft_node *no
 /* Those that make what a round begins with may come later in the list: views are placed last. */
 static void place_nodes(struct spread *spread)
 {
-    const struct plan_draft *round = spread->round;
+    const struct plan_round *round = spread->round;
     for (int views = 0; views < 2; views++)
         for (size_t n = 0; n < round->n_nodes; n++) {
-            const struct plan_draft_node *node = &round->node[n];
-            if ((node->kind == TASK_NODE_VIEW) != views)
+            const struct plan_round_node *node = &round->node[n];
+            if ((node->kind == PLAN_VIEW) != views)
                 continue;
             int at = spread->at[n] = rank_of(spread, node);
             if (at == SPREAD_MANY)
                 spread->many[spread->n_many++] = (uint32_t)n;
             else
                 spread_add(spread->set + n * spread->words, at);
-            for (int rank = 0; node->kind == TASK_NODE_FLAG && rank < spread->n_ranks; rank++)
+            for (int rank = 0; node->kind == PLAN_FLAG && rank < spread->n_ranks; rank++)
                 spread_add(spread->set + n * spread->words, rank);
         }
 }
@@ -180,7 +165,7 @@ static bool join(uint64_t *to, const uint64_t *from, size_t words)
 /* What the node reads is needed where it runs. */
 static bool need_inputs(struct spread *spread, size_t n)
 {
-    const struct plan_draft_node *node = &spread->round->node[n];
+    const struct plan_round_node *node = &spread->round->node[n];
     const uint64_t *set = spread_set(spread, n);
     bool changed = false;
     for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
@@ -219,7 +204,7 @@ static void settle(struct spread *spread)
         changed = false;
         for (size_t k = spread->n_many; k-- > 0;) {
             size_t n = spread->many[k];
-            const struct plan_draft_node *node = &spread->round->node[n];
+            const struct plan_round_node *node = &spread->round->node[n];
             for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++)
                 if (spread->makes[i] != SPREAD_NONE)
                     changed |= run_where_needed(spread, n, spread->makes[i]);
@@ -231,9 +216,9 @@ static void settle(struct spread *spread)
 /* A body runs in any case; a set or sum that is overwritten before anybody reads it need not. */
 static bool leaves_something(const struct spread *spread, size_t n)
 {
-    const struct plan_draft_node *node = &spread->round->node[n];
+    const struct plan_round_node *node = &spread->round->node[n];
     uint32_t made = node->n_uses ? spread->makes[node->first_use] : SPREAD_NONE;
-    return node->kind == TASK_NODE ||
+    return node->kind == PLAN_TASK ||
            (made != SPREAD_NONE && spread->last[spread->version[made].object] == made);
 }
 
@@ -284,9 +269,9 @@ static uint32_t leaf_of(const struct spread *spread, const struct plan_node_use 
 }
 
 static uint32_t phase_of_leaves(const struct spread *spread, size_t n,
-                                const struct plan_draft_node *node)
+                                const struct plan_round_node *node)
 {
-    const struct plan_draft *round = spread->round;
+    const struct plan_round *round = spread->round;
     const uint64_t *set = spread_set(spread, n);
     uint32_t phase = 0;
     for (size_t i = node->first_use + 1; i < node->first_use + node->n_uses; i++) {
@@ -301,8 +286,8 @@ static uint32_t phase_of_leaves(const struct spread *spread, size_t n,
 
 static uint32_t phase_of(const struct spread *spread, size_t n, const struct past *pasts)
 {
-    const struct plan_draft_node *node = &spread->round->node[n];
-    uint32_t phase = node->kind == TASK_NODE_SUM ? phase_of_leaves(spread, n, node) : 0;
+    const struct plan_round_node *node = &spread->round->node[n];
+    uint32_t phase = node->kind == PLAN_SUM ? phase_of_leaves(spread, n, node) : 0;
     for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
         uint32_t version = spread->reads[i];
         if (version != SPREAD_NONE) {
@@ -321,7 +306,7 @@ static uint32_t phase_of(const struct spread *spread, size_t n, const struct pas
 
 static void note(const struct spread *spread, size_t n, struct past *pasts)
 {
-    const struct plan_draft_node *node = &spread->round->node[n];
+    const struct plan_round_node *node = &spread->round->node[n];
     uint32_t phase = spread->phase[n];
     int at = spread->at[n];
     for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
@@ -364,7 +349,7 @@ static bool siblings(const struct spread_piece *l, const struct spread_piece *r)
 
 size_t spread_pieces(const struct spread *spread, size_t node, struct spread_piece *piece)
 {
-    const struct plan_draft_node *sum = &spread->round->node[node];
+    const struct plan_round_node *sum = &spread->round->node[node];
     const struct plan_node_use *use = &spread->round->use[sum->first_use + 1];
     uint32_t leaves = (uint32_t)sum->n_uses - 1;
     size_t n = 0;

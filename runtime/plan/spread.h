@@ -1,7 +1,7 @@
 #ifndef DUITE_GRAPH_SPREAD_H
 #define DUITE_GRAPH_SPREAD_H
 
-#include "runtime/plan/draft.h"
+#include "runtime/plan/record.h"
 
 /* A round over all ranks: which ranks run each node, which hold and need each version, and in which
  * phase versions move. Every rank computes the same from the record and the homes. */
@@ -15,7 +15,7 @@ struct spread_version {
 };
 
 struct spread_piece {
-    struct plan_draft_piece tree;
+    struct plan_subtree tree;
     uint32_t n; /* leaves: from tree.first on */
     int rank;   /* that has all of them */
     uint32_t phase;
@@ -24,7 +24,7 @@ struct spread_piece {
 struct spread {
     struct task_graph *graph;
     const struct plan_record *record;
-    const struct plan_draft *round; /* the nodes for all ranks */
+    const struct plan_round *round; /* the nodes for all ranks */
     int rank, n_ranks;
     size_t words; /* of a set of ranks */
     /* By node. */
@@ -85,6 +85,6 @@ bool spread_make(struct spread *spread, const duite_object *flag);
 void spread_free(struct spread *spread);
 
 /* The nodes of this rank in *draft, without edges. False without memory. */
-bool spread_local(const struct spread *spread, struct plan_draft *draft);
+bool spread_local(const struct spread *spread, struct plan_round *draft);
 
 #endif

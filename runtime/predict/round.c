@@ -166,20 +166,19 @@ static bool fill_rows(const struct round *r, struct plan_tasks *tasks)
 
 static bool hand_over(const struct round *r, struct map_tasks *tasks)
 {
-    static const duite_kernel program = {.name = "of the program"};
     struct plan_tasks *all = &tasks->tasks;
     const size_t n = all->n = r->n;
     *tasks = (struct map_tasks){.tasks = {.n = n}};
-    all->kernel = base_alloc_zero((n + 1) * sizeof *all->kernel);
+    all->program = base_alloc_zero((n + 1) * sizeof *all->program);
     all->cost = base_alloc((n + 1) * sizeof *all->cost);
     all->start = base_alloc_zero((n + 1) * sizeof *all->start);
     all->from = base_alloc((r->n_uses + 1) * sizeof *all->from);
     all->bytes = base_alloc((r->n_uses + 1) * sizeof *all->bytes);
     tasks->block = base_alloc((n + 1) * sizeof *tasks->block);
-    if (!all->kernel || !all->cost || !all->start || !all->from || !all->bytes || !tasks->block)
+    if (!all->program || !all->cost || !all->start || !all->from || !all->bytes || !tasks->block)
         return false;
     for (size_t i = 0; i < n; i++) {
-        all->kernel[i] = r->own[i] ? NULL : &program;
+        all->program[i] = !r->own[i];
         all->cost[i] = r->cost[i];
         tasks->block[i] = r->block[i];
     }

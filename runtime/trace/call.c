@@ -223,7 +223,7 @@ void trace_graph(struct trace *trace, uint32_t name, const struct plan_record *r
         put(trace, (uint32_t)fork->how.priority);
         put_float(trace, fork->how.cost);
         for (uint32_t k = 0; k < fork->n; k++)
-            put(trace, record->use[fork->first + k]);
+            put(trace, record->access[fork->first + k].object);
     }
 }
 

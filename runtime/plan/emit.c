@@ -1,6 +1,7 @@
-/* A plan is written once, from a draft; afterwards only bindings, arguments and what runs change
- * it. It lives as long as its record or a replay of it. */
-#include "runtime/plan/draft.h"
+/* Emitting: from a round in its intermediate form to the flat arrays of a plan. A plan is written
+ * once, here; afterwards only bindings, arguments and what runs change it. It lives as long as its
+ * record or a replay of it. */
+#include "runtime/plan/replay.h"
 #include "runtime/task/internal.h"
 
 #include "runtime/base/memory.h"
@@ -9,8 +10,8 @@
 #include <string.h>
 
 /* Of a whole replay on one rank. */
-static duite_mode mode_of(const struct plan_record *record,
-                          const struct plan_recorded_object *object)
+static duite_mode emit_mode(const struct plan_record *record,
+                            const struct plan_recorded_object *object)
 {
     if (plan_recorded_gathers(record->object, object))
         return DUITE_W;
@@ -19,32 +20,41 @@ static duite_mode mode_of(const struct plan_record *record,
     return object->reads_old ? DUITE_RW : DUITE_W;
 }
 
-static void fill_places(struct plan *plan, const struct plan_draft *draft, const duite_object *flag)
+/* What a plan is made from. */
+struct emit {
+    const struct plan_record *record;
+    const duite_object *flag;
+    const struct plan_round *round; /* of one rank: all of it; of several: this rank's part */
+    const float *path;              /* by fork, or NULL: nobody asks */
+};
+
+static void emit_places(struct plan *plan, const struct emit *from)
 {
-    const struct plan_record *record = draft->record;
+    const struct plan_record *record = from->record;
+    const struct plan_round *round = from->round;
     for (size_t i = 0; i < record->n_objects; i++) {
         const struct plan_recorded_object *object = &record->object[i];
         plan->place[i] = (struct plan_place){
-            .type = object->type, .mode = mode_of(record, object), .count = object->count};
+            .type = object->type, .mode = emit_mode(record, object), .count = object->count};
     }
     if (plan->n_objects > record->n_objects) {
-        const struct data_object *object = &record->graph->table.object[flag->slot];
+        const struct data_object *object = &record->graph->table.object[from->flag->slot];
         plan->place[record->n_objects] =
             (struct plan_place){.type = object->type, .mode = DUITE_R, .count = object->count};
     }
     for (size_t i = 0; i < plan->n_objects && plan->words; i++)
         plan->place[i].mode = plan_mode(plan, i);
     for (size_t i = plan->n_objects; i < plan->n_places; i++) {
-        const struct plan_place *whole = &plan->place[draft->place[i].object];
+        const struct plan_place *whole = &plan->place[round->place[i].object];
         plan->place[i] = (struct plan_place){
-            .type = whole->type, .count = whole->count, .law = draft->place[i].law};
+            .type = whole->type, .count = whole->count, .law = round->place[i].law};
     }
     for (size_t i = 0; i < plan->n_places; i++)
         plan->place[i].bytes = plan->place[i].count * data_type_size(plan->place[i].type);
 }
 
 /* For all that is used and is no object's from outside. */
-static bool alloc_buffers(struct plan *plan)
+static bool emit_buffers(struct plan *plan)
 {
     static unsigned char used;
     size_t bytes = 0;
@@ -69,7 +79,7 @@ static bool alloc_buffers(struct plan *plan)
     return true;
 }
 
-static void fill_params(struct plan *plan)
+static void emit_params(struct plan *plan)
 {
     for (size_t i = 0; i < plan->n_uses; i++) {
         struct plan_place *place = &plan->place[plan->use[i].place];
@@ -89,22 +99,8 @@ static void fill_params(struct plan *plan)
     }
 }
 
-/* The owner rule. */
-static uint32_t owner(const struct plan *plan, const struct plan_draft_node *node)
-{
-    uint32_t first_read = PLAN_NO_PLACE;
-    for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
-        const struct plan_node_use *use = &plan->use[i];
-        if (use->place < plan->n_objects && use->writes)
-            return use->place;
-        if (use->place < plan->n_objects && first_read == PLAN_NO_PLACE)
-            first_read = use->place;
-    }
-    return first_read;
-}
-
 /* The one that a node gathers. */
-static struct data_view *hold_view(const struct plan *plan, const struct plan_record *record,
+static struct data_view *emit_view(const struct plan *plan, const struct plan_record *record,
                                    const struct plan_node *node)
 {
     uint32_t view = plan->use[node->first_use + 1].place;
@@ -112,13 +108,13 @@ static struct data_view *hold_view(const struct plan *plan, const struct plan_re
 }
 
 /* What a task or a set is given; at_home: it runs for an object. */
-static void fill_call(struct plan *plan, const struct plan_record *record,
-                      const struct plan_draft_node *from, struct task *task, bool at_home)
+static void emit_call(struct plan *plan, const struct plan_record *record,
+                      const struct plan_round_node *from, struct task *task, bool at_home)
 {
     struct plan_node *node = task->node;
     const struct plan_recorded_fork *fork = &record->fork[from->fork];
     node->args = fork->zeros ? NULL : plan->args + fork->args;
-    if (from->kind == TASK_NODE_SET)
+    if (from->kind == PLAN_SET)
         return;
     const duite_kernel *kernel = record->graph->kernels[fork->kernel];
     task->kernel = fork->kernel;
@@ -133,17 +129,36 @@ static void fill_call(struct plan *plan, const struct plan_record *record,
     }
 }
 
-static void fill_node(struct plan *plan, const struct plan_draft *draft, size_t i)
+static enum task_type emit_type(enum plan_kind kind)
 {
-    const struct plan_record *record = draft->record;
-    const struct plan_draft_node *from = &draft->node[i];
+    static const enum task_type type[] = {[PLAN_TASK] = TASK_NODE,
+                                          [PLAN_SET] = TASK_NODE_SET,
+                                          [PLAN_SUM] = TASK_NODE_SUM,
+                                          [PLAN_VIEW] = TASK_NODE_VIEW,
+                                          [PLAN_FLAG] = TASK_NODE_FLAG,
+                                          [PLAN_COPY] = TASK_NODE_COPY,
+                                          [PLAN_PARTIAL] = TASK_NODE_PARTIAL,
+                                          [PLAN_SEND] = TASK_NODE_SEND,
+                                          [PLAN_RECEIVE] = TASK_NODE_RECEIVE};
+    return type[kind];
+}
+
+static bool emit_adds(const struct plan_round_node *node)
+{
+    return node->kind == PLAN_SUM || node->kind == PLAN_PARTIAL;
+}
+
+/* What all nodes have. */
+static struct task *emit_task(struct plan *plan, const struct emit *emit, size_t i)
+{
+    const struct plan_round_node *from = &emit->round->node[i];
     struct task *task = plan_task(plan, i);
     struct plan_node *node = (void *)(plan->nodes + i * PLAN_NODE_BYTES + PLAN_NODE_AT);
     *task = (struct task){.n = (uint32_t)from->n_uses,
-                          .kind = from->kind,
+                          .kind = emit_type(from->kind),
                           .kernel = UINT32_MAX,
                           .priority = INT32_MAX,
-                          .scope = &record->graph->root,
+                          .scope = &emit->record->graph->root,
                           .node = node};
     *node = (struct plan_node){.plan = plan,
                                .param = plan->param + from->first_use,
@@ -152,27 +167,37 @@ static void fill_node(struct plan *plan, const struct plan_draft *draft, size_t 
                                .steady = from->within + from->cyclic,
                                .first_use = (uint32_t)from->first_use,
                                .sink = from->n_next == from->n_next_cyclic};
+    return task;
+}
+
+static void emit_node(struct plan *plan, const struct emit *emit, size_t i)
+{
+    const struct plan_record *record = emit->record;
+    const struct plan_round_node *from = &emit->round->node[i];
+    struct task *task = emit_task(plan, emit, i);
+    struct plan_node *node = task->node;
     plan->first[i] = from->within;
     plan->call[i] = record->n_forks ? record->fork[from->fork].call : 0;
-    plan->owner[i] = owner(plan, from);
+    plan->owner[i] = from->owner;
     if (!from->within)
         plan->root[plan->n_roots++] = task;
     plan->n_sinks += node->sink;
     plan->n_filled++;
-    if (from->kind == TASK_NODE_VIEW)
-        node->view = hold_view(plan, record, node);
-    if (from->kind == TASK_NODE_SUM || from->kind == TASK_NODE_PARTIAL) {
+    if (from->kind == PLAN_VIEW)
+        node->view = emit_view(plan, record, node);
+    if (emit_adds(from)) {
         node->tree = &plan->tree[plan->n_trees++];
         plan->tree[plan->n_trees - 1] =
             (struct plan_tree){from->law, plan->merge + from->first_merge, from->n_merges};
     }
-    if (from->kind == TASK_NODE || from->kind == TASK_NODE_SET)
-        fill_call(plan, record, from, task, plan->owner[i] != PLAN_NO_PLACE);
-    if (from->kind == TASK_NODE && draft->path)
-        task->path = draft->path[from->fork];
+    if (from->kind == PLAN_TASK || from->kind == PLAN_SET)
+        emit_call(plan, record, from, task, from->owner != PLAN_NONE);
+    if (from->kind == PLAN_TASK && emit->path)
+        task->path = emit->path[from->fork];
 }
+
 /* Successors in one row, those of the next round before those of the same. */
-static void fill_next(struct plan *plan, const struct plan_draft *draft)
+static void emit_next(struct plan *plan, const struct plan_round *round)
 {
     struct task **at = plan->next;
     for (size_t i = 0; i < plan->n_nodes; i++) {
@@ -182,30 +207,31 @@ static void fill_next(struct plan *plan, const struct plan_draft *draft)
         node->n_next = 0;
     }
     for (int within = 0; within < 2; within++)
-        for (size_t i = 0; i < draft->n_edges; i++) {
-            const struct plan_draft_edge *edge = &draft->edge[i];
+        for (size_t i = 0; i < round->n_edges; i++) {
+            const struct plan_round_edge *edge = &round->edge[i];
             struct plan_node *node = plan_task(plan, edge->from)->node;
-            bool sends = draft->node[edge->to].kind == TASK_NODE_SEND;
+            bool sends = round->node[edge->to].kind == PLAN_SEND;
             if (sends && !edge->cyclic)
-                node->urgent = draft->node[edge->from].kind != TASK_NODE;
+                node->urgent = round->node[edge->from].kind != PLAN_TASK;
             if (edge->cyclic != within)
                 node->next[node->n_next++] = plan_task(plan, edge->to);
         }
 }
 
-static size_t count_trees(const struct plan_draft *draft)
+static size_t emit_count_trees(const struct plan_round *round)
 {
     size_t n = 0;
-    for (size_t i = 0; i < draft->n_nodes; i++)
-        n += draft->node[i].kind == TASK_NODE_SUM || draft->node[i].kind == TASK_NODE_PARTIAL;
+    for (size_t i = 0; i < round->n_nodes; i++)
+        n += emit_adds(&round->node[i]);
     return n;
 }
 
-static bool alloc_arrays(struct plan *plan, const struct plan_draft *draft)
+static bool emit_room(struct plan *plan, const struct emit *emit)
 {
+    const struct plan_round *round = emit->round;
     plan->nodes = base_alloc(plan->n_nodes * PLAN_NODE_BYTES + 1);
     plan->root = base_alloc((plan->n_nodes + 1) * sizeof(struct task *));
-    plan->next = base_alloc((draft->n_edges + 1) * sizeof(struct task *));
+    plan->next = base_alloc((round->n_edges + 1) * sizeof(struct task *));
     plan->first = base_alloc((plan->n_nodes + 1) * sizeof *plan->first);
     plan->call = base_alloc((plan->n_nodes + 1) * sizeof *plan->call);
     plan->owner = base_alloc((plan->n_nodes + 1) * sizeof *plan->owner);
@@ -213,46 +239,36 @@ static bool alloc_arrays(struct plan *plan, const struct plan_draft *draft)
     plan->param = base_alloc((plan->n_uses + 1) * sizeof *plan->param);
     plan->param_of = base_alloc((plan->n_uses + 1) * sizeof *plan->param_of);
     plan->place = base_alloc((plan->n_places + 1) * sizeof *plan->place);
-    plan->args = base_alloc(draft->record->args_bytes + 1);
-    plan->merge = base_alloc(draft->n_merges * sizeof *plan->merge + 1);
-    plan->tree = base_alloc(count_trees(draft) * sizeof *plan->tree + 1);
+    plan->args = base_alloc(emit->record->args_bytes + 1);
+    plan->merge = base_alloc(round->n_merges * sizeof *plan->merge + 1);
+    plan->tree = base_alloc(emit_count_trees(round) * sizeof *plan->tree + 1);
     return plan->nodes && plan->root && plan->next && plan->first && plan->call && plan->owner &&
            plan->use && plan->param && plan->param_of && plan->place && plan->args && plan->merge &&
            plan->tree;
 }
 
-static bool fill(struct plan *plan, const struct plan_draft *draft, const duite_object *flag)
+static bool emit_all(struct plan *plan, const struct emit *emit)
 {
-    const struct plan_record *record = draft->record;
-    plan->n_nodes = draft->n_nodes;
-    plan->n_uses = draft->n_uses;
-    plan->n_places = draft->n_places;
+    const struct plan_record *record = emit->record;
+    const struct plan_round *round = emit->round;
+    plan->n_nodes = round->n_nodes;
+    plan->n_uses = round->n_uses;
+    plan->n_places = round->n_places;
     plan->n_calls = record->n_calls;
-    if (!alloc_arrays(plan, draft))
+    if (!emit_room(plan, emit))
         return false;
-    memcpy(plan->use, draft->use, plan->n_uses * sizeof *plan->use);
-    if (draft->n_merges)
-        memcpy(plan->merge, draft->merge, draft->n_merges * sizeof *plan->merge);
-    fill_places(plan, draft, flag);
-    if (!alloc_buffers(plan))
+    memcpy(plan->use, round->use, plan->n_uses * sizeof *plan->use);
+    memcpy(plan->merge, round->merge, round->n_merges * sizeof *plan->merge);
+    emit_places(plan, emit);
+    if (!emit_buffers(plan))
         return false;
-    fill_params(plan);
+    emit_params(plan);
     if (record->args_bytes)
         memcpy(plan->args, record->args, record->args_bytes);
     for (size_t i = 0; i < plan->n_nodes; i++)
-        fill_node(plan, draft, i);
-    fill_next(plan, draft);
+        emit_node(plan, emit, i);
+    emit_next(plan, round);
     return true;
-}
-
-/* The place of the flag among the objects; behind them if it is none of them. */
-static size_t find_flag(const struct plan_record *record, duite_object flag)
-{
-    size_t place = 0;
-    while (place < record->n_objects && (record->object[place].bound.slot != flag.slot ||
-                                         record->object[place].bound.generation != flag.generation))
-        place++;
-    return place;
 }
 
 bool plan_fits(const struct plan *plan, const struct plan_record *record, const duite_object *flag)
@@ -263,30 +279,48 @@ bool plan_fits(const struct plan *plan, const struct plan_record *record, const 
         return true;
     const struct plan_place *place = &plan->place[plan->flag_place];
     const struct data_object *object = &record->graph->table.object[flag->slot];
-    return plan->flag_place == find_flag(record, *flag) && place->type == object->type &&
+    return plan->flag_place == plan_record_flag(record, *flag) && place->type == object->type &&
            place->count == object->count;
+}
+
+/* All passes in order; of several ranks those between lowering and edges leave this rank's part. */
+static bool compile(struct plan *plan, const struct plan_record *record, const duite_object *flag,
+                    const struct plan_source *source)
+{
+    struct plan_round round = {0}, part = {0};
+    struct emit emit = {.record = record, .flag = flag, .round = &round};
+    bool several = record->graph->n_ranks > 1, fine = plan_lower(&round, source);
+    float *path = NULL;
+    if (fine && several) {
+        fine = plan_spread(plan, &round, &part, record, flag);
+        emit.round = &part;
+    }
+    fine = fine && plan_edges(several ? &part : &round);
+    if (fine && plan->graph->paths)
+        fine = (emit.path = path = plan_record_paths(record)) != NULL;
+    fine = fine && emit_all(plan, &emit);
+    if (fine && several)
+        fine = !plan_open(plan, &part);
+    base_free(path);
+    plan_round_free(&round);
+    plan_round_free(&part);
+    return fine;
 }
 
 struct plan *plan_new(const struct plan_record *record, const duite_object *flag)
 {
     struct plan *plan = base_alloc_zero(sizeof *plan);
-    struct plan_draft draft = {.record = record, .decides = flag != NULL};
+    struct plan_source source;
     if (!plan)
         return NULL;
     atomic_init(&plan->refs, 1);
     plan->graph = record->graph;
+    bool fine = plan_record_source(record, flag, &source);
     plan->decides = flag != NULL;
-    plan->flag_place = flag ? find_flag(record, *flag) : 0;
-    plan->n_objects = record->n_objects + (flag && plan->flag_place == record->n_objects);
-    bool fine = record->graph->n_ranks > 1
-                    ? plan_spread(plan, &draft, flag)
-                    : plan_draft_make(&draft, plan->n_objects, plan->flag_place);
-    if (fine && plan->graph->paths)
-        fine = (draft.path = plan_record_paths(record)) != NULL;
-    fine = fine && fill(plan, &draft, flag);
-    if (fine && plan->words)
-        fine = !plan_open(plan, &draft);
-    plan_draft_free(&draft);
+    plan->flag_place = flag ? source.flag : 0;
+    plan->n_objects = source.n_objects;
+    fine = fine && compile(plan, record, flag, &source);
+    plan_source_free(&source);
     if (fine)
         return plan;
     plan_release(plan);

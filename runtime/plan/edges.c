@@ -1,0 +1,122 @@
+/* Edges: what a node waits for. Two rounds in a row are gone through with the last writer of each
+ * place and the readers since: what waits for a node of its own round gives the edges within a
+ * round, what waits for one of the round before gives those from round to round. Every edge but one
+ * to or from the deciding node joins two uses of one place of which one writes: conflicts are
+ * symmetric. So a node that comes after T in a round and releases T of the next one runs after T,
+ * and one that comes before T runs, in the next round, after T. A node thus never hears of the next
+ * round before it has begun this one. The roots of a round and the deciding node are joined both
+ * ways for the same reason. */
+#include "runtime/plan/passes.h"
+
+#include "runtime/base/memory.h"
+
+/* Nodes here are those of two rounds: the second round's follow the first one's. All are kept plus
+ * one; 0: none. */
+struct edge_place {
+    size_t writer; /* the last one */
+    size_t reader; /* the first in a list of those since */
+};
+
+struct edge_reader {
+    size_t node, next;
+};
+
+struct edges {
+    struct plan_round *round;
+    struct edge_place *place;
+    struct edge_reader *reader;
+    size_t n_readers;
+    size_t *mark; /* by node: the last one that an edge goes to from here */
+    bool failed;
+};
+
+static void edge_add(struct edges *e, size_t from, size_t to)
+{
+    struct plan_round *round = e->round;
+    size_t n = round->n_nodes;
+    bool cyclic = from < n && to >= n;
+    if (e->mark[from] == to + 1 || (to >= n && !cyclic))
+        return;
+    e->mark[from] = to + 1;
+    void *moved =
+        base_grow(round->edge, &round->edges_capacity, round->n_edges + 1, sizeof *round->edge);
+    if (!moved) {
+        e->failed = true;
+        return;
+    }
+    round->edge = moved;
+    round->edge[round->n_edges++] =
+        (struct plan_round_edge){(uint32_t)(from % n), (uint32_t)(to % n), cyclic};
+    struct plan_round_node *before = &round->node[from % n], *after = &round->node[to % n];
+    before->n_next++;
+    before->n_next_cyclic += cyclic;
+    after->within += !cyclic;
+    after->cyclic += cyclic;
+}
+
+static void edge_to_reader(struct edges *e, struct edge_place *place, size_t node)
+{
+    if (place->writer)
+        edge_add(e, place->writer - 1, node);
+    e->reader[e->n_readers] = (struct edge_reader){node, place->reader};
+    place->reader = ++e->n_readers;
+}
+
+static void edge_to_writer(struct edges *e, struct edge_place *place, size_t node)
+{
+    if (!place->reader && place->writer)
+        edge_add(e, place->writer - 1, node);
+    for (size_t i = place->reader; i; i = e->reader[i - 1].next)
+        edge_add(e, e->reader[i - 1].node, node);
+    place->reader = 0;
+    place->writer = node + 1;
+}
+
+static void edges_of_places(struct edges *e, size_t to)
+{
+    const struct plan_round *round = e->round;
+    const struct plan_round_node *node = &round->node[to % round->n_nodes];
+    for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
+        struct edge_place *place = &e->place[round->use[i].place];
+        if (round->use[i].writes)
+            edge_to_writer(e, place, to);
+        else
+            edge_to_reader(e, place, to);
+    }
+}
+
+/* What orders rounds, beside places. */
+static void edges_of_rounds(struct edges *e, size_t to)
+{
+    const struct plan_round *round = e->round;
+    size_t n = round->n_nodes, decider = n - 1;
+    const struct plan_round_node *node = &round->node[to % n];
+    bool decides = round->source->flag != PLAN_NONE;
+    if (decides && to == decider)
+        for (size_t root = 0; root < decider; root++)
+            if (!round->node[root].within)
+                edge_add(e, root, decider);
+    if (to < n || node->within)
+        return;
+    if (decides)
+        edge_add(e, decider, to);
+    else if (!node->cyclic) /* it conflicts with nothing: one round after the other */
+        edge_add(e, to - n, to);
+}
+
+bool plan_edges(struct plan_round *round)
+{
+    struct edges e = {.round = round};
+    e.place = base_alloc_zero((round->n_places + 1) * sizeof *e.place);
+    e.reader = base_alloc((2 * round->n_uses + 1) * sizeof *e.reader);
+    e.mark = base_alloc_zero((2 * round->n_nodes + 1) * sizeof *e.mark);
+    e.failed = !e.place || !e.reader || !e.mark;
+    for (size_t to = 0; to < 2 * round->n_nodes && !e.failed; to++) {
+        edges_of_places(&e, to);
+        edges_of_rounds(&e, to);
+    }
+    base_free(e.place);
+    base_free(e.reader);
+    base_free(e.mark);
+    return !e.failed;
+}

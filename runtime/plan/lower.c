@@ -1,0 +1,256 @@
+/* Lowering: from the forks of a round to its nodes. What the runtime adds to a program's forks
+ * stands here and nowhere else: when contributions end, when a view is gathered, and the tree in
+ * which contributions combine. It holds throughout that the nodes so far are all that has to run
+ * before the next fork, in an order in which a program could run them one after the other. */
+#include "runtime/plan/passes.h"
+
+#include "runtime/base/memory.h"
+
+#include <stdlib.h>
+
+/* What happened so far in the round. */
+struct lower_object {
+    uint32_t first, last, n_open; /* buffers of the contributions that are open */
+    const duite_law *law;         /* of these */
+    bool written;                 /* somewhere in the round */
+    bool fresh;                   /* a view: gathered, and its object was not written since */
+};
+
+struct lowering {
+    struct plan_round *round;
+    struct lower_object *object;
+    uint32_t *next;          /* by buffer, less n_objects: the next of the same sum */
+    uint32_t *view, *sister; /* by object: a view of it, plus 1; by view: another of its object */
+};
+
+/* ---- A round under construction ---- */
+
+struct plan_round_node *plan_round_add(struct plan_round *round, enum plan_kind kind, size_t fork)
+{
+    struct plan_round_node *node = &round->node[round->n_nodes++];
+    *node = (struct plan_round_node){.kind = kind,
+                                     .fork = (uint32_t)fork,
+                                     .owner = PLAN_NONE,
+                                     .first_use = round->n_uses,
+                                     .first_merge = round->n_merges};
+    return node;
+}
+
+void plan_round_use(struct plan_round *round, struct plan_round_node *node, size_t place,
+                    bool reads, bool writes)
+{
+    round->use[round->n_uses++] = (struct plan_node_use){(uint32_t)place, reads, writes};
+    node->n_uses++;
+}
+
+uint32_t plan_round_buffer(struct plan_round *round, uint32_t object, const duite_law *law)
+{
+    round->place[round->n_places] = (struct plan_round_place){.object = object, .law = law};
+    return (uint32_t)round->n_places++;
+}
+
+bool plan_round_room(struct plan_round *round, size_t nodes, size_t uses, size_t places,
+                     size_t merges)
+{
+    round->node = base_alloc((nodes + 1) * sizeof *round->node);
+    round->use = base_alloc((uses + 1) * sizeof *round->use);
+    round->place = base_alloc((places + 1) * sizeof *round->place);
+    round->merge = base_alloc((merges + 1) * sizeof *round->merge);
+    round->n_objects = round->source->n_objects;
+    if (!round->node || !round->use || !round->place || !round->merge)
+        return false;
+    for (uint32_t i = 0; i < round->n_objects; i++)
+        plan_round_buffer(round, i, NULL);
+    return true;
+}
+
+void plan_round_free(struct plan_round *round)
+{
+    base_free(round->node);
+    base_free(round->use);
+    base_free(round->place);
+    base_free(round->merge);
+    base_free(round->channel);
+    free(round->edge);
+}
+
+/* ---- The reduction tree ---- */
+
+static void reduce_merge(struct plan_round *round, struct plan_round_node *node,
+                         const struct plan_subtree *left, const struct plan_subtree *right)
+{
+    round->merge[round->n_merges++] = (struct plan_merge){left->param, right->param};
+    node->n_merges++;
+}
+
+size_t plan_reduce_push(struct plan_round *round, struct plan_round_node *node,
+                        struct plan_subtree *row, size_t n)
+{
+    for (n++; n > 1 && plan_subtree_halves(&row[n - 2], &row[n - 1]); n--) {
+        reduce_merge(round, node, &row[n - 2], &row[n - 1]);
+        row[n - 2].level++;
+    }
+    return n;
+}
+
+void plan_reduce_fold(struct plan_round *round, struct plan_round_node *node,
+                      const struct plan_subtree *row, size_t n)
+{
+    for (size_t i = n; i-- > 1;)
+        reduce_merge(round, node, &row[i - 1], &row[i]);
+}
+
+/* ---- Contributions ---- */
+
+/* A buffer for a contribution, the last of those that are open. */
+static uint32_t lower_contribution(struct lowering *l, const struct plan_access *access)
+{
+    struct lower_object *object = &l->object[access->object];
+    uint32_t leaf = plan_round_buffer(l->round, access->object, access->law);
+    object->law = access->law;
+    if (object->n_open++)
+        l->next[object->last - l->round->n_objects] = leaf;
+    else
+        object->first = leaf;
+    object->last = leaf;
+    return leaf;
+}
+
+/* The contributions to the object end here, if there are any. */
+static void lower_sum(struct lowering *l, uint32_t name, size_t fork)
+{
+    struct plan_round *round = l->round;
+    struct lower_object *object = &l->object[name];
+    if (!object->n_open)
+        return;
+    struct plan_round_node *node = plan_round_add(round, PLAN_SUM, fork);
+    struct plan_subtree row[64]; /* a counter's bits */
+    size_t n = 0;
+    node->owner = name;
+    node->law = object->law;
+    plan_round_use(round, node, name, true, true);
+    uint32_t leaf = object->first;
+    for (uint32_t i = 0; i < object->n_open; i++) {
+        plan_round_use(round, node, leaf, true, false);
+        row[n] = (struct plan_subtree){.first = i, .param = i + 1};
+        n = plan_reduce_push(round, node, row, n);
+        leaf = l->next[leaf - round->n_objects];
+    }
+    plan_reduce_fold(round, node, row, n);
+    object->n_open = 0;
+}
+
+/* ---- Views ---- */
+
+/* Before a view is read: its elements are those of its object now. */
+static void lower_view(struct lowering *l, uint32_t view, size_t fork)
+{
+    const struct plan_source_object *objects = l->round->source->object;
+    if (!objects[view].parent || !l->object[objects[view].parent - 1].written)
+        return;
+    uint32_t parent = objects[view].parent - 1;
+    lower_sum(l, parent, fork);
+    if (l->object[view].fresh)
+        return;
+    l->object[view].fresh = true;
+    struct plan_round_node *node = plan_round_add(l->round, PLAN_VIEW, fork);
+    node->owner = view;
+    plan_round_use(l->round, node, parent, true, false);
+    plan_round_use(l->round, node, view, false, true);
+}
+
+static void lower_stale(struct lowering *l, uint32_t object)
+{
+    for (uint32_t view = l->view[object]; view; view = l->sister[view - 1])
+        l->object[view - 1].fresh = false;
+}
+
+/* ---- Forks ---- */
+
+uint32_t plan_owner(const struct plan_access *access, size_t n)
+{
+    uint32_t first_read = PLAN_NONE;
+    for (size_t i = 0; i < n; i++) {
+        if (access[i].mode == DUITE_W || access[i].mode == DUITE_RW)
+            return access[i].object;
+        if (access[i].mode == DUITE_R && first_read == PLAN_NONE)
+            first_read = access[i].object;
+    }
+    return first_read;
+}
+
+static void lower_fork(struct lowering *l, size_t i)
+{
+    struct plan_round *round = l->round;
+    const struct plan_source_fork *fork = &round->source->fork[i];
+    const struct plan_access *access = round->source->access + fork->first;
+    for (uint32_t k = 0; k < fork->n; k++) {
+        if (access[k].mode != DUITE_CW || access[k].law != l->object[access[k].object].law)
+            lower_sum(l, access[k].object, i);
+        lower_view(l, access[k].object, i);
+    }
+    struct plan_round_node *node = plan_round_add(round, fork->sets ? PLAN_SET : PLAN_TASK, i);
+    node->owner = plan_owner(access, fork->n);
+    for (uint32_t k = 0; k < fork->n; k++) {
+        duite_mode mode = access[k].mode;
+        if (mode == DUITE_CW)
+            plan_round_use(round, node, lower_contribution(l, &access[k]), false, true);
+        else
+            plan_round_use(round, node, access[k].object, mode != DUITE_W, mode != DUITE_R);
+        if (mode != DUITE_R)
+            lower_stale(l, access[k].object);
+    }
+}
+
+static void lower_all(struct lowering *l)
+{
+    struct plan_round *round = l->round;
+    size_t n = round->source->n_forks, end = n ? n - 1 : 0;
+    for (size_t i = 0; i < n; i++)
+        lower_fork(l, i);
+    for (uint32_t i = 0; i < round->n_objects; i++)
+        lower_sum(l, i, end);
+    if (round->source->flag == PLAN_NONE)
+        return;
+    struct plan_round_node *node = plan_round_add(round, PLAN_FLAG, end);
+    node->owner = round->source->flag;
+    plan_round_use(round, node, round->source->flag, true, false);
+}
+
+/* ---- The pass ---- */
+
+static void lower_begin(struct lowering *l)
+{
+    const struct plan_source *source = l->round->source;
+    for (size_t i = 0; i < source->n_accesses; i++)
+        l->object[source->access[i].object].written |= source->access[i].mode != DUITE_R;
+    for (uint32_t i = 0; i < source->n_objects; i++) {
+        uint32_t parent = source->object[i].parent;
+        if (!parent)
+            continue;
+        l->sister[i] = l->view[parent - 1];
+        l->view[parent - 1] = i + 1;
+    }
+}
+
+bool plan_lower(struct plan_round *round, const struct plan_source *source)
+{
+    size_t n = source->n_accesses, objects = source->n_objects;
+    struct lowering l = {.round = round};
+    round->source = source;
+    l.object = base_alloc_zero((objects + 1) * sizeof *l.object);
+    l.next = base_alloc_zero((n + 1) * sizeof *l.next);
+    l.view = base_alloc_zero((objects + 1) * sizeof *l.view);
+    l.sister = base_alloc_zero((objects + 1) * sizeof *l.sister);
+    bool fine = l.object && l.next && l.view && l.sister &&
+                plan_round_room(round, source->n_forks + 2 * n + 1, 5 * n + 1, objects + n, n);
+    if (fine) {
+        lower_begin(&l);
+        lower_all(&l);
+    }
+    base_free(l.object);
+    base_free(l.next);
+    base_free(l.view);
+    base_free(l.sister);
+    return fine;
+}

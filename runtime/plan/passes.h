@@ -1,0 +1,211 @@
+#ifndef DUITE_PLAN_PASSES_H
+#define DUITE_PLAN_PASSES_H
+
+/* The compiler of recorded graphs: its passes, in order, and what each takes and leaves.
+ *
+ *   record   record.c   calls of a build function   -> plan_record: forks, objects, arguments
+ *            source.c   plan_record                 -> plan_source: the same as plain data
+ *   lower    lower.c    plan_source                 -> plan_round: nodes and what they use
+ *   edges    edges.c    plan_round                  -> its edges, within a round and to the next
+ *   emit     emit.c     plan_round                  -> plan: flat arrays (plan.h)
+ *
+ * Everything in this header is plain data: no pass of it needs a task graph, a table of objects or
+ * a worker, calls a body or touches a value. So whoever has a round in some form can have it
+ * compiled: the plan and the printer from a record, the mappings (tasks.c), and the predictor from
+ * the words of a trace.
+ *
+ * How the predictor uses it: it fills a plan_source with the forks of a recorded graph (modes of
+ * the kernels in the trace; NULL for all laws, since a trace has none; parent from
+ * predict_object.parent, as the place of that object in the list plus 1, or 0 if it is not in the
+ * list), calls plan_lower, and has either plan_tasks_find make the rows that mappings see, or the
+ * passes below place the nodes on hosts. A plan_source is owned by who made it and must stay as
+ * long as its round. */
+
+#include <duite.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define PLAN_NONE UINT32_MAX
+enum { PLAN_BY_OWNER = -1 }; /* in place of the rank that a fork runs on: the owner rule says */
+
+/* ---- A round as plain data: what lowering takes ---- */
+
+/* How a fork, with its descendants, uses an object: r, w, rw or cw. */
+struct plan_access {
+    uint32_t object; /* of plan_source.object */
+    duite_mode mode;
+    const duite_law *law; /* cw: compared only; two accesses with NULL have the same law */
+};
+
+struct plan_source_fork {
+    size_t first; /* of its n accesses */
+    uint32_t n;
+    int at; /* the rank that it is to run on, or PLAN_BY_OWNER */
+    bool sets, replicated;
+    double cost; /* seconds; 0: not said */
+};
+
+struct plan_source_object {
+    uint32_t parent; /* of a view: the place of its object, plus 1; else 0 */
+    size_t bytes;
+};
+
+struct plan_source {
+    struct plan_source_fork *fork; /* in order */
+    const struct plan_access *access;
+    struct plan_source_object *object;
+    size_t n_forks, n_accesses, n_objects;
+    uint32_t flag; /* the object that decides on a further round, or PLAN_NONE */
+};
+
+/* The owner rule: the object that a fork with these accesses runs for. It is the first one written,
+ * else the first one read; PLAN_NONE if there is neither. */
+uint32_t plan_owner(const struct plan_access *access, size_t n);
+
+/* ---- Lower: nodes ---- */
+
+enum plan_kind {
+    PLAN_TASK,    /* a fork */
+    PLAN_SET,     /* a duite_set */
+    PLAN_SUM,     /* adds contributions to their object */
+    PLAN_VIEW,    /* gathers a view */
+    PLAN_FLAG,    /* reads the flag */
+    PLAN_COPY,    /* of several ranks, as are the following ones */
+    PLAN_PARTIAL, /* combines some contributions of one sum */
+    PLAN_SEND,
+    PLAN_RECEIVE
+};
+
+/* What a node does to a place. */
+struct plan_node_use {
+    uint32_t place;
+    bool reads, writes;
+};
+
+/* A step of a sum: parameter `left` becomes law(left, right). */
+struct plan_merge {
+    uint32_t left, right;
+};
+
+struct plan_round_node {
+    enum plan_kind kind;
+    uint32_t fork;  /* that it stands for, or that it comes before */
+    uint32_t owner; /* the object that it runs for, or PLAN_NONE */
+    size_t first_use, n_uses;
+    size_t first_merge, n_merges; /* SUM, PARTIAL */
+    const duite_law *law;         /* of these */
+    uint32_t channel;             /* SEND, RECEIVE */
+    uint32_t within, cyclic;      /* predecessors in its round; in the round before */
+    uint32_t n_next, n_next_cyclic;
+};
+
+/* Bytes that nodes use: place i < n_objects is object i, the others are buffers. */
+struct plan_round_place {
+    uint32_t object;      /* that a buffer is for, or itself */
+    const duite_law *law; /* buffer: of the contribution in it, or NULL */
+};
+
+struct plan_round_edge {
+    uint32_t from, to;
+    bool cyclic; /* from a round to the next one */
+};
+
+/* A message a round, to or from another rank; its node's uses are what it carries, in order. */
+struct plan_round_channel {
+    int peer;
+    uint32_t phase;
+    bool sends;
+};
+
+/* A round in its intermediate form. */
+struct plan_round {
+    const struct plan_source *source;
+    struct plan_round_node *node;
+    struct plan_node_use *use;
+    struct plan_round_place *place;
+    size_t n_nodes, n_uses, n_places, n_objects;
+    struct plan_merge *merge;
+    size_t n_merges;
+    struct plan_round_edge *edge;
+    size_t n_edges, edges_capacity;
+    struct plan_round_channel *channel; /* of several ranks */
+    size_t n_channels;
+};
+
+/* Takes a source; leaves the nodes of a round for all ranks, without edges:
+ * - each fork is one TASK or SET, in order, and what the runtime adds comes before the fork that
+ *   needs it: a SUM before the first access that ends contributions (contributions still open at
+ *   the end of the round end there), a VIEW before the first read of a round and the first after
+ *   each write of its object; last the FLAG, if there is one. A view of an object that the round
+ *   does not write has no node: it is gathered before the replay;
+ * - the uses of a TASK are its accesses in order; a cw uses a buffer of its own, which one SUM
+ *   reads: its uses are the object and the buffers in the order of forks;
+ * - the merges of a SUM make the reduction tree: equal complete subtrees as in a binary counter,
+ *   then the rest from the right; all pieces come to lie in its parameter 1. The shape depends on
+ *   the number of contributions only.
+ * False without memory; plan_round_free is due all the same. *round is zero before. */
+bool plan_lower(struct plan_round *round, const struct plan_source *source);
+void plan_round_free(struct plan_round *round);
+
+/* For passes that make a round: memory for so many at most. False without. */
+bool plan_round_room(struct plan_round *round, size_t nodes, size_t uses, size_t places,
+                     size_t merges);
+/* Appends a node; a use to the last node; a buffer, and returns its place. */
+struct plan_round_node *plan_round_add(struct plan_round *round, enum plan_kind kind, size_t fork);
+void plan_round_use(struct plan_round *round, struct plan_round_node *node, size_t place,
+                    bool reads, bool writes);
+uint32_t plan_round_buffer(struct plan_round *round, uint32_t object, const duite_law *law);
+
+/* A complete subtree of the leaves of a sum, and the parameter of a node that has its value. */
+struct plan_subtree {
+    uint64_t first; /* leaf */
+    uint32_t level; /* 2^level leaves */
+    uint32_t param;
+};
+/* Whether two subtrees are the halves of one. */
+static inline bool plan_subtree_halves(const struct plan_subtree *l, const struct plan_subtree *r)
+{
+    uint64_t half = UINT64_C(1) << l->level;
+    return l->level == r->level && l->first + half == r->first && l->first % (2 * half) == 0;
+}
+/* A subtree was put behind n others in a row: the last node merges what are halves then. Returns
+ * how many there are now. */
+size_t plan_reduce_push(struct plan_round *round, struct plan_round_node *node,
+                        struct plan_subtree *row, size_t n);
+/* Folds what is left from the right, into the first one. */
+void plan_reduce_fold(struct plan_round *round, struct plan_round_node *node,
+                      const struct plan_subtree *row, size_t n);
+
+/* ---- Edges ---- */
+
+/* Takes the nodes of a round and what they use; adds its edges, and to each node how many it has:
+ * - a node waits for the last writer of each place that it reads, and for the readers since (or the
+ *   writer, if there are none) of each place that it writes, over two rounds in a row; edges within
+ *   a round lead to later nodes, are in order of `to`, and no two join the same nodes;
+ * - conflicts are symmetric, so a node that releases another one's next round waited for it in this
+ *   round: a node never hears of the next round before it has begun this one;
+ * - with a FLAG, it waits for all roots and all roots of the next round wait for it; without, a
+ *   root that conflicts with nothing waits for itself in the round before.
+ * False without memory. */
+bool plan_edges(struct plan_round *round);
+
+/* ---- What mappings see ---- */
+
+/* The nodes of a round in order, and who reads whose results. Says nothing of ranks. */
+struct plan_tasks {
+    size_t n;
+    bool *program;   /* n: a task of the program; else the runtime's */
+    double *cost;    /* n: seconds, as its fork says; 0: not said, or not the program's */
+    uint32_t *owner; /* n: the object that it runs for; PLAN_NONE: for none, or where it says, or
+                        everywhere */
+    size_t *start;   /* n + 1: of its rows */
+    uint32_t *from;  /* whose result it reads: before it, or, not before it, of the last round */
+    double *bytes;   /* of it */
+};
+
+/* Takes a lowered round. False without memory; plan_tasks_free is due all the same. */
+bool plan_tasks_find(struct plan_tasks *tasks, const struct plan_round *round);
+void plan_tasks_free(struct plan_tasks *tasks);
+
+#endif

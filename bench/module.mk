@@ -21,7 +21,7 @@ bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH
 	-DBENCH_HOSTS='"$(abs_top_srcdir)/tests/cluster/hosts.sh"' \
 	-DBENCH_STATES_SCENE='"$(abs_top_srcdir)/bench/cg/states.yaml"' \
 	-DBENCH_DRESS='"$(abs_top_srcdir)/../shared/data/meshes/dress-v17k-f34k.obj"'
-bench_libbench_la_LIBADD = libduite_cloth.la libduite_core.la
+bench_libbench_la_LIBADD = libduite_cloth.la libduite_predict.la libduite_core.la
 check_PROGRAMS += bench/duite-bench
 bench_duite_bench_SOURCES = bench/duite-bench.c
 bench_duite_bench_LDADD = bench/libbench.la -lm

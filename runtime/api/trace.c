@@ -4,8 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/predict/predict.h"
-#include "runtime/sched/sched.h"
+#include "runtime/trace/bounds.h"
 
 #include <math.h>
 
@@ -93,24 +92,17 @@ int duite_trace_end(duite *rt)
 int duite_trace_bounds(const char *trace, double *critical_path, double *lower_bound)
 {
     struct trace_run *run;
-    struct predict_result result;
+    struct trace_bounds bounds;
     if (!trace || !critical_path || !lower_bound)
         return base_error(DUITE_E_ARGUMENT, "duite_trace_bounds: no %s",
                           trace ? "place for the bounds" : "trace");
     int code = trace_read(&run, trace, false);
     if (code)
         return code;
-    const struct predict_cluster cluster = {.hosts = run->n_ranks,
-                                            .cores = 1,
-                                            .bandwidth = INFINITY,
-                                            .capacity = INFINITY,
-                                            .core_speed = 1,
-                                            .scheduler = &sched_steal};
-    code = predict(run, &cluster, &result, NULL);
+    code = trace_bounds_find(run, &bounds);
     if (!code) {
-        *critical_path = result.critical_path;
-        *lower_bound =
-            fmax(result.critical_path, result.work / trace_first_worker(run, run->n_ranks));
+        *critical_path = bounds.path;
+        *lower_bound = fmax(bounds.path, bounds.work / trace_first_worker(run, run->n_ranks));
     }
     trace_run_free(run);
     return code;

@@ -1,4 +1,6 @@
-libduite_la_SOURCES += runtime/predict/conclude.c runtime/predict/dot.c runtime/predict/file.c runtime/predict/graph.c runtime/predict/graph.h \
+# Predictions of traced runs: no part of libduite. Programs that predict link it before libduite_core.
+noinst_LTLIBRARIES += libduite_predict.la
+libduite_predict_la_SOURCES = runtime/predict/conclude.c runtime/predict/dot.c runtime/predict/file.c runtime/predict/graph.c runtime/predict/graph.h \
 	runtime/predict/machine.c runtime/predict/machine.h runtime/predict/move.c runtime/predict/objects.c runtime/predict/packet.c \
 	runtime/predict/predict.c runtime/predict/predict.h runtime/predict/program.c runtime/predict/program.h runtime/predict/replay.c \
 	runtime/predict/round.c runtime/predict/simulate.c runtime/predict/times.c
@@ -6,8 +8,8 @@ libduite_la_SOURCES += runtime/predict/conclude.c runtime/predict/dot.c runtime/
 bin_PROGRAMS += duite-trace
 dist_man_MANS += runtime/predict/duite-trace.1
 duite_trace_SOURCES = runtime/predict/duite-trace.c
-duite_trace_LDADD = libduite_core.la
+duite_trace_LDADD = libduite_predict.la libduite_core.la
 bin_PROGRAMS += duite-predict
 dist_man_MANS += runtime/predict/duite-predict.1
 duite_predict_SOURCES = runtime/predict/duite-predict.c
-duite_predict_LDADD = libduite_core.la
+duite_predict_LDADD = libduite_predict.la libduite_core.la

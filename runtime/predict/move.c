@@ -151,7 +151,7 @@ static bool add_traffic(struct move *m, const struct predict_recorded *recorded)
         uint32_t own = predict_owner(graph, fork, fork->object);
         for (size_t k = 0; k < fork->n && fine && own != PREDICT_NONE; k++) {
             uint32_t object = recorded->bound[fork->object[k]];
-            if (predict_mode(kernel, k) != DUITE_W)
+            if (trace_mode(kernel, k) != DUITE_W)
                 fine = map_traffic_read(
                     &m->traffic, block_of(m, recorded->bound[own]), block_of(m, object),
                     (double)recorded->rounds * (double)graph->object[object].bytes);

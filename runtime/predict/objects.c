@@ -40,9 +40,9 @@ uint32_t predict_object_at(struct predict_program *p, uint32_t slot)
 void predict_make(struct predict_program *p, bool view)
 {
     struct predict_graph *graph = p->graph;
-    uint32_t slot = predict_word(p),
-             parent = view ? predict_object_at(p, predict_word(p)) : PREDICT_NONE;
-    uint64_t bytes = predict_word2(p);
+    uint32_t slot = trace_words_next(&p->words),
+             parent = view ? predict_object_at(p, trace_words_next(&p->words)) : PREDICT_NONE;
+    uint64_t bytes = trace_words_next2(&p->words);
     void *moved = base_grow(graph->object, &graph->objects_capacity, graph->n_objects + 1,
                             sizeof *graph->object);
     duite_object *names =
@@ -74,7 +74,7 @@ void predict_make(struct predict_program *p, bool view)
 
 void predict_drop(struct predict_program *p)
 {
-    uint32_t slot = predict_word(p);
+    uint32_t slot = trace_words_next(&p->words);
     duite_object name = p->name ? p->name[predict_object_at(p, slot)] : DUITE_NO_OBJECT;
     if (name.slot)
         data_object_drop(&p->table, name);
@@ -83,18 +83,18 @@ void predict_drop(struct predict_program *p)
 
 void predict_hint(struct predict_program *p, size_t n)
 {
-    uint32_t slot = predict_word(p);
-    double weight = predict_number(p);
+    uint32_t slot = trace_words_next(&p->words);
+    double weight = trace_words_double(&p->words);
     duite_object *names = malloc((n + 1) * sizeof *names);
     double *weights = malloc((n + 1) * sizeof *weights);
     p->graph->failed |= !names || !weights;
-    for (size_t i = 0; i < n && !p->graph->failed && !p->short_of; i++) {
-        uint32_t other = predict_object_at(p, predict_word(p));
-        weights[i] = predict_number(p);
+    for (size_t i = 0; i < n && !p->graph->failed && !p->words.short_of; i++) {
+        uint32_t other = predict_object_at(p, trace_words_next(&p->words));
+        weights[i] = trace_words_double(&p->words);
         if (!p->damaged)
             names[i] = p->name[other];
     }
-    if (!p->graph->failed && !p->damaged && !p->short_of)
+    if (!p->graph->failed && !p->damaged && !p->words.short_of)
         p->code =
             map_hint(&p->table, p->name[predict_object_at(p, slot)], weight, n, names, weights);
     free(names);
@@ -103,8 +103,8 @@ void predict_hint(struct predict_program *p, size_t n)
 
 void predict_follow(struct predict_program *p)
 {
-    uint32_t own = predict_object_at(p, predict_word(p)),
-             leader = predict_object_at(p, predict_word(p));
+    uint32_t own = predict_object_at(p, trace_words_next(&p->words)),
+             leader = predict_object_at(p, trace_words_next(&p->words));
     if (!p->damaged)
         p->code = map_follow(&p->table, p->name[own], p->name[leader]);
 }
@@ -146,8 +146,9 @@ void predict_homes(struct predict_program *p, size_t n)
     const struct predict_cluster *cluster = p->graph->cluster;
     const struct map_front mapping = {cluster->mapping, p->graph->caller};
     p->code = map_settle(&p->table, &mapping, cluster->seed);
-    for (size_t i = 0; i < n && !p->code && !p->short_of && !p->damaged; i++) {
-        uint32_t own = predict_object_at(p, predict_word(p)), home = predict_word(p);
+    for (size_t i = 0; i < n && !p->code && !p->words.short_of && !p->damaged; i++) {
+        uint32_t own = predict_object_at(p, trace_words_next(&p->words)),
+                 home = trace_words_next(&p->words);
         if (!p->damaged && p->name[own].slot)
             give_home(p, own, home);
     }

@@ -11,45 +11,7 @@
 
 #define MOST_LOOK 5e-7 /* s: to find no message, however dear one is */
 
-/* ---- Words ---- */
-
-uint32_t predict_word(struct predict_program *p)
-{
-    p->short_of |= p->at >= p->graph->run->n_words;
-    return p->short_of ? 0 : p->graph->run->word[p->at++];
-}
-
-uint64_t predict_word2(struct predict_program *p)
-{
-    uint64_t low = predict_word(p);
-    return low | (uint64_t)predict_word(p) << 32;
-}
-
-double predict_number(struct predict_program *p)
-{
-    uint64_t bits = predict_word2(p);
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-float predict_float(struct predict_program *p)
-{
-    uint32_t bits = predict_word(p);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 /* ---- Tasks ---- */
-
-duite_mode predict_mode(const struct trace_kernel *kernel, size_t i)
-{
-    static const duite_mode same[] = {DUITE_NONE, DUITE_R, DUITE_W,  DUITE_RW, DUITE_CW,
-                                      DUITE_R,    DUITE_W, DUITE_RW, DUITE_CW};
-    uint8_t mode = i < kernel->fixed ? kernel->mode[i] : kernel->rest;
-    return mode < sizeof same / sizeof same[0] ? same[mode] : DUITE_R;
-}
 
 /* What is written first, or else read first. */
 uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
@@ -58,7 +20,7 @@ uint32_t predict_owner(const struct predict_graph *graph, const struct predict_f
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
     uint32_t own = PREDICT_NONE;
     for (size_t i = 0; i < fork->n; i++) {
-        duite_mode mode = predict_mode(kernel, i);
+        duite_mode mode = trace_mode(kernel, i);
         bool writes = mode == DUITE_W || mode == DUITE_RW;
         if (writes || (mode == DUITE_R && own == PREDICT_NONE))
             own = objects[i];
@@ -97,7 +59,7 @@ void predict_fork(struct predict_program *p, const struct predict_fork *fork)
         seconds = predict_times_kernel(p->times, fork->kernel);
     seconds /= graph->cluster->core_speed;
     for (size_t i = 0; i < fork->n; i++)
-        p->prepared[i] = predict_prepare(graph, fork->object[i], predict_mode(kernel, i), host);
+        p->prepared[i] = predict_prepare(graph, fork->object[i], trace_mode(kernel, i), host);
     uint32_t node = predict_add(
         graph, &(struct predict_node){
                    .number = fork->number,
@@ -113,7 +75,7 @@ void predict_fork(struct predict_program *p, const struct predict_fork *fork)
         return;
     graph->linked = false;
     for (size_t i = 0; i < fork->n; i++)
-        predict_use(graph, node, fork->object[i], predict_mode(kernel, i), p->prepared[i]);
+        predict_use(graph, node, fork->object[i], trace_mode(kernel, i), p->prepared[i]);
     predict_hold(graph, node);
     if (kernel->stays && follows)
         stay(p, own);
@@ -149,20 +111,20 @@ bool predict_room(struct predict_program *p, size_t n)
 
 static void fork_one(struct predict_program *p, size_t n, bool told)
 {
-    struct predict_fork fork = {.kernel = predict_word(p), .n = n, .at = -1};
+    struct predict_fork fork = {.kernel = trace_words_next(&p->words), .n = n, .at = -1};
     if (told) {
-        fork.at = (int32_t)predict_word(p);
-        fork.priority = (int32_t)predict_word(p);
-        fork.cost = predict_float(p);
+        fork.at = (int32_t)trace_words_next(&p->words);
+        fork.priority = (int32_t)trace_words_next(&p->words);
+        fork.cost = trace_words_float(&p->words);
     }
     p->damaged |= fork.kernel >= p->graph->run->n_kernels;
     if (!predict_room(p, n) || p->damaged)
         return;
     for (size_t i = 0; i < n; i++)
-        p->objects[i] = predict_object_at(p, predict_word(p));
+        p->objects[i] = predict_object_at(p, trace_words_next(&p->words));
     fork.object = p->objects;
     fork.number = ++p->forks;
-    if (!p->damaged && !p->short_of)
+    if (!p->damaged && !p->words.short_of)
         predict_fork(p, &fork);
 }
 
@@ -217,10 +179,10 @@ static void op(struct predict_program *p, uint64_t from, uint64_t to, uint32_t n
 
 static void get(struct predict_program *p)
 {
-    uint32_t own = predict_object_at(p, predict_word(p));
-    int rank = (int32_t)predict_word(p);
-    uint64_t from = predict_word2(p), to = predict_word2(p);
-    if (p->damaged || p->short_of)
+    uint32_t own = predict_object_at(p, trace_words_next(&p->words));
+    int rank = (int32_t)trace_words_next(&p->words);
+    uint64_t from = trace_words_next2(&p->words), to = trace_words_next2(&p->words);
+    if (p->damaged || p->words.short_of)
         return;
     int host = rank < 0 ? PREDICT_ALL : rank % (int)p->graph->cluster->hosts;
     uint32_t node = predict_prepare(p->graph, own, DUITE_R, host);
@@ -229,15 +191,15 @@ static void get(struct predict_program *p)
 
 static void wait(struct predict_program *p)
 {
-    uint64_t from = predict_word2(p), to = predict_word2(p);
+    uint64_t from = trace_words_next2(&p->words), to = trace_words_next2(&p->words);
     op(p, from, to, PREDICT_NONE, true);
 }
 
 static void turn(struct predict_program *p, bool on)
 {
-    p->forks = predict_word2(p);
-    predict_word2(p);
-    uint64_t now = predict_word2(p);
+    p->forks = trace_words_next2(&p->words);
+    trace_words_next2(&p->words);
+    uint64_t now = trace_words_next2(&p->words);
     if (!on)
         op(p, now, now, PREDICT_NONE, true);
     p->since = now;
@@ -245,9 +207,9 @@ static void turn(struct predict_program *p, bool on)
 
 static void entry(struct predict_program *p)
 {
-    uint32_t first = predict_word(p);
+    uint32_t first = trace_words_next(&p->words);
     size_t n = first >> 8; /* of things that have a word at least */
-    if (n > p->graph->run->n_words - p->at) {
+    if (n > trace_words_left(&p->words)) {
         p->damaged = true;
         return;
     }
@@ -277,7 +239,7 @@ static void entry(struct predict_program *p)
         fork_one(p, n, (first & 0xff) == TRACE_FORKED);
         break;
     case TRACE_SET: {
-        uint32_t own = predict_object_at(p, predict_word(p));
+        uint32_t own = predict_object_at(p, trace_words_next(&p->words));
         if (!p->damaged)
             predict_set(p, own);
         break;
@@ -304,15 +266,15 @@ static void entry(struct predict_program *p)
 static int walk(struct predict_program *p)
 {
     struct predict_graph *graph = p->graph;
-    while (p->at < graph->run->n_words && !p->damaged && !graph->failed && !p->code)
+    while (trace_words_left(&p->words) && !p->damaged && !graph->failed && !p->code)
         entry(p);
     if (graph->failed)
         return base_no_memory("the graph of a trace");
     if (p->code)
         return p->code;
-    if (p->damaged || p->short_of)
+    if (p->damaged || p->words.short_of)
         return base_error(DUITE_E_ARGUMENT,
-                          "the trace is damaged: word %zu of its program cannot be", p->at);
+                          "the trace is damaged: word %zu of its program cannot be", p->words.at);
     if (!p->tasks)
         return base_error(DUITE_E_ARGUMENT, "the trace has no tasks of the main program");
     op(p, p->since, p->since, PREDICT_NONE, true);
@@ -358,7 +320,9 @@ static bool prepare(struct predict_program *p)
 
 int predict_build(struct predict_graph *graph)
 {
-    struct predict_program p = {.graph = graph, .most_replayed = most_replayed(graph->run)};
+    struct predict_program p = {.graph = graph,
+                                .words = trace_words_of(graph->run),
+                                .most_replayed = most_replayed(graph->run)};
     int code = prepare(&p) ? walk(&p) : base_no_memory("the graph of a trace");
     graph->n_tasks = p.tasks;
     predict_moves_stop(&p);

@@ -3,6 +3,7 @@
 
 #include "runtime/data/object.h"
 #include "runtime/predict/graph.h"
+#include "runtime/trace/words.h"
 
 /* The main program while it is read; shared by program.c and replay.c. */
 
@@ -42,8 +43,8 @@ struct predict_program {
     uint32_t *block;         /* on their hosts, by their numbers in `table`: see number_there */
     size_t n_blocks, blocks_capacity;
     uint32_t *blocks_on; /* by host: how many */
-    size_t at;           /* the next word */
-    bool short_of, damaged;
+    struct trace_words words;
+    bool damaged;
     int code;
     uint32_t *slot; /* object by slot of the trace */
     size_t slots_capacity;
@@ -61,11 +62,6 @@ struct predict_program {
     uint64_t forked;                  /* nodes since then, those of replays left out */
 };
 
-uint32_t predict_word(struct predict_program *p);
-uint64_t predict_word2(struct predict_program *p);
-double predict_number(struct predict_program *p);
-float predict_float(struct predict_program *p);
-
 /* The object that a slot names. */
 uint32_t predict_object_at(struct predict_program *p, uint32_t slot);
 /* Entries of the program; n: their count. */
@@ -80,9 +76,7 @@ bool predict_room(struct predict_program *p, size_t n);
 void predict_fork(struct predict_program *p, const struct predict_fork *fork);
 void predict_set(struct predict_program *p, uint32_t own);
 
-/* The modes of a kernel's parameters; and the object that a task runs for, by the owner rule, or
- * NONE. */
-duite_mode predict_mode(const struct trace_kernel *kernel, size_t i);
+/* The object that a task runs for, by the owner rule, or NONE. */
 uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
                        const uint32_t *objects);
 

@@ -38,33 +38,34 @@ static bool take_fork(struct predict_program *p, struct predict_recorded *graph,
                       size_t *used)
 {
     struct predict_fork *fork = &graph->fork[i];
-    *fork = (struct predict_fork){.kernel = predict_word(p), .n = predict_word(p)};
-    fork->at = (int32_t)predict_word(p);
-    fork->priority = (int32_t)predict_word(p);
-    fork->cost = predict_float(p);
+    *fork = (struct predict_fork){.kernel = trace_words_next(&p->words),
+                                  .n = trace_words_next(&p->words)};
+    fork->at = (int32_t)trace_words_next(&p->words);
+    fork->priority = (int32_t)trace_words_next(&p->words);
+    fork->cost = trace_words_float(&p->words);
     fork->object = graph->use + *used;
-    if (fork->n > p->graph->run->n_words - p->at ||
+    if (fork->n > trace_words_left(&p->words) ||
         (fork->kernel != PREDICT_NONE && fork->kernel >= p->graph->run->n_kernels))
         p->damaged = true;
     for (size_t k = 0; k < fork->n && !p->damaged; k++) {
-        fork->object[k] = predict_word(p);
+        fork->object[k] = trace_words_next(&p->words);
         p->damaged |= fork->object[k] >= graph->n_objects;
     }
     p->damaged |= fork->kernel == PREDICT_NONE && fork->n != 1;
     *used += fork->n;
     graph->n_calls += fork->kernel != PREDICT_NONE;
-    return !p->damaged && !p->short_of;
+    return !p->damaged && !p->words.short_of;
 }
 
 void predict_take_graph(struct predict_program *p, size_t n_objects)
 {
-    struct predict_recorded *graph = take_place(p, predict_word(p));
+    struct predict_recorded *graph = take_place(p, trace_words_next(&p->words));
     for (size_t i = 0; i < n_objects; i++)
-        predict_word(p);
-    size_t n = predict_word(p), used = 0, left = p->graph->run->n_words - p->at;
+        trace_words_next(&p->words);
+    size_t n = trace_words_next(&p->words), used = 0, left = trace_words_left(&p->words);
     if (!graph || n > left)
         p->damaged = true;
-    if (p->damaged || p->short_of)
+    if (p->damaged || p->words.short_of)
         return;
     graph->n_objects = n_objects;
     graph->fork = malloc((n + 1) * sizeof *graph->fork);
@@ -211,9 +212,9 @@ static void rounds(struct predict_program *p, struct predict_recorded *recorded,
 
 void predict_replay(struct predict_program *p, size_t n_objects)
 {
-    uint32_t name = predict_word(p), flag_slot = predict_word(p);
-    uint64_t most = predict_word2(p);
-    p->forks = predict_word2(p);
+    uint32_t name = trace_words_next(&p->words), flag_slot = trace_words_next(&p->words);
+    uint64_t most = trace_words_next2(&p->words);
+    p->forks = trace_words_next2(&p->words);
     if (name >= p->n_recorded || p->recorded[name].n_objects != n_objects) {
         p->damaged = true;
         return;
@@ -223,10 +224,10 @@ void predict_replay(struct predict_program *p, size_t n_objects)
     uint32_t *bound = malloc((n_objects + 1) * sizeof *bound);
     p->graph->failed |= !bound;
     for (size_t i = 0; bound && i < n_objects; i++)
-        bound[i] = predict_object_at(p, predict_word(p));
+        bound[i] = predict_object_at(p, trace_words_next(&p->words));
     free(recorded->bound);
     recorded->bound = bound;
-    if (bound && !p->damaged && !p->short_of) {
+    if (bound && !p->damaged && !p->words.short_of) {
         predict_move(p, recorded);
         rounds(p, recorded, flag, most);
     }

@@ -116,13 +116,13 @@ static void put_fork(struct round *r, const struct predict_fork *fork)
     const bool set = fork->kernel == PREDICT_NONE;
     const struct trace_kernel *kernel = set ? &sets : &graph->run->kernel[fork->kernel];
     for (size_t k = 0; k < fork->n && !r->failed; k++) {
-        if (predict_mode(kernel, k) == DUITE_CW)
+        if (trace_mode(kernel, k) == DUITE_CW)
             continue;
         close_sum(r, fork->object[k]);
         gather(r, fork->object[k]);
     }
     for (size_t k = 0; k < fork->n && !r->failed; k++) {
-        const duite_mode mode = predict_mode(kernel, k);
+        const duite_mode mode = trace_mode(kernel, k);
         const uint32_t object = fork->object[k];
         if (mode == DUITE_CW)
             contribute(r, object);

@@ -1,70 +1,49 @@
-/* What the events say about seconds. A task that forked others is given their time, too: to all
- * other ranks its subtree is one task. A replicated one has the mean over its ranks. */
+/* What the events say about seconds: of each body (trace/bodies.h), of a kernel's bodies in the
+ * mean or the median, of the runtime's own tasks, and between two tasks. */
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/trace/bodies.h"
 
 #include <stdlib.h>
 
 enum { OWN_KINDS = 64, MOST_GAPS = 1 << 16 };
 
-struct time {
-    uint64_t number; /* 0: free */
-    float seconds;
-    uint32_t n; /* bodies, nested ones left out */
-};
-
-struct mean {
+struct times_mean {
     double seconds;
     uint64_t n;
 };
 
 struct predict_times {
-    struct time *time;
-    size_t mask;
-    struct mean *kernel, own[OWN_KINDS];
+    struct trace_bodies *bodies;
+    struct times_mean *kernel, own[OWN_KINDS];
     float *median; /* by kernel; NULL: not asked for */
     float *gap;
     size_t n_gaps;
 };
 
-/* Numbers lie close together and are asked for in their order: so do their places. */
-static struct time *place(const struct predict_times *times, uint64_t number)
-{
-    size_t at = (size_t)number & times->mask;
-    while (times->time[at].number && times->time[at].number != number)
-        at = (at + 1) & times->mask;
-    return &times->time[at];
-}
-
-static void add(struct mean *mean, double seconds)
+static void mean_add(struct times_mean *mean, double seconds)
 {
     mean->seconds += seconds;
     mean->n++;
 }
 
-static double get(const struct mean *mean)
+static double mean_value(const struct times_mean *mean)
 {
     return mean->n ? mean->seconds / (double)mean->n : 0;
 }
 
-static void take(struct predict_times *times, const struct trace_event *event, double tick)
+static void times_event(struct predict_times *times, const struct trace_event *event, double tick)
 {
     double seconds = tick * (double)(event->took - event->within);
     if (event->kind == TRACE_OWN && event->kernel < OWN_KINDS)
-        add(&times->own[event->kernel], seconds);
-    if (event->kind != TRACE_TASK)
-        return;
-    struct time *time = place(times, event->number);
-    time->number = event->number;
-    time->seconds += (float)seconds;
-    time->n += !(event->flags & TRACE_NESTED);
-    if (!(event->flags & TRACE_NESTED))
-        add(&times->kernel[event->kernel], seconds);
+        mean_add(&times->own[event->kernel], seconds);
+    if (event->kind == TRACE_TASK && !(event->flags & TRACE_NESTED))
+        mean_add(&times->kernel[event->kernel], seconds);
 }
 
 /* Between two tasks of a worker, with nothing else there: what the runtime takes. */
-static void take_gap(struct predict_times *times, const struct trace_event *event, double tick)
+static void times_gap(struct predict_times *times, const struct trace_event *event, double tick)
 {
     const struct trace_event *next = event + 1;
     uint64_t end = event->begin + event->took;
@@ -74,7 +53,7 @@ static void take_gap(struct predict_times *times, const struct trace_event *even
     times->gap[times->n_gaps++] = (float)(tick * (double)(next->begin - end));
 }
 
-static int compare(const void *a, const void *b)
+static int compare_seconds(const void *a, const void *b)
 {
     const float x = *(const float *)a, y = *(const float *)b;
     return (x > y) - (x < y);
@@ -82,21 +61,21 @@ static int compare(const void *a, const void *b)
 
 /* ---- Medians ---- */
 
-struct body {
+struct times_body {
     uint32_t kernel;
     float seconds;
 };
 
 static int compare_bodies(const void *a, const void *b)
 {
-    const struct body *x = a, *y = b;
+    const struct times_body *x = a, *y = b;
     if (x->kernel != y->kernel)
         return x->kernel < y->kernel ? -1 : 1;
     return (x->seconds > y->seconds) - (x->seconds < y->seconds);
 }
 
-static size_t take_bodies(const struct predict_times *times, const struct trace_run *run,
-                          struct body *body)
+static size_t times_bodies(const struct predict_times *times, const struct trace_run *run,
+                           struct times_body *body)
 {
     size_t n = 0;
     double seconds;
@@ -107,7 +86,7 @@ static size_t take_bodies(const struct predict_times *times, const struct trace_
                 if (event->kind != TRACE_TASK || event->flags & TRACE_NESTED)
                     continue;
                 predict_times_find(times, event->number, &seconds);
-                body[n++] = (struct body){event->kernel, (float)seconds};
+                body[n++] = (struct times_body){event->kernel, (float)seconds};
             }
     return n;
 }
@@ -117,10 +96,10 @@ bool predict_times_steady(struct predict_times *times, const struct trace_run *r
     size_t n = 1;
     for (uint32_t r = 0; r < run->n_ranks; r++)
         n += run->rank[r].n_events;
-    struct body *body = base_alloc(n * sizeof *body);
+    struct times_body *body = base_alloc(n * sizeof *body);
     times->median = base_alloc_zero((run->n_kernels + 1) * sizeof *times->median);
     if (body && times->median) {
-        n = take_bodies(times, run, body);
+        n = times_bodies(times, run, body);
         if (n)
             qsort(body, n, sizeof *body, compare_bodies);
     }
@@ -139,28 +118,22 @@ bool predict_times_steady(struct predict_times *times, const struct trace_run *r
 struct predict_times *predict_times_new(const struct trace_run *run)
 {
     struct predict_times *times = base_alloc_zero(sizeof *times);
-    size_t n = 16;
-    for (uint32_t r = 0; r < run->n_ranks; r++)
-        n += run->rank[r].n_events;
-    for (times ? times->mask = 1 : 0; times && times->mask < 2 * n; times->mask *= 2)
-        continue;
-    if (!times || !(times->time = base_alloc_zero(times->mask * sizeof *times->time)) ||
+    if (!times || !(times->bodies = trace_bodies_new(run)) ||
         !(times->kernel = base_alloc_zero((run->n_kernels + 1) * sizeof *times->kernel)) ||
         !(times->gap = base_alloc(MOST_GAPS * sizeof *times->gap))) {
         predict_times_free(times);
         return NULL;
     }
-    times->mask--;
     for (uint32_t r = 0; r < run->n_ranks; r++)
         for (size_t p = 0; p < run->rank[r].n_pieces; p++) {
             const struct trace_piece *piece = &run->rank[r].piece[p];
             for (size_t i = 0; i < piece->n; i++) {
-                take(times, &piece->event[i], run->rank[r].header->tick);
+                times_event(times, &piece->event[i], run->rank[r].header->tick);
                 if (i + 1 < piece->n)
-                    take_gap(times, &piece->event[i], run->rank[r].header->tick);
+                    times_gap(times, &piece->event[i], run->rank[r].header->tick);
             }
         }
-    qsort(times->gap, times->n_gaps, sizeof *times->gap, compare);
+    qsort(times->gap, times->n_gaps, sizeof *times->gap, compare_seconds);
     return times;
 }
 
@@ -168,7 +141,7 @@ void predict_times_free(struct predict_times *times)
 {
     if (!times)
         return;
-    base_free(times->time);
+    trace_bodies_free(times->bodies);
     base_free(times->kernel);
     base_free(times->gap);
     base_free(times->median);
@@ -177,21 +150,19 @@ void predict_times_free(struct predict_times *times)
 
 bool predict_times_find(const struct predict_times *times, uint64_t number, double *seconds)
 {
-    const struct time *time = place(times, number);
-    *seconds = time->n > 1 ? time->seconds / (float)time->n : time->seconds;
-    return time->number != 0;
+    return trace_bodies_find(times->bodies, number, seconds);
 }
 
 double predict_times_kernel(const struct predict_times *times, uint32_t kernel)
 {
     if (times->median)
         return times->median[kernel];
-    return get(&times->kernel[kernel]);
+    return mean_value(&times->kernel[kernel]);
 }
 
 double predict_times_own(const struct predict_times *times, uint32_t kind)
 {
-    return kind < OWN_KINDS ? get(&times->own[kind]) : 0;
+    return kind < OWN_KINDS ? mean_value(&times->own[kind]) : 0;
 }
 
 double predict_times_gap(const struct predict_times *times)

@@ -1,0 +1,173 @@
+/* duite_trace_bounds against chains worked out by hand. */
+#include "tests/runtime/trace_file.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#define SLOTS(...) ((const uint32_t[]){__VA_ARGS__})
+#define MS         1e-3
+
+static struct trace_file begun(uint32_t n)
+{
+    struct trace_file file = {0};
+    for (uint32_t slot = 1; slot <= n; slot++)
+        trace_file_object(&file, slot, 8);
+    trace_file_begin(&file, n);
+    return file;
+}
+
+static int bounds_of(struct trace_file *file, double *path, double *bound)
+{
+    char name[64];
+    snprintf(name, sizeof name, "test_bounds.%d.trace", (int)getpid());
+    ck_assert(trace_file_write(file, name));
+    const int code = duite_trace_bounds(name, path, bound);
+    unlink(name);
+    return code;
+}
+
+static void bounds_are(struct trace_file *file, double path, double bound)
+{
+    double found = 0, lower = 0;
+    ck_assert_msg(!bounds_of(file, &found, &lower), "%s", duite_message());
+    ck_assert_msg(fabs(found - path) < 1e-9, "path %.12g, not %.12g", found, path);
+    ck_assert_msg(fabs(lower - bound) < 1e-9, "bound %.12g, not %.12g", lower, bound);
+}
+
+/* 1 + 2 + 3 ms in a row; a task beside them makes the work of the one worker more. */
+START_TEST(values_make_chains)
+{
+    struct trace_file file = begun(2);
+    for (int i = 1; i <= 3; i++)
+        trace_file_fork(&file, FILE_RW, i * MS, 0, 1, SLOTS(1));
+    trace_file_fork(&file, FILE_W, 5 * MS, 0, 1, SLOTS(2));
+    bounds_are(&file, 6 * MS, 11 * MS);
+}
+END_TEST
+
+/* 1 + 4: who writes without reading waits for nobody if there is memory enough. */
+START_TEST(writers_begin_chains)
+{
+    struct trace_file file = begun(2);
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
+    trace_file_fork(&file, FILE_R_W, 4 * MS, 0, 2, SLOTS(1, 2));
+    trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(1));
+    bounds_are(&file, 5 * MS, 7 * MS);
+}
+END_TEST
+
+/* 1 + 3 + 1: contributions wait for no other, and a reader for all of them. */
+START_TEST(contributions_end_together)
+{
+    struct trace_file file = begun(2);
+    trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
+    for (int i = 1; i <= 3; i++)
+        trace_file_fork(&file, FILE_R_CW, i * MS, 0, 2, SLOTS(1, 2));
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(2));
+    bounds_are(&file, 5 * MS, 8 * MS);
+}
+END_TEST
+
+static void put_long(struct trace_file *file, uint32_t value)
+{
+    trace_file_word(file, value);
+    trace_file_word(file, 0);
+}
+
+/* What reads a view reads what its object has then: 2 + 1. */
+START_TEST(views_follow_their_objects)
+{
+    struct trace_file file = begun(2);
+    trace_file_word(&file, TRACE_VIEW);
+    trace_file_word(&file, 3);
+    trace_file_word(&file, 1);
+    put_long(&file, 8);
+    trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(1));
+    trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(3, 2));
+    bounds_are(&file, 3 * MS, 3 * MS);
+}
+END_TEST
+
+/* Three rounds of 1 + 2 in a row, then 1 more on what the last one left. */
+static const struct trace_file_node NODES[] = {{FILE_RW, 1 * MS, 0, 1, {0}},
+                                               {FILE_R_W, 2 * MS, 0, 2, {0, 1}}};
+START_TEST(rounds_follow_rounds)
+{
+    struct trace_file file = begun(2);
+    trace_file_graph(&file, 2, 2, NODES);
+    trace_file_replay(&file, 2, 2, NODES, 3);
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(2));
+    bounds_are(&file, 6 * MS, 10 * MS);
+}
+END_TEST
+
+/* The same with a flag that the second task writes: the next round begins when it is read. */
+START_TEST(flags_hold_rounds)
+{
+    struct trace_file file = begun(2);
+    trace_file_graph(&file, 2, 2, NODES);
+    const size_t at = file.n_words;
+    trace_file_replay(&file, 2, 2, NODES, 3);
+    file.word[at + 2] = 2;
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(2));
+    bounds_are(&file, 10 * MS, 10 * MS);
+}
+END_TEST
+
+/* Of a replay that was poisoned from its second round on, later rounds count nothing. */
+START_TEST(poisoned_rounds_take_no_time)
+{
+    struct trace_file file = begun(2);
+    trace_file_graph(&file, 2, 2, NODES);
+    const size_t at = file.n_words;
+    trace_file_replay(&file, 2, 2, NODES, 1);
+    file.word[at + 3] = 1000000000;
+    file.forks += 999999999ull * 2; /* as many as did not run */
+    trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(2));
+    bounds_are(&file, 4 * MS, 4 * MS);
+}
+END_TEST
+
+/* Each word, replaced, gives bounds or a refusal. */
+START_TEST(damage_is_refused)
+{
+    static const uint32_t planted[] = {0, 1, 0xff, 0xffffff00u | TRACE_GRAPH, UINT32_MAX};
+    struct trace_file file = begun(2);
+    double path, bound;
+    size_t n = 1;
+    for (size_t at = 0; at < n; at++)
+        for (size_t k = 0; k < sizeof planted / sizeof *planted; k++) {
+            file = begun(2);
+            trace_file_graph(&file, 2, 2, NODES);
+            trace_file_replay(&file, 2, 2, NODES, 3);
+            trace_file_fork(&file, FILE_R_CW, 1 * MS, 0, 2, SLOTS(1, 2));
+            n = file.n_words;
+            file.word[at] = planted[k];
+            const int code = bounds_of(&file, &path, &bound);
+            ck_assert(!code || code == DUITE_E_ARGUMENT);
+        }
+    file = begun(1);
+    file.lost = 1;
+    ck_assert_int_eq(bounds_of(&file, &path, &bound), DUITE_E_ARGUMENT);
+    file = begun(1);
+    ck_assert_int_eq(bounds_of(&file, &path, &bound), DUITE_E_ARGUMENT);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bounds");
+    TCase *cases = tcase_create("bounds");
+    tcase_add_test(cases, values_make_chains);
+    tcase_add_test(cases, writers_begin_chains);
+    tcase_add_test(cases, contributions_end_together);
+    tcase_add_test(cases, views_follow_their_objects);
+    tcase_add_test(cases, rounds_follow_rounds);
+    tcase_add_test(cases, flags_hold_rounds);
+    tcase_add_test(cases, poisoned_rounds_take_no_time);
+    tcase_add_test(cases, damage_is_refused);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -23,14 +23,14 @@ enum { ROUNDS = 256, SEED, OUTPUT, TIMEOUT, TASKS, COST, BYTES, STEPS, SET, LIST
 
 static const struct argp_option OPTIONS[] = {
     {"scheduler", LIST + SCHEDULER, "LIST", 0,
-     "schedulers, with commas between them; all: every one but shuffle; starpu:NAME: that of "
-     "StarPU, "
-     "on graphs (default: steal)",
+     "schedulers, with commas between them; all: every one but shuffle, which is for tests; "
+     "starpu:NAME: that of StarPU, on graphs (default: steal)",
      1},
     {"mapping", LIST + MAPPING, "LIST", 0,
      "mappings, with commas between them; all: every one (default: metis)", 1},
     {"balance", LIST + BALANCE, "LIST", 0,
-     "balancers, with commas between them; all: every one but scatter and wander (default: none)",
+     "balancers, with commas between them; all: every one but scatter and wander, which are for "
+     "tests (default: none)",
      1},
     {"ranks", LIST + RANKS, "LIST", 0, "numbers of ranks, with commas between them (default: 1)",
      1},
@@ -73,12 +73,6 @@ static const char *const *names_of(int dimension)
     return NULL;
 }
 
-/* Policies that are for tests only are not among all. */
-static bool is_adversary(const char *name)
-{
-    return !strcmp(name, "shuffle") || !strcmp(name, "scatter") || !strcmp(name, "wander");
-}
-
 static void check_item(struct argp_state *state, int dimension, const char *item)
 {
     const void *found = state;
@@ -108,8 +102,7 @@ static void take_list(struct argp_state *state, struct compare *compare, int dim
     list->n = 0;
     if (names && !strcmp(text, "all")) {
         for (; *names; names++)
-            if (!is_adversary(*names))
-                add(state, list, *names);
+            add(state, list, *names);
         return;
     }
     for (char *item = strtok(text, ","); item; item = strtok(NULL, ",")) {

@@ -1,4 +1,4 @@
-/* The built-in balancers by name, the default first. */
+/* The built-in balancers by name: the rows of balance.h. */
 #include "runtime/balance/balance.h"
 
 #include "runtime/balance/front.h"
@@ -6,23 +6,31 @@
 
 #include <duite.h>
 
-static const char *const names[] = {"none", "delegate", "migrate", "scatter", "wander", NULL};
-static const void *const tables[] = {&balance_none, &balance_delegate, &balance_migrate,
-                                     &balance_scatter, &balance_wander};
+#define BALANCE_TABLE(name) &balance_##name,
 
-static const struct base_policies all = {"balancer", "duite_own_balancer", names, tables};
+static const char *const balance_names[] = {BALANCE_ROWS(BASE_POLICY_NAME) NULL,
+                                            BALANCE_TEST_ROWS(BASE_POLICY_NAME) NULL};
+static const void *const balance_tables[] = {BALANCE_ROWS(BALANCE_TABLE) NULL,
+                                             BALANCE_TEST_ROWS(BALANCE_TABLE) NULL};
+static const struct base_policies balancers = {"balancer", "duite_own_balancer", balance_names,
+                                               balance_tables};
 
 const duite_balancer *duite_balancer_find(const char *name)
 {
-    return base_policy_find(&all, name);
+    return base_policy_find(&balancers, name);
 }
 
 const char *const *duite_balancer_names(void)
 {
-    return names;
+    return balance_names;
+}
+
+const char *const *balance_test_names(void)
+{
+    return base_policy_test_names(&balancers);
 }
 
 bool balance_is_foreign(const duite_balancer *balancer)
 {
-    return !base_policy_is_ours(&all, balancer);
+    return !base_policy_is_ours(&balancers, balancer);
 }

@@ -6,8 +6,18 @@
 
 #include <duite_policy.h>
 
-/* The built-in mappings. */
-extern const duite_mapping map_metis, map_block, map_cyclic, map_random, map_taskgraph, map_list;
+/* The built-in mappings. A mapping is one file, which defines its table, and one row here; the
+ * first is the default. */
+#define MAP_ROWS(ROW)                                                                              \
+    ROW(metis)                                                                                     \
+    ROW(block)                                                                                     \
+    ROW(cyclic)                                                                                    \
+    ROW(random)                                                                                    \
+    ROW(taskgraph)                                                                                 \
+    ROW(list)
+
+#define MAP_DECLARE(name) extern const duite_mapping map_##name;
+MAP_ROWS(MAP_DECLARE)
 
 /* That of `metis`: equal weights, few bytes between ranks. */
 int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);

@@ -3,9 +3,25 @@
 
 #include <duite_policy.h>
 
-/* The built-in schedulers, and the decisions that several of them share. */
-extern const duite_scheduler sched_steal, sched_locality, sched_owner, sched_fifo, sched_lifo,
-    sched_priority, sched_static, sched_shuffle;
+/* The built-in schedulers, and the decisions that several of them share. A scheduler is one file,
+ * which defines its table, and one row here; the first is the default. */
+#define SCHED_ROWS(ROW)                                                                            \
+    ROW(steal)                                                                                     \
+    ROW(locality)                                                                                  \
+    ROW(owner)                                                                                     \
+    ROW(fifo)                                                                                      \
+    ROW(lifo)                                                                                      \
+    ROW(priority)                                                                                  \
+    ROW(static)
+/* Adversaries for tests: programs may name them, but no list of all has them. */
+#define SCHED_TEST_ROWS(ROW) ROW(shuffle)
+
+#define SCHED_DECLARE(name) extern const duite_scheduler sched_##name;
+SCHED_ROWS(SCHED_DECLARE)
+SCHED_TEST_ROWS(SCHED_DECLARE)
+
+/* The names of those for tests, ended by NULL. */
+const char *const *sched_test_names(void);
 
 struct sched_state {
     uint64_t random;

@@ -5,7 +5,10 @@
  *
  * alone or under mpirun; all ranks run each program together. One TAP line. */
 
+#include "runtime/balance/balance.h"
+#include "runtime/sched/sched.h"
 #include "tests/runtime/nested_program.h"
+#include "tests/support/policies.h"
 
 #include <getopt.h>
 #include <mpi.h>
@@ -292,15 +295,11 @@ static void run(const struct settings *settings)
 {
     static const double spins[] = {0, 1e-6, 1e-4};
     static const size_t windows[] = {0, 0, 1, 3}, renames[] = {0, 300, 5000, SIZE_MAX};
-    const char *const *schedulers = duite_scheduler_names();
     uint64_t random = ~program.seed;
     duite_object object[NEST_MAX_OBJECTS];
     duite_options options = duite_options_default();
-    unsigned n = 0;
     duite *rt;
 
-    while (schedulers[n])
-        n++;
     options.kernels = list;
     options.laws = (const duite_law *const[]){&NEST_LAW, NULL};
     options.window = (size_t[]){0, 0, 1, 3}[duite_random(&random) % 4];
@@ -309,7 +308,9 @@ static void run(const struct settings *settings)
     options.mapping = duite_mapping_find("cyclic");
     options.spin_seconds = spins[duite_random(&random) % 3];
     options.threads = 1 + (unsigned)(duite_random(&random) % 4);
-    const char *scheduler = schedulers[duite_random(&random) % n];
+    size_t n = policies_count(duite_scheduler_names(), sched_test_names());
+    const char *scheduler =
+        policies_at(duite_scheduler_names(), sched_test_names(), duite_random(&random) % n);
     options.window = windows[duite_random(&random) % 4];
     options.rename_bytes = renames[duite_random(&random) % 4];
     if (settings->threads)
@@ -319,11 +320,11 @@ static void run(const struct settings *settings)
     options.scheduler = duite_scheduler_find(scheduler);
     options.window = duite_random(&random) % 4;
     options.rename_bytes = duite_random(&random) % 3 * 1000;
-    const char *const *balancers = duite_balancer_names();
-    for (n = 0; balancers[n]; n++)
-        ;
+    n = policies_count(duite_balancer_names(), balance_test_names());
     const char *balance =
-        settings->balance ? settings->balance : balancers[duite_random(&random) % n];
+        settings->balance
+            ? settings->balance
+            : policies_at(duite_balancer_names(), balance_test_names(), duite_random(&random) % n);
     options.balance = duite_balancer_find(balance);
     snprintf(running, sizeof running, "--seed %llu --threads %u --scheduler %s --balance %s",
              (unsigned long long)program.seed, options.threads, scheduler, balance);

@@ -2,7 +2,10 @@
  * program is its seed and the number of ranks; threads, scheduler, mapping and balancer follow from
  * the seed too unless they are given. */
 
+#include "runtime/balance/balance.h"
+#include "runtime/sched/sched.h"
 #include "tests/runtime/random_program.h"
+#include "tests/support/policies.h"
 
 #include <getopt.h>
 #include <signal.h>
@@ -37,13 +40,11 @@ static void last_words(int number)
     _exit(3);
 }
 
-static size_t count_names(const char *const *names)
+static const char *draw_policy(uint64_t *random, const char *const *names,
+                               const char *const *adversaries)
 {
-    size_t n = 0;
-
-    while (names[n])
-        n++;
-    return n;
+    const size_t n = policies_count(names, adversaries);
+    return policies_at(names, adversaries, duite_random(random) % n);
 }
 
 static struct prog_setup draw_setup(const struct settings *settings, uint64_t seed, MPI_Comm comm)
@@ -51,8 +52,6 @@ static struct prog_setup draw_setup(const struct settings *settings, uint64_t se
     static const double SPINS[] = {0, 1e-6, 100e-6};
     static const size_t RENAMES[] = {0, 128, 1000, 20000, SIZE_MAX};
     static const size_t WINDOWS[] = {0, 0, 1, 1, 2, 7, 30};
-    const char *const *schedulers = duite_scheduler_names(), *const *mappings =
-                                                                 duite_mapping_names();
     struct prog_setup setup = {.comm = comm, .verbose = settings->verbose};
     uint64_t random = ~seed;
 
@@ -61,10 +60,9 @@ static struct prog_setup draw_setup(const struct settings *settings, uint64_t se
     setup.spin = SPINS[duite_random(&random) % 3];
     setup.window = WINDOWS[duite_random(&random) % (sizeof WINDOWS / sizeof *WINDOWS)];
     setup.rename = RENAMES[duite_random(&random) % (sizeof RENAMES / sizeof *RENAMES)];
-    setup.scheduler = schedulers[duite_random(&random) % count_names(schedulers)];
-    setup.mapping = mappings[duite_random(&random) % count_names(mappings)];
-    setup.balance =
-        duite_balancer_names()[duite_random(&random) % count_names(duite_balancer_names())];
+    setup.scheduler = draw_policy(&random, duite_scheduler_names(), sched_test_names());
+    setup.mapping = draw_policy(&random, duite_mapping_names(), (const char *[]){NULL});
+    setup.balance = draw_policy(&random, duite_balancer_names(), balance_test_names());
     if (settings->balance)
         setup.balance = settings->balance;
     if (settings->window >= 0)

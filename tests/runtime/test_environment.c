@@ -118,6 +118,9 @@ START_TEST(wrong_names)
     refuses("DUITE_MAPPING", "flat", duite_mapping_names());
     refuses("DUITE_BALANCE", "fair", duite_balancer_names());
     refuses("DUITE_SCHEDULER", "", duite_scheduler_names());
+    refuses("DUITE_SCHEDULER", "lazy", (const char *[]){", for tests shuffle, and", NULL});
+    refuses("DUITE_MAPPING", "flat", (const char *[]){"list, and shared", NULL});
+    refuses("DUITE_BALANCE", "fair", (const char *[]){", for tests scatter, wander, and", NULL});
     refuses("DUITE_SCHEDULER", "./no-such-file.so", (const char *[]){"cannot be loaded", NULL});
     refuses("DUITE_TRACE", "", (const char *[]){"empty", NULL});
 }

@@ -1,10 +1,14 @@
 /* What the schedulers decide, seen where they are asked and where tasks run. */
+#include "runtime/balance/balance.h"
+#include "runtime/sched/sched.h"
 #include "tests/negative/misuse.h"
 #include "tests/support/unit.h"
 
 #include <duite_policy.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 enum { TASKS = 30, BLOCKS = 7, STEPS = 40 };
@@ -189,6 +193,32 @@ START_TEST(fixed_workers)
             for (int s = 0; s < STEPS; s++)
                 ck_assert_uint_eq(worker_of[i][s], i % threads);
     }
+}
+END_TEST
+
+/* Whether there is a built-in one of each name, which calls itself so and is, or is not, for tests.
+ */
+static bool are_rows(const char *const *names, bool for_tests)
+{
+    bool fine = *names != NULL;
+    for (; *names; names++) {
+        const duite_scheduler *s = duite_scheduler_find(*names);
+        const duite_balancer *b = s ? NULL : duite_balancer_find(*names);
+        const duite_mapping *m = s || b ? NULL : duite_mapping_find(*names);
+        const char *name = s ? s->name : b ? b->name : m ? m->name : "";
+        const char *summary = s ? s->summary : b ? b->summary : m ? m->summary : "";
+        fine = fine && !strcmp(name, *names) && !strstr(summary, "for tests") == !for_tests;
+    }
+    return fine;
+}
+
+START_TEST(rows)
+{
+    ck_assert(are_rows(duite_scheduler_names(), false));
+    ck_assert(are_rows(duite_mapping_names(), false));
+    ck_assert(are_rows(duite_balancer_names(), false));
+    ck_assert(are_rows(sched_test_names(), true));
+    ck_assert(are_rows(balance_test_names(), true));
 }
 END_TEST
 
@@ -418,6 +448,7 @@ int main(void)
 
     tcase_add_test(test, one_worker);
     tcase_add_test(test, fixed_workers);
+    tcase_add_test(test, rows);
     tcase_add_test(test, same_results);
     tcase_add_test(test, decisions);
     tcase_add_test(test, by_priority);

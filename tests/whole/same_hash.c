@@ -10,6 +10,9 @@
  * and the last three of these. */
 #include "cloth/flow/run.h"
 #include "cloth/scene/scene.h"
+#include "runtime/balance/balance.h"
+#include "runtime/sched/sched.h"
+#include "tests/support/policies.h"
 
 #include <inttypes.h>
 #include <stdbool.h>
@@ -82,9 +85,29 @@ static size_t count(const char *const *names)
     return n;
 }
 
+static size_t count_schedulers(void)
+{
+    return policies_count(duite_scheduler_names(), sched_test_names());
+}
+
+static const char *scheduler_at(size_t i)
+{
+    return policies_at(duite_scheduler_names(), sched_test_names(), i);
+}
+
+static size_t count_balancers(void)
+{
+    return policies_count(duite_balancer_names(), balance_test_names());
+}
+
+static const char *balancer_at(size_t i)
+{
+    return policies_at(duite_balancer_names(), balance_test_names(), i);
+}
+
 static const char *next_balance(int check)
 {
-    return duite_balancer_names()[(size_t)check % count(duite_balancer_names())];
+    return balancer_at((size_t)check % count_balancers());
 }
 
 static void check(struct checks *checks, const struct config *config)
@@ -127,9 +150,9 @@ static void check_all(struct checks *checks, bool half)
     int turn = 0;
     for (config.ranks = 1; config.ranks <= checks->world_size; config.ranks++)
         for (config.threads = 1; config.threads <= 4; config.threads *= 2)
-            for (const char *const *s = duite_scheduler_names(); *s; s++, turn++)
+            for (size_t s = 0; s < count_schedulers(); s++, turn++)
                 for (const char *const *m = duite_mapping_names(); *m; m++) {
-                    config.scheduler = *s;
+                    config.scheduler = scheduler_at(s);
                     config.mapping = *m;
                     if (!half || (m - duite_mapping_names() + turn) % 2 == 0)
                         check(checks, &config);
@@ -202,10 +225,10 @@ static void check_pair(struct checks *checks, struct pairs *pairs, size_t turn,
             pairs->met[f][pick[f]][g][pick[g]] = true;
     check(checks, &(struct config){.ranks = 1 + (int)pick[RANKS],
                                    .threads = 1U << pick[THREADS],
-                                   .scheduler = duite_scheduler_names()[pick[SCHEDULER]],
+                                   .scheduler = scheduler_at(pick[SCHEDULER]),
                                    .mapping = duite_mapping_names()[pick[MAPPING]],
                                    .seed = 1 + turn,
-                                   .balance = duite_balancer_names()[pick[BALANCE]]});
+                                   .balance = balancer_at(pick[BALANCE])});
 }
 
 /* The pairs of two factors that are not met. Returns the next turn. */
@@ -227,8 +250,8 @@ static size_t check_two(struct checks *checks, struct pairs *pairs, size_t f, si
 
 static void check_pairs(struct checks *checks)
 {
-    struct pairs pairs = {.values = {(size_t)checks->world_size, 3, count(duite_scheduler_names()),
-                                     count(duite_mapping_names()), count(duite_balancer_names())}};
+    struct pairs pairs = {.values = {(size_t)checks->world_size, 3, count_schedulers(),
+                                     count(duite_mapping_names()), count_balancers()}};
     size_t turn = 0;
     check(checks, &(struct config){1, 1, "steal", "metis", 1, "none"}); /* what is expected */
     turn =

@@ -97,7 +97,6 @@ after() {
 }
 
 plan_later
-export OMPI_MCA_odls_base_sigkill_timeout=0 # mpirun ends a job at once, not after a second
 ok "different scenes on two ranks" different
 ok "a body fails on one rank" limited "${MPIRUN:-mpirun}" -n 2 tests/negative/ranks_failures
 if test "${DUITE_LONG:-}" = 1; then

@@ -25,8 +25,8 @@ tests_negative_ranks_lost_SOURCES = tests/negative/ranks_lost.c $(MISUSE)
 tests_negative_ranks_lost_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh tests/negative/test_environment.sh
 TESTS += tests/negative/test_ranks.sh tests/negative/test_lost.sh tests/negative/test_environment.sh
-dist_check_SCRIPTS += tests/negative/test_lost_long.sh
-LONG_TESTS += tests/negative/test_lost_long.sh
+dist_check_SCRIPTS += tests/negative/test_lost_long.sh tests/negative/test_memory_long.sh
+LONG_TESTS += tests/negative/test_lost_long.sh tests/negative/test_memory_long.sh
 
 if HAVE_CHECK
 NEGATIVE_TESTS = tests/negative/test_arguments tests/negative/test_accesses tests/negative/test_start \

@@ -10,7 +10,6 @@ lost() { # HOW: both ranks that are left are right; that mpirun ends the job is 
 }
 
 plan_later
-export OMPI_MCA_odls_base_sigkill_timeout=0 # mpirun ends a job at once, not after a second
 ways=get
 if test "${DUITE_LONG:-}" = 1; then ways="get body wait replay count stop window"; fi
 for how in $ways; do ok "lost during: $how" lost "$how"; done

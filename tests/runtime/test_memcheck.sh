@@ -21,7 +21,7 @@ if test "${1:-}" = --long; then
         memcheck $n tests/runtime/nested_programs --seed 4${n}000000 --programs $((1000 / n))
     done
 else
-    programs=15
+    programs=10
     if quick; then programs=5; fi
     memcheck 1 tests/runtime/random_programs --base 1 --programs $programs
     memcheck 1 tests/runtime/nested_programs --seed 1 --programs $programs

@@ -4,7 +4,7 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-programs=300
+programs=120
 if quick; then programs=60; fi
 for n in 1 2 3; do
     ok "what moves on $n ranks" ranks $n tests/runtime/ranks_migrate

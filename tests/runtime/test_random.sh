@@ -5,7 +5,7 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-programs=10000
+programs=3000
 if quick; then programs=500; fi
 ok "$programs random programs" ranks 4 tests/runtime/random_programs --base 1 --programs $programs
 for n in 5 8; do

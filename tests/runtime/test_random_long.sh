@@ -1,5 +1,5 @@
 #!/bin/sh
-# The same as test_random.sh and test_nested.sh with other seeds and a hundred times as many programs: a million, in about
+# The same as test_random.sh and test_nested.sh with other seeds and hundreds of times as many programs: a million, in about
 # an hour and a half on two cores, and trees of tasks.
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later

@@ -9,7 +9,6 @@
 
 skip_unless "$DUITE_CLOTH"
 cd "$scratch" || exit 99
-export OMPI_MCA_odls_base_sigkill_timeout=0
 exec 3>&1
 
 run() { limited "$DUITE_CLOTH" "$@" --threads 1 --quiet --output out; }

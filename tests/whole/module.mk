@@ -5,11 +5,9 @@ dist_check_SCRIPTS += tests/whole/test_same_hash.sh tests/whole/test_same_hash_l
 	tests/whole/test_demo.sh
 TESTS += tests/whole/test_same_hash.sh tests/whole/test_dress.sh
 LONG_TESTS += tests/whole/test_same_hash_long.sh tests/whole/test_demo.sh
-dist_check_SCRIPTS += tests/whole/test_physics.sh
 dist_check_SCRIPTS += tests/whole/test_probes.sh
 dist_check_SCRIPTS += tests/whole/test_world.sh
 TESTS += tests/whole/test_probes.sh tests/whole/test_world.sh
-TESTS += tests/whole/test_physics.sh
 dist_check_SCRIPTS += tests/whole/test_momentum.sh
 TESTS += tests/whole/test_momentum.sh
 dist_check_SCRIPTS += tests/whole/test_memory.sh

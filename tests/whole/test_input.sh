@@ -6,7 +6,6 @@ skip_unless "$DUITE_CLOTH"
 plan_later
 cd "$scratch" || exit 99 # so that sentences have short paths
 # mpirun gives the other ranks a second when the first ends with an error; all of ours end by themselves, with the same one.
-export OMPI_MCA_odls_base_sigkill_timeout=0
 
 cat > scene.yaml << 'END'
 schema: 1

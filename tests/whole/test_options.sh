@@ -6,7 +6,6 @@ plan_later
 top=$srcdir
 cd "$scratch" || exit 99
 # mpirun gives the other ranks a second when the first ends with an error; all of ours end by themselves, with the same one.
-export OMPI_MCA_odls_base_sigkill_timeout=0
 
 cat > scene.yaml << 'END'
 schema: 1

@@ -4,7 +4,6 @@
 skip_unless "$DUITE_CLOTH"
 plan_later
 cd "$scratch" || exit 99
-export OMPI_MCA_odls_base_sigkill_timeout=0
 
 cat > sheet.yaml << 'END'
 schema: 1

@@ -2,8 +2,12 @@
  * different bytes under what they overwrite: small scenes in several blocks, each with another part
  * of the model. The linker puts the function below in the place of the one that calls bodies
  * (module.mk), so the last case knows which kernels no scene has run. What ranks send each other is
- * seen on two of them (test_ranks.sh). With an argument all pairs of what there is to choose are
- * run (test_checked_long.sh), else each choice at least once. */
+ * seen on two of them (test_ranks.sh).
+ *
+ *   test_checked [quick|long]
+ *
+ * long: all pairs of what there is to choose (test_checked_long.sh); by default each choice at
+ * least once; quick, also with DUITE_QUICK=1: so much that each kernel runs. */
 #include "cloth/flow/tasks/kernels.h"
 #include "runtime/check/check.h"
 #include "tests/cloth/flow/models.h"
@@ -39,7 +43,7 @@ static const char *const base =
     "obstacles:\n"
     "  - plane: {point: [0, -0.0015, 0], normal: [0, 1, 0]}\n"
     "probes: [{vertices: [0, 7, 35], values: [position, velocity, reaction, total]}]\n"
-    "time: {h: 0.001, end: 0.003, fps: 500}\n"
+    "time: {h: 0.001, end: 0.002, fps: 500}\n"
     "solver: {stop: {count: 4}}\n"
     "energies: steps\n"
     "grain: 8\n";
@@ -112,9 +116,32 @@ static void run_checked(struct how *how, struct flow *flow, struct cloth_error *
     ck_assert_msg(!duite_stop(&rt), "%s", duite_message());
 }
 
-/* The base with these sets, of which those that are NULL are none. Collective. */
-static void run_how(struct how *how, const char *const sets[MOST_SETS])
+static bool quick, sampled;
+static unsigned asked; /* how many runs the case has asked for */
+
+static void sample(void)
 {
+    sampled = quick;
+    asked = 0;
+}
+
+static void sample_no_more(void)
+{
+    sampled = false;
+}
+
+/* Sampled: all but the first run that a case asks for, and each fifth one after it. */
+static bool left_out(void)
+{
+    return sampled && asked++ % 5;
+}
+
+/* The base with these sets, of which those that are NULL are none. Returns whether it was run.
+ * Collective. */
+static bool run_how(struct how *how, const char *const sets[MOST_SETS])
+{
+    if (left_out())
+        return false;
     struct scene_set some[MOST_SETS];
     char name[1024] = "";
     size_t n = 0;
@@ -142,6 +169,7 @@ static void run_how(struct how *how, const char *const sets[MOST_SETS])
     if (!rank)
         model_free(&model);
     ck_assert_msg(!error.code, "with%s: %s", name, error.text);
+    return true;
 }
 
 #define SETS(...) ((const char *const[MOST_SETS]){__VA_ARGS__})
@@ -324,9 +352,9 @@ START_TEST(halved_steps)
         struct how how = {0};
         if (!paired(i, INTEGRATORS, 0, 3))
             continue;
-        run_how(&how, SETS(integrators[i], "time.stretch_growth=0.004", "time.end=0.001",
-                           "cloths[0].start=[{vertices: [20], velocity: [9, 0, 0]}]"));
-        ck_assert_uint_gt(how.report.steps_halved, 0);
+        if (run_how(&how, SETS(integrators[i], "time.stretch_growth=0.004", "time.end=0.001",
+                               "cloths[0].start=[{vertices: [20], velocity: [9, 0, 0]}]")))
+            ck_assert_uint_gt(how.report.steps_halved, 0);
     }
 }
 END_TEST
@@ -376,15 +404,16 @@ END_TEST
 
 int main(int argc, char **argv)
 {
-    (void)argv;
-    whole = argc > 1;
+    whole = argc > 1 && !strcmp(argv[1], "long");
+    quick = !whole && (argc > 1 || unit_quick());
     ran = mmap(NULL, MOST_KERNELS, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (ran == MAP_FAILED)
         return 99;
     Suite *suite = suite_create("checking mode");
-    TCase *cases = tcase_create("kernels");
-    tcase_add_test(cases, materials);
-    tcase_add_test(cases, pins);
+    TCase *integrations = tcase_create("integrators"), *cases = tcase_create("kernels");
+    tcase_add_test(integrations, materials);
+    tcase_add_test(integrations, pins);
+    tcase_add_checked_fixture(cases, sample, sample_no_more);
     tcase_add_test(cases, contact);
     tcase_add_test(cases, solves_of_one_reduction);
     tcase_add_test(cases, solves_of_newton_steps);
@@ -397,6 +426,7 @@ int main(int argc, char **argv)
     tcase_add_test(cases, saved_systems);
     tcase_add_test(cases, rests);
     tcase_add_test(cases, every_kernel_was_run);
+    suite_add_tcase(suite, integrations);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

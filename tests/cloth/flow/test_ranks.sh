@@ -1,12 +1,18 @@
 #!/bin/sh
-# The tests of runs and of their failures once more, on two ranks: what one rank finds wrong, or has no memory for, all say.
+# The tests of motion, runs and their failures once more, with the cloth spread over two ranks: what one rank finds wrong, or has no
+# memory for, all say. Of test_checked what sees each kernel once: two ranks differ from one in what they send.
 . "${srcdir:-.}/tests/support/tap.sh"
-for program in test_run test_failures test_halving test_contact test_guides test_memory test_checked test_late; do
+programs="test_run test_failures test_halving test_contact test_guides test_memory test_solvers"
+for program in $programs test_motion test_integrators test_checked test_late; do
     skip_unless "tests/cloth/flow/$program"
 done
 plan_later
 
-for program in test_run test_failures test_halving test_contact test_guides test_memory test_checked; do
+for program in $programs; do
     ok "$program on 2 ranks" ranks 2 "tests/cloth/flow/$program"
 done
+for cases in motion integrators; do # their other cases are of one block, which is no work for two ranks
+    ok "test_$cases on 2 ranks" ranks 2 env CK_RUN_CASE=$cases "tests/cloth/flow/test_$cases"
+done
+ok "test_checked on 2 ranks" ranks 2 tests/cloth/flow/test_checked quick
 ok "test_late on 3 ranks" ranks 3 tests/cloth/flow/test_late

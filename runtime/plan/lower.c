@@ -167,18 +167,6 @@ static void lower_stale(struct lowering *l, uint32_t object)
 
 /* ---- Forks ---- */
 
-uint32_t plan_owner(const struct plan_access *access, size_t n)
-{
-    uint32_t first_read = PLAN_NONE;
-    for (size_t i = 0; i < n; i++) {
-        if (access[i].mode == DUITE_W || access[i].mode == DUITE_RW)
-            return access[i].object;
-        if (access[i].mode == DUITE_R && first_read == PLAN_NONE)
-            first_read = access[i].object;
-    }
-    return first_read;
-}
-
 static void lower_fork(struct lowering *l, size_t i)
 {
     struct plan_round *round = l->round;
@@ -190,7 +178,7 @@ static void lower_fork(struct lowering *l, size_t i)
         lower_view(l, access[k].object, i);
     }
     struct plan_round_node *node = plan_round_add(round, fork->sets ? PLAN_SET : PLAN_TASK, i);
-    node->owner = plan_owner(access, fork->n);
+    node->owner = fork->owner;
     for (uint32_t k = 0; k < fork->n; k++) {
         duite_mode mode = access[k].mode;
         if (mode == DUITE_CW)

@@ -6,8 +6,14 @@
  *   record   record.c   calls of a build function   -> plan_record: forks, objects, arguments
  *            source.c   plan_record                 -> plan_source: the same as plain data
  *   lower    lower.c    plan_source                 -> plan_round: nodes and what they use
+ *   assign   assign.c   plan_round, homes           -> plan_assignment: who runs and who needs what
+ *   messages messages.c plan_assignment             -> plan_messages: phases, and what each carries
+ *   part     part.c     plan_messages of a rank     -> plan_round: the nodes of that rank
  *   edges    edges.c    plan_round                  -> its edges, within a round and to the next
- *   emit     emit.c     plan_round                  -> plan: flat arrays (plan.h)
+ *   emit     emit.c     plan_round                  -> plan: flat arrays (replay.h)
+ *   run      replay.c   plan                        -> replays
+ *
+ * On one rank there is nothing to assign or to send: edges follow lowering.
  *
  * Everything in this header is plain data: no pass of it needs a task graph, a table of objects or
  * a worker, calls a body or touches a value. So whoever has a round in some form can have it
@@ -17,9 +23,11 @@
  * How the predictor uses it: it fills a plan_source with the forks of a recorded graph (modes of
  * the kernels in the trace; NULL for all laws, since a trace has none; parent from
  * predict_object.parent, as the place of that object in the list plus 1, or 0 if it is not in the
- * list), calls plan_lower, and has either plan_tasks_find make the rows that mappings see, or the
- * passes below place the nodes on hosts. A plan_source is owned by who made it and must stay as
- * long as its round. */
+ * list; the owner by task_owner),
+ * calls plan_lower, and has either plan_tasks_find make the rows that mappings see, or
+ * plan_assign place the nodes on hosts (home: by object, a host) and plan_messages_find list all
+ * that moves between any two of them (rank: PLAN_ALL). A plan_source is owned by who made it and
+ * must stay as long as its round. */
 
 #include <duite.h>
 #include <stdbool.h>
@@ -27,7 +35,11 @@
 #include <stdint.h>
 
 #define PLAN_NONE UINT32_MAX
-enum { PLAN_BY_OWNER = -1 }; /* in place of the rank that a fork runs on: the owner rule says */
+enum {
+    PLAN_BY_OWNER = -1, /* in place of the rank that a fork runs on: the home of its owner says */
+    PLAN_MANY = -1,     /* in place of the rank that runs a node: a set of ranks */
+    PLAN_ALL = -1       /* in place of the rank whose messages are asked for */
+};
 
 /* ---- A round as plain data: what lowering takes ---- */
 
@@ -41,7 +53,8 @@ struct plan_access {
 struct plan_source_fork {
     size_t first; /* of its n accesses */
     uint32_t n;
-    int at; /* the rank that it is to run on, or PLAN_BY_OWNER */
+    uint32_t owner; /* the object that it runs for, see task_owner; or PLAN_NONE */
+    int rank;       /* that it is to run on, or PLAN_BY_OWNER */
     bool sets, replicated;
     double cost; /* seconds; 0: not said */
 };
@@ -58,10 +71,6 @@ struct plan_source {
     size_t n_forks, n_accesses, n_objects;
     uint32_t flag; /* the object that decides on a further round, or PLAN_NONE */
 };
-
-/* The owner rule: the object that a fork with these accesses runs for. It is the first one written,
- * else the first one read; PLAN_NONE if there is neither. */
-uint32_t plan_owner(const struct plan_access *access, size_t n);
 
 /* ---- Lower: nodes ---- */
 
@@ -176,6 +185,150 @@ size_t plan_reduce_push(struct plan_round *round, struct plan_round_node *node,
 /* Folds what is left from the right, into the first one. */
 void plan_reduce_fold(struct plan_round *round, struct plan_round_node *node,
                       const struct plan_subtree *row, size_t n);
+
+/* ---- Assign: who runs what ---- */
+
+/* The value of an object between two writes. */
+struct plan_version {
+    uint32_t object;
+    uint32_t maker; /* node, plus 1; 0: it enters the round */
+};
+
+struct plan_assignment {
+    const struct plan_round *round;
+    int n_ranks;
+    size_t words; /* of a set of ranks */
+    int *home;    /* by object */
+    /* By node: the rank that runs it, or PLAN_MANY; and all that do. */
+    int *at;
+    uint64_t *set;
+    /* By use: the version that it reads, and the one that it makes, or PLAN_NONE. */
+    uint32_t *reads, *makes;
+    /* Version i < n_objects is the one of object i that enters the round. */
+    struct plan_version *version;
+    uint64_t *need; /* by version: the ranks that read it */
+    size_t n_versions;
+    uint32_t *last; /* by object: the version that leaves the round */
+};
+
+/* Takes a lowered round and the home of each object; leaves:
+ * - a task of the program runs on the rank that its fork named, else on the home of its owner; a
+ *   sum of a large object on the object's home; a view where its object was written;
+ * - all other nodes (of replicated kernels, sets, sums of small objects) run on every rank that
+ *   reads what they make, in this round or at the beginning of the next, and nowhere else; one that
+ *   nobody reads runs on its owner's home if it is a task or leaves the round, else nowhere;
+ * - each rank that runs a node needs each version that the node reads;
+ * - so only what is made on one rank ever travels within a round.
+ * Every rank computes the same. False without memory; plan_assignment_free is due all the same. */
+bool plan_assign(struct plan_assignment *assignment, const struct plan_round *round,
+                 const int *home, int n_ranks);
+void plan_assignment_free(struct plan_assignment *assignment);
+
+static inline bool plan_set_has(const uint64_t *set, int rank)
+{
+    return set[rank / 64] >> (rank % 64) & 1;
+}
+static inline void plan_set_add(uint64_t *set, int rank)
+{
+    set[rank / 64] |= UINT64_C(1) << (rank % 64);
+}
+/* The ranks that run a node; that need a version. */
+static inline const uint64_t *plan_runs_set(const struct plan_assignment *a, size_t node)
+{
+    return a->set + node * a->words;
+}
+static inline const uint64_t *plan_needs_set(const struct plan_assignment *a, size_t version)
+{
+    return a->need + version * a->words;
+}
+static inline bool plan_runs(const struct plan_assignment *a, size_t node, int rank)
+{
+    return plan_set_has(plan_runs_set(a, node), rank);
+}
+/* Nobody runs the node: what it makes is overwritten unread. */
+bool plan_is_dead(const struct plan_assignment *assignment, size_t node);
+/* The node that makes the version; of one that enters the round, the one that made it in the round
+ * before. PLAN_NONE: the graph does not write the object. */
+uint32_t plan_maker(const struct plan_assignment *assignment, uint32_t version);
+/* Whether a rank has the version without a message within the round. */
+bool plan_is_there(const struct plan_assignment *assignment, uint32_t version, int rank);
+
+/* ---- Messages: what moves, and when ---- */
+
+/* A moment in the round: 2 n + 1 when the pieces of the sum at node n are made, 2 n + 2 when node n
+ * is over; 0 is its beginning. */
+typedef uint64_t plan_moment;
+
+/* Contributions of one rank to one sum: some leaves in a row, combined. */
+struct plan_piece {
+    uint32_t node;            /* the sum */
+    struct plan_subtree tree; /* but for param */
+    uint32_t n;               /* leaves: from tree.first on */
+    int rank;                 /* that has all of them */
+    uint32_t phase;           /* that it moves in */
+};
+
+/* A message a round: all that goes from one rank to another in one phase. */
+struct plan_message {
+    int from, to;
+    uint32_t phase;
+    plan_moment ready;  /* all that it carries is made */
+    size_t first, last; /* items, plus 1; 0: none */
+    uint32_t next;      /* another between the two ranks, plus 1 */
+};
+
+/* One thing in one message: a version or a piece. */
+struct plan_item {
+    uint32_t message, object;
+    uint32_t version, piece; /* ids; the other one is PLAN_NONE */
+    plan_moment made;
+    size_t next; /* of the same message, plus 1 */
+};
+
+struct plan_messages {
+    const struct plan_assignment *assignment;
+    int rank;                 /* whose messages these are, or PLAN_ALL */
+    uint32_t *phase;          /* by node: rank crossings on the longest path to it, at most */
+    uint32_t *leaf;           /* by buffer, less n_objects: the node that fills it */
+    struct plan_piece *piece; /* of all sums and ranks, in order */
+    size_t n_pieces;
+    size_t *first_piece; /* by node, n_nodes + 1: of a sum */
+    struct plan_message *message;
+    size_t n_messages, messages_capacity;
+    struct plan_item *item;
+    size_t n_items, items_capacity;
+};
+
+/* Takes an assignment; leaves:
+ * - the phase of a node is at least that of all that comes before it on its rank, for whatever
+ *   reason, and above that of each message that it waits for; the phase of a message is that of the
+ *   nodes that make what it carries. So a message waits for messages of lower phases only, never in
+ *   a ring;
+ * - the pieces of a sum cover its leaves in order, each once, and each of them is a complete
+ *   subtree, or all leaves. A sum that one rank contributes to and reads alone has a piece a leaf,
+ *   one that nobody runs has none;
+ * - a version that one rank makes is an item for each other rank that needs it; so is a piece for
+ *   each other rank that runs its sum;
+ * - items are in order of `made`, the same from the sender's and the receiver's side.
+ * Messages and items are those from and to `rank`, or all. False without memory; plan_messages_free
+ * is due all the same. */
+bool plan_messages_find(struct plan_messages *messages, const struct plan_assignment *assignment,
+                        int rank);
+void plan_messages_free(struct plan_messages *messages);
+
+/* ---- Part: the nodes of one rank ---- */
+
+/* Takes the messages of a rank (not PLAN_ALL); leaves its nodes, without edges:
+ * - those of the round that the rank runs, in order; a RECEIVE for each message to it comes first,
+ * a SEND for each from it as soon as the last thing that it carries is made; the uses of both are
+ *   its items in order, so that both sides agree on the layout;
+ * - what the rank writes lies in the objects' own places, what it receives in a buffer for each
+ *   version or piece, which nobody but the RECEIVE and a sum writes;
+ * - a COPY comes before a node that writes on from a received version, and keeps aside what is
+ *   overwritten before its message goes;
+ * - a PARTIAL combines this rank's contributions to pieces of more than one leaf.
+ * False without memory; plan_round_free is due all the same. *part is zero before. */
+bool plan_part(struct plan_round *part, const struct plan_messages *messages);
 
 /* ---- Edges ---- */
 

@@ -3,7 +3,6 @@
  * over. What is not written stays where it is read; of what is written, the value lies before and
  * after each round where its last writer runs, and goes from there to who reads it first. */
 #include "runtime/plan/replay.h"
-#include "runtime/plan/spread.h"
 #include "runtime/task/internal.h"
 
 #include "runtime/base/memory.h"
@@ -21,36 +20,55 @@ static bool alloc_sets(struct plan *plan, size_t words)
 }
 
 /* A view that is gathered within the round is nobody's from outside. */
-static void take_sets(struct plan *plan, const struct spread *spread)
+static void take_sets(struct plan *plan, const struct plan_record *record,
+                      const struct plan_messages *messages)
 {
-    const struct plan_record *record = spread->record;
+    const struct plan_assignment *a = messages->assignment;
     size_t bytes = plan->words * sizeof(uint64_t);
     for (uint32_t i = 0; i < plan->n_objects; i++) {
         uint64_t *enter = plan->enter + i * plan->words, *end = plan->end + i * plan->words;
-        uint32_t maker = spread_maker(spread, i);
-        plan->home[i] = spread->home[i];
-        if (maker == SPREAD_NONE) {
-            memcpy(enter, spread_need(spread, i), bytes);
+        uint32_t maker = plan_maker(a, i);
+        plan->home[i] = a->home[i];
+        if (maker == PLAN_NONE) {
+            memcpy(enter, plan_needs_set(a, i), bytes);
         } else if (!plan_recorded_gathers(record->object, &record->object[i])) {
-            memcpy(end, spread_set(spread, maker), bytes);
+            memcpy(end, plan_runs_set(a, maker), bytes);
             if (record->object[i].reads_old)
                 memcpy(enter, end, bytes);
         }
     }
-    for (size_t n = 0; n < spread->round->n_nodes; n++)
-        if ((int)spread->phase[n] >= plan->channels.phases)
-            plan->channels.phases = (int)spread->phase[n] + 1;
+    for (size_t n = 0; n < a->round->n_nodes; n++)
+        if ((int)messages->phase[n] >= plan->channels.phases)
+            plan->channels.phases = (int)messages->phase[n] + 1;
+}
+
+/* Where the objects of a round live; NULL without memory. */
+static int *find_homes(const struct plan *plan, const struct plan_record *record,
+                       const duite_object *flag)
+{
+    int *home = base_alloc((plan->n_objects + 1) * sizeof *home);
+    for (size_t i = 0; i < plan->n_objects && home; i++) {
+        duite_object name = i < record->n_objects ? record->object[i].bound : *flag;
+        home[i] = plan->graph->table.object[name.slot].home;
+    }
+    return home;
 }
 
 bool plan_spread(struct plan *plan, const struct plan_round *round, struct plan_round *part,
                  const struct plan_record *record, const duite_object *flag)
 {
-    struct spread spread = {.graph = plan->graph, .record = record, .round = round};
-    bool fine =
-        spread_make(&spread, flag) && alloc_sets(plan, spread.words) && spread_local(&spread, part);
+    struct plan_assignment assignment = {0};
+    struct plan_messages messages = {0};
+    int *home = find_homes(plan, record, flag);
+    bool fine = home && plan_assign(&assignment, round, home, plan->graph->n_ranks) &&
+                alloc_sets(plan, assignment.words) &&
+                plan_messages_find(&messages, &assignment, plan->graph->rank) &&
+                plan_part(part, &messages);
     if (fine)
-        take_sets(plan, &spread);
-    spread_free(&spread);
+        take_sets(plan, record, &messages);
+    base_free(home);
+    plan_messages_free(&messages);
+    plan_assignment_free(&assignment);
     return fine;
 }
 
@@ -88,7 +106,7 @@ bool plan_at_home(const struct plan *plan, const struct plan_record *record)
 
 static bool is_in(const struct plan *plan, const uint64_t *sets, size_t i, int rank)
 {
-    return spread_has(sets + i * plan->words, rank);
+    return plan_set_has(sets + i * plan->words, rank);
 }
 
 int plan_fetch(const struct plan *plan, struct worker *worker, size_t i, struct data_object *object)

@@ -136,10 +136,10 @@ static void use(struct plan_record *record, duite_object name, duite_mode mode,
 uint32_t plan_recorded_owner(const struct plan_record *record,
                              const struct plan_recorded_fork *fork)
 {
-    if (fork->how.at != TASK_ANYWHERE || fork->kernel == PLAN_SETS ||
-        record->graph->kernels[fork->kernel]->replicated)
+    if (fork->kernel == PLAN_SETS ||
+        !task_owner_decides(fork->how.at, record->graph->kernels[fork->kernel]->replicated))
         return PLAN_NONE;
-    return plan_owner(record->access + fork->first, fork->n);
+    return fork->owner;
 }
 
 /* The object that it runs for keeps its home, and so does whatever is bound to it. */
@@ -181,6 +181,8 @@ static struct plan_recorded_fork *append(struct plan_record *record, uint32_t ke
         task_mix(record->graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         use(record, objects[i], mode, mode == DUITE_CW ? data_law_of(body, i) : NULL);
     }
+    uint32_t owner = body ? task_owner(body->access, body->rest, n) : 0; /* parameter */
+    fork->owner = owner == TASK_NOBODY ? PLAN_NONE : record->access[fork->first + owner].object;
     return fork;
 }
 

@@ -20,11 +20,12 @@ struct plan_recorded_fork {
     uint32_t kernel; /* index in the list given at start */
     uint32_t n;
     struct task_options how;
-    uint32_t call; /* forks before it, sets left out */
-    size_t first;  /* of its n objects in `access` */
-    size_t args;   /* where its arguments, or the values it sets, lie in `args` */
-    bool zeros;    /* it sets zeros */
-    size_t count;  /* elements it sets */
+    uint32_t owner; /* the place in `object` that it runs for, or PLAN_NONE */
+    uint32_t call;  /* forks before it, sets left out */
+    size_t first;   /* of its n objects in `access` */
+    size_t args;    /* where its arguments, or the values it sets, lie in `args` */
+    bool zeros;     /* it sets zeros */
+    size_t count;   /* elements it sets */
 };
 
 struct plan_recorded_object {

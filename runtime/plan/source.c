@@ -11,7 +11,8 @@ static struct plan_source_fork source_fork(const struct plan_record *record,
     return (struct plan_source_fork){
         .first = fork->first,
         .n = fork->n,
-        .at = fork->how.at == TASK_ANYWHERE ? PLAN_BY_OWNER : fork->how.at,
+        .owner = fork->owner,
+        .rank = fork->how.at == TASK_ANYWHERE ? PLAN_BY_OWNER : fork->how.at,
         .sets = sets,
         .replicated = !sets && record->graph->kernels[fork->kernel]->replicated,
         .cost = fork->how.cost};

@@ -35,7 +35,7 @@ static bool tasks_room(struct plan_tasks *tasks, const struct plan_round *round)
 static uint32_t tasks_owner(const struct plan_round *round, const struct plan_round_node *node)
 {
     const struct plan_source_fork *fork = &round->source->fork[node->fork];
-    if (node->kind == PLAN_TASK && (fork->replicated || fork->at != PLAN_BY_OWNER))
+    if (node->kind == PLAN_TASK && (fork->replicated || fork->rank != PLAN_BY_OWNER))
         return PLAN_NONE;
     return node->kind == PLAN_VIEW ? round->use[node->first_use].place : node->owner;
 }

@@ -1,0 +1,360 @@
+/* Messages: when nodes run at the earliest, counted in messages, and what moves between ranks. What
+ * is made on one rank goes to those that need it: versions, and of sums the pieces that a rank can
+ * combine alone. Everything that goes from one rank to another in one phase is one message. All
+ * ranks go through the round in the same order, so both sides list the same items; each item names
+ * its version or its piece, and nothing is found by counting. */
+#include "runtime/plan/passes.h"
+
+#include "runtime/base/memory.h"
+
+#include <stdlib.h>
+
+struct finding {
+    struct plan_messages *m;
+    uint32_t *heads; /* by pair of ranks, see message_head: the last message, plus 1 */
+    bool failed;
+};
+
+static uint32_t later(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
+/* The task that contributes what a sum reads. */
+static uint32_t leaf_of(const struct plan_messages *m, const struct plan_node_use *use)
+{
+    return m->leaf[use->place - m->assignment->round->n_objects];
+}
+
+static bool outside(const struct plan_assignment *a, const uint64_t *set, const uint64_t *has)
+{
+    uint64_t found = 0;
+    for (size_t i = 0; i < a->words; i++)
+        found |= set[i] & ~has[i];
+    return found;
+}
+
+/* ---- Phases ---- */
+
+/* What happened to an object so far in the round: the highest phases of its accesses. */
+struct phase_past {
+    int rank;           /* that has the present version, or PLAN_MANY */
+    uint32_t here, any; /* there; on all ranks */
+};
+
+/* Runs the node on a rank that does not have the version? */
+static bool phase_crosses(const struct plan_assignment *a, size_t n, uint32_t version)
+{
+    uint32_t maker = plan_maker(a, version);
+    return maker != PLAN_NONE && outside(a, plan_runs_set(a, n), plan_runs_set(a, maker));
+}
+
+static uint32_t phase_of_leaves(const struct plan_messages *m, size_t n,
+                                const struct plan_round_node *node)
+{
+    const struct plan_assignment *a = m->assignment;
+    uint32_t phase = 0;
+    for (size_t i = node->first_use + 1; i < node->first_use + node->n_uses; i++) {
+        uint32_t leaf = leaf_of(m, &a->round->use[i]);
+        bool crosses = outside(a, plan_runs_set(a, n), plan_runs_set(a, leaf));
+        phase = later(phase, m->phase[leaf] + crosses);
+    }
+    return phase;
+}
+
+static uint32_t phase_of(const struct plan_messages *m, size_t n, const struct phase_past *pasts)
+{
+    const struct plan_assignment *a = m->assignment;
+    const struct plan_round_node *node = &a->round->node[n];
+    uint32_t phase = node->kind == PLAN_SUM ? phase_of_leaves(m, n, node) : 0;
+    for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
+        uint32_t version = a->reads[i];
+        if (version != PLAN_NONE) {
+            uint32_t maker = a->version[version].maker;
+            uint32_t made = maker ? m->phase[maker - 1] : 0;
+            phase = later(phase, made + phase_crosses(a, n, version));
+        }
+        if (a->makes[i] != PLAN_NONE) {
+            const struct phase_past *past = &pasts[a->round->use[i].place];
+            bool same = a->at[n] != PLAN_MANY && a->at[n] == past->rank;
+            phase = later(phase, same ? past->here : past->any);
+        }
+    }
+    return phase;
+}
+
+static void phase_note(const struct plan_messages *m, size_t n, struct phase_past *pasts)
+{
+    const struct plan_assignment *a = m->assignment;
+    const struct plan_round_node *node = &a->round->node[n];
+    uint32_t phase = m->phase[n];
+    int at = a->at[n];
+    for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++) {
+        if (a->reads[i] == PLAN_NONE && a->makes[i] == PLAN_NONE)
+            continue;
+        struct phase_past *past = &pasts[a->round->use[i].place];
+        past->any = later(past->any, phase);
+        if (a->makes[i] != PLAN_NONE)
+            *past = (struct phase_past){at, phase, past->any};
+        else if (at == past->rank || at == PLAN_MANY || past->rank == PLAN_MANY)
+            past->here = later(past->here, phase);
+    }
+}
+
+static bool find_phases(struct plan_messages *m)
+{
+    const struct plan_assignment *a = m->assignment;
+    const struct plan_round *round = a->round;
+    struct phase_past *pasts = base_alloc_zero((round->n_objects + 1) * sizeof *pasts);
+    if (!pasts)
+        return false;
+    for (uint32_t i = 0; i < round->n_objects; i++) {
+        uint32_t maker = plan_maker(a, i);
+        pasts[i].rank = maker == PLAN_NONE ? PLAN_MANY : a->at[maker];
+    }
+    for (size_t n = 0; n < round->n_nodes; n++) {
+        m->phase[n] = phase_of(m, n, pasts);
+        phase_note(m, n, pasts);
+    }
+    base_free(pasts);
+    return true;
+}
+
+/* ---- Pieces of sums ---- */
+
+static bool pieces_join(const struct plan_piece *l, const struct plan_piece *r)
+{
+    return l->rank == r->rank && plan_subtree_halves(&l->tree, &r->tree);
+}
+
+/* One rank contributes alone; and it reads alone. */
+static bool pieces_of_one(const struct plan_messages *m, size_t n, bool *alone)
+{
+    const struct plan_assignment *a = m->assignment;
+    const struct plan_round_node *node = &a->round->node[n];
+    const struct plan_node_use *use = &a->round->use[node->first_use];
+    int rank = a->at[leaf_of(m, &use[1])];
+    bool one = true;
+    for (size_t i = 1; i < node->n_uses; i++)
+        one &= a->at[leaf_of(m, &use[i])] == rank;
+    *alone = one;
+    for (int other = 0; other < a->n_ranks; other++)
+        *alone &= (other == rank) == plan_runs(a, n, other);
+    return one;
+}
+
+/* A rank's pieces move when its last leaf is there. `latest` is by rank. */
+static void pieces_set_phases(const struct plan_messages *m, size_t n, size_t first,
+                              uint32_t *latest)
+{
+    const struct plan_assignment *a = m->assignment;
+    const struct plan_round_node *node = &a->round->node[n];
+    const struct plan_node_use *use = &a->round->use[node->first_use];
+    for (size_t i = 1; i < node->n_uses; i++)
+        latest[a->at[leaf_of(m, &use[i])]] = 0;
+    for (size_t i = 1; i < node->n_uses; i++) {
+        uint32_t leaf = leaf_of(m, &use[i]);
+        latest[a->at[leaf]] = later(latest[a->at[leaf]], m->phase[leaf]);
+    }
+    for (size_t i = first; i < m->n_pieces; i++)
+        m->piece[i].phase = latest[m->piece[i].rank];
+}
+
+static void pieces_of_sum(struct plan_messages *m, size_t n, uint32_t *latest)
+{
+    const struct plan_assignment *a = m->assignment;
+    const struct plan_round_node *node = &a->round->node[n];
+    const struct plan_node_use *use = &a->round->use[node->first_use + 1];
+    bool alone, one = pieces_of_one(m, n, &alone);
+    size_t first = m->n_pieces;
+    for (uint32_t i = 0; i + 1 < node->n_uses; i++) {
+        struct plan_piece *row = &m->piece[m->n_pieces++];
+        *row = (struct plan_piece){
+            .node = (uint32_t)n, .tree.first = i, .n = 1, .rank = a->at[leaf_of(m, &use[i])]};
+        for (; !alone && m->n_pieces - first > 1 && (one || pieces_join(row - 1, row)); row--) {
+            row[-1].tree.level++;
+            row[-1].n += row->n;
+            m->n_pieces--;
+        }
+    }
+    pieces_set_phases(m, n, first, latest);
+}
+
+static bool find_pieces(struct plan_messages *m)
+{
+    const struct plan_assignment *a = m->assignment;
+    uint32_t *latest = base_alloc((size_t)a->n_ranks * sizeof *latest);
+    for (size_t n = 0; n < a->round->n_nodes && latest; n++) {
+        m->first_piece[n] = m->n_pieces;
+        if (a->round->node[n].kind == PLAN_SUM && !plan_is_dead(a, n))
+            pieces_of_sum(m, n, latest);
+        m->first_piece[n + 1] = m->n_pieces;
+    }
+    base_free(latest);
+    return latest != NULL;
+}
+
+/* ---- Messages ---- */
+
+static uint32_t *message_head(const struct finding *f, int from, int to)
+{
+    const struct plan_messages *m = f->m;
+    if (m->rank == PLAN_ALL)
+        return &f->heads[(size_t)from * (size_t)m->assignment->n_ranks + (size_t)to];
+    return from == m->rank ? &f->heads[2 * (size_t)to + 1] : &f->heads[2 * (size_t)from];
+}
+
+static uint32_t message_find(struct finding *f, int from, int to, uint32_t phase)
+{
+    struct plan_messages *m = f->m;
+    uint32_t *head = message_head(f, from, to);
+    for (uint32_t i = *head; i; i = m->message[i - 1].next)
+        if (m->message[i - 1].phase == phase)
+            return i - 1;
+    void *moved =
+        base_grow(m->message, &m->messages_capacity, m->n_messages + 1, sizeof *m->message);
+    if (!moved) {
+        f->failed = true;
+        return PLAN_NONE;
+    }
+    m->message = moved;
+    m->message[m->n_messages] =
+        (struct plan_message){.from = from, .to = to, .phase = phase, .next = *head};
+    *head = (uint32_t)++m->n_messages;
+    return *head - 1;
+}
+
+/* Appends an item to the message from one rank to another in a phase, if that is asked for. */
+static void message_add(struct finding *f, int from, int to, uint32_t phase, struct plan_item item)
+{
+    struct plan_messages *m = f->m;
+    if (f->failed || (m->rank != PLAN_ALL && m->rank != from && m->rank != to))
+        return;
+    item.message = message_find(f, from, to, phase);
+    void *moved = base_grow(m->item, &m->items_capacity, m->n_items + 1, sizeof *m->item);
+    f->failed |= !moved;
+    if (f->failed)
+        return;
+    m->item = moved;
+    m->item[m->n_items++] = item;
+    struct plan_message *message = &m->message[item.message];
+    if (item.made > message->ready)
+        message->ready = item.made;
+    if (message->last)
+        m->item[message->last - 1].next = m->n_items;
+    else
+        message->first = m->n_items;
+    message->last = m->n_items;
+}
+
+/* To each rank of a set but the one that has it. A rank asks for its own messages only: then there
+ * is one receiver, unless it sends. */
+static void message_spread(struct finding *f, int from, const uint64_t *set, uint32_t phase,
+                           struct plan_item item)
+{
+    int rank = f->m->rank, first = 0, end = f->m->assignment->n_ranks;
+    if (rank != PLAN_ALL && rank != from) {
+        first = rank;
+        end = rank + 1;
+    }
+    for (int to = first; to < end; to++)
+        if (to != from && plan_set_has(set, to))
+            message_add(f, from, to, phase, item);
+}
+
+/* What is made on several ranks is made wherever it is needed. */
+static void message_version(struct finding *f, uint32_t version)
+{
+    const struct plan_assignment *a = f->m->assignment;
+    const struct plan_version *found = &a->version[version];
+    uint32_t maker = plan_maker(a, version);
+    if (maker == PLAN_NONE || a->at[maker] == PLAN_MANY)
+        return;
+    struct plan_item item = {.object = found->object,
+                             .version = version,
+                             .piece = PLAN_NONE,
+                             .made = found->maker ? 2 * (plan_moment)maker + 2 : 0};
+    message_spread(f, a->at[maker], plan_needs_set(a, version),
+                   found->maker ? f->m->phase[maker] : 0, item);
+}
+
+/* The pieces of each rank go to those that add them all up. */
+static void message_pieces(struct finding *f, size_t n)
+{
+    const struct plan_messages *m = f->m;
+    const struct plan_assignment *a = m->assignment;
+    uint32_t object = a->round->use[a->round->node[n].first_use].place;
+    for (size_t i = m->first_piece[n]; i < m->first_piece[n + 1]; i++) {
+        struct plan_item item = {.object = object,
+                                 .version = PLAN_NONE,
+                                 .piece = (uint32_t)i,
+                                 .made = 2 * (plan_moment)n + 1};
+        message_spread(f, m->piece[i].rank, plan_runs_set(a, n), m->piece[i].phase, item);
+    }
+}
+
+static void find_messages(struct finding *f)
+{
+    const struct plan_assignment *a = f->m->assignment;
+    for (uint32_t i = 0; i < a->round->n_objects; i++)
+        message_version(f, i);
+    for (size_t n = 0; n < a->round->n_nodes; n++) {
+        const struct plan_round_node *node = &a->round->node[n];
+        if (node->kind == PLAN_SUM)
+            message_pieces(f, n);
+        for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++)
+            if (a->makes[i] != PLAN_NONE)
+                message_version(f, a->makes[i]);
+    }
+}
+
+/* ---- The pass ---- */
+
+void plan_messages_free(struct plan_messages *m)
+{
+    base_free(m->phase);
+    base_free(m->leaf);
+    base_free(m->piece);
+    base_free(m->first_piece);
+    free(m->message);
+    free(m->item);
+}
+
+static bool find_room(struct plan_messages *m)
+{
+    const struct plan_round *round = m->assignment->round;
+    size_t leaves = round->n_places - round->n_objects + 1;
+    m->phase = base_alloc((round->n_nodes + 1) * sizeof *m->phase);
+    m->leaf = base_alloc(leaves * sizeof *m->leaf);
+    m->piece = base_alloc(leaves * sizeof *m->piece);
+    m->first_piece = base_alloc_zero((round->n_nodes + 1) * sizeof *m->first_piece);
+    return m->phase && m->leaf && m->piece && m->first_piece;
+}
+
+static void find_leaves(struct plan_messages *m)
+{
+    const struct plan_round *round = m->assignment->round;
+    for (size_t n = 0; n < round->n_nodes; n++) {
+        const struct plan_round_node *node = &round->node[n];
+        for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++)
+            if (round->use[i].place >= round->n_objects && round->use[i].writes)
+                m->leaf[round->use[i].place - round->n_objects] = (uint32_t)n;
+    }
+}
+
+bool plan_messages_find(struct plan_messages *m, const struct plan_assignment *a, int rank)
+{
+    struct finding f = {.m = m};
+    size_t ranks = (size_t)a->n_ranks;
+    *m = (struct plan_messages){.assignment = a, .rank = rank};
+    f.heads = base_alloc_zero((rank == PLAN_ALL ? ranks * ranks : 2 * ranks) * sizeof *f.heads);
+    bool fine = f.heads && find_room(m);
+    if (fine) {
+        find_leaves(m);
+        fine = find_phases(m) && find_pieces(m);
+    }
+    if (fine)
+        find_messages(&f);
+    base_free(f.heads);
+    return fine && !f.failed;
+}

@@ -239,12 +239,12 @@ typedef struct duite_options {
     double
         stuck_seconds; /* when nothing moves for so long, who waits for what is told, see below; 0:
                           never. Default 60, or what DUITE_STUCK_SECONDS in the environment says */
-    double lost_seconds;   /* a rank that gives no sign of life for so long is lost, see below; 0:
+    double lost_seconds;   /* a rank that sends no heartbeat for so long is lost, see below; 0:
                               never. What rank 0 says counts for all. Default 8, or what
                               DUITE_LOST_SECONDS in the environment says */
-    double policy_seconds; /* a function of a policy that is not built in is left when it did not
-                              return for so long, see duite_policy.h; 0: never. Default 10, or what
-                              DUITE_POLICY_SECONDS in the environment says */
+    double policy_seconds; /* a function of a policy that is not built in is named on standard error
+                              when it did not return for so long, see duite_policy.h; 0: never.
+                              Default 10, or what DUITE_POLICY_SECONDS in the environment says */
     const char *trace; /* a file in which each rank writes down what happens, see duite_trace_step.
                           NULL: none. Default: DUITE_TRACE, else NULL */
     uint64_t trace_first, trace_end; /* steps that are written down: from trace_first on, before
@@ -317,8 +317,8 @@ const char *const *duite_balancer_names(void);
  * nothing which can be found are told of, too: a body may have written beyond its objects, and
  * DUITE_CHECK=accesses names such a body. */
 
-/* A lost rank: on several ranks a thread of each gives the next rank a sign of life sixteen times
- * in options.lost_seconds, however busy its workers are. A rank that died, was cut off, or was
+/* A lost rank: on several ranks a thread of each sends the next rank a heartbeat sixteen times in
+ * options.lost_seconds, however busy its workers are. A rank that died, was cut off, or was
  * stopped for so long, is lost. The time in which the one that listens was stopped itself does not
  * count. Then every blocking call of all ranks that can still be reached returns DUITE_E_LOST, as
  * soon as the bodies that run are over; duite_message() names the rank and its host. Only
@@ -347,7 +347,7 @@ int duite_stop(duite **rt);
 int duite_abandon(duite **rt);
 
 /* MPI of the program's own (a solver, parallel files) is called between these two as long as the
- * runtime is there, even when no task is left, since workers and signs of life call MPI at any time
+ * runtime is there, even when no task is left, since workers and heartbeats call MPI at any time
  * else; only under MPI_THREAD_MULTIPLE it needs no begin and end. Begin waits until nobody of this
  * rank is inside MPI. Until the end tasks run on, but nothing is sent or received, and all other
  * calls of the main program are refused and remembered (DUITE_E_STATE): a program waits first.

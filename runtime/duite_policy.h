@@ -6,17 +6,14 @@
  * sleep, wake-up and messages. Functions of a table take no locks, read no clock, and draw random
  * numbers only from their own state.
  *
- * A function that does not return: those of policies that are not built in are called under a
- * guard, which costs some 5 ns a call. One that did not return for options.policy_seconds (10 s; 0:
- * no guard) is left, by a signal to its thread (SIGURG, which no policy may block) and a long jump
- * out of it, so what it holds is lost. No function of these policies is called any more: the
- * runtime decides in their place, tasks in the shared queue, nothing moves, so that what was forked
- * is still run. DUITE_E_ARGUMENT and a sentence with the policy, the function, rank and worker: on
- * one rank from the next get, wait or stop; on several all of them end, as if memory had run out.
- * The time in which the process was stopped does not count.
+ * A function that does not return: the run waits for it. A watchdog names it on standard error,
+ * with the policy, the function, rank and worker, once it has run for options.policy_seconds (10 s;
+ * 0: never), and again after twice as long, four times as long, and so on. It is not broken off;
+ * when it returns the run goes on. The time in which the process was stopped does not count.
+ * Built-in policies are not watched.
  *
- * A function under the guard (policy_seconds is not 0) that calls exit ends the process with
- * EXIT_FAILURE, whatever status it asked for, and standard error names the policy and the function.
+ * A function that is watched and calls exit ends the process with EXIT_FAILURE, whatever status it
+ * asked for, and standard error names the policy and the function.
  */
 
 #include <stddef.h>

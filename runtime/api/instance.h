@@ -1,11 +1,10 @@
 #ifndef DUITE_INSTANCE_H
 #define DUITE_INSTANCE_H
 
-#include "runtime/balance/front.h"
+#include "runtime/base/watchdog.h"
 #include "runtime/comm/comm.h"
-#include "runtime/map/front.h"
+#include "runtime/map/map.h"
 #include "runtime/plan/record.h"
-#include "runtime/sched/front.h"
 #include "runtime/task/task.h"
 #include "runtime/trace/trace.h"
 #include "runtime/workers/workers.h"
@@ -18,18 +17,16 @@ struct duite {
     struct comm *comm;   /* NULL: one rank */
     struct check *check; /* NULL: not in checking mode */
     struct work_pool *pool;
-    struct trace *trace;      /* NULL: nothing is written down */
-    bool traced;              /* the trace is closed */
-    struct base_guard *guard; /* of policies that are not ours; NULL: all are, or none is guarded */
-    struct sched_front scheduler;
-    struct balance_front balancer;
-    struct map_front mapping;
+    struct trace *trace; /* NULL: nothing is written down */
+    bool traced;         /* the trace is closed */
+    struct base_monitor monitor;
+    struct base_watchdog *watchdog; /* NULL: all policies are built in, or nobody watches them */
+    struct map_policy mapping;
     const duite_balancer *balance;
     uint64_t seed;
     size_t window;
     unsigned threads;
     int oversubscribed;
-    bool unguarded;                  /* that the guard is over was told */
     bool mpi_held;                   /* by the program: between duite_mpi_begin and duite_mpi_end */
     int remembered;                  /* code of a failed fork, new, ... */
     char sentence[1024];             /* of `remembered` */
@@ -59,15 +56,9 @@ void instance_give_up(duite *rt);
 int options_check(const duite_options *options);
 int options_check_rest(const duite_options *options);
 
-/* Policies that are not ours are asked under a guard from now on: *scheduler and *balancer, as the
- * options say, become fronts. The runtime knows its ranks and threads. Local. Errors: memory,
- * DUITE_E_SYSTEM. */
-int policies_guard(duite *rt, const duite_options *options, const duite_scheduler **scheduler,
-                   const duite_balancer **balancer);
-/* All ranks have started: the end of the guard is the end of all. */
-void policies_begin(duite *rt);
-/* This rank stops: the others, which do, too, would not hear of it any more. */
-void policies_end(duite *rt);
+/* Policies that are not built in are watched from now on: one that does not return is named. The
+ * runtime knows its ranks and threads. Local. Errors: memory, DUITE_E_SYSTEM. */
+int policies_watch(duite *rt, const duite_options *options);
 
 /* ---- Shared by program.c, objects.c and recorded.c ---- */
 

@@ -193,7 +193,7 @@ static int start_graph(duite *rt, const duite_options *options)
     if (!code && options->check)
         code = check_start(&rt->check);
     if (!code && n > 1)
-        code = comm_start(&rt->comm, rt->mpi, &rt->graph);
+        code = comm_start(&rt->comm, rt->mpi, &rt->graph, &rt->monitor);
     return code;
 }
 
@@ -211,10 +211,8 @@ static int start_workers(duite *rt, const duite_options *options, int code)
     rt->threads = threads;
     rt->oversubscribed = host.total > cores.n;
     bool bind = options->bind && !rt->oversubscribed;
-    const duite_scheduler *scheduler = options->scheduler;
-    const duite_balancer *balancer = options->balance;
     if (!code)
-        code = policies_guard(rt, options, &scheduler, &balancer);
+        code = policies_watch(rt, options);
     if (!code && options->trace)
         code = traced_open(rt, options);
     if (!code)
@@ -224,9 +222,10 @@ static int start_workers(duite *rt, const duite_options *options, int code)
                                  .comm = rt->comm,
                                  .check = rt->check,
                                  .trace = rt->trace,
-                                 .scheduler = scheduler,
-                                 .balancer = balancer,
-                                 .guard = rt->guard,
+                                 .scheduler = options->scheduler,
+                                 .balancer = options->balance,
+                                 .monitor = &rt->monitor,
+                                 .watchdog = rt->watchdog,
                                  .measures = options->mapping->map_tasks != NULL,
                                  .context = options->context,
                                  .rt = rt,
@@ -236,7 +235,7 @@ static int start_workers(duite *rt, const duite_options *options, int code)
                                  .spin_seconds = rt->oversubscribed ? 0 : options->spin_seconds,
                                  .cores = bind ? cores.unit + host.before : NULL});
     work_cores_free(&cores);
-    return code ? code : base_guard_code(rt->guard);
+    return code;
 }
 
 /* ---- The end ---- */
@@ -266,15 +265,12 @@ void instance_give_up(duite *rt)
         comm_part(rt->comm, work_main(rt->pool));
 }
 
-/* Returns what was found meanwhile. */
-static int end(duite *rt)
+static void end(duite *rt)
 {
-    policies_end(rt);
     if (instance_is_broken(rt))
         instance_give_up(rt);
     work_stop(rt->pool);
-    const int code = rt->unguarded ? DUITE_OK : base_guard_code(rt->guard);
-    base_guard_stop(rt->guard);
+    base_watchdog_stop(rt->watchdog);
     recorded_stop(rt); /* closes their channels */
     bool whole = comm_stop(rt->comm);
     trace_free(rt->trace, whole);
@@ -286,7 +282,6 @@ static int end(duite *rt)
     check_stop(rt->check);
     base_free(rt);
     base_pool_leave();
-    return code;
 }
 
 static int start_parts(duite *rt, MPI_Comm mpi, const duite_options *options)
@@ -328,7 +323,6 @@ int duite_start(duite **out, const duite_options *options)
         if (rt->comm && moves)
             comm_measure(rt->comm);
         traced_begin(rt);
-        policies_begin(rt);
         comm_open(rt->comm, options->balance->victim != NULL);
         *out = rt;
     }
@@ -365,9 +359,9 @@ int duite_stop(duite **out)
     const int traced = instance_is_broken(rt) ? DUITE_OK : traced_end(rt, "duite_stop");
     if (!code)
         code = traced;
-    const int ended = end(rt);
+    end(rt);
     *out = NULL;
-    return code ? code : ended;
+    return code;
 }
 
 int duite_abandon(duite **out)

@@ -8,16 +8,12 @@
 
 #include <stdio.h>
 
-/* The remembered error, or that a policy did not return; each is told once. */
+/* The remembered error, which is told once. */
 static int recall(duite *rt)
 {
     int code = rt->remembered;
     rt->remembered = DUITE_OK;
-    if (code)
-        return base_error(code, "%s", rt->sentence);
-    code = rt->unguarded ? DUITE_OK : base_guard_code(rt->guard);
-    rt->unguarded = rt->unguarded || code;
-    return code;
+    return code ? base_error(code, "%s", rt->sentence) : DUITE_OK;
 }
 
 static bool copy_done(void *context)

@@ -1,7 +1,6 @@
 /* The built-in balancers by name: the rows of balance.h. */
 #include "runtime/balance/balance.h"
 
-#include "runtime/balance/front.h"
 #include "runtime/base/policy.h"
 
 #include <duite.h>

@@ -2,6 +2,7 @@
 #define DUITE_BALANCE_BALANCE_H
 
 #include <duite_policy.h>
+#include <stdbool.h>
 
 /* The built-in balancers. A balancer is one file, which defines its table, and one row here; the
  * first is the default. */
@@ -20,5 +21,8 @@ BALANCE_TEST_ROWS(BALANCE_DECLARE)
 
 /* The names of those for tests, ended by NULL. */
 const char *const *balance_test_names(void);
+
+/* Whether it is none of the built-in ones. */
+bool balance_is_foreign(const duite_balancer *balancer);
 
 #endif

@@ -22,7 +22,7 @@ struct found {
 
 /* ---- Start and stop ---- */
 
-static int prepare(struct comm *comm)
+static int prepare(struct comm *comm, struct base_monitor *monitor)
 {
     if (MPI_Comm_rank(comm->mpi, &comm->rank) || MPI_Comm_size(comm->mpi, &comm->n_ranks))
         return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
@@ -36,10 +36,11 @@ static int prepare(struct comm *comm)
         return base_error(DUITE_E_MPI, "MPI_Type_contiguous failed");
     if (!comm_channels_start(comm))
         return base_error(DUITE_E_MPI, "MPI_Comm_get_attr failed");
-    return comm_pulse_start(comm);
+    return comm_heartbeat_start(comm, monitor);
 }
 
-int comm_start(struct comm **out, MPI_Comm mpi, struct task_graph *graph)
+int comm_start(struct comm **out, MPI_Comm mpi, struct task_graph *graph,
+               struct base_monitor *monitor)
 {
     struct comm *comm = *out = base_alloc_zero(sizeof *comm);
     if (!comm)
@@ -51,13 +52,13 @@ int comm_start(struct comm **out, MPI_Comm mpi, struct task_graph *graph)
     atomic_flag_test_and_set(&comm->lock); /* until comm_open */
     atomic_init(&comm->posts, NULL);
     comm_arrivals_start(&comm->arrivals);
-    return prepare(comm);
+    return prepare(comm, monitor);
 }
 
 void comm_ring(struct comm *comm, double seconds, const char *host)
 {
     if (comm)
-        comm_pulse_open(comm, seconds, host);
+        comm_heartbeat_open(comm, seconds, host);
 }
 
 void comm_tell(struct comm *comm, comm_told *tell)
@@ -91,7 +92,7 @@ bool comm_stop(struct comm *comm)
         comm_poll(comm, NULL);
         sched_yield();
     }
-    comm_pulse_stop(comm);
+    comm_heartbeat_stop(comm);
     if (comm_is_lost(comm)) /* MPI may still read and write here: all of it stays */
         return false;
     comm_catch_up(comm);

@@ -1,6 +1,7 @@
 #ifndef DUITE_COMM_COMM_H
 #define DUITE_COMM_COMM_H
 
+#include "runtime/base/monitor.h"
 #include "runtime/comm/arrivals.h"
 #include "runtime/task/task.h"
 
@@ -14,9 +15,10 @@
  * is let go. */
 struct comm;
 
-/* On mpi, which stays the caller's and is for these messages only. Local. Errors: DUITE_E_MPI,
- * memory; comm_stop is due all the same. */
-int comm_start(struct comm **comm, MPI_Comm mpi, struct task_graph *graph);
+/* On mpi, which stays the caller's and is for these messages only; the monitor gives heartbeats.
+ * Local. Errors: DUITE_E_MPI, memory; comm_stop is due all the same. */
+int comm_start(struct comm **comm, MPI_Comm mpi, struct task_graph *graph,
+               struct base_monitor *monitor);
 
 /* Before comm_open, on all ranks alike: a rank of which nothing is heard for so many seconds (0:
  * any time) is lost. host: of the rank before this one, in a ring. comm NULL is fine. */

@@ -6,14 +6,14 @@
 #include "runtime/comm/channel.h"
 #include "runtime/comm/comm.h"
 #include "runtime/comm/farewell.h"
-#include "runtime/comm/pulse.h"
+#include "runtime/comm/heartbeat.h"
 #include "runtime/comm/question.h"
 #include "runtime/comm/requests.h"
 
 /* Shared by the files of this folder only. */
 
-/* Tags: of packets, of signs of life, and from the last one on of channels. */
-enum { COMM_PACKETS, COMM_SIGNS, COMM_CHANNELS };
+/* Tags: of packets, of heartbeats, and from the last one on of channels. */
+enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_CHANNELS };
 
 struct comm {
     MPI_Comm mpi;
@@ -29,7 +29,7 @@ struct comm {
     atomic_flag breaking;        /* taken by the one who breaks */
     struct comm_farewell reason; /* of `broken`, written before it is set */
     struct comm_farewells farewells;
-    struct comm_pulse pulse;
+    struct comm_heartbeat heartbeat;
     struct comm_calls calls;
     comm_told *tell;       /* NULL: nobody */
     struct worker *worker; /* under the lock: who passes */

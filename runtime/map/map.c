@@ -1,8 +1,8 @@
-/* The built-in mappings by name: the rows of map.h. */
+/* The built-in mappings by name: the rows of map.h; and how any mapping is asked. */
 #include "runtime/map/map.h"
 
+#include "runtime/base/error.h"
 #include "runtime/base/policy.h"
-#include "runtime/map/front.h"
 
 #define MAP_TABLE(name) &map_##name,
 
@@ -25,4 +25,29 @@ const char *const *duite_mapping_names(void)
 bool map_is_foreign(const duite_mapping *mapping)
 {
     return !base_policy_is_ours(&mappings, mapping);
+}
+
+/* What is not built in says nothing itself. */
+static int mapping_failed(const duite_mapping *own, int code)
+{
+    return code && map_is_foreign(own) ? base_error(code, "mapping %s failed with code %d (%s)",
+                                                    own->name, code, duite_code_text(code))
+                                       : code;
+}
+
+int map_ask(const struct map_policy *mapping, const duite_object_graph *graph, int n_ranks,
+            uint64_t seed, int *home)
+{
+    base_mark_begin(mapping->mark, BASE_MAPPING_MAP);
+    const int code = mapping->own->map(graph, n_ranks, seed, home);
+    base_mark_end(mapping->mark);
+    return mapping_failed(mapping->own, code);
+}
+
+int map_ask_tasks(const struct map_policy *mapping, const duite_task_graph *graph, int *home)
+{
+    base_mark_begin(mapping->mark, BASE_MAPPING_MAP_TASKS);
+    const int code = mapping->own->map_tasks(graph, home);
+    base_mark_end(mapping->mark);
+    return code;
 }

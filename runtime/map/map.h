@@ -1,8 +1,8 @@
 #ifndef DUITE_MAP_MAP_H
 #define DUITE_MAP_MAP_H
 
+#include "runtime/base/watchdog.h"
 #include "runtime/data/object.h"
-#include "runtime/map/front.h"
 
 #include <duite_policy.h>
 
@@ -22,6 +22,20 @@ MAP_ROWS(MAP_DECLARE)
 /* That of `metis`: equal weights, few bytes between ranks. */
 int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
 
+/* Whether it is none of the built-in ones. */
+bool map_is_foreign(const duite_mapping *mapping);
+
+/* A mapping, and the mark of the worker that asks it. */
+struct map_policy {
+    const duite_mapping *own;
+    struct base_mark *mark; /* NULL: the mapping is built in, or nobody watches it */
+};
+
+/* duite_mapping.map and map_tasks. Main thread. Errors: its own. */
+int map_ask(const struct map_policy *mapping, const duite_object_graph *graph, int n_ranks,
+            uint64_t seed, int *home);
+int map_ask_tasks(const struct map_policy *mapping, const duite_task_graph *graph, int *home);
+
 /* Notes a hint: the weight, and edges to n neighbours; or a leader. Homes that are settled stay.
  * Main thread, collective. Errors: objects, arguments, memory. */
 int map_hint(struct data_table *table, duite_object object, double weight, size_t n,
@@ -31,6 +45,6 @@ int map_follow(struct data_table *table, duite_object object, duite_object leade
 /* Gives a home to all objects without one: leaders by the mapping, followers with them. Main
  * thread, collective. Errors: those of the mapping; memory; DUITE_E_ARGUMENT for a home that is no
  * rank. */
-int map_settle(struct data_table *table, const struct map_front *mapping, uint64_t seed);
+int map_settle(struct data_table *table, const struct map_policy *mapping, uint64_t seed);
 
 #endif

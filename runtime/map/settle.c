@@ -157,8 +157,8 @@ static int build_edges(const struct data_table *table, struct nodes *nodes)
     return DUITE_OK;
 }
 
-static int ask(const struct data_table *table, struct nodes *nodes, const struct map_front *mapping,
-               uint64_t seed)
+static int ask(const struct data_table *table, struct nodes *nodes,
+               const struct map_policy *mapping, uint64_t seed)
 {
     int code = map_ask(mapping, &nodes->graph, table->n_ranks, seed, nodes->home);
     if (code)
@@ -187,7 +187,7 @@ static void move_in(struct data_table *table, const struct nodes *nodes)
     table->settled += nodes->graph.n;
 }
 
-int map_settle(struct data_table *table, const struct map_front *mapping, uint64_t seed)
+int map_settle(struct data_table *table, const struct map_policy *mapping, uint64_t seed)
 {
     if (!table->n_unsettled)
         return DUITE_OK;

@@ -4,11 +4,10 @@
  * the host with most to do a core. */
 #include "runtime/predict/program.h"
 
-#include "runtime/balance/front.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/map/blocks.h"
-#include "runtime/map/front.h"
+#include "runtime/map/map.h"
 #include "runtime/map/tasks.h"
 
 #include <math.h>
@@ -34,10 +33,11 @@ bool predict_moves_start(struct predict_program *p)
     if (!balance || !balance->migrate)
         return p->moves.other != NULL;
     p->moves.state = base_alloc_zero(balance->state_size + 1);
-    if (p->moves.state)
-        balance_front_state(balance, p->moves.state, p->graph->caller);
+    struct base_mark *mark = base_watchdog_mark(p->graph->watchdog, BASE_BALANCER, 0);
+    base_mark_begin(mark, BASE_BALANCER_START);
     if (p->moves.state && balance->start)
         balance->start(p->moves.state, 0, (int)cluster->hosts, 0, cluster->seed);
+    base_mark_end(mark);
     return p->moves.other && p->moves.state;
 }
 
@@ -190,7 +190,10 @@ static int ask_balancer(struct move *m)
                                  .since = moves->replays - moves->looked,
                                  .mapping = cluster->mapping,
                                  .seed = cluster->seed};
+    struct base_mark *mark = base_watchdog_mark(m->p->graph->watchdog, BASE_BALANCER, 0);
+    base_mark_begin(mark, BASE_BALANCER_MIGRATE);
     uint64_t next = cluster->balance->migrate(moves->state, &blocks, m->home);
+    base_mark_end(mark);
     moves->due = next ? moves->replays + next : UINT64_MAX;
     return DUITE_OK;
 }
@@ -212,8 +215,10 @@ static int ask_mapping(struct move *m, struct predict_recorded *recorded)
     tasks.graph.message_seconds = cluster->latency;
     tasks.graph.seed = cluster->seed;
     if (!code)
-        code = map_ask_tasks(&(struct map_front){cluster->mapping, m->p->graph->caller},
-                             &tasks.graph, m->home);
+        code = map_ask_tasks(
+            &(struct map_policy){cluster->mapping,
+                                 base_watchdog_mark(m->p->graph->watchdog, BASE_MAPPING, 0)},
+            &tasks.graph, m->home);
     recorded->map_at = tasks.guessed && !recorded->replays ? 1 : UINT64_MAX;
     m->p->moves.due += m->p->moves.due == m->p->moves.replays;
     map_tasks_free(&tasks);

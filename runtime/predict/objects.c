@@ -144,7 +144,8 @@ static void give_home(struct predict_program *p, uint32_t own, uint32_t traced)
 void predict_homes(struct predict_program *p, size_t n)
 {
     const struct predict_cluster *cluster = p->graph->cluster;
-    const struct map_front mapping = {cluster->mapping, p->graph->caller};
+    const struct map_policy mapping = {cluster->mapping,
+                                       base_watchdog_mark(p->graph->watchdog, BASE_MAPPING, 0)};
     p->code = map_settle(&p->table, &mapping, cluster->seed);
     for (size_t i = 0; i < n && !p->code && !p->words.short_of && !p->damaged; i++) {
         uint32_t own = predict_object_at(p, trace_words_next(&p->words)),

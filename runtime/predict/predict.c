@@ -1,11 +1,11 @@
 /* A prediction: the graph is made once, and then run. */
 #include "runtime/predict/graph.h"
 
-#include "runtime/balance/front.h"
+#include "runtime/balance/balance.h"
 #include "runtime/base/error.h"
 #include "runtime/base/policy.h"
-#include "runtime/map/front.h"
-#include "runtime/sched/front.h"
+#include "runtime/map/map.h"
+#include "runtime/sched/sched.h"
 
 const char *predict_limit_name(enum predict_limit limit)
 {
@@ -56,48 +56,33 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
     return DUITE_OK;
 }
 
-/* Policies that are not ours are asked under a guard. */
-struct guarded {
-    struct base_guard *guard;
-    struct sched_front scheduler;
-    struct balance_front balance;
-};
-
-static int guard(struct guarded *guarded, struct predict_cluster *cluster,
-                 struct predict_graph *graph)
+/* Policies that are not built in are watched: one that does not return is named. */
+static int watch_policies(struct predict_graph *graph, struct base_monitor *monitor)
 {
-    const bool schedules = sched_is_foreign(cluster->scheduler),
-               balances = cluster->balance && balance_is_foreign(cluster->balance),
-               maps = cluster->mapping && map_is_foreign(cluster->mapping);
-    if (!(cluster->policy_seconds > 0) || !(schedules || balances || maps))
+    const struct predict_cluster *c = graph->cluster;
+    const char *policy[BASE_POLICY_KINDS] = {
+        [BASE_SCHEDULER] = sched_is_foreign(c->scheduler) ? c->scheduler->name : NULL,
+        [BASE_MAPPING] = c->mapping && map_is_foreign(c->mapping) ? c->mapping->name : NULL,
+        [BASE_BALANCER] = c->balance && balance_is_foreign(c->balance) ? c->balance->name : NULL};
+    if (!(c->policy_seconds > 0) ||
+        !(policy[BASE_SCHEDULER] || policy[BASE_MAPPING] || policy[BASE_BALANCER]))
         return DUITE_OK;
-    int code = base_guard_start(&guarded->guard, cluster->policy_seconds, 1, -1);
-    if (code)
-        return code;
-    graph->caller = base_guard_caller(guarded->guard, 0);
-    if (schedules)
-        cluster->scheduler = sched_front(&guarded->scheduler, cluster->scheduler);
-    if (balances)
-        cluster->balance = balance_front(&guarded->balance, cluster->balance);
-    return DUITE_OK;
+    return base_watchdog_start(&graph->watchdog, monitor, policy, c->policy_seconds, 1, -1);
 }
 
-int predict(const struct trace_run *run, const struct predict_cluster *asked,
+int predict(const struct trace_run *run, const struct predict_cluster *cluster,
             struct predict_result *result, FILE *paje)
 {
-    struct predict_cluster cluster = *asked;
-    struct predict_graph graph = {.run = run, .cluster = &cluster};
-    struct guarded guarded = {0};
-    int code = predict_check(run, &cluster);
+    struct base_monitor monitor = {0};
+    struct predict_graph graph = {.run = run, .cluster = cluster};
+    int code = predict_check(run, cluster);
     if (!code)
-        code = guard(&guarded, &cluster, &graph);
+        code = watch_policies(&graph, &monitor);
     if (!code)
         code = predict_build(&graph);
     if (!code)
-        code = base_guard_code(guarded.guard);
-    if (!code)
         code = predict_simulate(&graph, result, paje);
     predict_graph_free(&graph);
-    base_guard_stop(guarded.guard);
+    base_watchdog_stop(graph.watchdog);
     return code;
 }

@@ -24,7 +24,7 @@ struct predict_cluster {
         *mapping; /* NULL: the homes that were traced; as many hosts as ranks then */
     const duite_balancer *balance; /* NULL: none; one that moves blocks needs a mapping */
     uint64_t seed;
-    double policy_seconds; /* a policy that is not ours is left after that; 0: never */
+    double policy_seconds; /* a policy that is not built in is named after that; 0: never */
 };
 
 /* What holds up the last task, and all: seconds along the chain of causes that ends with it. */
@@ -54,7 +54,7 @@ const char *predict_limit_name(enum predict_limit limit);
 
 /* `paje`: NULL, or where the predicted run is written as a Paje trace. Deterministic. Errors:
  * memory; DUITE_E_ARGUMENT for a trace with losses or without a whole program, a mapping that
- * fails, a policy that does not return, and a cluster that cannot be. */
+ * fails, and a cluster that cannot be. */
 int predict(const struct trace_run *run, const struct predict_cluster *cluster,
             struct predict_result *result, FILE *paje);
 

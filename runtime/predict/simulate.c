@@ -7,7 +7,6 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/plan/replay.h"
-#include "runtime/sched/front.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -77,12 +76,16 @@ static uint32_t find(struct predict_machine *m, uint32_t worker)
     const struct predict_node *nodes = m->graph->node;
     const uint32_t cores = m->cluster->cores, host = worker / cores, first = host * cores;
     void *state = state_of(m, worker);
+    base_mark_begin(m->mark, BASE_SCHEDULER_SERVE);
     duite_end end = m->scheduler->serve(state);
+    base_mark_end(m->mark);
     uint32_t node = predict_queue_take(&m->queue[worker], nodes, end);
     if (node == PREDICT_NONE)
         node = predict_queue_take(&m->shared[host], nodes, end);
     for (unsigned attempt = 0; node == PREDICT_NONE && attempt < 64 + 16 * cores; attempt++) {
+        base_mark_begin(m->mark, BASE_SCHEDULER_VICTIM);
         unsigned victim = m->scheduler->victim(state, attempt);
+        base_mark_end(m->mark);
         if (victim >= cores)
             break;
         if (first + victim != worker)
@@ -127,11 +130,18 @@ static void task_ready(struct predict_machine *m, uint32_t node, uint32_t worker
     void *state = state_of(m, here ? worker : m->last[host]);
     duite_ready ready = predict_describe(m, node);
     m->begin[node] = m->now; /* until it starts: since when it is ready */
-    if (here && m->next[worker] == PREDICT_NONE && m->scheduler->chain(state, &ready)) {
-        m->next[worker] = node;
-        return;
+    if (here && m->next[worker] == PREDICT_NONE) {
+        base_mark_begin(m->mark, BASE_SCHEDULER_CHAIN);
+        const int chained = m->scheduler->chain(state, &ready);
+        base_mark_end(m->mark);
+        if (chained) {
+            m->next[worker] = node;
+            return;
+        }
     }
+    base_mark_begin(m->mark, BASE_SCHEDULER_PLACE);
     unsigned queue = m->scheduler->place(state, &ready);
+    base_mark_end(m->mark);
     bool own = queue < cores;
     m->failed |= !predict_queue_put(own ? &m->queue[host * cores + queue] : &m->shared[host],
                                     m->graph->node, node);
@@ -309,9 +319,6 @@ static int run(struct predict_machine *m)
     }
     if (m->failed)
         return base_no_memory("the prediction");
-    int code = m->graph->caller ? base_guard_code(m->graph->caller->guard) : DUITE_OK;
-    if (code)
-        return code;
     if (m->over < m->graph->n_nodes)
         return base_error(DUITE_E_ARGUMENT,
                           "after %llu of %zu tasks and messages nothing goes on: the scheduler %s "
@@ -370,16 +377,29 @@ static bool prepare(struct predict_machine *m, bool paje)
            see_others(m);
 }
 
+static void start_scheduler(struct predict_machine *m, uint32_t worker)
+{
+    const uint32_t cores = m->cluster->cores;
+    const duite_scheduler *scheduler = m->scheduler;
+    void *state = state_of(m, worker);
+    base_mark_begin(m->mark, BASE_SCHEDULER_START);
+    if (scheduler->start)
+        scheduler->start(state, worker % cores, cores, m->cluster->seed);
+    base_mark_end(m->mark);
+    base_mark_begin(m->mark, BASE_SCHEDULER_LOOK);
+    if (scheduler->look)
+        scheduler->look(state, &m->near[worker % cores]);
+    base_mark_end(m->mark);
+    base_mark_begin(m->mark, BASE_SCHEDULER_SERVE);
+    m->queue[worker].heap = scheduler->serve(state) == DUITE_HIGHEST;
+    base_mark_end(m->mark);
+}
+
 static void init(struct predict_machine *m)
 {
     const uint32_t cores = m->cluster->cores;
     for (uint32_t w = 0; w < m->n_workers; w++) {
-        sched_front_state(m->scheduler, state_of(m, w), m->graph->caller);
-        if (m->scheduler->start)
-            m->scheduler->start(state_of(m, w), w % cores, cores, m->cluster->seed);
-        if (m->scheduler->look)
-            m->scheduler->look(state_of(m, w), &m->near[w % cores]);
-        m->queue[w].heap = m->scheduler->serve(state_of(m, w)) == DUITE_HIGHEST;
+        start_scheduler(m, w);
         m->next[w] = m->ran[w] = PREDICT_NONE;
         m->state[w] = w % cores ? IDLE : RESERVED;
     }
@@ -414,6 +434,7 @@ int predict_simulate(struct predict_graph *graph, struct predict_result *result,
     struct predict_machine m = {.graph = graph,
                                 .cluster = graph->cluster,
                                 .scheduler = graph->cluster->scheduler,
+                                .mark = base_watchdog_mark(graph->watchdog, BASE_SCHEDULER, 0),
                                 .n_workers = graph->cluster->hosts * graph->cluster->cores,
                                 .network = {.cluster = graph->cluster},
                                 .latest = PREDICT_NONE,

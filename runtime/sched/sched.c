@@ -2,7 +2,6 @@
 #include "runtime/sched/sched.h"
 
 #include "runtime/base/policy.h"
-#include "runtime/sched/front.h"
 
 #include <duite.h>
 

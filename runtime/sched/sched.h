@@ -2,6 +2,7 @@
 #define DUITE_SCHED_SCHED_H
 
 #include <duite_policy.h>
+#include <stdbool.h>
 
 /* The built-in schedulers, and the decisions that several of them share. A scheduler is one file,
  * which defines its table, and one row here; the first is the default. */
@@ -22,6 +23,9 @@ SCHED_TEST_ROWS(SCHED_DECLARE)
 
 /* The names of those for tests, ended by NULL. */
 const char *const *sched_test_names(void);
+
+/* Whether it is none of the built-in ones. */
+bool sched_is_foreign(const duite_scheduler *scheduler);
 
 struct sched_state {
     uint64_t random;

@@ -3,7 +3,6 @@
  * too few does no harm. */
 #include "runtime/workers/balance.h"
 
-#include "runtime/balance/front.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -63,12 +62,13 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
         balance->spent = base_alloc_zero(n * sizeof *balance->spent);
     if (!balance->states || !balance->cost || (measures && !balance->spent))
         return base_no_memory("the balancer");
-    for (unsigned i = 0; i < n; i++)
-        balance_front_state(balancer, balance->states + i * balance->stride,
-                            base_guard_caller(pool->setup.guard, 0));
-    for (unsigned i = 0; i < n && balancer->start; i++)
+    for (unsigned i = 0; i < n && balancer->start; i++) {
+        struct base_mark *mark = base_watchdog_mark(pool->setup.watchdog, BASE_BALANCER, i);
+        base_mark_begin(mark, BASE_BALANCER_START);
         balancer->start(balance->states + i * balance->stride, graph->rank, graph->n_ranks, i,
                         pool->setup.seed);
+        base_mark_end(mark);
+    }
     return DUITE_OK;
 }
 
@@ -91,12 +91,48 @@ static void *state_of(const struct worker *worker)
     return balance->states + worker->index * balance->stride;
 }
 
-void work_balance_caller(struct worker *worker, unsigned caller)
+/* ---- The balancer's functions, with the worker's mark around them ---- */
+
+static struct base_mark *mark_of(const struct worker *worker)
 {
-    const struct work_pool *pool = worker->pool;
-    if (pool->balance)
-        balance_front_state(pool->balance->balancer, state_of(worker),
-                            base_guard_caller(pool->setup.guard, caller));
+    return base_watchdog_mark(worker->pool->setup.watchdog, BASE_BALANCER, worker->index);
+}
+
+static int balancer_victim(const struct worker *worker, unsigned attempt, int giver,
+                           double *seconds)
+{
+    base_mark_begin(mark_of(worker), BASE_BALANCER_VICTIM);
+    const int rank =
+        worker->pool->balance->balancer->victim(state_of(worker), attempt, giver, seconds);
+    base_mark_end(mark_of(worker));
+    return rank;
+}
+
+static bool balancer_gives(const struct worker *worker, const duite_asked *asked,
+                           const duite_leaf *leaf)
+{
+    base_mark_begin(mark_of(worker), BASE_BALANCER_GIVE);
+    const int given = worker->pool->balance->balancer->give(state_of(worker), asked, leaf);
+    base_mark_end(mark_of(worker));
+    return given;
+}
+
+static int balancer_place(const struct worker *worker, const duite_leaf *leaf)
+{
+    base_mark_begin(mark_of(worker), BASE_BALANCER_PLACE);
+    const int rank = worker->pool->balance->balancer->place(state_of(worker), leaf);
+    base_mark_end(mark_of(worker));
+    return rank;
+}
+
+uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home)
+{
+    const struct work_balance *balance = pool->balance;
+    struct base_mark *mark = mark_of(&pool->worker[0]);
+    base_mark_begin(mark, BASE_BALANCER_MIGRATE);
+    const uint64_t next = balance->balancer->migrate(balance->states, blocks, home);
+    base_mark_end(mark);
+    return next;
 }
 
 /* ---- What a task costs ---- */
@@ -137,12 +173,6 @@ double work_other_seconds(struct work_pool *pool)
     for (unsigned i = 0; i < pool->setup.threads; i++)
         ticks += work_spent_take_else(&balance->spent[i]);
     return balance->tick * (double)ticks;
-}
-
-uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home)
-{
-    const struct work_balance *balance = pool->balance;
-    return balance->balancer->migrate(balance->states, blocks, home);
 }
 
 /* The mean of the workers that know; 0: none does. */
@@ -197,8 +227,7 @@ static bool given_at_once(struct worker *worker, struct task *task, const duite_
         return false;
     const duite_asked asked = {
         .rank = asker.rank, .idle = asker.idle, .ready = 1 + (unsigned)others};
-    bool given = pool->balance->balancer->give(state_of(worker), &asked, leaf) &&
-                 send(worker, task, asker.rank);
+    bool given = balancer_gives(worker, &asked, leaf) && send(worker, task, asker.rank);
     if (!given)
         comm_asks_again(pool->setup.comm, &asker);
     return given;
@@ -214,7 +243,7 @@ bool work_placed_away(struct worker *worker, struct task *task)
     if ((!balancer->place && !asked) || !describe(pool, task, &leaf))
         return false;
     if (balancer->place)
-        to = balancer->place(state_of(worker), &leaf);
+        to = balancer_place(worker, &leaf);
     if (to >= 0 && to < pool->setup.graph->n_ranks && to != own)
         return send(worker, task, to);
     return asked && given_at_once(worker, task, &leaf);
@@ -234,8 +263,7 @@ static void give_or_keep(struct gift *gift, struct work_queue *queue, struct tas
     while (task) {
         struct task *next = task->next;
         duite_leaf leaf;
-        if (describe(pool, task, &leaf) &&
-            pool->balance->balancer->give(state_of(gift->worker), &gift->asked, &leaf) &&
+        if (describe(pool, task, &leaf) && balancer_gives(gift->worker, &gift->asked, &leaf) &&
             send(gift->worker, task, gift->asked.rank))
             gift->asked.given++;
         else
@@ -304,7 +332,7 @@ static void ask(struct worker *worker)
         return;
     unsigned attempt = atomic_load_explicit(&balance->attempt, memory_order_relaxed);
     int giver = atomic_load_explicit(&balance->giver, memory_order_relaxed);
-    int rank = balance->balancer->victim(state_of(worker), attempt, giver, &seconds);
+    int rank = balancer_victim(worker, attempt, giver, &seconds);
     seconds = fmin(fmax(seconds, 0), LONGEST_ASK_SECONDS); /* whatever it says */
     unsigned idle = 1 + (unsigned)atomic_load_explicit(&pool->parked, memory_order_relaxed);
     bool other = rank >= 0 && rank < pool->setup.graph->n_ranks && rank != pool->setup.graph->rank;

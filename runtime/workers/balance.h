@@ -16,9 +16,6 @@ struct worker;
 int work_balance_start(struct work_balance **balance, struct work_pool *pool);
 void work_balance_stop(struct work_pool *pool); /* it may have none */
 
-/* From now on this caller of the guard asks the worker's balancer, if there is one. */
-void work_balance_caller(struct worker *worker, unsigned caller);
-
 /* A task became ready: true if it was sent to another rank. */
 bool work_placed_away(struct worker *worker, struct task *task);
 

@@ -95,7 +95,7 @@ static struct task *inside_steal(struct worker *worker, struct inside_wait *wait
     struct work_pool *pool = worker->pool;
     struct task *task = NULL;
     for (unsigned attempt = 0; !task && wait->refused < MOST_REFUSED; attempt++) {
-        unsigned victim = pool->setup.scheduler->victim(worker->state, attempt);
+        unsigned victim = work_victim(worker, attempt);
         if (victim >= pool->setup.threads || work_is_endless(pool, attempt))
             break;
         task = inside_steal_from(worker, victim, wait);

@@ -5,8 +5,8 @@
 #include "runtime/workers/balance.h"
 #include "runtime/workers/park.h"
 #include "runtime/workers/queue.h"
+#include "runtime/workers/standstill.h"
 #include "runtime/workers/topology.h"
-#include "runtime/workers/watch.h"
 #include "runtime/workers/workers.h"
 
 #include <sched.h>
@@ -29,6 +29,7 @@ struct worker {
     struct work_pool *pool;
     struct trace_ring *ring; /* of the trace; NULL: there is none */
     void *state;             /* of the scheduler */
+    struct base_mark *mark;  /* around its calls; NULL: it is built in */
     unsigned index;
     bool finishing;                 /* a task of this worker makes others ready right now */
     bool may_chain;                 /* ... and may run one of them inline, as its next */
@@ -48,7 +49,7 @@ struct worker {
     double pause;
     duite_call call;
     struct counts counts;
-    _Atomic(const struct task *) runs; /* whose body runs, for the one who watches */
+    _Atomic(const struct task *) runs; /* whose body runs, for the monitor */
     pthread_t thread;
     int unit;          /* to be bound to, or -1 */
     cpu_set_t binding; /* of worker 0 before start */
@@ -64,7 +65,7 @@ struct work_pool {
     pthread_t main;
     struct work_near near;
     struct work_queue shared;
-    struct work_watch watch;
+    struct work_standstill standstill;
     struct work_balance *balance; /* NULL: nothing moves between ranks */
     _Alignas(64) _Atomic int stop;
     _Atomic int endless;             /* the scheduler named victims without an end */
@@ -95,9 +96,9 @@ static inline const struct task *work_enters(struct worker *worker, const struct
 static inline void work_leaves(struct worker *worker, const struct task *below)
 {
     atomic_store_explicit(&worker->runs, below, memory_order_release);
-    atomic_signal_fence(memory_order_seq_cst); /* the watcher has the fence: see watch.c */
+    atomic_signal_fence(memory_order_seq_cst); /* the monitor has the fence: see standstill.c */
     if (atomic_load_explicit(&worker->pool->watched, memory_order_acquire))
-        work_watch_passes(worker->pool);
+        work_standstill_passes(worker->pool);
 }
 
 static inline void work_pause_core(void)
@@ -137,8 +138,6 @@ void work_look(struct worker *worker, const struct work_wish *wish);
 void work_run(struct worker *worker, struct task *task);
 /* Sends and receives; whether anything happened. */
 bool work_poll(struct worker *worker);
-/* From now on this caller of the guard asks the worker's scheduler. */
-void work_scheduler_caller(struct worker *worker, unsigned caller);
 
 /* ---- idle.c ---- */
 
@@ -176,6 +175,15 @@ void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed);
 bool work_note_messages_begin(struct worker *worker);
 void work_note_messages_end(struct worker *worker, bool begun);
 void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes);
+
+/* The scheduler's victim for this attempt. */
+static inline unsigned work_victim(struct worker *worker, unsigned attempt)
+{
+    base_mark_begin(worker->mark, BASE_SCHEDULER_VICTIM);
+    const unsigned victim = worker->pool->setup.scheduler->victim(worker->state, attempt);
+    base_mark_end(worker->mark);
+    return victim;
+}
 
 /* A task took so many ticks. In replays of short ones, nothing is warm and nothing is looked up. */
 static inline void work_warms(const struct worker *worker, const struct task *task, uint64_t took)

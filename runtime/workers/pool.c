@@ -5,7 +5,6 @@
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/thread.h"
-#include "runtime/sched/front.h"
 #include "runtime/workers/internal.h"
 #include "runtime/workers/topology.h"
 
@@ -22,10 +21,19 @@
 
 /* ---- Start ---- */
 
-void work_scheduler_caller(struct worker *worker, unsigned caller)
+static void worker_start_scheduler(struct worker *worker)
 {
     const struct work_setup *setup = &worker->pool->setup;
-    sched_front_state(setup->scheduler, worker->state, base_guard_caller(setup->guard, caller));
+    const duite_scheduler *scheduler = setup->scheduler;
+    worker->mark = base_watchdog_mark(setup->watchdog, BASE_SCHEDULER, worker->index);
+    base_mark_begin(worker->mark, BASE_SCHEDULER_START);
+    if (scheduler->start)
+        scheduler->start(worker->state, worker->index, setup->threads, setup->seed);
+    base_mark_end(worker->mark);
+    base_mark_begin(worker->mark, BASE_SCHEDULER_LOOK);
+    if (scheduler->look)
+        scheduler->look(worker->state, work_near_of(&worker->pool->near, worker->index));
+    base_mark_end(worker->mark);
 }
 
 static bool worker_prepare(struct work_pool *pool, unsigned index, int unit)
@@ -42,11 +50,7 @@ static bool worker_prepare(struct work_pool *pool, unsigned index, int unit)
     worker->switches = -1;
     worker->call = (duite_call){
         .context = setup->context, .rt = setup->rt, .rank = setup->graph->rank, .worker = index};
-    work_scheduler_caller(worker, 0);
-    if (setup->scheduler->start)
-        setup->scheduler->start(worker->state, index, setup->threads, setup->seed);
-    if (setup->scheduler->look)
-        setup->scheduler->look(worker->state, work_near_of(&pool->near, index));
+    worker_start_scheduler(worker);
     bool queue = work_queue_start(&worker->queue);
     return work_park_start(&worker->park) && queue;
 }
@@ -100,7 +104,7 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     if (setup->trace && setup->comm)
         comm_tell(setup->comm, work_note_message);
     int code = fine ? pool_start_threads(pool) : base_no_memory("the workers");
-    int watched = work_watch_start(pool, code ? 0 : setup->stuck_seconds);
+    int watched = work_standstill_start(pool, code ? 0 : setup->stuck_seconds);
     return code ? code : watched;
 }
 
@@ -112,7 +116,7 @@ void work_stop(struct work_pool *pool)
         return;
     pool->setup.graph->pool = NULL; /* communication may break later still */
     atomic_store(&pool->stop, 1);
-    work_watch_stop(pool);
+    work_standstill_stop(pool);
     for (unsigned i = 1; i < pool->started; i++) {
         atomic_thread_fence(memory_order_seq_cst);
         work_park_wake(&pool->worker[i].park);

@@ -4,7 +4,6 @@
  * messages in between; without a task it idles (idle.c). */
 #include "runtime/base/clock.h"
 #include "runtime/base/pool.h"
-#include "runtime/sched/front.h"
 #include "runtime/workers/internal.h"
 
 /* Tasks run inline, one after another without a look at the queues, while something lies there; and
@@ -32,7 +31,9 @@ static duite_ready ready_describe(const struct task_graph *graph, const struct t
 static void ready_place(struct worker *worker, struct task *task, const duite_ready *ready)
 {
     struct work_pool *pool = worker->pool;
+    base_mark_begin(worker->mark, BASE_SCHEDULER_PLACE);
     unsigned queue = pool->setup.scheduler->place(worker->state, ready);
+    base_mark_end(worker->mark);
     work_bump(&worker->counts.placed, 1);
     /* What the main thread forks is left for others to take all at once, which costs both sides
      * less than a deque that one fills as the other empties it. */
@@ -43,6 +44,15 @@ static void ready_place(struct worker *worker, struct task *task, const duite_re
     else
         work_queue_put(&pool->shared, task);
     work_wake_one(pool, queue);
+}
+
+/* Whether the scheduler wants the task to run inline after the one that made it ready. */
+static bool ready_runs_inline(const struct worker *worker, const duite_ready *ready)
+{
+    base_mark_begin(worker->mark, BASE_SCHEDULER_CHAIN);
+    const int is_inline = worker->pool->setup.scheduler->chain(worker->state, ready);
+    base_mark_end(worker->mark);
+    return is_inline;
 }
 
 /* Whether the task went to another rank. */
@@ -68,7 +78,7 @@ void work_ready(struct work_pool *pool, struct worker *worker, struct task *task
     if (pool->balance && ready_goes_away(worker, task))
         return;
     duite_ready ready = ready_describe(pool->setup.graph, task);
-    if (worker->may_chain && !worker->next && pool->setup.scheduler->chain(worker->state, &ready) &&
+    if (worker->may_chain && !worker->next && ready_runs_inline(worker, &ready) &&
         (!worker->waits || task_may_run(worker->waits, task)))
         worker->next = task;
     else
@@ -97,14 +107,15 @@ static void steal_count(struct worker *worker, unsigned victim)
 static struct task *worker_find(struct worker *worker)
 {
     struct work_pool *pool = worker->pool;
-    const duite_scheduler *scheduler = pool->setup.scheduler;
-    duite_end end = scheduler->serve(worker->state);
+    base_mark_begin(worker->mark, BASE_SCHEDULER_SERVE);
+    duite_end end = pool->setup.scheduler->serve(worker->state);
+    base_mark_end(worker->mark);
     struct work_queue *queue = &worker->queue;
     struct task *task = work_queue_take(queue, end);
     if (!task)
         task = work_queue_take_shared(queue = &pool->shared, end);
     for (unsigned attempt = 0; !task; attempt++) {
-        unsigned victim = scheduler->victim(worker->state, attempt);
+        unsigned victim = work_victim(worker, attempt);
         if (victim >= pool->setup.threads || work_is_endless(pool, attempt))
             break;
         if (victim == worker->index)
@@ -250,9 +261,7 @@ void *work_thread(void *argument)
     struct worker *worker = argument;
     struct work_pool *pool = worker->pool;
     work_cores_bind(worker->unit);
-    base_guard_here(base_guard_caller(pool->setup.guard, worker->index));
-    work_scheduler_caller(worker, worker->index);
-    work_balance_caller(worker, worker->index);
+    base_watchdog_here(pool->setup.watchdog, worker->index);
     while (!atomic_load_explicit(&pool->stop, memory_order_acquire))
         work_look(worker, &(struct work_wish){0});
     base_pool_thread_end();

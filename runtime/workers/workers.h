@@ -1,7 +1,7 @@
 #ifndef DUITE_WORKERS_WORKERS_H
 #define DUITE_WORKERS_WORKERS_H
 
-#include "runtime/base/guard.h"
+#include "runtime/base/watchdog.h"
 #include "runtime/check/check.h"
 #include "runtime/comm/comm.h"
 #include "runtime/task/task.h"
@@ -23,7 +23,8 @@ struct work_setup {
     struct trace *trace;      /* NULL: nobody writes down what happens */
     const duite_scheduler *scheduler;
     const duite_balancer *balancer; /* NULL: nothing moves */
-    struct base_guard *guard;       /* of those of the two that are fronts; NULL: neither is */
+    struct base_monitor *monitor;   /* of this rank */
+    struct base_watchdog *watchdog; /* of those of the two that are not built in; NULL: none */
     bool measures;                  /* what bodies take is asked for, whatever the balancer */
     void *context;                  /* for bodies */
     duite *rt;                      /* for bodies */

@@ -150,9 +150,9 @@ void work_starved(struct work_pool *pool, const char *what)
 #define MPI_Test(request, done, status)                        done_at_once(done)
 #define MPI_Type_contiguous(n, type, new_type)                 success(0)
 #define MPI_Type_commit(type)                                  success(0)
-#define comm_pulse_start(comm)                                 success(0)
-#define comm_pulse_open(...)                                   success(0, __VA_ARGS__)
-#define comm_pulse_stop(comm)                                  success(0)
+#define comm_heartbeat_start(comm, monitor)                    success(0)
+#define comm_heartbeat_open(...)                               success(0, __VA_ARGS__)
+#define comm_heartbeat_stop(comm)                              success(0)
 
 #include "runtime/comm/collective.c"
 #include "runtime/comm/comm.c"
@@ -169,7 +169,7 @@ static void start(void)
         its.task[i]->send = &its.send[i];
         its.send[i].packet = &its.packet[i];
     }
-    explore_check(!comm_start(&its.comm, MPI_COMM_NULL, &its.graph));
+    explore_check(!comm_start(&its.comm, MPI_COMM_NULL, &its.graph, NULL));
     comm_open(its.comm, false);
 }
 

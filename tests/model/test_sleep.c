@@ -205,20 +205,19 @@ static void fall_asleep(struct work_park *park, double seconds)
 
 /* Nobody watches for a standstill here, and nothing moves between ranks. */
 #include "runtime/workers/internal.h"
-#define work_balance_start(balance, pool) nothing()
-#define work_balance_stop(pool)           nothing()
-#define work_balance_caller(worker, i)    ((void)(worker), (void)(i))
-#define work_guest_came(balance, guest)   ((void)(guest))
-#define work_placed_away(worker, task)    ((void)(worker), false)
-#define work_begins(worker, task)         ((void)(task), false)
-#define work_learn(worker, task, ticks)   ((void)(task))
-#define work_serve(worker)                ((void)(worker))
-#define work_beg(worker, idle)            ((void)(idle))
-#define work_watch_start(pool, seconds)   nothing()
-#define work_watch_stop(pool)             nothing()
-#define work_waits(pool, why)             ((void)(why))
-#define work_enters(worker, task)         NULL
-#define work_leaves(worker, below)        ((void)(below))
+#define work_balance_start(balance, pool)    nothing()
+#define work_balance_stop(pool)              nothing()
+#define work_guest_came(balance, guest)      ((void)(guest))
+#define work_placed_away(worker, task)       ((void)(worker), false)
+#define work_begins(worker, task)            ((void)(task), false)
+#define work_learn(worker, task, ticks)      ((void)(task))
+#define work_serve(worker)                   ((void)(worker))
+#define work_beg(worker, idle)               ((void)(idle))
+#define work_standstill_start(pool, seconds) nothing()
+#define work_standstill_stop(pool)           nothing()
+#define work_waits(pool, why)                ((void)(why))
+#define work_enters(worker, task)            NULL
+#define work_leaves(worker, below)           ((void)(below))
 
 /* No other program runs on these cores. */
 #include <sys/resource.h>

@@ -61,6 +61,6 @@ int main(void)
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     tap_case(run(8, 1), "when no task is left");
     tap_case(run(8, 0), "while tasks and messages are on their way");
-    tap_case(run(0.5, 1), "between many signs of life");
+    tap_case(run(0.5, 1), "between many heartbeats");
     return tap_done();
 }

@@ -46,7 +46,7 @@ static void make(int first, int n)
 
 static void settle(void)
 {
-    ck_assert_int_eq(map_settle(&table, &(struct map_front){&RECORDER, NULL}, 1), DUITE_OK);
+    ck_assert_int_eq(map_settle(&table, &(struct map_policy){&RECORDER, NULL}, 1), DUITE_OK);
     ck_assert_uint_eq(table.n_unsettled, 0);
 }
 
@@ -185,7 +185,7 @@ START_TEST(wrong_mapping)
 
     make(0, 4);
     map_hint(&table, object[2], 6, 1, &object[0], NULL);
-    ck_assert_int_eq(map_settle(&table, &(struct map_front){&wrong, NULL}, 1), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(map_settle(&table, &(struct map_policy){&wrong, NULL}, 1), DUITE_E_ARGUMENT);
     ck_assert_int_eq(at(3)->home, -1);
     settle();
     ck_assert(seen.weight[2] == 6 && seen.edge[0][2] == 1);

@@ -1,6 +1,7 @@
-/* Policies of which a function never returns on one rank: every rank's next or present blocking
- * call names it, and all stop. */
+/* Policies of which a function does not return on one rank until that rank has named it twice: then
+ * it goes on, and all ranks end with the right values. */
 #include "tests/negative/misuse.h"
+#include "tests/support/said.h"
 
 #include <duite_policy.h>
 #include <stdatomic.h>
@@ -8,19 +9,35 @@
 #include <string.h>
 #include <time.h>
 
-enum { TASKS = 20 };
+enum { TASKS = 20, MOST_WAITS = 120000 };
+
+#define SECONDS 0.2
 
 static int rank;
-static _Atomic(const char *) hung; /* the function that never returns on this rank */
-static _Atomic int forever = 1;
+static const char *kind;            /* of the policy that hangs */
+static _Atomic(const char *) hangs; /* the function that does on this rank; NULL: none any more */
+static _Atomic int named;           /* ... was, twice */
+
+/* So many seconds on. */
+static int told(const char *function, double seconds)
+{
+    char begin[100], wanted[100];
+
+    snprintf(begin, sizeof begin, "duite: %s hanging: its %s ", kind, function);
+    snprintf(wanted, sizeof wanted, "has not returned for %g s (rank %d, worker ", seconds, rank);
+    return said_lines(begin, wanted);
+}
 
 static void may_hang(const char *function)
 {
-    const char *name = atomic_load(&hung);
+    const char *name = atomic_load(&hangs);
 
-    if (name && !strcmp(name, function))
-        while (atomic_load(&forever))
-            nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    if (!name || strcmp(name, function) != 0 ||
+        !atomic_compare_exchange_strong(&hangs, &name, NULL))
+        return;
+    for (int i = 0; i < MOST_WAITS && !told(function, 2 * SECONDS); i++)
+        nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    atomic_store(&named, told(function, SECONDS) == 1 && told(function, 2 * SECONDS) == 1 ? 1 : -1);
 }
 
 /* ---- Policies that otherwise work ---- */
@@ -146,49 +163,70 @@ static int build(duite *rt, void *context)
     return 0;
 }
 
-/* Leaves on rank 0, where all objects are, and a recorded graph; until a call fails. */
-static int work(duite *rt)
+static int named_body(const duite_call *call)
 {
-    duite_object object[TASKS];
+    *duite_out(call, 0, int32_t) = atomic_load(&named);
+    return 0;
+}
+
+static const duite_kernel NAMED = {.name = "named", .body = named_body, .access = {DUITE_W}};
+
+/* Leaves on rank 0, where all objects are, and a recorded graph; until rank `where` was hung, and
+ * went on. The values are right. */
+static int works(duite *rt, int where)
+{
+    duite_object object[TASKS], seen = misuse_new(rt, 1);
     duite_graph graph;
-    int32_t zero = 0, value;
+    int32_t zero = 0, value = -1, state = 0;
     int code;
 
     for (int i = 0; i < TASKS; i++)
         object[i] = misuse_new(rt, 1);
     duite_set(rt, object[0], &zero);
     code = duite_graph_new(rt, build, object, &graph);
-    while (!code) {
+    while (!code && !state) {
         for (int i = 0; i < TASKS; i++)
             duite_fork(rt, &ADD, NULL, 1, &object[i]);
         code = duite_replay(rt, graph, 2);
+        duite_set(rt, object[0], &zero);
+        code = code ? code : duite_replay(rt, graph, 1);
         code = code ? code : duite_get(rt, object[TASKS - 1], &value);
+        code = code ? code : duite_fork_at(rt, where, &NAMED, NULL, 1, &seen);
+        code = code ? code : duite_get(rt, seen, &state);
         code = code ? code : duite_wait(rt);
     }
-    return code;
+    if (!code)
+        code = duite_graph_free(rt, graph);
+    for (int i = 0; i < TASKS && !code; i++)
+        code = duite_free(rt, object[i]);
+    code = code ? code : duite_free(rt, seen);
+    return !code && state == 1 && value == TASKS - 1;
 }
 
-static void one_hangs(const char *kind, const char *function, int where,
+static void one_hangs(const char *what, const char *function, int where,
                       const duite_options *policies)
 {
+    static const duite_kernel *const KERNELS[] = {&SET, &COPY, &ADD, &NAMED, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = NULL;
-    char wanted[100], name[100];
+    char name[100];
 
+    options.kernels = KERNELS;
     options.scheduler = policies->scheduler ? policies->scheduler : options.scheduler;
     options.mapping = policies->mapping ? policies->mapping : duite_mapping_find("block");
     options.balance = policies->balance ? policies->balance : options.balance;
-    options.policy_seconds = 0.2;
-    snprintf(name, sizeof name, "%s of a %s hangs on rank %d", function, kind, where);
-    snprintf(wanted, sizeof wanted, "%s hanging: its %s did not return for 0.2 s (rank %d, worker ",
-             kind, function, where);
-    atomic_store(&hung, NULL);
+    options.policy_seconds = SECONDS;
+    snprintf(name, sizeof name, "%s of a %s hangs on rank %d", function, what, where);
+    kind = what;
+    atomic_store(&named, 0);
+    atomic_store(&hangs, NULL);
+    said_begin();
     int right = !duite_start(&rt, &options);
-    atomic_store(&hung, rank == where ? function : NULL);
-    right = right && work(rt) == DUITE_E_ARGUMENT && strstr(duite_message(), wanted);
-    if (!right)
-        fprintf(stderr, "# rank %d: '%s'\n", rank, duite_message());
-    right = right && duite_stop(&rt) == DUITE_E_ARGUMENT && !rt;
+    atomic_store(&hangs, rank == where ? function : NULL);
+    right = right && works(rt, where);
+    right = right && !duite_stop(&rt);
+    right = right && (rank == where || !said_lines("duite: ", "has not returned"));
+    said_end();
     tap_case(right, name);
 }
 

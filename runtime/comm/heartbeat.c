@@ -1,0 +1,145 @@
+/* One heartbeat is on its way at a time: a rank whose neighbour does not take it sends no more. The
+ * last one of all says so, and nothing follows it. */
+#include "runtime/comm/heartbeat.h"
+
+#include "runtime/base/clock.h"
+#include "runtime/comm/internal.h"
+
+#include <math.h>
+#include <sched.h>
+#include <stdio.h>
+
+enum { HEARTBEAT = 1, LAST_HEARTBEAT };
+
+/* ---- Looks, under the lock of the comm ---- */
+
+static int rank_before(const struct comm *comm)
+{
+    return (comm->rank + comm->n_ranks - 1) % comm->n_ranks;
+}
+
+static void heartbeat_lost(struct comm *comm)
+{
+    char sentence[200];
+    snprintf(sentence, sizeof sentence,
+             "rank %d on host %s is lost: nothing was heard of it for %g s", rank_before(comm),
+             comm->heartbeat.host, comm->heartbeat.seconds);
+    comm_broke(comm, DUITE_E_LOST, sentence);
+}
+
+/* Ready for one more. */
+static bool heartbeat_expect(struct comm *comm)
+{
+    struct comm_heartbeat *heartbeat = &comm->heartbeat;
+    int mpi = MPI_Irecv(&heartbeat->in, 1, MPI_BYTE, rank_before(comm), COMM_HEARTBEATS, comm->mpi,
+                        &heartbeat->heard);
+    return comm_mpi_ok(comm, mpi, "MPI_Irecv of a heartbeat");
+}
+
+/* Whether any was heard since the last time. */
+static bool heartbeat_hear(struct comm *comm)
+{
+    struct comm_heartbeat *heartbeat = &comm->heartbeat;
+    bool any = heartbeat->last_heard;
+    int there = 1;
+    while (there && !heartbeat->last_heard) {
+        int mpi = MPI_Test(&heartbeat->heard, &there, MPI_STATUS_IGNORE);
+        if (!comm_mpi_ok(comm, mpi, "MPI_Test of a heartbeat"))
+            return any;
+        any = any || there;
+        if (there && heartbeat->in == LAST_HEARTBEAT)
+            heartbeat->last_heard = true;
+        else if (there && !heartbeat_expect(comm))
+            return any;
+    }
+    return any;
+}
+
+/* Unless the one before is still on its way. */
+static void heartbeat_send(struct comm *comm, char which)
+{
+    struct comm_heartbeat *heartbeat = &comm->heartbeat;
+    int taken = 0, to = (comm->rank + 1) % comm->n_ranks;
+    int mpi = MPI_Test(&heartbeat->sent, &taken, MPI_STATUS_IGNORE);
+    if (!comm_mpi_ok(comm, mpi, "MPI_Test of a heartbeat") || !taken || heartbeat->last_sent)
+        return;
+    heartbeat->out = which;
+    mpi = MPI_Isend(&heartbeat->out, 1, MPI_BYTE, to, COMM_HEARTBEATS, comm->mpi, &heartbeat->sent);
+    if (comm_mpi_ok(comm, mpi, "MPI_Isend of a heartbeat"))
+        heartbeat->last_sent = which == LAST_HEARTBEAT;
+}
+
+/* Not while somebody polls. */
+static bool heartbeat_look(void *context)
+{
+    struct comm *comm = context;
+    struct comm_heartbeat *heartbeat = &comm->heartbeat;
+    if (!comm_try_lock(comm))
+        return false;
+    if (!comm_is_lost(comm)) {
+        heartbeat_send(comm, HEARTBEAT);
+        heartbeat->silent = heartbeat_hear(comm) ? 0 : heartbeat->silent + 1;
+        if (heartbeat->silent >= COMM_SILENT_LOOKS)
+            heartbeat_lost(comm);
+    }
+    comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
+    return true;
+}
+
+/* ---- The beginning ---- */
+
+int comm_heartbeat_start(struct comm *comm, struct base_monitor *monitor)
+{
+    struct comm_heartbeat *heartbeat = &comm->heartbeat;
+    heartbeat->sent = heartbeat->heard = MPI_REQUEST_NULL;
+    heartbeat->monitor = monitor;
+    heartbeat->look =
+        (struct base_look){.look = heartbeat_look, .context = comm, .seconds = INFINITY};
+    return base_monitor_add(monitor, &heartbeat->look);
+}
+
+void comm_heartbeat_open(struct comm *comm, double seconds, const char *host)
+{
+    struct comm_heartbeat *heartbeat = &comm->heartbeat;
+    snprintf(heartbeat->host, sizeof heartbeat->host, "%s", host);
+    if (seconds <= 0) {
+        base_monitor_remove(heartbeat->monitor, &heartbeat->look);
+        return;
+    }
+    if (!heartbeat_expect(comm))
+        return;
+    heartbeat->seconds = seconds;
+    base_monitor_set_period(heartbeat->monitor, &heartbeat->look, seconds / COMM_SILENT_LOOKS);
+}
+
+/* ---- The end ---- */
+
+/* Sends its last heartbeat and hears that of the rank before, which may take long, if that one's
+ * bodies do. A gap between two looks is one in which this process was stopped. */
+static void heartbeat_take_leave(struct comm *comm)
+{
+    struct comm_heartbeat *heartbeat = &comm->heartbeat;
+    double heard = base_seconds(), last = heard;
+    while (!comm_is_lost(comm) && !(heartbeat->last_heard && heartbeat->last_sent &&
+                                    heartbeat->sent == MPI_REQUEST_NULL)) {
+        double now = base_seconds();
+        heartbeat_send(comm, LAST_HEARTBEAT);
+        if (heartbeat_hear(comm))
+            heard = now;
+        else if (now - last > heartbeat->seconds / COMM_SILENT_LOOKS)
+            heard += now - last;
+        else if (now - heard > heartbeat->seconds)
+            heartbeat_lost(comm);
+        last = now;
+        sched_yield();
+    }
+}
+
+void comm_heartbeat_stop(struct comm *comm)
+{
+    struct comm_heartbeat *heartbeat = &comm->heartbeat;
+    if (heartbeat->monitor)
+        base_monitor_remove(heartbeat->monitor, &heartbeat->look);
+    if (heartbeat->seconds > 0)
+        heartbeat_take_leave(comm);
+}

@@ -1,6 +1,6 @@
-/* The calls of a running body: the same as the main program's, on its own scope. Nothing is
- * collective here. An error of a call that returns at once is remembered for the body's next get or
- * wait, and else fails the body. */
+/* The calls of a running body: the same as the main program's, on its own scope. None is
+ * collective. A call that returns at once remembers its error for the body's next get or wait; an
+ * error that nobody asked for fails the body. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
@@ -13,7 +13,7 @@ struct duite_call_private *inside_body(const duite *rt)
     return rt ? task_running(&rt->graph) : NULL;
 }
 
-static int remember(struct duite_call_private *body, int code)
+static int body_remember(struct duite_call_private *body, int code)
 {
     if (!code || body->remembered)
         return code;
@@ -23,7 +23,7 @@ static int remember(struct duite_call_private *body, int code)
 }
 
 /* May it call anything? Not once memory ran out in a fork, in whatever task. */
-static int enter(const struct duite_call_private *body, const char *call)
+static int body_enter(const struct duite_call_private *body, const char *call)
 {
     int broken = atomic_load_explicit(&body->graph->broken, memory_order_relaxed);
     if (!broken)
@@ -32,7 +32,7 @@ static int enter(const struct duite_call_private *body, const char *call)
                       duite_code_text(broken));
 }
 
-static int recall(struct duite_call_private *body)
+static int body_recall(struct duite_call_private *body)
 {
     int code = body->remembered;
     body->remembered = DUITE_OK;
@@ -43,31 +43,31 @@ int inside_new(struct duite_call_private *body, duite_type type, size_t count, s
                bool sized, duite_object *object)
 {
     if (!object)
-        return remember(body, base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the object",
-                                         sized ? "duite_new_sized" : "duite_new"));
-    int code = enter(body, sized ? "duite_new_sized" : "duite_new");
+        return body_remember(body, base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the object",
+                                              sized ? "duite_new_sized" : "duite_new"));
+    int code = body_enter(body, sized ? "duite_new_sized" : "duite_new");
     if (!code)
         code = task_make_object(body, type, count, most, sized, object);
-    return remember(body, code);
+    return body_remember(body, code);
 }
 
 int inside_free(struct duite_call_private *body, duite_object object)
 {
-    int code = enter(body, "duite_free");
+    int code = body_enter(body, "duite_free");
     if (!code)
         code = task_check_call(body, "duite_free", object, DUITE_RWP);
     if (!code && task_lent(body, object))
         code = base_error(DUITE_E_RIGHT, "duite_free: the object is the caller's");
     if (!code)
         code = task_free_object(task_inside(body), body->worker, object);
-    return remember(body, code);
+    return body_remember(body, code);
 }
 
 int inside_fork(struct duite_call_private *body, const duite_how *how, const duite_kernel *kernel,
                 const void *args, size_t n, const duite_object *objects)
 {
     struct task_options own = {.at = TASK_ANYWHERE};
-    int code = enter(body, "duite_fork");
+    int code = body_enter(body, "duite_fork");
     if (!code && how && how->at)
         code = base_error(DUITE_E_STATE,
                           "duite_fork_with: the children of a task run on its rank (%d), none can "
@@ -81,42 +81,42 @@ int inside_fork(struct duite_call_private *body, const duite_how *how, const dui
     if (!code)
         code =
             scope ? task_fork(scope, body->worker, &own, kernel, args, n, objects) : DUITE_E_MEMORY;
-    return remember(body, code);
+    return body_remember(body, code);
 }
 
 int inside_set(struct duite_call_private *body, duite_object object, const void *values,
                const size_t *count, const char *call)
 {
-    int code = enter(body, call);
+    int code = body_enter(body, call);
     if (!code)
         code = task_check_call(body, call, object, DUITE_W);
     if (!code)
         code = task_set_object(task_inside(body), body->worker, object, values, count);
-    return remember(body, code);
+    return body_remember(body, code);
 }
 
 /* Waiting ended early: everything did. */
-static int broken(const struct duite_call_private *body)
+static int body_broken(const struct duite_call_private *body)
 {
     return base_error(DUITE_E_MPI,
                       "communication between the ranks broke while a task of kernel %s waited",
                       body->graph->kernels[body->task->kernel]->name);
 }
 
-static bool there(void *context)
+static bool version_is_there(void *context)
 {
     return data_version_ready(context);
 }
 
 /* The value of the version, or how many bytes it has. */
-static int read_value(struct duite_call_private *body, struct data_version *version, void *values,
-                      size_t *bytes)
+static int body_read(struct duite_call_private *body, struct data_version *version, void *values,
+                     size_t *bytes)
 {
     struct task_scope *scope = task_inside(body);
     if (!data_version_ready(version))
-        work_inside(body->worker, scope, there, version);
+        work_inside(body->worker, scope, version_is_there, version);
     if (!data_version_ready(version))
-        return broken(body);
+        return body_broken(body);
     task_close_segment(scope);
     if (version->poisoned)
         return task_failure_error(body->graph, version->failure);
@@ -126,12 +126,12 @@ static int read_value(struct duite_call_private *body, struct data_version *vers
     return DUITE_OK;
 }
 
-static int get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
-               const char *call)
+static int body_get(struct duite_call_private *body, duite_object object, void *values,
+                    size_t *count, const char *call)
 {
     struct data_version *version = NULL;
     size_t bytes = 0, size;
-    int code = enter(body, call);
+    int code = body_enter(body, call);
     if (!code)
         code = task_check_call(body, call, object, DUITE_R);
     if (!code && !values && !count)
@@ -140,7 +140,7 @@ static int get(struct duite_call_private *body, duite_object object, void *value
         code = task_see(task_inside(body), body->worker, object, &version, &size);
     if (code)
         return code;
-    code = read_value(body, version, values, &bytes);
+    code = body_read(body, version, values, &bytes);
     if (!code && count)
         *count = bytes / size;
     return code;
@@ -149,12 +149,12 @@ static int get(struct duite_call_private *body, duite_object object, void *value
 int inside_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
                const char *call)
 {
-    int code = get(body, object, values, count, call);
-    int before = recall(body);
+    int code = body_get(body, object, values, count, call);
+    int before = body_recall(body);
     return before ? before : code;
 }
 
-static bool alone(void *context)
+static bool body_is_alone(void *context)
 {
     return task_alone(context);
 }
@@ -163,13 +163,13 @@ int inside_wait(struct duite_call_private *body)
 {
     struct task_scope *scope = body->scope;
     if (!scope)
-        return recall(body);
+        return body_recall(body);
     if (!task_alone(scope))
-        work_inside(body->worker, scope, alone, scope);
+        work_inside(body->worker, scope, body_is_alone, scope);
     if (!task_alone(scope))
-        return broken(body);
+        return body_broken(body);
     task_close_segment(scope);
-    int code = recall(body);
+    int code = body_recall(body);
     const struct data_failure *failure = code ? NULL : task_first_failure(scope);
     return failure ? task_failure_error(body->graph, failure) : code;
 }

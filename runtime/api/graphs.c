@@ -46,7 +46,7 @@ void recorded_stop(duite *rt)
     free(rt->recorded);
 }
 
-static struct recorded_graph *find(duite *rt, duite_graph name)
+static struct recorded_graph *graph_find(duite *rt, duite_graph name)
 {
     struct recorded_graph *found =
         name.slot && name.slot <= rt->n_recorded ? &rt->recorded[name.slot - 1] : NULL;
@@ -58,7 +58,7 @@ static struct recorded_graph *find(duite *rt, duite_graph name)
 }
 
 /* A slot with an empty record; 0 without memory. */
-static uint32_t take_slot(duite *rt)
+static uint32_t graph_take_slot(duite *rt)
 {
     size_t slot = 0;
     while (slot < rt->n_recorded && rt->recorded[slot].record)
@@ -77,7 +77,7 @@ static uint32_t take_slot(duite *rt)
     return (uint32_t)slot + 1;
 }
 
-static void free_slot(duite *rt, struct recorded_graph *slot)
+static void graph_free_slot(duite *rt, struct recorded_graph *slot)
 {
     plan_record_free(slot->record, work_main(rt->pool));
     slot->record = NULL;
@@ -85,7 +85,7 @@ static void free_slot(duite *rt, struct recorded_graph *slot)
 }
 
 /* Calls build. */
-static int record(duite *rt, struct recorded_graph *slot)
+static int graph_record(duite *rt, struct recorded_graph *slot)
 {
     struct plan_record *record = slot->record;
     plan_record_clear(record, work_main(rt->pool));
@@ -117,15 +117,15 @@ int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *g
         return program_remember(rt, base_error(DUITE_E_ARGUMENT, "duite_graph_new: no %s",
                                                build ? "place for the graph" : "build function"));
     code = program_settle(rt);
-    uint32_t slot = code ? 0 : take_slot(rt);
+    uint32_t slot = code ? 0 : graph_take_slot(rt);
     if (!slot)
         return program_remember(rt, code ? code : base_no_memory("a recorded graph"));
     struct recorded_graph *made = &rt->recorded[slot - 1];
     made->build = build;
     made->context = context;
-    code = record(rt, made);
+    code = graph_record(rt, made);
     if (code)
-        free_slot(rt, made);
+        graph_free_slot(rt, made);
     else
         *graph = (duite_graph){slot, made->generation};
     return program_remember(rt, code);
@@ -136,11 +136,11 @@ int duite_graph_free(duite *rt, duite_graph graph)
     int code = program_enter(rt, "duite_graph_free");
     if (code)
         return code;
-    struct recorded_graph *found = find(rt, graph);
+    struct recorded_graph *found = graph_find(rt, graph);
     if (!found)
         return program_remember(rt, DUITE_E_OBJECT);
     task_mix(&rt->graph, graph.slot);
-    free_slot(rt, found);
+    graph_free_slot(rt, found);
     return DUITE_OK;
 }
 
@@ -149,7 +149,7 @@ int duite_graph_args(duite *rt, duite_graph graph, size_t k, const void *args)
     int code = program_enter(rt, "duite_graph_args");
     if (code)
         return code;
-    const struct recorded_graph *found = find(rt, graph);
+    const struct recorded_graph *found = graph_find(rt, graph);
     return program_remember(rt, found ? plan_record_args(found->record, k, args) : DUITE_E_OBJECT);
 }
 
@@ -158,7 +158,7 @@ int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_
     int code = program_enter(rt, "duite_graph_bind");
     if (code)
         return code;
-    const struct recorded_graph *found = find(rt, graph);
+    const struct recorded_graph *found = graph_find(rt, graph);
     return program_remember(rt, found ? plan_record_bind(found->record, recorded, object)
                                       : DUITE_E_OBJECT);
 }
@@ -168,7 +168,7 @@ int duite_graph_print(duite *rt, duite_graph graph, FILE *file)
     int code = program_enter(rt, "duite_graph_print");
     if (code)
         return code;
-    const struct recorded_graph *found = find(rt, graph);
+    const struct recorded_graph *found = graph_find(rt, graph);
     if (!found)
         return DUITE_E_OBJECT;
     if (!file)
@@ -178,7 +178,7 @@ int duite_graph_print(duite *rt, duite_graph graph, FILE *file)
 
 /* ---- Replays ---- */
 
-static int check_rounds(const struct plan_record *record, uint64_t rounds)
+static int graph_check_rounds(const struct plan_record *record, uint64_t rounds)
 {
     uint64_t most = UINT64_C(1) << PLAN_MAX_TASKS_BITS;
     if (rounds <= most / (record->n_forks + 1))
@@ -203,15 +203,15 @@ int recorded_each(duite *rt, int (*visit)(void *context, const struct plan_recor
 }
 
 /* The graph fits what it is bound to, and its objects live where they are to. */
-static int prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds)
+static int graph_prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds)
 {
     int code = program_settle(rt);
     if (!code && !plan_record_fits(slot->record))
-        code = record(rt, slot);
+        code = graph_record(rt, slot);
     if (!code)
         code = plan_record_distinct(slot->record);
     if (!code)
-        code = check_rounds(slot->record, rounds);
+        code = graph_check_rounds(slot->record, rounds);
     if (!code)
         code = program_migrate(rt, slot->record, slot->begun, &slot->map_at);
     slot->replays += !code;
@@ -219,7 +219,7 @@ static int prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds)
     return code;
 }
 
-static int fork_rounds(duite *rt, struct plan_record *record, uint64_t rounds)
+static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t rounds)
 {
     int code = DUITE_OK;
     for (uint64_t i = 0; i < rounds && !code; i++) {
@@ -232,8 +232,8 @@ static int fork_rounds(duite *rt, struct plan_record *record, uint64_t rounds)
     return code;
 }
 
-static int replay_plan(duite *rt, struct plan_record *record, const duite_object *flag,
-                       uint64_t rounds)
+static int replay_by_plan(duite *rt, struct plan_record *record, const duite_object *flag,
+                          uint64_t rounds)
 {
     int code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
     if (!code)
@@ -241,16 +241,16 @@ static int replay_plan(duite *rt, struct plan_record *record, const duite_object
     return code;
 }
 
-static int replay(duite *rt, struct plan_record *record, uint64_t rounds)
+static int replay_rounds(duite *rt, struct plan_record *record, uint64_t rounds)
 {
     uint64_t before, after;
     plan_replay_split(record, NULL, rounds, &before, &after);
     record->rounds = 0;
     record->by_plan = rounds > before + after;
-    int code = fork_rounds(rt, record, before);
+    int code = replay_fork_rounds(rt, record, before);
     if (!code && record->by_plan)
-        code = replay_plan(rt, record, NULL, rounds - before - after);
-    return code ? code : fork_rounds(rt, record, after);
+        code = replay_by_plan(rt, record, NULL, rounds - before - after);
+    return code ? code : replay_fork_rounds(rt, record, after);
 }
 
 int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
@@ -258,19 +258,20 @@ int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
     int code = program_enter(rt, "duite_replay");
     if (code)
         return code;
-    struct recorded_graph *found = find(rt, graph);
+    struct recorded_graph *found = graph_find(rt, graph);
     if (!found)
         return program_remember(rt, DUITE_E_OBJECT);
     task_mix(&rt->graph, graph.slot);
     task_mix(&rt->graph, rounds);
-    code = prepare(rt, found, rounds);
+    code = graph_prepare(rt, found, rounds);
     if (!code)
         trace_replay(rt->trace, graph.slot - 1, found->record, NULL, rounds);
-    return program_remember(rt, code ? code : replay(rt, found->record, rounds));
+    return program_remember(rt, code ? code : replay_rounds(rt, found->record, rounds));
 }
 
 /* Rounds of the dynamic path, the flag read after each. */
-static int fork_while(duite *rt, struct plan_record *record, duite_object flag, uint64_t most)
+static int replay_fork_while(duite *rt, struct plan_record *record, duite_object flag,
+                             uint64_t most)
 {
     const struct data_object *object = data_object_find(&rt->graph.table, flag);
     uint64_t forks = rt->graph.root.forks;
@@ -280,7 +281,7 @@ static int fork_while(duite *rt, struct plan_record *record, duite_object flag, 
     size_t count;
     int code = values ? DUITE_OK : base_no_memory("a flag");
     while (!code && holds && record->rounds < most) {
-        code = fork_rounds(rt, record, 1);
+        code = replay_fork_rounds(rt, record, 1);
         if (!code) /* a failure is told by the next wait */
             holds = !program_get(rt, flag, TASK_ANYWHERE, values, &count, "duite_replay_while") &&
                     count && plan_flag_holds(type, values);
@@ -292,7 +293,8 @@ static int fork_while(duite *rt, struct plan_record *record, duite_object flag, 
     return code;
 }
 
-static int replay_while(duite *rt, struct plan_record *record, duite_object flag, uint64_t most)
+static int replay_rounds_while(duite *rt, struct plan_record *record, duite_object flag,
+                               uint64_t most)
 {
     uint64_t before, after;
     if (!data_object_find(&rt->graph.table, flag))
@@ -301,8 +303,8 @@ static int replay_while(duite *rt, struct plan_record *record, duite_object flag
     record->rounds = 0;
     record->by_plan = most > before;
     if (!record->by_plan)
-        return fork_while(rt, record, flag, most);
-    return replay_plan(rt, record, &flag, most);
+        return replay_fork_while(rt, record, flag, most);
+    return replay_by_plan(rt, record, &flag, most);
 }
 
 int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t most)
@@ -310,21 +312,21 @@ int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t
     int code = program_enter(rt, "duite_replay_while");
     if (code)
         return code;
-    struct recorded_graph *found = find(rt, graph);
+    struct recorded_graph *found = graph_find(rt, graph);
     if (!found)
         return program_remember(rt, DUITE_E_OBJECT);
     task_mix(&rt->graph, graph.slot);
     task_mix(&rt->graph, most);
     task_mix(&rt->graph, (uint64_t)flag.slot << 32 | flag.generation);
-    code = prepare(rt, found, most);
+    code = graph_prepare(rt, found, most);
     if (!code && !most)
         code = base_error(DUITE_E_ARGUMENT, "duite_replay_while: at most 0 rounds");
     if (!code)
         trace_replay(rt->trace, graph.slot - 1, found->record, &flag, most);
-    return program_remember(rt, code ? code : replay_while(rt, found->record, flag, most));
+    return program_remember(rt, code ? code : replay_rounds_while(rt, found->record, flag, most));
 }
 
-static bool is_over(void *context)
+static bool replay_is_over(void *context)
 {
     return plan_replay_over(context);
 }
@@ -334,14 +336,14 @@ int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
     int code = program_enter(rt, "duite_graph_rounds");
     if (code)
         return code;
-    const struct recorded_graph *found = find(rt, graph);
+    const struct recorded_graph *found = graph_find(rt, graph);
     if (!found)
         return DUITE_E_OBJECT;
     if (!rounds)
         return base_error(DUITE_E_ARGUMENT, "duite_graph_rounds: nowhere to put the number");
     const uint64_t from = rt->trace ? base_ticks() : 0;
-    work_until(rt->pool, &(struct work_why){"duite_graph_rounds", "the last replay", NULL}, is_over,
-               found->record);
+    work_until(rt->pool, &(struct work_why){"duite_graph_rounds", "the last replay", NULL},
+               replay_is_over, found->record);
     trace_wait(rt->trace, from);
     if (!plan_replay_over(found->record)) {
         instance_give_up(rt);

@@ -51,6 +51,17 @@ bool instance_is_broken(const duite *rt);
  * Does nothing the second time. */
 void instance_give_up(duite *rt);
 
+/* ---- agree.c: collective ---- */
+
+/* Whether all ranks came so far: else the code of this rank, or DUITE_E_DIFFERENT (memory:
+ * DUITE_E_MEMORY) with the message of the first rank that failed worst. */
+int start_agree_on_code(MPI_Comm mpi, int code);
+/* This rank's parts have started, or failed with `code`: the same on all ranks, which start alike?
+ * All succeed, or all fail. Errors: DUITE_E_DIFFERENT, names what differs and on which ranks. */
+int start_agree(duite *rt, const duite_options *options, int code);
+
+/* ---- options.c ---- */
+
 /* May a start try these? The rest of them may be wrong on one rank alone: all ranks agree
  * nevertheless. Errors: arguments. */
 int options_check(const duite_options *options);
@@ -60,7 +71,7 @@ int options_check_rest(const duite_options *options);
  * runtime knows its ranks and threads. Local. Errors: memory, DUITE_E_SYSTEM. */
 int policies_watch(duite *rt, const duite_options *options);
 
-/* ---- Shared by program.c, objects.c and recorded.c ---- */
+/* ---- program.c, wait.c ---- */
 
 /* May this call be made now? */
 int program_enter(duite *rt, const char *call);
@@ -79,10 +90,14 @@ int program_meet(duite *rt, const char *call);
 /* Exchanges words: own, whose head is filled in; *words, one a rank. There are several ranks. */
 int program_agree(duite *rt, const struct work_why *why, struct comm_word *own,
                   struct comm_word **words);
+/* ---- migrate.c ---- */
+
 /* The `replay`-th replay of a recorded graph begins, from 0: if it is time, blocks of objects move
  * where the mapping, or the balancer, wants them. `*map_at`: the replay before which the mapping is
  * to see its tasks (again); it begins with 0. */
 int program_migrate(duite *rt, const struct plan_record *record, uint64_t replay, uint64_t *map_at);
+/* ---- wait.c, trace.c ---- */
+
 /* duite_wait, under the name of who calls it. */
 int program_wait(duite *rt, const char *call);
 /* The trace ends, if there is one that did not: as duite_trace_end, under the name of who calls. */
@@ -96,6 +111,8 @@ int traced_open(duite *rt, const duite_options *options);
 int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
                 const char *call);
 
+/* ---- graphs.c ---- */
+
 /* Adds what all graphs carried since the last time between blocks, each as often as its rounds ran:
  * visit is called with the record and the number of rounds. No replay is on its way. Errors: its
  * own. */
@@ -108,7 +125,9 @@ int recorded_failed(duite *rt, int code);
 int recorded_left(const duite *rt);
 /* Frees all graphs; no task is left. */
 void recorded_stop(duite *rt);
-/* The body that runs on this thread, or NULL; and its calls (inside.c). */
+/* ---- bodies.c ---- */
+
+/* The body that runs on this thread, or NULL; and its calls. */
 struct duite_call_private *inside_body(const duite *rt);
 int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t most,
                bool sized, duite_object *object);

@@ -1,9 +1,8 @@
-/* Homes that change: at the beginning of a replay that is due, when all ranks have come to it and
- * no task is left. Each rank says what the bodies of its blocks took, rank 0 asks the mapping, or
- * the balancer, and answers all, and all move the same blocks in the same order. Everything that
- * follows from homes (who runs a task, where values are needed, plans of recorded graphs) is
- * derived from them anew.
- */
+/* Homes that change, at the beginning of a replay that is due, when all ranks have come to it and
+ * no task is left. Each rank reports what the bodies of its blocks took. Rank 0 asks the mapping,
+ * or the balancer, and broadcasts the moves. All ranks move the same blocks in the same order.
+ * Everything that follows from homes (who runs a task, where values are needed, plans of recorded
+ * graphs) is derived from them anew. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/clock.h"
@@ -12,9 +11,10 @@
 #include "runtime/map/blocks.h"
 #include "runtime/map/tasks.h"
 
-/* What a rank says of itself before its blocks; what rank 0 answers before the blocks that move. */
-enum { SAID_WORKERS, SAID_OTHER, SAID_BLOCKS };
-enum { TOLD_CODE, TOLD_REFUSED, TOLD_NEXT, TOLD_AGAIN, TOLD_MOVES, TOLD_BLOCKS };
+/* What a rank reports of itself before its blocks; what rank 0 answers before the blocks that move.
+ */
+enum { REPORT_WORKERS, REPORT_OTHER, REPORT_BLOCKS };
+enum { ANSWER_CODE, ANSWER_REFUSED, ANSWER_NEXT, ANSWER_AGAIN, ANSWER_MOVES, ANSWER_BLOCKS };
 
 #define NEVER (UINT64_C(1) << 52) /* replays; a double has room for them */
 
@@ -30,12 +30,12 @@ struct migration {
     /* Rank 0. */
     struct map_traffic traffic;
     double *seconds, *other; /* n; n_ranks */
-    unsigned char *stays;
+    unsigned char *fixed;
     size_t *bytes;
     unsigned *workers; /* n_ranks */
 };
 
-static void release(struct migration *m)
+static void migration_free(struct migration *m)
 {
     map_blocks_free(&m->blocks);
     map_traffic_free(&m->traffic);
@@ -45,13 +45,13 @@ static void release(struct migration *m)
     base_free(m->home);
     base_free(m->seconds);
     base_free(m->other);
-    base_free(m->stays);
+    base_free(m->fixed);
     base_free(m->bytes);
     base_free(m->workers);
 }
 
 /* Blocks by home, in their order. */
-static void sort_by_home(struct migration *m)
+static void migration_sort(struct migration *m)
 {
     size_t n = m->blocks.n, ranks = (size_t)m->rt->graph.n_ranks;
     for (size_t i = 0; i < n; i++)
@@ -65,13 +65,13 @@ static void sort_by_home(struct migration *m)
     m->first[0] = 0;
 }
 
-static int begin(struct migration *m)
+static int migration_begin(struct migration *m)
 {
     size_t ranks = (size_t)m->rt->graph.n_ranks;
     int code = map_blocks_find(&m->rt->graph.table, &m->blocks);
     if (code)
         return code;
-    size_t n = m->blocks.n, said = (n + SAID_BLOCKS + TOLD_BLOCKS) * sizeof *m->values;
+    size_t n = m->blocks.n, said = (n + REPORT_BLOCKS + ANSWER_BLOCKS) * sizeof *m->values;
     m->first = base_alloc_zero((ranks + 1) * sizeof *m->first);
     m->row = base_alloc(n * sizeof *m->row + 1);
     m->values = base_alloc(said);
@@ -79,96 +79,96 @@ static int begin(struct migration *m)
     bool fine = m->first && m->row && m->values && m->home;
     if (fine && !m->rt->graph.rank) {
         m->seconds = base_alloc(n * sizeof *m->seconds + 1);
-        m->stays = base_alloc(n + 1);
+        m->fixed = base_alloc(n + 1);
         m->bytes = base_alloc(n * sizeof *m->bytes + 1);
         m->other = base_alloc(ranks * sizeof *m->other);
         m->workers = base_alloc(ranks * sizeof *m->workers);
-        fine = m->seconds && m->stays && m->bytes && m->other && m->workers;
+        fine = m->seconds && m->fixed && m->bytes && m->other && m->workers;
     }
     if (fine)
-        sort_by_home(m);
+        migration_sort(m);
     return fine ? DUITE_OK : base_no_memory("blocks that move");
 }
 
 /* ---- What was measured comes to rank 0 ---- */
 
-/* A block that stays is told by a negative number. */
-static void fill_own(struct migration *m)
+/* A block that is fixed is reported by a negative number. */
+static void migration_fill_own(struct migration *m)
 {
     struct work_pool *pool = m->rt->pool;
     const size_t *first = m->first + m->rt->graph.rank;
-    m->values[SAID_WORKERS] = m->rt->threads;
-    m->values[SAID_OTHER] = work_other_seconds(pool);
+    m->values[REPORT_WORKERS] = m->rt->threads;
+    m->values[REPORT_OTHER] = work_other_seconds(pool);
     for (size_t i = first[0]; i < first[1]; i++) {
         const struct map_block *block = &m->blocks.block[m->row[i]];
         double seconds = work_block_seconds(pool, block->number);
-        m->values[SAID_BLOCKS + i - first[0]] = block->stays ? -1 - seconds : seconds;
+        m->values[REPORT_BLOCKS + i - first[0]] = block->fixed ? -1 - seconds : seconds;
     }
 }
 
-static void take_value(struct migration *m, int rank, size_t i, double value)
+static void migration_take(struct migration *m, int rank, size_t i, double value)
 {
-    if (i == SAID_WORKERS)
+    if (i == REPORT_WORKERS)
         m->workers[rank] = (unsigned)value;
-    if (i == SAID_OTHER)
+    if (i == REPORT_OTHER)
         m->other[rank] = value;
-    if (i < SAID_BLOCKS)
+    if (i < REPORT_BLOCKS)
         return;
-    uint32_t block = m->row[m->first[rank] + i - SAID_BLOCKS];
-    m->stays[block] = value < 0;
+    uint32_t block = m->row[m->first[rank] + i - REPORT_BLOCKS];
+    m->fixed[block] = value < 0;
     m->seconds[block] = value < 0 ? -1 - value : value;
 }
 
-static size_t said_by(const struct migration *m, int rank)
+static size_t migration_length(const struct migration *m, int rank)
 {
-    return SAID_BLOCKS + m->first[rank + 1] - m->first[rank];
+    return REPORT_BLOCKS + m->first[rank + 1] - m->first[rank];
 }
 
-static size_t until(size_t all, size_t at)
+static size_t migration_part_end(size_t all, size_t at)
 {
     return all > at + COMM_MOST_SUMS ? at + COMM_MOST_SUMS : all;
 }
 
-static int exchange(struct migration *m, struct comm_word *own, struct comm_word **words)
+static int migration_exchange(struct migration *m, struct comm_word *own, struct comm_word **words)
 {
     static const struct work_why why = {"duite_replay", "the other ranks to move blocks", NULL};
     return program_agree(m->rt, &why, own, words);
 }
 
-static int gather(struct migration *m)
+static int migration_gather(struct migration *m)
 {
     const struct task_graph *graph = &m->rt->graph;
     size_t longest = 0;
     int code = DUITE_OK;
     for (int r = 0; r < graph->n_ranks; r++)
-        longest = said_by(m, r) > longest ? said_by(m, r) : longest;
-    fill_own(m);
+        longest = migration_length(m, r) > longest ? migration_length(m, r) : longest;
+    migration_fill_own(m);
     for (size_t at = 0; at < longest && !code; at += COMM_MOST_SUMS) {
         struct comm_word own = {0}, *words;
-        for (size_t i = at; i < until(said_by(m, graph->rank), at); i++)
+        for (size_t i = at; i < migration_part_end(migration_length(m, graph->rank), at); i++)
             own.sums[i - at] = m->values[i];
-        code = exchange(m, &own, &words);
+        code = migration_exchange(m, &own, &words);
         for (int r = 0; r < graph->n_ranks && !graph->rank && !code; r++)
-            for (size_t i = at; i < until(said_by(m, r), at); i++)
-                take_value(m, r, i, words[r].sums[i - at]);
+            for (size_t i = at; i < migration_part_end(migration_length(m, r), at); i++)
+                migration_take(m, r, i, words[r].sums[i - at]);
     }
     return code;
 }
 
 /* ---- Rank 0 decides ---- */
 
-static int add_traffic(void *context, const struct plan_record *record, double rounds)
+static int migration_add_traffic(void *context, const struct plan_record *record, double rounds)
 {
     struct migration *m = context;
     return map_traffic_add(&m->traffic, &m->blocks, record, rounds);
 }
 
-static double byte_seconds(const duite *rt)
+static double migration_byte_seconds(const duite *rt)
 {
     return 1e-6 * (comm_transfer(rt->comm, 1000000) - comm_transfer(rt->comm, 0));
 }
 
-static uint64_t ask(struct migration *m)
+static uint64_t migration_ask(struct migration *m)
 {
     duite *rt = m->rt;
     const struct instance_migration *last = &rt->migration;
@@ -178,11 +178,11 @@ static uint64_t ask(struct migration *m)
                                            .neighbour = m->traffic.neighbour,
                                            .edge_weight = m->traffic.bytes},
                                  .bytes = m->bytes,
-                                 .stays = m->stays,
+                                 .stays = m->fixed,
                                  .n_ranks = rt->graph.n_ranks,
                                  .other = m->other,
                                  .workers = m->workers,
-                                 .byte_seconds = byte_seconds(rt),
+                                 .byte_seconds = migration_byte_seconds(rt),
                                  .seconds = base_seconds() - last->since,
                                  .look_seconds = last->took,
                                  .replays = last->replays,
@@ -194,16 +194,16 @@ static uint64_t ask(struct migration *m)
 
 /* The mapping sees the tasks of the graph; *again: with measured costs it is to see them once more.
  */
-static int ask_mapping(struct migration *m, bool *again)
+static int migration_ask_mapping(struct migration *m, bool *again)
 {
     duite *rt = m->rt;
     struct map_tasks tasks;
     int code = map_tasks_find(&tasks, m->record, &m->blocks, m->seconds);
     *again = tasks.guessed;
-    tasks.graph.stays = m->stays;
+    tasks.graph.stays = m->fixed;
     tasks.graph.n_ranks = rt->graph.n_ranks;
     tasks.graph.workers = m->workers;
-    tasks.graph.byte_seconds = byte_seconds(rt);
+    tasks.graph.byte_seconds = migration_byte_seconds(rt);
     tasks.graph.message_seconds = comm_transfer(rt->comm, 0);
     tasks.graph.seed = rt->seed;
     if (!code)
@@ -212,24 +212,24 @@ static int ask_mapping(struct migration *m, bool *again)
     return code;
 }
 
-/* Whether the policy keeps to what it was told. */
-static bool is_allowed(const struct migration *m, size_t block)
+/* Whether the policy leaves fixed blocks alone and names ranks that there are. */
+static bool migration_is_allowed(const struct migration *m, size_t block)
 {
     int from = m->blocks.block[block].home, to = m->home[block];
-    return to == from || (to >= 0 && to < m->rt->graph.n_ranks && !m->stays[block]);
+    return to == from || (to >= 0 && to < m->rt->graph.n_ranks && !m->fixed[block]);
 }
 
-static int ask_balancer(struct migration *m, uint64_t *next)
+static int migration_ask_balancer(struct migration *m, uint64_t *next)
 {
-    int code = recorded_each(m->rt, add_traffic, m);
+    int code = recorded_each(m->rt, migration_add_traffic, m);
     if (!code)
         code = map_traffic_end(&m->traffic, &m->blocks);
     if (!code)
-        *next = ask(m);
+        *next = migration_ask(m);
     return code;
 }
 
-static int decide(struct migration *m)
+static int migration_decide(struct migration *m)
 {
     size_t n_moves = 0;
     uint64_t next = 0;
@@ -238,55 +238,55 @@ static int decide(struct migration *m)
         m->bytes[i] = m->blocks.block[i].bytes;
         m->home[i] = m->blocks.block[i].home;
     }
-    int code = m->record ? ask_mapping(m, &again) : ask_balancer(m, &next);
+    int code = m->record ? migration_ask_mapping(m, &again) : migration_ask_balancer(m, &next);
     if (code && (code == DUITE_E_MEMORY || !m->record))
         return code;
-    m->values[TOLD_NEXT] = next < NEVER ? (double)next : 0;
-    m->values[TOLD_AGAIN] = again;
-    m->values[TOLD_CODE] = code;
-    m->values[TOLD_REFUSED] = 0;
+    m->values[ANSWER_NEXT] = next < NEVER ? (double)next : 0;
+    m->values[ANSWER_AGAIN] = again;
+    m->values[ANSWER_CODE] = code;
+    m->values[ANSWER_REFUSED] = 0;
     for (size_t i = 0; i < m->blocks.n && !code; i++) {
-        if (!is_allowed(m, i))
-            m->values[TOLD_REFUSED] = 1;
+        if (!migration_is_allowed(m, i))
+            m->values[ANSWER_REFUSED] = 1;
         else if (m->home[i] != m->blocks.block[i].home)
-            m->values[TOLD_BLOCKS + n_moves++] = (double)i * m->rt->graph.n_ranks + m->home[i];
+            m->values[ANSWER_BLOCKS + n_moves++] = (double)i * m->rt->graph.n_ranks + m->home[i];
     }
-    m->values[TOLD_MOVES] = (double)n_moves;
+    m->values[ANSWER_MOVES] = (double)n_moves;
     return DUITE_OK;
 }
 
 /* ---- All move ---- */
 
-static int announce(struct migration *m)
+static int migration_announce(struct migration *m)
 {
-    size_t all = TOLD_BLOCKS;
+    size_t all = ANSWER_BLOCKS;
     int code = DUITE_OK;
     for (size_t at = 0; at < all && !code; at += COMM_MOST_SUMS) {
         struct comm_word own = {0}, *words;
         if (!m->rt->graph.rank)
-            all = TOLD_BLOCKS + (size_t)m->values[TOLD_MOVES];
-        for (size_t i = at; i < until(all, at) && !m->rt->graph.rank; i++)
+            all = ANSWER_BLOCKS + (size_t)m->values[ANSWER_MOVES];
+        for (size_t i = at; i < migration_part_end(all, at) && !m->rt->graph.rank; i++)
             own.sums[i - at] = m->values[i];
-        code = exchange(m, &own, &words);
+        code = migration_exchange(m, &own, &words);
         if (!code && !at)
-            all = TOLD_BLOCKS + (size_t)words[0].sums[TOLD_MOVES];
-        for (size_t i = at; i < until(all, at) && !code; i++)
+            all = ANSWER_BLOCKS + (size_t)words[0].sums[ANSWER_MOVES];
+        for (size_t i = at; i < migration_part_end(all, at) && !code; i++)
             m->values[i] = words[0].sums[i - at];
     }
     return code;
 }
 
 /* A block that moves gets a number that nobody had before at its new home. */
-static int move_blocks(struct migration *m)
+static int migration_move(struct migration *m)
 {
     struct task_graph *graph = &m->rt->graph;
     struct data_table *table = &graph->table;
-    size_t n_moves = (size_t)m->values[TOLD_MOVES];
+    size_t n_moves = (size_t)m->values[ANSWER_MOVES];
     int code = DUITE_OK;
     for (size_t i = 0; i < m->blocks.n; i++)
         m->home[i] = m->blocks.block[i].home;
     for (size_t i = 0; i < n_moves; i++) {
-        uint64_t told = (uint64_t)m->values[TOLD_BLOCKS + i];
+        uint64_t told = (uint64_t)m->values[ANSWER_BLOCKS + i];
         size_t block = (size_t)(told / (uint64_t)graph->n_ranks);
         m->home[block] = (int)(told % (uint64_t)graph->n_ranks);
         m->blocks.block[block].number = table->blocks[m->home[block]]++;
@@ -306,12 +306,12 @@ static int move_blocks(struct migration *m)
 }
 
 /* When this is asked again. */
-static void schedule(const struct migration *m, uint64_t replay, uint64_t *map_at)
+static void migration_schedule(const struct migration *m, uint64_t replay, uint64_t *map_at)
 {
     struct instance_migration *last = &m->rt->migration;
-    uint64_t next = (uint64_t)m->values[TOLD_NEXT];
+    uint64_t next = (uint64_t)m->values[ANSWER_NEXT];
     if (m->record)
-        *map_at = m->values[TOLD_AGAIN] > 0 && !replay ? 1 : UINT64_MAX;
+        *map_at = m->values[ANSWER_AGAIN] > 0 && !replay ? 1 : UINT64_MAX;
     if (m->record && last->due == last->replays)
         last->due++;
     if (!m->record)
@@ -320,13 +320,13 @@ static void schedule(const struct migration *m, uint64_t replay, uint64_t *map_a
 }
 
 /* The policy did not do its work: the same error on all ranks. */
-static int refused(const struct migration *m)
+static int migration_refused(const struct migration *m)
 {
-    int code = (int)m->values[TOLD_CODE];
+    int code = (int)m->values[ANSWER_CODE];
     if (code)
         return base_error(code, "mapping %s failed on rank 0 with code %d (%s)",
                           m->rt->mapping.own->name, code, duite_code_text(code));
-    if (!(m->values[TOLD_REFUSED] > 0))
+    if (!(m->values[ANSWER_REFUSED] > 0))
         return DUITE_OK;
     return base_error(DUITE_E_ARGUMENT,
                       "%s %s moves a block to a rank that there is not, or one that stays",
@@ -334,28 +334,28 @@ static int refused(const struct migration *m)
                       m->record ? m->rt->mapping.own->name : m->rt->balance->name);
 }
 
-static int migrate(struct migration *m, uint64_t replay, uint64_t *map_at)
+static int migration_run(struct migration *m, uint64_t replay, uint64_t *map_at)
 {
     duite *rt = m->rt;
     int code = program_meet(rt, "duite_replay");
     if (!code)
-        code = begin(m);
+        code = migration_begin(m);
     if (!code)
-        code = gather(m);
+        code = migration_gather(m);
     const double begun = base_seconds(); /* until now it waited for tasks, too */
     const uint64_t ticks = base_ticks(), moved = rt->migration.objects;
     if (!code && !rt->graph.rank)
-        code = decide(m);
+        code = migration_decide(m);
     if (!code)
-        code = announce(m);
+        code = migration_announce(m);
     if (code)
         return code;
     struct instance_migration *last = &rt->migration;
-    schedule(m, replay, map_at);
-    code = refused(m);
+    migration_schedule(m, replay, map_at);
+    code = migration_refused(m);
     if (code)
         return code;
-    code = move_blocks(m);
+    code = migration_move(m);
     work_note(rt->pool, &(struct trace_event){.begin = ticks,
                                               .took = base_ticks() - ticks,
                                               .number = last->objects - moved,
@@ -372,8 +372,8 @@ int program_migrate(duite *rt, const struct plan_record *record, uint64_t replay
     int code = DUITE_OK;
     if (rt->comm && (maps || (rt->balance->migrate && own->replays == own->due))) {
         struct migration m = {.rt = rt, .record = maps ? record : NULL};
-        code = migrate(&m, replay, map_at);
-        release(&m);
+        code = migration_run(&m, replay, map_at);
+        migration_free(&m);
     }
     if (!own->replays++)
         own->since = base_seconds();

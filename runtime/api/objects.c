@@ -115,7 +115,7 @@ int duite_follow(duite *rt, duite_object object, duite_object leader)
         return code;
     mix_name(rt, object);
     mix_name(rt, leader);
-    code = map_follow(&rt->graph.table, object, leader);
+    code = map_colocate(&rt->graph.table, object, leader);
     if (!code)
         trace_follow(rt->trace, object, leader);
     return program_remember(rt, code);
@@ -130,7 +130,7 @@ int duite_home(duite *rt, duite_object object)
 }
 
 /* Whether something of the object is here. */
-static bool is_here(const duite *rt, const struct data_object *object)
+static bool object_is_here(const duite *rt, const struct data_object *object)
 {
     int rank = rt->graph.rank;
     return object->home == rank || object->holder == rank || object->current || object->sum;
@@ -142,9 +142,9 @@ int duite_touches(duite *rt, duite_object object)
         return 1;
     struct data_table *table = &rt->graph.table;
     const struct data_object *found = data_object_find(table, object);
-    if (!found || is_here(rt, found))
+    if (!found || object_is_here(rt, found))
         return 1;
-    return found->view && is_here(rt, &table->object[found->view->parent]);
+    return found->view && object_is_here(rt, &table->object[found->view->parent]);
 }
 
 int duite_free(duite *rt, duite_object object)

@@ -22,7 +22,7 @@ static const unsigned NO_THREADS = UINT_MAX;
 static const uint64_t NO_SEED = UINT64_MAX;
 
 /* A number of the environment, or -1 if it is none. */
-static double seconds_of(const char *text, double otherwise)
+static double environment_seconds(const char *text, double otherwise)
 {
     char *end;
     if (!text)
@@ -32,7 +32,8 @@ static double seconds_of(const char *text, double otherwise)
 }
 
 /* A whole number of the environment, or `wrong` if it is none up to `most`. */
-static uint64_t number_of(const char *text, uint64_t otherwise, uint64_t most, uint64_t wrong)
+static uint64_t environment_number(const char *text, uint64_t otherwise, uint64_t most,
+                                   uint64_t wrong)
 {
     char *end;
     if (!text)
@@ -46,12 +47,12 @@ static uint64_t number_of(const char *text, uint64_t otherwise, uint64_t most, u
 
 static unsigned environment_threads(void)
 {
-    return (unsigned)number_of(getenv("DUITE_THREADS"), 0, MOST_THREADS, NO_THREADS);
+    return (unsigned)environment_number(getenv("DUITE_THREADS"), 0, MOST_THREADS, NO_THREADS);
 }
 
 static uint64_t environment_seed(void)
 {
-    return number_of(getenv("DUITE_SEED"), 1, NO_SEED - 1, NO_SEED);
+    return environment_number(getenv("DUITE_SEED"), 1, NO_SEED - 1, NO_SEED);
 }
 
 duite_options duite_options_default(void)
@@ -69,15 +70,16 @@ duite_options duite_options_default(void)
                            .balance = balance ? duite_balancer_find(balance) : &balance_none,
                            .seed = environment_seed(),
                            .trace = getenv("DUITE_TRACE"),
-                           .stuck_seconds = seconds_of(getenv("DUITE_STUCK_SECONDS"), 60),
-                           .lost_seconds = seconds_of(getenv("DUITE_LOST_SECONDS"), 8),
-                           .policy_seconds = seconds_of(getenv("DUITE_POLICY_SECONDS"), 10),
+                           .stuck_seconds = environment_seconds(getenv("DUITE_STUCK_SECONDS"), 60),
+                           .lost_seconds = environment_seconds(getenv("DUITE_LOST_SECONDS"), 8),
+                           .policy_seconds =
+                               environment_seconds(getenv("DUITE_POLICY_SECONDS"), 10),
                            .spin_seconds = 100e-6,
                            .trace_end = UINT64_MAX,
                            .bind = 1};
 }
 
-static int policy_too_large(const duite_scheduler *scheduler, const duite_balancer *balance)
+static int options_state_too_large(const duite_scheduler *scheduler, const duite_balancer *balance)
 {
     const bool schedules = scheduler->state_size > BASE_MOST_STATE;
     return base_error(DUITE_E_ARGUMENT,
@@ -99,7 +101,7 @@ int options_check(const duite_options *options)
 }
 
 /* The environment names a policy that cannot be found; its sentence is that of the search. */
-static int no_policy(const char *variable)
+static int options_no_policy(const char *variable)
 {
     char why[1024];
     snprintf(why, sizeof why, "%s", duite_message());
@@ -108,16 +110,16 @@ static int no_policy(const char *variable)
 }
 
 /* What the environment chose, and the program left as it is. */
-static int check_environment(const duite_options *options)
+static int options_check_environment(const duite_options *options)
 {
     const char *scheduler = getenv("DUITE_SCHEDULER"), *mapping = getenv("DUITE_MAPPING"),
                *balance = getenv("DUITE_BALANCE");
     if (!options->scheduler && scheduler && !duite_scheduler_find(scheduler))
-        return no_policy("DUITE_SCHEDULER");
+        return options_no_policy("DUITE_SCHEDULER");
     if (!options->mapping && mapping && !duite_mapping_find(mapping))
-        return no_policy("DUITE_MAPPING");
+        return options_no_policy("DUITE_MAPPING");
     if (!options->balance && balance && !duite_balancer_find(balance))
-        return no_policy("DUITE_BALANCE");
+        return options_no_policy("DUITE_BALANCE");
     if (options->threads == NO_THREADS && environment_threads() == NO_THREADS)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: DUITE_THREADS=%s in the environment: a whole number from 0 "
@@ -131,7 +133,7 @@ static int check_environment(const duite_options *options)
     return DUITE_OK;
 }
 
-static int check_policies(const duite_options *options)
+static int options_check_policies(const duite_options *options)
 {
     const duite_scheduler *s = options->scheduler;
     if (!s || !s->name || !s->place || !s->serve || !s->victim || !s->chain)
@@ -144,11 +146,11 @@ static int check_policies(const duite_options *options)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: no balancer, or one with only one of victim and give");
     if (s->state_size > BASE_MOST_STATE || b->state_size > BASE_MOST_STATE)
-        return policy_too_large(s, b);
+        return options_state_too_large(s, b);
     return DUITE_OK;
 }
 
-static int check_seconds(const duite_options *options)
+static int options_check_seconds(const duite_options *options)
 {
     if (!(options->spin_seconds >= 0))
         return base_error(DUITE_E_ARGUMENT, "duite_start: spin_seconds is not >= 0");
@@ -171,11 +173,11 @@ int options_check_rest(const duite_options *options)
 {
     if (!options->kernels)
         return base_error(DUITE_E_ARGUMENT, "duite_start: no list of kernels");
-    int code = check_environment(options);
+    int code = options_check_environment(options);
     if (!code)
-        code = check_policies(options);
+        code = options_check_policies(options);
     if (!code)
-        code = check_seconds(options);
+        code = options_check_seconds(options);
     if (code)
         return code;
     if (options->threads > MOST_THREADS)

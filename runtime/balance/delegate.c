@@ -9,22 +9,22 @@
 #define FIRST_SECONDS   5e-4
 #define LONGEST_SECONDS 5e-2
 
-struct state {
+struct delegate_state {
     uint64_t random;
     int rank, n_ranks;
 };
 
-static void start(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed)
+static void delegate_start(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed)
 {
-    struct state *own = state;
-    *own = (struct state){.random = (seed * 1000003 + (uint64_t)rank) * 4099 + worker,
-                          .rank = rank,
-                          .n_ranks = n_ranks};
+    struct delegate_state *own = state;
+    *own = (struct delegate_state){.random = (seed * 1000003 + (uint64_t)rank) * 4099 + worker,
+                                   .rank = rank,
+                                   .n_ranks = n_ranks};
 }
 
-static int victim(void *state, unsigned attempt, int giver, double *seconds)
+static int delegate_victim(void *state, unsigned attempt, int giver, double *seconds)
 {
-    struct state *own = state;
+    struct delegate_state *own = state;
     double pause = FIRST_SECONDS;
     for (unsigned i = 0; i < attempt && pause < LONGEST_SECONDS; i++)
         pause *= 2;
@@ -37,7 +37,7 @@ static int victim(void *state, unsigned attempt, int giver, double *seconds)
     return (own->rank + 1 + (int)(duite_random(&own->random) % (uint64_t)others)) % own->n_ranks;
 }
 
-static int give(void *state, const duite_asked *asked, const duite_leaf *leaf)
+static int delegate_give(void *state, const duite_asked *asked, const duite_leaf *leaf)
 {
     (void)state;
     return leaf->cost > leaf->transfer && asked->given < asked->ready / 2;
@@ -46,8 +46,8 @@ static int give(void *state, const duite_asked *asked, const duite_leaf *leaf)
 const duite_balancer balance_delegate = {
     .name = "delegate",
     .summary = "idle ranks get ready leaf tasks that cost more than their way",
-    .state_size = sizeof(struct state),
-    .start = start,
-    .victim = victim,
-    .give = give,
+    .state_size = sizeof(struct delegate_state),
+    .start = delegate_start,
+    .victim = delegate_victim,
+    .give = delegate_give,
 };

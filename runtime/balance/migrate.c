@@ -16,30 +16,30 @@
 
 enum { LONGEST = 32, MOST_REPLAYS = 1 << 20 };
 
-struct state {
+struct migrate_state {
     double slack, before; /* before: the measured excess at the last move, or 0 */
     uint64_t interval;
 };
 
-static void start(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed)
+static void migrate_start(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed)
 {
     (void)rank;
     (void)n_ranks;
     (void)worker;
     (void)seed;
-    *(struct state *)state = (struct state){.slack = LEAST_SLACK, .interval = 1};
+    *(struct migrate_state *)state = (struct migrate_state){.slack = LEAST_SLACK, .interval = 1};
 }
 
 /* What the homes cost over the time to come. */
-static double total(const struct balance_bill *bill, double periods)
+static double bill_total(const struct balance_bill *bill, double periods)
 {
     return (bill->most + bill->cut) * periods + bill->move;
 }
 
 /* The better ones of refined and new homes, if they are better than the present ones. The program
  * is expected to go on for as long as it has run. Returns whether `home` was changed. */
-static bool improve(const duite_blocks *blocks, const struct balance_bill *now, double periods,
-                    int *home)
+static bool homes_improve(const duite_blocks *blocks, const struct balance_bill *now,
+                          double periods, int *home)
 {
     size_t n = blocks->graph.n;
     struct balance_bill refined, anew;
@@ -52,11 +52,11 @@ static bool improve(const duite_blocks *blocks, const struct balance_bill *now, 
     fine = fine && balance_refine(blocks, periods, tried) &&
            balance_bill(blocks, home, tried, &refined);
     if (fine && balance_anew(blocks, periods, other) && balance_bill(blocks, home, other, &anew) &&
-        total(&anew, periods) < ANEW * total(&refined, periods)) {
+        bill_total(&anew, periods) < ANEW * bill_total(&refined, periods)) {
         memcpy(tried, other, n * sizeof *tried);
         refined = anew;
     }
-    if (fine && total(&refined, periods) < total(now, periods)) {
+    if (fine && bill_total(&refined, periods) < bill_total(now, periods)) {
         changed = memcmp(home, tried, n * sizeof *home) != 0;
         memcpy(home, tried, n * sizeof *home);
     }
@@ -65,7 +65,7 @@ static bool improve(const duite_blocks *blocks, const struct balance_bill *now, 
 }
 
 /* Differences that a move left as they were are noise. */
-static void learn(struct state *own, double excess)
+static void slack_learn(struct migrate_state *own, double excess)
 {
     if (own->before > 0 && excess > 0.75 * own->before)
         own->slack = own->slack < MOST_SLACK / 2 ? 2 * own->slack : MOST_SLACK;
@@ -75,7 +75,7 @@ static void learn(struct state *own, double excess)
 }
 
 /* Not more often than the looks are worth. */
-static uint64_t next_look(const struct state *own, const duite_blocks *blocks)
+static uint64_t migrate_next_look(const struct migrate_state *own, const duite_blocks *blocks)
 {
     double replay = blocks->seconds / (double)blocks->since;
     double least = replay > 0 ? blocks->look_seconds / (LOOK_SHARE * replay) : 1;
@@ -84,9 +84,9 @@ static uint64_t next_look(const struct state *own, const duite_blocks *blocks)
     return (uint64_t)least > own->interval ? (uint64_t)least : own->interval;
 }
 
-static uint64_t migrate(void *state, const duite_blocks *blocks, int *home)
+static uint64_t migrate_blocks(void *state, const duite_blocks *blocks, int *home)
 {
-    struct state *own = state;
+    struct migrate_state *own = state;
     struct balance_bill now;
     if (blocks->replays < 2) /* the first replay is that of cold caches */
         return 1;
@@ -94,21 +94,21 @@ static uint64_t migrate(void *state, const duite_blocks *blocks, int *home)
     bool moved = false;
     if (balance_bill(blocks, home, home, &now) && now.even > LEAST_LOAD) {
         double excess = now.most / now.even - 1;
-        learn(own, excess);
-        moved = excess > own->slack && improve(blocks, &now, periods, home);
+        slack_learn(own, excess);
+        moved = excess > own->slack && homes_improve(blocks, &now, periods, home);
         own->before = moved ? excess : 0;
     }
     if (moved)
         own->interval = 1;
     else if (own->interval < LONGEST)
         own->interval *= 2;
-    return next_look(own, blocks);
+    return migrate_next_look(own, blocks);
 }
 
 const duite_balancer balance_migrate = {
     .name = "migrate",
     .summary = "blocks of objects move from ranks whose tasks take longer",
-    .state_size = sizeof(struct state),
-    .start = start,
-    .migrate = migrate,
+    .state_size = sizeof(struct migrate_state),
+    .start = migrate_start,
+    .migrate = migrate_blocks,
 };

@@ -21,13 +21,13 @@ struct parts {
     double even, periods, ops;
 };
 
-static double share(const duite_blocks *blocks, size_t block, int rank)
+static double load_share(const duite_blocks *blocks, size_t block, int rank)
 {
     return blocks->graph.weight[block] / blocks->workers[rank];
 }
 
 /* Returns the mean. */
-static double add_up(const duite_blocks *blocks, const int *home, double *load)
+static double load_add_up(const duite_blocks *blocks, const int *home, double *load)
 {
     double sum = 0, workers = 0;
     for (int r = 0; r < blocks->n_ranks; r++) {
@@ -36,13 +36,13 @@ static double add_up(const duite_blocks *blocks, const int *home, double *load)
         workers += blocks->workers[r];
     }
     for (size_t i = 0; i < blocks->graph.n; i++) {
-        load[home[i]] += share(blocks, i, home[i]);
+        load[home[i]] += load_share(blocks, i, home[i]);
         sum += blocks->graph.weight[i];
     }
     return sum / workers;
 }
 
-static int heaviest(const struct parts *parts)
+static int load_heaviest(const struct parts *parts)
 {
     int most = 0;
     for (int r = 1; r < parts->blocks->n_ranks; r++)
@@ -58,7 +58,7 @@ bool balance_bill(const duite_blocks *blocks, const int *present, const int *hom
     double *load = base_alloc((size_t)blocks->n_ranks * sizeof *load), cut = 0, moved = 0;
     if (!load)
         return false;
-    *bill = (struct balance_bill){.even = add_up(blocks, home, load)};
+    *bill = (struct balance_bill){.even = load_add_up(blocks, home, load)};
     for (int r = 0; r < blocks->n_ranks; r++)
         bill->most = load[r] > bill->most ? load[r] : bill->most;
     for (size_t i = 0; i < graph->n; i++) {
@@ -73,15 +73,15 @@ bool balance_bill(const duite_blocks *blocks, const int *present, const int *hom
 }
 
 /* By how much the larger of two ranks' loads falls if the block moves from one to the other. */
-static double relief(const struct parts *parts, size_t block, int from, int to)
+static double move_relief(const struct parts *parts, size_t block, int from, int to)
 {
-    double left = parts->load[from] - share(parts->blocks, block, from);
-    double there = parts->load[to] + share(parts->blocks, block, to);
+    double left = parts->load[from] - load_share(parts->blocks, block, from);
+    double there = parts->load[to] + load_share(parts->blocks, block, to);
     return parts->load[from] - (left > there ? left : there);
 }
 
 /* Whether it is worth the way. */
-static bool pays(const struct parts *parts, size_t block, double relief)
+static bool move_pays(const struct parts *parts, size_t block, double relief)
 {
     bool moved = parts->home[block] != parts->present[block];
     double way = moved ? 0 : (double)parts->blocks->bytes[block] * parts->blocks->byte_seconds;
@@ -94,22 +94,22 @@ struct move {
     double relief, gain; /* gain: bytes of cut */
 };
 
-static bool may_move(const struct parts *parts, size_t block, int from)
+static bool move_is_allowed(const struct parts *parts, size_t block, int from)
 {
     return parts->home[block] == from && !parts->blocks->stays[block] &&
            parts->blocks->graph.weight[block] > 0;
 }
 
 /* The largest relief that one move brings to a rank. */
-static double best_relief(struct parts *parts, int from)
+static double move_best_relief(struct parts *parts, int from)
 {
     double best = 0;
     for (size_t i = 0; i < parts->blocks->graph.n; i++) {
-        if (!may_move(parts, i, from))
+        if (!move_is_allowed(parts, i, from))
             continue;
         for (int to = 0; to < parts->blocks->n_ranks; to++) {
-            double brings = to == from ? 0 : relief(parts, i, from, to);
-            if (brings > best && pays(parts, i, brings))
+            double brings = to == from ? 0 : move_relief(parts, i, from, to);
+            if (brings > best && move_pays(parts, i, brings))
                 best = brings;
         }
     }
@@ -117,7 +117,7 @@ static double best_relief(struct parts *parts, int from)
 }
 
 /* Fills `towards` for a block, or clears it. */
-static void look_around(struct parts *parts, size_t block, bool clear)
+static void move_add_edges(struct parts *parts, size_t block, bool clear)
 {
     const duite_object_graph *graph = &parts->blocks->graph;
     for (size_t e = graph->start[block]; e < graph->start[block + 1]; e++) {
@@ -128,42 +128,42 @@ static void look_around(struct parts *parts, size_t block, bool clear)
 
 /* Of all moves that bring at least `least`, the one that cuts least; of equals the one that brings
  * more, then the first. */
-static bool choose(struct parts *parts, int from, double least, struct move *best)
+static bool move_choose(struct parts *parts, int from, double least, struct move *best)
 {
     bool found = false;
     for (size_t i = 0; i < parts->blocks->graph.n; i++) {
-        if (!may_move(parts, i, from))
+        if (!move_is_allowed(parts, i, from))
             continue;
-        look_around(parts, i, false);
+        move_add_edges(parts, i, false);
         for (int to = 0; to < parts->blocks->n_ranks; to++) {
-            struct move move = {i, to, to == from ? 0 : relief(parts, i, from, to),
+            struct move move = {i, to, to == from ? 0 : move_relief(parts, i, from, to),
                                 parts->towards[to] - parts->towards[from]};
             bool better = !found || move.gain > best->gain ||
                           (move.gain == best->gain && move.relief > best->relief);
-            if (move.relief < least || !better || !pays(parts, i, move.relief))
+            if (move.relief < least || !better || !move_pays(parts, i, move.relief))
                 continue;
             *best = move;
             found = true;
         }
-        look_around(parts, i, true);
+        move_add_edges(parts, i, true);
     }
     return found;
 }
 
-static void refine(struct parts *parts)
+static void moves_make(struct parts *parts)
 {
     const duite_blocks *blocks = parts->blocks;
     double pass = 2.0 * ((double)blocks->graph.n * (1 + 0.5 * blocks->n_ranks));
     while (parts->ops < MOST_OPS) {
         struct move move;
-        int from = heaviest(parts);
-        double best = parts->load[from] > GOAL * parts->even ? best_relief(parts, from) : 0;
+        int from = load_heaviest(parts);
+        double best = parts->load[from] > GOAL * parts->even ? move_best_relief(parts, from) : 0;
         parts->ops += pass;
-        if (best <= 0 || !choose(parts, from, best / 2, &move))
+        if (best <= 0 || !move_choose(parts, from, best / 2, &move))
             return;
         parts->home[move.block] = move.to;
-        parts->load[from] -= share(blocks, move.block, from);
-        parts->load[move.to] += share(blocks, move.block, move.to);
+        parts->load[from] -= load_share(blocks, move.block, from);
+        parts->load[move.to] += load_share(blocks, move.block, move.to);
     }
 }
 
@@ -182,8 +182,8 @@ bool balance_refine(const duite_blocks *blocks, double periods, int *home)
                               .load = load,
                               .towards = towards,
                               .periods = periods};
-        parts.even = add_up(blocks, home, load);
-        refine(&parts);
+        parts.even = load_add_up(blocks, home, load);
+        moves_make(&parts);
     }
     base_free(present);
     base_free(load);
@@ -199,7 +199,7 @@ struct overlap {
     int part, rank;
 };
 
-static int larger_first(const void *a, const void *b)
+static int overlap_compare(const void *a, const void *b)
 {
     const struct overlap *x = a, *y = b;
     if (x->bytes != y->bytes)
@@ -210,10 +210,10 @@ static int larger_first(const void *a, const void *b)
 }
 
 /* Gives each part the name of a rank, those that share most first. */
-static void name_parts(struct overlap *overlap, int n_ranks, int *rank_of)
+static void parts_name(struct overlap *overlap, int n_ranks, int *rank_of)
 {
     size_t n = (size_t)n_ranks, pairs = n * n;
-    qsort(overlap, pairs, sizeof *overlap, larger_first);
+    qsort(overlap, pairs, sizeof *overlap, overlap_compare);
     for (size_t i = 0; i < 2 * n; i++)
         rank_of[i] = -1; /* then, who has the rank's name */
     for (size_t i = 0; i < pairs; i++) {
@@ -225,7 +225,7 @@ static void name_parts(struct overlap *overlap, int n_ranks, int *rank_of)
     }
 }
 
-static bool rename_parts(const duite_blocks *blocks, const int *home, int *part)
+static bool parts_rename(const duite_blocks *blocks, const int *home, int *part)
 {
     size_t n = (size_t)blocks->n_ranks;
     struct overlap *overlap = base_alloc(n * n * sizeof *overlap);
@@ -236,7 +236,7 @@ static bool rename_parts(const duite_blocks *blocks, const int *home, int *part)
     for (size_t i = 0; i < blocks->graph.n && fine; i++)
         overlap[(size_t)part[i] * n + (size_t)home[i]].bytes += 1 + (double)blocks->bytes[i];
     if (fine) {
-        name_parts(overlap, blocks->n_ranks, rank_of);
+        parts_name(overlap, blocks->n_ranks, rank_of);
         for (size_t i = 0; i < blocks->graph.n; i++)
             part[i] = blocks->stays[i] ? home[i] : rank_of[part[i]];
     }
@@ -252,7 +252,7 @@ bool balance_anew(const duite_blocks *blocks, double periods, int *home)
     bool fine = part && !blocks->mapping->map(&blocks->graph, blocks->n_ranks, blocks->seed, part);
     for (size_t i = 0; i < n && fine; i++)
         fine = part[i] >= 0 && part[i] < blocks->n_ranks;
-    fine = fine && rename_parts(blocks, home, part) && balance_refine(blocks, periods, part);
+    fine = fine && parts_rename(blocks, home, part) && balance_refine(blocks, periods, part);
     if (fine)
         memcpy(home, part, n * sizeof *home);
     base_free(part);

@@ -3,7 +3,7 @@
 #include "runtime/map/map.h"
 
 /* Object i goes where the middle of its weight falls; fewer objects than ranks go round. */
-static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+static int block_map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
 {
     (void)seed;
     double sum = 0, before = 0;
@@ -23,5 +23,5 @@ static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int 
 const duite_mapping map_block = {
     .name = "block",
     .summary = "contiguous ranges of equal weight, in the order the objects were made",
-    .map = map,
+    .map = block_map,
 };

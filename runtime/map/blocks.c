@@ -37,7 +37,7 @@ static void add(struct map_blocks *blocks, const struct index *index,
     struct map_block *block = &blocks->block[*place - 1];
     block->objects++;
     block->bytes += object->room;
-    block->stays |= object->stays;
+    block->fixed |= object->stays;
     blocks->of[slot] = *place - 1;
 }
 

@@ -9,7 +9,7 @@
 struct map_block {
     int home;
     uint32_t number; /* data_object.block */
-    bool stays;      /* tasks that must stay run for one of its objects */
+    bool fixed;      /* tasks that must not move run for one of its objects */
     size_t objects, bytes;
 };
 

@@ -2,7 +2,7 @@
  * the worst sensible case. */
 #include "runtime/map/map.h"
 
-static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+static int cyclic_map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
 {
     (void)seed;
     for (size_t i = 0; i < graph->n; i++)
@@ -13,5 +13,5 @@ static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int 
 const duite_mapping map_cyclic = {
     .name = "cyclic",
     .summary = "object after object to rank after rank",
-    .map = map,
+    .map = cyclic_map,
 };

@@ -12,7 +12,7 @@
 
 #include <stdlib.h>
 
-struct plan {
+struct list_plan {
     const duite_task_graph *graph;
     int *home;
     bool *placed;    /* by block */
@@ -24,35 +24,35 @@ struct plan {
     size_t *first;   /* n_ranks + 1: of each rank's workers */
 };
 
-static double way(const duite_task_graph *graph, size_t edge)
+static double edge_seconds(const duite_task_graph *graph, size_t edge)
 {
     return graph->message_seconds + graph->bytes[edge] * graph->byte_seconds;
 }
 
 /* Rows lead to earlier tasks: from the last one back, all who read a task's result are known. */
-static void rank_upward(struct plan *plan)
+static void list_rank_upward(struct list_plan *plan)
 {
     const duite_task_graph *graph = plan->graph;
     for (size_t i = graph->n; i-- > 0;) {
         plan->upward[i] += graph->cost[i];
         for (size_t e = graph->start[i]; e < graph->start[i + 1]; e++) {
             double *before = &plan->upward[graph->from[e]];
-            if (graph->from[e] < i && *before < plan->upward[i] + way(graph, e))
-                *before = plan->upward[i] + way(graph, e);
+            if (graph->from[e] < i && *before < plan->upward[i] + edge_seconds(graph, e))
+                *before = plan->upward[i] + edge_seconds(graph, e);
         }
     }
 }
 
-static int compare(const void *a, const void *b, void *context)
+static int list_compare(const void *a, const void *b, void *context)
 {
-    const struct plan *plan = context;
+    const struct list_plan *plan = context;
     uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
     double left = plan->upward[x], right = plan->upward[y];
     return left != right ? (left > right ? -1 : 1) : (x < y ? -1 : x > y);
 }
 
 /* When all that it reads is there. */
-static double arrival(const struct plan *plan, size_t task, int rank)
+static double list_arrival(const struct list_plan *plan, size_t task, int rank)
 {
     const duite_task_graph *graph = plan->graph;
     double all = 0;
@@ -61,14 +61,14 @@ static double arrival(const struct plan *plan, size_t task, int rank)
         if (from >= task)
             continue;
         bool here = plan->rank[from] == rank || plan->rank[from] == DUITE_NO_RANK;
-        double there = plan->end[from] + (here ? 0 : way(graph, e));
+        double there = plan->end[from] + (here ? 0 : edge_seconds(graph, e));
         all = there > all ? there : all;
     }
     return all;
 }
 
 /* The worker of the rank that is idle first. */
-static size_t first_idle(const struct plan *plan, int rank)
+static size_t list_first_idle(const struct list_plan *plan, int rank)
 {
     size_t best = plan->first[rank];
     for (size_t w = best; w < plan->first[rank + 1]; w++)
@@ -77,18 +77,18 @@ static size_t first_idle(const struct plan *plan, int rank)
     return best;
 }
 
-static double finish(const struct plan *plan, size_t task, int rank)
+static double list_finish(const struct list_plan *plan, size_t task, int rank)
 {
-    double free = plan->free[first_idle(plan, rank)], there = arrival(plan, task, rank);
+    double free = plan->free[list_first_idle(plan, rank)], there = list_arrival(plan, task, rank);
     return (free > there ? free : there) + plan->graph->cost[task];
 }
 
-static int choose(const struct plan *plan, size_t task)
+static int list_choose(const struct list_plan *plan, size_t task)
 {
     int best = 0;
-    double least = finish(plan, task, 0);
+    double least = list_finish(plan, task, 0);
     for (int rank = 1; rank < plan->graph->n_ranks; rank++) {
-        double over = finish(plan, task, rank);
+        double over = list_finish(plan, task, rank);
         if (over < least) {
             least = over;
             best = rank;
@@ -97,25 +97,25 @@ static int choose(const struct plan *plan, size_t task)
     return best;
 }
 
-static void place(struct plan *plan, size_t task)
+static void list_place(struct list_plan *plan, size_t task)
 {
     const duite_task_graph *graph = plan->graph;
     uint32_t block = graph->block[task];
     if (block == DUITE_NO_BLOCK) {
         plan->rank[task] = DUITE_NO_RANK;
-        plan->end[task] = arrival(plan, task, DUITE_NO_RANK) + graph->cost[task];
+        plan->end[task] = list_arrival(plan, task, DUITE_NO_RANK) + graph->cost[task];
         return;
     }
     if (!plan->placed[block] && !graph->stays[block])
-        plan->home[block] = choose(plan, task);
+        plan->home[block] = list_choose(plan, task);
     plan->placed[block] = true;
     int rank = plan->rank[task] = plan->home[block];
-    plan->end[task] = finish(plan, task, rank);
+    plan->end[task] = list_finish(plan, task, rank);
     if (graph->cost[task] > 0)
-        plan->free[first_idle(plan, rank)] = plan->end[task];
+        plan->free[list_first_idle(plan, rank)] = plan->end[task];
 }
 
-static bool allocate(struct plan *plan)
+static bool list_allocate(struct list_plan *plan)
 {
     const duite_task_graph *graph = plan->graph;
     size_t n = graph->n + 1, ranks = (size_t)graph->n_ranks;
@@ -133,7 +133,7 @@ static bool allocate(struct plan *plan)
     return plan->placed && plan->upward && plan->order && plan->end && plan->rank && plan->free;
 }
 
-static void release(struct plan *plan)
+static void list_release(struct list_plan *plan)
 {
     base_free(plan->first);
     base_free(plan->placed);
@@ -144,19 +144,19 @@ static void release(struct plan *plan)
     base_free(plan->free);
 }
 
-static int map_tasks(const duite_task_graph *graph, int *home)
+static int list_map_tasks(const duite_task_graph *graph, int *home)
 {
-    struct plan plan = {.graph = graph, .home = home};
-    bool fine = allocate(&plan);
+    struct list_plan plan = {.graph = graph, .home = home};
+    bool fine = list_allocate(&plan);
     if (fine) {
-        rank_upward(&plan);
+        list_rank_upward(&plan);
         for (size_t i = 0; i < graph->n; i++)
             plan.order[i] = (uint32_t)i;
-        qsort_r(plan.order, graph->n, sizeof *plan.order, compare, &plan);
+        qsort_r(plan.order, graph->n, sizeof *plan.order, list_compare, &plan);
         for (size_t i = 0; i < graph->n; i++)
-            place(&plan, plan.order[i]);
+            list_place(&plan, plan.order[i]);
     }
-    release(&plan);
+    list_release(&plan);
     return fine ? DUITE_OK : base_no_memory("the mapping list");
 }
 
@@ -164,5 +164,5 @@ const duite_mapping map_list = {
     .name = "list",
     .summary = "blocks where the tasks of a recorded graph are over first (HEFT)",
     .map = map_by_metis,
-    .map_tasks = map_tasks,
+    .map_tasks = list_map_tasks,
 };

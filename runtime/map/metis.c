@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* METIS counts in integers: weights are scaled so that their sum stays far below its range. */
-static void scale(size_t n, const double *from, idx_t *to)
+static void metis_scale(size_t n, const double *from, idx_t *to)
 {
     double sum = 0;
     for (size_t i = 0; i < n; i++)
@@ -20,8 +20,8 @@ static void scale(size_t n, const double *from, idx_t *to)
         to[i] = 1 + (idx_t)(from[i] * factor);
 }
 
-static int partition(const duite_object_graph *graph, int n_ranks, uint64_t seed, idx_t *work,
-                     int *home)
+static int metis_partition(const duite_object_graph *graph, int n_ranks, uint64_t seed, idx_t *work,
+                           int *home)
 {
     size_t n = graph->n, edges = graph->start[n];
     idx_t *start = work, *neighbour = start + n + 1, *weight = neighbour + edges,
@@ -30,8 +30,8 @@ static int partition(const duite_object_graph *graph, int n_ranks, uint64_t seed
         start[i] = (idx_t)graph->start[i];
     for (size_t i = 0; i < edges; i++)
         neighbour[i] = (idx_t)graph->neighbour[i];
-    scale(n, graph->weight, weight);
-    scale(edges, graph->edge_weight, edge_weight);
+    metis_scale(n, graph->weight, weight);
+    metis_scale(edges, graph->edge_weight, edge_weight);
     idx_t options[METIS_NOPTIONS], count = (idx_t)n, constraints = 1, parts = n_ranks, cut;
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_SEED] = (idx_t)(seed & 0x7fffffff);
@@ -55,7 +55,7 @@ int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, in
     idx_t *work = base_alloc((3 * n + 1 + 2 * edges) * sizeof *work);
     if (!work)
         return base_no_memory("the mapping");
-    int code = partition(graph, n_ranks, seed, work, home);
+    int code = metis_partition(graph, n_ranks, seed, work, home);
     base_free(work);
     return code;
 }

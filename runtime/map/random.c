@@ -2,7 +2,7 @@
  * and what hashing would do. */
 #include "runtime/map/map.h"
 
-static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+static int random_map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
 {
     for (size_t i = 0; i < graph->n; i++) {
         uint64_t state = (seed << 40) ^ (graph->before + i);
@@ -14,5 +14,5 @@ static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int 
 const duite_mapping map_random = {
     .name = "random",
     .summary = "each object to a random rank, from the seed",
-    .map = map,
+    .map = random_map,
 };

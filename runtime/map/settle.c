@@ -1,13 +1,112 @@
-/* From hints to homes: the graph of leaders, in the order they were made, goes to the mapping, and
- * followers go with their leaders. Every rank draws the same conclusion; homes are never asked for.
- * All objects without a home are alive, since a free settles them first; the work is in proportion
- * to them and their hints, however many others there are. */
+/* Hints, and the homes that follow from them. A program says which objects belong together; every
+ * rank is told the same. When homes are needed, the graph of leaders, in the order they were made,
+ * goes to the mapping, and objects that are colocated with a leader get its home. Every rank draws
+ * the same conclusion; homes are never asked for. All objects without a home are alive, since a
+ * free settles them first; the work is in proportion to them and their hints, however many others
+ * there are. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/data/view.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+/* ---- Hints ---- */
+
+/* It exists and is no view, whose home is its object's. */
+static int hint_check_object(struct data_table *table, duite_object name, const char *call)
+{
+    const struct data_object *object = data_object_find(table, name);
+    return object ? data_view_refuse(table, object, call) : DUITE_E_OBJECT;
+}
+
+static int hint_check_weight(const char *what, double weight)
+{
+    if (weight >= 0 && weight <= 1e300)
+        return DUITE_OK;
+    return base_error(DUITE_E_ARGUMENT, "duite_hint: %s %g is not a finite number >= 0", what,
+                      weight);
+}
+
+static int hint_check_edges(struct data_table *table, size_t n, const duite_object *neighbours,
+                            const double *edge_weights)
+{
+    if (n && !neighbours)
+        return base_error(DUITE_E_ARGUMENT, "duite_hint: no neighbours given");
+    for (size_t i = 0; i < n; i++) {
+        int code = hint_check_object(table, neighbours[i], "duite_hint");
+        if (!code)
+            code = hint_check_weight("edge weight", edge_weights ? edge_weights[i] : 1);
+        if (code)
+            return code;
+    }
+    return DUITE_OK;
+}
+
+static int hint_add_edges(struct data_hint *hint, size_t n, const duite_object *neighbours,
+                          const double *edge_weights)
+{
+    uint32_t *neighbour = realloc(hint->neighbour, (hint->n + n) * sizeof *neighbour);
+    if (neighbour)
+        hint->neighbour = neighbour;
+    double *edge = realloc(hint->edge_weight, (hint->n + n) * sizeof *edge);
+    if (edge)
+        hint->edge_weight = edge;
+    if (!neighbour || !edge)
+        return base_no_memory("a hint");
+    for (size_t i = 0; i < n; i++) {
+        neighbour[hint->n] = neighbours[i].slot;
+        edge[hint->n++] = edge_weights ? edge_weights[i] : 1;
+    }
+    return DUITE_OK;
+}
+
+int map_hint(struct data_table *table, duite_object object, double weight, size_t n,
+             const duite_object *neighbours, const double *edge_weights)
+{
+    int code = hint_check_object(table, object, "duite_hint");
+    if (!code)
+        code = hint_check_weight("weight", weight);
+    if (!code)
+        code = hint_check_edges(table, n, neighbours, edge_weights);
+    struct data_hint *hint = code ? NULL : data_hint_find(table, object.slot);
+    if (!hint)
+        return code;
+    hint->weight = weight;
+    return n ? hint_add_edges(hint, n, neighbours, edge_weights) : DUITE_OK;
+}
+
+/* Is `object` on the chain of leaders that begins with `slot`? */
+static bool leader_is_above(struct data_table *table, uint32_t slot, uint32_t object)
+{
+    while (slot != object) {
+        const struct data_hint *hint = data_hint_find(table, slot);
+        if (!hint || hint->leader == slot)
+            return false;
+        slot = hint->leader;
+    }
+    return true;
+}
+
+int map_colocate(struct data_table *table, duite_object object, duite_object leader)
+{
+    int code = hint_check_object(table, object, "duite_follow");
+    if (!code)
+        code = hint_check_object(table, leader, "duite_follow");
+    if (code)
+        return code;
+    struct data_hint *hint = data_hint_find(table, object.slot);
+    if (leader_is_above(table, leader.slot, object.slot))
+        return base_error(DUITE_E_ARGUMENT, "duite_follow: object %u.%u would follow itself",
+                          object.slot, object.generation);
+    if (hint)
+        hint->leader = leader.slot;
+    return DUITE_OK;
+}
+
+/* ---- Homes ---- */
 
 #define NO_NODE SIZE_MAX
 
@@ -31,7 +130,7 @@ static void nodes_free(struct nodes *nodes)
     base_free(nodes->home);
 }
 
-static int allocate(const struct data_table *table, struct nodes *nodes)
+static int nodes_allocate(const struct data_table *table, struct nodes *nodes)
 {
     size_t most = table->n_unsettled;
     nodes->node = base_alloc(most * sizeof *nodes->node);
@@ -54,7 +153,7 @@ static size_t node_of(const struct data_table *table, const struct nodes *nodes,
 /* Everybody follows the end of the chain of leaders at once: one without home that follows nobody,
  * or one with a home. Each link is walked a few times only, since all that were walked are cut
  * short. */
-static void shorten(struct data_table *table)
+static void leaders_shorten(struct data_table *table)
 {
     for (size_t i = 0; i < table->n_unsettled; i++) {
         uint32_t end = table->unsettled[i].slot;
@@ -70,7 +169,7 @@ static void shorten(struct data_table *table)
 }
 
 /* Numbers the leaders and adds up the weights of those who follow them. */
-static void number(const struct data_table *table, struct nodes *nodes)
+static void nodes_number(const struct data_table *table, struct nodes *nodes)
 {
     const struct data_hint *hint = table->unsettled;
     for (size_t i = 0; i < table->n_unsettled; i++)
@@ -82,7 +181,7 @@ static void number(const struct data_table *table, struct nodes *nodes)
     }
 }
 
-static void count_edge(struct nodes *nodes, size_t a, size_t b, double weight)
+static void edge_count(struct nodes *nodes, size_t a, size_t b, double weight)
 {
     (void)b;
     (void)weight;
@@ -90,7 +189,7 @@ static void count_edge(struct nodes *nodes, size_t a, size_t b, double weight)
 }
 
 /* Adds to the edge if it is there already. Rows are short: a block has few neighbours. */
-static void add_edge(struct nodes *nodes, size_t a, size_t b, double weight)
+static void edge_add(struct nodes *nodes, size_t a, size_t b, double weight)
 {
     size_t i = nodes->start[a];
     while (i < nodes->end[a] && nodes->neighbour[i] != b)
@@ -104,8 +203,8 @@ static void add_edge(struct nodes *nodes, size_t a, size_t b, double weight)
 }
 
 /* Calls `visit` for each hinted edge between different nodes, both ways. */
-static void each_edge(const struct data_table *table, struct nodes *nodes,
-                      void (*visit)(struct nodes *, size_t, size_t, double))
+static void edges_each(const struct data_table *table, struct nodes *nodes,
+                       void (*visit)(struct nodes *, size_t, size_t, double))
 {
     for (size_t i = 0; i < table->n_unsettled; i++) {
         const struct data_hint *hint = &table->unsettled[i];
@@ -120,7 +219,7 @@ static void each_edge(const struct data_table *table, struct nodes *nodes,
 }
 
 /* Closes the gaps that repeated edges left. */
-static void compress(struct nodes *nodes)
+static void edges_compress(struct nodes *nodes)
 {
     size_t n = nodes->graph.n, to = 0;
     for (size_t a = 0; a < n; a++) {
@@ -134,10 +233,10 @@ static void compress(struct nodes *nodes)
     nodes->start[n] = to;
 }
 
-static int build_edges(const struct data_table *table, struct nodes *nodes)
+static int edges_build(const struct data_table *table, struct nodes *nodes)
 {
     size_t n = nodes->graph.n;
-    each_edge(table, nodes, count_edge);
+    edges_each(table, nodes, edge_count);
     for (size_t a = 0; a < n; a++) {
         nodes->start[a + 1] += nodes->start[a];
         nodes->end[a] = nodes->start[a];
@@ -146,8 +245,8 @@ static int build_edges(const struct data_table *table, struct nodes *nodes)
     nodes->edge_weight = base_alloc(nodes->start[n] * sizeof *nodes->edge_weight);
     if (!nodes->neighbour || !nodes->edge_weight)
         return base_no_memory("the mapping");
-    each_edge(table, nodes, add_edge);
-    compress(nodes);
+    edges_each(table, nodes, edge_add);
+    edges_compress(nodes);
     nodes->graph = (duite_object_graph){.n = n,
                                         .before = table->settled,
                                         .weight = nodes->weight,
@@ -157,8 +256,8 @@ static int build_edges(const struct data_table *table, struct nodes *nodes)
     return DUITE_OK;
 }
 
-static int ask(const struct data_table *table, struct nodes *nodes,
-               const struct map_policy *mapping, uint64_t seed)
+static int nodes_ask(const struct data_table *table, struct nodes *nodes,
+                     const struct map_policy *mapping, uint64_t seed)
 {
     int code = map_ask(mapping, &nodes->graph, table->n_ranks, seed, nodes->home);
     if (code)
@@ -171,7 +270,7 @@ static int ask(const struct data_table *table, struct nodes *nodes,
 }
 
 /* Leaders get their homes and are numbered there, followers go to theirs. */
-static void move_in(struct data_table *table, const struct nodes *nodes)
+static void nodes_settle(struct data_table *table, const struct nodes *nodes)
 {
     for (size_t i = 0; i < table->n_unsettled; i++) {
         uint32_t slot = table->unsettled[i].slot;
@@ -192,17 +291,17 @@ int map_settle(struct data_table *table, const struct map_policy *mapping, uint6
     if (!table->n_unsettled)
         return DUITE_OK;
     struct nodes nodes = {0};
-    int code = allocate(table, &nodes);
+    int code = nodes_allocate(table, &nodes);
     if (!code) {
-        shorten(table);
-        number(table, &nodes);
+        leaders_shorten(table);
+        nodes_number(table, &nodes);
     }
     if (!code && table->n_ranks > 1)
-        code = build_edges(table, &nodes);
+        code = edges_build(table, &nodes);
     if (!code && table->n_ranks > 1)
-        code = ask(table, &nodes, mapping, seed);
+        code = nodes_ask(table, &nodes, mapping, seed);
     if (!code)
-        move_in(table, &nodes);
+        nodes_settle(table, &nodes);
     nodes_free(&nodes);
     return code;
 }

@@ -26,7 +26,7 @@ struct work {
     size_t n, n_ties;
 };
 
-static int compare(const void *a, const void *b)
+static int tie_compare(const void *a, const void *b)
 {
     const struct tie *x = a, *y = b;
     if (x->from != y->from)
@@ -34,7 +34,7 @@ static int compare(const void *a, const void *b)
     return x->to < y->to ? -1 : x->to > y->to;
 }
 
-static bool allocate(struct work *work, const duite_task_graph *graph)
+static bool taskgraph_allocate(struct work *work, const duite_task_graph *graph)
 {
     size_t blocks = graph->n_blocks + 1, ties = 2 * graph->start[graph->n] + 1;
     work->node = base_alloc(blocks * sizeof *work->node);
@@ -49,7 +49,7 @@ static bool allocate(struct work *work, const duite_task_graph *graph)
            work->neighbour && work->tied;
 }
 
-static void release(struct work *work)
+static void taskgraph_release(struct work *work)
 {
     base_free(work->node);
     base_free(work->block);
@@ -62,7 +62,7 @@ static void release(struct work *work)
 }
 
 /* Blocks that no task runs for stay where they are. */
-static void weigh(struct work *work, const duite_task_graph *graph)
+static void taskgraph_weigh(struct work *work, const duite_task_graph *graph)
 {
     for (size_t b = 0; b < graph->n_blocks; b++)
         work->node[b] = DUITE_NO_BLOCK;
@@ -78,7 +78,7 @@ static void weigh(struct work *work, const duite_task_graph *graph)
     }
 }
 
-static void tie(struct work *work, const duite_task_graph *graph)
+static void taskgraph_tie(struct work *work, const duite_task_graph *graph)
 {
     for (size_t i = 0; i < graph->n; i++)
         for (size_t e = graph->start[i]; e < graph->start[i + 1]; e++) {
@@ -92,10 +92,10 @@ static void tie(struct work *work, const duite_task_graph *graph)
             work->tie[work->n_ties++] = (struct tie){b, a, graph->bytes[e]};
         }
     if (work->n_ties)
-        qsort(work->tie, work->n_ties, sizeof *work->tie, compare);
+        qsort(work->tie, work->n_ties, sizeof *work->tie, tie_compare);
     size_t n = 0;
     for (size_t i = 0; i < work->n_ties; i++) {
-        if (!i || compare(&work->tie[i], &work->tie[i - 1])) {
+        if (!i || tie_compare(&work->tie[i], &work->tie[i - 1])) {
             work->start[work->tie[i].from + 1]++;
             work->neighbour[n] = work->tie[i].to;
             work->tied[n++] = 0;
@@ -106,13 +106,14 @@ static void tie(struct work *work, const duite_task_graph *graph)
         work->start[i + 1] += work->start[i];
 }
 
-static int map_tasks(const duite_task_graph *graph, int *home)
+static int taskgraph_map_tasks(const duite_task_graph *graph, int *home)
 {
     struct work work = {0};
-    int code = allocate(&work, graph) ? DUITE_OK : base_no_memory("the mapping taskgraph");
+    int code =
+        taskgraph_allocate(&work, graph) ? DUITE_OK : base_no_memory("the mapping taskgraph");
     if (!code) {
-        weigh(&work, graph);
-        tie(&work, graph);
+        taskgraph_weigh(&work, graph);
+        taskgraph_tie(&work, graph);
         const duite_object_graph blocks = {.n = work.n,
                                            .weight = work.weight,
                                            .start = work.start,
@@ -122,7 +123,7 @@ static int map_tasks(const duite_task_graph *graph, int *home)
     }
     for (size_t i = 0; i < work.n && !code; i++)
         home[work.block[i]] = work.part[i];
-    release(&work);
+    taskgraph_release(&work);
     return code;
 }
 
@@ -130,5 +131,5 @@ const duite_mapping map_taskgraph = {
     .name = "taskgraph",
     .summary = "METIS on the tasks of a recorded graph, with what they cost and read",
     .map = map_by_metis,
-    .map_tasks = map_tasks,
+    .map_tasks = taskgraph_map_tasks,
 };

@@ -89,7 +89,7 @@ static bool begin(struct move *m)
         m->workers[h] = p->graph->cluster->cores;
     for (size_t b = 0; b < m->blocks.n; b++) {
         m->home[b] = m->blocks.block[b].home;
-        m->stays[b] = m->blocks.block[b].stays;
+        m->stays[b] = m->blocks.block[b].fixed;
     }
     return true;
 }

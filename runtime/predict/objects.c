@@ -106,7 +106,7 @@ void predict_follow(struct predict_program *p)
     uint32_t own = predict_object_at(p, trace_words_next(&p->words)),
              leader = predict_object_at(p, trace_words_next(&p->words));
     if (!p->damaged)
-        p->code = map_follow(&p->table, p->name[own], p->name[leader]);
+        p->code = map_colocate(&p->table, p->name[own], p->name[leader]);
 }
 
 /* Blocks with homes that were traced: numbered on their host in the order in which they came there.

@@ -15,7 +15,7 @@ unsigned sched_place_shared(void *state, const duite_ready *task)
     return DUITE_SHARED_QUEUE;
 }
 
-unsigned sched_place_warm(void *state, const duite_ready *task)
+unsigned sched_place_affinity(void *state, const duite_ready *task)
 {
     const struct sched_state *own = state;
     return task->warm ? task->warm - 1 : own->worker;
@@ -69,9 +69,9 @@ int sched_never_chain(void *state, const duite_ready *task)
     return 0;
 }
 
-int sched_chain_warm(void *state, const duite_ready *task)
+int sched_chain_affinity(void *state, const duite_ready *task)
 {
-    return sched_place_warm(state, task) == ((const struct sched_state *)state)->worker;
+    return sched_place_affinity(state, task) == ((const struct sched_state *)state)->worker;
 }
 
 int sched_chain_owner(void *state, const duite_ready *task)

@@ -5,20 +5,20 @@
  * 2010. */
 #include "runtime/sched/sched.h"
 
-struct state {
+struct locality_state {
     struct sched_state own; /* first */
     const duite_near *near;
     unsigned begin, end; /* the attempts of the ring that is tried */
 };
 
-static void look(void *state, const duite_near *near)
+static void locality_look(void *state, const duite_near *near)
 {
-    ((struct state *)state)->near = near;
+    ((struct locality_state *)state)->near = near;
 }
 
-static unsigned victim(void *state, unsigned attempt)
+static unsigned locality_victim(void *state, unsigned attempt)
 {
-    struct state *own = state;
+    struct locality_state *own = state;
     const duite_near *near = own->near;
     if (attempt >= near->n)
         return DUITE_NO_QUEUE;
@@ -37,11 +37,11 @@ static unsigned victim(void *state, unsigned attempt)
 const duite_scheduler sched_locality = {
     .name = "locality",
     .summary = "own newest first, steal the oldest of the nearest in the machine",
-    .state_size = sizeof(struct state),
+    .state_size = sizeof(struct locality_state),
     .start = sched_start,
-    .place = sched_place_warm,
+    .place = sched_place_affinity,
     .serve = sched_serve_newest,
-    .victim = victim,
-    .chain = sched_chain_warm,
-    .look = look,
+    .victim = locality_victim,
+    .chain = sched_chain_affinity,
+    .look = locality_look,
 };

@@ -35,10 +35,11 @@ struct sched_state {
 
 void sched_start(void *state, unsigned worker, unsigned n_workers, uint64_t seed);
 
-/* All in one queue; each worker its own, but in a replay the one that ran the last task on the same
- * data; the worker of the task's block. */
+/* Where a ready task goes. Shared: all to one queue. Affinity: each worker keeps its own, but in a
+ * replay a task goes to the worker that ran the last one on the same data. Owner: to the worker of
+ * the task's block. */
 unsigned sched_place_shared(void *state, const duite_ready *task);
-unsigned sched_place_warm(void *state, const duite_ready *task);
+unsigned sched_place_affinity(void *state, const duite_ready *task);
 unsigned sched_place_owner(void *state, const duite_ready *task);
 
 duite_end sched_serve_newest(void *state);
@@ -50,8 +51,8 @@ unsigned sched_no_victim(void *state, unsigned attempt);
 unsigned sched_any_victim(void *state, unsigned attempt);
 
 int sched_never_chain(void *state, const duite_ready *task);
-/* Where the last two would place it. */
-int sched_chain_warm(void *state, const duite_ready *task);
+/* Whether affinity, or the owner, would place the task on this worker. */
+int sched_chain_affinity(void *state, const duite_ready *task);
 int sched_chain_owner(void *state, const duite_ready *task);
 
 #endif

@@ -10,8 +10,8 @@ const duite_scheduler sched_steal = {
     .summary = "own newest first, steal the oldest of a random victim",
     .state_size = sizeof(struct sched_state),
     .start = sched_start,
-    .place = sched_place_warm,
+    .place = sched_place_affinity,
     .serve = sched_serve_newest,
     .victim = sched_any_victim,
-    .chain = sched_chain_warm,
+    .chain = sched_chain_affinity,
 };

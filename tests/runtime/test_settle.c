@@ -93,7 +93,7 @@ START_TEST(followers)
     for (int upwards = 0; upwards < 2; upwards++) {
         make(0, 5);
         for (int i = 1; i < 4; i++)
-            map_follow(&table, object[upwards ? i - 1 : i], object[upwards ? i : i - 1]);
+            map_colocate(&table, object[upwards ? i - 1 : i], object[upwards ? i : i - 1]);
         map_hint(&table, object[2], 5, 1, &object[4], (double[]){3});
         map_hint(&table, object[4], 1, 1, &object[3], (double[]){4});
         map_hint(&table, object[1], 1, 1, &object[2], (double[]){9});
@@ -117,8 +117,8 @@ START_TEST(of_settled_ones)
     make(0, 5);
     settle();
     make(5, 4);
-    map_follow(&table, object[5], object[6]);
-    map_follow(&table, object[6], object[4]);
+    map_colocate(&table, object[5], object[6]);
+    map_colocate(&table, object[6], object[4]);
     map_hint(&table, object[7], 1, 3, &object[0], NULL);
     map_hint(&table, object[7], 1, 2, &object[5], NULL);
     map_hint(&table, object[3], 99, 1, &object[8], NULL); /* too late */
@@ -139,7 +139,7 @@ END_TEST
 START_TEST(blocks)
 {
     make(0, 8);
-    map_follow(&table, object[3], object[0]);
+    map_colocate(&table, object[3], object[0]);
     settle(); /* leaders 0 1 2 4 5 6 7 */
     ck_assert(at(0)->block == 0 && at(4)->block == 1 && at(7)->block == 2);
     ck_assert(at(1)->block == 0 && at(5)->block == 1);
@@ -161,7 +161,7 @@ START_TEST(long_chain)
     last = first;
     for (int i = 0; i < LONG; i++) {
         ck_assert_int_eq(data_object_new(&table, DUITE_F64, 1, &next), DUITE_OK);
-        ck_assert_int_eq(map_follow(&table, last, next), DUITE_OK);
+        ck_assert_int_eq(map_colocate(&table, last, next), DUITE_OK);
         last = next;
     }
     settle();

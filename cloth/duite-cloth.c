@@ -331,11 +331,11 @@ static void begin(struct simulate_options *run)
 {
     const duite_options defaults = duite_options_default();
     run->scheduler = defaults.scheduler;
-    run->scheduler_name = name_of("DUITE_SCHEDULER", "steal");
+    run->scheduler_name = name_of("DUITE_SCHEDULER", duite_scheduler_names()[0]);
     run->mapping = defaults.mapping;
-    run->mapping_name = name_of("DUITE_MAPPING", "metis");
+    run->mapping_name = name_of("DUITE_MAPPING", duite_mapping_names()[0]);
     run->balance = defaults.balance;
-    run->balance_name = name_of("DUITE_BALANCE", "none");
+    run->balance_name = name_of("DUITE_BALANCE", duite_balancer_names()[0]);
     run->threads = defaults.threads;
     run->seed = defaults.seed;
     run->trace = defaults.trace;

@@ -261,8 +261,8 @@ duite_options duite_options_default(void);
 
 /* The built-in policies by name, or from a shared library if the name has a / in it
  * (duite_policy.h); NULL, and a sentence for duite_message, if there is none. Names: of all
- * built-in ones, ended by NULL, but for the adversaries for tests (the scheduler shuffle, the
- * balancers scatter and wander), which are found by name only. Local. */
+ * built-in ones, the default first, ended by NULL, but for the adversaries for tests (the scheduler
+ * shuffle, the balancers scatter and wander), which are found by name only. Local. */
 const struct duite_scheduler *duite_scheduler_find(const char *name);
 const struct duite_mapping *duite_mapping_find(const char *name);
 const struct duite_balancer *duite_balancer_find(const char *name);

@@ -3,11 +3,10 @@
  * leaves a default that is refused unless the program replaces it. */
 #include "runtime/api/instance.h"
 
-#include "runtime/balance/balance.h"
 #include "runtime/base/error.h"
 #include "runtime/base/policy.h"
-#include "runtime/map/map.h"
-#include "runtime/sched/sched.h"
+
+#include <duite_policy.h>
 
 #include <errno.h>
 #include <inttypes.h>
@@ -60,23 +59,23 @@ duite_options duite_options_default(void)
     const char *scheduler = getenv("DUITE_SCHEDULER"), *mapping = getenv("DUITE_MAPPING"),
                *balance = getenv("DUITE_BALANCE");
     const char *check = getenv("DUITE_CHECK");
-    return (duite_options){.comm = MPI_COMM_WORLD,
-                           .check = !check                       ? 0
-                                    : !strcmp(check, "accesses") ? 1
-                                                                 : -1,
-                           .threads = environment_threads(),
-                           .scheduler = scheduler ? duite_scheduler_find(scheduler) : &sched_steal,
-                           .mapping = mapping ? duite_mapping_find(mapping) : &map_metis,
-                           .balance = balance ? duite_balancer_find(balance) : &balance_none,
-                           .seed = environment_seed(),
-                           .trace = getenv("DUITE_TRACE"),
-                           .stuck_seconds = environment_seconds(getenv("DUITE_STUCK_SECONDS"), 60),
-                           .lost_seconds = environment_seconds(getenv("DUITE_LOST_SECONDS"), 8),
-                           .policy_seconds =
-                               environment_seconds(getenv("DUITE_POLICY_SECONDS"), 10),
-                           .spin_seconds = 100e-6,
-                           .trace_end = UINT64_MAX,
-                           .bind = 1};
+    return (duite_options){
+        .comm = MPI_COMM_WORLD,
+        .check = !check                       ? 0
+                 : !strcmp(check, "accesses") ? 1
+                                              : -1,
+        .threads = environment_threads(),
+        .scheduler = duite_scheduler_find(scheduler ? scheduler : duite_scheduler_names()[0]),
+        .mapping = duite_mapping_find(mapping ? mapping : duite_mapping_names()[0]),
+        .balance = duite_balancer_find(balance ? balance : duite_balancer_names()[0]),
+        .seed = environment_seed(),
+        .trace = getenv("DUITE_TRACE"),
+        .stuck_seconds = environment_seconds(getenv("DUITE_STUCK_SECONDS"), 60),
+        .lost_seconds = environment_seconds(getenv("DUITE_LOST_SECONDS"), 8),
+        .policy_seconds = environment_seconds(getenv("DUITE_POLICY_SECONDS"), 10),
+        .spin_seconds = 100e-6,
+        .trace_end = UINT64_MAX,
+        .bind = 1};
 }
 
 static int options_state_too_large(const duite_scheduler *scheduler, const duite_balancer *balance)

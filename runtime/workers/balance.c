@@ -1,22 +1,20 @@
-/* The balancer's state and what a body costs belong to one worker each; others only read the costs.
- * When this rank asks next is known by numbers that any worker may write: a question too many or
- * too few does no harm. */
+/* Each of the balancer's states belongs to one worker. Any worker may write the numbers that say
+ * when this rank asks next: a request too many or too few does no harm. */
 #include "runtime/workers/balance.h"
 
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/offload/away.h"
+#include "runtime/workers/cost.h"
 #include "runtime/workers/internal.h"
-#include "runtime/workers/spent.h"
 
 #include <math.h>
 #include <string.h>
 
 enum {
-    DEPTH = 64,       /* tasks of a queue that are looked at for one who asks */
-    MEMORY_SHIFT = 3, /* of costs: the last 2^3 bodies count most */
-    STOCK = 4, /* guests a worker, the one that runs among them: with fewer it asks for more */
+    DEPTH = 64, /* tasks of a queue that are looked at for one who asks */
+    STOCK = 4,  /* guests a worker, the one that runs among them: with fewer it asks for more */
 };
 
 #define FIRST_ASK_SECONDS   2e-5 /* so long a worker idles before it asks */
@@ -29,9 +27,7 @@ struct work_balance {
     size_t stride;
     double tick;
     uint64_t first_ask, serve_ticks;
-    _Atomic uint64_t *cost; /* ticks, a row of kernels for each worker; 0: none ran */
-    size_t row;
-    struct work_spent *spent;      /* one a worker, if it is to be measured; else NULL */
+    struct work_cost cost;
     _Atomic uint64_t next, served; /* ticks: when to ask, when it was given last */
     _Atomic unsigned attempt;
     _Atomic int giver;
@@ -55,12 +51,8 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
     balance->serve_ticks = (uint64_t)(SERVE_SECONDS / pool->tick);
     balance->giver = DUITE_NO_RANK;
     balance->stride = (balancer->state_size / BASE_LINE + 2) * BASE_LINE;
-    balance->row = (graph->n_kernels / 8 + 2) * 8;
     balance->states = base_alloc_zero(n * balance->stride);
-    balance->cost = base_alloc_zero(n * balance->row * sizeof *balance->cost);
-    if (measures)
-        balance->spent = base_alloc_zero(n * sizeof *balance->spent);
-    if (!balance->states || !balance->cost || (measures && !balance->spent))
+    if (!work_cost_start(&balance->cost, n, graph->n_kernels, measures) || !balance->states)
         return base_no_memory("the balancer");
     for (unsigned i = 0; i < n && balancer->start; i++) {
         struct base_mark *mark = base_watchdog_mark(pool->setup.watchdog, BASE_BALANCER, i);
@@ -77,11 +69,8 @@ void work_balance_stop(struct work_pool *pool)
     struct work_balance *balance = pool->balance;
     if (!balance)
         return;
-    for (unsigned i = 0; i < pool->setup.threads && balance->spent; i++)
-        work_spent_free(&balance->spent[i]);
-    base_free(balance->spent);
+    work_cost_stop(&balance->cost);
     base_free(balance->states);
-    base_free(balance->cost);
     base_free(balance);
 }
 
@@ -135,60 +124,22 @@ uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *h
     return next;
 }
 
-/* ---- What a task costs ---- */
-
-static void learn_block(struct work_spent *spent, const struct task *task, uint64_t ticks)
-{
-    uint32_t block;
-    if (task_follows(task, &block))
-        work_spend(spent, block, ticks);
-    else
-        work_spend_else(spent, ticks);
-}
-
 void work_learn(struct worker *worker, const struct task *task, uint64_t ticks)
 {
-    const struct work_balance *balance = worker->pool->balance;
-    _Atomic uint64_t *cost = &balance->cost[worker->index * balance->row + task->kernel];
-    if (balance->spent)
-        learn_block(&balance->spent[worker->index], task, ticks);
-    uint64_t before = atomic_load_explicit(cost, memory_order_relaxed);
-    uint64_t now = before ? before - (before >> MEMORY_SHIFT) + (ticks >> MEMORY_SHIFT) : ticks;
-    atomic_store_explicit(cost, now ? now : 1, memory_order_relaxed);
+    work_cost_learn(&worker->pool->balance->cost, worker->index, task, ticks);
 }
 
 double work_block_seconds(struct work_pool *pool, uint32_t block)
 {
-    const struct work_balance *balance = pool->balance;
-    uint64_t ticks = 0;
-    for (unsigned i = 0; i < pool->setup.threads; i++)
-        ticks += work_spent_take(&balance->spent[i], block);
-    return balance->tick * (double)ticks;
+    return pool->tick * (double)work_cost_take_block(&pool->balance->cost, block);
 }
 
 double work_other_seconds(struct work_pool *pool)
 {
-    const struct work_balance *balance = pool->balance;
-    uint64_t ticks = 0;
-    for (unsigned i = 0; i < pool->setup.threads; i++)
-        ticks += work_spent_take_else(&balance->spent[i]);
-    return balance->tick * (double)ticks;
+    return pool->tick * (double)work_cost_take_other(&pool->balance->cost);
 }
 
-/* The mean of the workers that know; 0: none does. */
-static double cost_of(const struct work_pool *pool, uint32_t kernel)
-{
-    const struct work_balance *balance = pool->balance;
-    double sum = 0;
-    unsigned known = 0;
-    for (unsigned i = 0; i < pool->setup.threads; i++) {
-        uint64_t ticks =
-            atomic_load_explicit(&balance->cost[i * balance->row + kernel], memory_order_relaxed);
-        sum += (double)ticks;
-        known += ticks > 0;
-    }
-    return known ? balance->tick * sum / known : 0;
-}
+/* ---- Tasks that may go ---- */
 
 /* False: it may not go. */
 static bool describe(const struct work_pool *pool, const struct task *task, duite_leaf *leaf)
@@ -197,11 +148,13 @@ static bool describe(const struct work_pool *pool, const struct task *task, duit
     size_t bytes;
     if (!offload_may_go(graph, task, &bytes))
         return false;
-    *leaf = (duite_leaf){.kernel = graph->kernels[task->kernel]->name,
-                         .number = task->number,
-                         .cost = task->cost > 0 ? task->cost : cost_of(pool, task->kernel),
-                         .bytes = bytes,
-                         .transfer = comm_transfer(pool->setup.comm, bytes)};
+    *leaf = (duite_leaf){
+        .kernel = graph->kernels[task->kernel]->name,
+        .number = task->number,
+        .cost = task->cost > 0 ? task->cost
+                               : pool->tick * work_cost_mean(&pool->balance->cost, task->kernel),
+        .bytes = bytes,
+        .transfer = comm_transfer(pool->setup.comm, bytes)};
     return true;
 }
 

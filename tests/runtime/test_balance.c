@@ -2,7 +2,7 @@
  * blocks. */
 #include "runtime/balance/balance.h"
 #include "runtime/balance/refine.h"
-#include "runtime/workers/spent.h"
+#include "runtime/workers/cost.h"
 #include "tests/support/unit.h"
 
 #include <duite.h>

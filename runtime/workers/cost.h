@@ -1,0 +1,56 @@
+#ifndef DUITE_WORKERS_COST_H
+#define DUITE_WORKERS_COST_H
+
+#include "runtime/task/task.h"
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Ticks that one worker spent for each block of its rank. The worker adds; the main thread takes
+ * what was added since it took last, at any time. */
+struct work_spent_for {
+    _Atomic uint64_t ticks;
+    uint64_t taken; /* of them; the main thread's */
+};
+
+enum { WORK_SPENT_ROWS = 33 };
+
+/* Zeroed to begin with. Row k, made when it is needed and never moved, has 2^k blocks. */
+struct work_spent {
+    _Alignas(64) struct work_spent_for otherwise; /* for no block */
+    _Atomic(struct work_spent_for *) row[WORK_SPENT_ROWS];
+};
+
+/* Without memory they are forgotten. */
+void work_spend(struct work_spent *spent, uint32_t block, uint64_t ticks);
+void work_spend_else(struct work_spent *spent, uint64_t ticks);
+uint64_t work_spent_take(struct work_spent *spent, uint32_t block);
+uint64_t work_spent_take_else(struct work_spent *spent);
+void work_spent_free(struct work_spent *spent);
+
+/* What bodies cost, measured by the workers of a rank: a mean for each kernel, and, if blocks may
+ * move, what was spent for each. */
+struct work_cost {
+    unsigned workers;
+    size_t row;
+    _Atomic uint64_t *mean;   /* ticks, a row of kernels for each worker; 0: none ran */
+    struct work_spent *spent; /* one a worker; NULL: blocks are not measured */
+};
+
+/* False without memory; work_cost_stop is due all the same. */
+bool work_cost_start(struct work_cost *cost, unsigned workers, uint32_t kernels, bool by_block);
+void work_cost_stop(struct work_cost *cost);
+
+/* The body of a task took so many ticks on that worker, which calls. */
+void work_cost_learn(struct work_cost *cost, unsigned worker, const struct task *task,
+                     uint64_t ticks);
+
+/* Ticks of a body of the kernel: the mean of the workers that know; 0: none does. Any worker. */
+double work_cost_mean(const struct work_cost *cost, uint32_t kernel);
+
+/* Ticks since the last time in bodies for the block; in all that run for none. Main thread. */
+uint64_t work_cost_take_block(struct work_cost *cost, uint32_t block);
+uint64_t work_cost_take_other(struct work_cost *cost);
+
+#endif

@@ -15,7 +15,7 @@ bench_libbench_la_SOURCES = bench/bench.h bench/environment.h bench/load.c bench
 	bench/cg/system.c \
 	bench/physics/bench.c bench/physics/ours.c bench/physics/physics.h \
 	bench/predict/bench.c bench/predict/errors.c bench/predict/many.c bench/predict/order.c bench/predict/predict.h bench/predict/sheet.c bench/sweep/median.c bench/sweep/compare.h \
-	tests/runtime/trace_file.c tests/runtime/trace_file.h \
+	tests/support/trace_file.c tests/support/trace_file.h \
 	$(BENCH_STATE) $(BENCH_SHARED)
 bench_libbench_la_CPPFLAGS = $(AM_CPPFLAGS) -DBENCH_MPIRUN='"$(MPIRUN)"' -DBENCH_CFLAGS='"$(CFLAGS)"' \
 	-DBENCH_HOSTS='"$(abs_top_srcdir)/tests/cluster/hosts.sh"' \

@@ -6,7 +6,7 @@
 #include "runtime/map/map.h"
 #include "runtime/predict/predict.h"
 #include "runtime/sched/sched.h"
-#include "tests/runtime/trace_file.h"
+#include "tests/support/trace_file.h"
 
 #include <math.h>
 #include <stdio.h>

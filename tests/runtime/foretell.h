@@ -2,7 +2,7 @@
 #define TESTS_RUNTIME_FORETELL_H
 
 #include "runtime/predict/predict.h"
-#include "tests/runtime/trace_file.h"
+#include "tests/support/trace_file.h"
 
 /* What tests of predictions share. The mapping is block: of two objects the first lives on host 0,
  * the second on host 1. */

@@ -111,13 +111,13 @@ RUNTIME_TESTS = tests/runtime/test_predict tests/runtime/test_predict_replays te
     tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
-FORETELL_FILES = tests/runtime/foretell.c tests/runtime/foretell.h tests/runtime/trace_file.c tests/runtime/trace_file.h
+FORETELL_FILES = tests/runtime/foretell.c tests/runtime/foretell.h tests/support/trace_file.c tests/support/trace_file.h
 tests_runtime_test_predict_SOURCES = tests/runtime/test_predict.c $(FORETELL_FILES)
 tests_runtime_test_predict_LDADD = libduite_predict.la $(DUITE_TEST_LIBS)
 tests_runtime_test_predict_replays_SOURCES = tests/runtime/test_predict_replays.c $(FORETELL_FILES)
 tests_runtime_test_predict_replays_LDADD = libduite_predict.la $(DUITE_TEST_LIBS)
 RUNTIME_TESTS += tests/runtime/test_bounds
-tests_runtime_test_bounds_SOURCES = tests/runtime/test_bounds.c tests/runtime/trace_file.c tests/runtime/trace_file.h
+tests_runtime_test_bounds_SOURCES = tests/runtime/test_bounds.c tests/support/trace_file.c tests/support/trace_file.h
 tests_runtime_test_bounds_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_environment_SOURCES = tests/runtime/test_environment.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_environment_LDADD = $(DUITE_TEST_LIBS)

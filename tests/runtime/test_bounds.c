@@ -1,5 +1,5 @@
 /* duite_trace_bounds against chains worked out by hand. */
-#include "tests/runtime/trace_file.h"
+#include "tests/support/trace_file.h"
 #include "tests/support/unit.h"
 
 #include <math.h>

@@ -81,8 +81,8 @@ START_TEST(a_halved_run_is_one_with_a_smaller_h)
         setup.model.halving = false;
         setup.model.stretch_growth = 0;
         runs(&small, &setup.model);
-        if (halved.report.steps == small.report.steps)
-            ck_assert(halved.report.state_hash == small.report.state_hash);
+        ck_assert_uint_eq(halved.report.steps, small.report.steps);
+        ck_assert(halved.report.state_hash == small.report.state_hash);
         for (size_t c = 0; c < 3; c++)
             ck_assert_double_eq_tol(record_at(&halved, 1, 9, c), record_at(&small, 1, 9, c), 1e-5);
         record_free(&halved);

@@ -81,15 +81,9 @@ START_TEST(stiff_beside_soft)
     setup.model.tolerance = 0.01;
     setup.model.preconditioner = (enum model_preconditioner)_i;
     setup_pin(&setup, 1, (const uint32_t[]){0});
-    record_run(&record, &setup.model);
-    if (record.code) {
-        ck_assert_int_eq(record.code, CLOTH_E_RUN);
-        ck_assert_msg(strstr(record.error.text, "conjugate gradients") != NULL, "%s",
-                      record.error.text);
-    } else {
-        ck_assert_double_eq_tol(record.report.max_stretch, 1, 1e-3);
-        ck_assert_double_lt(record_at(&record, 10, 63, 1), -0.4 * FALL);
-    }
+    runs(&record, &setup.model);
+    ck_assert_double_eq_tol(record.report.max_stretch, 1, 1e-3);
+    ck_assert_double_lt(record_at(&record, 10, 63, 1), -0.4 * FALL);
     record_free(&record);
     setup_free(&setup);
 }

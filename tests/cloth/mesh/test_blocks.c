@@ -76,8 +76,13 @@ static struct mesh_blocks cut(const struct graph *graph, uint32_t grain, uint32_
         n += graph->used[v] != 0;
     ck_assert_uint_eq(blocks.n_vertices, graph->n_vertices);
     ck_assert_uint_eq(blocks.n_places, n);
-    const uint64_t plain = (n + (uint64_t)grain - 1) / grain, even = (plain + 2) / 4 * 4;
-    ck_assert_uint_eq(blocks.n_blocks, plain < 16 || even > n ? plain : even);
+    const uint64_t fewest = (n + (uint64_t)grain - 1) / grain;
+    if (fewest < 16)
+        ck_assert_uint_eq(blocks.n_blocks, fewest);
+    else /* the next multiple of four, where there is a vertex for each */
+        ck_assert(blocks.n_blocks % 4 == 0 || blocks.n_blocks + 2 > n);
+    ck_assert_uint_le(blocks.n_blocks, fewest + 2);
+    ck_assert_uint_ge(blocks.n_blocks + 1, fewest);
     ck_assert_uint_eq(blocks.start[0], 0);
     ck_assert_uint_eq(blocks.start[blocks.n_blocks], n);
     *smallest = UINT32_MAX;

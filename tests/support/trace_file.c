@@ -1,6 +1,6 @@
 /* Written by hand from runtime/trace/format.h, without the code that writes traces. A tick is a
  * nanosecond. */
-#include "tests/runtime/trace_file.h"
+#include "tests/support/trace_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

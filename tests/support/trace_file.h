@@ -1,5 +1,5 @@
-#ifndef TESTS_RUNTIME_TRACE_FILE_H
-#define TESTS_RUNTIME_TRACE_FILE_H
+#ifndef TESTS_SUPPORT_TRACE_FILE_H
+#define TESTS_SUPPORT_TRACE_FILE_H
 
 #include "runtime/trace/format.h"
 

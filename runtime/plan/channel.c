@@ -2,7 +2,7 @@
  * one phase, in the order of the node's uses, which is the same on both sides; what is poisoned has
  * its failure at the end instead. A node that sends or receives is ready like any other: when what
  * it sends is made, or when nobody reads any more what it overwrites. */
-#include "runtime/plan/replay.h"
+#include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
 #include <string.h>
@@ -17,26 +17,26 @@ struct message_failure {
     struct data_failure failure;
 };
 
-static const struct data_failure lost = {
+static const struct data_failure channel_lost = {
     .code = DUITE_E_MPI, .kernel = UINT32_MAX, .text = "communication between the ranks broke"};
 
-static size_t room_of(const struct plan_place *place)
+static size_t channel_value_room(const struct plan_place *place)
 {
     return (place->bytes + 7) / 8 * 8;
 }
 
-static size_t bytes_of_values(const struct plan *plan, const struct task *task)
+static size_t channel_values_bytes(const struct plan *plan, const struct task *task)
 {
     const struct plan_node_use *use = plan->use + task->node->first_use;
     size_t bytes = 0;
     for (uint32_t i = 0; i < task->n; i++)
-        bytes += room_of(&plan->place[use[i].place]);
+        bytes += channel_value_room(&plan->place[use[i].place]);
     return bytes;
 }
 
 size_t plan_channel_room(const struct plan *plan, const struct task *task)
 {
-    return sizeof(struct message) + bytes_of_values(plan, task) +
+    return sizeof(struct message) + channel_values_bytes(plan, task) +
            task->n * sizeof(struct message_failure);
 }
 
@@ -60,14 +60,14 @@ const struct task *plan_channel_waits(const struct task *task, unsigned *more)
 }
 
 /* As plan_node_run begins: from now on the node counts for its next round. */
-static struct plan *begin(struct task *task)
+static struct plan *channel_begin(struct task *task)
 {
     atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
     return task->node->plan;
 }
 
-static size_t pack_failures(const struct plan *plan, const struct task *task,
-                            struct message *message, char *at)
+static size_t channel_pack_failures(const struct plan *plan, const struct task *task,
+                                    struct message *message, char *at)
 {
     const struct plan_node_use *use = plan->use + task->node->first_use;
     for (uint32_t i = 0; i < task->n; i++) {
@@ -83,13 +83,13 @@ static size_t pack_failures(const struct plan *plan, const struct task *task,
 
 size_t plan_channel_pack(struct task *task, void *bytes)
 {
-    const struct plan *plan = begin(task);
+    const struct plan *plan = channel_begin(task);
     const struct plan_node_use *use = plan->use + task->node->first_use;
     struct message *message = bytes;
     char *at = (char *)(message + 1);
     for (uint32_t i = 0; i < task->n; i++) {
         const struct plan_place *place = &plan->place[use[i].place];
-        size_t room = room_of(place);
+        size_t room = channel_value_room(place);
         if (place->data)
             memcpy(at, place->data, place->bytes);
         memset(at + place->bytes, 0, room - place->bytes);
@@ -97,13 +97,13 @@ size_t plan_channel_pack(struct task *task, void *bytes)
     }
     *message = (struct message){0};
     if (atomic_load_explicit(&plan->tainted, memory_order_relaxed))
-        at += pack_failures(plan, task, message, at);
+        at += channel_pack_failures(plan, task, message, at);
     return (size_t)(at - (char *)bytes);
 }
 
 /* Poisons, or heals, what came. */
-static void unpack_failures(struct plan *plan, const struct task *task,
-                            const struct message *message, const char *at)
+static void channel_unpack_failures(struct plan *plan, const struct task *task,
+                                    const struct message *message, const char *at)
 {
     const struct plan_node_use *use = plan->use + task->node->first_use;
     for (uint32_t i = 0; i < task->n; i++)
@@ -119,25 +119,25 @@ static void unpack_failures(struct plan *plan, const struct task *task,
 
 void plan_channel_unpack(struct task *task, const void *bytes)
 {
-    struct plan *plan = begin(task);
+    struct plan *plan = channel_begin(task);
     const struct plan_node_use *use = plan->use + task->node->first_use;
     const struct message *message = bytes;
     const char *at = (const char *)(message + 1);
     for (uint32_t i = 0; i < task->n; i++) {
         const struct plan_place *place = &plan->place[use[i].place];
         memcpy(place->data, at, place->bytes);
-        at += room_of(place);
+        at += channel_value_room(place);
     }
     if (message->failures || atomic_load_explicit(&plan->tainted, memory_order_relaxed))
-        unpack_failures(plan, task, message, at);
+        channel_unpack_failures(plan, task, message, at);
 }
 
 void plan_channel_lost(struct task *task)
 {
-    struct plan *plan = begin(task);
+    struct plan *plan = channel_begin(task);
     const struct plan_node_use *use = plan->use + task->node->first_use;
     atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
     for (uint32_t i = 0; i < task->n; i++)
         if (use[i].writes)
-            plan->place[use[i].place].failure = &lost;
+            plan->place[use[i].place].failure = &channel_lost;
 }

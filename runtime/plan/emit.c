@@ -1,7 +1,7 @@
 /* Emitting: from a round in its intermediate form to the flat arrays of a plan. A plan is written
  * once, here; afterwards only bindings, arguments and what runs change it. It lives as long as its
  * record or a replay of it. */
-#include "runtime/plan/replay.h"
+#include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
 #include "runtime/base/memory.h"
@@ -212,7 +212,7 @@ static void emit_next(struct plan *plan, const struct plan_round *round)
             struct plan_node *node = plan_task(plan, edge->from)->node;
             bool sends = round->node[edge->to].kind == PLAN_SEND;
             if (sends && !edge->cyclic)
-                node->urgent = round->node[edge->from].kind != PLAN_TASK;
+                node->runs_inline = round->node[edge->from].kind != PLAN_TASK;
             if (edge->cyclic != within)
                 node->next[node->n_next++] = plan_task(plan, edge->to);
         }
@@ -284,15 +284,15 @@ bool plan_fits(const struct plan *plan, const struct plan_record *record, const 
 }
 
 /* All passes in order; of several ranks those between lowering and edges leave this rank's part. */
-static bool compile(struct plan *plan, const struct plan_record *record, const duite_object *flag,
-                    const struct plan_source *source)
+static bool plan_compile(struct plan *plan, const struct plan_record *record,
+                         const duite_object *flag, const struct plan_source *source)
 {
     struct plan_round round = {0}, part = {0};
     struct emit emit = {.record = record, .flag = flag, .round = &round};
     bool several = record->graph->n_ranks > 1, fine = plan_lower(&round, source);
     float *path = NULL;
     if (fine && several) {
-        fine = plan_spread(plan, &round, &part, record, flag);
+        fine = plan_of_ranks(plan, &round, &part, record, flag);
         emit.round = &part;
     }
     fine = fine && plan_edges(several ? &part : &round);
@@ -319,7 +319,7 @@ struct plan *plan_new(const struct plan_record *record, const duite_object *flag
     plan->decides = flag != NULL;
     plan->flag_place = flag ? source.flag : 0;
     plan->n_objects = source.n_objects;
-    fine = fine && compile(plan, record, flag, &source);
+    fine = fine && plan_compile(plan, record, flag, &source);
     plan_source_free(&source);
     if (fine)
         return plan;

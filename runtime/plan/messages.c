@@ -15,18 +15,19 @@ struct finding {
     bool failed;
 };
 
-static uint32_t later(uint32_t a, uint32_t b)
+static uint32_t phase_later(uint32_t a, uint32_t b)
 {
     return a > b ? a : b;
 }
 
 /* The task that contributes what a sum reads. */
-static uint32_t leaf_of(const struct plan_messages *m, const struct plan_node_use *use)
+static uint32_t message_leaf(const struct plan_messages *m, const struct plan_node_use *use)
 {
     return m->leaf[use->place - m->assignment->round->n_objects];
 }
 
-static bool outside(const struct plan_assignment *a, const uint64_t *set, const uint64_t *has)
+static bool message_is_outside(const struct plan_assignment *a, const uint64_t *set,
+                               const uint64_t *has)
 {
     uint64_t found = 0;
     for (size_t i = 0; i < a->words; i++)
@@ -46,7 +47,8 @@ struct phase_past {
 static bool phase_crosses(const struct plan_assignment *a, size_t n, uint32_t version)
 {
     uint32_t maker = plan_maker(a, version);
-    return maker != PLAN_NONE && outside(a, plan_runs_set(a, n), plan_runs_set(a, maker));
+    return maker != PLAN_NONE &&
+           message_is_outside(a, plan_runs_set(a, n), plan_runs_set(a, maker));
 }
 
 static uint32_t phase_of_leaves(const struct plan_messages *m, size_t n,
@@ -55,9 +57,9 @@ static uint32_t phase_of_leaves(const struct plan_messages *m, size_t n,
     const struct plan_assignment *a = m->assignment;
     uint32_t phase = 0;
     for (size_t i = node->first_use + 1; i < node->first_use + node->n_uses; i++) {
-        uint32_t leaf = leaf_of(m, &a->round->use[i]);
-        bool crosses = outside(a, plan_runs_set(a, n), plan_runs_set(a, leaf));
-        phase = later(phase, m->phase[leaf] + crosses);
+        uint32_t leaf = message_leaf(m, &a->round->use[i]);
+        bool crosses = message_is_outside(a, plan_runs_set(a, n), plan_runs_set(a, leaf));
+        phase = phase_later(phase, m->phase[leaf] + crosses);
     }
     return phase;
 }
@@ -72,12 +74,12 @@ static uint32_t phase_of(const struct plan_messages *m, size_t n, const struct p
         if (version != PLAN_NONE) {
             uint32_t maker = a->version[version].maker;
             uint32_t made = maker ? m->phase[maker - 1] : 0;
-            phase = later(phase, made + phase_crosses(a, n, version));
+            phase = phase_later(phase, made + phase_crosses(a, n, version));
         }
         if (a->makes[i] != PLAN_NONE) {
             const struct phase_past *past = &pasts[a->round->use[i].place];
             bool same = a->at[n] != PLAN_MANY && a->at[n] == past->rank;
-            phase = later(phase, same ? past->here : past->any);
+            phase = phase_later(phase, same ? past->here : past->any);
         }
     }
     return phase;
@@ -93,15 +95,15 @@ static void phase_note(const struct plan_messages *m, size_t n, struct phase_pas
         if (a->reads[i] == PLAN_NONE && a->makes[i] == PLAN_NONE)
             continue;
         struct phase_past *past = &pasts[a->round->use[i].place];
-        past->any = later(past->any, phase);
+        past->any = phase_later(past->any, phase);
         if (a->makes[i] != PLAN_NONE)
             *past = (struct phase_past){at, phase, past->any};
         else if (at == past->rank || at == PLAN_MANY || past->rank == PLAN_MANY)
-            past->here = later(past->here, phase);
+            past->here = phase_later(past->here, phase);
     }
 }
 
-static bool find_phases(struct plan_messages *m)
+static bool message_find_phases(struct plan_messages *m)
 {
     const struct plan_assignment *a = m->assignment;
     const struct plan_round *round = a->round;
@@ -133,10 +135,10 @@ static bool pieces_of_one(const struct plan_messages *m, size_t n, bool *alone)
     const struct plan_assignment *a = m->assignment;
     const struct plan_round_node *node = &a->round->node[n];
     const struct plan_node_use *use = &a->round->use[node->first_use];
-    int rank = a->at[leaf_of(m, &use[1])];
+    int rank = a->at[message_leaf(m, &use[1])];
     bool one = true;
     for (size_t i = 1; i < node->n_uses; i++)
-        one &= a->at[leaf_of(m, &use[i])] == rank;
+        one &= a->at[message_leaf(m, &use[i])] == rank;
     *alone = one;
     for (int other = 0; other < a->n_ranks; other++)
         *alone &= (other == rank) == plan_runs(a, n, other);
@@ -151,10 +153,10 @@ static void pieces_set_phases(const struct plan_messages *m, size_t n, size_t fi
     const struct plan_round_node *node = &a->round->node[n];
     const struct plan_node_use *use = &a->round->use[node->first_use];
     for (size_t i = 1; i < node->n_uses; i++)
-        latest[a->at[leaf_of(m, &use[i])]] = 0;
+        latest[a->at[message_leaf(m, &use[i])]] = 0;
     for (size_t i = 1; i < node->n_uses; i++) {
-        uint32_t leaf = leaf_of(m, &use[i]);
-        latest[a->at[leaf]] = later(latest[a->at[leaf]], m->phase[leaf]);
+        uint32_t leaf = message_leaf(m, &use[i]);
+        latest[a->at[leaf]] = phase_later(latest[a->at[leaf]], m->phase[leaf]);
     }
     for (size_t i = first; i < m->n_pieces; i++)
         m->piece[i].phase = latest[m->piece[i].rank];
@@ -170,7 +172,7 @@ static void pieces_of_sum(struct plan_messages *m, size_t n, uint32_t *latest)
     for (uint32_t i = 0; i + 1 < node->n_uses; i++) {
         struct plan_piece *row = &m->piece[m->n_pieces++];
         *row = (struct plan_piece){
-            .node = (uint32_t)n, .tree.first = i, .n = 1, .rank = a->at[leaf_of(m, &use[i])]};
+            .node = (uint32_t)n, .tree.first = i, .n = 1, .rank = a->at[message_leaf(m, &use[i])]};
         for (; !alone && m->n_pieces - first > 1 && (one || pieces_join(row - 1, row)); row--) {
             row[-1].tree.level++;
             row[-1].n += row->n;
@@ -180,7 +182,7 @@ static void pieces_of_sum(struct plan_messages *m, size_t n, uint32_t *latest)
     pieces_set_phases(m, n, first, latest);
 }
 
-static bool find_pieces(struct plan_messages *m)
+static bool message_find_pieces(struct plan_messages *m)
 {
     const struct plan_assignment *a = m->assignment;
     uint32_t *latest = base_alloc((size_t)a->n_ranks * sizeof *latest);
@@ -293,7 +295,7 @@ static void message_pieces(struct finding *f, size_t n)
     }
 }
 
-static void find_messages(struct finding *f)
+static void message_find_all(struct finding *f)
 {
     const struct plan_assignment *a = f->m->assignment;
     for (uint32_t i = 0; i < a->round->n_objects; i++)
@@ -320,7 +322,7 @@ void plan_messages_free(struct plan_messages *m)
     free(m->item);
 }
 
-static bool find_room(struct plan_messages *m)
+static bool message_room(struct plan_messages *m)
 {
     const struct plan_round *round = m->assignment->round;
     size_t leaves = round->n_places - round->n_objects + 1;
@@ -331,7 +333,7 @@ static bool find_room(struct plan_messages *m)
     return m->phase && m->leaf && m->piece && m->first_piece;
 }
 
-static void find_leaves(struct plan_messages *m)
+static void message_find_leaves(struct plan_messages *m)
 {
     const struct plan_round *round = m->assignment->round;
     for (size_t n = 0; n < round->n_nodes; n++) {
@@ -348,13 +350,13 @@ bool plan_messages_find(struct plan_messages *m, const struct plan_assignment *a
     size_t ranks = (size_t)a->n_ranks;
     *m = (struct plan_messages){.assignment = a, .rank = rank};
     f.heads = base_alloc_zero((rank == PLAN_ALL ? ranks * ranks : 2 * ranks) * sizeof *f.heads);
-    bool fine = f.heads && find_room(m);
+    bool fine = f.heads && message_room(m);
     if (fine) {
-        find_leaves(m);
-        fine = find_phases(m) && find_pieces(m);
+        message_find_leaves(m);
+        fine = message_find_phases(m) && message_find_pieces(m);
     }
     if (fine)
-        find_messages(&f);
+        message_find_all(&f);
     base_free(f.heads);
     return fine && !f.failed;
 }

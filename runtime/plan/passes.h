@@ -10,8 +10,8 @@
  *   messages messages.c plan_assignment             -> plan_messages: phases, and what each carries
  *   part     part.c     plan_messages of a rank     -> plan_round: the nodes of that rank
  *   edges    edges.c    plan_round                  -> its edges, within a round and to the next
- *   emit     emit.c     plan_round                  -> plan: flat arrays (replay.h)
- *   run      replay.c   plan                        -> replays
+ *   emit     emit.c     plan_round                  -> plan: flat arrays (plan.h)
+ *   run      run.c      plan                        -> replays, as replay_call.c asks for them
  *
  * On one rank there is nothing to assign or to send: edges follow lowering.
  *
@@ -53,10 +53,10 @@ struct plan_access {
 struct plan_source_fork {
     size_t first; /* of its n accesses */
     uint32_t n;
-    uint32_t owner; /* the object that it runs for, see task_owner; or PLAN_NONE */
-    int rank;       /* that it is to run on, or PLAN_BY_OWNER */
-    bool sets, replicated;
-    double cost; /* seconds; 0: not said */
+    uint32_t owner;        /* the object that it runs for, see task_owner; or PLAN_NONE */
+    int rank;              /* that it is to run on, or PLAN_BY_OWNER */
+    bool sets, replicated; /* replicated: no cw among its accesses */
+    double cost;           /* seconds; 0: not said */
 };
 
 struct plan_source_object {

@@ -2,14 +2,14 @@
  * which object's value must be where when a round begins, and where it is when the last one is
  * over. What is not written stays where it is read; of what is written, the value lies before and
  * after each round where its last writer runs, and goes from there to who reads it first. */
-#include "runtime/plan/replay.h"
+#include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
 #include "runtime/base/memory.h"
 
 #include <string.h>
 
-static bool alloc_sets(struct plan *plan, size_t words)
+static bool ranks_room(struct plan *plan, size_t words)
 {
     size_t bytes = plan->n_objects * words * sizeof(uint64_t);
     plan->words = words;
@@ -20,8 +20,8 @@ static bool alloc_sets(struct plan *plan, size_t words)
 }
 
 /* A view that is gathered within the round is nobody's from outside. */
-static void take_sets(struct plan *plan, const struct plan_record *record,
-                      const struct plan_messages *messages)
+static void ranks_take_sets(struct plan *plan, const struct plan_record *record,
+                            const struct plan_messages *messages)
 {
     const struct plan_assignment *a = messages->assignment;
     size_t bytes = plan->words * sizeof(uint64_t);
@@ -43,8 +43,8 @@ static void take_sets(struct plan *plan, const struct plan_record *record,
 }
 
 /* Where the objects of a round live; NULL without memory. */
-static int *find_homes(const struct plan *plan, const struct plan_record *record,
-                       const duite_object *flag)
+static int *ranks_find_homes(const struct plan *plan, const struct plan_record *record,
+                             const duite_object *flag)
 {
     int *home = base_alloc((plan->n_objects + 1) * sizeof *home);
     for (size_t i = 0; i < plan->n_objects && home; i++) {
@@ -54,18 +54,18 @@ static int *find_homes(const struct plan *plan, const struct plan_record *record
     return home;
 }
 
-bool plan_spread(struct plan *plan, const struct plan_round *round, struct plan_round *part,
-                 const struct plan_record *record, const duite_object *flag)
+bool plan_of_ranks(struct plan *plan, const struct plan_round *round, struct plan_round *part,
+                   const struct plan_record *record, const duite_object *flag)
 {
     struct plan_assignment assignment = {0};
     struct plan_messages messages = {0};
-    int *home = find_homes(plan, record, flag);
+    int *home = ranks_find_homes(plan, record, flag);
     bool fine = home && plan_assign(&assignment, round, home, plan->graph->n_ranks) &&
-                alloc_sets(plan, assignment.words) &&
+                ranks_room(plan, assignment.words) &&
                 plan_messages_find(&messages, &assignment, plan->graph->rank) &&
                 plan_part(part, &messages);
     if (fine)
-        take_sets(plan, record, &messages);
+        ranks_take_sets(plan, record, &messages);
     base_free(home);
     plan_messages_free(&messages);
     plan_assignment_free(&assignment);
@@ -104,7 +104,7 @@ bool plan_at_home(const struct plan *plan, const struct plan_record *record)
     return true;
 }
 
-static bool is_in(const struct plan *plan, const uint64_t *sets, size_t i, int rank)
+static bool ranks_has(const struct plan *plan, const uint64_t *sets, size_t i, int rank)
 {
     return plan_set_has(sets + i * plan->words, rank);
 }
@@ -113,7 +113,7 @@ int plan_fetch(const struct plan *plan, struct worker *worker, size_t i, struct 
 {
     int code = DUITE_OK;
     for (int rank = 0; rank < plan->graph->n_ranks && !code; rank++)
-        if (is_in(plan, plan->enter, i, rank))
+        if (ranks_has(plan, plan->enter, i, rank))
             code = task_fetch(plan->graph, worker, object, rank);
     return code;
 }
@@ -122,14 +122,14 @@ bool plan_moves(const struct plan *plan, size_t i, struct data_object *object)
 {
     int holder = -1;
     for (int rank = plan->graph->n_ranks; rank-- > 0;)
-        if (is_in(plan, plan->end, i, rank) && holder != object->home)
+        if (ranks_has(plan, plan->end, i, rank) && holder != object->home)
             holder = rank;
     if (holder < 0)
         return false;
     object->number++;
     data_object_moved(object, holder);
     for (int rank = 0; rank < plan->graph->n_ranks; rank++)
-        if (rank != holder && is_in(plan, plan->end, i, rank))
+        if (rank != holder && ranks_has(plan, plan->end, i, rank))
             data_object_add_copy(&plan->graph->table, object, rank);
     return true;
 }
@@ -137,8 +137,8 @@ bool plan_moves(const struct plan *plan, size_t i, struct data_object *object)
 duite_mode plan_mode(const struct plan *plan, size_t i)
 {
     int rank = plan->graph->rank;
-    bool enters = is_in(plan, plan->enter, i, rank);
-    if (is_in(plan, plan->end, i, rank))
+    bool enters = ranks_has(plan, plan->enter, i, rank);
+    if (ranks_has(plan, plan->end, i, rank))
         return enters ? DUITE_RW : DUITE_W;
     return enters ? DUITE_R : DUITE_NONE;
 }

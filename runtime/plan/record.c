@@ -1,7 +1,7 @@
 /* A record is whole or not begun: a call of build that fails leaves nothing behind. What build
  * named stays as it was (`recorded`); replays use what is bound to it. Arguments lie in one block,
  * which plans copy; what changes later is told to a plan as a list of changes. */
-#include "runtime/plan/replay.h"
+#include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
@@ -54,7 +54,7 @@ void plan_record_free(struct plan_record *record, struct worker *worker)
 /* ---- What build calls ---- */
 
 /* Room for one more fork with n objects and so many bytes of arguments, and for the index. */
-static bool reserve(struct plan_record *record, size_t n, size_t bytes)
+static bool record_reserve(struct plan_record *record, size_t n, size_t bytes)
 {
     const struct data_table *table = &record->graph->table;
     if (!record->index) {
@@ -74,7 +74,7 @@ static bool reserve(struct plan_record *record, size_t n, size_t bytes)
 #undef ROOM
 }
 
-static struct plan_recorded_object *find(const struct plan_record *record, duite_object name)
+static struct plan_recorded_object *record_find(const struct plan_record *record, duite_object name)
 {
     uint32_t index = name.slot < record->n_slots ? record->index[name.slot] : 0;
     struct plan_recorded_object *object = index ? &record->object[index - 1] : NULL;
@@ -82,7 +82,7 @@ static struct plan_recorded_object *find(const struct plan_record *record, duite
     return found ? object : NULL;
 }
 
-static uint32_t index_of(struct plan_record *record, duite_object name)
+static uint32_t record_index(struct plan_record *record, duite_object name)
 {
     const struct data_object *object = &record->graph->table.object[name.slot];
     uint32_t *index = &record->index[name.slot];
@@ -97,7 +97,7 @@ static uint32_t index_of(struct plan_record *record, duite_object name)
     return *index - 1;
 }
 
-static void note(struct plan_recorded_object *object, duite_mode mode)
+static void record_note(struct plan_recorded_object *object, duite_mode mode)
 {
     if (mode == DUITE_CW) {
         object->leads |= !object->read && !object->written;
@@ -112,25 +112,25 @@ static void note(struct plan_recorded_object *object, duite_mode mode)
 }
 
 /* A fork reads the views that it names before it does anything to their objects. */
-static void use_view(struct plan_record *record, duite_object name)
+static void record_use_view(struct plan_record *record, duite_object name)
 {
     const struct data_table *table = &record->graph->table;
     const struct data_view *view = table->object[name.slot].view;
     if (!view)
         return;
-    uint32_t parent = index_of(record, data_object_name(table, &table->object[view->parent]));
-    note(&record->object[parent], DUITE_R);
-    record->object[index_of(record, name)].parent = parent + 1;
+    uint32_t parent = record_index(record, data_object_name(table, &table->object[view->parent]));
+    record_note(&record->object[parent], DUITE_R);
+    record->object[record_index(record, name)].parent = parent + 1;
     record->views = true;
 }
 
-static void use(struct plan_record *record, duite_object name, duite_mode mode,
-                const duite_law *law)
+static void record_use(struct plan_record *record, duite_object name, duite_mode mode,
+                       const duite_law *law)
 {
-    uint32_t index = index_of(record, name);
+    uint32_t index = record_index(record, name);
     record->access[record->n_accesses++] = (struct plan_access){index, mode, law};
     record->object[index].named = true;
-    note(&record->object[index], mode);
+    record_note(&record->object[index], mode);
 }
 
 uint32_t plan_recorded_owner(const struct plan_record *record,
@@ -143,7 +143,7 @@ uint32_t plan_recorded_owner(const struct plan_record *record,
 }
 
 /* The object that it runs for keeps its home, and so does whatever is bound to it. */
-static void stay(struct plan_record *record, const struct plan_recorded_fork *fork)
+static void record_fix_owner(struct plan_record *record, const struct plan_recorded_fork *fork)
 {
     uint32_t owner = plan_recorded_owner(record, fork);
     if (owner == PLAN_NONE)
@@ -154,13 +154,13 @@ static void stay(struct plan_record *record, const struct plan_recorded_fork *fo
 }
 
 /* The bytes of the arguments are still to be written. */
-static struct plan_recorded_fork *append(struct plan_record *record, uint32_t kernel,
-                                         const struct task_options *how, size_t n,
-                                         const duite_object *objects, size_t bytes)
+static struct plan_recorded_fork *record_append(struct plan_record *record, uint32_t kernel,
+                                                const struct task_options *how, size_t n,
+                                                const duite_object *objects, size_t bytes)
 {
     size_t whole = (bytes + 15) / 16 * 16;
     if (record->n_forks >= UINT32_MAX / 8 || record->n_accesses + n >= UINT32_MAX / 8 ||
-        !reserve(record, n, whole)) {
+        !record_reserve(record, n, whole)) {
         base_no_memory("a recorded graph");
         return NULL;
     }
@@ -174,12 +174,12 @@ static struct plan_recorded_fork *append(struct plan_record *record, uint32_t ke
     record->args_bytes += whole;
     task_mix(record->graph, (uint64_t)kernel << 32 | (uint32_t)how->at);
     for (size_t i = 0; i < n; i++)
-        use_view(record, objects[i]);
+        record_use_view(record, objects[i]);
     const duite_kernel *body = kernel == PLAN_SETS ? NULL : record->graph->kernels[kernel];
     for (size_t i = 0; i < n; i++) {
         duite_mode mode = body ? task_immediate(data_mode_of(body, i)) : DUITE_W;
         task_mix(record->graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
-        use(record, objects[i], mode, mode == DUITE_CW ? data_law_of(body, i) : NULL);
+        record_use(record, objects[i], mode, mode == DUITE_CW ? data_law_of(body, i) : NULL);
     }
     uint32_t owner = body ? task_owner(body->access, body->rest, n) : 0; /* parameter */
     fork->owner = owner == TASK_NOBODY ? PLAN_NONE : record->access[fork->first + owner].object;
@@ -197,13 +197,14 @@ int plan_record_fork(struct plan_record *record, const struct task_options *how,
     task_unmark(&record->graph->root, n, objects);
     for (size_t i = 0; i < n; i++)
         record->forked |= task_postponed(data_mode_of(kernel, i));
-    struct plan_recorded_fork *fork = append(record, index, how, n, objects, kernel->args_size);
+    struct plan_recorded_fork *fork =
+        record_append(record, index, how, n, objects, kernel->args_size);
     if (!fork)
         return DUITE_E_MEMORY;
     if (kernel->args_size)
         memcpy(record->args + fork->args, args, kernel->args_size);
     if (kernel->stays)
-        stay(record, fork);
+        record_fix_owner(record, fork);
     record->call[record->n_calls++] = record->n_forks - 1;
     return DUITE_OK;
 }
@@ -219,8 +220,8 @@ int plan_record_set(struct plan_record *record, duite_object name, const void *v
     int code = task_set_check(record->graph, object, name, count);
     if (code)
         return code;
-    struct plan_recorded_fork *fork =
-        append(record, PLAN_SETS, &(struct task_options){.at = TASK_ANYWHERE}, 1, &name, bytes);
+    struct plan_recorded_fork *fork = record_append(
+        record, PLAN_SETS, &(struct task_options){.at = TASK_ANYWHERE}, 1, &name, bytes);
     if (!fork)
         return DUITE_E_MEMORY;
     task_mix(record->graph, count);
@@ -270,7 +271,7 @@ int plan_record_args(struct plan_record *record, size_t k, const void *args)
 
 int plan_record_bind(struct plan_record *record, duite_object recorded, duite_object name)
 {
-    struct plan_recorded_object *object = find(record, recorded);
+    struct plan_recorded_object *object = record_find(record, recorded);
     const struct data_object *other = data_object_find(&record->graph->table, name);
     if (!other)
         return DUITE_E_OBJECT;

@@ -1,5 +1,5 @@
-#ifndef DUITE_GRAPH_RECORD_H
-#define DUITE_GRAPH_RECORD_H
+#ifndef DUITE_PLAN_RECORD_H
+#define DUITE_PLAN_RECORD_H
 
 #include "runtime/plan/passes.h"
 #include "runtime/task/task.h"

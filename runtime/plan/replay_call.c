@@ -1,7 +1,7 @@
 /* Replays as the main program asks for them. To the rest of the graph a replay of a plan is one
  * task that reads or writes each of its objects; forked rounds are tasks like any other. Both leave
  * the same bytes, the same poison and the same numbers of tasks. */
-#include "runtime/plan/replay.h"
+#include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
@@ -9,7 +9,7 @@
 #include "runtime/data/view.h"
 
 /* Do open contributions go on in the first round? */
-static bool goes_on(const struct plan_record *record)
+static bool replay_continues_sums(const struct plan_record *record)
 {
     for (size_t i = 0; i < record->n_objects; i++)
         if (record->object[i].leads &&
@@ -20,7 +20,7 @@ static bool goes_on(const struct plan_record *record)
 
 /* A plan knows the views that were recorded: nothing is bound in their place, or in that of their
  * objects, and no other object by a view. */
-static bool views_changed(const struct plan_record *record, const duite_object *flag)
+static bool replay_changes_views(const struct plan_record *record, const duite_object *flag)
 {
     const struct data_object *objects = record->graph->table.object;
     bool changed = flag && objects[flag->slot].view;
@@ -35,9 +35,9 @@ static bool views_changed(const struct plan_record *record, const duite_object *
 void plan_replay_split(const struct plan_record *record, const duite_object *flag, uint64_t rounds,
                        uint64_t *before, uint64_t *after)
 {
-    bool begins = rounds && goes_on(record);
+    bool begins = rounds && replay_continues_sums(record);
     bool forked = record->forked || (flag && record->graph->table.object[flag->slot].sized) ||
-                  views_changed(record, flag);
+                  replay_changes_views(record, flag);
     /* A flag's own contributions end with the round, since it is read. */
     for (size_t i = 0; flag && i < record->n_objects; i++)
         forked |=
@@ -69,8 +69,8 @@ int plan_replay_fork(struct plan_record *record, struct worker *worker)
 }
 
 /* The record's plan, made anew if it does not fit. */
-static struct plan *plan_for(struct plan_record *record, struct worker *worker,
-                             const duite_object *flag)
+static struct plan *replay_plan_for(struct plan_record *record, struct worker *worker,
+                                    const duite_object *flag)
 {
     if (record->plan && plan_fits(record->plan, record, flag))
         return record->plan;
@@ -80,8 +80,8 @@ static struct plan *plan_for(struct plan_record *record, struct worker *worker,
 }
 
 /* The object that place i of the plan stands for, or the turn. */
-static struct data_object *object_at(const struct plan_record *record, size_t i,
-                                     const duite_object *flag)
+static struct data_object *replay_object(const struct plan_record *record, size_t i,
+                                         const duite_object *flag)
 {
     if (i == record->plan->n_objects)
         return &record->plan->turn;
@@ -91,8 +91,8 @@ static struct data_object *object_at(const struct plan_record *record, size_t i,
 
 /* Before an object is used: all ranks know where its value must be now, and where it will be. The
  * copies of ranks that do not write it are stale. */
-static int move(const struct plan *plan, struct worker *worker, size_t i,
-                struct data_object *object, duite_mode mode)
+static int replay_move_object(const struct plan *plan, struct worker *worker, size_t i,
+                              struct data_object *object, duite_mode mode)
 {
     struct task_graph *graph = plan->graph;
     int code = object->leaves ? task_close_sum(&graph->root, worker, object) : DUITE_OK;
@@ -113,8 +113,8 @@ static int move(const struct plan *plan, struct worker *worker, size_t i,
 }
 
 /* One access of the replay's task: as that of any task on one rank. */
-static int use(struct task_graph *graph, struct task *task, size_t i, duite_mode mode,
-               struct data_object *object, uint32_t *done)
+static int replay_use_object(struct task_graph *graph, struct task *task, size_t i, duite_mode mode,
+                             struct data_object *object, uint32_t *done)
 {
     struct data_version *version = object->current;
     task->access[i].waiter.mode = mode;
@@ -132,7 +132,7 @@ static int use(struct task_graph *graph, struct task *task, size_t i, duite_mode
 }
 
 /* Views that the rounds read but do not gather. */
-static int gather_all(struct plan_record *record, struct worker *worker)
+static int replay_gather_views(struct plan_record *record, struct worker *worker)
 {
     int code = DUITE_OK;
     for (size_t i = 0; i < record->n_objects && record->views && !code; i++)
@@ -142,20 +142,20 @@ static int gather_all(struct plan_record *record, struct worker *worker)
     return code;
 }
 
-static int use_all(struct plan_record *record, struct worker *worker, struct task *task,
-                   const duite_object *flag)
+static int replay_use_all(struct plan_record *record, struct worker *worker, struct task *task,
+                          const duite_object *flag)
 {
     struct task_graph *graph = record->graph;
     struct plan *plan = record->plan;
     uint32_t done = 0;
     for (size_t i = 0; i <= plan->n_objects; i++) {
         duite_mode mode = i < plan->n_objects ? plan->place[i].mode : DUITE_W;
-        struct data_object *object = object_at(record, i, flag);
+        struct data_object *object = replay_object(record, i, flag);
         if (i < plan->n_objects)
             task->replay->block[i] = object->block;
-        int code = move(plan, worker, i, object, mode);
+        int code = replay_move_object(plan, worker, i, object, mode);
         if (!code)
-            code = use(graph, task, i, mode, object, &done);
+            code = replay_use_object(graph, task, i, mode, object, &done);
         if (code) {
             task_void(graph, worker, task, i, done);
             return code;
@@ -172,10 +172,10 @@ int plan_replay_plan(struct plan_record *record, struct worker *worker, const du
                      uint64_t rounds)
 {
     struct task_graph *graph = record->graph;
-    struct plan *plan = plan_for(record, worker, flag);
+    struct plan *plan = replay_plan_for(record, worker, flag);
     if (!plan)
         return base_no_memory("a recorded graph");
-    int code = gather_all(record, worker);
+    int code = replay_gather_views(record, worker);
     if (code)
         return code;
     struct task *task =
@@ -185,7 +185,7 @@ int plan_replay_plan(struct plan_record *record, struct worker *worker, const du
         return DUITE_E_MEMORY;
     *task->replay = (struct plan_replay){plan, rounds, graph->root.forks + 1, record->changes};
     graph->root.forks += rounds * record->n_calls;
-    return use_all(record, worker, task, flag);
+    return replay_use_all(record, worker, task, flag);
 }
 
 bool plan_replay_over(const struct plan_record *record)

@@ -6,7 +6,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/plan/replay.h"
+#include "runtime/plan/plan.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #ifndef DUITE_WORKERS_INTERNAL_H
 #define DUITE_WORKERS_INTERNAL_H
 
-#include "runtime/plan/replay.h"
+#include "runtime/plan/plan.h"
 #include "runtime/workers/balance.h"
 #include "runtime/workers/park.h"
 #include "runtime/workers/queue.h"

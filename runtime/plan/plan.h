@@ -1,10 +1,10 @@
-#ifndef DUITE_GRAPH_REPLAY_H
-#define DUITE_GRAPH_REPLAY_H
+#ifndef DUITE_PLAN_PLAN_H
+#define DUITE_PLAN_PLAN_H
 
 #include "runtime/plan/record.h"
 
-/* A plan: a record compiled to flat arrays, of several ranks for this one's part. Used by this
- * folder only. */
+/* A plan: a record compiled to flat arrays, of several ranks for this one's part. The workers and
+ * the predictor see of it whose caches have what a node runs for; all else is this folder's. */
 
 /* All steps of a node that adds. */
 struct plan_tree {
@@ -29,7 +29,7 @@ struct plan_node {
     uint32_t first_use; /* its uses, one a parameter: task->n */
     uint32_t n_leaves;  /* parameters to be cleared: contributions */
     bool sink;          /* nothing of its round waits for it */
-    bool urgent;        /* no task of the program, and a message waits for it */
+    bool runs_inline;   /* no task of the program, and a message waits for it */
     uint64_t round;     /* the one it runs next */
 };
 
@@ -144,8 +144,8 @@ struct plan *plan_new(const struct plan_record *record, const duite_object *flag
 bool plan_fits(const struct plan *plan, const struct plan_record *record, const duite_object *flag);
 /* Of several ranks: makes this rank's part of a round, without edges; later, with all nodes there,
  * opens the channels. */
-bool plan_spread(struct plan *plan, const struct plan_round *round, struct plan_round *part,
-                 const struct plan_record *record, const duite_object *flag);
+bool plan_of_ranks(struct plan *plan, const struct plan_round *round, struct plan_round *part,
+                   const struct plan_record *record, const duite_object *flag);
 int plan_open(struct plan *plan, const struct plan_round *part);
 /* The mode of a whole replay on this rank. */
 duite_mode plan_mode(const struct plan *plan, size_t i);

@@ -3,12 +3,12 @@
  * The counter goes back to `steady` before that: none of those that count for the next round has
  * run (see edges.c). A replay is over when all sinks of its last round are: each other node
  * of any round comes before one of these, and a node that still has successors to tell keeps one of
- * them waiting. So what tells last, and what counts the sinks, touches nothing of the plan
- * afterwards.
+ * them waiting. So after its last decrement, of a successor or of the sinks, a worker must not
+ * touch the plan: it may be freed.
  *
  * Poison is kept by place, under the same dependences as the bytes. It is looked at only once
  * something failed: what sees the effects of a failure sees `tainted`. */
-#include "runtime/plan/replay.h"
+#include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
@@ -23,7 +23,7 @@ static const int64_t UNKNOWN = INT64_C(1) << 62;
 
 /* ---- Beginning and end ---- */
 
-static void move_place(struct plan *plan, struct plan_place *place, void *data)
+static void place_move(struct plan *plan, struct plan_place *place, void *data)
 {
     if (place->data == data)
         return;
@@ -34,7 +34,7 @@ static void move_place(struct plan *plan, struct plan_place *place, void *data)
 
 /* The bytes that an object's version has now, and its poison; rounds work on them in place. False
  * without memory. */
-static bool bind(struct plan *plan, struct task_access *access, struct plan_place *place)
+static bool place_bind(struct plan *plan, struct task_access *access, struct plan_place *place)
 {
     struct data_version *in = access->in;
     struct data_packet *packet = in ? data_version_packet(in) : NULL;
@@ -53,11 +53,11 @@ static bool bind(struct plan *plan, struct task_access *access, struct plan_plac
         if (!packet)
             return false;
     }
-    move_place(plan, place, packet ? data_payload(packet) : NULL);
+    place_move(plan, place, packet ? data_payload(packet) : NULL);
     return true;
 }
 
-static void change_args(struct plan *plan, struct plan_change *change)
+static void run_change_args(struct plan *plan, struct plan_change *change)
 {
     if (!change)
         return;
@@ -76,7 +76,7 @@ static void change_args(struct plan *plan, struct plan_change *change)
     }
 }
 
-static void reset_nodes(struct plan *plan, const struct plan_replay *replay)
+static void run_reset_nodes(struct plan *plan, const struct plan_replay *replay)
 {
     for (size_t i = 0; i < plan->n_nodes; i++) {
         struct task *task = plan_task(plan, i);
@@ -100,15 +100,15 @@ void plan_replay_run(struct task *task)
     atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
     atomic_store_explicit(&plan->left, plan->decides ? UNKNOWN : (int64_t)plan->n_sinks,
                           memory_order_relaxed);
-    change_args(plan, replay->changes);
+    run_change_args(plan, replay->changes);
     for (size_t i = plan->n_objects; i < plan->n_places; i++)
         plan->place[i].failure = NULL;
     for (size_t i = 0; i < plan->n_objects; i++)
-        fine &= bind(plan, &task->access[i], &plan->place[i]);
+        fine &= place_bind(plan, &task->access[i], &plan->place[i]);
     if (task->access[plan->n_objects].in) /* the turn */
         data_version_free(task->access[plan->n_objects].in);
     task->access[plan->n_objects].in = NULL;
-    reset_nodes(plan, replay);
+    run_reset_nodes(plan, replay);
     if (fine)
         return;
     const struct data_failure *failure = task_fail_memory(task);
@@ -119,7 +119,8 @@ void plan_replay_run(struct task *task)
         work_starved(plan->graph->pool, "a replay");
 }
 
-static void end(struct task_graph *graph, struct worker *worker, struct plan *plan, uint64_t rounds)
+static void run_end(struct task_graph *graph, struct worker *worker, struct plan *plan,
+                    uint64_t rounds)
 {
     struct task *task = plan->replay;
     for (size_t i = 0; i < plan->n_objects; i++)
@@ -134,9 +135,9 @@ static void end(struct task_graph *graph, struct worker *worker, struct plan *pl
 
 /* What a message waits for is not queued behind other tasks: it runs here and now. (What it makes
  * ready is a node that sends, and tasks.) */
-static void ready(struct task_graph *graph, struct worker *worker, struct task *task)
+static void node_ready(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    if (!task->node->urgent) {
+    if (!task->node->runs_inline) {
         work_ready(graph->pool, worker, task);
         return;
     }
@@ -149,14 +150,14 @@ void plan_replay_start(struct task_graph *graph, struct worker *worker, struct t
     struct plan *plan = task->replay->plan;
     size_t n = task->replay->rounds ? plan->n_roots : 0;
     if (!n)
-        end(graph, worker, plan, task->replay->rounds);
+        run_end(graph, worker, plan, task->replay->rounds);
     for (size_t i = 0; i < n; i++)
-        ready(graph, worker, plan->root[i]);
+        node_ready(graph, worker, plan->root[i]);
 }
 
 /* ---- Nodes ---- */
 
-static const struct data_failure *find_poison(const struct plan *plan, const struct task *task)
+static const struct data_failure *node_find_poison(const struct plan *plan, const struct task *task)
 {
     const struct plan_node_use *use = plan->use + task->node->first_use;
     const struct data_failure *failure = NULL;
@@ -167,8 +168,8 @@ static const struct data_failure *find_poison(const struct plan *plan, const str
 }
 
 /* Poisons, or heals, what the node writes. */
-static void set_poison(struct plan *plan, const struct task *task,
-                       const struct data_failure *failure)
+static void node_set_poison(struct plan *plan, const struct task *task,
+                            const struct data_failure *failure)
 {
     const struct plan_node_use *use = plan->use + task->node->first_use;
     for (uint32_t i = 0; i < task->n; i++)
@@ -177,7 +178,7 @@ static void set_poison(struct plan *plan, const struct task *task,
 }
 
 /* What bodies find under cw. */
-static void clear_leaves(const struct plan *plan, const struct task *task)
+static void node_clear_leaves(const struct plan *plan, const struct task *task)
 {
     const struct plan_node_use *use = plan->use + task->node->first_use;
     for (uint32_t i = 0; i < task->n; i++) {
@@ -192,39 +193,39 @@ static void clear_leaves(const struct plan *plan, const struct task *task)
 }
 
 /* The body forked tasks on objects of its own and on what it read. */
-static void leave_scope(struct task_scope *scope, struct worker *worker,
-                        const struct data_failure *failure)
+static void node_leave_scope(struct task_scope *scope, struct worker *worker,
+                             const struct data_failure *failure)
 {
     task_scope_fail(scope, failure);
     task_scope_end(scope, worker);
 }
 
-static bool run_body(struct task_graph *graph, struct worker *worker, struct task *task,
-                     const duite_call *call)
+static bool node_run_body(struct task_graph *graph, struct worker *worker, struct task *task,
+                          const duite_call *call)
 {
     const struct plan_node *node = task->node;
     struct plan *plan = node->plan;
     bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
-    const struct data_failure *failure = tainted ? find_poison(plan, task) : NULL;
+    const struct data_failure *failure = tainted ? node_find_poison(plan, task) : NULL;
     if (!failure)
         failure = task_given_up(graph);
     bool runs = !failure;
     if (runs) {
         if (node->n_leaves)
-            clear_leaves(plan, task);
+            node_clear_leaves(plan, task);
         struct task_scope *scope = NULL;
         failure = task_call_body(graph, worker, task, node->args, node->param, &scope, call);
         if (scope)
-            leave_scope(scope, worker, failure);
+            node_leave_scope(scope, worker, failure);
     }
     if (failure)
         atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);
     if (tainted || failure)
-        set_poison(plan, task, failure);
+        node_set_poison(plan, task, failure);
     return runs;
 }
 
-static void run_set(struct task *task)
+static void node_run_set(struct task *task)
 {
     struct plan *plan = task->node->plan;
     struct plan_place *place = &plan->place[plan->use[task->node->first_use].place];
@@ -236,7 +237,7 @@ static void run_set(struct task *task)
         place->failure = NULL;
 }
 
-static void merge(const struct plan_node *node)
+static void node_merge(const struct plan_node *node)
 {
     const struct plan_tree *tree = node->tree;
     const duite_param *param = node->param;
@@ -246,31 +247,31 @@ static void merge(const struct plan_node *node)
 }
 
 /* The first parameter of a sum is the object, the others are the pieces. */
-static void run_sum(struct task *task)
+static void node_run_sum(struct task *task)
 {
     struct plan_node *node = task->node;
     struct plan *plan = node->plan;
     const duite_param *param = node->param;
     bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
-    const struct data_failure *failure = tainted ? find_poison(plan, task) : NULL;
+    const struct data_failure *failure = tainted ? node_find_poison(plan, task) : NULL;
     if (failure) {
-        set_poison(plan, task, failure);
+        node_set_poison(plan, task, failure);
         return;
     }
-    merge(node);
+    node_merge(node);
     if (task->kind == TASK_NODE_SUM)
         node->tree->law->combine(param[0].data, param[1].data, param->count, param->type);
 }
 
 /* A view, or a copy. */
-static void run_view(struct task *task)
+static void node_run_view(struct task *task)
 {
     struct plan_node *node = task->node;
     const duite_param *param = node->param; /* from, to */
     bool tainted = atomic_load_explicit(&node->plan->tainted, memory_order_relaxed);
-    const struct data_failure *failure = tainted ? find_poison(node->plan, task) : NULL;
+    const struct data_failure *failure = tainted ? node_find_poison(node->plan, task) : NULL;
     if (tainted)
-        set_poison(node->plan, task, failure);
+        node_set_poison(node->plan, task, failure);
     if (failure)
         return;
     if (task->kind == TASK_NODE_VIEW)
@@ -292,12 +293,12 @@ bool plan_flag_holds(duite_type type, const void *values)
     }
 }
 
-static void run_flag(struct task_graph *graph, struct task *task)
+static void node_run_flag(struct task_graph *graph, struct task *task)
 {
     struct plan *plan = task->node->plan;
     bool tainted = atomic_load_explicit(&plan->tainted, memory_order_relaxed);
     plan->stop = task->node->round == plan->last || task_given_up(graph) ||
-                 (tainted && find_poison(plan, task)) ||
+                 (tainted && node_find_poison(plan, task)) ||
                  !plan_flag_holds(task->node->param->type, task->node->param->data);
     if (plan->stop)
         plan->last = task->node->round;
@@ -308,15 +309,15 @@ bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task 
 {
     atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
     if (task->kind == TASK_NODE)
-        return run_body(graph, worker, task, call);
+        return node_run_body(graph, worker, task, call);
     if (task->kind == TASK_NODE_SET)
-        run_set(task);
+        node_run_set(task);
     else if (task->kind == TASK_NODE_SUM || task->kind == TASK_NODE_PARTIAL)
-        run_sum(task);
+        node_run_sum(task);
     else if (task->kind == TASK_NODE_VIEW || task->kind == TASK_NODE_COPY)
-        run_view(task);
+        node_run_view(task);
     else
-        run_flag(graph, task);
+        node_run_flag(graph, task);
     return false;
 }
 
@@ -337,8 +338,8 @@ void plan_node_finish(struct task_graph *graph, struct worker *worker, struct ta
         /* The last one needs no atomic subtraction: nobody else has the counter then. */
         if (atomic_load_explicit(pending, memory_order_acquire) == 1 ||
             atomic_fetch_sub_explicit(pending, 1, memory_order_acq_rel) == 1)
-            ready(graph, worker, *next);
+            node_ready(graph, worker, *next);
     }
     if (counts && atomic_fetch_sub_explicit(&plan->left, counts, memory_order_acq_rel) == counts)
-        end(graph, worker, plan, plan->last + 1);
+        run_end(graph, worker, plan, plan->last + 1);
 }

@@ -1,0 +1,542 @@
+/* The passes of the compiler of recorded graphs on random rounds. Values are numbers that tell what
+ * they were made of. A reference runs the forks one after the other; the parts that the passes
+ * leave for all ranks run against each other, rounds overlapping, in random order. Every task must
+ * find what it finds in the reference, whatever the order. */
+#include "tests/runtime/rounds.h"
+#include "tests/support/unit.h"
+
+#include <duite_policy.h>
+
+#include <check.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    ROUNDS = 3,
+    MAX_RANKS = 5,
+    PLACES = 1024,
+    QUEUE = 2048,
+    OBJECTS = 8,
+    FORKS = 14,
+    GARBAGE = 0xbad
+};
+
+static uint64_t draw(uint64_t *random, uint64_t below)
+{
+    return duite_random(random) % below;
+}
+
+static uint64_t mix(uint64_t a, uint64_t b)
+{
+    uint64_t state = a * 0x9e3779b97f4a7c15u + b;
+    return duite_random(&state);
+}
+
+/* ---- Random rounds ---- */
+
+static void random_access(struct rounds_made *made, uint64_t *random, uint32_t object)
+{
+    static const duite_mode modes[] = {DUITE_R, DUITE_R, DUITE_W, DUITE_RW, DUITE_CW, DUITE_CW};
+    const struct plan_source_fork *fork = &made->fork[made->source.n_forks - 1];
+    duite_mode mode = modes[draw(random, 6)];
+    if (made->object[object].parent || (mode == DUITE_CW && fork->replicated))
+        mode = DUITE_R;
+    rounds_access(made, object, fork->sets ? DUITE_W : mode, draw(random, 8) == 0);
+}
+
+static void random_fork(struct rounds_made *made, uint64_t *random, int n_ranks)
+{
+    uint32_t n = 1 + (uint32_t)draw(random, 3), first = (uint32_t)draw(random, 1000);
+    rounds_fork(made);
+    struct plan_source_fork *fork = &made->fork[made->source.n_forks - 1];
+    uint64_t kind = draw(random, 8);
+    uint32_t objects = (uint32_t)made->source.n_objects;
+    fork->sets = kind == 0 && !made->object[first % objects].parent;
+    fork->replicated = kind == 1 || kind == 2;
+    if (kind == 3)
+        fork->rank = (int)draw(random, (uint64_t)n_ranks);
+    for (uint32_t k = 0; k < (fork->sets ? 1 : n) && k < objects; k++)
+        random_access(made, random, (first + k) % objects);
+    rounds_own(made);
+}
+
+static void random_round(struct rounds_made *made, uint64_t *random, int n_ranks)
+{
+    rounds_make(made, "", "");
+    size_t objects = 2 + draw(random, OBJECTS - 1), forks = 1 + draw(random, FORKS);
+    for (uint32_t i = 0; i < objects; i++) {
+        bool view = i && draw(random, 4) == 0;
+        uint32_t parent = view ? (uint32_t)draw(random, i) : 0;
+        made->object[i].bytes = draw(random, 2) ? 8 : 4096;
+        if (view && !made->object[parent].parent)
+            made->object[i].parent = parent + 1;
+    }
+    made->source.n_objects = objects;
+    for (size_t i = 0; i < forks; i++)
+        random_fork(made, random, n_ranks);
+    if (draw(random, 3) == 0)
+        made->source.flag = (uint32_t)draw(random, objects);
+    if (made->source.flag != PLAN_NONE && made->object[made->source.flag].parent)
+        made->source.flag = PLAN_NONE;
+}
+
+/* ---- The reference ---- */
+
+struct reference {
+    const struct plan_source *source;
+    bool written[ROUNDS_MAX];
+    uint64_t value[ROUNDS_MAX];
+    uint64_t open[ROUNDS_MAX][ROUNDS_ACCESSES];
+    size_t n_open[ROUNDS_MAX];
+    const duite_law *law[ROUNDS_MAX];
+    uint64_t found[ROUNDS][ROUNDS_MAX]; /* by round and fork: of what it read */
+};
+
+static uint64_t initial(uint32_t object)
+{
+    return mix(17, object);
+}
+
+static uint64_t combine(uint64_t left, uint64_t right)
+{
+    return mix(mix(7, left), right);
+}
+
+/* Leaves first .. first + n - 1: the largest complete subtree, and the rest. */
+static uint64_t tree(const uint64_t *leaf, size_t n)
+{
+    size_t half = 1;
+    if (n == 1)
+        return leaf[0];
+    while (2 * half < n)
+        half *= 2;
+    return combine(tree(leaf, half), tree(leaf + half, n - half));
+}
+
+static void reference_sum(struct reference *r, uint32_t object)
+{
+    if (r->n_open[object])
+        r->value[object] = combine(r->value[object], tree(r->open[object], r->n_open[object]));
+    r->n_open[object] = 0;
+}
+
+static uint64_t reference_value(const struct reference *r, uint32_t object)
+{
+    uint32_t parent = r->source->object[object].parent;
+    if (!parent || !r->written[parent - 1])
+        return r->value[object];
+    return mix(object, r->value[parent - 1]);
+}
+
+static void reference_fork(struct reference *r, int round, size_t i)
+{
+    const struct plan_source_fork *fork = &r->source->fork[i];
+    const struct plan_access *access = r->source->access + fork->first;
+    uint64_t found = i;
+    for (uint32_t k = 0; k < fork->n; k++) {
+        uint32_t object = access[k].object, parent = r->source->object[object].parent;
+        if (access[k].mode != DUITE_CW || access[k].law != r->law[object])
+            reference_sum(r, object);
+        if (parent && r->written[parent - 1])
+            reference_sum(r, parent - 1);
+    }
+    for (uint32_t k = 0; k < fork->n; k++)
+        if (access[k].mode == DUITE_R || access[k].mode == DUITE_RW)
+            found = mix(found, reference_value(r, access[k].object));
+    for (uint32_t k = 0; k < fork->n; k++) {
+        uint32_t object = access[k].object;
+        if (access[k].mode == DUITE_CW) {
+            r->open[object][r->n_open[object]++] = mix(found, k);
+            r->law[object] = access[k].law;
+        } else if (access[k].mode != DUITE_R) {
+            r->value[object] = mix(found, k);
+        }
+    }
+    r->found[round][i] = found;
+}
+
+static void reference_run(struct reference *r, const struct plan_source *source)
+{
+    *r = (struct reference){.source = source};
+    for (size_t i = 0; i < source->n_accesses; i++)
+        r->written[source->access[i].object] |= source->access[i].mode != DUITE_R;
+    for (uint32_t i = 0; i < source->n_objects; i++)
+        r->value[i] = initial(i);
+    for (int round = 0; round < ROUNDS; round++) {
+        for (size_t i = 0; i < source->n_forks; i++)
+            reference_fork(r, round, i);
+        for (uint32_t i = 0; i < source->n_objects; i++)
+            reference_sum(r, i);
+    }
+}
+
+/* ---- Running what the passes left ---- */
+
+struct rank {
+    struct plan_round part;
+    uint64_t value[PLACES];
+    uint32_t *pending, *over; /* by node; over: rounds that it ran */
+};
+
+/* Messages on their way: values in order, see run_send. */
+struct queue {
+    uint64_t value[QUEUE];
+    size_t first, last, messages;
+};
+
+struct run {
+    const struct reference *reference;
+    struct rank rank[MAX_RANKS];
+    struct queue *queue[MAX_RANKS][MAX_RANKS]; /* by sender and phase of this receiver */
+    int n_ranks;
+    uint64_t random;
+    size_t tasks;
+};
+
+enum { PHASES = 64 };
+
+/* From a rank to another in a phase. */
+static struct queue *queue_of(struct run *run, int from, int to, uint32_t phase)
+{
+    ck_assert_uint_lt(phase, PHASES);
+    return &run->queue[from][to][phase];
+}
+
+static struct queue *queue_of_node(struct run *run, int at, const struct plan_round_node *node)
+{
+    const struct plan_round_channel *channel = &run->rank[at].part.channel[node->channel];
+    return channel->sends ? queue_of(run, at, channel->peer, channel->phase)
+                          : queue_of(run, channel->peer, at, channel->phase);
+}
+
+static void run_message(struct run *run, int at, const struct plan_round_node *node)
+{
+    struct rank *rank = &run->rank[at];
+    struct queue *queue = queue_of_node(run, at, node);
+    if (node->kind == PLAN_SEND)
+        ck_assert_uint_le(queue->last + node->n_uses, QUEUE);
+    for (size_t i = 0; i < node->n_uses; i++) {
+        uint64_t *value = &rank->value[rank->part.use[node->first_use + i].place];
+        if (node->kind == PLAN_SEND)
+            queue->value[queue->last++] = *value;
+        else
+            *value = queue->value[queue->first++];
+    }
+    queue->messages += node->kind == PLAN_SEND ? 1 : (size_t)-1;
+}
+
+static void run_task(struct run *run, struct rank *rank, const struct plan_round_node *node,
+                     uint32_t round)
+{
+    const struct plan_node_use *use = &rank->part.use[node->first_use];
+    uint64_t found = node->fork;
+    for (size_t i = 0; i < node->n_uses; i++)
+        if (use[i].reads)
+            found = mix(found, rank->value[use[i].place]);
+    ck_assert_msg(found == run->reference->found[round][node->fork],
+                  "fork %u found something else in round %u", node->fork, round);
+    for (size_t i = 0; i < node->n_uses; i++)
+        if (use[i].writes)
+            rank->value[use[i].place] = mix(found, i);
+    run->tasks++;
+}
+
+static void run_sum(struct rank *rank, const struct plan_round_node *node)
+{
+    const struct plan_node_use *use = &rank->part.use[node->first_use];
+    for (size_t i = 0; i < node->n_merges; i++) {
+        const struct plan_merge *merge = &rank->part.merge[node->first_merge + i];
+        uint64_t *left = &rank->value[use[merge->left].place];
+        *left = combine(*left, rank->value[use[merge->right].place]);
+    }
+    if (node->kind == PLAN_SUM)
+        rank->value[use[0].place] = combine(rank->value[use[0].place], rank->value[use[1].place]);
+}
+
+static void run_node(struct run *run, int at, size_t n)
+{
+    struct rank *rank = &run->rank[at];
+    const struct plan_round_node *node = &rank->part.node[n];
+    const struct plan_node_use *use = &rank->part.use[node->first_use];
+    switch (node->kind) {
+    case PLAN_TASK:
+    case PLAN_SET:
+        run_task(run, rank, node, rank->over[n]);
+        break;
+    case PLAN_SUM:
+    case PLAN_PARTIAL:
+        run_sum(rank, node);
+        break;
+    case PLAN_VIEW:
+        rank->value[use[1].place] = mix(use[1].place, rank->value[use[0].place]);
+        break;
+    case PLAN_COPY:
+        rank->value[use[1].place] = rank->value[use[0].place];
+        break;
+    case PLAN_FLAG:
+        break;
+    default:
+        run_message(run, at, node);
+    }
+}
+
+/* A node's counter goes back to steady before its successors hear of it, as in a replay. */
+static void run_finish(struct run *run, int at, size_t n)
+{
+    struct rank *rank = &run->rank[at];
+    bool last = ++rank->over[n] == ROUNDS;
+    rank->pending[n] = rank->part.node[n].within + rank->part.node[n].cyclic;
+    for (size_t i = 0; i < rank->part.n_edges; i++) {
+        const struct plan_round_edge *edge = &rank->part.edge[i];
+        if (edge->from != n || (edge->cyclic && last))
+            continue;
+        ck_assert_msg(rank->pending[edge->to], "node %u hears of a round too early", edge->to);
+        rank->pending[edge->to]--;
+    }
+}
+
+static bool run_is_ready(struct run *run, int at, size_t n)
+{
+    const struct rank *rank = &run->rank[at];
+    const struct plan_round_node *node = &rank->part.node[n];
+    return !rank->pending[n] && rank->over[n] < ROUNDS &&
+           (node->kind != PLAN_RECEIVE || queue_of_node(run, at, node)->messages);
+}
+
+/* Runs one node that is ready; false: none is. */
+static bool run_one(struct run *run)
+{
+    int first = (int)draw(&run->random, (uint64_t)run->n_ranks);
+    for (int r = 0; r < run->n_ranks; r++) {
+        int at = (first + r) % run->n_ranks;
+        size_t n = run->rank[at].part.n_nodes, from = n ? draw(&run->random, n) : 0;
+        for (size_t i = 0; i < n; i++) {
+            size_t node = (from + i) % n;
+            if (!run_is_ready(run, at, node))
+                continue;
+            run_node(run, at, node);
+            run_finish(run, at, node);
+            return true;
+        }
+    }
+    return false;
+}
+
+static void rank_begin(struct rank *rank)
+{
+    size_t n = rank->part.n_nodes;
+    ck_assert_uint_le(rank->part.n_places, PLACES);
+    rank->pending = calloc(n + 1, sizeof *rank->pending);
+    rank->over = calloc(n + 1, sizeof *rank->over);
+    for (size_t i = 0; i < n; i++)
+        rank->pending[i] = rank->part.node[i].within;
+}
+
+static void run_all(struct run *run, int rounds_of)
+{
+    for (int r = 0; r < run->n_ranks; r++)
+        rank_begin(&run->rank[r]);
+    while (run_one(run))
+        ;
+    for (int r = 0; r < run->n_ranks; r++) {
+        for (size_t n = 0; n < run->rank[r].part.n_nodes; n++)
+            ck_assert_msg(run->rank[r].over[n] == (uint32_t)rounds_of,
+                          "node %zu of rank %d is stuck in round %u", n, r, run->rank[r].over[n]);
+        free(run->rank[r].pending);
+        free(run->rank[r].over);
+    }
+}
+
+/* ---- What passes promise of their output alone ---- */
+
+/* Edges within a round lead to later nodes, in order; one that goes to the next round goes back to
+ * a node that `from` waited for, or to itself. */
+static void check_edges(const struct plan_round *round)
+{
+    size_t n = round->n_nodes;
+    bool *after = calloc(n * n + 1, sizeof *after); /* [a * n + b]: b runs after a */
+    uint32_t last = 0;
+    for (size_t i = 0; i < n; i++)
+        after[i * n + i] = true;
+    for (size_t i = 0; i < round->n_edges; i++) {
+        const struct plan_round_edge *edge = &round->edge[i];
+        if (edge->cyclic)
+            continue;
+        ck_assert_uint_lt(edge->from, edge->to);
+        ck_assert_uint_ge(edge->to, last);
+        last = edge->to;
+        for (size_t a = 0; a < n; a++)
+            after[a * n + edge->to] |= after[a * n + edge->from];
+    }
+    for (size_t i = 0; i < round->n_edges; i++)
+        if (round->edge[i].cyclic)
+            ck_assert(after[round->edge[i].to * n + round->edge[i].from]);
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++)
+            if (after[a * n + b] && round->node[a].kind == PLAN_RECEIVE &&
+                round->node[b].kind == PLAN_SEND)
+                ck_assert_uint_lt(round->channel[round->node[a].channel].phase,
+                                  round->channel[round->node[b].channel].phase);
+    free(after);
+}
+
+/* The ranks that run a node need what it reads; a node of one rank runs there alone. */
+static void check_assignment(const struct plan_assignment *a)
+{
+    for (size_t n = 0; n < a->round->n_nodes; n++) {
+        const struct plan_round_node *node = &a->round->node[n];
+        for (int rank = 0; rank < a->n_ranks; rank++) {
+            if (a->at[n] != PLAN_MANY)
+                ck_assert_int_eq(plan_runs(a, n, rank), a->at[n] == rank);
+            for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++)
+                if (a->reads[i] != PLAN_NONE && plan_runs(a, n, rank))
+                    ck_assert(plan_set_has(plan_needs_set(a, a->reads[i]), rank));
+        }
+        if (node->kind == PLAN_TASK)
+            ck_assert(!plan_is_dead(a, n));
+    }
+}
+
+/* One message at most from a rank to another in a phase, and items in order. */
+static void check_messages(const struct plan_messages *m)
+{
+    size_t items = 0;
+    for (size_t i = 0; i < m->n_messages; i++) {
+        const struct plan_message *message = &m->message[i];
+        ck_assert_int_ne(message->from, message->to);
+        for (size_t k = 0; k < i; k++)
+            ck_assert(m->message[k].from != message->from || m->message[k].to != message->to ||
+                      m->message[k].phase != message->phase);
+        for (size_t k = message->first; k; k = m->item[k - 1].next, items++)
+            ck_assert_uint_le(m->item[k - 1].made, message->ready);
+    }
+    ck_assert_uint_eq(items, m->n_items);
+    for (size_t i = 1; i < m->n_items; i++)
+        ck_assert_uint_ge(m->item[i].made, m->item[i - 1].made);
+}
+
+/* ---- One random round ---- */
+
+/* The number of tasks that a round runs on all ranks. */
+static size_t tasks_of(const struct plan_assignment *a)
+{
+    size_t tasks = 0;
+    for (size_t n = 0; n < a->round->n_nodes; n++)
+        for (int rank = 0; rank < a->n_ranks; rank++)
+            tasks += (a->round->node[n].kind == PLAN_TASK || a->round->node[n].kind == PLAN_SET) &&
+                     plan_runs(a, n, rank);
+    return tasks;
+}
+
+static void run_parts(struct run *run, const struct plan_round *round, const int *home)
+{
+    struct plan_assignment a;
+    struct plan_messages all, own;
+    ck_assert(plan_assign(&a, round, home, run->n_ranks));
+    ck_assert(plan_messages_find(&all, &a, PLAN_ALL));
+    check_assignment(&a);
+    check_messages(&all);
+    size_t items = 0, expected = ROUNDS * tasks_of(&a);
+    for (int r = 0; r < run->n_ranks; r++) {
+        struct rank *rank = &run->rank[r];
+        ck_assert(plan_messages_find(&own, &a, r) && plan_part(&rank->part, &own));
+        ck_assert(plan_edges(&rank->part));
+        check_messages(&own);
+        check_edges(&rank->part);
+        items += own.n_items;
+        for (size_t i = 0; i < PLACES; i++)
+            rank->value[i] = GARBAGE;
+        for (uint32_t i = 0; i < round->n_objects; i++)
+            if (plan_is_there(&a, i, r))
+                rank->value[i] = initial(i);
+        plan_messages_free(&own);
+    }
+    ck_assert_uint_eq(items, 2 * all.n_items);
+    run_all(run, ROUNDS);
+    ck_assert_uint_eq(run->tasks, expected);
+    for (int r = 0; r < run->n_ranks; r++) {
+        for (uint32_t i = 0; i < round->n_objects; i++)
+            if (run->reference->written[i] && plan_is_there(&a, i, r))
+                ck_assert_uint_eq(run->rank[r].value[i], run->reference->value[i]);
+        plan_round_free(&run->rank[r].part);
+    }
+    plan_messages_free(&all);
+    plan_assignment_free(&a);
+}
+
+/* One rank: the round is run as it was lowered. */
+static void run_whole(struct run *run, const struct plan_source *source)
+{
+    struct rank *rank = &run->rank[0];
+    run->n_ranks = 1;
+    rank->part = (struct plan_round){0};
+    ck_assert(plan_lower(&rank->part, source) && plan_edges(&rank->part));
+    check_edges(&rank->part);
+    for (uint32_t i = 0; i < source->n_objects; i++)
+        rank->value[i] = initial(i);
+    run_all(run, ROUNDS);
+    ck_assert_uint_eq(run->tasks, ROUNDS * source->n_forks);
+    plan_round_free(&rank->part);
+}
+
+static void queues_begin(struct run *run)
+{
+    for (int from = 0; from < MAX_RANKS; from++)
+        for (int to = 0; to < MAX_RANKS; to++)
+            for (size_t phase = 0; phase < PHASES; phase++)
+                run->queue[from][to][phase].first = run->queue[from][to][phase].last =
+                    run->queue[from][to][phase].messages = 0;
+}
+
+static void random_passes(struct run *run, uint64_t seed)
+{
+    struct rounds_made made;
+    struct plan_round round = {0};
+    static struct reference reference;
+    uint64_t random = seed;
+    int n_ranks = 1 + (int)draw(&random, MAX_RANKS), home[ROUNDS_MAX];
+    random_round(&made, &random, n_ranks);
+    for (size_t i = 0; i < made.source.n_objects; i++)
+        home[i] = (int)draw(&random, (uint64_t)n_ranks);
+    reference_run(&reference, &made.source);
+    run->reference = &reference;
+    run->random = random;
+    run->tasks = 0;
+    queues_begin(run);
+    run_whole(run, &made.source);
+    run->tasks = 0;
+    run->n_ranks = n_ranks;
+    for (int r = 0; r < n_ranks; r++)
+        run->rank[r].part = (struct plan_round){0};
+    ck_assert(plan_lower(&round, &made.source));
+    run_parts(run, &round, home);
+    plan_round_free(&round);
+}
+
+START_TEST(random_rounds)
+{
+    struct run *run = calloc(1, sizeof *run);
+    ck_assert_ptr_nonnull(run);
+    for (int from = 0; from < MAX_RANKS; from++)
+        for (int to = 0; to < MAX_RANKS; to++) {
+            run->queue[from][to] = calloc(PHASES, sizeof *run->queue[from][to]);
+            ck_assert_ptr_nonnull(run->queue[from][to]);
+        }
+    for (uint64_t seed = 1; seed <= (unit_quick() ? 300 : 3000); seed++)
+        random_passes(run, seed);
+    for (int from = 0; from < MAX_RANKS; from++)
+        for (int to = 0; to < MAX_RANKS; to++)
+            free(run->queue[from][to]);
+    free(run);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("random passes");
+    TCase *test = tcase_create("random passes");
+    tcase_add_test(test, random_rounds);
+    suite_add_tcase(suite, test);
+    return unit_run(suite);
+}

@@ -157,7 +157,7 @@ tests_runtime_test_views_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graph_print_SOURCES = tests/runtime/test_graph_print.c
 tests_runtime_test_graph_print_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_graphs_change_LDADD = $(DUITE_TEST_LIBS)
-PASSES_TESTS = tests/runtime/test_passes tests/runtime/test_passes_random tests/runtime/test_emit
+PASSES_TESTS = tests/runtime/test_passes tests/runtime/test_passes_random tests/runtime/test_emit tests/runtime/test_graph_sums
 check_PROGRAMS += $(PASSES_TESTS)
 TESTS += $(PASSES_TESTS)
 tests_runtime_test_passes_SOURCES = tests/runtime/test_passes.c tests/runtime/rounds.c tests/runtime/rounds.h
@@ -166,4 +166,6 @@ tests_runtime_test_passes_random_SOURCES = tests/runtime/test_passes_random.c te
 tests_runtime_test_passes_random_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_emit_SOURCES = tests/runtime/test_emit.c
 tests_runtime_test_emit_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_graph_sums_SOURCES = tests/runtime/test_graph_sums.c
+tests_runtime_test_graph_sums_LDADD = $(DUITE_TEST_LIBS)
 endif

@@ -9,6 +9,7 @@
 #include "runtime/map/blocks.h"
 #include "runtime/map/map.h"
 #include "runtime/map/tasks.h"
+#include "runtime/task/owner.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -105,11 +106,18 @@ static void release(struct move *m)
     base_free(m->workers);
 }
 
-/* The block of an object of the main program; of a view none. */
+/* The block of an object of the main program; a view has none of its own. */
 static uint32_t block_of(const struct move *m, uint32_t object)
 {
     uint32_t slot = m->p->name[object].slot;
     return slot ? m->blocks.of[slot] : MAP_NO_BLOCK;
+}
+
+/* The block that policies see behind an object: of a view that of its object, which it follows. */
+static uint32_t block_seen(const struct move *m, uint32_t object)
+{
+    const uint32_t parent = m->p->graph->object[object].parent;
+    return block_of(m, parent == PREDICT_NONE ? object : parent);
 }
 
 static void weigh(struct move *m)
@@ -145,15 +153,17 @@ static bool add_traffic(struct move *m, const struct predict_recorded *recorded)
     bool fine = true;
     for (size_t i = 0; i < recorded->n_forks && recorded->bound && fine; i++) {
         const struct predict_fork *fork = &recorded->fork[i];
+        if (fork->kernel == PREDICT_NONE)
+            continue;
         const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-        if (fork->kernel == PREDICT_NONE || fork->at >= 0 || kernel->replicated)
+        if (!task_owner_decides(fork->at, kernel->replicated))
             continue;
         uint32_t own = predict_owner(graph, fork, fork->object);
         for (size_t k = 0; k < fork->n && fine && own != PREDICT_NONE; k++) {
             uint32_t object = recorded->bound[fork->object[k]];
             if (trace_mode(kernel, k) != DUITE_W)
                 fine = map_traffic_read(
-                    &m->traffic, block_of(m, recorded->bound[own]), block_of(m, object),
+                    &m->traffic, block_seen(m, recorded->bound[own]), block_seen(m, object),
                     (double)recorded->rounds * (double)graph->object[object].bytes);
         }
     }
@@ -201,11 +211,11 @@ static int ask_balancer(struct move *m)
 static int ask_mapping(struct move *m, struct predict_recorded *recorded)
 {
     const struct predict_cluster *cluster = m->p->graph->cluster;
-    uint32_t *place = base_alloc((recorded->n_objects + 1) * sizeof *place);
+    uint32_t *block = base_alloc((recorded->n_objects + 1) * sizeof *block);
     struct map_tasks tasks = {0};
-    for (size_t i = 0; i < recorded->n_objects && place; i++)
-        place[i] = block_of(m, recorded->bound[i]);
-    int code = place && predict_round(m->p, recorded, place, &tasks)
+    for (size_t i = 0; i < recorded->n_objects && block; i++)
+        block[i] = block_seen(m, recorded->bound[i]);
+    int code = block && predict_round(m->p, recorded, block, &tasks)
                    ? map_tasks_complete(&tasks, m->blocks.n, m->seconds)
                    : base_no_memory("the tasks of a recorded graph");
     tasks.graph.stays = m->stays;
@@ -222,7 +232,7 @@ static int ask_mapping(struct move *m, struct predict_recorded *recorded)
     recorded->map_at = tasks.guessed && !recorded->replays ? 1 : UINT64_MAX;
     m->p->moves.due += m->p->moves.due == m->p->moves.replays;
     map_tasks_free(&tasks);
-    base_free(place);
+    base_free(block);
     return code;
 }
 

@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/task/owner.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,31 +14,24 @@
 
 /* ---- Tasks ---- */
 
-/* What is written first, or else read first. */
 uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
                        const uint32_t *objects)
 {
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    uint32_t own = PREDICT_NONE;
-    for (size_t i = 0; i < fork->n; i++) {
-        duite_mode mode = trace_mode(kernel, i);
-        bool writes = mode == DUITE_W || mode == DUITE_RW;
-        if (writes || (mode == DUITE_R && own == PREDICT_NONE))
-            own = objects[i];
-        if (writes)
-            break;
-    }
-    return own;
+    duite_mode access[DUITE_MAX_ACCESS] = {DUITE_NONE};
+    for (size_t i = 0; i < kernel->fixed && i < DUITE_MAX_ACCESS; i++)
+        access[i] = trace_mode(kernel, i);
+    const uint32_t own = task_owner(access, trace_mode(kernel, SIZE_MAX), fork->n);
+    return own == TASK_NOBODY ? PREDICT_NONE : objects[own];
 }
 
-/* The owner rule; `at` or everywhere. */
-static int place(const struct predict_graph *graph, const struct predict_fork *fork, uint32_t own)
+static int fork_host(const struct predict_graph *graph, const struct predict_fork *fork,
+                     uint32_t own)
 {
-    if (graph->run->kernel[fork->kernel].replicated)
-        return PREDICT_ALL;
-    if (fork->at >= 0)
-        return fork->at % (int)graph->cluster->hosts;
-    return own == PREDICT_NONE ? 0 : graph->object[own].home;
+    const int at = fork->at < 0 ? TASK_ANYWHERE : fork->at % (int)graph->cluster->hosts;
+    const int rank = task_owner_rank(at, graph->run->kernel[fork->kernel].replicated,
+                                     own == PREDICT_NONE ? -1 : graph->object[own].home);
+    return rank == TASK_EVERYWHERE ? PREDICT_ALL : rank;
 }
 
 static void stay(struct predict_program *p, uint32_t own)
@@ -52,7 +46,7 @@ void predict_fork(struct predict_program *p, const struct predict_fork *fork)
     struct predict_graph *graph = p->graph;
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
     const uint32_t own = predict_owner(graph, fork, fork->object);
-    const int host = place(graph, fork, own);
+    const int host = fork_host(graph, fork, own);
     const bool all = host == PREDICT_ALL, follows = !all && fork->at < 0;
     double seconds;
     if (!predict_times_find(p->times, fork->number, &seconds) || graph->cluster->steady)
@@ -281,14 +275,14 @@ static int walk(struct predict_program *p)
     return graph->failed ? base_no_memory("the graph of a trace") : DUITE_OK;
 }
 
-/* Tasks left an event each. Some more: for rounds without tasks, and tasks that did not run since
- * others failed. */
+/* Tasks that ran left an event each. Of the rounds that count, one task in 16 ran at least: others
+ * were poisoned. Some more: for rounds without tasks. */
 static uint64_t most_replayed(const struct trace_run *run)
 {
-    uint64_t n = 1000;
+    uint64_t n = 0;
     for (uint32_t r = 0; r < run->n_ranks; r++)
         n += run->rank[r].n_events;
-    return n;
+    return 16 * n + 1000;
 }
 
 static bool prepare(struct predict_program *p)

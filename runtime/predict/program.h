@@ -76,7 +76,7 @@ bool predict_room(struct predict_program *p, size_t n);
 void predict_fork(struct predict_program *p, const struct predict_fork *fork);
 void predict_set(struct predict_program *p, uint32_t own);
 
-/* The object that a task runs for, by the owner rule, or NONE. */
+/* The object that a task runs for, by the owner rule (task/owner.h), or NONE. */
 uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
                        const uint32_t *objects);
 
@@ -87,11 +87,12 @@ void predict_op_replays(struct predict_program *p, bool begins);
 
 void predict_take_graph(struct predict_program *p, size_t n_objects);
 void predict_replay(struct predict_program *p, size_t n_objects);
-/* A round of a recorded graph as mappings see it; place: by object of the record, its block or
- * DUITE_NO_BLOCK. All but the costs is there; map_tasks_free is due. False without memory. */
+/* A round of a recorded graph as mappings see it; block: by object of the record, its block or
+ * DUITE_NO_BLOCK. All but the costs is there; map_tasks_free is due, also without memory (false).
+ */
 struct map_tasks;
 bool predict_round(const struct predict_program *p, const struct predict_recorded *recorded,
-                   const uint32_t *place, struct map_tasks *tasks);
+                   const uint32_t *block, struct map_tasks *tasks);
 
 /* A task took so long for the object (NONE: for none) on a host (ALL: on each). */
 void predict_spend(struct predict_program *p, uint32_t object, int host, double seconds);

@@ -82,12 +82,13 @@ void predict_graphs_free(struct predict_program *p)
     free(p->recorded);
 }
 
-/* Whether the round ran: one of its tasks did. */
-static bool ran(const struct predict_program *p, const struct predict_recorded *recorded,
-                uint64_t first)
+/* Whether the round counts: one of its tasks ran. If none did, no later one counts either: the flag
+ * ended the replay, or what poisoned all of the round poisons all that follow. */
+static bool round_ran(const struct predict_program *p, const struct predict_recorded *recorded,
+                      uint64_t first)
 {
     double seconds;
-    bool found = false;
+    bool found = !recorded->n_calls;
     for (uint64_t i = 1; i <= recorded->n_calls && !found; i++)
         found = predict_times_find(p->times, first + i, &seconds);
     return found;
@@ -197,7 +198,7 @@ static void rounds(struct predict_program *p, struct predict_recorded *recorded,
     graph->replays = true;
     for (uint64_t i = 0; i < most && !graph->failed; i++) {
         uint64_t first = p->forks + i * recorded->n_calls;
-        if ((i && flagged && !ran(p, recorded, first)) || !is_seen(p, recorded))
+        if (!round_ran(p, recorded, first) || !is_seen(p, recorded))
             break;
         fork_round(p, recorded, bound, first);
         recorded->rounds++;

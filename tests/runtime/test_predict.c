@@ -331,16 +331,45 @@ START_TEST(a_far_slot_costs_little)
 }
 END_TEST
 
-/* The replay's rounds are words 3 and 4 of its entry, before the number of the last fork and the
- * one object. */
-START_TEST(many_rounds_cost_little)
+/* Rounds of which no task ran, since all were poisoned, take no time; the replay's rounds are words
+ * 3 and 4 of its entry, before the number of the last fork and the one object. */
+START_TEST(poisoned_rounds_take_no_time)
 {
     const struct trace_file_node node = {FILE_RW, 1 * MS, 0, 1, {0}};
+    const struct predict_cluster one = foretell_machine(1, 1);
     struct trace_file file = foretell_begun(1, 8);
     trace_file_graph(&file, 1, 1, &node);
     trace_file_replay(&file, 1, 1, &node, 2);
     ck_assert_uint_eq(file.word[file.n_words - 5], 2);
-    file.word[file.n_words - 5] = 2000000;
+    file.word[file.n_words - 5] = 2000000000;
+    struct predict_result r = foretell(&file, &one);
+    is(r.makespan, 2 * MS);
+    ck_assert_uint_eq(r.tasks, 2);
+}
+END_TEST
+
+/* One task in three ran in each of a thousand rounds: no reason to call the trace damaged. */
+START_TEST(poisoned_tasks_are_no_damage)
+{
+    static const struct trace_file_node nodes[] = {
+        {FILE_RW, 1 * MS, 0, 1, {0}}, {FILE_RW, 1 * MS, 0, 1, {1}}, {FILE_RW, 1 * MS, 0, 1, {2}}};
+    const struct predict_cluster one = foretell_machine(1, 1);
+    struct trace_file file = foretell_begun(3, 8);
+    trace_file_graph(&file, 3, 3, nodes);
+    trace_file_replay(&file, 3, 3, nodes, 1000);
+    for (size_t i = 0; i < file.n_events; i++)
+        if (i % 3)
+            file.event[i].number = 1; /* some nested task of the first one */
+    ck_assert_uint_eq(foretell(&file, &one).tasks, 3000);
+}
+END_TEST
+
+/* Rounds without tasks: all that says how many there were is a number. */
+START_TEST(many_rounds_cost_little)
+{
+    struct trace_file file = foretell_begun(1, 8);
+    trace_file_graph(&file, 1, 0, NULL);
+    trace_file_replay(&file, 1, 0, NULL, 2000000);
     costs_little(&file);
 }
 END_TEST
@@ -390,6 +419,8 @@ int main(void)
     tcase_add_test(cases, schedulers);
     tcase_add_test(cases, a_far_slot_costs_little);
     tcase_add_test(cases, many_rounds_cost_little);
+    tcase_add_test(cases, poisoned_rounds_take_no_time);
+    tcase_add_test(cases, poisoned_tasks_are_no_damage);
     tcase_add_test(cases, a_far_graph_costs_little);
     tcase_add_test(cases, more_objects_than_words_cost_little);
     tcase_add_test(cases, refusals);

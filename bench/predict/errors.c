@@ -1,4 +1,4 @@
-/* The sheet, run and foretold: all predictions start from one trace of one rank, and the runs are
+/* The sheet, run and predicted: all predictions start from one trace of one rank, and the runs are
  * of other threads, ranks, schedulers and mappings, each traced, so that both times are from the
  * first event of the steps to the last. And what it costs to be traced. */
 #include "bench/predict/predict.h"
@@ -15,9 +15,9 @@ static const struct predict_config CONFIGS[] = {
     {2, 1, "steal", "random", "none"}};
 enum { N_CONFIGS = sizeof CONFIGS / sizeof *CONFIGS };
 
-/* Of the sheet as it is planned: what the runs are foretold to take; < 0: not yet, NAN: it failed.
+/* Of the sheet as it is planned: what the runs are predicted to take; < 0: not yet, NAN: it failed.
  */
-static double foretold[N_CONFIGS];
+static double predicted[N_CONFIGS];
 
 /* ---- Being traced ---- */
 
@@ -31,7 +31,7 @@ static void plan_trace(struct measure *measure, const struct bench_options *opti
 /* ---- Errors ---- */
 
 /* By the trace of this round. */
-static void foretell_all(size_t round)
+static void errors_predict(size_t round)
 {
     static size_t known = SIZE_MAX;
     if (round == known)
@@ -39,7 +39,7 @@ static void foretell_all(size_t round)
     known = round;
     struct trace_run *run = predict_read_sheet(round);
     for (int i = 0; i < N_CONFIGS; i++)
-        foretold[i] = run ? predict_foretold(run, &CONFIGS[i]) : NAN;
+        predicted[i] = run ? predict_makespan(run, &CONFIGS[i]) : NAN;
     trace_run_free(run);
 }
 
@@ -54,10 +54,10 @@ static double error_of(const struct measure_metric *metric, size_t round)
 {
     double error[N_CONFIGS];
     size_t n = 0;
-    foretell_all(round);
+    errors_predict(round);
     for (size_t i = 0; i < metric->n; i++) {
         const double real = metric->of[i].sample[round];
-        error[n++] = fabs(foretold[1 + i] - real) / real;
+        error[n++] = fabs(predicted[1 + i] - real) / real;
         if (isnan(error[n - 1]))
             return NAN;
     }
@@ -86,5 +86,5 @@ static void plan_errors(struct measure *measure, const struct bench_options *opt
 const struct bench_case predict_trace = {"trace", "what a traced run of the sheet takes longer",
                                          plan_trace, predict_sheet_runs, 0};
 const struct bench_case predict_errors = {
-    "errors", "the sheet foretold for other ranks, threads and policies, against runs", plan_errors,
-    predict_sheet_runs, 8};
+    "errors", "the sheet predicted for other ranks, threads and policies, against runs",
+    plan_errors, predict_sheet_runs, 8};

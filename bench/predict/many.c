@@ -1,4 +1,4 @@
-/* A million tasks on 4,096 hosts of 16 cores, foretold: a stencil of 1,000 objects, of which each
+/* A million tasks on 4,096 hosts of 16 cores, predicted: a stencil of 1,000 objects, of which each
  * task reads two and changes one. Its trace is written by hand, since nothing depends on what ran.
  */
 #include "bench/predict/predict.h"
@@ -45,7 +45,7 @@ static void plan(struct measure *measure, const struct bench_options *options)
     measure_value(measure, bytes, 1, "B", "predict_1e6_bytes");
 }
 
-static int foretell(struct serve_request *request)
+static int many_predict(struct serve_request *request)
 {
     const struct predict_cluster cluster = {.hosts = 4096,
                                             .cores = 16,
@@ -75,7 +75,7 @@ static int many(void *context, struct serve_request *request, double *value)
 {
     (void)context;
     const double begin = serve_seconds();
-    const int code = foretell(request);
+    const int code = many_predict(request);
     *value = serve_seconds() - begin;
     return code;
 }
@@ -86,7 +86,7 @@ static int many_bytes(void *context, struct serve_request *request, double *valu
     (void)context;
     char line[200];
     double kilobytes = 0;
-    const int code = foretell(request);
+    const int code = many_predict(request);
     FILE *file = fopen("/proc/self/status", "r");
     while (file && fgets(line, sizeof line, file))
         if (sscanf(line, "VmHWM: %lf kB", &kilobytes) == 1)
@@ -100,4 +100,4 @@ static int many_bytes(void *context, struct serve_request *request, double *valu
 static const struct serve_run RUNS[] = {{"many", many}, {"many_bytes", many_bytes}, {0}};
 
 const struct bench_case predict_many = {
-    "many", "a million tasks foretold on 4,096 hosts of 16 cores: time and memory", plan, RUNS, 0};
+    "many", "a million tasks predicted on 4,096 hosts of 16 cores: time and memory", plan, RUNS, 0};

@@ -22,21 +22,21 @@ enum { N_CONFIGS = sizeof CONFIGS / sizeof *CONFIGS, MOST_ROUNDS = 10 };
 /* What was found of all rounds; made once. */
 static struct {
     bool made;
-    double foretold[N_CONFIGS], median[N_CONFIGS], low[N_CONFIGS], high[N_CONFIGS];
+    double predicted[N_CONFIGS], median[N_CONFIGS], low[N_CONFIGS], high[N_CONFIGS];
 } found;
 
 /* By the traces of all rounds, each by itself: their median, as it is of the runs. */
-static void foretell(size_t rounds)
+static void order_predict(size_t rounds)
 {
-    double foretold[N_CONFIGS][MOST_ROUNDS], low, high;
+    double predicted[N_CONFIGS][MOST_ROUNDS], low, high;
     for (size_t round = 0; round < rounds; round++) {
         struct trace_run *run = predict_read_sheet(round);
         for (int i = 0; i < N_CONFIGS; i++)
-            foretold[i][round] = run ? predict_foretold(run, &CONFIGS[i]) : NAN;
+            predicted[i][round] = run ? predict_makespan(run, &CONFIGS[i]) : NAN;
         trace_run_free(run);
     }
     for (int i = 0; i < N_CONFIGS; i++)
-        found.foretold[i] = compare_median(foretold[i], rounds, &low, &high);
+        found.predicted[i] = compare_median(predicted[i], rounds, &low, &high);
 }
 
 static void find(const struct measure_metric *metric)
@@ -50,10 +50,10 @@ static void find(const struct measure_metric *metric)
         memcpy(sample, metric->of[i].sample, n * sizeof *sample);
         found.median[i] = compare_median(sample, n, &found.low[i], &found.high[i]);
     }
-    foretell(n);
+    order_predict(n);
 }
 
-/* Pairs whose intervals do not overlap; *alike: of these, foretold in the same order. */
+/* Pairs whose intervals do not overlap; *alike: of these, predicted in the same order. */
 static unsigned count_pairs(unsigned *alike)
 {
     unsigned n = 0;
@@ -62,7 +62,7 @@ static unsigned count_pairs(unsigned *alike)
         for (int j = 0; j < N_CONFIGS; j++)
             if (found.high[i] < found.low[j]) {
                 n++;
-                *alike += found.foretold[i] < found.foretold[j];
+                *alike += found.predicted[i] < found.predicted[j];
             }
     return n;
 }
@@ -90,7 +90,7 @@ static double ratio(const struct measure_metric *metric, size_t round)
     const int i = (int)metric->scale;
     (void)round;
     find(metric);
-    return found.foretold[i] / found.median[i];
+    return found.predicted[i] / found.median[i];
 }
 
 static void plan(struct measure *measure, const struct bench_options *options)
@@ -117,5 +117,5 @@ static void plan(struct measure *measure, const struct bench_options *options)
 }
 
 const struct bench_case predict_order = {
-    "order", "which of two configurations of the sheet is faster, foretold and run", plan,
+    "order", "which of two configurations of the sheet is faster, predicted and run", plan,
     predict_sheet_runs, MOST_ROUNDS};

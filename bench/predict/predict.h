@@ -28,10 +28,10 @@ struct measure_series *predict_series(struct measure *measure, const struct benc
                                       const struct predict_config *config, const char *trace);
 extern const struct serve_run predict_sheet_runs[];
 
-/* The trace that was kept in this round; NULL: it cannot be read. And the seconds that are foretold
- * from it; NAN: they are not. */
+/* The trace that was kept in this round; NULL: it cannot be read. And the seconds that are
+ * predicted from it; NAN: they are not. */
 struct trace_run *predict_read_sheet(size_t round);
-double predict_foretold(const struct trace_run *run, const struct predict_config *config);
+double predict_makespan(const struct trace_run *run, const struct predict_config *config);
 
 extern const struct bench_case predict_trace, predict_many, predict_errors, predict_order;
 

@@ -1,4 +1,4 @@
-/* The sheet of the cases, run in a configuration, or foretold from a trace. A run is traced, so
+/* The sheet of the cases, run in a configuration, or predicted from a trace. A run is traced, so
  * that both times are from the first event of the steps to the last. A rank has the host's memory
  * between it and another one: latency and bandwidth are those of messages there. */
 #include "bench/predict/predict.h"
@@ -42,7 +42,7 @@ struct measure_series *predict_series(struct measure *measure, const struct benc
         config->scheduler, config->mapping, config->balance, trace);
 }
 
-double predict_foretold(const struct trace_run *run, const struct predict_config *config)
+double predict_makespan(const struct trace_run *run, const struct predict_config *config)
 {
     const struct predict_cluster cluster = {.hosts = config->ranks,
                                             .cores = config->threads,
@@ -96,7 +96,7 @@ static int run_flow(struct sheet *sheet, const duite_options *options, double *s
     return code;
 }
 
-/* From the first event of the trace to its last: what is foretold, too. */
+/* From the first event of the trace to its last: what is predicted, too. */
 static int span_of(const char *path, double *seconds)
 {
     struct trace_run *run;

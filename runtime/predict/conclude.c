@@ -25,7 +25,7 @@ duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
                          .warm = warm ? 1 + ran % m->cluster->cores : 0};
 }
 
-static double critical_path(const struct predict_graph *graph, double *path)
+static double conclude_path(const struct predict_graph *graph, double *path)
 {
     double longest = 0;
     for (size_t i = 0; i < graph->n_nodes; i++)
@@ -41,7 +41,7 @@ static double critical_path(const struct predict_graph *graph, double *path)
 }
 
 /* From the last node back along what each waited for. */
-static void follow_chain(const struct predict_machine *m, double *chain)
+static void conclude_chain(const struct predict_machine *m, double *chain)
 {
     const struct predict_graph *graph = m->graph;
     uint32_t at = m->latest;
@@ -63,7 +63,7 @@ static void follow_chain(const struct predict_machine *m, double *chain)
     }
 }
 
-static enum predict_limit find_limit(const struct predict_result *result)
+static enum predict_limit conclude_limit(const struct predict_result *result)
 {
     enum predict_limit limit = PREDICT_WORK;
     for (int i = 1; i < PREDICT_LIMITS; i++)
@@ -109,7 +109,7 @@ void predict_conclude(struct predict_machine *m, struct predict_result *result)
                                       .idle = all > 0 ? 1 - m->busy / all : 0};
     for (size_t i = 0; i < graph->n_nodes; i++)
         result->work += (double)graph->node[i].seconds;
-    follow_chain(m, result->chain);
-    result->critical_path = critical_path(graph, m->begin);
-    result->limit = find_limit(result);
+    conclude_chain(m, result->chain);
+    result->critical_path = conclude_path(graph, m->begin);
+    result->limit = conclude_limit(result);
 }

@@ -61,7 +61,7 @@ static const struct argp_option OPTIONS[] = {
     {"paje", PAJE, "OUT", 0, "write the predicted run as a Paje trace", 3},
     {0}};
 
-static double number(struct argp_state *state, const char *option, const char *text)
+static double option_number(struct argp_state *state, const char *option, const char *text)
 {
     char *end;
     errno = 0;
@@ -71,8 +71,8 @@ static double number(struct argp_state *state, const char *option, const char *t
     return value;
 }
 
-static uint64_t whole(struct argp_state *state, const char *option, const char *text,
-                      uint64_t least, uint64_t most)
+static uint64_t option_whole(struct argp_state *state, const char *option, const char *text,
+                             uint64_t least, uint64_t most)
 {
     char *end;
     errno = 0;
@@ -83,7 +83,7 @@ static uint64_t whole(struct argp_state *state, const char *option, const char *
     return value;
 }
 
-static error_t parse_policy(struct argp_state *state, int key, const char *value)
+static error_t option_policy(struct argp_state *state, int key, const char *value)
 {
     struct command *command = state->input;
     struct predict_cluster *cluster = &command->cluster;
@@ -104,41 +104,41 @@ static error_t parse_policy(struct argp_state *state, int key, const char *value
     return 0;
 }
 
-static error_t parse(int key, char *value, struct argp_state *state)
+static error_t option_read(int key, char *value, struct argp_state *state)
 {
     struct command *command = state->input;
     struct predict_cluster *cluster = &command->cluster;
     switch (key) {
     case HOSTS:
-        cluster->hosts = (uint32_t)whole(state, "hosts", value, 1, 1 << 20);
+        cluster->hosts = (uint32_t)option_whole(state, "hosts", value, 1, 1 << 20);
         return 0;
     case CORES:
-        cluster->cores = (uint32_t)whole(state, "cores", value, 1, 4096);
+        cluster->cores = (uint32_t)option_whole(state, "cores", value, 1, 4096);
         return 0;
     case CORE_SPEED:
-        cluster->core_speed = number(state, "core-speed", value);
+        cluster->core_speed = option_number(state, "core-speed", value);
         return 0;
     case LATENCY:
-        cluster->latency = number(state, "latency", value);
+        cluster->latency = option_number(state, "latency", value);
         return 0;
     case BANDWIDTH:
-        cluster->bandwidth = number(state, "bandwidth", value);
+        cluster->bandwidth = option_number(state, "bandwidth", value);
         return 0;
     case SWITCH:
-        cluster->capacity = number(state, "switch", value);
+        cluster->capacity = option_number(state, "switch", value);
         return 0;
     case MESSAGE:
-        cluster->message = number(state, "message", value);
+        cluster->message = option_number(state, "message", value);
         return 0;
     case OVERHEAD:
-        cluster->overhead = number(state, "overhead", value);
+        cluster->overhead = option_number(state, "overhead", value);
         return 0;
     case SCHEDULER:
     case MAPPING:
     case BALANCE:
-        return parse_policy(state, key, value);
+        return option_policy(state, key, value);
     case SEED:
-        cluster->seed = whole(state, "seed", value, 0, UINT64_MAX);
+        cluster->seed = option_whole(state, "seed", value, 0, UINT64_MAX);
         return 0;
     case STEADY:
         cluster->steady = true;
@@ -161,14 +161,14 @@ static error_t parse(int key, char *value, struct argp_state *state)
 
 static const struct argp ARGP = {
     .options = OPTIONS,
-    .parser = parse,
+    .parser = option_read,
     .args_doc = "TRACE",
     .doc = "Says what the run of a trace (duite-cloth --trace) would take on another cluster: the "
            "main program is run again in virtual time, with the same policies.\v"
            "Exit codes: 0 done, 1 a file could not be written, 2 the trace or the command line is "
            "wrong."};
 
-static void complete(struct command *command, const struct trace_run *run)
+static void command_complete(struct command *command, const struct trace_run *run)
 {
     struct predict_cluster *cluster = &command->cluster;
     const struct trace_header *header = run->rank[0].header;
@@ -184,12 +184,12 @@ static void complete(struct command *command, const struct trace_run *run)
     }
 }
 
-static double ratio(double a, double b)
+static double share_of(double a, double b)
 {
     return b > 0 ? a / b : 0;
 }
 
-static void print(const struct command *command, const struct predict_result *r)
+static void result_print(const struct command *command, const struct predict_result *r)
 {
     const struct predict_cluster *c = &command->cluster;
     const double workers = (double)c->hosts * c->cores;
@@ -203,8 +203,8 @@ static void print(const struct command *command, const struct predict_result *r)
     printf("  tasks          %llu, stolen %llu\n", (unsigned long long)r->tasks,
            (unsigned long long)r->stolen);
     printf("  makespan       %.6f s\n", r->makespan);
-    printf("  speed-up       %.3f, efficiency %.3f\n", ratio(r->work, r->makespan),
-           ratio(r->work, r->makespan * workers));
+    printf("  speed-up       %.3f, efficiency %.3f\n", share_of(r->work, r->makespan),
+           share_of(r->work, r->makespan * workers));
     printf("  idle           %.1f %%\n", 100 * r->idle);
     printf("  messages       %llu, %llu bytes\n", (unsigned long long)r->messages,
            (unsigned long long)r->bytes);
@@ -217,22 +217,22 @@ static void print(const struct command *command, const struct predict_result *r)
     printf("  held up by    ");
     for (int i = 0; i < PREDICT_LIMITS; i++)
         printf(" %s %.1f %%%s", predict_limit_name((enum predict_limit)i),
-               100 * ratio(r->chain[i], r->makespan), i + 1 < PREDICT_LIMITS ? "," : "\n");
+               100 * share_of(r->chain[i], r->makespan), i + 1 < PREDICT_LIMITS ? "," : "\n");
 }
 
-static int write_failed(const char *file)
+static int output_failed(const char *file)
 {
     fprintf(stderr, "duite-predict: %s cannot be written: %s\n", file, strerror(errno));
     return FAILED;
 }
 
-static int work(struct command *command, const struct trace_run *run)
+static int command_run(struct command *command, const struct trace_run *run)
 {
     struct predict_result result;
     FILE *paje = command->paje ? fopen(command->paje, "w") : NULL;
-    complete(command, run);
+    command_complete(command, run);
     if (command->paje && !paje)
-        return write_failed(command->paje);
+        return output_failed(command->paje);
     int code = predict(run, &command->cluster, &result, paje) ? BAD_INPUT : 0;
     if (code)
         fprintf(stderr, "duite-predict: %s: %s\n", command->file, duite_message());
@@ -240,12 +240,12 @@ static int work(struct command *command, const struct trace_run *run)
         bool fine = !ferror(paje);
         fine = !fclose(paje) && fine;
         if (!fine && !code)
-            return write_failed(command->paje);
+            return output_failed(command->paje);
     }
     if (!code)
-        print(command, &result);
+        result_print(command, &result);
     if (!code && (fflush(stdout) || ferror(stdout)))
-        code = write_failed("standard output");
+        code = output_failed("standard output");
     return code;
 }
 
@@ -272,7 +272,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "duite-predict: %s\n", duite_message());
         return BAD_INPUT;
     }
-    int code = work(&command, run);
+    int code = command_run(&command, run);
     trace_run_free(run);
     return code;
 }

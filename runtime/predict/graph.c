@@ -12,7 +12,8 @@ enum { SMALL_SUM = 1024 };     /* bytes: in replays such sums are made on every 
 #define MOST_NODE  0x7fffffffu /* as many bits as there are for them */
 #define MOST_PHASE 0x1fffffffu
 
-static bool grow(struct predict_graph *graph, void *array, size_t *capacity, size_t n, size_t size)
+static bool graph_room(struct predict_graph *graph, void *array, size_t *capacity, size_t n,
+                       size_t size)
 {
     void **old = array;
     if (n < *capacity && !graph->failed)
@@ -27,11 +28,12 @@ static bool grow(struct predict_graph *graph, void *array, size_t *capacity, siz
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node)
 {
     graph->failed |= graph->n_nodes >= MOST_NODE;
-    if (!grow(graph, &graph->node, &graph->nodes_capacity, graph->n_nodes, sizeof *graph->node))
+    if (!graph_room(graph, &graph->node, &graph->nodes_capacity, graph->n_nodes,
+                    sizeof *graph->node))
         return 0;
     if (graph->plain) {
-        if (!grow(graph, &graph->shown, &graph->shown_capacity, graph->n_nodes,
-                  sizeof *graph->shown))
+        if (!graph_room(graph, &graph->shown, &graph->shown_capacity, graph->n_nodes,
+                        sizeof *graph->shown))
             return 0;
         graph->shown[graph->n_nodes] = 0;
     }
@@ -41,10 +43,11 @@ uint32_t predict_add(struct predict_graph *graph, const struct predict_node *nod
     return (uint32_t)graph->n_nodes++;
 }
 
-static void join(struct predict_graph *graph, uint32_t from, uint32_t to, bool reads)
+static void edge_add_kind(struct predict_graph *graph, uint32_t from, uint32_t to, bool reads)
 {
     if (from == PREDICT_NONE || from == to ||
-        !grow(graph, &graph->edge, &graph->edges_capacity, graph->n_edges, sizeof *graph->edge))
+        !graph_room(graph, &graph->edge, &graph->edges_capacity, graph->n_edges,
+                    sizeof *graph->edge))
         return;
     if (from >= graph->round) {
         struct predict_node *after = &graph->node[to];
@@ -63,14 +66,14 @@ static void join(struct predict_graph *graph, uint32_t from, uint32_t to, bool r
 
 void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to)
 {
-    join(graph, from, to, false);
+    edge_add_kind(graph, from, to, false);
 }
 
 /* The value of an object, after `from`. */
-static void join_reader(struct predict_graph *graph, uint32_t from, uint32_t to, uint32_t object)
+static void edge_value(struct predict_graph *graph, uint32_t from, uint32_t to, uint32_t object)
 {
     struct predict_object *o = &graph->object[object];
-    join(graph, from, to, true);
+    edge_add_kind(graph, from, to, true);
     if (!graph->plain || from == PREDICT_NONE || o->shown ||
         graph->node[from].block == graph->node[to].block)
         return;
@@ -78,17 +81,18 @@ static void join_reader(struct predict_graph *graph, uint32_t from, uint32_t to,
     graph->shown[from] += (float)o->bytes;
 }
 
-static void push(struct predict_graph *graph, uint32_t *list, uint32_t node, uint32_t host)
+static void link_push(struct predict_graph *graph, uint32_t *list, uint32_t node, uint32_t host)
 {
-    if (!grow(graph, &graph->link, &graph->links_capacity, graph->n_links, sizeof *graph->link))
+    if (!graph_room(graph, &graph->link, &graph->links_capacity, graph->n_links,
+                    sizeof *graph->link))
         return;
     graph->link[graph->n_links] = (struct predict_link){node, host, *list};
     *list = (uint32_t)graph->n_links++;
 }
 
 /* A node that a round's beginning holds back like any other root. */
-static uint32_t add_own(struct predict_graph *graph, enum predict_kind kind, uint32_t host,
-                        uint32_t what, uint64_t number)
+static uint32_t node_own(struct predict_graph *graph, enum predict_kind kind, uint32_t host,
+                         uint32_t what, uint64_t number)
 {
     double seconds = kind == PREDICT_TASK || kind == PREDICT_EVERYWHERE ? graph->own[what] : 0;
     return predict_add(graph, &(struct predict_node){.number = number,
@@ -102,12 +106,12 @@ static uint32_t add_own(struct predict_graph *graph, enum predict_kind kind, uin
 
 /* ---- Reading ---- */
 
-static uint32_t send(struct predict_graph *graph, uint32_t object, int host)
+static uint32_t message_add(struct predict_graph *graph, uint32_t object, int host)
 {
     struct predict_object *o = &graph->object[object];
     bool all = host == PREDICT_ALL;
     uint32_t message =
-        add_own(graph, all ? PREDICT_EXCHANGE : PREDICT_MESSAGE, (uint32_t)o->holder, 0, o->bytes);
+        node_own(graph, all ? PREDICT_EXCHANGE : PREDICT_MESSAGE, (uint32_t)o->holder, 0, o->bytes);
     if (graph->failed)
         return PREDICT_NONE;
     graph->node[message].block = all ? 0 : (uint32_t)host;
@@ -115,34 +119,34 @@ static uint32_t send(struct predict_graph *graph, uint32_t object, int host)
     predict_edge(graph, o->writer, message);
     predict_hold(graph, message);
     graph->node[message].priority = predict_packets(graph, message);
-    push(graph, &o->readers, message, (uint32_t)o->holder);
+    link_push(graph, &o->readers, message, (uint32_t)o->holder);
     return message;
 }
 
 /* The node after which the object's value is on the host, or everywhere; NONE: it always was. */
-static uint32_t fetch(struct predict_graph *graph, uint32_t object, int host)
+static uint32_t value_fetch(struct predict_graph *graph, uint32_t object, int host)
 {
     struct predict_object *o = &graph->object[object];
     if (o->holder == PREDICT_ALL || o->holder == host ||
         (graph->cluster->hosts == 1 && host == PREDICT_ALL))
         return o->writer;
     if (host == PREDICT_ALL) {
-        o->writer = send(graph, object, host);
+        o->writer = message_add(graph, object, host);
         o->holder = PREDICT_ALL;
         return o->writer;
     }
     for (uint32_t i = o->copies; i != PREDICT_NONE; i = graph->link[i].next)
         if (graph->link[i].host == (uint32_t)host)
             return graph->link[i].node;
-    uint32_t message = send(graph, object, host);
-    push(graph, &o->copies, message, (uint32_t)host);
+    uint32_t message = message_add(graph, object, host);
+    link_push(graph, &o->copies, message, (uint32_t)host);
     return message;
 }
 
 /* ---- Writing ---- */
 
 /* `node` makes the next value, on a host or on all. */
-static void overwrite(struct predict_graph *graph, uint32_t node, uint32_t object, int host)
+static void value_overwrite(struct predict_graph *graph, uint32_t node, uint32_t object, int host)
 {
     struct predict_object *o = &graph->object[object];
     bool in_place = o->holder == host || o->holder == PREDICT_ALL || host == PREDICT_ALL;
@@ -160,7 +164,7 @@ static void overwrite(struct predict_graph *graph, uint32_t node, uint32_t objec
 /* ---- Sums ---- */
 
 /* A piece for each other host that contributes, and its message: in graph->piece by host. */
-static void make_pieces(struct predict_graph *graph, uint32_t object)
+static void pieces_make(struct predict_graph *graph, uint32_t object)
 {
     const struct predict_object *o = &graph->object[object];
     uint32_t home = (uint32_t)o->home;
@@ -171,29 +175,29 @@ static void make_pieces(struct predict_graph *graph, uint32_t object)
         if (host == home)
             continue;
         if (graph->piece[host] == PREDICT_NONE)
-            graph->piece[host] = add_own(graph, PREDICT_TASK, host, TASK_PIECES, 0);
+            graph->piece[host] = node_own(graph, PREDICT_TASK, host, TASK_PIECES, 0);
         predict_edge(graph, graph->link[i].node, graph->piece[host]);
     }
 }
 
 /* Each contributor has a value of its own. */
-static void join_contribution(struct predict_graph *graph, uint32_t from, uint32_t sum,
+static void edge_contribution(struct predict_graph *graph, uint32_t from, uint32_t sum,
                               uint32_t object)
 {
-    join(graph, from, sum, true);
+    edge_add_kind(graph, from, sum, true);
     if (graph->plain && graph->node[from].block != graph->node[sum].block)
         graph->shown[from] += (float)graph->object[object].bytes;
 }
 
 /* The nodes that the sum waits for where it is made: pieces of other hosts come by message. */
-static void gather_pieces(struct predict_graph *graph, uint32_t object, uint32_t sum)
+static void pieces_gather(struct predict_graph *graph, uint32_t object, uint32_t sum)
 {
     const struct predict_object *o = &graph->object[object];
     uint32_t home = (uint32_t)o->home;
     for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
         uint32_t host = graph->link[i].host;
         if (host == home)
-            join_contribution(graph, graph->link[i].node, sum, object);
+            edge_contribution(graph, graph->link[i].node, sum, object);
         else if (graph->piece[host] != PREDICT_NONE)
             predict_edge(graph, graph->piece[host], sum);
         if (host != home)
@@ -202,14 +206,14 @@ static void gather_pieces(struct predict_graph *graph, uint32_t object, uint32_t
 }
 
 /* The pieces' messages take their places. */
-static void send_pieces(struct predict_graph *graph, uint32_t object)
+static void pieces_send(struct predict_graph *graph, uint32_t object)
 {
     const struct predict_object *o = &graph->object[object];
     for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
         uint32_t host = graph->link[i].host, piece = graph->piece[host];
         if (host == (uint32_t)o->home || graph->node[piece].kind == PREDICT_MESSAGE)
             continue;
-        uint32_t message = add_own(graph, PREDICT_MESSAGE, host, 0, o->bytes);
+        uint32_t message = node_own(graph, PREDICT_MESSAGE, host, 0, o->bytes);
         graph->node[message].block = (uint32_t)o->home;
         predict_edge(graph, piece, message);
         graph->node[message].priority = predict_packets(graph, message);
@@ -218,10 +222,10 @@ static void send_pieces(struct predict_graph *graph, uint32_t object)
 }
 
 /* In a replay: each host sends what it has to all others, and all add it up. */
-static uint32_t exchange_pieces(struct predict_graph *graph, uint32_t object)
+static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object)
 {
     const struct predict_object *o = &graph->object[object];
-    uint32_t exchange = add_own(graph, PREDICT_EXCHANGE, 0, 0, o->bytes);
+    uint32_t exchange = node_own(graph, PREDICT_EXCHANGE, 0, 0, o->bytes);
     if (graph->failed)
         return PREDICT_NONE;
     graph->node[exchange].block = 1; /* all send */
@@ -231,49 +235,50 @@ static uint32_t exchange_pieces(struct predict_graph *graph, uint32_t object)
     return exchange;
 }
 
-static void close_sum(struct predict_graph *graph, uint32_t object)
+static void pieces_reduce(struct predict_graph *graph, uint32_t object)
 {
     bool all =
         graph->replays && graph->cluster->hosts > 1 && graph->object[object].bytes <= SMALL_SUM;
     int home = all ? PREDICT_ALL : graph->object[object].home;
-    uint32_t fetched = fetch(graph, object, home), exchange = PREDICT_NONE;
+    uint32_t fetched = value_fetch(graph, object, home), exchange = PREDICT_NONE;
     if (all)
-        exchange = exchange_pieces(graph, object);
+        exchange = pieces_exchange(graph, object);
     else
-        make_pieces(graph, object);
+        pieces_make(graph, object);
     if (!all)
-        send_pieces(graph, object);
-    uint32_t sum = add_own(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, all ? 0 : (uint32_t)home,
-                           graph->replays ? TASK_NODE_SUM : TASK_COMBINE, 0);
+        pieces_send(graph, object);
+    uint32_t sum =
+        node_own(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, all ? 0 : (uint32_t)home,
+                 graph->replays ? TASK_NODE_SUM : TASK_COMBINE, 0);
     if (graph->failed)
         return;
-    join_reader(graph, fetched, sum, object);
+    edge_value(graph, fetched, sum, object);
     predict_edge(graph, exchange, sum);
     if (!all)
-        gather_pieces(graph, object, sum);
-    overwrite(graph, sum, object, home);
+        pieces_gather(graph, object, sum);
+    value_overwrite(graph, sum, object, home);
     graph->object[object].leaves = PREDICT_NONE;
 }
 
 /* ---- Uses ---- */
 
 /* A view is gathered where its object is, as a task that reads it. */
-static void gather_view(struct predict_graph *graph, uint32_t view)
+static void value_gather(struct predict_graph *graph, uint32_t view)
 {
     uint32_t parent = graph->object[view].parent;
     if (graph->object[parent].leaves != PREDICT_NONE)
-        close_sum(graph, parent);
+        pieces_reduce(graph, parent);
     if (graph->failed || graph->object[view].gathered == graph->object[parent].writer)
         return;
     const struct predict_object *o = &graph->object[parent];
     int host = o->holder == PREDICT_ALL ? o->home : o->holder;
-    uint32_t task = add_own(graph, PREDICT_TASK, (uint32_t)host,
-                            graph->replays ? TASK_NODE_VIEW : TASK_VIEW, 0);
+    uint32_t task = node_own(graph, PREDICT_TASK, (uint32_t)host,
+                             graph->replays ? TASK_NODE_VIEW : TASK_VIEW, 0);
     if (graph->failed)
         return;
     graph->linked = false;
     predict_use(graph, task, parent, DUITE_R, o->writer);
-    overwrite(graph, task, view, host);
+    value_overwrite(graph, task, view, host);
     predict_hold(graph, task);
     graph->object[view].gathered = graph->object[parent].writer;
 }
@@ -283,10 +288,10 @@ uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mod
     if (mode == DUITE_CW)
         return PREDICT_NONE;
     if (graph->object[object].leaves != PREDICT_NONE)
-        close_sum(graph, object);
+        pieces_reduce(graph, object);
     if (graph->object[object].parent != PREDICT_NONE && !graph->failed)
-        gather_view(graph, object);
-    return mode == DUITE_W || graph->failed ? PREDICT_NONE : fetch(graph, object, host);
+        value_gather(graph, object);
+    return mode == DUITE_W || graph->failed ? PREDICT_NONE : value_fetch(graph, object, host);
 }
 
 void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
@@ -294,13 +299,13 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
 {
     const uint32_t at = graph->node[node].host;
     const int host = graph->node[node].kind == PREDICT_EVERYWHERE ? PREDICT_ALL : (int)at;
-    join_reader(graph, prepared, node, object);
+    edge_value(graph, prepared, node, object);
     if (mode == DUITE_CW)
-        push(graph, &graph->object[object].leaves, node, at);
+        link_push(graph, &graph->object[object].leaves, node, at);
     else if (mode == DUITE_R)
-        push(graph, &graph->object[object].readers, node, at);
+        link_push(graph, &graph->object[object].readers, node, at);
     else
-        overwrite(graph, node, object, host);
+        value_overwrite(graph, node, object, host);
 }
 
 /* Where it was, there is a copy. */
@@ -311,15 +316,15 @@ void predict_rehome(struct predict_graph *graph, uint32_t object, int host)
     o->home = host;
     if (o->holder == PREDICT_ALL || o->holder == host)
         return;
-    o->writer = fetch(graph, object, host);
+    o->writer = value_fetch(graph, object, host);
     o->holder = host;
-    push(graph, &o->copies, writer, before);
+    link_push(graph, &o->copies, writer, before);
 }
 
 void predict_hold(struct predict_graph *graph, uint32_t node)
 {
     if (!graph->linked)
-        join(graph, graph->flag, node, true);
+        edge_add_kind(graph, graph->flag, node, true);
 }
 
 void predict_graph_free(struct predict_graph *graph)

@@ -117,7 +117,7 @@ void predict_packets_clear(struct predict_graph *graph);
 /* Of a message whose edges to it are there: how many packets it adds to those of the round. */
 int32_t predict_packets(struct predict_graph *graph, uint32_t message);
 
-/* Whether both can be. */
+/* Whether both are valid: DUITE_OK or DUITE_E_ARGUMENT. */
 int predict_check(const struct trace_run *run, const struct predict_cluster *cluster);
 
 /* Makes the graph of a trace. Errors as of predict. */

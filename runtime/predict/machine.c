@@ -1,4 +1,4 @@
-/* The parts of the machine: queues, the events to come, and the network. */
+/* The parts of the machine: queues, the events to come, and the network; and how it is made. */
 #include "runtime/predict/machine.h"
 
 #include "runtime/base/memory.h"
@@ -156,4 +156,114 @@ double predict_exchange(struct predict_network *network, double now,
     network->bytes += all * bytes;
     *flight = cluster->latency;
     return now + cluster->latency + fmax(takes, fabric);
+}
+
+/* ---- Start and stop ---- */
+
+/* What a worker sees of the others of its host: the next numbers first, nobody nearer. */
+static bool machine_near(struct predict_machine *m)
+{
+    const size_t cores = m->cluster->cores, others = cores - 1;
+    if (!m->scheduler->look)
+        return true;
+    m->near = base_alloc(cores * sizeof *m->near);
+    m->other = base_alloc((cores * others + 1) * sizeof *m->other);
+    m->level = base_alloc_zero((others + 1) * sizeof *m->level);
+    if (!m->near || !m->other || !m->level)
+        return false;
+    for (size_t w = 0; w < cores; w++) {
+        for (size_t i = 0; i < others; i++)
+            m->other[w * others + i] = (unsigned)((w + 1 + i) % cores);
+        m->near[w] = (duite_near){(unsigned)others, m->other + w * others, m->level};
+    }
+    return true;
+}
+
+static bool machine_prepare(struct predict_machine *m, bool paje)
+{
+    const struct predict_graph *graph = m->graph;
+    const size_t n = graph->n_nodes, workers = m->n_workers, hosts = m->cluster->hosts;
+    m->stride = (m->scheduler->state_size + 63) / 64 * 64 + 64;
+    m->states = base_alloc_zero(workers * m->stride);
+    m->queue = base_alloc_zero(workers * sizeof *m->queue);
+    m->shared = base_alloc_zero(hosts * sizeof *m->shared);
+    m->state = base_alloc_zero(workers);
+    m->next = base_alloc(workers * sizeof *m->next);
+    m->ran = base_alloc(workers * sizeof *m->ran);
+    m->warm = base_alloc(graph->n_objects * sizeof *m->warm + 1);
+    m->last = base_alloc(hosts * sizeof *m->last);
+    m->idle = base_alloc(hosts * sizeof *m->idle);
+    m->looked = base_alloc_zero(workers * sizeof *m->looked);
+    m->handled = base_alloc_zero(hosts * sizeof *m->handled);
+    m->paid = base_alloc_zero(hosts * sizeof *m->paid);
+    m->network.out = base_alloc_zero(hosts * sizeof(double));
+    m->network.in = base_alloc_zero(hosts * sizeof(double));
+    m->begin = base_alloc(n * sizeof *m->begin + 1);
+    m->end = base_alloc(n * sizeof *m->end + 1);
+    m->cause = base_alloc_zero(n * sizeof *m->cause + 1);
+    m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
+    return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->warm &&
+           m->last && m->idle && m->looked && m->handled && m->paid && m->network.out &&
+           m->network.in && m->begin && m->end && m->cause && (m->runs_on || !paje) &&
+           machine_near(m);
+}
+
+static void machine_scheduler(struct predict_machine *m, uint32_t worker)
+{
+    const uint32_t cores = m->cluster->cores;
+    const duite_scheduler *scheduler = m->scheduler;
+    void *state = predict_worker_state(m, worker);
+    base_mark_begin(m->mark, BASE_SCHEDULER_START);
+    if (scheduler->start)
+        scheduler->start(state, worker % cores, cores, m->cluster->seed);
+    base_mark_end(m->mark);
+    base_mark_begin(m->mark, BASE_SCHEDULER_LOOK);
+    if (scheduler->look)
+        scheduler->look(state, &m->near[worker % cores]);
+    base_mark_end(m->mark);
+    base_mark_begin(m->mark, BASE_SCHEDULER_SERVE);
+    m->queue[worker].heap = scheduler->serve(state) == DUITE_HIGHEST;
+    base_mark_end(m->mark);
+}
+
+static void machine_init(struct predict_machine *m)
+{
+    const uint32_t cores = m->cluster->cores;
+    for (uint32_t w = 0; w < m->n_workers; w++) {
+        machine_scheduler(m, w);
+        m->next[w] = m->ran[w] = PREDICT_NONE;
+        m->state[w] = w % cores ? IDLE : RESERVED;
+    }
+    for (uint32_t h = 0; h < m->cluster->hosts; h++) {
+        m->shared[h].heap = m->queue[h * cores].heap;
+        m->last[h] = h * cores;
+        m->idle[h] = cores - 1;
+    }
+    for (size_t i = 0; i < m->graph->n_nodes; i++)
+        m->end[i] = -1;
+    for (size_t i = 0; i < m->graph->n_objects; i++)
+        m->warm[i] = PREDICT_NONE;
+}
+
+bool predict_machine_start(struct predict_machine *m, bool paje)
+{
+    const bool fine = machine_prepare(m, paje);
+    if (fine)
+        machine_init(m);
+    return fine;
+}
+
+void predict_machine_stop(struct predict_machine *m)
+{
+    for (uint32_t w = 0; w < m->n_workers && m->queue; w++)
+        free(m->queue[w].node);
+    for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
+        free(m->shared[h].node);
+    free(m->events.event);
+    void *const all[] = {m->states,  m->queue,       m->shared,     m->state, m->next,  m->ran,
+                         m->last,    m->network.out, m->network.in, m->begin, m->end,   m->cause,
+                         m->idle,    m->runs_on,     m->near,       m->other, m->level, m->looked,
+                         m->handled, m->paid,        m->warm};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        base_free(all[i]);
 }

@@ -94,6 +94,16 @@ struct predict_machine {
     uint32_t went_on; /* ... when the main program went on last; NONE: it never waited */
 };
 
+/* The machine before its first event. `paje`: it keeps who runs what. False without memory;
+ * predict_machine_stop is due all the same. */
+bool predict_machine_start(struct predict_machine *machine, bool paje);
+void predict_machine_stop(struct predict_machine *machine);
+
+static inline void *predict_worker_state(const struct predict_machine *machine, uint32_t worker)
+{
+    return machine->states + worker * machine->stride;
+}
+
 /* The task as schedulers see it. */
 duite_ready predict_describe(const struct predict_machine *machine, uint32_t node);
 

@@ -73,7 +73,7 @@ void predict_spend(struct predict_program *p, uint32_t object, int host, double 
 
 /* ---- What is told ---- */
 
-static bool begin(struct move *m)
+static bool move_begin(struct move *m)
 {
     struct predict_program *p = m->p;
     if (map_blocks_find(&p->table, &m->blocks))
@@ -95,7 +95,7 @@ static bool begin(struct move *m)
     return true;
 }
 
-static void release(struct move *m)
+static void move_end(struct move *m)
 {
     map_blocks_free(&m->blocks);
     map_traffic_free(&m->traffic);
@@ -107,20 +107,20 @@ static void release(struct move *m)
 }
 
 /* The block of an object of the main program; a view has none of its own. */
-static uint32_t block_of(const struct move *m, uint32_t object)
+static uint32_t move_block(const struct move *m, uint32_t object)
 {
     uint32_t slot = m->p->name[object].slot;
     return slot ? m->blocks.of[slot] : MAP_NO_BLOCK;
 }
 
 /* The block that policies see behind an object: of a view that of its object, which it follows. */
-static uint32_t block_seen(const struct move *m, uint32_t object)
+static uint32_t move_block_seen(const struct move *m, uint32_t object)
 {
     const uint32_t parent = m->p->graph->object[object].parent;
-    return block_of(m, parent == PREDICT_NONE ? object : parent);
+    return move_block(m, parent == PREDICT_NONE ? object : parent);
 }
 
-static void weigh(struct move *m)
+static void move_weigh(struct move *m)
 {
     const struct predict_moves *moves = &m->p->moves;
     for (uint32_t slot = 0; slot < m->p->table.n_slots && slot < moves->spent_capacity; slot++)
@@ -128,13 +128,13 @@ static void weigh(struct move *m)
             m->seconds[m->blocks.of[slot]] += moves->spent[slot];
     for (size_t i = 0; i < m->p->slots_capacity; i++) {
         uint32_t object = m->p->slot[i];
-        if (object < m->p->graph->n_objects && block_of(m, object) != MAP_NO_BLOCK)
-            m->bytes[block_of(m, object)] += m->p->graph->object[object].bytes;
+        if (object < m->p->graph->n_objects && move_block(m, object) != MAP_NO_BLOCK)
+            m->bytes[move_block(m, object)] += m->p->graph->object[object].bytes;
     }
 }
 
 /* On the host where most is to be done a core. */
-static double passed(const struct move *m)
+static double move_seconds(const struct move *m)
 {
     const uint32_t hosts = m->p->graph->cluster->hosts;
     double most = 0;
@@ -147,7 +147,7 @@ static double passed(const struct move *m)
     return most;
 }
 
-static bool add_traffic(struct move *m, const struct predict_recorded *recorded)
+static bool move_traffic(struct move *m, const struct predict_recorded *recorded)
 {
     const struct predict_graph *graph = m->p->graph;
     bool fine = true;
@@ -162,9 +162,10 @@ static bool add_traffic(struct move *m, const struct predict_recorded *recorded)
         for (size_t k = 0; k < fork->n && fine && own != PREDICT_NONE; k++) {
             uint32_t object = recorded->bound[fork->object[k]];
             if (trace_mode(kernel, k) != DUITE_W)
-                fine = map_traffic_read(
-                    &m->traffic, block_seen(m, recorded->bound[own]), block_seen(m, object),
-                    (double)recorded->rounds * (double)graph->object[object].bytes);
+                fine = map_traffic_read(&m->traffic, move_block_seen(m, recorded->bound[own]),
+                                        move_block_seen(m, object),
+                                        (double)recorded->rounds *
+                                            (double)graph->object[object].bytes);
         }
     }
     return fine;
@@ -172,14 +173,14 @@ static bool add_traffic(struct move *m, const struct predict_recorded *recorded)
 
 /* ---- Asking ---- */
 
-static int ask_balancer(struct move *m)
+static int move_ask_balancer(struct move *m)
 {
     struct predict_program *p = m->p;
     const struct predict_cluster *cluster = p->graph->cluster;
     struct predict_moves *moves = &p->moves;
     bool fine = true;
     for (size_t i = 0; i < p->n_recorded && fine; i++)
-        fine = add_traffic(m, &p->recorded[i]);
+        fine = move_traffic(m, &p->recorded[i]);
     int code =
         fine ? map_traffic_end(&m->traffic, &m->blocks) : base_no_memory("the blocks of objects");
     if (code)
@@ -195,7 +196,7 @@ static int ask_balancer(struct move *m)
                                  .other = moves->other,
                                  .workers = m->workers,
                                  .byte_seconds = 1 / cluster->bandwidth,
-                                 .seconds = passed(m),
+                                 .seconds = move_seconds(m),
                                  .replays = moves->replays,
                                  .since = moves->replays - moves->looked,
                                  .mapping = cluster->mapping,
@@ -208,13 +209,13 @@ static int ask_balancer(struct move *m)
     return DUITE_OK;
 }
 
-static int ask_mapping(struct move *m, struct predict_recorded *recorded)
+static int move_ask_mapping(struct move *m, struct predict_recorded *recorded)
 {
     const struct predict_cluster *cluster = m->p->graph->cluster;
     uint32_t *block = base_alloc((recorded->n_objects + 1) * sizeof *block);
     struct map_tasks tasks = {0};
     for (size_t i = 0; i < recorded->n_objects && block; i++)
-        block[i] = block_seen(m, recorded->bound[i]);
+        block[i] = move_block_seen(m, recorded->bound[i]);
     int code = block && predict_round(m->p, recorded, block, &tasks)
                    ? map_tasks_complete(&tasks, m->blocks.n, m->seconds)
                    : base_no_memory("the tasks of a recorded graph");
@@ -238,7 +239,7 @@ static int ask_mapping(struct move *m, struct predict_recorded *recorded)
 
 /* ---- Moving ---- */
 
-static int check(const struct move *m)
+static int move_check(const struct move *m)
 {
     const struct predict_cluster *cluster = m->p->graph->cluster;
     for (size_t b = 0; b < m->blocks.n; b++) {
@@ -253,7 +254,7 @@ static int check(const struct move *m)
 }
 
 /* A block that moves gets a number that nobody had before at its new home. */
-static void move_all(struct move *m)
+static void move_homes(struct move *m)
 {
     struct predict_program *p = m->p;
     struct predict_graph *graph = p->graph;
@@ -262,7 +263,7 @@ static void move_all(struct move *m)
             m->blocks.block[b].number = p->table.blocks[m->home[b]]++;
     for (size_t i = 0; i < p->slots_capacity && !graph->failed; i++) {
         uint32_t object = p->slot[i];
-        uint32_t block = object < graph->n_objects ? block_of(m, object) : MAP_NO_BLOCK;
+        uint32_t block = object < graph->n_objects ? move_block(m, object) : MAP_NO_BLOCK;
         if (block == MAP_NO_BLOCK || m->home[block] == m->blocks.block[block].home)
             continue;
         struct data_object *own = &p->table.object[p->name[object].slot];
@@ -277,7 +278,7 @@ static void move_all(struct move *m)
 }
 
 /* Nothing that was measured counts again. */
-static void look_anew(struct predict_program *p)
+static void move_forget(struct predict_program *p)
 {
     for (size_t i = 0; i < p->moves.spent_capacity; i++)
         p->moves.spent[i] = 0;
@@ -298,17 +299,17 @@ void predict_move(struct predict_program *p, struct predict_recorded *recorded)
     if (cluster->hosts > 1 && (maps || due)) {
         struct move m = {.p = p};
         predict_op_wait(p);
-        p->graph->failed |= !begin(&m);
+        p->graph->failed |= !move_begin(&m);
         if (!p->graph->failed) {
-            weigh(&m);
-            p->code = maps ? ask_mapping(&m, recorded) : ask_balancer(&m);
+            move_weigh(&m);
+            p->code = maps ? move_ask_mapping(&m, recorded) : move_ask_balancer(&m);
         }
         if (!p->graph->failed && !p->code)
-            p->code = check(&m);
+            p->code = move_check(&m);
         if (!p->graph->failed && !p->code)
-            move_all(&m);
-        look_anew(p);
-        release(&m);
+            move_homes(&m);
+        move_forget(p);
+        move_end(&m);
     }
     recorded->replays++;
     moves->replays++;

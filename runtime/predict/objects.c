@@ -10,7 +10,7 @@
 
 /* Slots are used one after the other, and an object has several words of the trace: a slot beyond
  * their number is damage, not a reason to make room. */
-static uint32_t *slot_of(struct predict_program *p, uint32_t slot)
+static uint32_t *slot_object(struct predict_program *p, uint32_t slot)
 {
     static uint32_t none;
     if (slot >= p->graph->run->n_words) {
@@ -32,7 +32,7 @@ static uint32_t *slot_of(struct predict_program *p, uint32_t slot)
 /* The object that a slot names. */
 uint32_t predict_object_at(struct predict_program *p, uint32_t slot)
 {
-    uint32_t found = *slot_of(p, slot);
+    uint32_t found = *slot_object(p, slot);
     p->damaged |= found >= p->graph->n_objects;
     return found < p->graph->n_objects ? found : 0;
 }
@@ -69,7 +69,7 @@ void predict_make(struct predict_program *p, bool view)
         graph->failed = true;
     }
     graph->object[graph->n_objects] = new;
-    *slot_of(p, slot) = (uint32_t)graph->n_objects++;
+    *slot_object(p, slot) = (uint32_t)graph->n_objects++;
 }
 
 void predict_drop(struct predict_program *p)
@@ -78,7 +78,7 @@ void predict_drop(struct predict_program *p)
     duite_object name = p->name ? p->name[predict_object_at(p, slot)] : DUITE_NO_OBJECT;
     if (name.slot)
         data_object_drop(&p->table, name);
-    *slot_of(p, slot) = PREDICT_NONE;
+    *slot_object(p, slot) = PREDICT_NONE;
 }
 
 void predict_hint(struct predict_program *p, size_t n)
@@ -111,7 +111,7 @@ void predict_follow(struct predict_program *p)
 
 /* Blocks with homes that were traced: numbered on their host in the order in which they came there.
  * `block`: their number among all. */
-static uint32_t number_there(struct predict_program *p, uint32_t block, int host)
+static uint32_t home_block(struct predict_program *p, uint32_t block, int host)
 {
     void *moved = base_grow(p->block, &p->blocks_capacity, (size_t)block + 1, sizeof *p->block);
     p->graph->failed |= !moved;
@@ -125,7 +125,7 @@ static uint32_t number_there(struct predict_program *p, uint32_t block, int host
     return p->block[block];
 }
 
-static void give_home(struct predict_program *p, uint32_t own, uint32_t traced)
+static void home_give(struct predict_program *p, uint32_t own, uint32_t traced)
 {
     struct predict_object *o = &p->graph->object[own];
     const struct data_object *settled = &p->table.object[p->name[own].slot];
@@ -135,7 +135,7 @@ static void give_home(struct predict_program *p, uint32_t own, uint32_t traced)
     if (p->damaged || (maps && moves))
         return;
     o->home = maps ? settled->home : (int)traced;
-    o->block = maps ? settled->block : number_there(p, settled->block, o->home);
+    o->block = maps ? settled->block : home_block(p, settled->block, o->home);
     if (!moves)
         o->holder = o->home;
 }
@@ -151,6 +151,6 @@ void predict_homes(struct predict_program *p, size_t n)
         uint32_t own = predict_object_at(p, trace_words_next(&p->words)),
                  home = trace_words_next(&p->words);
         if (!p->damaged && p->name[own].slot)
-            give_home(p, own, home);
+            home_give(p, own, home);
     }
 }

@@ -20,10 +20,11 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
     if (run->lost || !run->whole)
         return base_error(DUITE_E_ARGUMENT,
                           "the trace is not whole (%llu events or words are missing): nothing can "
-                          "be foretold from it",
+                          "be predicted from it",
                           (unsigned long long)run->lost);
     if (!c->hosts || !c->cores || c->hosts > MOST_WORKERS / c->cores)
-        return base_error(DUITE_E_ARGUMENT, "%u hosts with %u cores cannot be", c->hosts, c->cores);
+        return base_error(DUITE_E_ARGUMENT, "%u hosts with %u cores are invalid", c->hosts,
+                          c->cores);
     if (!(c->latency >= 0) || !(c->bandwidth > 0) || !(c->capacity > 0) || !(c->core_speed > 0))
         return base_error(DUITE_E_ARGUMENT,
                           "a latency >= 0, and bandwidth, switch and speed > 0, are expected");
@@ -46,7 +47,7 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
         return base_error(DUITE_E_ARGUMENT, "the cost of a message is a number >= 0");
     if (c->balance && (c->balance->victim || c->balance->place))
         return base_error(DUITE_E_ARGUMENT,
-                          "tasks that the balancer %s sends to other ranks are not foretold: take "
+                          "tasks that the balancer %s sends to other ranks are not predicted: take "
                           "none, or migrate",
                           c->balance->name);
     if (c->balance && c->balance->migrate && !c->mapping)

@@ -54,7 +54,7 @@ const char *predict_limit_name(enum predict_limit limit);
 
 /* `paje`: NULL, or where the predicted run is written as a Paje trace. Deterministic. Errors:
  * memory; DUITE_E_ARGUMENT for a trace with losses or without a whole program, a mapping that
- * fails, and a cluster that cannot be. */
+ * fails, and an invalid cluster. */
 int predict(const struct trace_run *run, const struct predict_cluster *cluster,
             struct predict_result *result, FILE *paje);
 

@@ -34,7 +34,7 @@ static int fork_host(const struct predict_graph *graph, const struct predict_for
     return rank == TASK_EVERYWHERE ? PREDICT_ALL : rank;
 }
 
-static void stay(struct predict_program *p, uint32_t own)
+static void fork_stays(struct predict_program *p, uint32_t own)
 {
     uint32_t slot = own == PREDICT_NONE ? 0 : p->name[own].slot;
     if (slot)
@@ -72,7 +72,7 @@ void predict_fork(struct predict_program *p, const struct predict_fork *fork)
         predict_use(graph, node, fork->object[i], trace_mode(kernel, i), p->prepared[i]);
     predict_hold(graph, node);
     if (kernel->stays && follows)
-        stay(p, own);
+        fork_stays(p, own);
     predict_spend(p, follows ? own : PREDICT_NONE, host, seconds);
     p->tasks++;
 }
@@ -103,7 +103,7 @@ bool predict_room(struct predict_program *p, size_t n)
     return prepared && objects;
 }
 
-static void fork_one(struct predict_program *p, size_t n, bool told)
+static void entry_fork(struct predict_program *p, size_t n, bool told)
 {
     struct predict_fork fork = {.kernel = trace_words_next(&p->words), .n = n, .at = -1};
     if (told) {
@@ -125,7 +125,7 @@ static void fork_one(struct predict_program *p, size_t n, bool told)
 /* ---- The main program ---- */
 
 /* What was brought into being since the last op. */
-static struct predict_op *add_op(struct predict_program *p, bool forked)
+static struct predict_op *op_add(struct predict_program *p, bool forked)
 {
     struct predict_graph *graph = p->graph;
     void *moved = base_grow(graph->op, &graph->ops_capacity, graph->n_ops + 1, sizeof *graph->op);
@@ -143,21 +143,21 @@ static struct predict_op *add_op(struct predict_program *p, bool forked)
 
 void predict_op_replays(struct predict_program *p, bool begins)
 {
-    add_op(p, begins);
+    op_add(p, begins);
 }
 
 void predict_op_wait(struct predict_program *p)
 {
-    struct predict_op *last = add_op(p, true);
+    struct predict_op *last = op_add(p, true);
     if (last)
         last->waits = true;
 }
 
 /* It forked until `from`, and waits until `to`: each fork takes its share of the time. */
-static void op(struct predict_program *p, uint64_t from, uint64_t to, uint32_t node, bool waits)
+static void op_end(struct predict_program *p, uint64_t from, uint64_t to, uint32_t node, bool waits)
 {
     struct predict_graph *graph = p->graph;
-    struct predict_op *last = add_op(p, true);
+    struct predict_op *last = op_add(p, true);
     if (!last)
         return;
     last->node = node;
@@ -171,7 +171,7 @@ static void op(struct predict_program *p, uint64_t from, uint64_t to, uint32_t n
     p->since = to;
 }
 
-static void get(struct predict_program *p)
+static void entry_get(struct predict_program *p)
 {
     uint32_t own = predict_object_at(p, trace_words_next(&p->words));
     int rank = (int32_t)trace_words_next(&p->words);
@@ -180,26 +180,26 @@ static void get(struct predict_program *p)
         return;
     int host = rank < 0 ? PREDICT_ALL : rank % (int)p->graph->cluster->hosts;
     uint32_t node = predict_prepare(p->graph, own, DUITE_R, host);
-    op(p, from, to, node, host <= 0 && node != PREDICT_NONE);
+    op_end(p, from, to, node, host <= 0 && node != PREDICT_NONE);
 }
 
-static void wait(struct predict_program *p)
+static void entry_wait(struct predict_program *p)
 {
     uint64_t from = trace_words_next2(&p->words), to = trace_words_next2(&p->words);
-    op(p, from, to, PREDICT_NONE, true);
+    op_end(p, from, to, PREDICT_NONE, true);
 }
 
-static void turn(struct predict_program *p, bool on)
+static void entry_switch(struct predict_program *p, bool on)
 {
     p->forks = trace_words_next2(&p->words);
     trace_words_next2(&p->words);
     uint64_t now = trace_words_next2(&p->words);
     if (!on)
-        op(p, now, now, PREDICT_NONE, true);
+        op_end(p, now, now, PREDICT_NONE, true);
     p->since = now;
 }
 
-static void entry(struct predict_program *p)
+static void entry_read(struct predict_program *p)
 {
     uint32_t first = trace_words_next(&p->words);
     size_t n = first >> 8; /* of things that have a word at least */
@@ -226,11 +226,11 @@ static void entry(struct predict_program *p)
         break;
     case TRACE_ON:
     case TRACE_OFF:
-        turn(p, (first & 0xff) == TRACE_ON);
+        entry_switch(p, (first & 0xff) == TRACE_ON);
         break;
     case TRACE_FORK:
     case TRACE_FORKED:
-        fork_one(p, n, (first & 0xff) == TRACE_FORKED);
+        entry_fork(p, n, (first & 0xff) == TRACE_FORKED);
         break;
     case TRACE_SET: {
         uint32_t own = predict_object_at(p, trace_words_next(&p->words));
@@ -239,10 +239,10 @@ static void entry(struct predict_program *p)
         break;
     }
     case TRACE_GET:
-        get(p);
+        entry_get(p);
         break;
     case TRACE_WAIT:
-        wait(p);
+        entry_wait(p);
         break;
     case TRACE_GRAPH:
         predict_take_graph(p, n);
@@ -257,27 +257,27 @@ static void entry(struct predict_program *p)
 
 /* ---- All of it ---- */
 
-static int walk(struct predict_program *p)
+static int program_walk(struct predict_program *p)
 {
     struct predict_graph *graph = p->graph;
     while (trace_words_left(&p->words) && !p->damaged && !graph->failed && !p->code)
-        entry(p);
+        entry_read(p);
     if (graph->failed)
         return base_no_memory("the graph of a trace");
     if (p->code)
         return p->code;
     if (p->damaged || p->words.short_of)
         return base_error(DUITE_E_ARGUMENT,
-                          "the trace is damaged: word %zu of its program cannot be", p->words.at);
+                          "the trace is damaged: word %zu of its program is invalid", p->words.at);
     if (!p->tasks)
         return base_error(DUITE_E_ARGUMENT, "the trace has no tasks of the main program");
-    op(p, p->since, p->since, PREDICT_NONE, true);
+    op_end(p, p->since, p->since, PREDICT_NONE, true);
     return graph->failed ? base_no_memory("the graph of a trace") : DUITE_OK;
 }
 
 /* Tasks that ran left an event each. Of the rounds that count, one task in 16 ran at least: others
  * were poisoned. Some more: for rounds without tasks. */
-static uint64_t most_replayed(const struct trace_run *run)
+static uint64_t program_most_replayed(const struct trace_run *run)
 {
     uint64_t n = 0;
     for (uint32_t r = 0; r < run->n_ranks; r++)
@@ -285,7 +285,7 @@ static uint64_t most_replayed(const struct trace_run *run)
     return 16 * n + 1000;
 }
 
-static bool prepare(struct predict_program *p)
+static bool program_prepare(struct predict_program *p)
 {
     struct predict_graph *graph = p->graph;
     const uint32_t hosts = graph->cluster->hosts;
@@ -316,8 +316,8 @@ int predict_build(struct predict_graph *graph)
 {
     struct predict_program p = {.graph = graph,
                                 .words = trace_words_of(graph->run),
-                                .most_replayed = most_replayed(graph->run)};
-    int code = prepare(&p) ? walk(&p) : base_no_memory("the graph of a trace");
+                                .most_replayed = program_most_replayed(graph->run)};
+    int code = program_prepare(&p) ? program_walk(&p) : base_no_memory("the graph of a trace");
     graph->n_tasks = p.tasks;
     predict_moves_stop(&p);
     data_table_stop(&p.table);

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static void forget(struct predict_recorded *recorded)
+static void recorded_forget(struct predict_recorded *recorded)
 {
     free(recorded->fork);
     free(recorded->use);
@@ -15,7 +15,7 @@ static void forget(struct predict_recorded *recorded)
     *recorded = (struct predict_recorded){0};
 }
 
-static struct predict_recorded *take_place(struct predict_program *p, uint32_t name)
+static struct predict_recorded *recorded_place(struct predict_program *p, uint32_t name)
 {
     p->damaged |= name >= p->graph->run->n_words; /* a graph has several */
     while (p->n_recorded <= name && !p->damaged) {
@@ -29,13 +29,13 @@ static struct predict_recorded *take_place(struct predict_program *p, uint32_t n
     }
     if (p->damaged)
         return NULL;
-    forget(&p->recorded[name]);
+    recorded_forget(&p->recorded[name]);
     return &p->recorded[name];
 }
 
 /* The uses of all forks lie in one row, which has as many words at most as are left. */
-static bool take_fork(struct predict_program *p, struct predict_recorded *graph, size_t i,
-                      size_t *used)
+static bool recorded_fork(struct predict_program *p, struct predict_recorded *graph, size_t i,
+                          size_t *used)
 {
     struct predict_fork *fork = &graph->fork[i];
     *fork = (struct predict_fork){.kernel = trace_words_next(&p->words),
@@ -59,7 +59,7 @@ static bool take_fork(struct predict_program *p, struct predict_recorded *graph,
 
 void predict_take_graph(struct predict_program *p, size_t n_objects)
 {
-    struct predict_recorded *graph = take_place(p, trace_words_next(&p->words));
+    struct predict_recorded *graph = recorded_place(p, trace_words_next(&p->words));
     for (size_t i = 0; i < n_objects; i++)
         trace_words_next(&p->words);
     size_t n = trace_words_next(&p->words), used = 0, left = trace_words_left(&p->words);
@@ -71,14 +71,15 @@ void predict_take_graph(struct predict_program *p, size_t n_objects)
     graph->fork = malloc((n + 1) * sizeof *graph->fork);
     graph->use = malloc((left + 1) * sizeof *graph->use);
     p->graph->failed |= !graph->fork || !graph->use;
-    while (!p->graph->failed && graph->n_forks < n && take_fork(p, graph, graph->n_forks, &used))
+    while (!p->graph->failed && graph->n_forks < n &&
+           recorded_fork(p, graph, graph->n_forks, &used))
         graph->n_forks++;
 }
 
 void predict_graphs_free(struct predict_program *p)
 {
     for (size_t i = 0; i < p->n_recorded; i++)
-        forget(&p->recorded[i]);
+        recorded_forget(&p->recorded[i]);
     free(p->recorded);
 }
 
@@ -95,7 +96,7 @@ static bool round_ran(const struct predict_program *p, const struct predict_reco
 }
 
 /* On each host one node that all its objects wait for, and that waits for them. */
-static void gate(struct predict_program *p, const uint32_t *bound, size_t n)
+static void replay_gate(struct predict_program *p, const uint32_t *bound, size_t n)
 {
     struct predict_graph *graph = p->graph;
     const uint32_t hosts = graph->cluster->hosts;
@@ -118,7 +119,7 @@ static void gate(struct predict_program *p, const uint32_t *bound, size_t n)
 }
 
 /* The flag is read where the next round begins: everywhere. */
-static void decide(struct predict_graph *graph, uint32_t flag)
+static void replay_decide(struct predict_graph *graph, uint32_t flag)
 {
     uint32_t value = predict_prepare(graph, flag, DUITE_R, PREDICT_ALL);
     if (graph->plain) {
@@ -133,7 +134,7 @@ static void decide(struct predict_graph *graph, uint32_t flag)
 }
 
 /* The longest path from each task of the round to its end, in the seconds that forks said. */
-static void find_paths(struct predict_graph *graph)
+static void round_paths(struct predict_graph *graph)
 {
     double said = 0;
     size_t n = 0;
@@ -154,8 +155,8 @@ static void find_paths(struct predict_graph *graph)
     }
 }
 
-static void fork_round(struct predict_program *p, const struct predict_recorded *recorded,
-                       const uint32_t *bound, uint64_t first)
+static void round_nodes(struct predict_program *p, const struct predict_recorded *recorded,
+                        const uint32_t *bound, uint64_t first)
 {
     struct predict_graph *graph = p->graph;
     graph->round = (uint32_t)graph->n_nodes;
@@ -176,37 +177,37 @@ static void fork_round(struct predict_program *p, const struct predict_recorded 
         }
     }
     if (graph->cluster->scheduler->paths && !graph->failed)
-        find_paths(graph);
+        round_paths(graph);
 }
 
 /* More rounds than the file can have seen are damage. One without tasks counts as a task. */
-static bool is_seen(struct predict_program *p, const struct predict_recorded *recorded)
+static bool round_is_seen(struct predict_program *p, const struct predict_recorded *recorded)
 {
     p->replayed += recorded->n_calls ? recorded->n_calls : 1;
     p->damaged |= p->replayed > p->most_replayed;
     return !p->damaged;
 }
 
-static void rounds(struct predict_program *p, struct predict_recorded *recorded, uint32_t flag,
-                   uint64_t most)
+static void replay_rounds(struct predict_program *p, struct predict_recorded *recorded,
+                          uint32_t flag, uint64_t most)
 {
     struct predict_graph *graph = p->graph;
     const uint32_t *bound = recorded->bound;
     bool flagged = flag != PREDICT_NONE;
     predict_op_replays(p, true);
-    gate(p, bound, recorded->n_objects);
+    replay_gate(p, bound, recorded->n_objects);
     graph->replays = true;
     for (uint64_t i = 0; i < most && !graph->failed; i++) {
         uint64_t first = p->forks + i * recorded->n_calls;
-        if (!round_ran(p, recorded, first) || !is_seen(p, recorded))
+        if (!round_ran(p, recorded, first) || !round_is_seen(p, recorded))
             break;
-        fork_round(p, recorded, bound, first);
+        round_nodes(p, recorded, bound, first);
         recorded->rounds++;
         if (flagged && !graph->failed)
-            decide(graph, flag);
+            replay_decide(graph, flag);
     }
     graph->round = graph->flag = PREDICT_NONE;
-    gate(p, bound, recorded->n_objects);
+    replay_gate(p, bound, recorded->n_objects);
     graph->replays = false;
     predict_op_replays(p, false);
 }
@@ -230,7 +231,7 @@ void predict_replay(struct predict_program *p, size_t n_objects)
     recorded->bound = bound;
     if (bound && !p->damaged && !p->words.short_of) {
         predict_move(p, recorded);
-        rounds(p, recorded, flag, most);
+        replay_rounds(p, recorded, flag, most);
     }
     p->forks += most * recorded->n_calls;
 }

@@ -13,14 +13,9 @@
 
 #define LOOK_SECONDS 5e-6 /* between two looks for messages of a worker that has tasks */
 
-static void *state_of(const struct predict_machine *m, uint32_t worker)
-{
-    return m->states + worker * m->stride;
-}
-
 /* ---- What messages take of the cores: the next task of the host is later by that ---- */
 
-static void handle(struct predict_machine *m, const struct predict_node *message)
+static void message_charge(struct predict_machine *m, const struct predict_node *message)
 {
     const double each = m->cluster->message * (double)message->priority;
     if (message->kind == PREDICT_MESSAGE) {
@@ -35,7 +30,7 @@ static void handle(struct predict_machine *m, const struct predict_node *message
 }
 
 /* A worker begins something: what is left to do of messages, and a look for more now and then. */
-static double pay(struct predict_machine *m, uint32_t worker, uint32_t host)
+static double worker_pay(struct predict_machine *m, uint32_t worker, uint32_t host)
 {
     double seconds = m->handled[host] + m->handled_by_all - m->paid[host];
     m->handled[host] = 0;
@@ -49,12 +44,12 @@ static double pay(struct predict_machine *m, uint32_t worker, uint32_t host)
 
 /* ---- Workers ---- */
 
-static void start(struct predict_machine *m, uint32_t node, uint32_t worker)
+static void worker_begin(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
     const struct predict_node *n = &m->graph->node[node];
     uint32_t before = m->ran[worker];
     double begin = m->now + (before == PREDICT_NONE ? 0 : m->graph->overhead);
-    begin += pay(m, worker, n->host);
+    begin += worker_pay(m, worker, n->host);
     /* Its worker held it up, if it was ready before that was free. */
     if (before != PREDICT_NONE && m->end[before] >= m->now && m->begin[node] < m->now)
         m->cause[node] = (struct predict_cause){before, LEFT_WORKER, 0};
@@ -71,11 +66,11 @@ static void start(struct predict_machine *m, uint32_t node, uint32_t worker)
     m->failed |= !predict_event_put(&m->events, begin + (double)n->seconds, node, worker);
 }
 
-static uint32_t find(struct predict_machine *m, uint32_t worker)
+static uint32_t worker_search(struct predict_machine *m, uint32_t worker)
 {
     const struct predict_node *nodes = m->graph->node;
     const uint32_t cores = m->cluster->cores, host = worker / cores, first = host * cores;
-    void *state = state_of(m, worker);
+    void *state = predict_worker_state(m, worker);
     base_mark_begin(m->mark, BASE_SCHEDULER_SERVE);
     duite_end end = m->scheduler->serve(state);
     base_mark_end(m->mark);
@@ -96,11 +91,11 @@ static uint32_t find(struct predict_machine *m, uint32_t worker)
 }
 
 /* The worker looks for work. */
-static void look(struct predict_machine *m, uint32_t worker)
+static void worker_look(struct predict_machine *m, uint32_t worker)
 {
-    uint32_t node = find(m, worker);
+    uint32_t node = worker_search(m, worker);
     if (node != PREDICT_NONE) {
-        start(m, node, worker);
+        worker_begin(m, node, worker);
     } else if (m->state[worker] != IDLE) {
         m->state[worker] = IDLE;
         m->idle[worker / m->cluster->cores]++;
@@ -108,7 +103,7 @@ static void look(struct predict_machine *m, uint32_t worker)
 }
 
 /* Somebody is to find what lies in `queue`: its owner, or anybody who may. */
-static void wake(struct predict_machine *m, uint32_t host, unsigned queue)
+static void host_wake(struct predict_machine *m, uint32_t host, unsigned queue)
 {
     const uint32_t cores = m->cluster->cores, first = host * cores;
     unsigned begin = queue < cores ? queue : 0;
@@ -116,18 +111,18 @@ static void wake(struct predict_machine *m, uint32_t host, unsigned queue)
         uint32_t worker = first + (begin + i) % cores;
         if (m->state[worker] != IDLE)
             continue;
-        look(m, worker);
+        worker_look(m, worker);
         if (m->state[worker] == BUSY)
             return;
     }
 }
 
 /* A task may run; worker NONE: no worker of its host made it so. */
-static void task_ready(struct predict_machine *m, uint32_t node, uint32_t worker)
+static void node_task_ready(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
     const uint32_t cores = m->cluster->cores, host = m->graph->node[node].host;
     bool here = worker != PREDICT_NONE && worker / cores == host;
-    void *state = state_of(m, here ? worker : m->last[host]);
+    void *state = predict_worker_state(m, here ? worker : m->last[host]);
     duite_ready ready = predict_describe(m, node);
     m->begin[node] = m->now; /* until it starts: since when it is ready */
     if (here && m->next[worker] == PREDICT_NONE) {
@@ -145,7 +140,7 @@ static void task_ready(struct predict_machine *m, uint32_t node, uint32_t worker
     bool own = queue < cores;
     m->failed |= !predict_queue_put(own ? &m->queue[host * cores + queue] : &m->shared[host],
                                     m->graph->node, node);
-    wake(m, host, queue);
+    host_wake(m, host, queue);
 }
 
 /* ---- Nodes ---- */
@@ -157,18 +152,18 @@ static void node_ready(struct predict_machine *m, uint32_t node, uint32_t worker
     m->begin[node] = m->now;
     switch (n->kind) {
     case PREDICT_TASK:
-        task_ready(m, node, worker);
+        node_task_ready(m, node, worker);
         return;
     case PREDICT_EVERYWHERE:
         end = m->now + m->graph->overhead + (double)n->seconds;
         break;
     case PREDICT_MESSAGE:
         end = predict_message(&m->network, m->now, n, &flight);
-        handle(m, n);
+        message_charge(m, n);
         break;
     case PREDICT_EXCHANGE:
         end = predict_exchange(&m->network, m->now, n, &flight);
-        handle(m, n);
+        message_charge(m, n);
         break;
     default:
         break;
@@ -177,7 +172,7 @@ static void node_ready(struct predict_machine *m, uint32_t node, uint32_t worker
     m->failed |= !predict_event_put(&m->events, end, node, PREDICT_NONE);
 }
 
-static void count_down(struct predict_machine *m, uint32_t node, uint32_t by, uint32_t worker)
+static void node_count_down(struct predict_machine *m, uint32_t node, uint32_t by, uint32_t worker)
 {
     struct predict_node *n = &m->graph->node[node];
     if (--n->pending)
@@ -190,7 +185,7 @@ static void count_down(struct predict_machine *m, uint32_t node, uint32_t by, ui
 /* ---- The main program ---- */
 
 /* Whether what it waits for is there. */
-static bool may_go_on(const struct predict_machine *m)
+static bool main_may_go_on(const struct predict_machine *m)
 {
     const struct predict_op *op = &m->graph->op[m->op];
     if (!op->waits)
@@ -199,7 +194,7 @@ static bool may_go_on(const struct predict_machine *m)
 }
 
 /* It goes on: its workers are not to be had. On other hosts they end their tasks first. */
-static void resume(struct predict_machine *m)
+static void main_go_on(struct predict_machine *m)
 {
     m->blocked = m->wanted = false;
     m->main_time = m->now;
@@ -215,27 +210,27 @@ static void resume(struct predict_machine *m)
     }
 }
 
-static void try_to_resume(struct predict_machine *m)
+static void main_try(struct predict_machine *m)
 {
-    if (!m->blocked || !may_go_on(m))
+    if (!m->blocked || !main_may_go_on(m))
         return;
     m->wanted = true;
     if (m->state[0] == BUSY)
         return;
     m->went_on = m->latest;
-    resume(m);
+    main_go_on(m);
 }
 
 /* It waits, and its workers work. */
-static void block(struct predict_machine *m)
+static void main_block(struct predict_machine *m)
 {
     m->blocked = true;
     m->now = fmax(m->now, m->main_time);
     for (uint32_t host = 0; host < m->cluster->hosts; host++)
         if (m->state[host * m->cluster->cores] == RESERVED)
-            look(m, host * m->cluster->cores);
-    if (may_go_on(m))
-        resume(m); /* it does not wait */
+            worker_look(m, host * m->cluster->cores);
+    if (main_may_go_on(m))
+        main_go_on(m); /* it does not wait */
 }
 
 /* Brings one more node into being, or comes to the end of an op. */
@@ -245,9 +240,9 @@ static void main_step(struct predict_machine *m)
     if (m->cursor < op->end) {
         m->main_time += op->each;
         m->now = m->main_time;
-        count_down(m, (uint32_t)m->cursor++, PREDICT_NONE, PREDICT_NONE);
+        node_count_down(m, (uint32_t)m->cursor++, PREDICT_NONE, PREDICT_NONE);
     } else if (op->waits) {
-        block(m);
+        main_block(m);
     } else {
         m->op++;
     }
@@ -263,7 +258,7 @@ static double main_next(const struct predict_machine *m)
 
 /* ---- Events ---- */
 
-static void free_worker(struct predict_machine *m, uint32_t worker)
+static void worker_free(struct predict_machine *m, uint32_t worker)
 {
     uint32_t node = m->next[worker];
     m->next[worker] = PREDICT_NONE;
@@ -273,17 +268,17 @@ static void free_worker(struct predict_machine *m, uint32_t worker)
             m->failed |= !predict_queue_put(&m->queue[0], m->graph->node, node);
         m->state[0] = RESERVED;
         m->went_on = m->latest;
-        resume(m);
-        wake(m, 0, 1);
+        main_go_on(m);
+        host_wake(m, 0, 1);
     } else if (taken) {
         if (node != PREDICT_NONE)
             m->failed |= !predict_queue_put(&m->queue[worker], m->graph->node, node);
         m->state[worker] = RESERVED;
-        wake(m, worker / m->cluster->cores, 1);
+        host_wake(m, worker / m->cluster->cores, 1);
     } else if (node != PREDICT_NONE) {
-        start(m, node, worker);
+        worker_begin(m, node, worker);
     } else {
-        look(m, worker);
+        worker_look(m, worker);
     }
 }
 
@@ -296,13 +291,13 @@ static void node_over(struct predict_machine *m, uint32_t node, uint32_t worker)
     if (worker != PREDICT_NONE)
         m->last[worker / m->cluster->cores] = worker;
     for (uint32_t e = graph->node[node].edge; e != PREDICT_NONE; e = graph->edge[e].next)
-        count_down(m, graph->edge[e].to, node, worker);
+        node_count_down(m, graph->edge[e].to, node, worker);
     if (worker != PREDICT_NONE)
-        free_worker(m, worker);
-    try_to_resume(m);
+        worker_free(m, worker);
+    main_try(m);
 }
 
-static int run(struct predict_machine *m)
+static int machine_run(struct predict_machine *m)
 {
     struct predict_event event;
     while (!m->failed) {
@@ -327,108 +322,6 @@ static int run(struct predict_machine *m)
     return DUITE_OK;
 }
 
-/* ---- Start and stop ---- */
-
-/* What a worker sees of the others of its host: the next numbers first, nobody nearer. */
-static bool see_others(struct predict_machine *m)
-{
-    const size_t cores = m->cluster->cores, others = cores - 1;
-    if (!m->scheduler->look)
-        return true;
-    m->near = base_alloc(cores * sizeof *m->near);
-    m->other = base_alloc((cores * others + 1) * sizeof *m->other);
-    m->level = base_alloc_zero((others + 1) * sizeof *m->level);
-    if (!m->near || !m->other || !m->level)
-        return false;
-    for (size_t w = 0; w < cores; w++) {
-        for (size_t i = 0; i < others; i++)
-            m->other[w * others + i] = (unsigned)((w + 1 + i) % cores);
-        m->near[w] = (duite_near){(unsigned)others, m->other + w * others, m->level};
-    }
-    return true;
-}
-
-static bool prepare(struct predict_machine *m, bool paje)
-{
-    const struct predict_graph *graph = m->graph;
-    const size_t n = graph->n_nodes, workers = m->n_workers, hosts = m->cluster->hosts;
-    m->stride = (m->scheduler->state_size + 63) / 64 * 64 + 64;
-    m->states = base_alloc_zero(workers * m->stride);
-    m->queue = base_alloc_zero(workers * sizeof *m->queue);
-    m->shared = base_alloc_zero(hosts * sizeof *m->shared);
-    m->state = base_alloc_zero(workers);
-    m->next = base_alloc(workers * sizeof *m->next);
-    m->ran = base_alloc(workers * sizeof *m->ran);
-    m->warm = base_alloc(graph->n_objects * sizeof *m->warm + 1);
-    m->last = base_alloc(hosts * sizeof *m->last);
-    m->idle = base_alloc(hosts * sizeof *m->idle);
-    m->looked = base_alloc_zero(workers * sizeof *m->looked);
-    m->handled = base_alloc_zero(hosts * sizeof *m->handled);
-    m->paid = base_alloc_zero(hosts * sizeof *m->paid);
-    m->network.out = base_alloc_zero(hosts * sizeof(double));
-    m->network.in = base_alloc_zero(hosts * sizeof(double));
-    m->begin = base_alloc(n * sizeof *m->begin + 1);
-    m->end = base_alloc(n * sizeof *m->end + 1);
-    m->cause = base_alloc_zero(n * sizeof *m->cause + 1);
-    m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
-    return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->warm &&
-           m->last && m->idle && m->looked && m->handled && m->paid && m->network.out &&
-           m->network.in && m->begin && m->end && m->cause && (m->runs_on || !paje) &&
-           see_others(m);
-}
-
-static void start_scheduler(struct predict_machine *m, uint32_t worker)
-{
-    const uint32_t cores = m->cluster->cores;
-    const duite_scheduler *scheduler = m->scheduler;
-    void *state = state_of(m, worker);
-    base_mark_begin(m->mark, BASE_SCHEDULER_START);
-    if (scheduler->start)
-        scheduler->start(state, worker % cores, cores, m->cluster->seed);
-    base_mark_end(m->mark);
-    base_mark_begin(m->mark, BASE_SCHEDULER_LOOK);
-    if (scheduler->look)
-        scheduler->look(state, &m->near[worker % cores]);
-    base_mark_end(m->mark);
-    base_mark_begin(m->mark, BASE_SCHEDULER_SERVE);
-    m->queue[worker].heap = scheduler->serve(state) == DUITE_HIGHEST;
-    base_mark_end(m->mark);
-}
-
-static void init(struct predict_machine *m)
-{
-    const uint32_t cores = m->cluster->cores;
-    for (uint32_t w = 0; w < m->n_workers; w++) {
-        start_scheduler(m, w);
-        m->next[w] = m->ran[w] = PREDICT_NONE;
-        m->state[w] = w % cores ? IDLE : RESERVED;
-    }
-    for (uint32_t h = 0; h < m->cluster->hosts; h++) {
-        m->shared[h].heap = m->queue[h * cores].heap;
-        m->last[h] = h * cores;
-        m->idle[h] = cores - 1;
-    }
-    for (size_t i = 0; i < m->graph->n_nodes; i++)
-        m->end[i] = -1;
-    for (size_t i = 0; i < m->graph->n_objects; i++)
-        m->warm[i] = PREDICT_NONE;
-}
-
-static void stop(struct predict_machine *m)
-{
-    for (uint32_t w = 0; w < m->n_workers && m->queue; w++)
-        free(m->queue[w].node);
-    for (uint32_t h = 0; h < m->cluster->hosts && m->shared; h++)
-        free(m->shared[h].node);
-    free(m->events.event);
-    void *const all[] = {m->states,  m->queue,       m->shared,     m->state, m->next,  m->ran,
-                         m->last,    m->network.out, m->network.in, m->begin, m->end,   m->cause,
-                         m->idle,    m->runs_on,     m->near,       m->other, m->level, m->looked,
-                         m->handled, m->paid,        m->warm};
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-        base_free(all[i]);
-}
-
 int predict_simulate(struct predict_graph *graph, struct predict_result *result, FILE *paje)
 {
     struct predict_machine m = {.graph = graph,
@@ -439,15 +332,14 @@ int predict_simulate(struct predict_graph *graph, struct predict_result *result,
                                 .network = {.cluster = graph->cluster},
                                 .latest = PREDICT_NONE,
                                 .went_on = PREDICT_NONE};
-    int code = prepare(&m, paje != NULL) ? DUITE_OK : base_no_memory("the prediction");
-    if (!code) {
-        init(&m);
-        code = run(&m);
-    }
+    int code =
+        predict_machine_start(&m, paje != NULL) ? DUITE_OK : base_no_memory("the prediction");
+    if (!code)
+        code = machine_run(&m);
     if (!code && paje)
         code = predict_write_paje(&m, paje);
     if (!code)
         predict_conclude(&m, result);
-    stop(&m);
+    predict_machine_stop(&m);
     return code;
 }

@@ -293,8 +293,8 @@ static int chain_walk(struct chain *c)
     if (c->failed)
         return base_no_memory("the longest chain of a trace");
     if (c->damaged || c->words.short_of)
-        return base_error(DUITE_E_ARGUMENT, "the trace is damaged: word %zu of its program",
-                          c->words.at);
+        return base_error(DUITE_E_ARGUMENT,
+                          "the trace is damaged: word %zu of its program is invalid", c->words.at);
     if (!c->tasks)
         return base_error(DUITE_E_ARGUMENT, "the trace has no tasks of the main program");
     return DUITE_OK;

@@ -296,12 +296,12 @@ START_TEST(refusals)
     file = foretell_begun(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
     other = foretell_machine(0, 1);
-    refused(&file, &other, "cannot be");
+    refused(&file, &other, "are invalid");
     file = foretell_begun(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
     other = foretell_machine(2, 1);
     other.balance = duite_balancer_find("delegate");
-    refused(&file, &other, "are not foretold");
+    refused(&file, &other, "are not predicted");
     file = foretell_begun(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
     other = one;

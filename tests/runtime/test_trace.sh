@@ -241,7 +241,7 @@ full() { # the disk has room for 32 KiB: the run ends, and says at its end that 
 ok "a disk that fills up costs the rest of the trace" full
 kept() { ./duite-trace "$scratch/full" > "$scratch/said" 2>&1 && cat "$scratch/said" && grep "events or words were lost" "$scratch/said"; }
 ok "what was written before is kept, and the loss counted" kept
-exits 2 "nothing is foretold from what is left" ./duite-predict "$scratch/full"
+exits 2 "nothing is predicted from what is left" ./duite-predict "$scratch/full"
 
 # A run of hours that writes a trace, until it is told to stop; then its status and what it said.
 victim=

@@ -24,5 +24,5 @@ drawn() { # TRACE WORKERS: each rank and worker has its name, and there are stat
 ok "a run on 2 ranks" run
 ok "... as a Paje trace" ./duite-trace "$scratch/ranks" --paje "$scratch/ranks.paje"
 ok "... is drawn" drawn ranks 4
-ok "predicted on 3 hosts" ./duite-predict "$scratch/ranks" --hosts 3 --cores 2 --paje "$scratch/foretold.paje"
-ok "... is drawn, too" drawn foretold 6
+ok "predicted on 3 hosts" ./duite-predict "$scratch/ranks" --hosts 3 --cores 2 --paje "$scratch/predicted.paje"
+ok "... is drawn, too" drawn predicted 6

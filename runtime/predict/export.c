@@ -1,14 +1,84 @@
-/* The tasks as a graph file: who reads whose result, in fork order. What a task shows to others is
- * its bytes, and its block stays together, as what it keeps for itself does. */
+/* The tasks of a trace as files, by the traced homes: for Graphviz, what each waited for; and as a
+ * graph file, who reads whose result, in fork order. */
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/map/map.h"
 #include "runtime/sched/sched.h"
+#include "runtime/task/task.h"
 
 #include <inttypes.h>
 #include <math.h>
+
+/* ---- Graphviz ---- */
+
+static void dot_name(FILE *file, const char *name)
+{
+    for (; *name; name++)
+        fprintf(file, *name == '"' || *name == '\\' ? "\\%c" : "%c", *name);
+}
+
+static void dot_node(const struct predict_graph *graph, size_t i, FILE *file)
+{
+    const struct predict_node *node = &graph->node[i];
+    const struct trace_run *run = graph->run;
+    fprintf(file, "  n%zu [", i);
+    switch (node->kind) {
+    case PREDICT_TASK:
+    case PREDICT_EVERYWHERE:
+        fputs("label=\"", file);
+        dot_name(file, node->kernel < run->n_kernels
+                           ? run->kernel_name[node->kernel]
+                           : task_own_name(node->kernel - run->n_kernels));
+        if (node->number)
+            fprintf(file, " %" PRIu64, node->number);
+        if (node->kind == PREDICT_TASK)
+            fprintf(file, "\\nrank %" PRIu32, node->host);
+        else
+            fputs("\\nevery rank", file);
+        fprintf(file, "\\n%.3f us\"", 1e6 * (double)node->seconds);
+        break;
+    case PREDICT_MESSAGE:
+        fprintf(file, "shape=ellipse,label=\"%" PRIu32 " to %" PRIu32 "\\n%" PRIu64 " bytes\"",
+                node->host, node->block, node->number);
+        break;
+    case PREDICT_EXCHANGE:
+        fprintf(file, "shape=ellipse,label=\"to all\\n%" PRIu64 " bytes\"", node->number);
+        break;
+    default:
+        fputs("shape=point", file);
+    }
+    fputs("];\n", file);
+}
+
+int predict_write_dot(const struct trace_run *run, FILE *file)
+{
+    const struct predict_cluster cluster = {.hosts = run->n_ranks,
+                                            .cores = 1,
+                                            .bandwidth = INFINITY,
+                                            .capacity = INFINITY,
+                                            .core_speed = 1,
+                                            .scheduler = &sched_steal};
+    struct predict_graph graph = {.run = run, .cluster = &cluster};
+    int code = predict_check(run, &cluster);
+    if (!code)
+        code = predict_build(&graph);
+    if (!code) {
+        fputs("digraph tasks {\n  node [shape=box];\n", file);
+        for (size_t i = 0; i < graph.n_nodes; i++)
+            dot_node(&graph, i, file);
+        for (size_t i = 0; i < graph.n_nodes; i++)
+            for (uint32_t e = graph.node[i].edge; e != PREDICT_NONE; e = graph.edge[e].next)
+                fprintf(file, "  n%zu -> n%" PRIu32 ";\n", i, graph.edge[e].to);
+        fputs("}\n", file);
+    }
+    predict_graph_free(&graph);
+    return code;
+}
+
+/* ---- Graph files: what a task shows to others is its bytes, and its block stays together, as what
+ * it keeps for itself does ---- */
 
 struct rows {
     uint32_t *line;  /* by node: of its task in the file, or NONE */
@@ -19,12 +89,12 @@ struct rows {
     uint32_t n, n_places;
 };
 
-static bool is_task(const struct predict_node *node)
+static bool line_is_task(const struct predict_node *node)
 {
     return node->kind == PREDICT_TASK;
 }
 
-static bool allocate(struct rows *rows, const struct predict_graph *graph)
+static bool rows_room(struct rows *rows, const struct predict_graph *graph)
 {
     rows->line = base_alloc((graph->n_nodes + 1) * sizeof *rows->line);
     rows->start = base_alloc_zero((graph->n_nodes + 2) * sizeof *rows->start);
@@ -34,7 +104,7 @@ static bool allocate(struct rows *rows, const struct predict_graph *graph)
     return rows->place && rows->line && rows->start && rows->reads && rows->seen;
 }
 
-static void release(struct rows *rows)
+static void rows_free(struct rows *rows)
 {
     base_free(rows->line);
     base_free(rows->start);
@@ -44,22 +114,23 @@ static void release(struct rows *rows)
 }
 
 /* The line that an edge leads to, from a task that is read; NONE: another kind of edge. */
-static uint32_t reader(const struct predict_graph *graph, const struct rows *rows, uint32_t edge)
+static uint32_t rows_reader(const struct predict_graph *graph, const struct rows *rows,
+                            uint32_t edge)
 {
     return graph->edge[edge].reads ? rows->line[graph->edge[edge].to] : PREDICT_NONE;
 }
 
 /* Edges are kept where they begin; rows where they end. */
-static void turn(const struct predict_graph *graph, struct rows *rows)
+static void rows_transpose(const struct predict_graph *graph, struct rows *rows)
 {
     for (size_t i = 0; i < graph->n_nodes; i++)
-        rows->line[i] = is_task(&graph->node[i]) ? rows->n++ : PREDICT_NONE;
+        rows->line[i] = line_is_task(&graph->node[i]) ? rows->n++ : PREDICT_NONE;
     for (int fill = 0; fill < 2; fill++) {
         for (size_t i = 0; i < graph->n_nodes; i++) {
             if (rows->line[i] == PREDICT_NONE)
                 continue;
             for (uint32_t e = graph->node[i].edge; e != PREDICT_NONE; e = graph->edge[e].next) {
-                uint32_t to = reader(graph, rows, e);
+                uint32_t to = rows_reader(graph, rows, e);
                 if (to == PREDICT_NONE)
                     continue;
                 if (fill)
@@ -73,7 +144,7 @@ static void turn(const struct predict_graph *graph, struct rows *rows)
     }
 }
 
-static size_t count_row(struct rows *rows, uint32_t line)
+static size_t row_unique(struct rows *rows, uint32_t line)
 {
     size_t n = 0;
     for (size_t k = rows->start[line]; k < rows->start[line + 1]; k++) {
@@ -86,8 +157,8 @@ static size_t count_row(struct rows *rows, uint32_t line)
 }
 
 /* Blocks are fewer than objects; a task that has none has its own number. */
-static void put_place(const struct predict_graph *graph, struct rows *rows, uint32_t block,
-                      FILE *file)
+static void row_put_place(const struct predict_graph *graph, struct rows *rows, uint32_t block,
+                          FILE *file)
 {
     if (block >= graph->n_objects)
         return;
@@ -96,7 +167,7 @@ static void put_place(const struct predict_graph *graph, struct rows *rows, uint
     fprintf(file, " @ %" PRIu32, rows->place[block]);
 }
 
-static void put(const struct predict_graph *graph, struct rows *rows, FILE *file)
+static void rows_put(const struct predict_graph *graph, struct rows *rows, FILE *file)
 {
     fputs("duite-graph 1\n", file);
     for (size_t b = 0; b < graph->n_objects; b++)
@@ -106,12 +177,12 @@ static void put(const struct predict_graph *graph, struct rows *rows, FILE *file
         uint32_t line = rows->line[i];
         if (line == PREDICT_NONE)
             continue;
-        size_t n = count_row(rows, line);
+        size_t n = row_unique(rows, line);
         fprintf(file, "%.9g %.0f %zu", (double)node->seconds,
                 fmin((double)graph->shown[i], (double)UINT32_MAX), n);
         for (size_t k = 0; k < n; k++)
             fprintf(file, " %" PRIu32, rows->reads[rows->start[line] + k]);
-        put_place(graph, rows, node->block, file);
+        row_put_place(graph, rows, node->block, file);
         fputc('\n', file);
     }
 }
@@ -130,13 +201,13 @@ int predict_write_graph(const struct trace_run *run, FILE *file)
     int code = predict_check(run, &cluster);
     if (!code)
         code = predict_build(&graph);
-    if (!code && !allocate(&rows, &graph))
+    if (!code && !rows_room(&rows, &graph))
         code = base_no_memory("the graph of a trace");
     if (!code) {
-        turn(&graph, &rows);
-        put(&graph, &rows, file);
+        rows_transpose(&graph, &rows);
+        rows_put(&graph, &rows, file);
     }
-    release(&rows);
+    rows_free(&rows);
     predict_graph_free(&graph);
     return code;
 }

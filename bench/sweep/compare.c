@@ -238,12 +238,24 @@ static void check_hash(struct compare *compare, const struct compare_config *con
     }
 }
 
+/* A member that was stopped once is not run again: the others would wait as long in each round. */
+static bool was_stopped(const struct compare_config *config, size_t rounds)
+{
+    for (size_t r = 0; r < rounds; r++)
+        if (config->run[r].stopped)
+            return true;
+    return false;
+}
+
 static int run_one(struct compare *compare, struct compare_config *config, size_t round)
 {
     struct compare_run *run = &config->run[round];
     if (run->done)
         return 0;
-    compare_start(compare, config, run);
+    if (was_stopped(config, round))
+        *run = (struct compare_run){.done = true, .why = strdup("not tried again")};
+    else
+        compare_start(compare, config, run);
     printf("round %zu:", round + 1);
     for (int d = 0; d < COMPARE_DIMENSIONS; d++)
         if (compare->list[d].n > 1)

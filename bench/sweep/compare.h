@@ -23,8 +23,8 @@ struct compare_run {
     double seconds, bodies; /* bodies: in bodies of tasks, a worker; the rest is outside of them */
     double stolen, messages, bytes;
     char hash[20];
-    char *why; /* it failed: how it ended, and its last error */
-    bool done, fine;
+    char *why;                /* it failed: how it ended, and its last error */
+    bool done, fine, stopped; /* stopped: by the limit, --timeout */
 };
 
 /* Dimensions of the product, in the order in which the last one changes first. */
@@ -48,7 +48,7 @@ struct compare {
     const char *folder, *tasks, *cost, *bytes, *steps;
     uint64_t seed;
     size_t rounds;
-    unsigned timeout; /* s, of a run */
+    unsigned timeout; /* s: a run that takes longer is stopped */
     struct compare_config *config;
     size_t n;
     FILE *journal;

@@ -11,10 +11,13 @@
 #include <duite.h>
 #include <duite_policy.h>
 #include <inttypes.h>
+#include <math.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define TURNS_A_SECOND 1e9 /* about; the same on every machine */
 
@@ -24,6 +27,7 @@ struct command {
     double cost;
     uint32_t bytes;
     uint64_t rounds, graph_seed;
+    unsigned timeout; /* s; 0: there is no limit */
     duite_options options;
     struct sweep_graph graph;
     duite_object *object;
@@ -238,9 +242,40 @@ static int run(struct command *command)
     return code != 0;
 }
 
+/* ---- The limit: what a policy that does not return would else run into is for ever ---- */
+
+static char stopped[80];
+
+static void stop_at_limit(int number)
+{
+    (void)number;
+    const ssize_t written = write(STDERR_FILENO, stopped, strlen(stopped));
+    _exit(written < 0 ? 2 : 1);
+}
+
+static void set_limit(unsigned seconds)
+{
+    snprintf(stopped, sizeof stopped, "graph-run: stopped after %u s (--timeout)\n", seconds);
+    signal(SIGALRM, stop_at_limit);
+    alarm(seconds);
+}
+
 /* ---- The command line ---- */
 
-enum { SCHEDULER = 256, MAPPING, BALANCE, THREADS, TASKS, COST, BYTES, ROUNDS, SEED, REPORT, SAVE };
+enum {
+    SCHEDULER = 256,
+    MAPPING,
+    BALANCE,
+    THREADS,
+    TASKS,
+    COST,
+    BYTES,
+    ROUNDS,
+    SEED,
+    REPORT,
+    SAVE,
+    TIMEOUT
+};
 
 static const struct argp_option OPTIONS[] = {
     {"tasks", TASKS, "N", 0, "tasks of a synthetic graph, about (default: 1000)", 1},
@@ -260,6 +295,7 @@ static const struct argp_option OPTIONS[] = {
      "workers of each rank (default: DUITE_THREADS, else its share of the cores)", 2},
     {"rounds", ROUNDS, "N", 0,
      "rounds of the graph that are measured, after two that are not (default: 10)", 3},
+    {"timeout", TIMEOUT, "SECONDS", 0, "most that the run may take (default: any time)", 3},
     {"report", REPORT, "FILE", 0, "where the figures go (default: standard output)", 3},
     {0}};
 
@@ -312,6 +348,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case ROUNDS:
         command->rounds = (uint64_t)positive(state, text);
         return 0;
+    case TIMEOUT:
+        command->timeout = (unsigned)ceil(positive(state, text));
+        return 0;
     case SEED:
         command->graph_seed = options->seed = (uint64_t)positive(state, text);
         return 0;
@@ -357,6 +396,8 @@ int main(int argc, char **argv)
     argp_err_exit_status = 2;
     if (argp_parse(&argp, argc, argv, 0, NULL, &command))
         return 2;
+    if (command.timeout)
+        set_limit(command.timeout);
     const bool file = sweep_graph_is_file(command.what);
     int failed = file ? sweep_graph_read(&command.graph, command.what)
                       : sweep_graph_make(&command.graph, command.what, command.tasks, command.cost,

@@ -137,6 +137,16 @@ static void make_line(const struct compare *compare, const struct compare_config
     append_pair(line, "--balance", config->value[BALANCE]);
 }
 
+/* A policy that does not return is named well before its run is stopped, so that the page can say
+ * it. What the user said counts. */
+static void name_policies_by(unsigned timeout)
+{
+    const double usual = 10, soon = timeout / 4.0;
+    char seconds[30];
+    snprintf(seconds, sizeof seconds, "%g", soon < usual ? soon : usual);
+    setenv("DUITE_POLICY_SECONDS", seconds, 0);
+}
+
 static int execute(const struct compare *compare, struct line *line)
 {
     char log[PATH_MAX];
@@ -147,6 +157,7 @@ static int execute(const struct compare *compare, struct line *line)
     pid_t child = fork();
     if (!child) {
         environment_forget();
+        name_policies_by(compare->timeout);
         if (freopen(log, "w", stdout))
             dup2(STDOUT_FILENO, STDERR_FILENO);
         execvp(line->word[0], line->word);
@@ -230,7 +241,7 @@ static void note_failure(const struct compare *compare, int status, struct compa
     rename(log, kept);
     if (WIFSIGNALED(status))
         snprintf(how, sizeof how, "signal %d", WTERMSIG(status));
-    else if (WEXITSTATUS(status) == TIMED_OUT)
+    else if ((run->stopped = WEXITSTATUS(status) == TIMED_OUT))
         snprintf(how, sizeof how, "stopped after %u s (--timeout)", compare->timeout);
     else if (!status)
         snprintf(how, sizeof how, "exit status 0, but no figures in its report");

@@ -125,6 +125,41 @@ timed_out() {
     cat "$scratch/said"
     grep -q "failed; stopped after 1 s (--timeout)" "$scratch/said"
 }
+# A member whose policy never returns beside one that does: stopped, named, not tried again; the other has all its figures.
+hangs() {
+    cat > "$scratch/hangs.c" << 'EOF'
+#include <duite_policy.h>
+#include <unistd.h>
+static unsigned place(void *state, const duite_ready *task)
+{
+    (void)task;
+    while (++*(int *)state > 20)
+        sleep(1);
+    return DUITE_SHARED_QUEUE;
+}
+static duite_end serve(void *state) { (void)state; return DUITE_OLDEST; }
+static unsigned victim(void *state, unsigned attempt) { (void)state, (void)attempt; return DUITE_NO_QUEUE; }
+static int chain(void *state, const duite_ready *task) { (void)state, (void)task; return 0; }
+const duite_scheduler duite_own_scheduler = {
+    .name = "hangs", .summary = "", .state_size = sizeof(int), .place = place, .serve = serve, .victim = victim, .chain = chain};
+EOF
+    ${CC:-cc} -Wall -Wextra -Werror -shared -fPIC -I"$top/runtime" -o "$scratch/hangs.so" "$scratch/hangs.c"
+}
+stopped() {
+    refused 1 "compare: 6 runs failed: h/compare.md" tree --scheduler steal,./hangs.so --ranks 1,2 --timeout 10 --rounds 3 --output h || return 1
+    cat "$scratch/h/compare.md"
+    for n in 1 2; do
+        grep -q "^- tree, ranks $n, scheduler ./hangs.so: 3 of 3 runs; the first: stopped after 10 s (--timeout): \
+duite: scheduler hangs: its place has not returned for [0-9.]* s (rank [01], worker [01])" "$scratch/h/compare.md" || return 1
+    done
+    test "$(grep -c ": failed; not tried again" "$scratch/said")" = 4 && test "$(grep -c ',steal,.*,fine$' "$scratch/h/runs.csv")" = 6
+}
+stopped_alone() {
+    status=0
+    limited "$bin/graph-run" tree --scheduler "$scratch/hangs.so" --timeout 1 > "$scratch/said" 2>&1 || status=$?
+    cat "$scratch/said"
+    test $status = 1 && grep -qx "graph-run: stopped after 1 s (--timeout)" "$scratch/said"
+}
 # Loops on all cores. The page of a comparison that is taken up again has the warning, too.
 busy() {
     loops=
@@ -145,6 +180,9 @@ busy() {
 ok "a member that fails is named with its reason, and has no figures" failed
 ok "... also if all fail" all_failed
 ok "... or one takes too long" timed_out
+ok "a scheduler that never returns" hangs
+ok "... is stopped at the limit and named, and the others go on" stopped
+ok "... and by graph-run at its own" stopped_alone
 ok "a machine that is busy draws a warning" busy
 ok "an unknown kind of graph" refused 2 "there is no kind of graph ring; known are stencil, .* chain, and files" ring --output u
 ok "a scene that is not there" refused 2 "none.yaml: No such file or directory" tree none.yaml --output u

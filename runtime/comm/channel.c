@@ -7,6 +7,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/base/stack.h"
 #include "runtime/comm/internal.h"
 
 #include <limits.h>
@@ -221,11 +222,7 @@ int comm_channels_open(struct comm *comm, struct plan_channels *channels)
 
 void comm_channel_post(struct comm *comm, struct task *node)
 {
-    struct task *first = atomic_load_explicit(&comm->channels.ready, memory_order_relaxed);
-    do
-        node->next = first;
-    while (!atomic_compare_exchange_weak_explicit(&comm->channels.ready, &first, node,
-                                                  memory_order_release, memory_order_relaxed));
+    BASE_STACK_PUSH(&comm->channels.ready, node, memory_order_release);
     atomic_thread_fence(memory_order_seq_cst); /* as in comm_send */
 }
 
@@ -325,8 +322,8 @@ struct task *comm_channels_pass(struct comm *comm, struct task *over)
 {
     struct comm_channels *channels = &comm->channels;
     int before = channels->awaited.n;
-    if (atomic_load_explicit(&channels->ready, memory_order_relaxed))
-        start(comm, atomic_exchange_explicit(&channels->ready, NULL, memory_order_acquire), &over);
+    if (!BASE_STACK_IS_EMPTY(&channels->ready))
+        start(comm, BASE_STACK_TAKE(&channels->ready), &over);
     if (channels->stalled) {
         struct task *nodes = channels->stalled;
         channels->stalled = NULL;

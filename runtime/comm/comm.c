@@ -6,6 +6,7 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/base/stack.h"
 #include "runtime/comm/internal.h"
 #include "runtime/offload/away.h"
 
@@ -115,19 +116,14 @@ bool comm_stop(struct comm *comm)
 
 void comm_send(struct comm *comm, struct task *task)
 {
-    struct task *first = atomic_load_explicit(&comm->posts, memory_order_relaxed);
-    do
-        task->next = first;
-    while (!atomic_compare_exchange_weak_explicit(&comm->posts, &first, task, memory_order_release,
-                                                  memory_order_relaxed));
+    BASE_STACK_PUSH(&comm->posts, task, memory_order_release);
     /* Against comm_left_to_us: the next try for the lock succeeds, or its holder sees this. */
     atomic_thread_fence(memory_order_seq_cst);
 }
 
 bool comm_posted(struct comm *comm)
 {
-    return atomic_load_explicit(&comm->posts, memory_order_relaxed) ||
-           atomic_load_explicit(&comm->channels.ready, memory_order_relaxed);
+    return !BASE_STACK_IS_EMPTY(&comm->posts) || !BASE_STACK_IS_EMPTY(&comm->channels.ready);
 }
 
 /* False: it was not sent, and never will be. */
@@ -160,14 +156,8 @@ static void push_sent(struct found *found, struct task *task)
 
 static void start_sends(struct comm *comm, struct found *found)
 {
-    struct task *posts = atomic_exchange_explicit(&comm->posts, NULL, memory_order_acquire);
-    struct task *in_order = NULL;
-    while (posts) {
-        struct task *next = posts->next;
-        posts->next = in_order;
-        in_order = posts;
-        posts = next;
-    }
+    struct task *in_order = BASE_STACK_TAKE(&comm->posts);
+    BASE_LIST_REVERSE(in_order);
     while (in_order) {
         struct task *task = in_order;
         in_order = task->next;
@@ -391,7 +381,7 @@ static bool pass(struct comm *comm, struct worker *worker, bool looks)
         if (!comm_try_lock(comm))
             break;
         comm->worker = worker;
-        if (comm->sends.n || atomic_load_explicit(&comm->posts, memory_order_relaxed))
+        if (comm->sends.n || !BASE_STACK_IS_EMPTY(&comm->posts))
             start_sends(comm, &found);
         found.nodes = comm_channels_pass(comm, NULL);
         if (looks)

@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/base/rank_set.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +13,7 @@ int data_table_start(struct data_table *table, int n_ranks)
 {
     memset(table, 0, sizeof *table);
     table->n_ranks = n_ranks;
-    table->words = ((size_t)n_ranks + 63) / 64;
+    table->words = base_ranks_words(n_ranks);
     table->n_slots = 1;
     struct data_object *object =
         base_grow(NULL, &table->capacity, table->n_slots, sizeof *table->object);
@@ -199,14 +200,14 @@ bool data_object_has_copy(const struct data_table *table, const struct data_obje
 {
     if (rank == object->holder || !object->copied)
         return rank == object->holder;
-    return copies_of(table, object)[rank / 64] >> (rank % 64) & 1;
+    return base_ranks_has(copies_of(table, object), rank);
 }
 
 void data_object_hand_on(const struct data_table *table, struct data_object *object, int to)
 {
     int from = object->holder;
     if (object->copied)
-        copies_of(table, object)[from / 64] &= ~(UINT64_C(1) << (from % 64));
+        base_ranks_remove(copies_of(table, object), from);
     object->holder = to;
 }
 
@@ -214,7 +215,7 @@ void data_object_add_copy(struct data_table *table, struct data_object *object, 
 {
     uint64_t *copies = copies_of(table, object);
     if (!object->copied)
-        memset(copies, 0, table->words * sizeof *copies);
+        base_ranks_clear(copies, table->words);
     object->copied = true;
-    copies[rank / 64] |= UINT64_C(1) << (rank % 64);
+    base_ranks_add(copies, rank);
 }

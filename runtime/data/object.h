@@ -42,7 +42,7 @@ struct data_hint {
 struct data_table {
     int n_ranks;
     struct data_object *object; /* by slot; slot 0 stays free, so that {0, 0} names nothing */
-    uint64_t *copies;           /* `words` a slot: ranks with a copy of the current version */
+    uint64_t *copies; /* a set of ranks a slot: those with a copy of the current version */
     size_t words, capacity, copies_capacity;
     uint32_t n_slots, n_alive;
     uint32_t *vacant; /* freed slots */

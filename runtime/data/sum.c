@@ -3,17 +3,15 @@
 
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
+#include "runtime/base/rank_set.h"
+#include "runtime/base/stack.h"
 
 #include <stdlib.h>
 
-static size_t words(int n_ranks)
-{
-    return ((size_t)n_ranks + 63) / 64;
-}
-
 struct data_sum *data_sum_new(int n_ranks, const duite_law *law, duite_type type, size_t count)
 {
-    struct data_sum *sum = base_alloc_zero(sizeof *sum + words(n_ranks) * sizeof(uint64_t));
+    size_t words = base_ranks_words(n_ranks);
+    struct data_sum *sum = base_alloc_zero(sizeof *sum + words * sizeof *sum->contributors);
     if (!sum)
         return NULL;
     sum->law = law;
@@ -71,9 +69,8 @@ void data_sum_free(struct data_sum *sum)
 
 void data_sum_sender(struct data_sum *sum, int rank)
 {
-    uint64_t *word = &sum->senders_mask[rank / 64], bit = UINT64_C(1) << (rank % 64);
-    sum->senders += !(*word & bit);
-    *word |= bit;
+    sum->senders += !base_ranks_has(sum->contributors, rank);
+    base_ranks_add(sum->contributors, rank);
 }
 
 struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first)
@@ -102,11 +99,7 @@ bool data_sum_open(const struct data_sum *sum, struct data_piece *leaf)
 
 void data_sum_arrive(struct data_sum *sum, struct data_piece *piece)
 {
-    struct data_piece *first = atomic_load_explicit(&sum->arrived, memory_order_relaxed);
-    do
-        piece->next = first;
-    while (!atomic_compare_exchange_weak_explicit(&sum->arrived, &first, piece,
-                                                  memory_order_release, memory_order_relaxed));
+    BASE_STACK_PUSH(&sum->arrived, piece, memory_order_release);
 }
 
 struct data_waiter *data_sum_release(struct data_sum *sum)

@@ -31,7 +31,7 @@ struct data_sum {
     struct data_waiter
         *closer; /* the task that combines or sends; set before the open hold is released */
     struct data_sum *next;   /* for whoever keeps it */
-    uint64_t senders_mask[]; /* a bit a rank */
+    uint64_t contributors[]; /* the set of these ranks (base/rank_set.h) */
 };
 
 /* An open sum without leaves, for so many ranks. NULL without memory. */

@@ -1,6 +1,7 @@
 /* The parts of the machine: queues, the events to come, and the network; and how it is made. */
 #include "runtime/predict/machine.h"
 
+#include "runtime/base/heap.h"
 #include "runtime/base/memory.h"
 
 #include <math.h>
@@ -27,8 +28,10 @@ static bool room(struct predict_queue *queue)
 }
 
 /* The larger priority; of equals the longer path; of these the one that was forked first. */
-static bool before(const struct predict_node *nodes, uint32_t a, uint32_t b)
+static bool predict_node_before(const void *left, const void *right, const void *all)
 {
+    const struct predict_node *nodes = all;
+    const uint32_t a = *(const uint32_t *)left, b = *(const uint32_t *)right;
     if (nodes[a].priority != nodes[b].priority)
         return nodes[a].priority > nodes[b].priority;
     if (nodes[a].path < nodes[b].path || nodes[b].path < nodes[a].path)
@@ -36,35 +39,22 @@ static bool before(const struct predict_node *nodes, uint32_t a, uint32_t b)
     return a < b;
 }
 
-static void swap(uint32_t *a, uint32_t *b)
-{
-    uint32_t keep = *a;
-    *a = *b;
-    *b = keep;
-}
-
 bool predict_queue_put(struct predict_queue *queue, const struct predict_node *nodes, uint32_t node)
 {
     if (!room(queue))
         return false;
-    size_t at = queue->n++;
-    queue->node[(queue->first + at) & (queue->capacity - 1)] = node;
-    for (; queue->heap && at && before(nodes, queue->node[at], queue->node[(at - 1) / 2]);
-         at = (at - 1) / 2)
-        swap(&queue->node[at], &queue->node[(at - 1) / 2]);
+    if (queue->heap)
+        base_heap_push(queue->node, queue->n, &node, sizeof node, predict_node_before, nodes);
+    else
+        queue->node[(queue->first + queue->n) & (queue->capacity - 1)] = node;
+    queue->n++;
     return true;
 }
 
 static uint32_t take_highest(struct predict_queue *queue, const struct predict_node *nodes)
 {
-    uint32_t top = queue->node[0], *node = queue->node;
-    node[0] = node[--queue->n];
-    for (size_t at = 0, child; (child = 2 * at + 1) < queue->n; at = child) {
-        child += child + 1 < queue->n && before(nodes, node[child + 1], node[child]);
-        if (before(nodes, node[at], node[child]))
-            break;
-        swap(&node[at], &node[child]);
-    }
+    uint32_t top;
+    base_heap_pop(queue->node, queue->n--, &top, sizeof top, predict_node_before, nodes);
     return top;
 }
 
@@ -83,8 +73,10 @@ uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_no
 
 /* ---- Events ---- */
 
-static bool sooner(const struct predict_event *a, const struct predict_event *b)
+static bool predict_event_before(const void *left, const void *right, const void *unused)
 {
+    const struct predict_event *a = left, *b = right;
+    (void)unused;
     return a->time < b->time || (!(b->time < a->time) && a->order < b->order);
 }
 
@@ -93,30 +85,17 @@ bool predict_event_put(struct predict_events *events, double time, uint32_t node
     void *moved = base_grow(events->event, &events->capacity, events->n + 1, sizeof *events->event);
     if (!moved)
         return false;
-    struct predict_event *event = events->event = moved;
+    events->event = moved;
     struct predict_event new = {time, events->order++, node, worker};
-    size_t at = events->n++;
-    for (; at && sooner(&new, &event[(at - 1) / 2]); at = (at - 1) / 2)
-        event[at] = event[(at - 1) / 2];
-    event[at] = new;
+    base_heap_push(events->event, events->n++, &new, sizeof new, predict_event_before, NULL);
     return true;
 }
 
 bool predict_event_take(struct predict_events *events, struct predict_event *first)
 {
-    struct predict_event *event = events->event;
     if (!events->n)
         return false;
-    *first = event[0];
-    struct predict_event last = event[--events->n];
-    size_t at = 0, child;
-    for (; (child = 2 * at + 1) < events->n; at = child) {
-        child += child + 1 < events->n && sooner(&event[child + 1], &event[child]);
-        if (!sooner(&event[child], &last))
-            break;
-        event[at] = event[child];
-    }
-    event[at] = last;
+    base_heap_pop(events->event, events->n--, first, sizeof *first, predict_event_before, NULL);
     return true;
 }
 

@@ -1,6 +1,7 @@
-/* A binary heap in an array: no entry comes before its parent, (i - 1) / 2. */
+/* The heap of base/heap.h, of tasks: who entered has it alone, others read `n` at most. */
 #include "runtime/workers/heap.h"
 
+#include "runtime/base/heap.h"
 #include "runtime/base/memory.h"
 #include "runtime/task/task.h"
 
@@ -37,8 +38,10 @@ void work_heap_leave(struct work_heap *heap)
     atomic_flag_clear_explicit(&heap->busy, memory_order_release);
 }
 
-static bool before(const struct work_ranked *a, const struct work_ranked *b)
+static bool work_ranked_before(const void *left, const void *right, const void *unused)
 {
+    const struct work_ranked *a = left, *b = right;
+    (void)unused;
     if (a->priority != b->priority)
         return a->priority > b->priority;
     return a->path != b->path ? a->path > b->path : a->came < b->came;
@@ -46,35 +49,24 @@ static bool before(const struct work_ranked *a, const struct work_ranked *b)
 
 bool work_heap_push(struct work_heap *heap, struct task *task)
 {
-    size_t i = atomic_load_explicit(&heap->n, memory_order_relaxed);
-    void *moved = base_grow(heap->entry, &heap->capacity, i + 1, sizeof *heap->entry);
+    size_t n = atomic_load_explicit(&heap->n, memory_order_relaxed);
+    void *moved = base_grow(heap->entry, &heap->capacity, n + 1, sizeof *heap->entry);
     if (!moved)
         return false;
     heap->entry = moved;
     struct work_ranked new = {task, heap->came++, task->priority, task_path(task)};
-    atomic_store_explicit(&heap->n, i + 1, memory_order_relaxed);
-    for (; i && before(&new, &heap->entry[(i - 1) / 2]); i = (i - 1) / 2)
-        heap->entry[i] = heap->entry[(i - 1) / 2];
-    heap->entry[i] = new;
+    atomic_store_explicit(&heap->n, n + 1, memory_order_relaxed);
+    base_heap_push(heap->entry, n, &new, sizeof new, work_ranked_before, NULL);
     return true;
 }
 
 struct task *work_heap_pop(struct work_heap *heap)
 {
-    size_t n = atomic_load_explicit(&heap->n, memory_order_relaxed), i = 0;
+    size_t n = atomic_load_explicit(&heap->n, memory_order_relaxed);
+    struct work_ranked first;
     if (!n)
         return NULL;
-    struct task *first = heap->entry[0].task;
-    struct work_ranked last = heap->entry[--n];
-    atomic_store_explicit(&heap->n, n, memory_order_relaxed);
-    for (size_t child = 1; child < n; child = 2 * i + 1) {
-        if (child + 1 < n && before(&heap->entry[child + 1], &heap->entry[child]))
-            child++;
-        if (before(&last, &heap->entry[child]))
-            break;
-        heap->entry[i] = heap->entry[child];
-        i = child;
-    }
-    heap->entry[i] = last;
-    return first;
+    atomic_store_explicit(&heap->n, n - 1, memory_order_relaxed);
+    base_heap_pop(heap->entry, n, &first, sizeof first, work_ranked_before, NULL);
+    return first.task;
 }

@@ -2,6 +2,8 @@
  * from inbox to deque to heap. */
 #include "runtime/workers/queue.h"
 
+#include "runtime/base/stack.h"
+
 enum { FIRST_SLOTS = 256 };
 
 bool work_queue_start(struct work_queue *queue)
@@ -20,11 +22,7 @@ void work_queue_stop(struct work_queue *queue)
 
 void work_queue_put(struct work_queue *queue, struct task *task)
 {
-    struct task *first = atomic_load_explicit(&queue->inbox, memory_order_relaxed);
-    do
-        task->next = first;
-    while (!atomic_compare_exchange_weak_explicit(&queue->inbox, &first, task, memory_order_seq_cst,
-                                                  memory_order_relaxed));
+    BASE_STACK_PUSH(&queue->inbox, task, memory_order_seq_cst);
 }
 
 void work_queue_push(struct work_queue *queue, struct task *task)
@@ -36,17 +34,11 @@ void work_queue_push(struct work_queue *queue, struct task *task)
 /* The inbox, oldest first. */
 static struct task *empty_inbox(struct work_queue *queue)
 {
-    if (!atomic_load_explicit(&queue->inbox, memory_order_relaxed))
+    if (BASE_STACK_IS_EMPTY(&queue->inbox))
         return NULL;
-    struct task *task = atomic_exchange_explicit(&queue->inbox, NULL, memory_order_acquire);
-    struct task *oldest = NULL;
-    while (task) {
-        struct task *next = task->next;
-        task->next = oldest;
-        oldest = task;
-        task = next;
-    }
-    return oldest;
+    struct task *task = BASE_STACK_TAKE(&queue->inbox);
+    BASE_LIST_REVERSE(task);
+    return task;
 }
 
 /* A list, oldest first. What finds no memory for a larger ring goes to the inbox, which has no

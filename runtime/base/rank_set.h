@@ -1,0 +1,66 @@
+#ifndef DUITE_BASE_RANK_SET_H
+#define DUITE_BASE_RANK_SET_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+/* Sets of ranks: a bit a rank, in as many words as all ranks take. Whoever keeps a set has the
+ * words, one set behind the other where there are many. Not for several threads at a time. */
+
+/* Words of a set. */
+static inline size_t base_ranks_words(int n_ranks)
+{
+    return ((size_t)n_ranks + 63) / 64;
+}
+
+static inline bool base_ranks_has(const uint64_t *set, int rank)
+{
+    return set[rank / 64] >> (rank % 64) & 1;
+}
+
+static inline void base_ranks_add(uint64_t *set, int rank)
+{
+    set[rank / 64] |= UINT64_C(1) << (rank % 64);
+}
+
+static inline void base_ranks_remove(uint64_t *set, int rank)
+{
+    set[rank / 64] &= ~(UINT64_C(1) << (rank % 64));
+}
+
+static inline void base_ranks_clear(uint64_t *set, size_t words)
+{
+    memset(set, 0, words * sizeof *set);
+}
+
+static inline bool base_ranks_is_empty(const uint64_t *set, size_t words)
+{
+    uint64_t any = 0;
+    for (size_t i = 0; i < words; i++)
+        any |= set[i];
+    return !any;
+}
+
+/* Whether each rank of `set` is one of `other`. */
+static inline bool base_ranks_within(const uint64_t *set, const uint64_t *other, size_t words)
+{
+    uint64_t outside = 0;
+    for (size_t i = 0; i < words; i++)
+        outside |= set[i] & ~other[i];
+    return !outside;
+}
+
+/* Adds the ranks of `from`. Returns whether `to` grew. */
+static inline bool base_ranks_join(uint64_t *to, const uint64_t *from, size_t words)
+{
+    uint64_t added = 0;
+    for (size_t i = 0; i < words; i++) {
+        added |= from[i] & ~to[i];
+        to[i] |= from[i];
+    }
+    return added;
+}
+
+#endif

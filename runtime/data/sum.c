@@ -1,10 +1,12 @@
-/* The order in which leaves combine comes from their places in fork order and from nothing else. */
+/* Leaves, and pieces of other ranks, come in any order; they combine by their places in the tree of
+ * reduce.h once all are there. */
 #include "runtime/data/sum.h"
 
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
 #include "runtime/base/rank_set.h"
 #include "runtime/base/stack.h"
+#include "runtime/data/reduce.h"
 
 #include <stdlib.h>
 
@@ -24,7 +26,8 @@ struct data_sum *data_sum_new(int n_ranks, const duite_law *law, duite_type type
 }
 
 /* Combines two neighbours into the left one; what is absent is skipped. */
-static void combine(const struct data_sum *sum, struct data_piece *left, struct data_piece *right)
+static void combine_pieces(const struct data_sum *sum, struct data_piece *left,
+                           struct data_piece *right)
 {
     if (left->value && right->value) {
         sum->law->combine(left->value, right->value, sum->count, sum->type);
@@ -35,6 +38,18 @@ static void combine(const struct data_sum *sum, struct data_piece *left, struct 
         left->value = right->value;
         right->value = NULL;
     }
+}
+
+/* The pieces that a reduction numbers. */
+struct reduced {
+    const struct data_sum *sum;
+    struct data_piece **piece;
+};
+
+static void combine_numbered(void *context, uint32_t left, uint32_t right)
+{
+    const struct reduced *reduced = context;
+    combine_pieces(reduced->sum, reduced->piece[left], reduced->piece[right]);
 }
 
 struct data_piece *data_piece_new(void)
@@ -50,7 +65,7 @@ static void piece_free(struct data_piece *piece)
     base_pool_give(piece, sizeof *piece);
 }
 
-static void free_pieces(struct data_piece *piece)
+static void pieces_free(struct data_piece *piece)
 {
     while (piece) {
         struct data_piece *next = piece->next;
@@ -62,8 +77,8 @@ static void free_pieces(struct data_piece *piece)
 
 void data_sum_free(struct data_sum *sum)
 {
-    free_pieces(sum->pieces);
-    free_pieces(atomic_load_explicit(&sum->arrived, memory_order_acquire));
+    pieces_free(sum->pieces);
+    pieces_free(atomic_load_explicit(&sum->arrived, memory_order_acquire));
     base_free(sum);
 }
 
@@ -109,22 +124,15 @@ struct data_waiter *data_sum_release(struct data_sum *sum)
     return sum->closer;
 }
 
-static int by_first(const void *a, const void *b)
+static int piece_compare_first(const void *a, const void *b)
 {
     const struct data_piece *l = *(struct data_piece *const *)a;
     const struct data_piece *r = *(struct data_piece *const *)b;
     return (l->first > r->first) - (l->first < r->first);
 }
 
-/* The two halves of one complete subtree? */
-static bool siblings(const struct data_piece *l, const struct data_piece *r)
-{
-    uint64_t half = UINT64_C(1) << l->level;
-    return l->level == r->level && l->first + half == r->first && l->first % (2 * half) == 0;
-}
-
 /* All pieces, local and arrived, in one array by `first`; NULL without memory. */
-static struct data_piece **collect(struct data_sum *sum, size_t *n)
+static struct data_piece **pieces_collect(struct data_sum *sum, size_t *n)
 {
     struct data_piece *lists[2] = {sum->pieces,
                                    atomic_load_explicit(&sum->arrived, memory_order_acquire)};
@@ -138,42 +146,52 @@ static struct data_piece **collect(struct data_sum *sum, size_t *n)
         for (struct data_piece *p = lists[i]; p; p = p->next)
             all[(*n)++] = p;
     if (all)
-        qsort(all, *n, sizeof all[0], by_first);
+        qsort(all, *n, sizeof all[0], piece_compare_first);
     return all;
+}
+
+/* Reduces all pieces; `fold`: and what is left into the first one. */
+static const struct data_failure *sum_reduce(struct data_sum *sum, bool fold,
+                                             struct data_piece ***out, size_t *n, int *code)
+{
+    size_t total, left = 0;
+    struct data_piece **all = *out = pieces_collect(sum, &total);
+    struct data_subtree *tree = base_alloc((total + 1) * sizeof *tree);
+    struct reduced reduced = {sum, all};
+    const struct data_failure *failure = atomic_load_explicit(&sum->lost, memory_order_relaxed);
+    *n = 0;
+    *code = all && tree ? DUITE_OK : DUITE_E_MEMORY;
+    for (size_t i = 0; i < total && !*code; i++)
+        failure = data_first(failure, all[i]->failure);
+    for (uint32_t i = 0; i < total && !*code && !failure; i++) {
+        tree[left] = (struct data_subtree){all[i]->first, all[i]->level, i};
+        left = data_reduce_push(tree, left, combine_numbered, &reduced);
+    }
+    if (fold)
+        data_reduce_fold(tree, left, combine_numbered, &reduced);
+    for (size_t i = 0; i < left; i++) { /* from where it stands, or behind that */
+        all[i] = all[tree[i].where];
+        all[i]->level = tree[i].level;
+    }
+    *n = left;
+    base_free(tree);
+    return *code ? NULL : failure;
 }
 
 const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_piece ***out,
                                            size_t *n, int *code)
 {
-    size_t total;
-    struct data_piece **all = collect(sum, &total);
-    *out = all;
-    *n = 0;
-    *code = all ? DUITE_OK : DUITE_E_MEMORY;
-    if (!all)
-        return NULL;
-    const struct data_failure *failure = atomic_load_explicit(&sum->lost, memory_order_relaxed);
-    for (size_t i = 0; i < total; i++)
-        failure = data_first(failure, all[i]->failure);
-    if (failure)
-        return failure;
-    size_t top = 0;
-    for (size_t i = 0; i < total; i++) {
-        all[top++] = all[i];
-        for (; top > 1 && siblings(all[top - 2], all[top - 1]); top--) {
-            combine(sum, all[top - 2], all[top - 1]);
-            all[top - 2]->level++;
-        }
-    }
-    *n = top;
-    return NULL;
+    return sum_reduce(sum, false, out, n, code);
 }
 
-struct data_piece *data_sum_fold(const struct data_sum *sum, struct data_piece **pieces, size_t n)
+const struct data_failure *data_sum_fold(struct data_sum *sum, struct data_piece **whole, int *code)
 {
-    for (size_t i = n - 1; i > 0; i--)
-        combine(sum, pieces[i - 1], pieces[i]);
-    return pieces[0]->value ? pieces[0] : NULL;
+    struct data_piece **pieces;
+    size_t n;
+    const struct data_failure *failure = sum_reduce(sum, true, &pieces, &n, code);
+    *whole = n && pieces[0]->value ? pieces[0] : NULL;
+    base_free(pieces);
+    return failure;
 }
 
 void data_piece_take(struct data_piece *leaf, struct data_piece *piece)
@@ -183,11 +201,4 @@ void data_piece_take(struct data_piece *leaf, struct data_piece *piece)
     leaf->packet = piece->packet;
     leaf->value = piece->value;
     piece->packet = NULL;
-}
-
-void data_sum_finish(const struct data_sum *sum, struct data_piece **pieces, size_t n, void *value)
-{
-    const struct data_piece *whole = data_sum_fold(sum, pieces, n);
-    if (whole)
-        sum->law->combine(value, whole->value, sum->count, sum->type);
 }

@@ -4,12 +4,10 @@
 #include "runtime/data/law.h"
 #include "runtime/data/version.h"
 
-/* Contributions (cw) to an object between two other accesses, the leaves of a tree in fork order.
- *
- * The tree: equal complete subtrees combine as in a binary counter, the rest folds from the right;
- * its shape depends on the number of leaves only. A piece is the value of a complete subtree:
- * leaves first .. first + 2^level - 1. A rank combines what it has into the largest complete
- * subtrees and sends only these. */
+/* Contributions (cw) to an object between two other accesses, the leaves of a reduction tree in
+ * fork order (reduce.h). A piece is the value of a complete subtree: leaves first .. first +
+ * 2^level - 1. A rank combines what it has into the largest complete subtrees and sends only these.
+ */
 struct data_piece {
     struct data_piece *next;
     uint64_t first;
@@ -65,14 +63,12 @@ struct data_waiter *data_sum_release(struct data_sum *sum);
 const struct data_failure *data_sum_reduce(struct data_sum *sum, struct data_piece ***out,
                                            size_t *n, int *code);
 
-/* Folds the reduced pieces of a whole sum from the right into one of them, which is returned; NULL:
- * all are absent. */
-struct data_piece *data_sum_fold(const struct data_sum *sum, struct data_piece **pieces, size_t n);
+/* Combines the pieces of a whole sum (pending is 0) into one of them, in place: *whole; NULL: all
+ * are absent. Failures and *code as of data_sum_reduce; *whole is NULL then. */
+const struct data_failure *data_sum_fold(struct data_sum *sum, struct data_piece **whole,
+                                         int *code);
 
 /* `leaf` gets the value of `piece` (NULL: it is absent), which is made of this rank's leaves. */
 void data_piece_take(struct data_piece *leaf, struct data_piece *piece);
-
-/* Folds the reduced pieces of a whole sum; value becomes law(value, result). */
-void data_sum_finish(const struct data_sum *sum, struct data_piece **pieces, size_t n, void *value);
 
 #endif

@@ -181,33 +181,30 @@ void task_run_combine(struct task *task)
         return;
     }
     struct data_version *in = task->access[0].in, *out = task->access[0].out;
-    struct data_piece **pieces;
-    size_t n;
+    struct data_piece *whole;
     int code;
-    const struct data_failure *failure = data_sum_reduce(sum->sum, &pieces, &n, &code);
+    const struct data_failure *failure = data_sum_fold(sum->sum, &whole, &code);
     out->packet = data_version_packet(in);
     failure = code ? task_fail_memory(task) : data_first(data_version_failure(in), failure);
     data_version_free(in);
     data_version_poison(out, failure);
-    if (!failure)
-        data_sum_finish(sum->sum, pieces, n, data_payload(out->packet));
-    base_free(pieces);
+    if (!failure && whole)
+        sum->sum->law->combine(data_payload(out->packet), whole->value, sum->sum->count,
+                               sum->sum->type);
     data_sum_free(sum->sum);
 }
 
 void task_run_gather(struct task *task)
 {
     struct data_sum *sum = task->sum->sum;
-    struct data_piece *leaf = task->access[0].leaf, **pieces;
-    size_t n;
+    struct data_piece *leaf = task->access[0].leaf, *whole;
     int code;
-    const struct data_failure *failure = data_sum_reduce(sum, &pieces, &n, &code);
+    const struct data_failure *failure = data_sum_fold(sum, &whole, &code);
     if (code)
         failure = task_fail_memory(task);
     leaf->failure = data_first(leaf->failure, failure);
     if (!leaf->failure)
-        data_piece_take(leaf, data_sum_fold(sum, pieces, n));
-    base_free(pieces);
+        data_piece_take(leaf, whole);
     data_sum_free(sum);
 }
 

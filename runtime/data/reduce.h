@@ -1,0 +1,40 @@
+#ifndef DUITE_DATA_REDUCE_H
+#define DUITE_DATA_REDUCE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* The reduction tree, which decides every bit of a sum. Its leaves are the contributions in fork
+ * order. Equal complete subtrees combine, as in a binary counter; what is left when all leaves are
+ * in folds from the right. For 7 leaves:
+ *
+ *     ((0 1) (2 3)) ((4 5) 6)
+ *
+ * So the shape depends on the number of leaves and on nothing else. Each rank, and each node of a
+ * plan, may reduce the leaves that it has: what comes of them are complete subtrees of the one
+ * tree, and whoever has them all finishes it. The rule stands here; sums in flight (sum.h) and
+ * plans of recorded rounds (plan/) follow it. */
+
+/* A complete subtree: leaves first .. first + 2^level - 1. */
+struct data_subtree {
+    uint64_t first;
+    uint32_t level;
+    uint32_t where; /* its value, by a number of the caller's; nothing to the rule */
+};
+
+/* Combines two values into that of `left`. */
+typedef void data_combine(void *context, uint32_t left, uint32_t right);
+
+/* Whether both are the halves of one complete subtree. */
+bool data_subtree_are_halves(const struct data_subtree *left, const struct data_subtree *right);
+
+/* A subtree, right of the others, was put behind n of them in a row: combines what are halves then.
+ * Returns how many are left in the row; of leaves without a gap never more than 64. */
+size_t data_reduce_push(struct data_subtree *row, size_t n, data_combine *combine, void *context);
+
+/* All leaves are in: folds the subtrees that are left, from the right, into the first one. */
+void data_reduce_fold(const struct data_subtree *row, size_t n, data_combine *combine,
+                      void *context);
+
+#endif

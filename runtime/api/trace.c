@@ -16,8 +16,7 @@ int traced_open(duite *rt, const duite_options *options)
                                                         .rank = rt->graph.rank,
                                                         .n_ranks = rt->graph.n_ranks,
                                                         .workers = rt->threads,
-                                                        .kernels = rt->graph.kernels,
-                                                        .n_kernels = rt->graph.n_kernels});
+                                                        .graph = &rt->graph});
 }
 
 void traced_begin(duite *rt)

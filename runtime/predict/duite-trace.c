@@ -12,9 +12,23 @@
 #include <string.h>
 
 enum { FAILED = 1, BAD_INPUT = 2 };
-enum { CHECK = 256, CHROME, CSV, DOT, GRAPH, PAJE, PARTIAL, N_FORMS = 5 };
-
 const char *argp_program_version = "duite-trace (" PACKAGE_STRING ")";
+
+/* The forms. A new one is a file with its function and a row here. */
+static const struct {
+    const char *option, *help;
+    int (*write)(const struct trace_run *run, FILE *file);
+} FORMS[] = {
+    {"paje", "write a Paje trace, which ViTE opens", trace_write_paje},
+    {"chrome", "write Chrome's JSON, which Perfetto opens", trace_write_chrome},
+    {"csv", "write a line an event", trace_write_csv},
+    {"dot", "write the tasks and what each waited for, for Graphviz", predict_write_dot},
+    {"graph",
+     "write the tasks and what each read as a graph, which bench/graph-run and bench/compare "
+     "schedule without the program",
+     predict_write_graph},
+};
+enum { N_FORMS = sizeof FORMS / sizeof FORMS[0], CHECK = 256, PARTIAL, FORM };
 
 struct command {
     const char *file;
@@ -22,36 +36,27 @@ struct command {
     bool partial, check;
 };
 
-static const struct argp_option OPTIONS[] = {
-    {"paje", PAJE, "OUT", 0, "write a Paje trace, which ViTE opens", 1},
-    {"chrome", CHROME, "OUT", 0, "write Chrome's JSON, which Perfetto opens", 1},
-    {"dot", DOT, "OUT", 0, "write the tasks and what each waited for, for Graphviz", 1},
-    {"graph", GRAPH, "OUT", 0,
-     "write the tasks and what each read as a graph, which bench/graph-run and bench/compare "
-     "schedule without the program",
-     1},
-    {"csv", CSV, "OUT", 0, "write a line an event", 1},
-    {"check", CHECK, NULL, 0, "whether the events add up to what the workers counted", 2},
-    {"partial", PARTIAL, NULL, 0, "take what there is of a run that did not come to its end", 2},
-    {0}};
+/* FORM + i: the form of row i; then the others, and zeros. */
+static struct argp_option options[N_FORMS + 3];
 
-static const struct {
-    int (*write)(const struct trace_run *run, FILE *file);
-    int key;
-} FORMS[N_FORMS] = {{trace_write_paje, PAJE},
-                    {trace_write_chrome, CHROME},
-                    {trace_write_csv, CSV},
-                    {predict_write_dot, DOT},
-                    {predict_write_graph, GRAPH}};
+static void options_fill(void)
+{
+    struct argp_option *next = options;
+    for (int i = 0; i < N_FORMS; i++)
+        *next++ = (struct argp_option){FORMS[i].option, FORM + i, "OUT", 0, FORMS[i].help, 1};
+    *next++ = (struct argp_option){
+        "check", CHECK, NULL, 0, "whether the events add up to what the workers counted", 2};
+    *next = (struct argp_option){
+        "partial", PARTIAL, NULL, 0, "take what there is of a run that did not come to its end", 2};
+}
 
 static error_t parse(int key, char *value, struct argp_state *state)
 {
     struct command *command = state->input;
-    for (size_t i = 0; i < N_FORMS; i++)
-        if (FORMS[i].key == key) {
-            command->out[i] = value;
-            return 0;
-        }
+    if (key >= FORM && key < FORM + N_FORMS) {
+        command->out[key - FORM] = value;
+        return 0;
+    }
     switch (key) {
     case CHECK:
         command->check = true;
@@ -73,7 +78,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 }
 
 static const struct argp ARGP = {
-    .options = OPTIONS,
+    .options = options,
     .parser = parse,
     .args_doc = "TRACE",
     .doc = "Says what a trace has (duite-cloth --trace), or turns it into forms that viewers open. "
@@ -131,6 +136,7 @@ int main(int argc, char **argv)
 {
     struct command command = {0};
     argp_err_exit_status = BAD_INPUT;
+    options_fill();
     if (argp_parse(&ARGP, argc, argv, 0, NULL, &command))
         return BAD_INPUT;
     struct trace_run *run;

@@ -7,23 +7,8 @@
 #include <inttypes.h>
 #include <math.h>
 
-void trace_each(const struct trace_run *run, void (*visit)(void *, const struct trace_seen *),
-                void *context)
-{
-    for (uint32_t r = 0; r < run->n_ranks; r++)
-        for (size_t p = 0; p < run->rank[r].n_pieces; p++) {
-            const struct trace_piece *piece = &run->rank[r].piece[p];
-            for (size_t i = 0; i < piece->n; i++) {
-                const struct trace_event *event = &piece->event[i];
-                visit(context, &(struct trace_seen){event, r, piece->worker,
-                                                    trace_when(run, r, event->begin),
-                                                    trace_when(run, r, event->begin + event->took),
-                                                    trace_lasts(run, r, event->took)});
-            }
-        }
-}
-
-void trace_put_json(FILE *file, const char *text)
+/* A string, in quotes. */
+static void chrome_put_string(FILE *file, const char *text)
 {
     fputc('"', file);
     for (; *text; text++) {
@@ -38,12 +23,12 @@ void trace_put_json(FILE *file, const char *text)
     fputc('"', file);
 }
 
-struct writer {
+struct chrome_writer {
     const struct trace_run *run;
     FILE *file;
 };
 
-static void put_args(FILE *file, const struct trace_event *event)
+static void chrome_put_args(FILE *file, const struct trace_event *event)
 {
     switch (event->kind) {
     case TRACE_TASK:
@@ -66,62 +51,56 @@ static void put_args(FILE *file, const struct trace_event *event)
     }
 }
 
-static bool lasts(const struct trace_event *event)
-{
-    return event->kind <= TRACE_IDLE || event->kind == TRACE_MIGRATE ||
-           event->kind == TRACE_FLUSH || event->kind == TRACE_MESSAGES;
-}
-
-static void put_nanoseconds(FILE *file, const char *key, int64_t t)
+static void chrome_put_time(FILE *file, const char *key, int64_t t)
 {
     fprintf(file, ",\"%s\":%" PRId64 ".%03" PRId64, key, t / 1000, t % 1000);
 }
 
-static int64_t nanoseconds(double seconds)
+static int64_t chrome_nanoseconds(double seconds)
 {
     return seconds > 0 ? llrint(1e9 * seconds) : 0;
 }
 
 /* Threads are numbered through all ranks. */
-static void put_ids(FILE *file, const struct trace_run *run, uint32_t rank, uint32_t worker)
+static void chrome_put_ids(FILE *file, const struct trace_run *run, uint32_t rank, uint32_t worker)
 {
     fprintf(file, "\"pid\":%" PRIu32 ",\"tid\":%" PRIu32, rank + 1,
             trace_first_worker(run, rank) + worker + 1);
 }
 
-static void put(void *context, const struct trace_seen *seen)
+static void chrome_put_event(void *context, const struct trace_seen *seen)
 {
-    const struct writer *writer = context;
+    const struct chrome_writer *writer = context;
     FILE *file = writer->file;
-    const int64_t begin = nanoseconds(seen->begin), end = nanoseconds(seen->end);
+    const int64_t begin = chrome_nanoseconds(seen->begin), end = chrome_nanoseconds(seen->end);
     fputs(",\n{\"name\":", file);
-    trace_put_json(file, trace_event_name(writer->run, seen->event));
+    chrome_put_string(file, trace_event_name(writer->run, seen->event));
     fprintf(file, ",\"cat\":\"%s\",", trace_kind_name(seen->event->kind));
-    put_ids(file, writer->run, seen->rank, seen->worker);
-    put_nanoseconds(file, "ts", begin);
-    if (lasts(seen->event)) {
+    chrome_put_ids(file, writer->run, seen->rank, seen->worker);
+    chrome_put_time(file, "ts", begin);
+    if (trace_event_lasts(seen->event)) {
         fputs(",\"ph\":\"X\"", file);
-        put_nanoseconds(file, "dur", end - begin);
+        chrome_put_time(file, "dur", end - begin);
     } else {
         fputs(",\"ph\":\"i\",\"s\":\"t\"", file);
     }
     fputs(",\"args\":{", file);
-    put_args(file, seen->event);
+    chrome_put_args(file, seen->event);
     fputs("}}", file);
 }
 
 /* The name of a process or thread, and its place among them. */
-static void put_name(FILE *file, const struct trace_run *run, uint32_t rank, uint32_t worker,
-                     bool process)
+static void chrome_put_name(FILE *file, const struct trace_run *run, uint32_t rank, uint32_t worker,
+                            bool process)
 {
     const char *what = process ? "process" : "thread";
     fprintf(file, "%s{\"name\":\"%s_name\",\"ph\":\"M\",", rank || worker || !process ? ",\n" : "",
             what);
-    put_ids(file, run, rank, worker);
+    chrome_put_ids(file, run, rank, worker);
     fprintf(file, ",\"args\":{\"name\":\"%s %" PRIu32 "\"}},\n", process ? "rank" : "worker",
             process ? rank : worker);
     fprintf(file, "{\"name\":\"%s_sort_index\",\"ph\":\"M\",", what);
-    put_ids(file, run, rank, worker);
+    chrome_put_ids(file, run, rank, worker);
     fprintf(file, ",\"args\":{\"sort_index\":%" PRIu32 "}}", process ? rank : worker);
 }
 
@@ -129,11 +108,11 @@ int trace_write_chrome(const struct trace_run *run, FILE *file)
 {
     fputs("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n", file);
     for (uint32_t r = 0; r < run->n_ranks; r++) {
-        put_name(file, run, r, 0, true);
+        chrome_put_name(file, run, r, 0, true);
         for (uint32_t w = 0; w < run->rank[r].header->workers; w++)
-            put_name(file, run, r, w, false);
+            chrome_put_name(file, run, r, w, false);
     }
-    trace_each(run, put, &(struct writer){run, file});
+    trace_each(run, chrome_put_event, &(struct chrome_writer){run, file});
     fputs("\n]}\n", file);
     return 0;
 }

@@ -12,7 +12,7 @@ enum { TRIPS = 16 };
 #define PATIENCE 10.0 /* seconds; and this for each rank */
 #define EACH     0.05
 
-static bool finish(struct trace *trace, MPI_Request *request, double until)
+static bool clock_request_end(struct trace *trace, MPI_Request *request, double until)
 {
     int done = 0;
     while (!MPI_Test(request, &done, MPI_STATUS_IGNORE) && !done && base_seconds() < until)
@@ -21,29 +21,29 @@ static bool finish(struct trace *trace, MPI_Request *request, double until)
     return done;
 }
 
-static bool say(struct trace *trace, int to, double until)
+static bool clock_say(struct trace *trace, int to, double until)
 {
     MPI_Request request;
     return !MPI_Isend(&trace->said, sizeof trace->said, MPI_BYTE, to, 0, trace->mpi, &request) &&
-           finish(trace, &request, until);
+           clock_request_end(trace, &request, until);
 }
 
-static bool hear(struct trace *trace, int from, double until)
+static bool clock_hear(struct trace *trace, int from, double until)
 {
     MPI_Request request;
     return !MPI_Irecv(&trace->heard, sizeof trace->heard, MPI_BYTE, from, 0, trace->mpi,
                       &request) &&
-           finish(trace, &request, until);
+           clock_request_end(trace, &request, until);
 }
 
 /* Rank 0 with one other. */
-static bool compare(struct trace *trace, int other, double until)
+static bool clock_compare_with(struct trace *trace, int other, double until)
 {
     struct trace_word best = {.run = trace->header.run, .bound = INFINITY};
     for (int i = 0; i < TRIPS; i++) {
         trace->said = (struct trace_word){.more = 1};
         double begin = trace_seconds(trace);
-        if (!say(trace, other, until) || !hear(trace, other, until))
+        if (!clock_say(trace, other, until) || !clock_hear(trace, other, until))
             return false;
         double end = trace_seconds(trace), half = (end - begin) / 2;
         if (half >= best.bound)
@@ -55,22 +55,22 @@ static bool compare(struct trace *trace, int other, double until)
     trace->said = best;
     if (!(trace->header.latency > 0 && trace->header.latency < best.bound))
         trace->header.latency = best.bound;
-    return say(trace, other, until);
+    return clock_say(trace, other, until);
 }
 
-static bool answer(struct trace *trace, double until)
+static bool clock_answer(struct trace *trace, double until)
 {
-    while (hear(trace, 0, until)) {
+    while (clock_hear(trace, 0, until)) {
         if (!(trace->heard.more > 0))
             return true;
         trace->said = (struct trace_word){.at = trace_seconds(trace)};
-        if (!say(trace, 0, until))
+        if (!clock_say(trace, 0, until))
             return false;
     }
     return false;
 }
 
-static void draw_run(struct trace *trace)
+static void run_number_draw(struct trace *trace)
 {
     uint64_t state = trace->header.epoch ^ (uint64_t)getpid() << 40;
     trace->header.run = duite_random(&state);
@@ -82,13 +82,13 @@ void trace_align(struct trace *trace, MPI_Comm mpi)
     const double until = base_seconds() + PATIENCE + EACH * n;
     struct trace_clock clock = {0};
     if (!trace->header.run && !rank)
-        draw_run(trace);
+        run_number_draw(trace);
     if (n > 1 && trace->mpi == MPI_COMM_NULL && MPI_Comm_dup(mpi, &trace->mpi))
         return;
     bool fine = !trace->stuck;
     for (int other = 1; other < n && !rank && fine; other++)
-        fine = compare(trace, other, until);
-    if (rank && fine && answer(trace, until)) {
+        fine = clock_compare_with(trace, other, until);
+    if (rank && fine && clock_answer(trace, until)) {
         trace->header.run = trace->heard.run;
         clock = (struct trace_clock){trace->heard.at, trace->heard.ahead, trace->heard.bound};
     } else if (rank) {

@@ -3,13 +3,13 @@
 
 #include <inttypes.h>
 
-struct writer {
+struct csv_writer {
     const struct trace_run *run;
     FILE *file;
 };
 
 /* In quotes, for names are the program's. */
-static void put_name(FILE *file, const char *name)
+static void csv_put_name(FILE *file, const char *name)
 {
     fputc('"', file);
     for (; *name; name++)
@@ -17,16 +17,16 @@ static void put_name(FILE *file, const char *name)
     fputc('"', file);
 }
 
-static void put(void *context, const struct trace_seen *seen)
+static void csv_put_event(void *context, const struct trace_seen *seen)
 {
-    const struct writer *writer = context;
+    const struct csv_writer *writer = context;
     const struct trace_event *event = seen->event;
     FILE *file = writer->file;
     bool task = event->kind == TRACE_TASK || event->kind == TRACE_OWN;
     bool peer = event->kind >= TRACE_STEAL && event->kind <= TRACE_DELEGATE;
     fprintf(file, "%" PRIu32 ",%" PRIu32 ",%s,", seen->rank, seen->worker,
             trace_kind_name(event->kind));
-    put_name(file, trace_event_name(writer->run, event));
+    csv_put_name(file, trace_event_name(writer->run, event));
     fprintf(file, ",%.9f,%.9f,%.9f,%" PRIu64 ",", seen->begin, seen->took,
             trace_lasts(writer->run, seen->rank, event->within), event->number);
     if (peer)
@@ -39,6 +39,6 @@ static void put(void *context, const struct trace_seen *seen)
 int trace_write_csv(const struct trace_run *run, FILE *file)
 {
     fputs("rank,worker,kind,name,begin,seconds,within,number,peer,nested,guest,chained\n", file);
-    trace_each(run, put, &(struct writer){run, file});
+    trace_each(run, csv_put_event, &(struct csv_writer){run, file});
     return 0;
 }

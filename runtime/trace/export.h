@@ -5,8 +5,9 @@
 
 #include <stdio.h>
 
-/* A run in the forms of others. Written to `file`, which stays open; 0, or DUITE_E_MEMORY. What the
- * file could not take is told by ferror. */
+/* A run in the forms of others: a file of this folder each, and a row in the table FORMS of
+ * duite-trace.c, which has the option, its help and the function. Written to `file`, which stays
+ * open; 0, or DUITE_E_MEMORY. What the file could not take is told by ferror. */
 
 /* What lasted, of one kind: on workers of all ranks, numbered through. */
 struct trace_span {
@@ -26,18 +27,5 @@ int trace_write_paje_spans(FILE *file, struct trace_span *span, size_t n, const 
 int trace_write_chrome(const struct trace_run *run, FILE *file);
 /* A line an event, with a head line. */
 int trace_write_csv(const struct trace_run *run, FILE *file);
-
-/* Calls back with each event, worker by worker. */
-struct trace_seen {
-    const struct trace_event *event;
-    uint32_t rank, worker;
-    double begin, end; /* s; as aligned, so nothing overlaps that did not */
-    double took;       /* s of its own clock */
-};
-void trace_each(const struct trace_run *run,
-                void (*visit)(void *context, const struct trace_seen *), void *context);
-
-/* A string of JSON, in quotes. */
-void trace_put_json(FILE *file, const char *text);
 
 #endif

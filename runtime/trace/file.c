@@ -13,7 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static bool write_all(int fd, const void *data, size_t bytes)
+static bool file_write(int fd, const void *data, size_t bytes)
 {
     const char *at = data;
     while (bytes) {
@@ -38,9 +38,9 @@ bool trace_write(struct trace *trace, enum trace_section_kind kind, uint32_t wor
         return false;
     for (size_t i = 0; i < n; i++)
         head.bytes += part[i].bytes;
-    bool fine = write_all(trace->fd, &head, sizeof head);
+    bool fine = file_write(trace->fd, &head, sizeof head);
     for (size_t i = 0; i < n && fine; i++)
-        fine = write_all(trace->fd, part[i].data, part[i].bytes);
+        fine = file_write(trace->fd, part[i].data, part[i].bytes);
     if (fine) {
         trace->bytes += sizeof head + head.bytes;
         return true;
@@ -52,7 +52,7 @@ bool trace_write(struct trace *trace, enum trace_section_kind kind, uint32_t wor
 }
 
 /* The header where it lies, even on a full disk. */
-static bool write_header(struct trace *trace)
+static bool file_write_header(struct trace *trace)
 {
     const struct trace_header header = trace->header;
     ssize_t n = pwrite(trace->fd, &header, sizeof header, 0);
@@ -65,18 +65,19 @@ static bool write_header(struct trace *trace)
 
 /* ---- Opening ---- */
 
-static bool write_kernels(struct trace *trace)
+static bool file_write_kernels(struct trace *trace)
 {
-    size_t names = 0, n = trace->n_kernels;
+    const duite_kernel *const *kernels = trace->graph->kernels;
+    size_t names = 0, n = trace->graph->n_kernels;
     for (size_t i = 0; i < n; i++)
-        names += strlen(trace->kernels[i]->name) + 1;
+        names += strlen(kernels[i]->name) + 1;
     names = (names + 7) / 8 * 8;
     struct trace_kernel *kernel = base_alloc_zero(n * sizeof *kernel + names + 1);
     if (!kernel)
         return false;
     char *name = (char *)(kernel + n);
     for (size_t i = 0; i < n; i++) {
-        const duite_kernel *from = trace->kernels[i];
+        const duite_kernel *from = kernels[i];
         struct trace_kernel *to = &kernel[i];
         while (to->fixed < DUITE_MAX_ACCESS && from->access[to->fixed]) {
             to->mode[to->fixed] = (uint8_t)from->access[to->fixed];
@@ -93,7 +94,7 @@ static bool write_kernels(struct trace *trace)
     return fine;
 }
 
-static bool make_rings(struct trace *trace)
+static bool rings_new(struct trace *trace)
 {
     unsigned n = trace->header.workers;
     trace->ring = base_alloc_zero(n * sizeof *trace->ring);
@@ -108,7 +109,7 @@ static bool make_rings(struct trace *trace)
     return trace->ring != NULL;
 }
 
-static bool make(struct trace *trace, const struct trace_setup *setup)
+static bool trace_make(struct trace *trace, const struct trace_setup *setup)
 {
     trace->header = (struct trace_header){.version = TRACE_VERSION,
                                           .order = TRACE_ORDER,
@@ -121,8 +122,7 @@ static bool make(struct trace *trace, const struct trace_setup *setup)
                                           .first = setup->first,
                                           .end = setup->end};
     memcpy(trace->header.magic, TRACE_MAGIC, sizeof trace->header.magic);
-    trace->kernels = setup->kernels;
-    trace->n_kernels = setup->n_kernels;
+    trace->graph = setup->graph;
     size_t length = strlen(setup->file) + 16;
     trace->path = malloc(length);
     if (trace->path && setup->rank)
@@ -131,12 +131,12 @@ static bool make(struct trace *trace, const struct trace_setup *setup)
         strcpy(trace->path, setup->file);
     if (!setup->rank)
         trace->word = base_alloc(TRACE_WORDS * sizeof *trace->word);
-    return make_rings(trace) && trace->path && (trace->word || setup->rank);
+    return rings_new(trace) && trace->path && (trace->word || setup->rank);
 }
 
 /* A file that is there goes first: another run may still write to it, and must not write into
  * ours. What is no file, a pipe or /dev/null, is written to as it is. */
-static int open_fresh(const char *path)
+static int file_open_fresh(const char *path)
 {
     struct stat there;
     bool fresh = lstat(path, &there) != 0 || S_ISREG(there.st_mode);
@@ -153,15 +153,15 @@ int trace_open(struct trace **out, const struct trace_setup *setup)
     trace->fd = -1;
     trace->mpi = MPI_COMM_NULL;
     pthread_mutex_init(&trace->lock, NULL);
-    if (!make(trace, setup))
+    if (!trace_make(trace, setup))
         return base_no_memory("the trace");
-    trace->fd = open_fresh(trace->path);
+    trace->fd = file_open_fresh(trace->path);
     trace->bytes = sizeof trace->header;
     if (trace->fd < 0)
         trace->error = errno;
-    else if (write_header(trace) && lseek(trace->fd, (off_t)trace->bytes, SEEK_SET) < 0)
+    else if (file_write_header(trace) && lseek(trace->fd, (off_t)trace->bytes, SEEK_SET) < 0)
         trace->error = errno;
-    if (!trace->error && !write_kernels(trace) && !trace->error)
+    if (!trace->error && !file_write_kernels(trace) && !trace->error)
         return base_no_memory("the trace");
     if (trace->error)
         return base_error(DUITE_E_SYSTEM, "the trace %s cannot be written: %s", trace->path,
@@ -172,7 +172,7 @@ int trace_open(struct trace **out, const struct trace_setup *setup)
 /* ---- Rings ---- */
 
 /* Under the lock. What cannot be written any more is lost. */
-static void empty(struct trace *trace, struct trace_ring *ring)
+static void ring_write(struct trace *trace, struct trace_ring *ring)
 {
     uint64_t tail = atomic_load_explicit(&ring->tail, memory_order_relaxed);
     uint64_t head = atomic_load_explicit(&ring->head, memory_order_acquire);
@@ -187,8 +187,8 @@ static void empty(struct trace *trace, struct trace_ring *ring)
     atomic_store_explicit(&ring->tail, head, memory_order_release);
 }
 
-static void note_flush(struct trace *trace, struct trace_ring *ring, uint64_t begin,
-                       uint64_t before)
+static void ring_note_flush(struct trace *trace, struct trace_ring *ring, uint64_t begin,
+                            uint64_t before)
 {
     trace_put(ring, &(struct trace_event){.begin = begin,
                                           .took = base_ticks() - begin,
@@ -201,8 +201,8 @@ void trace_relieve(struct trace *trace, struct trace_ring *ring)
     if (!trace_is_full(ring) || pthread_mutex_trylock(&trace->lock))
         return;
     uint64_t begin = base_ticks(), before = trace->bytes;
-    empty(trace, ring);
-    note_flush(trace, ring, begin, before);
+    ring_write(trace, ring);
+    ring_note_flush(trace, ring, begin, before);
     pthread_mutex_unlock(&trace->lock);
 }
 
@@ -211,8 +211,8 @@ void trace_flush(struct trace *trace)
     pthread_mutex_lock(&trace->lock);
     uint64_t begin = base_ticks(), before = trace->bytes;
     for (unsigned i = 0; i < trace->header.workers; i++)
-        empty(trace, &trace->ring[i]);
-    note_flush(trace, &trace->ring[0], begin, before);
+        ring_write(trace, &trace->ring[i]);
+    ring_note_flush(trace, &trace->ring[0], begin, before);
     pthread_mutex_unlock(&trace->lock);
     trace_flush_words(trace);
 }
@@ -239,7 +239,7 @@ void trace_flush_words(struct trace *trace)
 
 /* ---- Closing ---- */
 
-static void write_counters(struct trace *trace, const struct trace_counters *counters)
+static void file_write_counters(struct trace *trace, const struct trace_counters *counters)
 {
     for (unsigned i = 0; i < trace->header.workers; i++)
         trace_write(trace, TRACE_COUNTERS, i, &(struct trace_part){&counters[i], sizeof *counters},
@@ -248,7 +248,7 @@ static void write_counters(struct trace *trace, const struct trace_counters *cou
 
 /* Whether some name still leads to what was written; the program may have changed its folder, so
  * the path may not any more. */
-static bool is_there(const struct trace *trace)
+static bool file_is_there(const struct trace *trace)
 {
     struct stat here;
     return fstat(trace->fd, &here) == 0 && here.st_nlink > 0;
@@ -261,26 +261,27 @@ int trace_close(struct trace *trace, const struct trace_counters *counters)
     atomic_store_explicit(&trace->on, 0, memory_order_relaxed);
     pthread_mutex_lock(&trace->lock);
     for (unsigned i = 0; i < header->workers; i++) {
-        empty(trace, &trace->ring[i]); /* the flush itself */
+        ring_write(trace, &trace->ring[i]); /* the flush itself */
         header->lost += atomic_load_explicit(&trace->ring[i].lost, memory_order_relaxed);
     }
     if (counters)
-        write_counters(trace, counters);
+        file_write_counters(trace, counters);
     header->lost += trace->words_lost;
     header->whole = 1;
     header->bytes = trace->bytes;
-    write_header(trace);
-    const bool there = is_there(trace);
+    file_write_header(trace);
+    const bool there = file_is_there(trace);
     if (close(trace->fd) && !trace->error)
         trace->error = errno;
     trace->fd = -1;
     pthread_mutex_unlock(&trace->lock);
     if (!trace->error && there)
         return DUITE_OK;
-    if (!there)
+    if (!there) /* both may be true: then both are said */
         return base_error(DUITE_E_SYSTEM,
-                          "the trace %s was removed or replaced while the run wrote to it",
-                          trace->path);
+                          "the trace %s was removed or replaced while the run wrote to it%s%s",
+                          trace->path, trace->error ? ", and is not whole: " : "",
+                          trace->error ? strerror(trace->error) : "");
     return base_error(DUITE_E_SYSTEM,
                       "the trace %s is not whole: %s; what was written before is kept", trace->path,
                       strerror(trace->error));

@@ -19,10 +19,9 @@ struct trace_word {
 struct trace {
     _Atomic int on;
     struct trace_header header;
-    struct trace_ring *ring; /* one a worker */
-    const duite_kernel *const *kernels;
-    size_t n_kernels;
-    pthread_mutex_t lock; /* of the file: what follows */
+    struct trace_ring *ring;        /* one a worker */
+    const struct task_graph *graph; /* whose kernels these are */
+    pthread_mutex_t lock;           /* of the file: what follows */
     char *path;
     int fd;
     int error;      /* errno of the first failure, or 0: nothing is written any more */
@@ -30,8 +29,6 @@ struct trace {
     /* Main thread. */
     uint32_t *word; /* rank 0; NULL on others */
     size_t n_words;
-    const duite_kernel *last; /* whose place was looked up last */
-    uint32_t last_index;
     uint32_t *slot; /* of objects that are being settled */
     size_t n_slots, slots_capacity;
     uint64_t words_lost;

@@ -36,7 +36,7 @@ struct moment {
     enum { END, BEGIN, MARK } what;
 };
 
-static int compare(const void *a, const void *b)
+static int paje_moment_compare(const void *a, const void *b)
 {
     const struct moment *x = a, *y = b;
     if (x->time < y->time || x->time > y->time)
@@ -48,7 +48,7 @@ static int compare(const void *a, const void *b)
     return (x->end < y->end) - (x->end > y->end);
 }
 
-static void put_name(FILE *file, const char *name)
+static void paje_put_name(FILE *file, const char *name)
 {
     fputc('"', file);
     for (; *name; name++)
@@ -57,7 +57,7 @@ static void put_name(FILE *file, const char *name)
 }
 
 /* Each name once; its color goes round. */
-static void put_values(FILE *file, const struct trace_span *span, size_t n)
+static void paje_put_values(FILE *file, const struct trace_span *span, size_t n)
 {
     static const char *const colors[] = {"0.12 0.47 0.71", "0.99 0.50 0.05", "0.17 0.63 0.17",
                                          "0.84 0.15 0.16", "0.58 0.40 0.74", "0.55 0.34 0.29",
@@ -72,15 +72,15 @@ static void put_values(FILE *file, const struct trace_span *span, size_t n)
             continue;
         known[n_known++] = span[i].name;
         fputs("4 ", file);
-        put_name(file, span[i].name);
+        paje_put_name(file, span[i].name);
         fputs(" S ", file);
-        put_name(file, span[i].name);
+        paje_put_name(file, span[i].name);
         fprintf(file, " \"%s\"\n",
                 strcmp(span[i].name, "idle") ? colors[n_known % n_colors] : "0.90 0.90 0.90");
     }
 }
 
-static void put_containers(FILE *file, const uint32_t *host_of, uint32_t n_workers)
+static void paje_put_containers(FILE *file, const uint32_t *host_of, uint32_t n_workers)
 {
     uint32_t inner = 0;
     for (uint32_t w = 0; w < n_workers; w++) {
@@ -93,7 +93,7 @@ static void put_containers(FILE *file, const uint32_t *host_of, uint32_t n_worke
     }
 }
 
-static void put_ends(FILE *file, const uint32_t *host_of, uint32_t n_workers, double limit)
+static void paje_put_ends(FILE *file, const uint32_t *host_of, uint32_t n_workers, double limit)
 {
     for (uint32_t w = 0; w < n_workers; w++)
         fprintf(file, "6 %.9f W W%" PRIu32 "\n", limit, w);
@@ -102,7 +102,7 @@ static void put_ends(FILE *file, const uint32_t *host_of, uint32_t n_workers, do
             fprintf(file, "6 %.9f R R%" PRIu32 "\n", limit, host_of[w]);
 }
 
-static void put_moment(FILE *file, const struct moment *moment)
+static void paje_put_moment(FILE *file, const struct moment *moment)
 {
     const struct trace_span *span = moment->span;
     if (moment->what == END) {
@@ -111,7 +111,7 @@ static void put_moment(FILE *file, const struct moment *moment)
     }
     fprintf(file, "%d %.9f %s W%" PRIu32 " ", moment->what == BEGIN ? 7 : 9, moment->time,
             moment->what == BEGIN ? "S" : "E", span->worker);
-    put_name(file, span->name);
+    paje_put_name(file, span->name);
     fputc('\n', file);
 }
 
@@ -133,14 +133,14 @@ int trace_write_paje_spans(FILE *file, struct trace_span *span, size_t n, const 
         moment[m++] = (struct moment){s->end, s->begin, s->end, s, END};
         limit = s->end > limit ? s->end : limit;
     }
-    qsort(moment, m, sizeof *moment, compare);
+    qsort(moment, m, sizeof *moment, paje_moment_compare);
     fputs(HEAD, file);
     fputs("3 E W Event \"0.3 0.3 0.3\"\n", file);
-    put_values(file, span, n);
-    put_containers(file, host_of, n_workers);
+    paje_put_values(file, span, n);
+    paje_put_containers(file, host_of, n_workers);
     for (size_t i = 0; i < m; i++)
-        put_moment(file, &moment[i]);
-    put_ends(file, host_of, n_workers, limit);
+        paje_put_moment(file, &moment[i]);
+    paje_put_ends(file, host_of, n_workers, limit);
     base_free(moment);
     return DUITE_OK;
 }
@@ -151,15 +151,12 @@ struct spans {
     size_t n;
 };
 
-static void add(void *context, const struct trace_seen *seen)
+static void paje_add_span(void *context, const struct trace_seen *seen)
 {
     struct spans *spans = context;
-    unsigned kind = seen->event->kind;
-    bool lasts = kind <= TRACE_IDLE || kind == TRACE_MIGRATE || kind == TRACE_FLUSH ||
-                 kind == TRACE_MESSAGES;
     spans->span[spans->n++] =
         (struct trace_span){.begin = seen->begin,
-                            .end = lasts ? seen->end : seen->begin - 1,
+                            .end = trace_event_lasts(seen->event) ? seen->end : seen->begin - 1,
                             .name = trace_event_name(spans->run, seen->event),
                             .worker = trace_first_worker(spans->run, seen->rank) + seen->worker};
 }
@@ -177,7 +174,7 @@ int trace_write_paje(const struct trace_run *run, FILE *file)
         for (uint32_t i = 0; i < run->rank[r].header->workers; i++)
             host_of[w++] = r;
     if (!code) {
-        trace_each(run, add, &spans);
+        trace_each(run, paje_add_span, &spans);
         code = trace_write_paje_spans(file, spans.span, n, host_of, n_workers, 0);
     }
     base_free(spans.span);

@@ -29,14 +29,14 @@ struct source {
     bool partial;
 };
 
-static int damaged(const struct source *source, size_t at, const char *what)
+static int source_damaged(const struct source *source, size_t at, const char *what)
 {
     return base_error(DUITE_E_ARGUMENT, "%s: byte %zu: %s", source->path, at, what);
 }
 
 /* ---- Opening ---- */
 
-static int map(struct source *source)
+static int source_map(struct source *source)
 {
     struct stat status;
     int file = open(source->path, O_RDONLY | O_CLOEXEC);
@@ -60,7 +60,7 @@ static int map(struct source *source)
     return DUITE_OK;
 }
 
-static int check_size(struct source *source)
+static int source_check_size(struct source *source)
 {
     const struct trace_header *header = source->rank->header;
     char text[200];
@@ -68,19 +68,19 @@ static int check_size(struct source *source)
     if (!header->whole && source->partial)
         return DUITE_OK;
     if (!header->whole)
-        return damaged(source, offsetof(struct trace_header, whole),
-                       "the run did not come to its end; --partial takes what is there");
+        return source_damaged(source, offsetof(struct trace_header, whole),
+                              "the run did not come to its end; --partial takes what is there");
     source->end = header->bytes;
     if (header->bytes <= source->size)
         return DUITE_OK;
     snprintf(text, sizeof text, "truncated: the file had %" PRIu64 " bytes when it was written",
              header->bytes);
-    return damaged(source, source->size, text);
+    return source_damaged(source, source->size, text);
 }
 
 /* Each worker's counters are in the file of a run that came to its end. Only a file that lost
  * something may lack them, and such a file is not predicted. */
-static size_t most_workers(const struct source *source)
+static size_t source_most_workers(const struct source *source)
 {
     const size_t each = sizeof(struct trace_section) + sizeof(struct trace_counters);
     const struct trace_header *header = source->rank->header;
@@ -88,38 +88,39 @@ static size_t most_workers(const struct source *source)
     return header->whole && !header->lost && most < MOST_WORKERS ? most : MOST_WORKERS;
 }
 
-static int check_header(struct source *source, uint32_t rank)
+static int source_check_header(struct source *source, uint32_t rank)
 {
     const struct trace_header *header = source->rank->header;
     const struct trace_header *first = source->run->rank[0].header;
     char text[200];
     size_t magic = source->size < 8 ? source->size : 8;
     if (memcmp(source->bytes, TRACE_MAGIC, magic) != 0)
-        return damaged(source, 0, "this is no trace of duite");
+        return source_damaged(source, 0, "this is no trace of duite");
     if (source->size < sizeof *header)
-        return damaged(source, source->size, "truncated in its header");
+        return source_damaged(source, source->size, "truncated in its header");
     if (header->order != TRACE_ORDER)
-        return damaged(source, offsetof(struct trace_header, order),
-                       "written on a machine with another order of bytes");
+        return source_damaged(source, offsetof(struct trace_header, order),
+                              "written on a machine with another order of bytes");
     if (!header->version || header->version > TRACE_VERSION) {
         snprintf(text, sizeof text,
                  "a trace of version %" PRIu32 "; this program reads versions 1 to %d",
                  header->version, TRACE_VERSION);
-        return damaged(source, offsetof(struct trace_header, version), text);
+        return source_damaged(source, offsetof(struct trace_header, version), text);
     }
     if (header->rank != rank || !header->n_ranks || !header->workers || !(header->tick > 0) ||
-        header->n_ranks > MOST_RANKS || header->workers > most_workers(source))
-        return damaged(source, offsetof(struct trace_header, rank),
-                       "another rank, or nonsense, where this one was expected");
+        header->n_ranks > MOST_RANKS || header->workers > source_most_workers(source))
+        return source_damaged(source, offsetof(struct trace_header, rank),
+                              "another rank, or nonsense, where this one was expected");
     if (rank && (header->run != first->run || header->n_ranks != first->n_ranks))
-        return damaged(source, offsetof(struct trace_header, run),
-                       "of another run than the file of rank 0");
-    return check_size(source);
+        return source_damaged(source, offsetof(struct trace_header, run),
+                              "of another run than the file of rank 0");
+    return source_check_size(source);
 }
 
 /* ---- Sections ---- */
 
-static int take_kernels(struct source *source, const struct trace_section *section, size_t at)
+static int source_take_kernels(struct source *source, const struct trace_section *section,
+                               size_t at)
 {
     struct trace_run *run = source->run;
     const char *begin = (const char *)(section + 1), *end = begin + section->bytes;
@@ -127,7 +128,7 @@ static int take_kernels(struct source *source, const struct trace_section *secti
     if (source->rank != run->rank || run->kernel)
         return DUITE_OK;
     if (section->bytes / sizeof *run->kernel < n)
-        return damaged(source, at, "fewer kernels than it says");
+        return source_damaged(source, at, "fewer kernels than it says");
     run->kernel = (const void *)begin;
     run->kernel_name = base_alloc((n + 1) * sizeof *run->kernel_name);
     if (!run->kernel_name)
@@ -136,16 +137,16 @@ static int take_kernels(struct source *source, const struct trace_section *secti
     for (run->n_kernels = 0; run->n_kernels < n; run->n_kernels++) {
         const char *stop = memchr(name, 0, (size_t)(end - name));
         if (!stop)
-            return damaged(source, at, "a kernel's name does not end");
+            return source_damaged(source, at, "a kernel's name does not end");
         if (run->kernel[run->n_kernels].fixed > 16)
-            return damaged(source, at, "a kernel with too many modes");
+            return source_damaged(source, at, "a kernel with too many modes");
         run->kernel_name[run->n_kernels] = name;
         name = stop + 1;
     }
     return DUITE_OK;
 }
 
-static bool event_is_sane(const struct trace_run *run, const struct trace_event *event)
+static bool event_is_valid(const struct trace_run *run, const struct trace_event *event)
 {
     bool peer =
         event->kind == TRACE_SEND || event->kind == TRACE_RECEIVE || event->kind == TRACE_DELEGATE;
@@ -154,17 +155,17 @@ static bool event_is_sane(const struct trace_run *run, const struct trace_event 
            (!peer || event->kernel < run->n_ranks) && event->within <= event->took;
 }
 
-static int take_events(struct source *source, const struct trace_section *section, size_t at)
+static int source_take_events(struct source *source, const struct trace_section *section, size_t at)
 {
     struct trace_rank *rank = source->rank;
     const struct trace_event *event = (const void *)(section + 1);
     size_t n = section->bytes / sizeof *event;
     if (section->bytes % sizeof *event || section->worker >= rank->header->workers)
-        return damaged(source, at, "events of no worker, or cut in pieces");
+        return source_damaged(source, at, "events of no worker, or cut in pieces");
     for (size_t i = 0; i < n; i++)
-        if (!event_is_sane(source->run, &event[i]))
-            return damaged(source, at + sizeof *section + i * sizeof *event,
-                           "an event that cannot be");
+        if (!event_is_valid(source->run, &event[i]))
+            return source_damaged(source, at + sizeof *section + i * sizeof *event,
+                                  "an event that cannot be");
     void *moved =
         base_grow(rank->piece, &rank->pieces_capacity, rank->n_pieces + 1, sizeof *rank->piece);
     if (!moved)
@@ -175,12 +176,12 @@ static int take_events(struct source *source, const struct trace_section *sectio
     return DUITE_OK;
 }
 
-static int take_words(struct source *source, const struct trace_section *section, size_t at)
+static int source_take_words(struct source *source, const struct trace_section *section, size_t at)
 {
     struct trace_run *run = source->run;
     size_t n = section->bytes / sizeof *run->word;
     if (source->rank != run->rank || section->bytes % 8)
-        return damaged(source, at, "words of the program where there are none");
+        return source_damaged(source, at, "words of the program where there are none");
     void *moved =
         base_grow(run->word, &run->words_capacity, run->n_words + n + 1, sizeof *run->word);
     if (!moved)
@@ -193,23 +194,23 @@ static int take_words(struct source *source, const struct trace_section *section
     return DUITE_OK;
 }
 
-static int take_other(struct source *source, const struct trace_section *section, size_t at)
+static int source_take_other(struct source *source, const struct trace_section *section, size_t at)
 {
     struct trace_rank *rank = source->rank;
     if (section->kind == TRACE_CLOCK) {
         if (section->bytes != sizeof rank->clock[0] || rank->n_clocks == 2)
-            return damaged(source, at, "a clock that cannot be");
+            return source_damaged(source, at, "a clock that cannot be");
         memcpy(&rank->clock[rank->n_clocks++], section + 1, sizeof rank->clock[0]);
         return DUITE_OK;
     }
     if (section->kind != TRACE_COUNTERS || section->worker >= rank->header->workers ||
         section->bytes != sizeof(struct trace_counters))
-        return damaged(source, at, "a section that cannot be");
+        return source_damaged(source, at, "a section that cannot be");
     rank->counters[section->worker] = (const void *)(section + 1);
     return DUITE_OK;
 }
 
-static int take_sections(struct source *source)
+static int source_take_sections(struct source *source)
 {
     size_t at = sizeof(struct trace_header);
     int code = DUITE_OK;
@@ -220,16 +221,16 @@ static int take_sections(struct source *source)
             section->bytes % 8) {
             if (!source->rank->header->whole)
                 return DUITE_OK; /* --partial: it was being written */
-            return damaged(source, at, "truncated in a section, or damaged");
+            return source_damaged(source, at, "truncated in a section, or damaged");
         }
         if (section->kind == TRACE_KERNELS)
-            code = take_kernels(source, section, at);
+            code = source_take_kernels(source, section, at);
         else if (section->kind == TRACE_EVENTS)
-            code = take_events(source, section, at);
+            code = source_take_events(source, section, at);
         else if (section->kind == TRACE_PROGRAM)
-            code = take_words(source, section, at);
+            code = source_take_words(source, section, at);
         else
-            code = take_other(source, section, at);
+            code = source_take_other(source, section, at);
         at += sizeof *section + section->bytes;
     }
     return code;
@@ -237,7 +238,7 @@ static int take_sections(struct source *source)
 
 /* ---- Files ---- */
 
-static int path_of(const char *file, uint32_t rank, char **path)
+static int source_path(const char *file, uint32_t rank, char **path)
 {
     int length = 0;
     if (rank)
@@ -247,19 +248,19 @@ static int path_of(const char *file, uint32_t rank, char **path)
     return length < 0 || !*path ? base_no_memory("a trace") : DUITE_OK;
 }
 
-static int read_rank(struct trace_run *run, const char *file, uint32_t rank, bool partial)
+static int run_read_rank(struct trace_run *run, const char *file, uint32_t rank, bool partial)
 {
     char *path = NULL;
     struct trace_rank *own = &run->rank[rank];
-    int code = path_of(file, rank, &path);
+    int code = source_path(file, rank, &path);
     struct source source = {.run = run, .rank = own, .path = path, .partial = partial};
     if (!code)
-        code = map(&source);
+        code = source_map(&source);
     if (!code)
-        code = check_header(&source, rank);
+        code = source_check_header(&source, rank);
     if (!code) {
         own->counters = base_alloc_zero((own->header->workers + 1) * sizeof *own->counters);
-        code = own->counters ? take_sections(&source) : base_no_memory("a trace");
+        code = own->counters ? source_take_sections(&source) : base_no_memory("a trace");
     }
     if (!code) {
         run->whole &= own->header->whole != 0;
@@ -270,7 +271,7 @@ static int read_rank(struct trace_run *run, const char *file, uint32_t rank, boo
 }
 
 /* The first moment, and how well the clocks agree. */
-static void find_zero(struct trace_run *run)
+static void run_find_zero(struct trace_run *run)
 {
     double zero = INFINITY;
     for (uint32_t r = 0; r < run->n_ranks; r++) {
@@ -287,15 +288,15 @@ static void find_zero(struct trace_run *run)
 }
 
 /* How many ranks there are; the rest is checked when the file is read. */
-static int look(const char *path, struct trace_header *header)
+static int source_peek(const char *path, struct trace_header *header)
 {
     struct trace_run run = {.n_ranks = 1};
     struct trace_rank rank = {0};
     run.rank = &rank;
     struct source source = {.run = &run, .rank = &rank, .path = path, .partial = true};
-    int code = map(&source);
+    int code = source_map(&source);
     if (!code)
-        code = check_header(&source, 0);
+        code = source_check_header(&source, 0);
     if (!code)
         *header = *rank.header;
     if (rank.header)
@@ -304,10 +305,10 @@ static int look(const char *path, struct trace_header *header)
 }
 
 /* So many ranks are there if the last one has a file: before room is made for all of them. */
-static int check_last(const char *file, uint32_t n_ranks)
+static int run_check_last(const char *file, uint32_t n_ranks)
 {
     char *path = NULL;
-    int code = path_of(file, n_ranks - 1, &path);
+    int code = source_path(file, n_ranks - 1, &path);
     if (!code && access(path, R_OK))
         code = base_error(DUITE_E_SYSTEM,
                           "%s cannot be read: %s; by its head the trace is of %" PRIu32 " ranks",
@@ -316,21 +317,21 @@ static int check_last(const char *file, uint32_t n_ranks)
     return code;
 }
 
-static int read_all(struct trace_run *run, const char *file, bool partial)
+static int run_read_all(struct trace_run *run, const char *file, bool partial)
 {
     struct trace_header header;
-    int code = look(file, &header);
+    int code = source_peek(file, &header);
     if (!code)
-        code = check_last(file, header.n_ranks);
+        code = run_check_last(file, header.n_ranks);
     if (code)
         return code;
     run->rank = base_alloc_zero(header.n_ranks * sizeof *run->rank);
     if (!run->rank)
         return base_no_memory("a trace");
     run->n_ranks = header.n_ranks;
-    code = read_rank(run, file, 0, partial);
+    code = run_read_rank(run, file, 0, partial);
     for (uint32_t r = 1; r < run->n_ranks && !code; r++)
-        code = read_rank(run, file, r, partial);
+        code = run_read_rank(run, file, r, partial);
     return code;
 }
 
@@ -341,12 +342,12 @@ int trace_read(struct trace_run **out, const char *file, bool partial)
     if (!run)
         return base_no_memory("a trace");
     run->whole = true;
-    int code = read_all(run, file, partial);
+    int code = run_read_all(run, file, partial);
     if (code) {
         trace_run_free(run);
         return code;
     }
-    find_zero(run);
+    run_find_zero(run);
     *out = run;
     return DUITE_OK;
 }
@@ -370,7 +371,7 @@ void trace_run_free(struct trace_run *run)
 /* ---- What is asked of it ---- */
 
 /* How far the clock is ahead of rank 0's: in a straight line between what was measured. */
-static double ahead(const struct trace_rank *rank, double at)
+static double clock_ahead(const struct trace_rank *rank, double at)
 {
     const struct trace_clock *c = rank->clock;
     if (rank->n_clocks < 2 || !(c[1].at > c[0].at))
@@ -387,7 +388,13 @@ double trace_when(const struct trace_run *run, uint32_t rank, uint64_t ticks)
 {
     const struct trace_header *header = run->rank[rank].header;
     double at = header->tick * (double)(int64_t)(ticks - header->epoch);
-    return at - ahead(&run->rank[rank], at) - run->zero;
+    return at - clock_ahead(&run->rank[rank], at) - run->zero;
+}
+
+bool trace_event_lasts(const struct trace_event *event)
+{
+    return event->kind <= TRACE_IDLE || event->kind == TRACE_MIGRATE ||
+           event->kind == TRACE_FLUSH || event->kind == TRACE_MESSAGES;
 }
 
 const char *trace_kind_name(unsigned kind)
@@ -413,4 +420,20 @@ uint32_t trace_first_worker(const struct trace_run *run, uint32_t rank)
     for (uint32_t r = 0; r < rank; r++)
         before += run->rank[r].header->workers;
     return before;
+}
+
+void trace_each(const struct trace_run *run, void (*visit)(void *, const struct trace_seen *),
+                void *context)
+{
+    for (uint32_t r = 0; r < run->n_ranks; r++)
+        for (size_t p = 0; p < run->rank[r].n_pieces; p++) {
+            const struct trace_piece *piece = &run->rank[r].piece[p];
+            for (size_t i = 0; i < piece->n; i++) {
+                const struct trace_event *event = &piece->event[i];
+                visit(context, &(struct trace_seen){event, r, piece->worker,
+                                                    trace_when(run, r, event->begin),
+                                                    trace_when(run, r, event->begin + event->took),
+                                                    trace_lasts(run, r, event->took)});
+            }
+        }
 }

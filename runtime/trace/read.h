@@ -51,7 +51,20 @@ double trace_lasts(const struct trace_run *run, uint32_t rank, uint64_t ticks);
 const char *trace_event_name(const struct trace_run *run, const struct trace_event *event);
 const char *trace_kind_name(unsigned kind);
 
+/* Whether it has a duration; if not, it happens at its beginning. */
+bool trace_event_lasts(const struct trace_event *event);
+
 /* Workers of all ranks before those of this one. */
 uint32_t trace_first_worker(const struct trace_run *run, uint32_t rank);
+
+/* Calls back with each event, worker by worker. */
+struct trace_seen {
+    const struct trace_event *event;
+    uint32_t rank, worker;
+    double begin, end; /* s; as aligned, so nothing overlaps that did not */
+    double took;       /* s of its own clock */
+};
+void trace_each(const struct trace_run *run,
+                void (*visit)(void *context, const struct trace_seen *), void *context);
 
 #endif

@@ -1,6 +1,5 @@
 /* Sums are of ticks where they are compared with counters, so that they agree exactly. */
 #include "runtime/trace/sums.h"
-#include "runtime/trace/export.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -14,7 +13,7 @@ struct adding {
     struct trace_sums *sums;
 };
 
-static void add_task(struct trace_sums *sums, const struct trace_event *event, double own)
+static void sums_add_task(struct trace_sums *sums, const struct trace_event *event, double own)
 {
     struct trace_kernel_sum *kernel = &sums->kernel[event->kernel];
     sums->tasks++;
@@ -25,7 +24,7 @@ static void add_task(struct trace_sums *sums, const struct trace_event *event, d
     kernel->longest = fmax(kernel->longest, own);
 }
 
-static void add(void *context, const struct trace_seen *seen)
+static void sums_add(void *context, const struct trace_seen *seen)
 {
     const struct adding *adding = context;
     struct trace_sums *sums = adding->sums;
@@ -39,7 +38,7 @@ static void add(void *context, const struct trace_seen *seen)
     sums->stolen += event->kind == TRACE_STEAL;
     sums->delegated += event->kind == TRACE_DELEGATE;
     if (event->kind == TRACE_TASK)
-        add_task(sums, event, seen->took - within);
+        sums_add_task(sums, event, seen->took - within);
     if (event->kind == TRACE_OWN)
         sums->own += seen->took - within;
     if (event->kind == TRACE_MESSAGES)
@@ -61,7 +60,7 @@ int trace_sum(const struct trace_run *run, struct trace_sums *sums)
     sums->kernel = base_alloc_zero((run->n_kernels + 1) * sizeof *sums->kernel);
     if (!sums->kernel)
         return base_no_memory("sums of a trace");
-    trace_each(run, add, &(struct adding){run, sums});
+    trace_each(run, sums_add, &(struct adding){run, sums});
     if (!(sums->first < INFINITY))
         sums->first = 0;
     return DUITE_OK;
@@ -75,8 +74,8 @@ void trace_sums_free(struct trace_sums *sums)
 
 /* ---- Against the counters ---- */
 
-static void count(struct trace_counters *worker, struct trace_counters *first,
-                  const struct trace_event *event)
+static void counters_add(struct trace_counters *worker, struct trace_counters *first,
+                         const struct trace_event *event)
 {
     bool task = event->kind == TRACE_TASK;
     worker->tasks += task;
@@ -89,8 +88,8 @@ static void count(struct trace_counters *worker, struct trace_counters *first,
     first->bytes += event->kind == TRACE_SEND ? event->number : 0;
 }
 
-static bool same(FILE *file, uint32_t rank, uint32_t worker, const char *what, uint64_t events,
-                 uint64_t counted)
+static bool counters_same(FILE *file, uint32_t rank, uint32_t worker, const char *what,
+                          uint64_t events, uint64_t counted)
 {
     if (events != counted)
         fprintf(file,
@@ -100,32 +99,34 @@ static bool same(FILE *file, uint32_t rank, uint32_t worker, const char *what, u
     return events == counted;
 }
 
-static bool worker_agrees(FILE *file, uint32_t rank, uint32_t worker,
-                          const struct trace_counters *sum, const struct trace_counters *counted)
+static bool counters_worker_agrees(FILE *file, uint32_t rank, uint32_t worker,
+                                   const struct trace_counters *sum,
+                                   const struct trace_counters *counted)
 {
-    bool fine = same(file, rank, worker, "tasks", sum->tasks, counted->tasks);
-    fine &= same(file, rank, worker, "stolen tasks", sum->stolen, counted->stolen);
-    fine &= same(file, rank, worker, "chained tasks", sum->chained, counted->chained);
-    fine &= same(file, rank, worker, "delegated tasks", sum->delegated, counted->delegated);
-    fine &= same(file, rank, worker, "busy ticks", sum->busy, counted->busy);
-    fine &= same(file, rank, worker, "idle ticks", sum->idle, counted->idle);
-    fine &= same(file, rank, worker, "messages", sum->messages, counted->messages);
-    return fine & same(file, rank, worker, "bytes", sum->bytes, counted->bytes);
+    bool fine = counters_same(file, rank, worker, "tasks", sum->tasks, counted->tasks);
+    fine &= counters_same(file, rank, worker, "stolen tasks", sum->stolen, counted->stolen);
+    fine &= counters_same(file, rank, worker, "chained tasks", sum->chained, counted->chained);
+    fine &=
+        counters_same(file, rank, worker, "delegated tasks", sum->delegated, counted->delegated);
+    fine &= counters_same(file, rank, worker, "busy ticks", sum->busy, counted->busy);
+    fine &= counters_same(file, rank, worker, "idle ticks", sum->idle, counted->idle);
+    fine &= counters_same(file, rank, worker, "messages", sum->messages, counted->messages);
+    return fine & counters_same(file, rank, worker, "bytes", sum->bytes, counted->bytes);
 }
 
-static bool rank_agrees(const struct trace_run *run, FILE *file, uint32_t r,
-                        struct trace_counters *sum)
+static bool counters_rank_agrees(const struct trace_run *run, FILE *file, uint32_t r,
+                                 struct trace_counters *sum)
 {
     const struct trace_rank *rank = &run->rank[r];
     bool fine = true;
     memset(sum, 0, rank->header->workers * sizeof *sum);
     for (size_t p = 0; p < rank->n_pieces; p++)
         for (size_t i = 0; i < rank->piece[p].n; i++)
-            count(&sum[rank->piece[p].worker], &sum[0], &rank->piece[p].event[i]);
+            counters_add(&sum[rank->piece[p].worker], &sum[0], &rank->piece[p].event[i]);
     for (uint32_t w = 0; w < rank->header->workers; w++) {
         if (!rank->counters[w])
             fprintf(file, "rank %" PRIu32 " worker %" PRIu32 ": no counters\n", r, w);
-        fine &= rank->counters[w] && worker_agrees(file, r, w, &sum[w], rank->counters[w]);
+        fine &= rank->counters[w] && counters_worker_agrees(file, r, w, &sum[w], rank->counters[w]);
     }
     return fine;
 }
@@ -140,7 +141,7 @@ bool trace_sums_agree(const struct trace_run *run, FILE *file)
     }
     for (uint32_t r = 0; r < run->n_ranks && fine; r++) {
         struct trace_counters *sum = base_alloc(run->rank[r].header->workers * sizeof *sum);
-        fine = sum && rank_agrees(run, file, r, sum);
+        fine = sum && counters_rank_agrees(run, file, r, sum);
         base_free(sum);
     }
     return fine;
@@ -148,13 +149,13 @@ bool trace_sums_agree(const struct trace_run *run, FILE *file)
 
 /* ---- For people ---- */
 
-static double ratio(double a, double b)
+static double sums_ratio(double a, double b)
 {
     return b > 0 ? a / b : 0;
 }
 
 /* The shares add up to the workers' time from the first event to the last one. */
-static void print_shares(const struct trace_sums *sums, double all, FILE *file)
+static void sums_print_shares(const struct trace_sums *sums, double all, FILE *file)
 {
     const double named = sums->busy + sums->own + sums->messaging + sums->flush + sums->idle;
     const struct {
@@ -170,15 +171,16 @@ static void print_shares(const struct trace_sums *sums, double all, FILE *file)
          fmax(all - named, 0)}};
     fputs("  of the workers' time\n", file);
     for (size_t i = 0; i < sizeof share / sizeof *share; i++) {
-        fprintf(file, "    %-11s %5.1f %%  %s", share[i].name, 100 * ratio(share[i].seconds, all),
-                share[i].what);
+        fprintf(file, "    %-11s %5.1f %%  %s", share[i].name,
+                100 * sums_ratio(share[i].seconds, all), share[i].what);
         if (!strcmp(share[i].name, "idle"))
-            fprintf(file, " %.1f %%", 100 * ratio(sums->exposed, all));
+            fprintf(file, " %.1f %%", 100 * sums_ratio(sums->exposed, all));
         fputc('\n', file);
     }
 }
 
-static void print_kernels(const struct trace_run *run, const struct trace_sums *sums, FILE *file)
+static void sums_print_kernels(const struct trace_run *run, const struct trace_sums *sums,
+                               FILE *file)
 {
     fprintf(file, "  %-28s %10s %12s %12s %12s\n", "kernel", "tasks", "seconds", "mean us",
             "longest us");
@@ -186,8 +188,8 @@ static void print_kernels(const struct trace_run *run, const struct trace_sums *
         const struct trace_kernel_sum *kernel = &sums->kernel[k];
         if (kernel->n)
             fprintf(file, "  %-28s %10" PRIu64 " %12.6f %12.3f %12.3f\n", run->kernel_name[k],
-                    kernel->n, kernel->seconds, 1e6 * ratio(kernel->seconds, (double)kernel->n),
-                    1e6 * kernel->longest);
+                    kernel->n, kernel->seconds,
+                    1e6 * sums_ratio(kernel->seconds, (double)kernel->n), 1e6 * kernel->longest);
     }
     fprintf(file, "  %-28s %10s %12.6f\n", "(the runtime's own)", "", sums->own);
 }
@@ -213,8 +215,8 @@ int trace_print(const struct trace_run *run, FILE *file)
         fprintf(file, "  LOST          %" PRIu64 " events or words of the program\n", run->lost);
     if (!run->whole)
         fputs("  NOT WHOLE     the run did not come to its end\n", file);
-    print_shares(&sums, all, file);
-    print_kernels(run, &sums, file);
+    sums_print_shares(&sums, all, file);
+    sums_print_kernels(run, &sums, file);
     trace_sums_free(&sums);
     return DUITE_OK;
 }

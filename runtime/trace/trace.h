@@ -18,8 +18,7 @@ struct trace_setup {
     uint64_t first, end;
     int rank, n_ranks;
     unsigned workers;
-    const duite_kernel *const *kernels;
-    size_t n_kernels;
+    const struct task_graph *graph; /* its kernels are named, by their index */
 };
 
 /* Opens the file of this rank, which is replaced. Local. Errors: memory; DUITE_E_SYSTEM if it

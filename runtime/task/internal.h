@@ -71,7 +71,9 @@ static inline uint32_t task_kernel_hash(const duite_kernel *kernel)
     return (uint32_t)((uint64_t)(uintptr_t)kernel * 0x9e3779b97f4a7c15u >> 32);
 }
 
-/* The index of a kernel in the list given at start; n_kernels: it is not there. */
+/* The index of a kernel in the list given at start; n_kernels: it is not there. Each fork asks: so
+ * this is an open table of indices and no uthash, which takes a hash of all bytes of the key and
+ * two dependent loads more. */
 static inline uint32_t task_kernel_index(const struct task_graph *graph, const duite_kernel *kernel)
 {
     for (uint32_t at = task_kernel_hash(kernel);; at++) {

@@ -5,7 +5,7 @@
 
 static double tick_seconds;
 
-static void measure(void)
+static void tick_measure(void)
 {
     const double least = 5e-4;
     double start = base_seconds(), now = start;
@@ -18,6 +18,6 @@ static void measure(void)
 double base_tick_seconds(void)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, measure);
+    pthread_once(&once, tick_measure);
     return tick_seconds;
 }

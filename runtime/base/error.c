@@ -10,7 +10,7 @@
 static _Thread_local char sentence[1024];
 
 /* What is too long, because of a path say, loses its middle: why stands at the end. */
-static void cut_middle(const char *whole)
+static void message_cut_middle(const char *whole)
 {
     enum { HEAD = sizeof sentence / 4, GAP = 6, TAIL = sizeof sentence - HEAD - GAP };
     snprintf(sentence, sizeof sentence, "%.*s ... %s", (int)HEAD, whole,
@@ -28,7 +28,7 @@ int base_error(int code, const char *format, ...)
     else if (strlen(whole) < sizeof sentence)
         memcpy(sentence, whole, strlen(whole) + 1);
     else
-        cut_middle(whole);
+        message_cut_middle(whole);
     free(whole);
     va_end(list);
     return code;

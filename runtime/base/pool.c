@@ -70,7 +70,7 @@ struct shelf {
 static _Thread_local struct shelf shelves[N_SIZES];
 static _Thread_local char *region, *region_end;
 
-static void acquire(void)
+static void pool_lock(void)
 {
     for (unsigned tries = 1; atomic_flag_test_and_set_explicit(&lock, memory_order_acquire);
          tries++)
@@ -78,23 +78,23 @@ static void acquire(void)
             sched_yield();
 }
 
-static void release(void)
+static void pool_unlock(void)
 {
     atomic_flag_clear_explicit(&lock, memory_order_release);
 }
 
 /* ---- New memory ---- */
 
-static bool take_region(void)
+static bool region_map(void)
 {
-    acquire();
+    pool_lock();
     struct region *left = regions;
     if (left)
         regions = left->next;
     size_t bytes = chunk_bytes < SMALLEST_CHUNK  ? SMALLEST_CHUNK
                    : chunk_bytes > LARGEST_CHUNK ? LARGEST_CHUNK
                                                  : chunk_bytes;
-    release();
+    pool_unlock();
     if (left) {
         region = (char *)left;
         region_end = left->end;
@@ -103,18 +103,18 @@ static bool take_region(void)
     struct chunk *chunk = base_alloc(bytes);
     if (!chunk)
         return false;
-    acquire();
+    pool_lock();
     chunk->next = chunks;
     chunks = chunk;
     chunk_bytes += bytes;
-    release();
+    pool_unlock();
     region = (char *)chunk + BASE_LINE;
     region_end = (char *)chunk + bytes;
     return true;
 }
 
 /* Blocks of whole cache lines begin with one, all others with a multiple of 16 bytes. */
-static void *cut(size_t bytes)
+static void *region_cut(size_t bytes)
 {
     size_t align = bytes % BASE_LINE ? 2 * GRAIN : BASE_LINE;
     for (;;) {
@@ -124,21 +124,21 @@ static void *cut(size_t bytes)
             region = block + bytes;
             return block;
         }
-        if (!take_region())
+        if (!region_map())
             return NULL;
     }
 }
 
-static void leave_region(void)
+static void region_leave(void)
 {
     size_t skip = -(uintptr_t)region % BASE_LINE;
     if ((size_t)(region_end - region) >= skip + LARGEST) {
         struct region *left = (struct region *)(void *)(region + skip);
         left->end = region_end;
-        acquire();
+        pool_lock();
         left->next = regions;
         regions = left;
-        release();
+        pool_unlock();
     }
     region = region_end = NULL;
 }
@@ -147,19 +147,19 @@ static void leave_region(void)
 
 /* Blocks of an odd number of grains come in pairs, so that nothing is lost between them and others.
  */
-static void *new_block(size_t size)
+static void *block_new(size_t size)
 {
     size_t bytes = size * GRAIN;
-    char *block = cut(size % 2 ? 2 * bytes : bytes);
+    char *block = region_cut(size % 2 ? 2 * bytes : bytes);
     if (block && size % 2)
         base_pool_give(block + bytes, bytes);
     return block;
 }
 
-static void *take_from_store(size_t size)
+static void *store_take(size_t size)
 {
     struct shelf *shelf = &shelves[size];
-    acquire();
+    pool_lock();
     struct magazine *full = store[size];
     if (full)
         store[size] = full->next;
@@ -167,20 +167,20 @@ static void *take_from_store(size_t size)
         shelf->spare->next = empties;
         empties = shelf->spare;
     }
-    release();
+    pool_unlock();
     if (!full)
-        return new_block(size);
+        return block_new(size);
     shelf->spare = shelf->loaded;
     shelf->loaded = full;
     return full->block[--full->n];
 }
 
-static void *take(size_t size)
+static void *magazine_take(size_t size)
 {
     struct shelf *shelf = &shelves[size];
     struct magazine *spare = shelf->spare;
     if (!spare || !spare->n)
-        return take_from_store(size);
+        return store_take(size);
     shelf->spare = shelf->loaded;
     shelf->loaded = spare;
     return spare->block[--spare->n];
@@ -188,21 +188,21 @@ static void *take(size_t size)
 
 /* Both magazines are full, or not there yet. Without memory for one more the block is lost until
  * the last runtime ends. */
-static void give_to_store(void *block, size_t size)
+static void store_give(void *block, size_t size)
 {
     struct shelf *shelf = &shelves[size];
-    acquire();
+    pool_lock();
     struct magazine *empty = empties;
     if (empty)
         empties = empty->next;
-    release();
-    if (!empty && !(empty = cut(sizeof *empty)))
+    pool_unlock();
+    if (!empty && !(empty = region_cut(sizeof *empty)))
         return;
     if (shelf->spare) {
-        acquire();
+        pool_lock();
         shelf->spare->next = store[size];
         store[size] = shelf->spare;
-        release();
+        pool_unlock();
     }
     shelf->spare = shelf->loaded;
     shelf->loaded = empty;
@@ -210,12 +210,12 @@ static void give_to_store(void *block, size_t size)
     empty->n = 1;
 }
 
-static void give(void *block, size_t size)
+static void magazine_give(void *block, size_t size)
 {
     struct shelf *shelf = &shelves[size];
     struct magazine *spare = shelf->spare;
     if (!spare || spare->n) {
-        give_to_store(block, size);
+        store_give(block, size);
         return;
     }
     shelf->spare = shelf->loaded;
@@ -230,7 +230,7 @@ void *base_pool_take(size_t bytes)
         return base_alloc(bytes);
     struct magazine *loaded = shelves[size].loaded;
     if (!loaded || !loaded->n)
-        return take(size);
+        return magazine_take(size);
     /* What is taken soon may lie in another core's cache: have it brought. */
     if (loaded->n > AHEAD)
         for (size_t line = 0; line < bytes; line += BASE_LINE)
@@ -249,13 +249,13 @@ void base_pool_give(void *block, size_t bytes)
     if (loaded && loaded->n < MAGAZINE)
         loaded->block[loaded->n++] = block;
     else
-        give(block, size);
+        magazine_give(block, size);
 }
 
 /* ---- Threads and runtimes ---- */
 
 /* The calling thread holds the lock. */
-static void put_away(struct magazine *magazine, size_t size)
+static void magazine_put_away(struct magazine *magazine, size_t size)
 {
     if (!magazine)
         return;
@@ -266,28 +266,28 @@ static void put_away(struct magazine *magazine, size_t size)
 
 void base_pool_enter(void)
 {
-    acquire();
+    pool_lock();
     runtimes++;
-    release();
+    pool_unlock();
 }
 
 void base_pool_thread_end(void)
 {
-    acquire();
+    pool_lock();
     for (size_t size = 0; size < N_SIZES; size++) {
-        put_away(shelves[size].loaded, size);
-        put_away(shelves[size].spare, size);
+        magazine_put_away(shelves[size].loaded, size);
+        magazine_put_away(shelves[size].spare, size);
         shelves[size] = (struct shelf){NULL, NULL};
     }
-    release();
+    pool_unlock();
     if (region)
-        leave_region();
+        region_leave();
 }
 
 void base_pool_leave(void)
 {
     base_pool_thread_end();
-    acquire();
+    pool_lock();
     struct chunk *chunk = NULL;
     if (--runtimes == 0) {
         chunk = chunks;
@@ -298,7 +298,7 @@ void base_pool_leave(void)
         regions = NULL;
         chunk_bytes = 0;
     }
-    release();
+    pool_unlock();
     while (chunk) {
         struct chunk *next = chunk->next;
         base_free(chunk);

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-static size_t stack_bytes(void)
+static size_t thread_stack_bytes(void)
 {
     pthread_attr_t attributes;
     size_t bytes = 0;
@@ -21,7 +21,7 @@ static size_t stack_bytes(void)
     return bytes;
 }
 
-static bool has_room(size_t bytes)
+static bool stack_has_room(size_t bytes)
 {
     void *room =
         bytes ? mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK, -1, 0) : NULL;
@@ -37,8 +37,8 @@ int base_thread_start(pthread_t *thread, const char *what, void *(*body)(void *)
     const int reason = pthread_create(thread, NULL, body, context);
     if (!reason)
         return DUITE_OK;
-    const size_t bytes = stack_bytes();
-    if (reason == ENOMEM || (reason == EAGAIN && !has_room(bytes)))
+    const size_t bytes = thread_stack_bytes();
+    if (reason == ENOMEM || (reason == EAGAIN && !stack_has_room(bytes)))
         return base_error(DUITE_E_MEMORY,
                           "out of memory for %s: pthread_create cannot map its stack of %zu bytes "
                           "(ulimit -v limits the memory of a process, ulimit -s sets the stack)",

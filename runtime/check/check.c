@@ -39,19 +39,19 @@ struct frame {
 static _Atomic(struct check *) installed;
 static _Thread_local struct frame *volatile current;
 
-static size_t bytes_of(const duite_param *param)
+static size_t param_bytes(const duite_param *param)
 {
     return param->count * data_type_size(param->type);
 }
 
 /* What the body may touch: under w and rw an object that changes size may grow. */
-static size_t room_of(const duite_param *param, duite_mode mode)
+static size_t param_room(const duite_param *param, duite_mode mode)
 {
     size_t n = mode == DUITE_R || param->most < param->count ? param->count : param->most;
     return n * data_type_size(param->type);
 }
 
-static bool writes(duite_mode mode)
+static bool mode_writes(duite_mode mode)
 {
     return mode == DUITE_W || mode == DUITE_RW || mode == DUITE_CW;
 }
@@ -61,8 +61,8 @@ static bool writes(duite_mode mode)
 /* The region an address belongs to: of this call, or of an earlier one. Called by the handler: the
  * ring is read without its lock, which at worst misses a region that another thread retires right
  * now. */
-static const struct check_region *region_at(const struct check *check, const struct frame *frame,
-                                            const void *address)
+static const struct check_region *frame_region_at(const struct check *check,
+                                                  const struct frame *frame, const void *address)
 {
     for (size_t i = 0; i <= frame->call->n_params; i++)
         if (check_region_has(&frame->region[i], address))
@@ -73,12 +73,12 @@ static const struct check_region *region_at(const struct check *check, const str
     return NULL;
 }
 
-static void on_fault(int signal, siginfo_t *info, void *context)
+static void fault_handle(int signal, siginfo_t *info, void *context)
 {
     struct check *check = atomic_load(&installed);
     struct frame *frame = current;
     const struct check_region *region =
-        check && frame ? region_at(check, frame, info->si_addr) : NULL;
+        check && frame ? frame_region_at(check, frame, info->si_addr) : NULL;
     if (region) {
         frame->hit = *region;
         frame->at = info->si_addr;
@@ -102,7 +102,7 @@ int check_start(struct check **out)
         *out = NULL;
         return base_error(DUITE_E_STATE, "two runtimes at a time in checking mode");
     }
-    struct sigaction action = {.sa_sigaction = on_fault, .sa_flags = SA_SIGINFO | SA_NODEFER};
+    struct sigaction action = {.sa_sigaction = fault_handle, .sa_flags = SA_SIGINFO | SA_NODEFER};
     sigemptyset(&action.sa_mask);
     sigaction(SIGSEGV, &action, &check->segv);
     sigaction(SIGBUS, &action, &check->bus);
@@ -122,7 +122,7 @@ void check_stop(struct check *check)
     base_free(check);
 }
 
-static int say_fault(const struct frame *frame)
+static int fault_tell(const struct frame *frame)
 {
     const struct check_region *hit = &frame->hit;
     const duite_call *call = frame->call;
@@ -148,7 +148,7 @@ static int say_fault(const struct frame *frame)
 
 /* ---- Copies ---- */
 
-static bool map_param(struct frame *frame, size_t i, unsigned char fill)
+static bool frame_map_param(struct frame *frame, size_t i, unsigned char fill)
 {
     const duite_param *param = &frame->call->param[i];
     struct check_region *region = &frame->region[i];
@@ -158,14 +158,14 @@ static bool map_param(struct frame *frame, size_t i, unsigned char fill)
     region->param = i;
     if (!param->data)
         return true;
-    if (!check_region_map(region, room_of(param, mode), fill))
+    if (!check_region_map(region, param_room(param, mode), fill))
         return false;
     if (mode != DUITE_W)
-        memcpy(region->data, param->data, bytes_of(param));
+        memcpy(region->data, param->data, param_bytes(param));
     return mode != DUITE_R || check_region_protect(region);
 }
 
-static bool map_args(struct frame *frame, unsigned char fill)
+static bool frame_map_args(struct frame *frame, unsigned char fill)
 {
     const duite_kernel *kernel = frame->task->kernel;
     struct check_region *region = &frame->region[frame->call->n_params];
@@ -180,7 +180,7 @@ static bool map_args(struct frame *frame, unsigned char fill)
     return check_region_protect(region);
 }
 
-static void retire(struct check *check, struct check_region *region)
+static void region_retire(struct check *check, struct check_region *region)
 {
     if (!region->base)
         return;
@@ -197,15 +197,15 @@ static void retire(struct check *check, struct check_region *region)
 /* ---- One run ---- */
 
 /* Runs the body on copies; frame->param gets what it leaves. Its code, or the fault's. */
-static int run(struct frame *frame, unsigned char fill)
+static int frame_run(struct frame *frame, unsigned char fill)
 {
     const duite_call *original = frame->call;
     duite_param *param = frame->param;
     size_t n = original->n_params;
     for (size_t i = 0; i < n; i++)
-        if (!map_param(frame, i, fill))
+        if (!frame_map_param(frame, i, fill))
             return duite_fail(original, DUITE_E_MEMORY, "no memory to check parameter %zu", i);
-    if (!map_args(frame, fill))
+    if (!frame_map_args(frame, fill))
         return duite_fail(original, DUITE_E_MEMORY, "no memory to check the arguments");
     duite_call call = *original;
     for (size_t i = 0; i < n; i++) {
@@ -216,7 +216,7 @@ static int run(struct frame *frame, unsigned char fill)
     call.args = frame->region[n].base ? frame->region[n].data : NULL;
     volatile int code;
     if (sigsetjmp(frame->jump, 1)) {
-        code = say_fault(frame);
+        code = fault_tell(frame);
     } else {
         current = frame;
         code = frame->task->kernel->body(&call);
@@ -232,7 +232,7 @@ static int run(struct frame *frame, unsigned char fill)
 
 /* ---- Two runs ---- */
 
-static bool repeatable(const duite_kernel *kernel, size_t n)
+static bool kernel_is_repeatable(const duite_kernel *kernel, size_t n)
 {
     bool plain = !kernel->side_effects;
     for (size_t i = 0; i < n && plain; i++)
@@ -241,20 +241,20 @@ static bool repeatable(const duite_kernel *kernel, size_t n)
 }
 
 /* What two runs wrote, byte by byte. */
-static int compare(const struct frame *first, const struct frame *second)
+static int frames_compare(const struct frame *first, const struct frame *second)
 {
     const duite_call *call = first->call;
     const duite_kernel *kernel = first->task->kernel;
     for (size_t i = 0; i < call->n_params; i++) {
         duite_mode mode = data_mode_of(kernel, i);
-        if (!writes(mode))
+        if (!mode_writes(mode))
             continue;
         if (first->param[i].count != second->param[i].count)
             return duite_fail(call, DUITE_E_CHECK,
                               "is not deterministic: two runs differ in the size of parameter %zu",
                               i);
         const unsigned char *a = first->param[i].data, *b = second->param[i].data;
-        for (size_t k = 0; k < bytes_of(&first->param[i]); k++) {
+        for (size_t k = 0; k < param_bytes(&first->param[i]); k++) {
             if (a[k] == b[k])
                 continue;
             if (mode == DUITE_W && a[k] == FILL[0] && b[k] == FILL[1])
@@ -269,14 +269,14 @@ static int compare(const struct frame *first, const struct frame *second)
     return DUITE_OK;
 }
 
-static void copy_back(const struct frame *frame)
+static void frame_copy_back(const struct frame *frame)
 {
     duite_param *param = (duite_param *)frame->call->param; /* the runtime's own */
     for (size_t i = 0; i < frame->call->n_params; i++) {
-        if (!writes(data_mode_of(frame->task->kernel, i)))
+        if (!mode_writes(data_mode_of(frame->task->kernel, i)))
             continue;
         param[i].count = frame->param[i].count;
-        memcpy(param[i].data, frame->param[i].data, bytes_of(&param[i]));
+        memcpy(param[i].data, frame->param[i].data, param_bytes(&param[i]));
     }
 }
 
@@ -292,22 +292,22 @@ int check_call(struct check *check, const struct check_task *task, duite_call *c
     }
     struct frame first = {
         .outer = current, .task = task, .call = call, .region = region, .param = param};
-    int code = run(&first, FILL[0]);
-    if (!code && repeatable(task->kernel, n) && !task_body_forked(call)) {
+    int code = frame_run(&first, FILL[0]);
+    if (!code && kernel_is_repeatable(task->kernel, n) && !task_body_forked(call)) {
         struct frame second = first;
         second.region = region + n + 1;
         second.param = param + n + 1;
-        int again = run(&second, FILL[1]);
+        int again = frame_run(&second, FILL[1]);
         code = again > 0 ? duite_fail(call, DUITE_E_CHECK,
                                       "is not deterministic: it returns 0 and then %d", again)
                          : again;
         if (!code)
-            code = compare(&first, &second);
+            code = frames_compare(&first, &second);
     }
     if (!code)
-        copy_back(&first);
+        frame_copy_back(&first);
     for (size_t i = 0; i < 2 * (n + 1); i++)
-        retire(check, &region[i]);
+        region_retire(check, &region[i]);
     base_free(param);
     base_free(region);
     return code;

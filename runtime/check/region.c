@@ -8,14 +8,14 @@
 
 enum { GUARD = 1 << 18 }; /* bytes, a multiple of every page size; they take address space only */
 
-static size_t page(void)
+static size_t page_bytes(void)
 {
     return (size_t)sysconf(_SC_PAGESIZE);
 }
 
 bool check_region_map(struct check_region *region, size_t bytes, unsigned char fill)
 {
-    size_t pages = (bytes + page() - 1) / page() * page();
+    size_t pages = (bytes + page_bytes() - 1) / page_bytes() * page_bytes();
     region->mapped = pages + 2 * (size_t)GUARD;
     region->base = mmap(NULL, region->mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (region->base == MAP_FAILED) {
@@ -30,22 +30,23 @@ bool check_region_map(struct check_region *region, size_t bytes, unsigned char f
     return true;
 }
 
-static size_t inner(const struct check_region *region)
+static size_t region_inner(const struct check_region *region)
 {
     return region->mapped - 2 * (size_t)GUARD;
 }
 
 bool check_region_protect(const struct check_region *region)
 {
-    return !inner(region) || !mprotect(region->base + GUARD, inner(region), PROT_READ);
+    return !region_inner(region) ||
+           !mprotect(region->base + GUARD, region_inner(region), PROT_READ);
 }
 
 void check_region_retire(const struct check_region *region)
 {
-    if (!inner(region))
+    if (!region_inner(region))
         return;
-    madvise(region->base + GUARD, inner(region), MADV_DONTNEED);
-    mprotect(region->base + GUARD, inner(region), PROT_NONE);
+    madvise(region->base + GUARD, region_inner(region), MADV_DONTNEED);
+    mprotect(region->base + GUARD, region_inner(region), PROT_NONE);
 }
 
 void check_region_unmap(struct check_region *region)
@@ -57,7 +58,7 @@ void check_region_unmap(struct check_region *region)
 
 bool check_region_whole(const struct check_region *region, unsigned char fill)
 {
-    const char *end = region->base + GUARD + inner(region);
+    const char *end = region->base + GUARD + region_inner(region);
     for (const char *at = region->base + GUARD; at < region->data; at++)
         if ((unsigned char)*at != fill)
             return false;

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-static unsigned bytes_of(uint64_t index)
+static unsigned path_index_bytes(uint64_t index)
 {
     unsigned n = 1;
     while (n < 8 && index >> (8 * n))
@@ -15,7 +15,7 @@ static unsigned bytes_of(uint64_t index)
 
 void data_path_add(struct data_failure *failure, uint64_t index)
 {
-    unsigned n = index < 0x80 ? 0 : bytes_of(index);
+    unsigned n = index < 0x80 ? 0 : path_index_bytes(index);
     uint32_t at = failure->path_length;
     if (at + 1 + n > sizeof failure->path) {
         failure->path_length = sizeof failure->path; /* nothing may follow what was left out */

@@ -35,7 +35,7 @@ const char *data_type_name(duite_type type)
             elements[i] = (value);                                                                 \
     } while (0)
 
-static void add(void *left, const void *right, size_t count, duite_type type)
+static void law_add(void *left, const void *right, size_t count, duite_type type)
 {
     if (type == DUITE_I32)
         EACH(uint32_t, l + r);
@@ -48,7 +48,7 @@ static void add(void *left, const void *right, size_t count, duite_type type)
 }
 
 /* The left one stays unless the right one is smaller (larger), or not a number. */
-static void lesser(void *left, const void *right, size_t count, duite_type type)
+static void law_lesser(void *left, const void *right, size_t count, duite_type type)
 {
     if (type == DUITE_I32)
         EACH(int32_t, r < l ? r : l);
@@ -60,7 +60,7 @@ static void lesser(void *left, const void *right, size_t count, duite_type type)
         EACH(double, r < l || r != r ? r : l);
 }
 
-static void greater(void *left, const void *right, size_t count, duite_type type)
+static void law_greater(void *left, const void *right, size_t count, duite_type type)
 {
     if (type == DUITE_I32)
         EACH(int32_t, r > l ? r : l);
@@ -72,7 +72,7 @@ static void greater(void *left, const void *right, size_t count, duite_type type
         EACH(double, r > l || r != r ? r : l);
 }
 
-static void largest(void *values, size_t count, duite_type type)
+static void law_fill_largest(void *values, size_t count, duite_type type)
 {
     if (type == DUITE_I32)
         FILL(int32_t, INT32_MAX);
@@ -84,7 +84,7 @@ static void largest(void *values, size_t count, duite_type type)
         FILL(double, HUGE_VAL);
 }
 
-static void smallest(void *values, size_t count, duite_type type)
+static void law_fill_smallest(void *values, size_t count, duite_type type)
 {
     if (type == DUITE_I32)
         FILL(int32_t, INT32_MIN);
@@ -96,22 +96,22 @@ static void smallest(void *values, size_t count, duite_type type)
         FILL(double, -HUGE_VAL);
 }
 
-const duite_law duite_sum = {.name = "sum", .combine = add};
-const duite_law duite_min = {.name = "min", .neutral = largest, .combine = lesser};
-const duite_law duite_max = {.name = "max", .neutral = smallest, .combine = greater};
+const duite_law duite_sum = {.name = "sum", .combine = law_add};
+const duite_law duite_min = {.name = "min", .neutral = law_fill_largest, .combine = law_lesser};
+const duite_law duite_max = {.name = "max", .neutral = law_fill_smallest, .combine = law_greater};
 
 static const duite_law *const built_in[] = {&duite_sum, &duite_min, &duite_max, NULL};
 
 /* ---- The laws of a program ---- */
 
-static bool is_listed(const duite_law *const *laws, const duite_law *law)
+static bool law_is_listed(const duite_law *const *laws, const duite_law *law)
 {
     while (laws && *laws && *laws != law)
         laws++;
     return laws && *laws;
 }
 
-static int check_unique(const duite_law *const *laws, const duite_law *law)
+static int law_check_unique(const duite_law *const *laws, const duite_law *law)
 {
     for (; *laws; laws++)
         if (*laws != law && (*laws)->name && !strcmp((*laws)->name, law->name))
@@ -124,7 +124,7 @@ int data_laws_check(const duite_law *const *laws)
     int code = DUITE_OK;
     for (size_t i = 0; laws && laws[i] && !code; i++) {
         const duite_law *law = laws[i];
-        if (is_listed(built_in, law))
+        if (law_is_listed(built_in, law))
             continue;
         if (!law->name || !law->name[0])
             return base_error(DUITE_E_LAW, "law %zu of the list has no name", i);
@@ -133,9 +133,9 @@ int data_laws_check(const duite_law *const *laws)
         if ((int)law->type < 0 || law->type > DUITE_F64)
             return base_error(DUITE_E_LAW, "law %s: %d is no element type", law->name,
                               (int)law->type);
-        code = check_unique(laws, law);
+        code = law_check_unique(laws, law);
         if (!code)
-            code = check_unique(built_in, law);
+            code = law_check_unique(built_in, law);
     }
     return code;
 }
@@ -146,7 +146,7 @@ int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *la
         bool rest = i == DUITE_MAX_ACCESS;
         const duite_law *law = rest ? kernel->rest_law : kernel->law[i];
         duite_mode mode = rest ? kernel->rest : kernel->access[i];
-        bool known = is_listed(built_in, law) || is_listed(laws, law);
+        bool known = law_is_listed(built_in, law) || law_is_listed(laws, law);
         if (!law || ((mode == DUITE_CW || mode == DUITE_CWP) && known))
             continue;
         char where[24] = "`rest`";
@@ -180,7 +180,7 @@ bool data_law_fits(const duite_law *law, duite_type type)
     return law->type ? law->type == type : type != DUITE_BYTE;
 }
 
-static uint64_t hash_law(const duite_law *law, uint64_t hash)
+static uint64_t law_hash(const duite_law *law, uint64_t hash)
 {
     if (!law)
         law = &duite_sum;
@@ -191,13 +191,13 @@ static uint64_t hash_law(const duite_law *law, uint64_t hash)
 uint64_t data_laws_hash(const duite_law *const *laws, uint64_t hash)
 {
     for (; laws && *laws; laws++)
-        hash = hash_law(*laws, hash);
+        hash = law_hash(*laws, hash);
     return hash;
 }
 
 uint64_t data_law_hash_kernel(const duite_kernel *kernel, uint64_t hash)
 {
     for (unsigned i = 0; i < DUITE_MAX_ACCESS; i++)
-        hash = hash_law(kernel->law[i], hash);
-    return hash_law(kernel->rest_law, hash);
+        hash = law_hash(kernel->law[i], hash);
+    return law_hash(kernel->rest_law, hash);
 }

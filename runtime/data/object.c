@@ -48,7 +48,7 @@ void data_table_stop(struct data_table *table)
 }
 
 /* Room for one more slot and its bookkeeping. */
-static int reserve(struct data_table *table)
+static int table_reserve(struct data_table *table)
 {
     void *moved = base_grow(table->object, &table->capacity, (size_t)table->n_slots + 1,
                             sizeof *table->object);
@@ -95,7 +95,7 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, dui
     *name = (duite_object){0, 0};
     int code = data_object_check(type, count, count);
     if (!code)
-        code = reserve(table);
+        code = table_reserve(table);
     if (code)
         return code;
     uint32_t slot = table->n_vacant ? table->vacant[--table->n_vacant] : table->n_slots;
@@ -190,7 +190,7 @@ void data_object_drop(struct data_table *table, duite_object name)
     table->n_alive--;
 }
 
-static uint64_t *copies_of(const struct data_table *table, const struct data_object *object)
+static uint64_t *object_copies(const struct data_table *table, const struct data_object *object)
 {
     return table->copies + (size_t)(object - table->object) * table->words;
 }
@@ -200,20 +200,20 @@ bool data_object_has_copy(const struct data_table *table, const struct data_obje
 {
     if (rank == object->holder || !object->copied)
         return rank == object->holder;
-    return base_ranks_has(copies_of(table, object), rank);
+    return base_ranks_has(object_copies(table, object), rank);
 }
 
 void data_object_hand_on(const struct data_table *table, struct data_object *object, int to)
 {
     int from = object->holder;
     if (object->copied)
-        base_ranks_remove(copies_of(table, object), from);
+        base_ranks_remove(object_copies(table, object), from);
     object->holder = to;
 }
 
 void data_object_add_copy(struct data_table *table, struct data_object *object, int rank)
 {
-    uint64_t *copies = copies_of(table, object);
+    uint64_t *copies = object_copies(table, object);
     if (!object->copied)
         base_ranks_clear(copies, table->words);
     object->copied = true;

@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-static int check_indices(const struct data_object *parent, duite_object name, size_t n,
-                         const size_t *indices)
+static int view_check_indices(const struct data_object *parent, duite_object name, size_t n,
+                              const size_t *indices)
 {
     if (!n || !indices)
         return base_error(DUITE_E_ARGUMENT, "duite_view: %s",
@@ -22,7 +22,7 @@ static int check_indices(const struct data_object *parent, duite_object name, si
     return DUITE_OK;
 }
 
-static struct data_view *copy_of(uint32_t parent, size_t n, const size_t *indices)
+static struct data_view *view_alloc(uint32_t parent, size_t n, const size_t *indices)
 {
     if (n > (SIZE_MAX - sizeof(struct data_view)) / sizeof *indices)
         return NULL;
@@ -51,8 +51,8 @@ int data_view_new(struct data_table *table, duite_object object, size_t n, const
         return base_error(DUITE_E_VIEW,
                           "duite_view: object %u.%u changes its size and cannot have views",
                           object.slot, object.generation);
-    code = check_indices(parent, object, n, indices);
-    struct data_view *view = code ? NULL : copy_of(object.slot, n, indices);
+    code = view_check_indices(parent, object, n, indices);
+    struct data_view *view = code ? NULL : view_alloc(object.slot, n, indices);
     if (!view)
         return code ? code : base_no_memory("a view");
     code = data_object_new(table, parent->type, n, name);

@@ -135,20 +135,10 @@ static void assign_nodes(struct assigning *s)
             if (at == PLAN_MANY)
                 s->many[s->n_many++] = (uint32_t)n;
             else
-                plan_set_add(a->set + n * a->words, at);
+                base_ranks_add(a->set + n * a->words, at);
             for (int rank = 0; node->kind == PLAN_FLAG && rank < a->n_ranks; rank++)
-                plan_set_add(a->set + n * a->words, rank);
+                base_ranks_add(a->set + n * a->words, rank);
         }
-}
-
-static bool assign_join(uint64_t *to, const uint64_t *from, size_t words)
-{
-    uint64_t added = 0;
-    for (size_t i = 0; i < words; i++) {
-        added |= from[i] & ~to[i];
-        to[i] |= from[i];
-    }
-    return added;
 }
 
 /* What the node reads is needed where it runs. */
@@ -158,17 +148,14 @@ static bool assign_inputs(struct plan_assignment *a, size_t n)
     bool changed = false;
     for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++)
         if (a->reads[i] != PLAN_NONE)
-            changed |= assign_join(a->need + a->reads[i] * a->words, plan_runs_set(a, n), a->words);
+            changed |=
+                base_ranks_join(a->need + a->reads[i] * a->words, plan_runs_set(a, n), a->words);
     return changed;
 }
 
 bool plan_is_dead(const struct plan_assignment *a, size_t n)
 {
-    const uint64_t *set = plan_runs_set(a, n);
-    uint64_t any = 0;
-    for (size_t i = 0; i < a->words; i++)
-        any |= set[i];
-    return !any;
+    return base_ranks_is_empty(plan_runs_set(a, n), a->words);
 }
 
 /* The node makes the version; the last one of a round is what the next round begins with. */
@@ -176,9 +163,9 @@ static bool assign_where_needed(struct plan_assignment *a, size_t n, uint32_t ve
 {
     uint64_t *set = a->set + n * a->words;
     uint32_t object = a->version[version].object;
-    bool changed = assign_join(set, plan_needs_set(a, version), a->words);
+    bool changed = base_ranks_join(set, plan_needs_set(a, version), a->words);
     if (a->last[object] == version)
-        changed |= assign_join(set, plan_needs_set(a, object), a->words);
+        changed |= base_ranks_join(set, plan_needs_set(a, object), a->words);
     return changed;
 }
 
@@ -218,7 +205,7 @@ static void assign_all(struct assigning *s)
     for (size_t k = 0; k < s->n_many; k++) { /* what no task needs is kept somewhere */
         size_t n = s->many[k];
         if (plan_is_dead(a, n) && assign_keeps(a, n))
-            plan_set_add(a->set + n * a->words, assign_home(a, &a->round->node[n]));
+            base_ranks_add(a->set + n * a->words, assign_home(a, &a->round->node[n]));
     }
     assign_settle(s);
 }
@@ -228,7 +215,7 @@ bool plan_assign(struct plan_assignment *a, const struct plan_round *round, cons
 {
     struct assigning s = {.a = a};
     *a = (struct plan_assignment){
-        .round = round, .n_ranks = n_ranks, .words = ((size_t)n_ranks + 63) / 64};
+        .round = round, .n_ranks = n_ranks, .words = base_ranks_words(n_ranks)};
     s.many = base_alloc((round->n_nodes + 1) * sizeof *s.many);
     bool fine = s.many && assign_room(a);
     if (fine) {

@@ -76,28 +76,28 @@ void plan_round_free(struct plan_round *round)
 
 /* ---- The reduction tree ---- */
 
-static void reduce_merge(struct plan_round *round, struct plan_round_node *node,
-                         const struct plan_subtree *left, const struct plan_subtree *right)
+struct reduce_merging {
+    struct plan_round *round;
+    struct plan_round_node *node;
+};
+
+static void reduce_merge(void *context, uint32_t left, uint32_t right)
 {
-    round->merge[round->n_merges++] = (struct plan_merge){left->param, right->param};
-    node->n_merges++;
+    const struct reduce_merging *to = context;
+    to->round->merge[to->round->n_merges++] = (struct plan_merge){left, right};
+    to->node->n_merges++;
 }
 
 size_t plan_reduce_push(struct plan_round *round, struct plan_round_node *node,
-                        struct plan_subtree *row, size_t n)
+                        struct data_subtree *row, size_t n)
 {
-    for (n++; n > 1 && plan_subtree_halves(&row[n - 2], &row[n - 1]); n--) {
-        reduce_merge(round, node, &row[n - 2], &row[n - 1]);
-        row[n - 2].level++;
-    }
-    return n;
+    return data_reduce_push(row, n, reduce_merge, &(struct reduce_merging){round, node});
 }
 
 void plan_reduce_fold(struct plan_round *round, struct plan_round_node *node,
-                      const struct plan_subtree *row, size_t n)
+                      const struct data_subtree *row, size_t n)
 {
-    for (size_t i = n; i-- > 1;)
-        reduce_merge(round, node, &row[i - 1], &row[i]);
+    data_reduce_fold(row, n, reduce_merge, &(struct reduce_merging){round, node});
 }
 
 /* ---- Contributions ---- */
@@ -124,7 +124,7 @@ static void lower_sum(struct lowering *l, uint32_t name, size_t fork)
     if (!object->n_open)
         return;
     struct plan_round_node *node = plan_round_add(round, PLAN_SUM, fork);
-    struct plan_subtree row[64]; /* a counter's bits */
+    struct data_subtree row[64] = {0}; /* a counter's bits */
     size_t n = 0;
     node->owner = name;
     node->law = object->law;
@@ -132,7 +132,7 @@ static void lower_sum(struct lowering *l, uint32_t name, size_t fork)
     uint32_t leaf = object->first;
     for (uint32_t i = 0; i < object->n_open; i++) {
         plan_round_use(round, node, leaf, true, false);
-        row[n] = (struct plan_subtree){.first = i, .param = i + 1};
+        row[n] = (struct data_subtree){.first = i, .where = i + 1};
         n = plan_reduce_push(round, node, row, n);
         leaf = l->next[leaf - round->n_objects];
     }

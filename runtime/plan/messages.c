@@ -29,10 +29,7 @@ static uint32_t message_leaf(const struct plan_messages *m, const struct plan_no
 static bool message_is_outside(const struct plan_assignment *a, const uint64_t *set,
                                const uint64_t *has)
 {
-    uint64_t found = 0;
-    for (size_t i = 0; i < a->words; i++)
-        found |= set[i] & ~has[i];
-    return found;
+    return !base_ranks_within(set, has, a->words);
 }
 
 /* ---- Phases ---- */
@@ -126,7 +123,7 @@ static bool message_find_phases(struct plan_messages *m)
 
 static bool pieces_join(const struct plan_piece *l, const struct plan_piece *r)
 {
-    return l->rank == r->rank && plan_subtree_halves(&l->tree, &r->tree);
+    return l->rank == r->rank && data_subtree_are_halves(&l->tree, &r->tree);
 }
 
 /* One rank contributes alone; and it reads alone. */
@@ -260,7 +257,7 @@ static void message_spread(struct finding *f, int from, const uint64_t *set, uin
         end = rank + 1;
     }
     for (int to = first; to < end; to++)
-        if (to != from && plan_set_has(set, to))
+        if (to != from && base_ranks_has(set, to))
             message_add(f, from, to, phase, item);
 }
 

@@ -24,7 +24,7 @@ struct parting {
     size_t next_item;    /* the first that is not made */
     uint32_t *order;     /* the messages that go, by the moment they are ready */
     size_t n_sends, next_send;
-    struct plan_subtree *row; /* scratch: of one sum */
+    struct data_subtree *row; /* scratch: of one sum */
 };
 
 static bool part_sends(const struct parting *p, uint32_t message)
@@ -201,7 +201,7 @@ static void part_partial(struct parting *p, size_t n)
         size_t rows = 0;
         for (uint32_t k = 0; k < piece->n; k++) {
             uint64_t first = piece->tree.first + k;
-            p->row[rows] = (struct plan_subtree){.first = first, .param = (uint32_t)made->n_uses};
+            p->row[rows] = (struct data_subtree){.first = first, .where = (uint32_t)made->n_uses};
             plan_round_use(p->part, made, part_leaf(p, leaf[first].place), true, true);
             rows = plan_reduce_push(p->part, made, p->row, rows);
         }
@@ -222,7 +222,7 @@ static void part_sum(struct parting *p, size_t n)
         const struct plan_piece *piece = &p->m->piece[i];
         bool own = piece->rank == p->m->rank;
         p->row[rows] = piece->tree;
-        p->row[rows].param = (uint32_t)made->n_uses;
+        p->row[rows].where = (uint32_t)made->n_uses;
         plan_round_use(p->part, made, own ? part_piece(p, piece) : p->arrival[i], true, true);
         rows = plan_reduce_push(p->part, made, p->row, rows);
     }

@@ -29,6 +29,9 @@
  * that moves between any two of them (rank: PLAN_ALL). A plan_source is owned by who made it and
  * must stay as long as its round. */
 
+#include "runtime/base/rank_set.h"
+#include "runtime/data/reduce.h"
+
 #include <duite.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -150,9 +153,8 @@ struct plan_round {
  *   does not write has no node: it is gathered before the replay;
  * - the uses of a TASK are its accesses in order; a cw uses a buffer of its own, which one SUM
  *   reads: its uses are the object and the buffers in the order of forks;
- * - the merges of a SUM make the reduction tree: equal complete subtrees as in a binary counter,
- *   then the rest from the right; all pieces come to lie in its parameter 1. The shape depends on
- *   the number of contributions only.
+ * - the merges of a SUM make the reduction tree of data/reduce.h; all pieces come to lie in its
+ *   parameter 1.
  * False without memory; plan_round_free is due all the same. *round is zero before. */
 bool plan_lower(struct plan_round *round, const struct plan_source *source);
 void plan_round_free(struct plan_round *round);
@@ -166,25 +168,12 @@ void plan_round_use(struct plan_round *round, struct plan_round_node *node, size
                     bool reads, bool writes);
 uint32_t plan_round_buffer(struct plan_round *round, uint32_t object, const duite_law *law);
 
-/* A complete subtree of the leaves of a sum, and the parameter of a node that has its value. */
-struct plan_subtree {
-    uint64_t first; /* leaf */
-    uint32_t level; /* 2^level leaves */
-    uint32_t param;
-};
-/* Whether two subtrees are the halves of one. */
-static inline bool plan_subtree_halves(const struct plan_subtree *l, const struct plan_subtree *r)
-{
-    uint64_t half = UINT64_C(1) << l->level;
-    return l->level == r->level && l->first + half == r->first && l->first % (2 * half) == 0;
-}
-/* A subtree was put behind n others in a row: the last node merges what are halves then. Returns
- * how many there are now. */
+/* The reduction of data/reduce.h as merges of the last node; `where` is the parameter with the
+ * subtree's value. */
 size_t plan_reduce_push(struct plan_round *round, struct plan_round_node *node,
-                        struct plan_subtree *row, size_t n);
-/* Folds what is left from the right, into the first one. */
+                        struct data_subtree *row, size_t n);
 void plan_reduce_fold(struct plan_round *round, struct plan_round_node *node,
-                      const struct plan_subtree *row, size_t n);
+                      const struct data_subtree *row, size_t n);
 
 /* ---- Assign: who runs what ---- */
 
@@ -224,14 +213,6 @@ bool plan_assign(struct plan_assignment *assignment, const struct plan_round *ro
                  const int *home, int n_ranks);
 void plan_assignment_free(struct plan_assignment *assignment);
 
-static inline bool plan_set_has(const uint64_t *set, int rank)
-{
-    return set[rank / 64] >> (rank % 64) & 1;
-}
-static inline void plan_set_add(uint64_t *set, int rank)
-{
-    set[rank / 64] |= UINT64_C(1) << (rank % 64);
-}
 /* The ranks that run a node; that need a version. */
 static inline const uint64_t *plan_runs_set(const struct plan_assignment *a, size_t node)
 {
@@ -243,7 +224,7 @@ static inline const uint64_t *plan_needs_set(const struct plan_assignment *a, si
 }
 static inline bool plan_runs(const struct plan_assignment *a, size_t node, int rank)
 {
-    return plan_set_has(plan_runs_set(a, node), rank);
+    return base_ranks_has(plan_runs_set(a, node), rank);
 }
 /* Nobody runs the node: what it makes is overwritten unread. */
 bool plan_is_dead(const struct plan_assignment *assignment, size_t node);
@@ -262,7 +243,7 @@ typedef uint64_t plan_moment;
 /* Contributions of one rank to one sum: some leaves in a row, combined. */
 struct plan_piece {
     uint32_t node;            /* the sum */
-    struct plan_subtree tree; /* but for param */
+    struct data_subtree tree; /* but for `where` */
     uint32_t n;               /* leaves: from tree.first on */
     int rank;                 /* that has all of them */
     uint32_t phase;           /* that it moves in */

@@ -106,7 +106,7 @@ bool plan_at_home(const struct plan *plan, const struct plan_record *record)
 
 static bool ranks_has(const struct plan *plan, const uint64_t *sets, size_t i, int rank)
 {
-    return plan_set_has(sets + i * plan->words, rank);
+    return base_ranks_has(sets + i * plan->words, rank);
 }
 
 int plan_fetch(const struct plan *plan, struct worker *worker, size_t i, struct data_object *object)

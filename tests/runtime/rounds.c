@@ -165,7 +165,7 @@ static void put_set(struct text *text, const struct plan_assignment *a, const ui
 {
     bool any = false;
     for (int rank = 0; rank < a->n_ranks; rank++) {
-        if (!plan_set_has(set, rank))
+        if (!base_ranks_has(set, rank))
             continue;
         put(text, "%d", rank);
         any = true;
@@ -192,7 +192,7 @@ const char *rounds_needs(const struct plan_assignment *a)
     for (size_t v = 0; v < a->n_versions; v++) {
         bool any = false;
         for (int rank = 0; rank < a->n_ranks; rank++)
-            any |= plan_set_has(plan_needs_set(a, v), rank);
+            any |= base_ranks_has(plan_needs_set(a, v), rank);
         if (!any)
             continue;
         put(&text, "%s%zu:", gap(&text), v);

@@ -391,7 +391,7 @@ static void check_assignment(const struct plan_assignment *a)
                 ck_assert_int_eq(plan_runs(a, n, rank), a->at[n] == rank);
             for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++)
                 if (a->reads[i] != PLAN_NONE && plan_runs(a, n, rank))
-                    ck_assert(plan_set_has(plan_needs_set(a, a->reads[i]), rank));
+                    ck_assert(base_ranks_has(plan_needs_set(a, a->reads[i]), rank));
         }
         if (node->kind == PLAN_TASK)
             ck_assert(!plan_is_dead(a, n));

@@ -295,13 +295,13 @@ static void deliver(struct comm *comm, struct worker *worker, struct found *foun
     while (found->nodes) {
         struct task *node = found->nodes;
         found->nodes = node->next;
-        task_finish(comm->graph, worker, node);
+        work_finish(comm->graph, worker, node);
     }
     while (found->sent) {
         struct task *task = found->sent;
         found->sent = task->next;
         data_packet_free(task->send->packet);
-        task_finish(comm->graph, worker, task);
+        work_finish(comm->graph, worker, task);
     }
 }
 

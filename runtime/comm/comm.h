@@ -3,6 +3,7 @@
 
 #include "runtime/base/monitor.h"
 #include "runtime/comm/arrivals.h"
+#include "runtime/plan/channel.h"
 #include "runtime/task/task.h"
 
 #include <mpi.h>

@@ -178,8 +178,8 @@ static const struct data_failure *unpack(const struct task *task, duite_param *p
     return NULL;
 }
 
-const struct data_failure *offload_take_result(const struct task *task, duite_param *param,
-                                               struct data_packet *result)
+static const struct data_failure *take_result(const struct task *task, duite_param *param,
+                                              struct data_packet *result)
 {
     return result ? unpack(task, param, result) : task_lost_failure();
 }
@@ -195,9 +195,9 @@ static void one_less(struct task_graph *graph, struct worker *worker, struct off
     base_pool_give(away, sizeof *away);
     task->kind = TASK_BODY;
     task->inner = NULL;
-    offload_run_result(graph, task, result);
+    task_run_result(graph, task, take_result, result);
     data_packet_free(result);
-    task_over(graph, worker, task);
+    task_finish(graph, worker, task);
 }
 
 void offload_away_sent(struct task_graph *graph, struct worker *worker, struct task *task)

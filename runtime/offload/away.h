@@ -1,5 +1,5 @@
-#ifndef DUITE_GRAPH_AWAY_H
-#define DUITE_GRAPH_AWAY_H
+#ifndef DUITE_OFFLOAD_AWAY_H
+#define DUITE_OFFLOAD_AWAY_H
 
 #include "runtime/task/task.h"
 
@@ -31,6 +31,17 @@ void offload_away_look(struct task_graph *graph,
 /* A task of another rank came; the packet becomes its. False without memory: it is the caller's. */
 bool offload_guest_arrived(struct task_graph *graph, struct worker *worker,
                            struct data_packet *packet);
+
+/* A guest: runs, returns whether a body ran; the body is over; so are its descendants; it is sent.
+ */
+bool offload_guest_run(struct task_graph *graph, struct worker *worker, struct task *task,
+                       const duite_call *call);
+void offload_guest_finish(struct worker *worker, struct task *task);
+void offload_guest_over(struct task_scope *above, struct worker *worker);
+void offload_guest_gone(struct task_graph *graph, struct task *task);
+
+/* A task that went away is sent. */
+void offload_away_sent(struct task_graph *graph, struct worker *worker, struct task *task);
 
 /* The rank that a guest comes from. */
 int offload_guest_home(const struct task *guest);

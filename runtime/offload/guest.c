@@ -19,31 +19,9 @@ static const struct parcel_param *param_of(const struct offload_guest *guest)
     return (const void *)(parcel_of(guest) + 1);
 }
 
-const struct data_failure *offload_guest_place(const struct task_scope *top)
-{
-    return top == &top->graph->root ? NULL : &((const struct offload_guest *)top)->place;
-}
-
-uint64_t task_main_number(const struct task *task, bool *nested)
-{
-    const struct task_scope *scope = task->scope;
-    const struct data_failure *place = offload_guest_place(scope->top);
-    *nested = scope->depth || (place && place->path_length);
-    if (place)
-        return place->number;
-    while (scope->depth > 1)
-        scope = scope->parent;
-    return scope->depth ? scope->number : task->number;
-}
-
 int offload_guest_home(const struct task *guest)
 {
     return (int)guest->guest->parcel->key.slot;
-}
-
-bool offload_guest_sized(const struct task *task, size_t i)
-{
-    return param_of(task->guest)[i].sized;
 }
 
 /* ---- Arriving ---- */
@@ -56,6 +34,7 @@ static void init(struct offload_guest *guest, struct task_graph *graph, struct d
         .place = {.number = parcel->number, .path_length = parcel->path_length},
         .parcel = packet};
     memcpy(guest->place.path, parcel->path, sizeof parcel->path);
+    guest->above.place = &guest->place;
 }
 
 bool offload_guest_arrived(struct task_graph *graph, struct worker *worker,
@@ -78,8 +57,10 @@ bool offload_guest_arrived(struct task_graph *graph, struct worker *worker,
     task->block = parcel->block;
     task->priority = parcel->priority;
     task->cost = parcel->cost;
-    for (uint32_t i = 0; i < task->n; i++)
+    for (uint32_t i = 0; i < task->n; i++) {
         task->access[i].waiter.mode = data_mode_of(graph->kernels[task->kernel], i);
+        task->access[i].sized = param_of(guest)[i].sized;
+    }
     atomic_fetch_add_explicit(&graph->guests, 1, memory_order_relaxed);
     work_ready(graph->pool, worker, task);
     return true;

@@ -1,5 +1,5 @@
-#ifndef DUITE_GRAPH_PARCEL_H
-#define DUITE_GRAPH_PARCEL_H
+#ifndef DUITE_OFFLOAD_PARCEL_H
+#define DUITE_OFFLOAD_PARCEL_H
 
 #include "runtime/offload/away.h"
 #include "runtime/task/internal.h"

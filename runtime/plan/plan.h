@@ -1,6 +1,7 @@
 #ifndef DUITE_PLAN_PLAN_H
 #define DUITE_PLAN_PLAN_H
 
+#include "runtime/plan/channel.h"
 #include "runtime/plan/record.h"
 
 /* A plan: a record compiled to flat arrays, of several ranks for this one's part. The workers and
@@ -162,5 +163,13 @@ bool plan_at_home(const struct plan *plan, const struct plan_record *record);
 /* The record lets go of its plan; a replay is over. NULL is fine. */
 void plan_drop(struct plan *plan, struct worker *worker);
 void plan_release(struct plan *plan);
+
+/* A replay: binds the objects; starts the first round. */
+void plan_replay_run(struct task *task);
+void plan_replay_start(struct task_graph *graph, struct worker *worker, struct task *task);
+/* A node of a replay: runs it, returns whether a body ran; tells its successors. */
+bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task *task,
+                   const duite_call *call);
+void plan_node_finish(struct task_graph *graph, struct worker *worker, struct task *task);
 
 #endif

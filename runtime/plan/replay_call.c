@@ -95,7 +95,7 @@ static int replay_move_object(const struct plan *plan, struct worker *worker, si
                               struct data_object *object, duite_mode mode)
 {
     struct task_graph *graph = plan->graph;
-    int code = object->leaves ? task_close_sum(&graph->root, worker, object) : DUITE_OK;
+    int code = object->leaves ? task_reduce(&graph->root, worker, object) : DUITE_OK;
     if (!code && plan->words && i < plan->n_objects)
         code = plan_fetch(plan, worker, i, object);
     if (code || mode == DUITE_R)

@@ -129,7 +129,7 @@ static void run_end(struct task_graph *graph, struct worker *worker, struct plan
     atomic_store_explicit(&plan->rounds, rounds, memory_order_relaxed);
     atomic_fetch_add_explicit(&plan->over, 1, memory_order_release);
     work_notify(graph->pool);
-    task_over(graph, worker, task); /* the next replay may begin */
+    task_finish(graph, worker, task); /* the next replay may begin */
     plan_release(plan);
 }
 

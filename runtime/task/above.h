@@ -10,12 +10,24 @@
  * their names alone: workers/ defines the functions. `worker` is whoever calls. */
 struct plan_channels;
 struct task;
+struct task_graph;
+struct task_scope;
 struct work_pool;
 struct worker;
 
-/* A task may run. A SEND may be posted, and ends with task_finish when its bytes are gone; so do
+/* A task may run. A SEND may be posted, and ends with work_finish when its bytes are gone; so do
  * NODE_SEND and NODE_RECEIVE when their message is written or read. */
 void work_ready(struct work_pool *pool, struct worker *worker, struct task *task);
+
+/* Runs a ready task, by its type; returns whether a body ran. Then work_finish is due. */
+bool work_run_task(struct task_graph *graph, struct worker *worker, struct task *task,
+                   const duite_call *call);
+
+/* A task that ran, was sent or received is over: ends it, by its type. */
+void work_finish(struct task_graph *graph, struct worker *worker, struct task *task);
+
+/* The task of another rank whose order has this top is over, with all that it forked. */
+void work_offloaded_over(struct task_scope *top, struct worker *worker);
 
 /* So many more tasks of the main program are over; -1: there is one more to come. */
 void work_over(struct work_pool *pool, struct worker *worker, int tasks);

@@ -1,108 +1,14 @@
-/* Dependences: a task waits through its accesses for versions, and is ready when `pending`, which
- * also counts a hold of the fork itself, comes to 0. Whoever takes the last one hands the task on.
- */
+/* Dependences, the second stage of a task: what it reads and what it makes, as versions on this
+ * rank. Each access of a task becomes a hold on the version it reads, the place of an heir of the
+ * one it overwrites, a leaf of a sum, or a lent object of its scope; on other ranks the same call
+ * forgets what got stale and sends or awaits copies. What is not there yet wakes the task later:
+ * ready.c. */
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
-#include "runtime/base/memory.h"
-#include "runtime/base/pool.h"
+#include "runtime/data/mode.h"
 
-struct task *task_make(struct task_scope *scope, enum task_type kind, size_t n, size_t extra)
-{
-    struct task *task;
-    size_t bytes = sizeof *task + n * sizeof task->access[0] + extra;
-    size_t grains = (bytes + TASK_GRAIN - 1) / TASK_GRAIN;
-    task = grains <= UINT32_MAX ? base_pool_take(grains * TASK_GRAIN) : NULL;
-    if (!task)
-        return NULL;
-    *task = (struct task){
-        .pending = (uint32_t)n + 1,
-        .n = (uint32_t)n,
-        .scope = scope,
-        .number = scope->forks,
-        .kernel = UINT32_MAX,
-        .block = (uint32_t)scope->forks, /* until it is known to run for an object */
-        .priority = INT32_MAX,           /* unless the program forks it */
-        .grains = (uint32_t)grains,
-        .kind = kind,
-    };
-    if (kind > TASK_BODY && extra)
-        task->sum = task_rest(task, n);
-    for (size_t i = 0; i < n; i++)
-        task->access[i] = (struct task_access){
-            .waiter.back = (uint32_t)(sizeof *task + i * sizeof task->access[0])};
-    return task;
-}
-
-struct task *task_new(struct task_scope *scope, enum task_type kind, size_t n, size_t extra)
-{
-    struct task *task = task_make(scope, kind, n, extra);
-    if (!task) {
-        base_no_memory("a task");
-        task_break(scope->graph);
-        return NULL;
-    }
-    if (scope->parent)
-        atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
-    else
-        scope->graph->tasks++;
-    return task;
-}
-
-static void take(struct task_graph *graph, struct worker *worker, struct task *task, uint32_t taken)
-{
-    if (atomic_load_explicit(&task->pending, memory_order_acquire) == taken ||
-        atomic_fetch_sub_explicit(&task->pending, taken, memory_order_acq_rel) == taken)
-        work_ready(graph->pool, worker, task);
-}
-
-void task_settled(struct task_graph *graph, struct worker *worker, struct task *task, uint32_t done)
-{
-    take(graph, worker, task, done + 1);
-}
-
-static struct task *task_of(struct data_waiter *waiter)
-{
-    return (struct task *)(void *)((char *)waiter - waiter->back);
-}
-
-void task_wake(struct task_graph *graph, struct worker *worker, struct data_waiter *waiter)
-{
-    if (waiter)
-        take(graph, worker, task_of(waiter), 1);
-}
-
-/* An heir that is no task passes the value on to a scope above, which may have one like it. */
-static void wake_heir(struct task_graph *graph, struct worker *worker, struct data_waiter *heir)
-{
-    while (heir && !heir->back)
-        heir = task_pass(worker, heir);
-    if (heir) /* an access: another core wrote what its task will need next */
-        base_prefetch(((struct task_access *)(void *)heir)->out);
-    task_wake(graph, worker, heir);
-}
-
-void task_release(struct task_graph *graph, struct worker *worker, struct data_version *version)
-{
-    wake_heir(graph, worker, data_version_release(version));
-}
-
-struct data_waiter *task_produced(struct task_graph *graph, struct worker *worker,
-                                  struct data_version *version)
-{
-    struct data_waiter *waiter = data_version_produced(version);
-    while (waiter) {
-        struct data_waiter *next = waiter->next; /* the task may run and be freed once woken */
-        task_wake(graph, worker, waiter);
-        waiter = next;
-    }
-    return data_version_release(version);
-}
-
-void task_publish(struct task_graph *graph, struct worker *worker, struct data_version *version)
-{
-    wake_heir(graph, worker, task_produced(graph, worker, version));
-}
+/* ---- One task and one version ---- */
 
 void task_read(struct task *task, size_t i, struct data_version *version, uint32_t *done)
 {
@@ -129,6 +35,28 @@ int task_overwrite(struct task_graph *graph, struct task *task, size_t i,
     return DUITE_OK;
 }
 
+struct data_version *task_rename(struct task_graph *graph, struct worker *worker,
+                                 struct data_object *object)
+{
+    struct data_version *version = object->current;
+    uint64_t bytes = data_packet_memory(object->room);
+    if (!version || bytes > graph->rename_most || data_version_is_alone(version))
+        return version;
+    if (atomic_fetch_add_explicit(&graph->rename_bytes, bytes, memory_order_relaxed) >
+        graph->rename_most - bytes) {
+        atomic_fetch_sub_explicit(&graph->rename_bytes, bytes, memory_order_relaxed);
+        return version;
+    }
+    atomic_fetch_add_explicit(&graph->renamed, 1, memory_order_relaxed);
+    version->renamed = true;
+    version->rename_bytes = &graph->rename_bytes;
+    object->current = NULL;
+    task_release(graph, worker, version);
+    return NULL;
+}
+
+/* ---- Versions on this rank ---- */
+
 struct data_version *task_local(struct task_graph *graph, struct data_object *object)
 {
     if (object->current)
@@ -148,7 +76,15 @@ struct data_version *task_local(struct task_graph *graph, struct data_object *ob
     return object->current = version;
 }
 
-static int send_copy(struct task_graph *graph, struct worker *worker, struct data_object *object,
+void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object)
+{
+    if (!object->current)
+        return;
+    task_release(graph, worker, object->current);
+    object->current = NULL;
+}
+
+static int copy_send(struct task_graph *graph, struct worker *worker, struct data_object *object,
                      int to)
 {
     struct data_version *version = task_local(graph, object);
@@ -163,7 +99,7 @@ static int send_copy(struct task_graph *graph, struct worker *worker, struct dat
     return DUITE_OK;
 }
 
-static int await_copy(struct task_graph *graph, struct worker *worker, struct data_object *object)
+static int copy_await(struct task_graph *graph, struct worker *worker, struct data_object *object)
 {
     struct data_version *version = data_object_version(object);
     if (!version) {
@@ -185,9 +121,9 @@ int task_fetch(struct task_graph *graph, struct worker *worker, struct data_obje
         return DUITE_OK;
     data_object_add_copy(&graph->table, object, to);
     if (graph->rank == to)
-        return await_copy(graph, worker, object);
+        return copy_await(graph, worker, object);
     if (graph->rank == object->holder)
-        return send_copy(graph, worker, object, to);
+        return copy_send(graph, worker, object, to);
     return DUITE_OK;
 }
 
@@ -199,30 +135,82 @@ int task_fetch_all(struct task_graph *graph, struct worker *worker, struct data_
     return code;
 }
 
-void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object)
+/* ---- Accesses ---- */
+
+static void access_read(struct task *task, size_t i, const struct data_object *object,
+                        struct data_version *version, bool postponed, uint32_t *done)
 {
-    if (!object->current)
+    if (!postponed) {
+        task_read(task, i, version, done);
         return;
-    task_release(graph, worker, object->current);
-    object->current = NULL;
+    }
+    data_version_hold(version);
+    task_lend(task, i, object, version, NULL);
+    *done += 1;
 }
 
-struct data_packet *task_send_packet(struct task *task)
+/* The scope of the task gets the object's hold on the version; the object has from now on the one
+ * that its children will leave. */
+static int access_lend(struct task *task, size_t i, struct data_object *object,
+                       struct data_version *version, uint32_t *done)
 {
-    struct task_send *send = task->send;
-    if (send->packet || !task->n)
-        return send->packet;
-    const struct data_version *version = task->access[0].in;
-    if (version->poisoned)
-        return send->packet = task_poison_packet(send->key, version->failure);
-    /* The same bytes may be on their way to another rank already: then the header says just this.
-     */
-    struct data_packet *packet = version->packet;
-    struct data_key key = send->key;
-    if (packet->kind != DATA_VALUE || packet->key.slot != key.slot ||
-        packet->key.generation != key.generation || packet->key.number != key.number) {
-        packet->kind = DATA_VALUE;
-        packet->key = key;
+    struct data_version *out = data_object_version(object);
+    if (!out) {
+        base_no_memory("a version");
+        return task_break(task->scope->graph);
     }
-    return packet;
+    task_lend(task, i, object, version, out);
+    object->current = out;
+    *done += 1;
+    return DUITE_OK;
+}
+
+static int access_contribute(struct task_scope *scope, struct worker *worker, int at,
+                             const duite_kernel *kernel, size_t i, struct data_object *object,
+                             struct task *task, uint32_t *done)
+{
+    int code = task_contribute(scope, worker, object, data_law_of(kernel, i), at, task, i);
+    if (!code && task && task_postponed((duite_mode)task->access[i].waiter.mode))
+        task_lend(task, i, object, NULL, NULL);
+    *done += !code;
+    return code;
+}
+
+int task_depend(struct task_scope *scope, struct worker *worker, int at, const duite_kernel *kernel,
+                size_t i, duite_mode declared, struct data_object *object, struct task *task,
+                uint32_t *done)
+{
+    struct task_graph *graph = scope->graph;
+    duite_mode mode = task_immediate(declared);
+    bool postponed = task_postponed(declared);
+    bool everywhere = kernel->replicated && !scope->depth;
+    int code = DUITE_OK;
+    if (mode == DUITE_CW)
+        return access_contribute(scope, worker, at, kernel, i, object, task, done);
+    if (object->leaves)
+        code = task_reduce(scope, worker, object);
+    if (!code && mode != DUITE_W && graph->n_ranks > 1)
+        code = everywhere ? task_fetch_all(graph, worker, object)
+                          : task_fetch(graph, worker, object, at);
+    if (code)
+        return code;
+    struct data_version *version = object->current;
+    if (task && mode != DUITE_W && !(version = task_local(graph, object)))
+        return DUITE_E_MEMORY;
+    if (mode == DUITE_R) {
+        if (task)
+            access_read(task, i, object, version, postponed, done);
+        return DUITE_OK;
+    }
+    object->number++;
+    data_object_moved(object, everywhere ? object->home : at);
+    for (int rank = 0; everywhere && rank < graph->n_ranks; rank++)
+        data_object_add_copy(&graph->table, object, rank);
+    if (mode == DUITE_W && task)
+        version = task_rename(graph, worker, object);
+    if (task)
+        return postponed ? access_lend(task, i, object, version, done)
+                         : task_overwrite(graph, task, i, object, version, done);
+    task_forget(graph, worker, object);
+    return DUITE_OK;
 }

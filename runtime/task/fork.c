@@ -1,16 +1,21 @@
-/* Forking: every rank comes through here for every task of the main program, in the same order, and
- * draws the same conclusions about where it runs and which versions move; it keeps only what it
- * runs, sends or receives itself. A task forks by the same rules in its own scope, whose objects
- * are here and nowhere else. */
+/* Forking, the first stage of a task. Every rank comes through here for every task of the main
+ * program, in the same order, and draws the same conclusions about where it runs and which versions
+ * move; it keeps only what it runs, sends or receives itself. A task forks by the same rules in its
+ * own scope, whose objects are here and nowhere else. What is wrong is refused before anything is
+ * changed; afterwards nothing but memory can be missing. The next stage is depend.c; prune.c is the
+ * short way for tasks that touch nothing of this rank. */
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
+#include "runtime/base/pool.h"
 #include "runtime/data/mode.h"
 #include "runtime/data/view.h"
 
 #include <string.h>
 
-static int find_kernel(const struct task_graph *graph, const duite_kernel *kernel, uint32_t *index)
+/* ---- What a fork checks ---- */
+
+static int fork_kernel(const struct task_graph *graph, const duite_kernel *kernel, uint32_t *index)
 {
     if (!kernel)
         return base_error(DUITE_E_ARGUMENT, "duite_fork: no kernel");
@@ -22,8 +27,8 @@ static int find_kernel(const struct task_graph *graph, const duite_kernel *kerne
 }
 
 /* Kernel, arguments and number of objects fit. */
-static int check_call(const struct task_graph *graph, int at, uint32_t index, const void *args,
-                      size_t n, const duite_object *objects)
+static int fork_check_call(const struct task_graph *graph, int at, uint32_t index, const void *args,
+                           size_t n, const duite_object *objects)
 {
     const duite_kernel *kernel = graph->kernels[index];
     size_t fixed = graph->fixed[index].n;
@@ -45,8 +50,8 @@ static int check_call(const struct task_graph *graph, int at, uint32_t index, co
     return DUITE_OK;
 }
 
-static int check_law(const duite_kernel *kernel, size_t i, const struct data_object *object,
-                     duite_object name)
+static int fork_check_law(const duite_kernel *kernel, size_t i, const struct data_object *object,
+                          duite_object name)
 {
     const duite_law *law = data_law_of(kernel, i);
     if (object->sized)
@@ -64,7 +69,7 @@ static int check_law(const duite_kernel *kernel, size_t i, const struct data_obj
 
 /* What is known of a task before anything is changed for it. */
 enum { FEW = 16 };
-struct sketch {
+struct fork_sketch {
     uint32_t kernel;                 /* index in the list given at start */
     uint32_t owner;                  /* the parameter it runs for, or TASK_NOBODY */
     bool views;                      /* some are views */
@@ -72,16 +77,17 @@ struct sketch {
 };
 
 /* Object i, whose name was checked. */
-static struct data_object *object_of(struct task_scope *scope, const struct sketch *sketch,
-                                     size_t i, duite_object name)
+static struct data_object *sketch_object(struct task_scope *scope,
+                                         const struct fork_sketch *fork_sketch, size_t i,
+                                         duite_object name)
 {
     duite_mode right;
-    return i < FEW ? sketch->object[i] : task_find_object(scope, name, &right);
+    return i < FEW ? fork_sketch->object[i] : task_find_object(scope, name, &right);
 }
 
 /* It exists, is named once, may be used so, and can be accumulated into where it is. */
-static int check_object(struct task_scope *scope, const duite_kernel *kernel, size_t i,
-                        duite_mode mode, duite_object name, struct sketch *sketch)
+static int fork_check_object(struct task_scope *scope, const duite_kernel *kernel, size_t i,
+                             duite_mode mode, duite_object name, struct fork_sketch *fork_sketch)
 {
     duite_mode right = DUITE_RWP;
     struct data_object *object = scope->depth ? task_find_object(scope, name, &right)
@@ -98,15 +104,15 @@ static int check_object(struct task_scope *scope, const duite_kernel *kernel, si
     if (object->view && task_immediate(mode) != DUITE_R)
         code = data_view_refuse(&scope->graph->table, object, kernel->name);
     if (!code && task_immediate(mode) == DUITE_CW)
-        code = check_law(kernel, i, object, name);
+        code = fork_check_law(kernel, i, object, name);
     if (!code && right == DUITE_CWP && data_law_of(kernel, i) != object->law)
         code = task_wrong_law(scope, kernel, i, name);
     if (code)
         return code;
     object->mark = scope->forks + 1;
-    sketch->views |= object->view != NULL;
+    fork_sketch->views |= object->view != NULL;
     if (i < FEW)
-        sketch->object[i] = object;
+        fork_sketch->object[i] = object;
     return DUITE_OK;
 }
 
@@ -120,83 +126,96 @@ void task_unmark(struct task_scope *scope, size_t n, const duite_object *objects
     }
 }
 
-static void read_version(struct task *task, size_t i, const struct data_object *object,
-                         struct data_version *version, bool postponed, uint32_t *done)
+/* A body's rights. What it reads may come into its scope, whose objects move then. */
+static int fork_check_rights(struct task_scope *scope, const duite_kernel *kernel, size_t n,
+                             const duite_object *objects)
 {
-    if (!postponed) {
-        task_read(task, i, version, done);
-        return;
-    }
-    data_version_hold(version);
-    task_lend(task, i, object, version, NULL);
-    *done += 1;
-}
-
-/* The scope of the task gets the object's hold on the version; the object has from now on the one
- * that its children will leave. */
-static int lend_version(struct task *task, size_t i, struct data_object *object,
-                        struct data_version *version, uint32_t *done)
-{
-    struct data_version *out = data_object_version(object);
-    if (!out) {
-        base_no_memory("a version");
-        return task_break(task->scope->graph);
-    }
-    task_lend(task, i, object, version, out);
-    object->current = out;
-    *done += 1;
-    return DUITE_OK;
-}
-
-static int contribute(struct task_scope *scope, struct worker *worker, int at,
-                      const duite_kernel *kernel, size_t i, struct data_object *object,
-                      struct task *task, uint32_t *done)
-{
-    int code = task_contribute(scope, worker, object, data_law_of(kernel, i), at, task, i);
-    if (!code && task && task_postponed((duite_mode)task->access[i].waiter.mode))
-        task_lend(task, i, object, NULL, NULL);
-    *done += !code;
+    int code = DUITE_OK;
+    for (size_t i = 0; i < n && !code; i++)
+        code = task_check_right(scope, kernel->name, i, objects[i], data_mode_of(kernel, i));
     return code;
 }
 
-/* Access i of a task that runs on rank `at`; `task` is NULL on the other ranks. */
-static int use(struct task_scope *scope, struct worker *worker, int at, const duite_kernel *kernel,
-               size_t i, duite_mode declared, struct data_object *object, struct task *task,
-               uint32_t *done)
+static int fork_check_objects(struct task_scope *scope, const duite_kernel *kernel, size_t n,
+                              const duite_object *objects, struct fork_sketch *fork_sketch)
 {
-    struct task_graph *graph = scope->graph;
-    duite_mode mode = task_immediate(declared);
-    bool postponed = task_postponed(declared);
-    bool everywhere = kernel->replicated && !scope->depth;
-    int code = DUITE_OK;
-    if (mode == DUITE_CW)
-        return contribute(scope, worker, at, kernel, i, object, task, done);
-    if (object->leaves)
-        code = task_close_sum(scope, worker, object);
-    if (!code && mode != DUITE_W && graph->n_ranks > 1)
-        code = everywhere ? task_fetch_all(graph, worker, object)
-                          : task_fetch(graph, worker, object, at);
-    if (code)
-        return code;
-    struct data_version *version = object->current;
-    if (task && mode != DUITE_W && !(version = task_local(graph, object)))
-        return DUITE_E_MEMORY;
-    if (mode == DUITE_R) {
-        if (task)
-            read_version(task, i, object, version, postponed, done);
-        return DUITE_OK;
+    const struct task_fixed *fixed = &scope->graph->fixed[fork_sketch->kernel];
+    fork_sketch->owner = fixed->owner[n > fixed->n];
+    fork_sketch->views = false;
+    for (uint32_t i = 0; i < n; i++) {
+        int code =
+            fork_check_object(scope, kernel, i, data_mode_of(kernel, i), objects[i], fork_sketch);
+        if (code) {
+            task_unmark(scope, i, objects);
+            return code;
+        }
     }
-    object->number++;
-    data_object_moved(object, everywhere ? object->home : at);
-    for (int rank = 0; everywhere && rank < graph->n_ranks; rank++)
-        data_object_add_copy(&graph->table, object, rank);
-    if (mode == DUITE_W && task)
-        version = task_rename(graph, worker, object);
-    if (task)
-        return postponed ? lend_version(task, i, object, version, done)
-                         : task_overwrite(graph, task, i, object, version, done);
-    task_forget(graph, worker, object);
     return DUITE_OK;
+}
+
+static int fork_check(struct task_scope *scope, int at, const duite_kernel *kernel,
+                      const void *args, size_t n, const duite_object *objects,
+                      struct fork_sketch *fork_sketch)
+{
+    int code = fork_kernel(scope->graph, kernel, &fork_sketch->kernel);
+    if (!code)
+        code = fork_check_call(scope->graph, at, fork_sketch->kernel, args, n, objects);
+    if (!code && scope->depth)
+        code = fork_check_rights(scope, kernel, n, objects);
+    return code ? code : fork_check_objects(scope, kernel, n, objects, fork_sketch);
+}
+
+int task_check_fork(struct task_scope *scope, int at, const duite_kernel *kernel, const void *args,
+                    size_t n, const duite_object *objects, uint32_t *index)
+{
+    struct fork_sketch fork_sketch;
+    int code = fork_check(scope, at, kernel, args, n, objects, &fork_sketch);
+    *index = fork_sketch.kernel;
+    return code;
+}
+
+/* ---- What it makes ---- */
+
+struct task *task_make(struct task_scope *scope, enum task_type kind, size_t n, size_t extra)
+{
+    struct task *task;
+    size_t bytes = sizeof *task + n * sizeof task->access[0] + extra;
+    size_t grains = (bytes + TASK_GRAIN - 1) / TASK_GRAIN;
+    task = grains <= UINT32_MAX ? base_pool_take(grains * TASK_GRAIN) : NULL;
+    if (!task)
+        return NULL;
+    *task = (struct task){
+        .pending = (uint32_t)n + 1,
+        .n = (uint32_t)n,
+        .scope = scope,
+        .number = scope->forks,
+        .kernel = UINT32_MAX,
+        .block = (uint32_t)scope->forks, /* until it is known to run for an object */
+        .priority = INT32_MAX,           /* unless the program forks it */
+        .grains = (uint32_t)grains,
+        .kind = kind,
+    };
+    if (kind > TASK_BODY && extra)
+        task->sum = task_rest(task, n);
+    for (size_t i = 0; i < n; i++)
+        task->access[i] = (struct task_access){
+            .waiter.back = (uint32_t)(sizeof *task + i * sizeof task->access[0])};
+    return task;
+}
+
+struct task *task_new(struct task_scope *scope, enum task_type kind, size_t n, size_t extra)
+{
+    struct task *task = task_make(scope, kind, n, extra);
+    if (!task) {
+        base_no_memory("a task");
+        task_break(scope->graph);
+        return NULL;
+    }
+    if (scope->parent)
+        atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
+    else
+        scope->graph->tasks++;
+    return task;
 }
 
 /* Memory ran out at access `made`: the accesses before it are kept, or others would wait for ever.
@@ -212,54 +231,8 @@ void task_void(struct task_graph *graph, struct worker *worker, struct task *tas
     task_settled(graph, worker, task, done + missing);
 }
 
-/* A body's rights. What it reads may come into its scope, whose objects move then. */
-static int check_rights(struct task_scope *scope, const duite_kernel *kernel, size_t n,
-                        const duite_object *objects)
-{
-    int code = DUITE_OK;
-    for (size_t i = 0; i < n && !code; i++)
-        code = task_check_right(scope, kernel->name, i, objects[i], data_mode_of(kernel, i));
-    return code;
-}
-
-static int check_objects(struct task_scope *scope, const duite_kernel *kernel, size_t n,
-                         const duite_object *objects, struct sketch *sketch)
-{
-    const struct task_fixed *fixed = &scope->graph->fixed[sketch->kernel];
-    sketch->owner = fixed->owner[n > fixed->n];
-    sketch->views = false;
-    for (uint32_t i = 0; i < n; i++) {
-        int code = check_object(scope, kernel, i, data_mode_of(kernel, i), objects[i], sketch);
-        if (code) {
-            task_unmark(scope, i, objects);
-            return code;
-        }
-    }
-    return DUITE_OK;
-}
-
-static int check(struct task_scope *scope, int at, const duite_kernel *kernel, const void *args,
-                 size_t n, const duite_object *objects, struct sketch *sketch)
-{
-    int code = find_kernel(scope->graph, kernel, &sketch->kernel);
-    if (!code)
-        code = check_call(scope->graph, at, sketch->kernel, args, n, objects);
-    if (!code && scope->depth)
-        code = check_rights(scope, kernel, n, objects);
-    return code ? code : check_objects(scope, kernel, n, objects, sketch);
-}
-
-int task_check_fork(struct task_scope *scope, int at, const duite_kernel *kernel, const void *args,
-                    size_t n, const duite_object *objects, uint32_t *index)
-{
-    struct sketch sketch;
-    int code = check(scope, at, kernel, args, n, objects, &sketch);
-    *index = sketch.kernel;
-    return code;
-}
-
 /* NULL without memory. */
-static struct task *body_task(struct task_scope *scope, struct worker *worker,
+static struct task *fork_body(struct task_scope *scope, struct worker *worker,
                               const struct task_options *how, uint32_t index, const void *args,
                               size_t n)
 {
@@ -285,17 +258,19 @@ static struct task *body_task(struct task_scope *scope, struct worker *worker,
 }
 
 /* All of them before any other access: the task may write their parents. */
-static int gather_views(struct task_scope *scope, struct worker *worker,
-                        const struct sketch *sketch, size_t n, const duite_object *objects)
+static int fork_gather_views(struct task_scope *scope, struct worker *worker,
+                             const struct fork_sketch *fork_sketch, size_t n,
+                             const duite_object *objects)
 {
     int code = DUITE_OK;
     for (size_t i = 0; i < n && !code; i++)
-        code = task_view_gather(scope->graph, worker, object_of(scope, sketch, i, objects[i]));
+        code = task_view_gather(scope->graph, worker,
+                                sketch_object(scope, fork_sketch, i, objects[i]));
     return code;
 }
 
 /* The task runs for the object; `follows`: where that one's home is. */
-static void give_block(struct task *task, struct data_object *own, bool follows)
+static void fork_give_block(struct task *task, struct data_object *own, bool follows)
 {
     task->block = own->block;
     task->placed = follows;
@@ -308,15 +283,17 @@ static void give_block(struct task *task, struct data_object *own, bool follows)
 
 /* Checked: nothing but memory can be missing. */
 static int fork_checked(struct task_scope *scope, struct worker *worker,
-                        const struct task_options *how, const struct sketch *sketch,
+                        const struct task_options *how, const struct fork_sketch *fork_sketch,
                         const void *args, size_t n, const duite_object *objects)
 {
     struct task_graph *graph = scope->graph;
-    const duite_kernel *kernel = graph->kernels[sketch->kernel];
-    struct data_object *own = sketch->owner == TASK_NOBODY
-                                  ? NULL
-                                  : object_of(scope, sketch, sketch->owner, objects[sketch->owner]);
-    int code = sketch->views ? gather_views(scope, worker, sketch, n, objects) : DUITE_OK;
+    const duite_kernel *kernel = graph->kernels[fork_sketch->kernel];
+    struct data_object *own =
+        fork_sketch->owner == TASK_NOBODY
+            ? NULL
+            : sketch_object(scope, fork_sketch, fork_sketch->owner, objects[fork_sketch->owner]);
+    int code =
+        fork_sketch->views ? fork_gather_views(scope, worker, fork_sketch, n, objects) : DUITE_OK;
     if (code)
         return code;
     struct task *task = NULL;
@@ -325,16 +302,16 @@ static int fork_checked(struct task_scope *scope, struct worker *worker,
                           : task_owner_rank(how->at, kernel->replicated, own ? own->home : -1);
     if (at == TASK_EVERYWHERE)
         at = graph->rank;
-    if (at == graph->rank && !(task = body_task(scope, worker, how, sketch->kernel, args, n)))
+    if (at == graph->rank && !(task = fork_body(scope, worker, how, fork_sketch->kernel, args, n)))
         return DUITE_E_MEMORY;
     if (task && own)
-        give_block(task, own, task_owner_decides(how->at, kernel->replicated));
+        fork_give_block(task, own, task_owner_decides(how->at, kernel->replicated));
     for (size_t i = 0; i < n; i++) {
-        struct data_object *object = object_of(scope, sketch, i, objects[i]);
+        struct data_object *object = sketch_object(scope, fork_sketch, i, objects[i]);
         duite_mode mode = data_mode_of(kernel, i);
         if (task)
             task->access[i].waiter.mode = mode;
-        code = use(scope, worker, at, kernel, i, mode, object, task, &done);
+        code = task_depend(scope, worker, at, kernel, i, mode, object, task, &done);
         if (code && task)
             task_void(graph, worker, task, i, done);
         if (code)
@@ -345,7 +322,7 @@ static int fork_checked(struct task_scope *scope, struct worker *worker,
     return DUITE_OK;
 }
 
-static void mix_fork(struct task_graph *graph, uint32_t kernel, int at, size_t n,
+static void fork_mix(struct task_graph *graph, uint32_t kernel, int at, size_t n,
                      const duite_object *objects)
 {
     uint64_t hash = task_fork_hash(kernel, at);
@@ -357,78 +334,12 @@ static void mix_fork(struct task_graph *graph, uint32_t kernel, int at, size_t n
 int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *how,
               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
 {
-    struct sketch sketch;
-    int code = check(scope, how->at, kernel, args, n, objects, &sketch);
+    struct fork_sketch fork_sketch;
+    int code = fork_check(scope, how->at, kernel, args, n, objects, &fork_sketch);
     if (code)
         return code;
     scope->forks++;
     if (!scope->depth)
-        mix_fork(scope->graph, sketch.kernel, how->at, n, objects);
-    return fork_checked(scope, worker, how, &sketch, args, n, objects);
-}
-
-int task_free_object(struct task_scope *scope, struct worker *worker, duite_object name)
-{
-    struct task_graph *graph = scope->graph;
-    duite_mode right;
-    struct data_object *object = task_find_object(scope, name, &right);
-    if (!object)
-        return DUITE_E_OBJECT;
-    if (object->n_views)
-        return base_error(DUITE_E_VIEW, "duite_free: object %u.%u has %u views that are not freed",
-                          name.slot, name.generation, object->n_views);
-    if (!scope->depth)
-        task_mix(graph, (uint64_t)name.slot << 32 | name.generation);
-    int code = object->leaves ? task_close_sum(scope, worker, object) : DUITE_OK;
-    task_forget(graph, worker, object);
-    if (scope->depth)
-        task_drop(scope, object);
-    else
-        data_object_drop(&graph->table, name);
-    return code;
-}
-
-int task_copy(struct task_graph *graph, struct worker *worker, duite_object name, int to,
-              struct task_copy *copy)
-{
-    struct data_object *object = data_object_find(&graph->table, name);
-    if (!object)
-        return DUITE_E_OBJECT;
-    if (to < TASK_ANYWHERE || to >= graph->n_ranks)
-        return base_error(DUITE_E_ARGUMENT, "duite_get_at: there is no rank %d, only 0 to %d", to,
-                          graph->n_ranks - 1);
-    task_mix(graph, (uint64_t)name.slot << 32 | (uint32_t)to);
-    int code = object->leaves ? task_close_sum(&graph->root, worker, object) : DUITE_OK;
-    if (!code)
-        code = task_view_gather(graph, worker, object);
-    if (!code)
-        code = to == TASK_ANYWHERE ? task_fetch_all(graph, worker, object)
-                                   : task_fetch(graph, worker, object, to);
-    if (code || (to != TASK_ANYWHERE && to != graph->rank))
-        return code;
-    struct data_version *version = task_local(graph, object);
-    struct task *task = version ? task_new(&graph->root, TASK_COPY, 1, 0) : NULL;
-    if (!task)
-        return DUITE_E_MEMORY;
-    task->copy = copy;
-    task->block = object->block;
-    uint32_t done = 0;
-    task->access[0].waiter.mode = DUITE_R;
-    task_read(task, 0, version, &done);
-    task_settled(graph, worker, task, done);
-    return DUITE_OK;
-}
-
-int task_see(struct task_scope *scope, struct worker *worker, duite_object name,
-             struct data_version **version, size_t *size)
-{
-    duite_mode right;
-    struct data_object *object = task_find_object(scope, name, &right);
-    if (!object)
-        return DUITE_E_OBJECT;
-    *size = data_type_size(object->type);
-    int code = object->leaves ? task_close_sum(scope, worker, object) : DUITE_OK;
-    if (!code && !(*version = task_local(scope->graph, object)))
-        code = DUITE_E_MEMORY;
-    return code;
+        fork_mix(scope->graph, fork_sketch.kernel, how->at, n, objects);
+    return fork_checked(scope, worker, how, &fork_sketch, args, n, objects);
 }

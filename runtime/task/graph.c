@@ -183,6 +183,13 @@ const struct data_failure *task_fail(struct task_graph *graph, const struct data
     return keep(graph, failure, report ? &graph->root : NULL);
 }
 
+/* Where the task that a guest is or descends from stands at home; NULL: it is at home. The main
+ * program's scope is not read: the main thread writes its cache line with every fork. */
+static const struct data_failure *place_at_home(const struct task_scope *scope)
+{
+    return scope->top == &scope->graph->root ? NULL : scope->top->place;
+}
+
 /* The task's place in the reference order. What a body does after a wait comes after the children
  * before it. A guest's place goes on from the one it has at home. */
 void task_failure_place(struct data_failure *failure, const struct task *task,
@@ -190,7 +197,7 @@ void task_failure_place(struct data_failure *failure, const struct task *task,
 {
     uint64_t index[sizeof failure->path];
     uint32_t depth = task->scope->depth, most = sizeof index / sizeof index[0];
-    const struct data_failure *home = offload_guest_place(task->scope->top);
+    const struct data_failure *home = place_at_home(task->scope);
     if (depth && depth <= most)
         index[depth - 1] = task->number;
     failure->number = task->number;
@@ -251,4 +258,30 @@ int task_failure_error(const struct task_graph *graph, const struct data_failure
     return base_error(failure->code, "task %s (kernel %s) failed on rank %d with code %d%s%s",
                       place, kernel, failure->rank, failure->code, failure->text[0] ? ": " : "",
                       failure->text);
+}
+
+uint64_t task_main_number(const struct task *task, bool *nested)
+{
+    const struct task_scope *scope = task->scope;
+    const struct data_failure *place = place_at_home(scope);
+    *nested = scope->depth || (place && place->path_length);
+    if (place)
+        return place->number;
+    while (scope->depth > 1)
+        scope = scope->parent;
+    return scope->depth ? scope->number : task->number;
+}
+
+const char *task_own_name(uint32_t kind)
+{
+    static const char *const own[] = {
+        [TASK_COMBINE] = "duite_sum",      [TASK_PIECES] = "duite_sum",
+        [TASK_GATHER] = "duite_sum",       [TASK_VIEW] = "duite_view",
+        [TASK_COPY] = "duite_get",         [TASK_MOVE] = "duite_replay",
+        [TASK_VOID] = "duite_fork",        [TASK_REPLAY] = "duite_replay",
+        [TASK_NODE_SET] = "duite_set",     [TASK_NODE_SUM] = "duite_sum",
+        [TASK_NODE_PARTIAL] = "duite_sum", [TASK_NODE_COPY] = "duite_replay",
+        [TASK_NODE_VIEW] = "duite_view",   [TASK_NODE_FLAG] = "duite_replay_while"};
+    const char *name = kind < sizeof own / sizeof own[0] ? own[kind] : NULL;
+    return name ? name : "duite";
 }

@@ -1,5 +1,5 @@
-#ifndef DUITE_GRAPH_INTERNAL_H
-#define DUITE_GRAPH_INTERNAL_H
+#ifndef DUITE_TASK_INTERNAL_H
+#define DUITE_TASK_INTERNAL_H
 
 #include "runtime/task/task.h"
 
@@ -40,6 +40,13 @@ struct data_version *task_rename(struct task_graph *graph, struct worker *worker
  * if it was never written. NULL: out of memory, broken. */
 struct data_version *task_local(struct task_graph *graph, struct data_object *object);
 
+/* Access i of a task that runs on rank `at`: what it reads and makes, as versions. `task` is NULL
+ * on the other ranks. *done grows by one if there is nothing to wait for. Errors: memory, broken.
+ */
+int task_depend(struct task_scope *scope, struct worker *worker, int at, const duite_kernel *kernel,
+                size_t i, duite_mode mode, struct data_object *object, struct task *task,
+                uint32_t *done);
+
 /* Sees to it that rank `to` gets the current version: sends, awaits, or notes that others do. */
 int task_fetch(struct task_graph *graph, struct worker *worker, struct data_object *object, int to);
 /* The same for all ranks. */
@@ -56,7 +63,7 @@ void task_forget(struct task_graph *graph, struct worker *worker, struct data_ob
  * a run of another law, and ends the run of them. */
 int task_contribute(struct task_scope *scope, struct worker *worker, struct data_object *object,
                     const duite_law *law, int at, struct task *task, size_t i);
-int task_close_sum(struct task_scope *scope, struct worker *worker, struct data_object *object);
+int task_reduce(struct task_scope *scope, struct worker *worker, struct data_object *object);
 void task_run_combine(struct task *task);
 void task_run_pieces(struct task *task);
 /* The contributions of a task's children become `leaf` of `sum`, the one it is a contribution to.
@@ -156,9 +163,6 @@ static inline struct data_version *task_written(const struct task_access *access
     return access->waiter.mode == DUITE_W || access->waiter.mode == DUITE_RW ? access->out : NULL;
 }
 
-/* The body is over: what it wrote has the sizes it said. */
-void task_size_close(struct task *task, const duite_param *param);
-
 /* Keeps a failure until stop; `report`: the next wait tells it. Never NULL. */
 const struct data_failure *task_fail(struct task_graph *graph, const struct data_failure *failure,
                                      bool report);
@@ -205,38 +209,6 @@ const struct data_failure *task_call_body(struct task_graph *graph, struct worke
                                           struct task *task, const void *args,
                                           const duite_param *param, struct task_scope **scope,
                                           const duite_call *call);
-
-/* A replay: binds the objects; starts the first round. */
-void plan_replay_run(struct task *task);
-void plan_replay_start(struct task_graph *graph, struct worker *worker, struct task *task);
-/* A node of a replay: runs it, returns whether a body ran; tells its successors. */
-bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task *task,
-                   const duite_call *call);
-void plan_node_finish(struct task_graph *graph, struct worker *worker, struct task *task);
-
-/* ---- On other ranks: see away.h, parcel.h ---- */
-
-/* The place of the guest that has this top, or NULL: it is the main program's. */
-const struct data_failure *offload_guest_place(const struct task_scope *top);
-/* Whether parameter i of a guest changes its size. */
-bool offload_guest_sized(const struct task *task, size_t i);
-/* A guest: runs, returns whether a body ran; the body is over; so are its descendants; it is sent.
- */
-bool offload_guest_run(struct task_graph *graph, struct worker *worker, struct task *task,
-                       const duite_call *call);
-void offload_guest_finish(struct worker *worker, struct task *task);
-void offload_guest_over(struct task_scope *above, struct worker *worker);
-void offload_guest_gone(struct task_graph *graph, struct task *task);
-/* A task that went away is sent. */
-void offload_away_sent(struct task_graph *graph, struct worker *worker, struct task *task);
-/* A task that is back does what its body would have done; result NULL: it is lost. */
-void offload_run_result(struct task_graph *graph, struct task *task, struct data_packet *result);
-/* Gives the parameters, prepared for a body, what it left; or its failure. */
-const struct data_failure *offload_take_result(const struct task *task, duite_param *param,
-                                               struct data_packet *result);
-
-/* Publishes what a task wrote, releases what it read, frees it. */
-void task_over(struct task_graph *graph, struct worker *worker, struct task *task);
 
 /* Of an object of the main program. */
 static inline struct data_key task_key(const struct task_graph *graph,

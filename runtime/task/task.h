@@ -1,5 +1,5 @@
-#ifndef DUITE_GRAPH_GRAPH_H
-#define DUITE_GRAPH_GRAPH_H
+#ifndef DUITE_TASK_TASK_H
+#define DUITE_TASK_TASK_H
 
 #include "runtime/data/object.h"
 #include "runtime/task/above.h"
@@ -52,6 +52,7 @@ struct task_access {
         struct data_version *in; /* read or overwritten; NULL: a w without bytes to reuse */
         struct data_piece *leaf; /* cw: this task's part of the sum */
         size_t lent;             /* postponed: its place in the task's scope */
+        bool sized;              /* GUEST: the object changes its size */
     };
     union {
         struct data_version *out; /* w, rw: what is written; r: NULL */
@@ -99,9 +100,15 @@ static inline void *task_rest(struct task *task, size_t n)
     return (char *)task + sizeof *task + n * sizeof task->access[0];
 }
 
+/* Whether it is a node of a replay. */
+static inline bool task_is_node(const struct task *task)
+{
+    return task->kind >= TASK_NODE;
+}
+
 static inline float task_path(const struct task *task)
 {
-    return task->kind >= TASK_NODE ? task->path : 0;
+    return task_is_node(task) ? task->path : 0;
 }
 
 /* SEND: a version and where it goes. */
@@ -126,7 +133,7 @@ struct task_copy {
     _Atomic int done;
 };
 
-/* Where tasks are forked: the main program, or a task. A task's scope (nest.c) holds the objects
+/* Where tasks are forked: the main program, or a task. A task's scope (scope.c) holds the objects
  * that its children may use, each the same chain of versions as the main program's; it lives until
  * all of its descendants are over. While the body runs the scope is its worker's alone; afterwards
  * nobody forks here, and only `unfinished` and `failure` change. */
@@ -143,42 +150,11 @@ struct task_scope {
     uint64_t number;                    /* of its task; as are: */
     uint32_t block;
     bool placed;
-    uint64_t segment; /* `forks` at the last wait of the body */
-    uint32_t depth;   /* 0: the main program */
-    bool outward;     /* its children may wait for tasks outside of it */
+    uint64_t segment;                 /* `forks` at the last wait of the body */
+    uint32_t depth;                   /* 0: the main program */
+    bool outward;                     /* its children may wait for tasks outside of it */
+    const struct data_failure *place; /* of a guest's top: where the task stands at home */
 };
-
-/* A recorded graph's message of one round to or from another rank: fixed in size and order, so that
- * it needs no name but its tag and its turn. */
-struct plan_channel {
-    struct task *node; /* SEND or RECEIVE */
-    int peer;
-    int tag; /* to begin with the phase; who opens the channels adds a number of their own */
-    bool sends;
-    size_t bytes; /* room for a message; without failures to tell it is shorter */
-    void *own;    /* of who opens */
-};
-
-/* All of one plan, with messages of so many phases on all ranks. Closed by whoever lets go of the
- * plan last, from any thread. */
-struct plan_channels {
-    struct plan_channel *channel;
-    size_t n;
-    int phases;
-    void (*close)(struct plan_channels *channels); /* set when they are opened */
-    void *own;
-};
-
-/* A SEND writes its message, which has so many bytes; a RECEIVE reads it, or poisons all that it
- * would have brought. Afterwards the node is to be finished. Any worker. */
-size_t plan_channel_pack(struct task *node, void *message);
-void plan_channel_unpack(struct task *node, const void *message);
-void plan_channel_lost(struct task *node);
-/* Of a SEND or RECEIVE. */
-struct plan_channel *plan_channel_of(const struct task *node);
-/* One of the program's tasks that wait in this round for a RECEIVE, or NULL, and how many more do.
- * The replay must not go on meanwhile. */
-const struct task *plan_channel_waits(const struct task *node, unsigned *more);
 
 struct task_graph {
     /* Read by all workers, with every task. */
@@ -331,10 +307,22 @@ bool task_may_run(const struct task_scope *scope, const struct task *task);
 
 /* ---- Any worker ---- */
 
-/* Runs a ready task (not a SEND), which task_finish then ends. `call` has context, rt, rank and
- * worker set. Returns whether a body ran. */
+/* Runs a ready task of one of this folder's types, which task_finish then ends; work_run_task runs
+ * tasks of all types. `call` has context, rt, rank and worker set. Returns whether a body ran. */
 bool task_run(struct task_graph *graph, struct worker *worker, struct task *task,
               const duite_call *call);
+/* The task is over: publishes what it wrote, releases what it read, makes its successors ready,
+ * frees it. */
+void task_finish(struct task_graph *graph, struct worker *worker, struct task *task);
+
+/* Gives the parameters, prepared for the body of the task, what the body left on another rank; or
+ * returns its failure. */
+typedef const struct data_failure *task_take_result(const struct task *task, duite_param *param,
+                                                    struct data_packet *result);
+/* The body of the task, a leaf, ran on another rank: `take` does what is left of it. Then the task
+ * is to be finished. */
+void task_run_result(struct task_graph *graph, struct task *task, task_take_result *take,
+                     struct data_packet *result);
 
 /* Whether bodies do not run any more. */
 static inline bool task_has_given_up(const struct task_graph *graph)
@@ -386,9 +374,6 @@ static inline bool task_has_body(const struct task *task)
 {
     return task->kind == TASK_BODY || task->kind == TASK_NODE || task->kind == TASK_GUEST;
 }
-
-/* The task is over: publishes what it wrote, makes its successors ready, frees it. */
-void task_finish(struct task_graph *graph, struct worker *worker, struct task *task);
 
 /* A packet came for an expected version or sum; the callee owns it. */
 void task_arrived(struct task_graph *graph, struct worker *worker, struct data_version *version,

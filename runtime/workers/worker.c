@@ -170,7 +170,7 @@ static uint64_t run_body(struct worker *worker, struct task *task, uint64_t star
     worker->within = 0;
     const struct task *below = work_enters(worker, task);
     uint32_t kind = task->kind;
-    bool body = task_run(pool->setup.graph, worker, task, &worker->call);
+    bool body = work_run_task(pool->setup.graph, worker, task, &worker->call);
     work_leaves(worker, below);
     uint64_t end = base_ticks(), took = end > start ? end - start : 0;
     uint64_t own = took > worker->within ? took - worker->within : 0;
@@ -195,7 +195,7 @@ static void run_finish(struct worker *worker, struct task *task, unsigned length
     if (task_to_send(task))
         comm_send(pool->setup.comm, task);
     else
-        task_finish(pool->setup.graph, worker, task);
+        work_finish(pool->setup.graph, worker, task);
     worker->finishing = false;
     worker->may_chain = false;
 }

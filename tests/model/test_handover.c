@@ -135,7 +135,7 @@ void work_starved(struct work_pool *pool, const char *what)
 }
 
 #define task_send_packet(task)                                 ((task)->send->packet)
-#define task_finish(graph, worker, task)                       ((void)(worker), finished(task))
+#define work_finish(graph, worker, task)                       ((void)(worker), finished(task))
 #define task_arrived(...)                                      success(0, __VA_ARGS__)
 #define task_pieces_arrived(...)                               success(0, __VA_ARGS__)
 #define task_lost(...)                                         success(0, __VA_ARGS__)

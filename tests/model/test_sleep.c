@@ -1,7 +1,7 @@
-/* Sleeping and waking (runtime/workers/park.c, worker.c, idle.c, main.c and pool.c): no task waits while all who could run
- * it sleep for ever, no message while nobody polls, each task runs once, and a stop ends. The
- * workers are the real ones: thread 0 is the main thread, the others are those that work_start
- * makes. Queues are plain_queue.h's, or with REAL_QUEUES the real ones. */
+/* Sleeping and waking (runtime/workers/park.c, worker.c, idle.c, main.c and pool.c): no task waits
+ * while all who could run it sleep for ever, no message while nobody polls, each task runs once,
+ * and a stop ends. The workers are the real ones: thread 0 is the main thread, the others are those
+ * that work_start makes. Queues are plain_queue.h's, or with REAL_QUEUES the real ones. */
 #include "tests/model/runtime.h"
 
 #include "runtime/workers/workers.h"
@@ -80,8 +80,8 @@ static void finish_task(struct worker *worker, const struct task *task)
 
 #define TASK_IN(...)                                                                               \
     task_in(sizeof(const void *[]){__VA_ARGS__} / sizeof(void *), (const void *[]){__VA_ARGS__})
-#define task_run(...)                    run_task(TASK_IN(__VA_ARGS__))
-#define task_finish(graph, worker, task) finish_task(worker, TASK_IN(task))
+#define work_run_task(...)               run_task(TASK_IN(__VA_ARGS__))
+#define work_finish(graph, worker, task) finish_task(worker, TASK_IN(task))
 
 bool comm_posted(struct comm *comm)
 {
@@ -363,8 +363,8 @@ static void wait_two(void)
 
 /* ---- With messages: nobody is woken by them ---- */
 
-/* Idles twice, as in a collective call, and may become the poller; then does something else: the other
- * thread must receive. */
+/* Idles twice, as in a collective call, and may become the poller; then does something else: the
+ * other thread must receive. */
 static void idle_then_leave(void)
 {
     start_workers(2, &sched_steal, true);

@@ -1,12 +1,12 @@
-#ifndef DUITE_GRAPH_NEST_H
-#define DUITE_GRAPH_NEST_H
+#ifndef DUITE_TASK_SCOPE_H
+#define DUITE_TASK_SCOPE_H
 
 #include "runtime/task/internal.h"
 
-/* What a task's scope consists of: nest.c, and right.c for the rights on it. */
+/* What a task's scope consists of; shared by scope.c and scope_end.c. */
 
 /* Where a lent parameter goes back to. */
-struct graph_exit {
+struct task_exit {
     struct data_waiter waiter; /* first; heir of `in`, without a task */
     struct task_scope *scope;
     struct data_version *in, *out; /* wp, rwp */
@@ -30,8 +30,13 @@ struct task_nest {
     struct data_object *local; /* generation 0: freed, and `hint` links it to the next of these */
     bool moved;                /* `local` is a block of its own */
     size_t size;               /* of this block */
-    struct graph_exit exit[];  /* n_lent; then the first `room` of local */
+    struct task_exit exit[];   /* n_lent; then the first `room` of local */
 };
+
+static inline struct task_nest *task_nest_of(struct task_scope *scope)
+{
+    return (struct task_nest *)scope;
+}
 
 /* Whether the name means something in the scope of a running body: then the right held on it and,
  * unless the body uses it itself, the object. */
@@ -39,6 +44,6 @@ bool task_known(struct task_scope *scope, duite_object name, duite_mode *right,
                 struct data_object **local);
 
 /* The children may read what the body reads: the scope gets the objects. Errors: memory. */
-int offload_lend_reads(struct task_scope *scope);
+int task_lend_reads(struct task_scope *scope);
 
 #endif

@@ -1,14 +1,13 @@
-/* Tasks that fork. A task's scope has an object of its own for each that its children may use. What
- * the task was lent is a stretch of the chain of versions of the scope above: the local object
- * begins with the version that the task would have taken over, and when the body is over, the last
- * version its children make has an `exit` for its heir, which passes the bytes on to the version
- * that the scope above has waited for since the fork. So nobody waits for a task with postponed
- * parameters but for the values alone. A contribution is lent as a sum of its own, whose result
- * becomes the leaf.
+/* Tasks that fork: the scope of a task, while its body runs. It has an object of its own for each
+ * that the children may use. What the task was lent is a stretch of the chain of versions of the
+ * scope above: the local object begins with the version that the task would have taken over, and
+ * when the body is over, scope_end.c gives back what the children leave. So nobody waits for a task
+ * with postponed parameters but for the values alone. A contribution is lent as a sum of its own,
+ * whose result becomes the leaf. What a task may give to a child is what its kernel's modes say,
+ * and all of what it made.
  *
- * While the body runs its worker alone uses the objects; the exits belong to whoever releases the
- * last hold on a version. The scope is freed with the last count of `unfinished`. */
-#include "runtime/task/nest.h"
+ * While the body runs its worker alone uses the objects. */
+#include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/pool.h"
@@ -19,14 +18,22 @@
 /* The calling thread's innermost body. */
 static _Thread_local struct duite_call_private *running __attribute__((tls_model("initial-exec")));
 
-static struct task_nest *nest_of(struct task_scope *scope)
-{
-    return (struct task_nest *)scope;
-}
-
 struct duite_call_private *task_running(const struct task_graph *graph)
 {
     return running && running->graph == graph ? running : NULL;
+}
+
+void task_body_begins(struct duite_call_private *body)
+{
+    body->outer = running;
+    running = body;
+    if (body->scope)
+        task_nest_of(body->scope)->body = body;
+}
+
+void task_body_ends(struct duite_call_private *body)
+{
+    running = body->outer;
 }
 
 /* ---- Names ---- */
@@ -41,23 +48,10 @@ uint32_t task_new_stamp(void)
     return ++next;
 }
 
-void task_body_begins(struct duite_call_private *body)
-{
-    body->outer = running;
-    running = body;
-    if (body->scope)
-        nest_of(body->scope)->body = body;
-}
-
-void task_body_ends(struct duite_call_private *body)
-{
-    running = body->outer;
-}
-
 bool task_known(struct task_scope *scope, duite_object name, duite_mode *right,
                 struct data_object **local)
 {
-    struct task_nest *nest = nest_of(scope);
+    struct task_nest *nest = task_nest_of(scope);
     const struct duite_call_private *body = nest->body;
     const struct task *task = body->task;
     uint32_t i = name.slot & ~TASK_LOCAL_NAME;
@@ -95,17 +89,17 @@ struct data_object *task_find_object(struct task_scope *scope, duite_object name
     return NULL;
 }
 
-/* ---- Making a scope ---- */
+/* ---- Making a scope, and objects in it ---- */
 
-static size_t size_of(size_t n_lent)
+static size_t nest_size(size_t n_lent)
 {
-    return sizeof(struct task_nest) + n_lent * sizeof(struct graph_exit);
+    return sizeof(struct task_nest) + n_lent * sizeof(struct task_exit);
 }
 
 struct task_scope *task_scope_new(const struct task *task, size_t n)
 {
     enum { SPARE = 3 };
-    size_t exits = size_of(n), size = exits + (n + SPARE) * sizeof(struct data_object);
+    size_t exits = nest_size(n), size = exits + (n + SPARE) * sizeof(struct data_object);
     struct task_nest *nest = base_pool_take(size);
     if (!nest)
         return NULL;
@@ -137,7 +131,7 @@ struct task_scope *task_inside(struct duite_call_private *body)
             base_no_memory("what a task forks");
             return NULL;
         }
-        nest_of(body->scope)->body = body;
+        task_nest_of(body->scope)->body = body;
         if (task->kind == TASK_NODE) /* the main program waits for what it forks, too */
             work_over(body->graph->pool, body->worker, -1);
     }
@@ -147,13 +141,13 @@ struct task_scope *task_inside(struct duite_call_private *body)
 void task_lend(struct task *task, size_t i, const struct data_object *object,
                struct data_version *version, struct data_version *out)
 {
-    struct task_nest *nest = nest_of(task->inner);
+    struct task_nest *nest = task_nest_of(task->inner);
     struct task_access *access = &task->access[i];
-    struct graph_exit *exit = &nest->exit[nest->n_lent];
-    *exit = (struct graph_exit){.scope = task->inner,
-                                .out = out,
-                                .bytes = object->room,
-                                .overwrites = access->waiter.mode == DUITE_WP};
+    struct task_exit *exit = &nest->exit[nest->n_lent];
+    *exit = (struct task_exit){.scope = task->inner,
+                               .out = out,
+                               .bytes = object->room,
+                               .overwrites = access->waiter.mode == DUITE_WP};
     if (access->waiter.mode == DUITE_CWP) {
         exit->sum = access->sum;
         exit->leaf = access->leaf;
@@ -176,7 +170,7 @@ void task_lend(struct task *task, size_t i, const struct data_object *object,
 }
 
 /* Places for n more objects, one after the other. */
-static int take_places(struct task_nest *nest, uint32_t n, uint32_t *first)
+static int nest_take_places(struct task_nest *nest, uint32_t n, uint32_t *first)
 {
     uint32_t room = nest->room;
     *first = nest->n_local;
@@ -201,7 +195,7 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
                      bool sized, duite_object *name)
 {
     struct task_scope *scope = task_inside(body);
-    struct task_nest *nest = nest_of(scope);
+    struct task_nest *nest = task_nest_of(scope);
     uint32_t at;
     int code = data_object_check(type, count, most);
     if (!code && !scope)
@@ -210,7 +204,7 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
         at = nest->vacant - 1;
         nest->vacant = nest->local[at].hint;
     } else if (!code) {
-        code = take_places(nest, 1, &at);
+        code = nest_take_places(nest, 1, &at);
     }
     if (code)
         return code;
@@ -232,7 +226,7 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
 }
 
 /* What the body reads, as a version: the very one, or a copy of what lies in place. */
-static struct data_version *version_read(const struct duite_call_private *body, uint32_t i)
+static struct data_version *read_version(const struct duite_call_private *body, uint32_t i)
 {
     const struct task *task = body->task;
     if (task->kind == TASK_BODY) {
@@ -256,14 +250,14 @@ static struct data_version *version_read(const struct duite_call_private *body, 
     return version;
 }
 
-int offload_lend_reads(struct task_scope *scope)
+int task_lend_reads(struct task_scope *scope)
 {
-    struct task_nest *nest = nest_of(scope);
+    struct task_nest *nest = task_nest_of(scope);
     const struct task *task = nest->body->task;
     uint32_t first;
     if (nest->first_read)
         return DUITE_OK;
-    if (take_places(nest, task->n, &first))
+    if (nest_take_places(nest, task->n, &first))
         return DUITE_E_MEMORY;
     memset(&nest->local[first], 0, task->n * sizeof *nest->local);
     nest->first_read = first + 1;
@@ -280,7 +274,7 @@ int offload_lend_reads(struct task_scope *scope)
                                        .home = rank,
                                        .holder = rank,
                                        .block = task->block,
-                                       .current = version_read(nest->body, i)};
+                                       .current = read_version(nest->body, i)};
         if (!object->current) {
             base_no_memory("what a task reads");
             return task_break(scope->graph);
@@ -291,121 +285,77 @@ int offload_lend_reads(struct task_scope *scope)
 
 void task_drop(struct task_scope *scope, struct data_object *object)
 {
-    struct task_nest *nest = nest_of(scope);
+    struct task_nest *nest = task_nest_of(scope);
     object->generation = 0;
     object->hint = nest->vacant;
     nest->vacant = (uint32_t)(object - nest->local) + 1;
 }
 
-/* ---- The end ---- */
+/* ---- Rights ---- */
 
-void task_left(struct task_graph *graph, struct task_scope *scope, struct worker *worker)
+const char *task_mode_name(duite_mode mode)
 {
-    struct task_scope *parent;
-    /* No look into the root: the main thread writes its line with every fork. */
-    while (scope != &graph->root && (parent = scope->parent)) {
-        if (atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) != 1)
-            return;
-        struct task_nest *nest = nest_of(scope);
-        if (nest->moved)
-            base_pool_give(nest->local, nest->room * sizeof *nest->local);
-        base_pool_give(nest, nest->size);
-        scope = parent;
+    static const char *const names[] = {"no right", "r", "w", "rw", "cw", "rp", "wp", "rwp", "cwp"};
+    return names[mode];
+}
+
+static bool right_gives(duite_mode held, duite_mode wanted)
+{
+    if (held == DUITE_RWP)
+        return true;
+    return (task_postponed(held) || held == DUITE_R) &&
+           task_immediate(wanted) == task_immediate(held);
+}
+
+int task_check_right(struct task_scope *scope, const char *call, size_t i, duite_object name,
+                     duite_mode wanted)
+{
+    const struct task *task = ((struct task_nest *)scope)->body->task;
+    const char *forker = scope->graph->kernels[task->kernel]->name;
+    const char *mode = task_mode_name(wanted);
+    struct data_object *local;
+    duite_mode held;
+    if (!task_known(scope, name, &held, &local)) {
+        if (name.slot && name.slot < TASK_LOCAL_NAME)
+            return base_error(DUITE_E_RIGHT,
+                              "%s, parameter %zu: the task (kernel %s) holds no right on object "
+                              "%u.%u of the main program, %s is wanted",
+                              call, i, forker, name.slot, name.generation, mode);
+        return base_error(DUITE_E_OBJECT,
+                          "%s, parameter %zu: object %u.%u %s (in a task of kernel %s)", call, i,
+                          name.slot, name.generation,
+                          name.slot ? "was freed, or is another task's" : "names nothing", forker);
     }
-    if (scope == &graph->root)
-        work_over(graph->pool, worker, 1);
-    else
-        offload_guest_over(scope, worker);
+    if (right_gives(held, wanted))
+        return local ? DUITE_OK : task_lend_reads(scope);
+    return base_error(DUITE_E_RIGHT,
+                      "%s, parameter %zu: the task holds %s on object %u.%u, parameter %u of its "
+                      "kernel %s, and %s is wanted",
+                      call, i, task_mode_name(held), name.slot, name.generation,
+                      name.slot - TASK_LOCAL_NAME, forker, mode);
 }
 
-static const struct data_failure no_memory = {
-    .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "no memory for what a task leaves"};
-
-/* Nobody wrote the version: zeros, as many as there can be. */
-static void give_zeros(const struct graph_exit *exit)
+int task_wrong_law(const struct task_scope *scope, const duite_kernel *kernel, size_t i,
+                   duite_object name)
 {
-    struct data_version *out = exit->out;
-    if (out->packet)
-        data_packet_free(out->packet);
-    out->packet = data_packet_new(exit->bytes, true);
-    if (!out->packet)
-        data_version_poison(out, task_fail(exit->scope->graph, &no_memory, true));
+    const struct task *task = ((const struct task_nest *)scope)->body->task;
+    const duite_kernel *forker = scope->graph->kernels[task->kernel];
+    uint32_t parameter = name.slot - TASK_LOCAL_NAME;
+    return base_error(DUITE_E_RIGHT,
+                      "%s, parameter %zu: the task holds cwp by law %s on object %u.%u, parameter "
+                      "%u of its kernel %s, and law %s is wanted",
+                      kernel->name, i, data_law_of(forker, parameter)->name, name.slot,
+                      name.generation, parameter, forker->name, data_law_of(kernel, i)->name);
 }
 
-struct data_waiter *task_pass(struct worker *worker, struct data_waiter *waiter)
+int task_check_call(struct duite_call_private *body, const char *call, duite_object object,
+                    duite_mode wanted)
 {
-    struct graph_exit *exit = (struct graph_exit *)waiter;
-    struct task_scope *scope = exit->scope;
-    struct data_version *out = exit->out;
-    const struct data_failure *failure =
-        data_first(exit->untouched ? NULL : data_version_failure(exit->in), exit->failure);
-    out->packet = data_version_packet(exit->in);
-    data_version_free(exit->in);
-    data_version_poison(out, failure);
-    if (exit->untouched && !failure)
-        give_zeros(exit);
-    struct data_waiter *heir = task_produced(scope->graph, worker, out);
-    task_left(scope->graph, scope, worker);
-    return heir;
+    struct task_scope *scope = task_inside(body);
+    return scope ? task_check_right(scope, call, 0, object, wanted) : DUITE_E_MEMORY;
 }
 
-/* A written parameter goes back to the scope above. */
-static void give_back(struct graph_exit *exit, struct worker *worker, struct data_object *object,
-                      const struct data_failure *failure)
+bool task_lent(const struct duite_call_private *body, duite_object object)
 {
-    struct task_scope *scope = exit->scope;
-    exit->in = object->current;
-    exit->failure = failure;
-    if (!exit->in) {
-        data_version_poison(exit->out, failure);
-        if (!failure)
-            give_zeros(exit);
-        task_publish(scope->graph, worker, exit->out);
-        return;
-    }
-    exit->in->heir = &exit->waiter;
-    atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
-    task_release(scope->graph, worker, exit->in);
-}
-
-/* The children's contributions, or none, are this task's. */
-static void contribute(struct graph_exit *exit, struct worker *worker, struct data_object *object,
-                       const struct data_failure *failure)
-{
-    struct task_scope *scope = exit->scope;
-    exit->leaf->failure = failure;
-    if (object->leaves) {
-        if (!task_gather(scope, worker, object, exit->sum, exit->leaf))
-            return;
-        exit->leaf->failure = &no_memory;
-    }
-    task_wake(scope->graph, worker, data_sum_release(exit->sum));
-}
-
-void task_scope_fail(struct task_scope *scope, const struct data_failure *failure)
-{
-    nest_of(scope)->failure = failure;
-}
-
-void task_scope_end(struct task_scope *scope, struct worker *worker)
-{
-    struct task_nest *nest = nest_of(scope);
-    const struct data_failure *failure = nest->failure;
-    struct task_graph *graph = scope->graph;
-    for (uint32_t i = 0; i < nest->n_local; i++) {
-        struct data_object *object = &nest->local[i];
-        struct graph_exit *exit = i < nest->n_lent ? &nest->exit[i] : NULL;
-        if (exit && exit->sum) {
-            contribute(exit, worker, object, failure);
-            continue;
-        }
-        bool lost = object->leaves && task_close_sum(scope, worker, object);
-        if (exit && exit->out) {
-            exit->untouched = exit->overwrites && !object->number;
-            give_back(exit, worker, object, lost ? &no_memory : failure);
-        } else {
-            task_forget(graph, worker, object);
-        }
-    }
-    task_left(graph, scope, worker);
+    return (object.slot & ~TASK_LOCAL_NAME) < body->task->n;
 }

@@ -15,11 +15,13 @@ struct piece_place {
     uint32_t level, absent; /* absent: without a value, though there is room for one */
 };
 
-static const struct data_failure no_memory = {
+static const struct data_failure sum_no_memory = {
     .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "there was no memory for contributions"};
 
-static int contribute(struct task_graph *graph, struct data_object *object, int at,
-                      struct task *task, size_t i)
+/* ---- Contributing and reducing: at forks ---- */
+
+static int leaf_add(struct task_graph *graph, struct data_object *object, int at, struct task *task,
+                    size_t i)
 {
     bool adder = object->holder == graph->rank;
     if (!object->sum && (adder || task)) {
@@ -39,7 +41,7 @@ static int contribute(struct task_graph *graph, struct data_object *object, int 
     access->leaf = data_sum_leaf(object->sum, first);
     if (access->leaf)
         return DUITE_OK;
-    atomic_store_explicit(&object->sum->lost, &no_memory, memory_order_relaxed);
+    atomic_store_explicit(&object->sum->lost, &sum_no_memory, memory_order_relaxed);
     base_no_memory("a contribution");
     return task_break(graph);
 }
@@ -49,15 +51,15 @@ int task_contribute(struct task_scope *scope, struct worker *worker, struct data
 {
     int code = DUITE_OK;
     if (object->leaves && object->law != law)
-        code = task_close_sum(scope, worker, object);
+        code = task_reduce(scope, worker, object);
     object->law = law;
-    return code ? code : contribute(scope->graph, object, at, task, i);
+    return code ? code : leaf_add(scope->graph, object, at, task, i);
 }
 
 /* A task that waits for all contributions, which leave the object; pending counts them as one.
  * Without memory they stay there until stop. */
-static struct task *closer(struct task_scope *scope, struct data_object *object,
-                           enum task_type kind, size_t n)
+static struct task *sum_closer(struct task_scope *scope, struct data_object *object,
+                               enum task_type kind, size_t n)
 {
     struct task *task = task_new(scope, kind, n, sizeof *task->sum);
     if (!task)
@@ -75,23 +77,24 @@ static struct task *closer(struct task_scope *scope, struct data_object *object,
     return task;
 }
 
-static int expect_pieces(struct task_graph *graph, struct worker *worker, struct task_sum *closing)
+static int pieces_expect(struct task_graph *graph, struct worker *worker, struct task_sum *closing)
 {
     struct data_sum *sum = closing->sum;
     atomic_fetch_add_explicit(&sum->pending, sum->senders, memory_order_relaxed);
     if (!work_expect(graph->pool, worker, closing->send.key, -1, NULL, sum, sum->senders))
         return DUITE_OK;
-    atomic_store_explicit(&sum->lost, &no_memory, memory_order_relaxed);
+    atomic_store_explicit(&sum->lost, &sum_no_memory, memory_order_relaxed);
     atomic_fetch_sub_explicit(&sum->pending, sum->senders, memory_order_relaxed);
     return task_break(graph);
 }
 
-static int combine_here(struct task_scope *scope, struct worker *worker, struct data_object *object)
+static int sum_combine_here(struct task_scope *scope, struct worker *worker,
+                            struct data_object *object)
 {
     struct task_graph *graph = scope->graph;
     struct data_sum *sum = object->sum;
     struct data_version *version = task_local(graph, object);
-    struct task *task = version ? closer(scope, object, TASK_COMBINE, 1) : NULL;
+    struct task *task = version ? sum_closer(scope, object, TASK_COMBINE, 1) : NULL;
     if (!task)
         return DUITE_E_MEMORY;
     uint32_t done = 0;
@@ -101,18 +104,18 @@ static int combine_here(struct task_scope *scope, struct worker *worker, struct 
         task->n = 0;
         done = 1;
     } else if (sum->senders) {
-        code = expect_pieces(graph, worker, task->sum);
+        code = pieces_expect(graph, worker, task->sum);
     }
     task_wake(graph, worker, data_sum_release(sum));
     task_settled(graph, worker, task, done);
     return code;
 }
 
-static int send_pieces(struct task_scope *scope, struct worker *worker, struct data_object *object)
+static int pieces_send(struct task_scope *scope, struct worker *worker, struct data_object *object)
 {
     struct task_graph *graph = scope->graph;
     struct data_sum *sum = object->sum;
-    struct task *task = closer(scope, object, TASK_PIECES, 0);
+    struct task *task = sum_closer(scope, object, TASK_PIECES, 0);
     if (!task)
         return DUITE_E_MEMORY;
     task_wake(graph, worker, data_sum_release(sum));
@@ -122,7 +125,7 @@ static int send_pieces(struct task_scope *scope, struct worker *worker, struct d
 
 /* The contributions to an object of a task, which there is no memory to combine, are kept until
  * stop: their tasks may still run. */
-static void keep_unclosed(struct task_graph *graph, struct data_object *object)
+static void sum_keep_unclosed(struct task_graph *graph, struct data_object *object)
 {
     struct data_sum *sum = object->sum;
     object->sum = NULL;
@@ -140,9 +143,9 @@ int task_gather(struct task_scope *scope, struct worker *worker, struct data_obj
 {
     struct task_graph *graph = scope->graph;
     struct data_sum *sum = object->sum;
-    struct task *task = closer(scope, object, TASK_GATHER, 1);
+    struct task *task = sum_closer(scope, object, TASK_GATHER, 1);
     if (!task) {
-        keep_unclosed(graph, object);
+        sum_keep_unclosed(graph, object);
         return DUITE_E_MEMORY;
     }
     task->access[0].waiter.mode = DUITE_CW;
@@ -154,24 +157,26 @@ int task_gather(struct task_scope *scope, struct worker *worker, struct data_obj
     return DUITE_OK;
 }
 
-int task_close_sum(struct task_scope *scope, struct worker *worker, struct data_object *object)
+int task_reduce(struct task_scope *scope, struct worker *worker, struct data_object *object)
 {
     struct task_graph *graph = scope->graph;
     int code = DUITE_OK;
     object->number++;
     if (object->holder == graph->rank) {
-        code = combine_here(scope, worker, object);
+        code = sum_combine_here(scope, worker, object);
     } else {
         if (object->sum)
-            code = send_pieces(scope, worker, object);
+            code = pieces_send(scope, worker, object);
         task_forget(graph, worker, object);
     }
     if (code && scope->depth)
-        keep_unclosed(graph, object);
+        sum_keep_unclosed(graph, object);
     object->leaves = 0;
     data_object_moved(object, object->holder);
     return code;
 }
+
+/* ---- Running ---- */
 
 void task_run_combine(struct task *task)
 {
@@ -208,8 +213,8 @@ void task_run_gather(struct task *task)
     data_sum_free(sum);
 }
 
-static struct data_packet *pack(const struct task_sum *sum, struct data_piece *const *pieces,
-                                size_t n)
+static struct data_packet *pieces_pack(const struct task_sum *sum, struct data_piece *const *pieces,
+                                       size_t n)
 {
     size_t bytes = sum->sum->count * data_type_size(sum->sum->type);
     size_t stride = (bytes + 15) / 16 * 16;
@@ -240,7 +245,7 @@ void task_run_pieces(struct task *task)
     int code;
     const struct data_failure *failure = data_sum_reduce(sum->sum, &pieces, &n, &code);
     if (!code && !failure)
-        packet = pack(sum, pieces, n);
+        packet = pieces_pack(sum, pieces, n);
     if (!packet)
         packet = task_poison_packet(sum->send.key, failure ? failure : task_fail_memory(task));
     base_free(pieces);
@@ -250,13 +255,15 @@ void task_run_pieces(struct task *task)
     task->send = &sum->send;
 }
 
+/* ---- Pieces of other ranks ---- */
+
 /* Takes over the piece and its packet. Without memory for it the sum must not be taken for
  * complete. */
-static bool add_piece(struct task_graph *graph, struct data_sum *sum, struct data_piece piece)
+static bool piece_add(struct task_graph *graph, struct data_sum *sum, struct data_piece piece)
 {
     struct data_piece *node = data_piece_new();
     if (!node) {
-        const struct data_failure *failure = task_fail(graph, &no_memory, true);
+        const struct data_failure *failure = task_fail(graph, &sum_no_memory, true);
         atomic_store_explicit(&sum->lost, failure, memory_order_relaxed);
         data_packet_free(piece.packet);
         return false;
@@ -267,14 +274,14 @@ static bool add_piece(struct task_graph *graph, struct data_sum *sum, struct dat
 }
 
 /* The first piece owns the packet, whose bytes all of them share. */
-static void add_pieces(struct task_graph *graph, struct data_sum *sum, struct data_packet *packet)
+static void pieces_add(struct task_graph *graph, struct data_sum *sum, struct data_packet *packet)
 {
     uint32_t n = packet->pieces;
     struct piece_place *places = data_payload(packet);
     char *values = (char *)(places + n);
     size_t stride = packet->bytes / n - sizeof *places;
     for (uint32_t i = 0; i < n; i++)
-        if (!add_piece(graph, sum,
+        if (!piece_add(graph, sum,
                        (struct data_piece){.first = places[i].first,
                                            .level = places[i].level,
                                            .packet = i ? NULL : packet,
@@ -287,10 +294,10 @@ void task_pieces_arrived(struct task_graph *graph, struct worker *worker, struct
 {
     if (packet->kind == DATA_POISON) {
         const struct data_failure *failure = task_fail(graph, data_payload(packet), false);
-        add_piece(graph, sum, (struct data_piece){.failure = failure});
+        piece_add(graph, sum, (struct data_piece){.failure = failure});
         data_packet_free(packet);
     } else {
-        add_pieces(graph, sum, packet);
+        pieces_add(graph, sum, packet);
     }
     task_wake(graph, worker, data_sum_release(sum));
 }

@@ -1,0 +1,99 @@
+/* Finishing, the last stage of a task: what it wrote is published once, what it read is released,
+ * and the task is freed. What comes from other ranks, or does not, is published by the same means.
+ */
+#include "runtime/task/internal.h"
+
+#include "runtime/base/pool.h"
+
+static void access_release(struct task_graph *graph, struct worker *worker,
+                           const struct task_access *access)
+{
+    switch (access->waiter.mode) {
+    case DUITE_R:
+        task_release(graph, worker, access->in);
+        break;
+    case DUITE_W:
+    case DUITE_RW:
+        task_publish(graph, worker, access->out);
+        break;
+    case DUITE_CW:
+        task_wake(graph, worker, data_sum_release(access->sum));
+        break;
+    default: /* postponed: the scope's */
+        break;
+    }
+}
+
+void task_finish(struct task_graph *graph, struct worker *worker, struct task *task)
+{
+    for (uint32_t i = 0; i < task->n; i++)
+        access_release(graph, worker, &task->access[i]);
+    struct task_scope *scope = task->scope;
+    struct task_scope *inner =
+        task->kind == TASK_BODY || task->kind == TASK_VOID ? task->inner : NULL;
+    base_pool_give(task, (size_t)task->grains * TASK_GRAIN);
+    if (inner)
+        task_scope_end(inner, worker); /* it leaves `scope` when its children have */
+    else
+        task_left(graph, scope, worker);
+}
+
+/* ---- Messages ---- */
+
+static const struct data_failure communication_lost = {
+    .code = DUITE_E_MPI, .kernel = UINT32_MAX, .text = "communication between the ranks broke"};
+
+struct data_packet *task_send_packet(struct task *task)
+{
+    struct task_send *send = task->send;
+    if (send->packet || !task->n)
+        return send->packet;
+    const struct data_version *version = task->access[0].in;
+    if (version->poisoned)
+        return send->packet = task_poison_packet(send->key, version->failure);
+    /* The same bytes may be on their way to another rank already: then the header says just this.
+     */
+    struct data_packet *packet = version->packet;
+    struct data_key key = send->key;
+    if (packet->kind != DATA_VALUE || packet->key.slot != key.slot ||
+        packet->key.generation != key.generation || packet->key.number != key.number) {
+        packet->kind = DATA_VALUE;
+        packet->key = key;
+    }
+    return packet;
+}
+
+void task_arrived(struct task_graph *graph, struct worker *worker, struct data_version *version,
+                  struct data_packet *packet)
+{
+    if (packet->kind == DATA_POISON) {
+        data_version_poison(version, task_fail(graph, data_payload(packet), false));
+        data_packet_free(packet);
+    } else {
+        version->packet = packet;
+    }
+    task_publish(graph, worker, version);
+}
+
+const struct data_failure *task_lost_failure(void)
+{
+    return &communication_lost;
+}
+
+void task_lost(struct task_graph *graph, struct worker *worker, struct data_version *version)
+{
+    data_version_poison(version, &communication_lost);
+    task_publish(graph, worker, version);
+}
+
+void task_pieces_lost(struct task_graph *graph, struct worker *worker, struct data_sum *sum)
+{
+    atomic_store_explicit(&sum->lost, &communication_lost, memory_order_relaxed);
+    task_wake(graph, worker, data_sum_release(sum));
+}
+
+const struct data_failure *task_given_up(struct task_graph *graph)
+{
+    return atomic_load_explicit(&graph->given_up, memory_order_relaxed) ? &communication_lost
+                                                                        : NULL;
+}

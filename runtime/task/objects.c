@@ -1,0 +1,299 @@
+/* What the program does to objects without forking a task of its own: it frees, reads, sets, views
+ * and resizes them, and their homes move. Each of these leaves a version, or a task of the runtime
+ * that makes one, as if it had been forked; every rank concludes the same. */
+#include "runtime/task/internal.h"
+
+#include "runtime/base/error.h"
+#include "runtime/data/view.h"
+
+#include <string.h>
+
+int task_free_object(struct task_scope *scope, struct worker *worker, duite_object name)
+{
+    struct task_graph *graph = scope->graph;
+    duite_mode right;
+    struct data_object *object = task_find_object(scope, name, &right);
+    if (!object)
+        return DUITE_E_OBJECT;
+    if (object->n_views)
+        return base_error(DUITE_E_VIEW, "duite_free: object %u.%u has %u views that are not freed",
+                          name.slot, name.generation, object->n_views);
+    if (!scope->depth)
+        task_mix(graph, (uint64_t)name.slot << 32 | name.generation);
+    int code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
+    task_forget(graph, worker, object);
+    if (scope->depth)
+        task_drop(scope, object);
+    else
+        data_object_drop(&graph->table, name);
+    return code;
+}
+
+int task_copy(struct task_graph *graph, struct worker *worker, duite_object name, int to,
+              struct task_copy *copy)
+{
+    struct data_object *object = data_object_find(&graph->table, name);
+    if (!object)
+        return DUITE_E_OBJECT;
+    if (to < TASK_ANYWHERE || to >= graph->n_ranks)
+        return base_error(DUITE_E_ARGUMENT, "duite_get_at: there is no rank %d, only 0 to %d", to,
+                          graph->n_ranks - 1);
+    task_mix(graph, (uint64_t)name.slot << 32 | (uint32_t)to);
+    int code = object->leaves ? task_reduce(&graph->root, worker, object) : DUITE_OK;
+    if (!code)
+        code = task_view_gather(graph, worker, object);
+    if (!code)
+        code = to == TASK_ANYWHERE ? task_fetch_all(graph, worker, object)
+                                   : task_fetch(graph, worker, object, to);
+    if (code || (to != TASK_ANYWHERE && to != graph->rank))
+        return code;
+    struct data_version *version = task_local(graph, object);
+    struct task *task = version ? task_new(&graph->root, TASK_COPY, 1, 0) : NULL;
+    if (!task)
+        return DUITE_E_MEMORY;
+    task->copy = copy;
+    task->block = object->block;
+    uint32_t done = 0;
+    task->access[0].waiter.mode = DUITE_R;
+    task_read(task, 0, version, &done);
+    task_settled(graph, worker, task, done);
+    return DUITE_OK;
+}
+
+int task_see(struct task_scope *scope, struct worker *worker, duite_object name,
+             struct data_version **version, size_t *size)
+{
+    duite_mode right;
+    struct data_object *object = task_find_object(scope, name, &right);
+    if (!object)
+        return DUITE_E_OBJECT;
+    *size = data_type_size(object->type);
+    int code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
+    if (!code && !(*version = task_local(scope->graph, object)))
+        code = DUITE_E_MEMORY;
+    return code;
+}
+
+/* ---- duite_set: a version that nobody has to wait for, so no task is needed and the old one is
+ * left to its readers ---- */
+
+enum { OVERWRITTEN = 0x736574 }; /* tells a set from a free in the fingerprint */
+
+static struct data_version *set_version(const struct data_object *object, const void *values,
+                                        size_t count)
+{
+    size_t bytes = count * data_type_size(object->type);
+    struct data_version *version = data_object_version(object);
+    struct data_packet *packet = version ? data_packet_new(bytes, !values) : NULL;
+    if (!packet) {
+        if (version)
+            data_version_free(version);
+        return NULL;
+    }
+    if (values)
+        memcpy(data_payload(packet), values, bytes);
+    version->packet = packet;
+    data_version_produced(version);
+    data_version_release(version); /* the object alone holds it */
+    return version;
+}
+
+int task_set_check(const struct task_graph *graph, const struct data_object *object,
+                   duite_object name, size_t count)
+{
+    int code = data_view_refuse(&graph->table, object, "duite_set");
+    if (code)
+        return code;
+    if (count == object->most || (object->sized && count < object->most))
+        return DUITE_OK;
+    return base_error(DUITE_E_SIZE, "duite_set_sized: %zu elements, and object %u.%u has %s%zu",
+                      count, name.slot, name.generation, object->sized ? "at most " : "",
+                      object->most);
+}
+
+int task_set_object(struct task_scope *scope, struct worker *worker, duite_object name,
+                    const void *values, const size_t *wanted)
+{
+    struct task_graph *graph = scope->graph;
+    duite_mode right;
+    struct data_object *object = task_find_object(scope, name, &right);
+    if (!object)
+        return DUITE_E_OBJECT;
+    size_t count = wanted ? *wanted : object->most;
+    int code = task_set_check(graph, object, name, count);
+    if (code)
+        return code;
+    if (!scope->depth) {
+        task_mix(graph, (uint64_t)name.slot << 32 | name.generation);
+        task_mix(graph, OVERWRITTEN);
+        task_mix(graph, count);
+    }
+    struct data_version *version = NULL;
+    if (object->home == graph->rank && !(version = set_version(object, values, count))) {
+        base_no_memory("the values of duite_set");
+        return task_break(graph);
+    }
+    code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
+    object->number++;
+    data_object_moved(object, object->home);
+    task_forget(graph, worker, object);
+    object->current = version;
+    return code;
+}
+
+/* ---- Views are gathered when they are asked for: a view whose elements were taken from an older
+ * version of its parent than the forks so far leave gets a new version, written where the parent's
+ * value is by a task that reads the parent. From then on the view is an object like any other, and
+ * what travels between ranks is the view ---- */
+
+static int view_gather_here(struct task_graph *graph, struct worker *worker,
+                            struct data_object *object, struct data_object *parent)
+{
+    struct data_version *version = task_local(graph, parent);
+    struct task *task = version ? task_new(&graph->root, TASK_VIEW, 2, 0) : NULL;
+    if (!task)
+        return DUITE_E_MEMORY;
+    uint32_t done = 0;
+    task->block = object->block;
+    task->access[0].waiter.mode = DUITE_R;
+    task_read(task, 0, version, &done);
+    task->access[1].waiter.mode = DUITE_W;
+    version = task_rename(graph, worker, object);
+    int code = task_overwrite(graph, task, 1, object, version, &done);
+    if (code) {
+        task_void(graph, worker, task, 1, done);
+        return code;
+    }
+    task->view = data_view_hold(object->view);
+    task_settled(graph, worker, task, done);
+    return DUITE_OK;
+}
+
+int task_view_gather(struct task_graph *graph, struct worker *worker, struct data_object *object)
+{
+    struct data_view *view = object->view;
+    if (!view)
+        return DUITE_OK;
+    struct data_object *parent = &graph->table.object[view->parent];
+    int code = parent->leaves ? task_reduce(&graph->root, worker, parent) : DUITE_OK;
+    if (code || view->seen == parent->number + 1)
+        return code;
+    view->seen = parent->number + 1;
+    object->number++;
+    data_object_moved(object, parent->holder);
+    if (parent->holder == graph->rank)
+        return view_gather_here(graph, worker, object, parent);
+    task_forget(graph, worker, object);
+    return DUITE_OK;
+}
+
+/* ---- Homes that change: a value is not tied to its object's home, since who reads it finds its
+ * holder. So a move is one more copy, of which the new home becomes the holder; what other ranks
+ * have of it stays good ---- */
+
+/* Somebody has to wait for what comes: messages belong to tasks, and none may be left at stop. */
+static int move_await(struct task_graph *graph, struct worker *worker,
+                      const struct data_object *object)
+{
+    struct task *task = task_new(&graph->root, TASK_MOVE, 1, 0);
+    if (!task)
+        return DUITE_E_MEMORY;
+    uint32_t done = 0;
+    task->block = object->block;
+    task->access[0].waiter.mode = DUITE_R;
+    task_read(task, 0, object->current, &done);
+    task_settled(graph, worker, task, done);
+    return DUITE_OK;
+}
+
+/* Zeros, as at the beginning, need no message. */
+static void move_zeros(struct task_graph *graph, struct worker *worker, struct data_object *object,
+                       int to)
+{
+    if (graph->rank != to)
+        task_forget(graph, worker, object);
+    data_object_moved(object, to);
+}
+
+static int move_value(struct task_graph *graph, struct worker *worker, struct data_object *object,
+                      int to)
+{
+    bool sent = !data_object_has_copy(&graph->table, object, to);
+    bool held = graph->rank == object->holder;
+    int code = sent ? task_fetch(graph, worker, object, to) : DUITE_OK;
+    if (!code && sent && graph->rank == to)
+        code = move_await(graph, worker, object);
+    if (code)
+        return code;
+    data_object_hand_on(&graph->table, object, to);
+    if (held)
+        task_forget(graph, worker, object);
+    return DUITE_OK;
+}
+
+int task_move_object(struct task_graph *graph, struct worker *worker, struct data_object *object,
+                     int home)
+{
+    int from = object->home;
+    object->home = home;
+    if (object->holder != from || object->leaves || from == home)
+        return DUITE_OK;
+    if (object->number)
+        return move_value(graph, worker, object, home);
+    move_zeros(graph, worker, object, home);
+    return DUITE_OK;
+}
+
+/* ---- Objects whose size changes: the body works in room for the maximum and says how many
+ * elements there are; the packet it leaves has just these, and so have its readers and messages
+ * ---- */
+
+/* Of parameter i; false in a plan, whose objects have fixed sizes. */
+static bool param_is_sized(const struct task *task, size_t i)
+{
+    const struct task_access *access = &task->access[i];
+    if (task->kind == TASK_GUEST)
+        return access->sized;
+    if (task->kind != TASK_BODY || access->waiter.mode == DUITE_CW)
+        return false;
+    if (task_postponed((duite_mode)access->waiter.mode))
+        return task_lent_object(task->inner, access->lent)->sized;
+    return access->out ? access->out->sized : access->in->sized;
+}
+
+static bool param_is_written(const struct task *task, size_t i)
+{
+    duite_mode mode = (duite_mode)task->access[i].waiter.mode;
+    return mode == DUITE_W || mode == DUITE_RW;
+}
+
+static int resize_refuse(const duite_call *call, size_t i, bool sized, size_t count)
+{
+    if (i >= call->n_params)
+        duite_fail(call, 0, "duite_resize: there is no parameter %zu, only %zu", i, call->n_params);
+    else if (!sized)
+        duite_fail(call, 0, "duite_resize: the object of parameter %zu has a fixed size", i);
+    else if (task_postponed((duite_mode)call->own->task->access[i].waiter.mode))
+        duite_fail(call, 0, "duite_resize: parameter %zu is its children's alone", i);
+    else if (!param_is_written(call->own->task, i))
+        duite_fail(call, 0, "duite_resize: parameter %zu is only read", i);
+    else
+        duite_fail(call, 0, "duite_resize: parameter %zu: %zu elements are more than %zu at most",
+                   i, count, call->param[i].most);
+    call->own->refused = DUITE_E_SIZE;
+    return base_error(DUITE_E_SIZE, "%s", call->own->text);
+}
+
+int duite_resize(const duite_call *call, size_t i, size_t count)
+{
+    struct task *task = call->own->task;
+    bool sized = i < call->n_params && param_is_sized(task, i);
+    if (!sized || !param_is_written(task, i) || count > call->param[i].most)
+        return resize_refuse(call, i, sized, count);
+    duite_param *param = (duite_param *)&call->param[i]; /* ours to write */
+    size_t size = data_type_size(param->type);
+    if (count > param->count)
+        memset((char *)param->data + param->count * size, 0, (count - param->count) * size);
+    param->count = count;
+    return DUITE_OK;
+}

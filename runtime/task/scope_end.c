@@ -1,0 +1,167 @@
+/* The end of a task that forked, and waiting for those it forked. When the body is over, the last
+ * version that the children make of what the task was lent has an `exit` for its heir, which passes
+ * the bytes on to the version that the scope above has waited for since the fork. The exits belong
+ * to whoever releases the last hold on a version. The scope is freed with the last count of
+ * `unfinished`. */
+#include "runtime/task/scope.h"
+
+#include "runtime/base/pool.h"
+
+/* ---- The end ---- */
+
+void task_left(struct task_graph *graph, struct task_scope *scope, struct worker *worker)
+{
+    struct task_scope *parent;
+    /* No look into the root: the main thread writes its line with every fork. */
+    while (scope != &graph->root && (parent = scope->parent)) {
+        if (atomic_fetch_sub_explicit(&scope->unfinished, 1, memory_order_acq_rel) != 1)
+            return;
+        struct task_nest *nest = task_nest_of(scope);
+        if (nest->moved)
+            base_pool_give(nest->local, nest->room * sizeof *nest->local);
+        base_pool_give(nest, nest->size);
+        scope = parent;
+    }
+    if (scope == &graph->root)
+        work_over(graph->pool, worker, 1);
+    else
+        work_offloaded_over(scope, worker);
+}
+
+static const struct data_failure scope_no_memory = {
+    .code = DUITE_E_MEMORY, .kernel = UINT32_MAX, .text = "no memory for what a task leaves"};
+
+/* Nobody wrote the version: zeros, as many as there can be. */
+static void exit_give_zeros(const struct task_exit *exit)
+{
+    struct data_version *out = exit->out;
+    if (out->packet)
+        data_packet_free(out->packet);
+    out->packet = data_packet_new(exit->bytes, true);
+    if (!out->packet)
+        data_version_poison(out, task_fail(exit->scope->graph, &scope_no_memory, true));
+}
+
+struct data_waiter *task_pass(struct worker *worker, struct data_waiter *waiter)
+{
+    struct task_exit *exit = (struct task_exit *)waiter;
+    struct task_scope *scope = exit->scope;
+    struct data_version *out = exit->out;
+    const struct data_failure *failure =
+        data_first(exit->untouched ? NULL : data_version_failure(exit->in), exit->failure);
+    out->packet = data_version_packet(exit->in);
+    data_version_free(exit->in);
+    data_version_poison(out, failure);
+    if (exit->untouched && !failure)
+        exit_give_zeros(exit);
+    struct data_waiter *heir = task_produced(scope->graph, worker, out);
+    task_left(scope->graph, scope, worker);
+    return heir;
+}
+
+/* A written parameter goes back to the scope above. */
+static void exit_give_back(struct task_exit *exit, struct worker *worker,
+                           struct data_object *object, const struct data_failure *failure)
+{
+    struct task_scope *scope = exit->scope;
+    exit->in = object->current;
+    exit->failure = failure;
+    if (!exit->in) {
+        data_version_poison(exit->out, failure);
+        if (!failure)
+            exit_give_zeros(exit);
+        task_publish(scope->graph, worker, exit->out);
+        return;
+    }
+    exit->in->heir = &exit->waiter;
+    atomic_fetch_add_explicit(&scope->unfinished, 1, memory_order_relaxed);
+    task_release(scope->graph, worker, exit->in);
+}
+
+/* The children's contributions, or none, are this task's. */
+static void exit_contribute(struct task_exit *exit, struct worker *worker,
+                            struct data_object *object, const struct data_failure *failure)
+{
+    struct task_scope *scope = exit->scope;
+    exit->leaf->failure = failure;
+    if (object->leaves) {
+        if (!task_gather(scope, worker, object, exit->sum, exit->leaf))
+            return;
+        exit->leaf->failure = &scope_no_memory;
+    }
+    task_wake(scope->graph, worker, data_sum_release(exit->sum));
+}
+
+void task_scope_fail(struct task_scope *scope, const struct data_failure *failure)
+{
+    task_nest_of(scope)->failure = failure;
+}
+
+void task_scope_end(struct task_scope *scope, struct worker *worker)
+{
+    struct task_nest *nest = task_nest_of(scope);
+    const struct data_failure *failure = nest->failure;
+    struct task_graph *graph = scope->graph;
+    for (uint32_t i = 0; i < nest->n_local; i++) {
+        struct data_object *object = &nest->local[i];
+        struct task_exit *exit = i < nest->n_lent ? &nest->exit[i] : NULL;
+        if (exit && exit->sum) {
+            exit_contribute(exit, worker, object, failure);
+            continue;
+        }
+        bool lost = object->leaves && task_reduce(scope, worker, object);
+        if (exit && exit->out) {
+            exit->untouched = exit->overwrites && !object->number;
+            exit_give_back(exit, worker, object, lost ? &scope_no_memory : failure);
+        } else {
+            task_forget(graph, worker, object);
+        }
+    }
+    task_left(graph, scope, worker);
+}
+
+/* ---- Waiting: whether the children are over, what failed among them, and which tasks may run on
+ * top of the one that waits ---- */
+
+bool task_alone(struct task_scope *scope)
+{
+    return atomic_load_explicit(&scope->unfinished, memory_order_acquire) == (scope->depth > 0);
+}
+
+void task_close_segment(struct task_scope *scope)
+{
+    scope->segment = ++scope->forks;
+}
+
+const struct data_failure *task_first_failure(struct task_scope *scope)
+{
+    struct task_graph *graph = scope->graph;
+    pthread_mutex_lock(&graph->lock);
+    const struct data_failure *failure = scope->failure;
+    scope->failure = NULL;
+    pthread_mutex_unlock(&graph->lock);
+    return failure;
+}
+
+bool task_may_run(const struct task_scope *scope, const struct task *task)
+{
+    const struct task_scope *a = task->scope, *b = scope->parent;
+    uint64_t a_number = task->number, b_number = scope->number;
+    for (; a->depth > scope->depth; a = a->parent)
+        a_number = a->number;
+    if (a == scope)
+        return true;
+    if (a->top != scope->top) /* guests wait for nothing of ours, so they must not wait for us */
+        return scope->top == &scope->graph->root;
+    if (!scope->outward)
+        return false;
+    for (; a->depth > b->depth; a = a->parent)
+        a_number = a->number;
+    for (; b->depth > a->depth; b = b->parent)
+        b_number = b->number;
+    for (; a != b; a = a->parent, b = b->parent) {
+        a_number = a->number;
+        b_number = b->number;
+    }
+    return a_number <= b_number;
+}

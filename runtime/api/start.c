@@ -9,7 +9,7 @@
 #include "runtime/base/pool.h"
 #include "runtime/comm/host.h"
 #include "runtime/map/map.h"
-#include "runtime/offload/away.h"
+#include "runtime/offload/offload.h"
 #include "runtime/sched/sched.h"
 #include "runtime/workers/topology.h"
 
@@ -128,7 +128,7 @@ bool instance_is_broken(const duite *rt)
 static bool instance_has_nothing_left(void *context)
 {
     duite *rt = context;
-    uint64_t left = work_unfinished(rt->pool) + offload_guests(&rt->graph);
+    uint64_t left = work_unfinished(rt->pool) + offload_count(&rt->graph);
     return !left || (rt->comm && left == comm_stuck(rt->comm));
 }
 
@@ -158,6 +158,7 @@ static void instance_end(duite *rt)
         MPI_Comm_free(&rt->mpi);
     if (whole || !comm_is_cut(rt->comm)) /* else MPI would wait for the lost when it is finalised */
         atomic_fetch_sub(&alive, 1);
+    offload_stop(&rt->graph);
     task_graph_stop(&rt->graph);
     check_stop(rt->check);
     base_free(rt);

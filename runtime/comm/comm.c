@@ -8,7 +8,7 @@
 #include "runtime/base/memory.h"
 #include "runtime/base/stack.h"
 #include "runtime/comm/internal.h"
-#include "runtime/offload/away.h"
+#include "runtime/offload/offload.h"
 
 #include <sched.h>
 #include <stdlib.h>
@@ -257,9 +257,9 @@ static void deliver_to(struct comm *comm, struct worker *worker, struct comm_tar
 }
 
 /* A task of another rank; once communication is broken nobody waits for it. */
-static void deliver_guest(struct comm *comm, struct worker *worker, struct data_packet *packet)
+static void deliver_offloaded(struct comm *comm, struct worker *worker, struct data_packet *packet)
 {
-    if (!comm_is_broken(comm) && offload_guest_arrived(comm->graph, worker, packet))
+    if (!comm_is_broken(comm) && offload_arrived(comm->graph, worker, packet))
         return;
     data_packet_free(packet);
     comm_broke_memory(comm, "a task of another rank");
@@ -285,10 +285,10 @@ static void deliver(struct comm *comm, struct worker *worker, struct found *foun
     while (found->packets) {
         struct data_packet *packet = found->packets;
         found->packets = packet->next;
-        if (packet->kind == DATA_GUEST)
-            deliver_guest(comm, worker, packet);
+        if (packet->kind == DATA_OFFLOADED)
+            deliver_offloaded(comm, worker, packet);
         else if (packet->kind == DATA_RESULT)
-            offload_came_home(comm->graph, worker, packet);
+            offload_result_arrived(comm->graph, worker, packet);
         else
             deliver_value(comm, worker, packet);
     }
@@ -342,7 +342,7 @@ void comm_give_up(struct comm *comm, struct worker *worker)
         else
             task_pieces_lost(comm->graph, worker, target.sum);
     }
-    offload_away_lost(comm->graph, worker);
+    offload_lost(comm->graph, worker);
 }
 
 uint64_t comm_stuck(struct comm *comm)

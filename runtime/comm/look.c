@@ -31,7 +31,7 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker)
         return false;
     for (int i = 0; i < comm->sends.n; i++) {
         const struct task *task = comm->sends.what[i];
-        if (task->kind == TASK_SEND)
+        if (task->type == TASK_SEND || task->type == TASK_PIECES)
             looker->sending(looker->context, task->send);
     }
     comm_channels_look(comm, looker);

@@ -15,7 +15,7 @@ enum data_packet_kind {
     DATA_QUESTION,
     DATA_ASK,    /* a rank without work asks for tasks */
     DATA_LAST,   /* ... and will not ask again */
-    DATA_GUEST,  /* a task to be run here */
+    DATA_OFFLOADED,  /* a task to be run here */
     DATA_RESULT, /* what such a task left */
 };
 

@@ -1,1 +1,2 @@
-libduite_la_SOURCES += runtime/offload/away.c runtime/offload/away.h runtime/offload/guest.c runtime/offload/parcel.h 
+libduite_la_SOURCES += runtime/offload/message.h runtime/offload/names.c runtime/offload/names.h runtime/offload/offload.h runtime/offload/receive.c \
+	runtime/offload/send.c

@@ -155,7 +155,7 @@ static struct task *emit_task(struct plan *plan, const struct emit *emit, size_t
     struct task *task = plan_task(plan, i);
     struct plan_node *node = (void *)(plan->nodes + i * PLAN_NODE_BYTES + PLAN_NODE_AT);
     *task = (struct task){.n = (uint32_t)from->n_uses,
-                          .kind = emit_type(from->kind),
+                          .type = emit_type(from->kind),
                           .kernel = UINT32_MAX,
                           .priority = INT32_MAX,
                           .scope = &emit->record->graph->root,
@@ -334,7 +334,7 @@ void plan_release(struct plan *plan)
     if (plan->channels.close)
         plan->channels.close(&plan->channels);
     for (size_t i = 0; i < plan->n_filled; i++)
-        if (plan_task(plan, i)->kind == TASK_NODE_VIEW)
+        if (plan_task(plan, i)->type == TASK_NODE_VIEW)
             data_view_release(plan_task(plan, i)->node->view);
     base_free(plan->nodes);
     base_free(plan->root);

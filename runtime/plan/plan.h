@@ -130,7 +130,7 @@ static inline void plan_task_warms(const struct task *task, uint32_t warm)
 /* See duite_ready.warm. */
 static inline uint32_t plan_task_warm(const struct task *task)
 {
-    if (task->kind != TASK_NODE ||
+    if (task->type != TASK_NODE ||
         !atomic_load_explicit(&task->node->plan->warm, memory_order_relaxed))
         return 0;
     const struct plan_place *place = plan_node_place(task);

@@ -259,7 +259,7 @@ static void node_run_sum(struct task *task)
         return;
     }
     node_merge(node);
-    if (task->kind == TASK_NODE_SUM)
+    if (task->type == TASK_NODE_SUM)
         node->tree->law->combine(param[0].data, param[1].data, param->count, param->type);
 }
 
@@ -274,7 +274,7 @@ static void node_run_view(struct task *task)
         node_set_poison(node->plan, task, failure);
     if (failure)
         return;
-    if (task->kind == TASK_NODE_VIEW)
+    if (task->type == TASK_NODE_VIEW)
         data_view_gather(node->view, data_type_size(param->type), param[0].data, param[1].data);
     else
         memcpy(param[1].data, param[0].data, param->count * data_type_size(param->type));
@@ -308,13 +308,13 @@ bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task 
                    const duite_call *call)
 {
     atomic_store_explicit(&task->pending, task->node->steady, memory_order_relaxed);
-    if (task->kind == TASK_NODE)
+    if (task->type == TASK_NODE)
         return node_run_body(graph, worker, task, call);
-    if (task->kind == TASK_NODE_SET)
+    if (task->type == TASK_NODE_SET)
         node_run_set(task);
-    else if (task->kind == TASK_NODE_SUM || task->kind == TASK_NODE_PARTIAL)
+    else if (task->type == TASK_NODE_SUM || task->type == TASK_NODE_PARTIAL)
         node_run_sum(task);
-    else if (task->kind == TASK_NODE_VIEW || task->kind == TASK_NODE_COPY)
+    else if (task->type == TASK_NODE_VIEW || task->type == TASK_NODE_COPY)
         node_run_view(task);
     else
         node_run_flag(graph, task);
@@ -327,7 +327,7 @@ void plan_node_finish(struct task_graph *graph, struct worker *worker, struct ta
     struct plan *plan = node->plan;
     struct task **next = node->next, **stop = next + node->n_next;
     uint64_t round = node->round++;
-    bool decides = task->kind == TASK_NODE_FLAG;
+    bool decides = task->type == TASK_NODE_FLAG;
     bool last = plan->decides ? decides && plan->stop : round == plan->last;
     int64_t counts = node->sink && (plan->decides || last);
     if (decides && last) /* the other sinks take one a round, and so did this one until now */

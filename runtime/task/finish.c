@@ -30,7 +30,7 @@ void task_finish(struct task_graph *graph, struct worker *worker, struct task *t
         access_release(graph, worker, &task->access[i]);
     struct task_scope *scope = task->scope;
     struct task_scope *inner =
-        task->kind == TASK_BODY || task->kind == TASK_VOID ? task->inner : NULL;
+        task->type == TASK_BODY || task->state == TASK_VOID ? task->inner : NULL;
     base_pool_give(task, (size_t)task->grains * TASK_GRAIN);
     if (inner)
         task_scope_end(inner, worker); /* it leaves `scope` when its children have */

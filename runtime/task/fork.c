@@ -176,7 +176,7 @@ int task_check_fork(struct task_scope *scope, int at, const duite_kernel *kernel
 
 /* ---- What it makes ---- */
 
-struct task *task_make(struct task_scope *scope, enum task_type kind, size_t n, size_t extra)
+struct task *task_make(struct task_scope *scope, enum task_type type, size_t n, size_t extra)
 {
     struct task *task;
     size_t bytes = sizeof *task + n * sizeof task->access[0] + extra;
@@ -193,9 +193,9 @@ struct task *task_make(struct task_scope *scope, enum task_type kind, size_t n, 
         .block = (uint32_t)scope->forks, /* until it is known to run for an object */
         .priority = INT32_MAX,           /* unless the program forks it */
         .grains = (uint32_t)grains,
-        .kind = kind,
+        .type = type,
     };
-    if (kind > TASK_BODY && extra)
+    if (type != TASK_BODY && extra)
         task->sum = task_rest(task, n);
     for (size_t i = 0; i < n; i++)
         task->access[i] = (struct task_access){
@@ -203,9 +203,9 @@ struct task *task_make(struct task_scope *scope, enum task_type kind, size_t n, 
     return task;
 }
 
-struct task *task_new(struct task_scope *scope, enum task_type kind, size_t n, size_t extra)
+struct task *task_new(struct task_scope *scope, enum task_type type, size_t n, size_t extra)
 {
-    struct task *task = task_make(scope, kind, n, extra);
+    struct task *task = task_make(scope, type, n, extra);
     if (!task) {
         base_no_memory("a task");
         task_break(scope->graph);
@@ -224,9 +224,9 @@ void task_void(struct task_graph *graph, struct worker *worker, struct task *tas
                uint32_t done)
 {
     uint32_t missing = task->n - (uint32_t)made;
-    if (task->kind != TASK_BODY)
+    if (task->type != TASK_BODY)
         task->inner = NULL;
-    task->kind = TASK_VOID;
+    task->state = TASK_VOID;
     task->n = (uint32_t)made;
     task_settled(graph, worker, task, done + missing);
 }

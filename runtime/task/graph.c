@@ -118,7 +118,7 @@ int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
     atomic_init(&graph->given_up, 0);
     atomic_init(&graph->rename_bytes, 0);
     atomic_init(&graph->renamed, 0);
-    atomic_init(&graph->guests, 0);
+    atomic_init(&graph->offloaded, 0);
     pthread_mutex_init(&graph->lock, NULL); /* cannot fail with default attributes */
     int code = data_table_start(&graph->table, n_ranks);
     if (!code)
@@ -183,15 +183,16 @@ const struct data_failure *task_fail(struct task_graph *graph, const struct data
     return keep(graph, failure, report ? &graph->root : NULL);
 }
 
-/* Where the task that a guest is or descends from stands at home; NULL: it is at home. The main
- * program's scope is not read: the main thread writes its cache line with every fork. */
+/* Where the task that an offloaded one is or descends from stands at home; NULL: it is at home. The
+ * main program's scope is not read: the main thread writes its cache line with every fork. */
 static const struct data_failure *place_at_home(const struct task_scope *scope)
 {
     return scope->top == &scope->graph->root ? NULL : scope->top->place;
 }
 
 /* The task's place in the reference order. What a body does after a wait comes after the children
- * before it. A guest's place goes on from the one it has at home. */
+ * before it. The place of an offloaded
+ * task goes on from the one it has at home. */
 void task_failure_place(struct data_failure *failure, const struct task *task,
                         const struct task_scope *inner)
 {
@@ -272,16 +273,16 @@ uint64_t task_main_number(const struct task *task, bool *nested)
     return scope->depth ? scope->number : task->number;
 }
 
-const char *task_own_name(uint32_t kind)
+const char *task_own_name(uint32_t number)
 {
     static const char *const own[] = {
         [TASK_COMBINE] = "duite_sum",      [TASK_PIECES] = "duite_sum",
         [TASK_GATHER] = "duite_sum",       [TASK_VIEW] = "duite_view",
         [TASK_COPY] = "duite_get",         [TASK_MOVE] = "duite_replay",
-        [TASK_VOID] = "duite_fork",        [TASK_REPLAY] = "duite_replay",
+        [TASK_TRACED_VOID] = "duite_fork", [TASK_REPLAY] = "duite_replay",
         [TASK_NODE_SET] = "duite_set",     [TASK_NODE_SUM] = "duite_sum",
         [TASK_NODE_PARTIAL] = "duite_sum", [TASK_NODE_COPY] = "duite_replay",
         [TASK_NODE_VIEW] = "duite_view",   [TASK_NODE_FLAG] = "duite_replay_while"};
-    const char *name = kind < sizeof own / sizeof own[0] ? own[kind] : NULL;
+    const char *name = number < sizeof own / sizeof own[0] ? own[number] : NULL;
     return name ? name : "duite";
 }

@@ -7,10 +7,10 @@
 
 /* A task with n accesses and `extra` bytes behind them (task_rest); pending is n + 1; counted
  * as unfinished. NULL without memory: then the graph is broken. */
-struct task *task_new(struct task_scope *scope, enum task_type kind, size_t n, size_t extra);
+struct task *task_new(struct task_scope *scope, enum task_type type, size_t n, size_t extra);
 
 /* The same, not counted. NULL without memory: nothing else happened. */
-struct task *task_make(struct task_scope *scope, enum task_type kind, size_t n, size_t extra);
+struct task *task_make(struct task_scope *scope, enum task_type type, size_t n, size_t extra);
 
 /* Takes `done` and the hold of the fork from pending; the task is ready if nothing is left. */
 void task_settled(struct task_graph *graph, struct worker *worker, struct task *task,

@@ -252,9 +252,9 @@ int task_move_object(struct task_graph *graph, struct worker *worker, struct dat
 static bool param_is_sized(const struct task *task, size_t i)
 {
     const struct task_access *access = &task->access[i];
-    if (task->kind == TASK_GUEST)
+    if (task->type == TASK_OFFLOADED)
         return access->sized;
-    if (task->kind != TASK_BODY || access->waiter.mode == DUITE_CW)
+    if (task->type != TASK_BODY || access->waiter.mode == DUITE_CW)
         return false;
     if (task_postponed((duite_mode)access->waiter.mode))
         return task_lent_object(task->inner, access->lent)->sized;

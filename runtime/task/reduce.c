@@ -59,9 +59,9 @@ int task_contribute(struct task_scope *scope, struct worker *worker, struct data
 /* A task that waits for all contributions, which leave the object; pending counts them as one.
  * Without memory they stay there until stop. */
 static struct task *sum_closer(struct task_scope *scope, struct data_object *object,
-                               enum task_type kind, size_t n)
+                               enum task_type type, size_t n)
 {
-    struct task *task = task_new(scope, kind, n, sizeof *task->sum);
+    struct task *task = task_new(scope, type, n, sizeof *task->sum);
     if (!task)
         return NULL;
     *task->sum =
@@ -251,7 +251,7 @@ void task_run_pieces(struct task *task)
     base_free(pieces);
     data_sum_free(sum->sum);
     sum->send.packet = packet; /* NULL is noticed by whoever sends */
-    task->kind = TASK_SEND;
+    task->state = TASK_LEAVES;
     task->send = &sum->send;
 }
 

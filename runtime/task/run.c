@@ -266,12 +266,13 @@ static const struct data_failure fork_no_memory = {
 bool task_run(struct task_graph *graph, struct worker *worker, struct task *task,
               const duite_call *call)
 {
-    switch (task->kind) {
+    if (task->state == TASK_VOID) {
+        outputs_poison(task, &fork_no_memory);
+        return false;
+    }
+    switch (task->type) {
     case TASK_BODY:
         return body_run_params(graph, worker, task, call, NULL);
-    case TASK_VOID:
-        outputs_poison(task, &fork_no_memory);
-        break;
     case TASK_COMBINE:
         task_run_combine(task);
         break;

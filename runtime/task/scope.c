@@ -132,7 +132,7 @@ struct task_scope *task_inside(struct duite_call_private *body)
             return NULL;
         }
         task_nest_of(body->scope)->body = body;
-        if (task->kind == TASK_NODE) /* the main program waits for what it forks, too */
+        if (task->type == TASK_NODE) /* the main program waits for what it forks, too */
             work_over(body->graph->pool, body->worker, -1);
     }
     return body->scope;
@@ -229,7 +229,7 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
 static struct data_version *read_version(const struct duite_call_private *body, uint32_t i)
 {
     const struct task *task = body->task;
-    if (task->kind == TASK_BODY) {
+    if (task->type == TASK_BODY) {
         data_version_hold(task->access[i].in);
         return task->access[i].in;
     }

@@ -151,7 +151,8 @@ bool task_may_run(const struct task_scope *scope, const struct task *task)
         a_number = a->number;
     if (a == scope)
         return true;
-    if (a->top != scope->top) /* guests wait for nothing of ours, so they must not wait for us */
+    if (a->top !=
+        scope->top) /* offloaded tasks wait for nothing of ours: they must not wait for us */
         return scope->top == &scope->graph->root;
     if (!scope->outward)
         return false;

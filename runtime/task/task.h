@@ -15,30 +15,39 @@
  * versions it reads and makes here, and which of them must be sent or awaited. Workers run what is
  * ready and publish what it wrote. Nothing but versions and sums joins the two sides. */
 
+/* What a task is, from its birth to its end. The numbers are those of traces, where
+ * TASK_TRACED_VOID is a task that could not be forked. */
 enum task_type {
-    TASK_BODY,    /* a task of the program */
-    TASK_COMBINE, /* combines the contributions with an object */
-    TASK_PIECES,  /* combines this rank's contributions, and turns into the SEND of them */
-    TASK_GATHER,  /* combines the contributions of a task's children into one of its own */
-    TASK_SEND,    /* sends a version or pieces to another rank */
-    TASK_VIEW,    /* writes a view's elements from its object */
-    TASK_COPY,    /* duite_get: copies a version to the main program */
-    TASK_MOVE,    /* an object that moves here has come: nothing is left to do */
-    TASK_VOID,    /* memory ran out while it was forked: does not run, and poisons what it writes */
-    TASK_AWAY,    /* a BODY that runs on another rank */
-    TASK_GUEST,   /* a task of another rank that runs here */
-    TASK_RESULT,  /* a GUEST that is over: sends what it left */
-    TASK_REPLAY,  /* replays of a recorded graph: begins them; over when the last round is */
+    TASK_BODY = 0,    /* a task of the program */
+    TASK_COMBINE = 1, /* combines the contributions with an object */
+    TASK_PIECES = 2,  /* combines this rank's contributions, and sends them */
+    TASK_GATHER = 3,  /* combines the contributions of a task's children into one of its own */
+    TASK_SEND = 4,    /* sends a version to another rank */
+    TASK_VIEW = 5,    /* writes a view's elements from its object */
+    TASK_COPY = 6,    /* duite_get: copies a version to the main program */
+    TASK_MOVE = 7,    /* an object that moves here has come: nothing is left to do */
+    TASK_TRACED_VOID = 8,
+    TASK_OFFLOADED = 10, /* a task of another rank that runs here, and sends what it left */
+    TASK_REPLAY = 12,    /* replays of a recorded graph: begins them; over when the last round is */
     /* Nodes of a replay: */
-    TASK_NODE,         /* a task of the program */
-    TASK_NODE_SET,     /* duite_set */
-    TASK_NODE_SUM,     /* combines contributions with an object */
-    TASK_NODE_PARTIAL, /* combines this rank's contributions as far as they go */
-    TASK_NODE_COPY,    /* copies a value that is about to be overwritten, or came from elsewhere */
-    TASK_NODE_VIEW,    /* writes a view's elements from its object */
-    TASK_NODE_FLAG,    /* decides whether there is another round */
-    TASK_NODE_SEND,    /* sends a message to another rank, */
-    TASK_NODE_RECEIVE  /* or awaits one: both are the communication's to run */
+    TASK_NODE = 13,         /* a task of the program */
+    TASK_NODE_SET = 14,     /* duite_set */
+    TASK_NODE_SUM = 15,     /* combines contributions with an object */
+    TASK_NODE_PARTIAL = 16, /* combines this rank's contributions as far as they go */
+    TASK_NODE_COPY =
+        17, /* copies a value that is about to be overwritten, or came from elsewhere */
+    TASK_NODE_VIEW = 18,   /* writes a view's elements from its object */
+    TASK_NODE_FLAG = 19,   /* decides whether there is another round */
+    TASK_NODE_SEND = 20,   /* sends a message to another rank, */
+    TASK_NODE_RECEIVE = 21 /* or awaits one: both are the communication's to run */
+};
+
+/* What has become of it. */
+enum task_state {
+    TASK_STAYS = 0, /* nothing: it waits, runs and ends here, as its type says */
+    TASK_VOID,  /* memory ran out while it was forked: does not run, and poisons what it writes */
+    TASK_AWAY,  /* a BODY: goes to another rank in a message, until that rank answers */
+    TASK_LEAVES /* PIECES, OFFLOADED: it ran, and what it left is to be sent */
 };
 
 struct task_scope;
@@ -52,7 +61,7 @@ struct task_access {
         struct data_version *in; /* read or overwritten; NULL: a w without bytes to reuse */
         struct data_piece *leaf; /* cw: this task's part of the sum */
         size_t lent;             /* postponed: its place in the task's scope */
-        bool sized;              /* GUEST: the object changes its size */
+        bool sized;              /* OFFLOADED: the object changes its size */
     };
     union {
         struct data_version *out; /* w, rw: what is written; r: NULL */
@@ -67,14 +76,14 @@ struct task {
     uint32_t n;
     struct task *next; /* a link for whoever holds the task: queues, lists */
     union {
-        struct task_scope *inner;    /* BODY, VOID: what its children may use, or NULL */
-        struct task_sum *sum;        /* COMBINE, PIECES, GATHER */
-        struct task_send *send;      /* SEND, AWAY, RESULT */
-        struct offload_guest *guest; /* GUEST */
-        struct data_view *view;      /* VIEW: held */
-        struct task_copy *copy;      /* COPY */
-        struct plan_replay *replay;  /* REPLAY */
-        struct plan_node *node;      /* NODE... */
+        struct task_scope *inner;       /* BODY: what its children may use, or NULL */
+        struct task_sum *sum;           /* COMBINE, PIECES, GATHER */
+        struct task_send *send;         /* SEND; as long as it is AWAY or LEAVES */
+        struct offload_task *offloaded; /* OFFLOADED */
+        struct data_view *view;         /* VIEW: held */
+        struct task_copy *copy;         /* COPY */
+        struct plan_replay *replay;     /* REPLAY */
+        struct plan_node *node;         /* NODE... */
     };
     struct task_scope *scope; /* where it was forked */
     uint64_t number;          /* in fork order among the tasks of its scope */
@@ -86,7 +95,8 @@ struct task {
         uint32_t grains; /* of all of it, TASK_GRAIN bytes each */
         float path;      /* NODE...: seconds from its begin to the end of the round, or 0 */
     };
-    enum task_type kind : 16;
+    enum task_type type : 8;
+    enum task_state state : 8;
     unsigned pinned : 1; /* its fork named a rank: no other one runs it */
     unsigned placed : 1; /* by the home of an object, whose block it has: it moves with that */
     struct task_access access[];
@@ -100,10 +110,21 @@ static inline void *task_rest(struct task *task, size_t n)
     return (char *)task + sizeof *task + n * sizeof task->access[0];
 }
 
+/* Whether it is one of these types; each is named. */
+#define TASK_IS(task, types) ((types) >> (task)->type & 1)
+#define TASK_TYPE_BIT(type)  (UINT32_C(1) << (type))
+#define TASK_TYPES_CHANNEL   (TASK_TYPE_BIT(TASK_NODE_SEND) | TASK_TYPE_BIT(TASK_NODE_RECEIVE))
+#define TASK_TYPES_NODE                                                                            \
+    (TASK_TYPE_BIT(TASK_NODE) | TASK_TYPE_BIT(TASK_NODE_SET) | TASK_TYPE_BIT(TASK_NODE_SUM) |      \
+     TASK_TYPE_BIT(TASK_NODE_PARTIAL) | TASK_TYPE_BIT(TASK_NODE_COPY) |                            \
+     TASK_TYPE_BIT(TASK_NODE_VIEW) | TASK_TYPE_BIT(TASK_NODE_FLAG) | TASK_TYPES_CHANNEL)
+#define TASK_TYPES_WITH_BODY                                                                       \
+    (TASK_TYPE_BIT(TASK_BODY) | TASK_TYPE_BIT(TASK_NODE) | TASK_TYPE_BIT(TASK_OFFLOADED))
+
 /* Whether it is a node of a replay. */
 static inline bool task_is_node(const struct task *task)
 {
-    return task->kind >= TASK_NODE;
+    return TASK_IS(task, TASK_TYPES_NODE);
 }
 
 static inline float task_path(const struct task *task)
@@ -139,9 +160,11 @@ struct task_copy {
  * nobody forks here, and only `unfinished` and `failure` change. */
 struct task_scope {
     struct task_graph *graph;
-    struct task_scope *parent;   /* where its task was forked; NULL: the main program, or a guest's
-                                     `above` */
-    struct task_scope *top;      /* the last of the parents: the main program's, or a guest's */
+    struct task_scope *parent; /* where its task was forked; NULL: the main program, or an offloaded
+task's
+                                   `above` */
+    struct task_scope *top;    /* the last of the parents: the main program's, or an offloaded
+task's */
     _Atomic uint64_t unfinished; /* tasks forked here, each with its descendants; values to be
                                     passed to the scope above; 1 while the body runs. Of the main
                                     program: see work_over */
@@ -153,7 +176,8 @@ struct task_scope {
     uint64_t segment;                 /* `forks` at the last wait of the body */
     uint32_t depth;                   /* 0: the main program */
     bool outward;                     /* its children may wait for tasks outside of it */
-    const struct data_failure *place; /* of a guest's top: where the task stands at home */
+    const struct data_failure *place; /* of an offloaded task's top: where it stands at
+ home */
 };
 
 struct task_graph {
@@ -186,12 +210,12 @@ struct task_graph {
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
     _Atomic uint64_t rename_bytes;   /* of packets that exist since a w did not wait */
     _Atomic uint64_t renamed;        /* such w */
-    _Atomic uint64_t guests;         /* tasks of other ranks that are here */
+    _Atomic uint64_t offloaded;      /* tasks of other ranks that are here */
     pthread_mutex_t lock;            /* of the rest, and of the failures of scopes */
     struct task_failure *failures;
-    struct offload_away *away; /* tasks on other ranks */
-    bool away_closed;          /* no more of them */
-    struct data_sum *unclosed; /* of tasks that are over: there was no memory to combine them */
+    struct offload_names *away; /* tasks on other ranks, or NULL */
+    bool away_closed;           /* no more of them */
+    struct data_sum *unclosed;  /* of tasks that are over: there was no memory to combine them */
 };
 
 /* kernels: ended by NULL, checked, the list copied; laws likewise, or NULL, not kept. `pool` and
@@ -302,7 +326,7 @@ bool task_lent(const struct duite_call_private *body, duite_object object);
 
 /* Whether a body that waits in `scope` may have this task run on top of it: a descendant; or, if
  * its descendants may wait for tasks outside, one that comes earlier in the reference order; or any
- * of a guest's, if it is none itself. */
+ * of an offloaded task's, if it is none itself. */
 bool task_may_run(const struct task_scope *scope, const struct task *task);
 
 /* ---- Any worker ---- */
@@ -330,10 +354,10 @@ static inline bool task_has_given_up(const struct task_graph *graph)
     return atomic_load_explicit(&graph->given_up, memory_order_relaxed);
 }
 
-/* It is to be sent now: it was made for that, or turned into it. */
+/* It is to be sent now: it was made for that, or that has become of it. */
 static inline bool task_to_send(const struct task *task)
 {
-    return task->kind == TASK_SEND || task->kind == TASK_AWAY || task->kind == TASK_RESULT;
+    return task->type == TASK_SEND || task->state == TASK_AWAY || task->state == TASK_LEAVES;
 }
 
 /* The task whose link it is, if it is a task that waits. */
@@ -345,7 +369,7 @@ static inline const struct task *task_who_waits(const struct data_waiter *waiter
 /* Whether it is run by who communicates. */
 static inline bool task_is_channel(const struct task *task)
 {
-    return task->kind >= TASK_NODE_SEND;
+    return TASK_IS(task, TASK_TYPES_CHANNEL);
 }
 
 /* Whether a task of the main program, or the one that this descends from, runs where it does for an
@@ -366,13 +390,17 @@ static inline bool task_follows(const struct task *task, uint32_t *block)
  * descends. */
 uint64_t task_main_number(const struct task *task, bool *nested);
 
-/* What a task without a body is called. */
-const char *task_own_name(uint32_t kind);
+/* The number of a task without a body in traces; and what one with that number is called. */
+static inline uint32_t task_own_number(const struct task *task)
+{
+    return task->state == TASK_VOID ? TASK_TRACED_VOID : task->type;
+}
+const char *task_own_name(uint32_t number);
 
 /* Whether the task calls a body of the program. */
 static inline bool task_has_body(const struct task *task)
 {
-    return task->kind == TASK_BODY || task->kind == TASK_NODE || task->kind == TASK_GUEST;
+    return task->state == TASK_STAYS && TASK_IS(task, TASK_TYPES_WITH_BODY);
 }
 
 /* A packet came for an expected version or sum; the callee owns it. */

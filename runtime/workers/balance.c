@@ -5,7 +5,7 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/offload/away.h"
+#include "runtime/offload/offload.h"
 #include "runtime/workers/cost.h"
 #include "runtime/workers/internal.h"
 
@@ -14,7 +14,8 @@
 
 enum {
     DEPTH = 64, /* tasks of a queue that are looked at for one who asks */
-    STOCK = 4,  /* guests a worker, the one that runs among them: with fewer it asks for more */
+    STOCK =
+        4, /* offloaded tasks a worker, the one that runs among them: with fewer it asks for more */
 };
 
 #define FIRST_ASK_SECONDS   2e-5 /* so long a worker idles before it asks */
@@ -307,9 +308,9 @@ void work_beg(struct worker *worker, uint64_t idle)
         ask(worker);
 }
 
-void work_guest_came(struct work_balance *balance, const struct task *guest)
+void work_offloaded_came(struct work_balance *balance, const struct task *task)
 {
-    atomic_store_explicit(&balance->giver, offload_guest_home(guest), memory_order_relaxed);
+    atomic_store_explicit(&balance->giver, offload_home(task), memory_order_relaxed);
     atomic_store_explicit(&balance->attempt, 0, memory_order_relaxed);
     atomic_store_explicit(&balance->next, 0, memory_order_relaxed);
 }
@@ -317,11 +318,11 @@ void work_guest_came(struct work_balance *balance, const struct task *guest)
 bool work_begins(struct worker *worker, const struct task *task)
 {
     const struct work_pool *pool = worker->pool;
-    if (task->kind != TASK_GUEST)
+    if (task->type != TASK_OFFLOADED)
         return false;
-    uint64_t guests = offload_guests(pool->setup.graph);
+    uint64_t offloaded = offload_count(pool->setup.graph);
     size_t ready = work_queue_size(&worker->queue) + work_queue_size(&pool->shared);
-    bool last = guests <= STOCK * pool->setup.threads && ready < guests;
+    bool last = offloaded <= STOCK * pool->setup.threads && ready < offloaded;
     if (last)
         ask(worker);
     return last;

@@ -20,7 +20,7 @@ void work_balance_stop(struct work_pool *pool); /* it may have none */
 bool work_placed_away(struct worker *worker, struct task *task);
 
 /* A task of another rank came. */
-void work_guest_came(struct work_balance *balance, const struct task *guest);
+void work_offloaded_came(struct work_balance *balance, const struct task *task);
 
 /* A task is about to run: one of the last of other ranks', with nothing else here, is the moment to
  * ask for more. Whether that took time. */

@@ -1,14 +1,16 @@
 /* A task's type says whose it is: the program's and the runtime's own are run and ended by task/,
  * nodes of recorded graphs by plan/, tasks of other ranks by offload/. The choice is made here and
  * nowhere else; below this folder nobody knows the types of another one. */
-#include "runtime/offload/away.h"
-#include "runtime/plan/replay.h"
+#include "runtime/offload/offload.h"
+#include "runtime/plan/plan.h"
 #include "runtime/workers/internal.h"
 
 bool work_run_task(struct task_graph *graph, struct worker *worker, struct task *task,
                    const duite_call *call)
 {
-    switch (task->kind) {
+    if (task->state == TASK_VOID)
+        return task_run(graph, worker, task, call);
+    switch (task->type) {
     case TASK_REPLAY:
         plan_replay_run(task);
         return false;
@@ -20,30 +22,39 @@ bool work_run_task(struct task_graph *graph, struct worker *worker, struct task 
     case TASK_NODE_VIEW:
     case TASK_NODE_FLAG:
         return plan_node_run(graph, worker, task, call);
-    case TASK_GUEST:
-        return offload_guest_run(graph, worker, task, call);
+    case TASK_OFFLOADED:
+        return offload_run(graph, worker, task, call);
     default:
         return task_run(graph, worker, task, call);
     }
 }
 
+/* Ends a task that did not stay what it was. */
+static void finish_changed(struct task_graph *graph, struct worker *worker, struct task *task)
+{
+    if (task->state == TASK_AWAY)
+        offload_sent(graph, worker, task);
+    else if (task->type == TASK_OFFLOADED)
+        offload_answered(graph, task);
+    else
+        task_finish(graph, worker, task);
+}
+
 void work_finish(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    if (task_is_node(task))
+    if (task->state != TASK_STAYS)
+        finish_changed(graph, worker, task);
+    else if (task_is_node(task))
         plan_node_finish(graph, worker, task);
-    else if (task->kind == TASK_REPLAY)
+    else if (task->type == TASK_REPLAY)
         plan_replay_start(graph, worker, task);
-    else if (task->kind == TASK_GUEST)
-        offload_guest_finish(worker, task);
-    else if (task->kind == TASK_RESULT)
-        offload_guest_gone(graph, task);
-    else if (task->kind == TASK_AWAY)
-        offload_away_sent(graph, worker, task);
+    else if (task->type == TASK_OFFLOADED)
+        offload_body_over(worker, task);
     else
         task_finish(graph, worker, task);
 }
 
 void work_offloaded_over(struct task_scope *top, struct worker *worker)
 {
-    offload_guest_over(top, worker);
+    offload_over(top, worker);
 }

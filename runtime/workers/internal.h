@@ -120,7 +120,6 @@ struct work_wish {
 /* A task that ran, and how. */
 struct work_ran {
     uint64_t start, took, within;
-    uint32_t kind; /* before: a sum may have turned into its message */
     bool body, inlined;
 };
 
@@ -188,7 +187,7 @@ static inline unsigned work_victim(struct worker *worker, unsigned attempt)
 /* A task took so many ticks. In replays of short ones, nothing is warm and nothing is looked up. */
 static inline void work_warms(const struct worker *worker, const struct task *task, uint64_t took)
 {
-    if (task->kind != TASK_NODE)
+    if (task->type != TASK_NODE)
         return;
     if ((double)took * worker->pool->tick >= PLAN_WARM_SECONDS)
         plan_task_warms(task, worker->index + 1);

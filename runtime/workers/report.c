@@ -43,11 +43,11 @@ void work_note_task(struct worker *worker, const struct task *task, const struct
                                 .took = ran->took,
                                 .within = ran->within,
                                 .number = task_main_number(task, &nested),
-                                .kernel = ran->body ? task->kernel : ran->kind,
+                                .kernel = ran->body ? task->kernel : task_own_number(task),
                                 .kind = ran->body ? TRACE_TASK : TRACE_OWN};
     if (nested)
         event.flags |= TRACE_NESTED;
-    if (task->kind == TASK_GUEST)
+    if (task->type == TASK_OFFLOADED)
         event.flags |= TRACE_GUEST;
     if (ran->inlined)
         event.flags |= TRACE_CHAINED;

@@ -10,7 +10,7 @@
 #include "runtime/workers/standstill.h"
 
 #include "runtime/base/clock.h"
-#include "runtime/offload/away.h"
+#include "runtime/offload/offload.h"
 #include "runtime/workers/internal.h"
 
 #include <linux/membarrier.h>
@@ -161,7 +161,7 @@ static unsigned report_bodies(struct report *report, bool held)
     }
     for (unsigned i = 0; i < pool->setup.threads && held; i++) {
         const struct task *task = atomic_load_explicit(&pool->worker[i].runs, memory_order_acquire);
-        for (uint32_t k = 0; task && task->kind == TASK_BODY && k < task->n; k++)
+        for (uint32_t k = 0; task && task->type == TASK_BODY && k < task->n; k++)
             report_waiters(report, task, k);
     }
     if (!n)
@@ -266,7 +266,7 @@ static void standstill_report(struct work_pool *pool, double seconds)
     const unsigned bodies = report_bodies(&report, report_hold_workers(pool)),
                    before = report.lines;
     const bool looked = !pool->setup.comm || comm_look(pool->setup.comm, &looker);
-    offload_away_look(pool->setup.graph, report_away, &report);
+    offload_look(pool->setup.graph, report_away, &report);
     const uint64_t left = report_unfinished(pool);
     report_line(&report, "unfinished tasks of this rank: %llu", (unsigned long long)left);
     if (looked && left && !bodies && report.lines == before + 1 && !report.left_out)

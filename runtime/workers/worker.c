@@ -17,8 +17,8 @@ enum { MOST_ATTEMPTS = 64, MOST_ATTEMPTS_A_WORKER = 16 };
 
 static duite_ready ready_describe(const struct task_graph *graph, const struct task *task)
 {
-    const char *name =
-        task_has_body(task) ? graph->kernels[task->kernel]->name : task_own_name(task->kind);
+    const char *name = task_has_body(task) ? graph->kernels[task->kernel]->name
+                                           : task_own_name(task_own_number(task));
     return (duite_ready){.kernel = name,
                          .number = task->number,
                          .block = task->block,
@@ -58,8 +58,8 @@ static bool ready_runs_inline(const struct worker *worker, const duite_ready *re
 /* Whether the task went to another rank. */
 static bool ready_goes_away(struct worker *worker, struct task *task)
 {
-    if (task->kind == TASK_GUEST)
-        work_guest_came(worker->pool->balance, task);
+    if (task->type == TASK_OFFLOADED)
+        work_offloaded_came(worker->pool->balance, task);
     return work_placed_away(worker, task);
 }
 
@@ -169,15 +169,13 @@ static uint64_t run_body(struct worker *worker, struct task *task, uint64_t star
     uint64_t outer = worker->within;
     worker->within = 0;
     const struct task *below = work_enters(worker, task);
-    uint32_t kind = task->kind;
     bool body = work_run_task(pool->setup.graph, worker, task, &worker->call);
     work_leaves(worker, below);
     uint64_t end = base_ticks(), took = end > start ? end - start : 0;
     uint64_t own = took > worker->within ? took - worker->within : 0;
     work_warms(worker, task, took);
     if (worker->ring)
-        work_note_task(worker, task,
-                       &(struct work_ran){start, took, took - own, kind, body, inlined});
+        work_note_task(worker, task, &(struct work_ran){start, took, took - own, body, inlined});
     worker->within = outer + took;
     work_bump(&worker->counts.tasks, body);
     work_bump(&worker->counts.busy, body ? own : 0);

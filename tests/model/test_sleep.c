@@ -207,7 +207,7 @@ static void fall_asleep(struct work_park *park, double seconds)
 #include "runtime/workers/internal.h"
 #define work_balance_start(balance, pool)    nothing()
 #define work_balance_stop(pool)              nothing()
-#define work_guest_came(balance, guest)      ((void)(guest))
+#define work_offloaded_came(balance, guest)  ((void)(guest))
 #define work_placed_away(worker, task)       ((void)(worker), false)
 #define work_begins(worker, task)            ((void)(task), false)
 #define work_learn(worker, task, ticks)      ((void)(task))
@@ -253,7 +253,7 @@ static void begin(void)
     memset(&its, 0, sizeof its);
     for (int i = 0; i < TASKS; i++) {
         its.task[i] = explore_alloc(sizeof *its.task[i]);
-        its.task[i]->kind = TASK_COPY;
+        its.task[i]->type = TASK_COPY;
         its.task[i]->number = (uint64_t)i;
     }
 }

@@ -107,7 +107,7 @@ tests_runtime_test_rename_SOURCES = tests/runtime/test_rename.c tests/negative/m
 tests_runtime_test_rename_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_window_SOURCES = tests/runtime/test_window.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_test_window_LDADD = $(DUITE_TEST_LIBS)
-RUNTIME_TESTS = tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched tests/runtime/test_sched_knowing tests/runtime/test_makespan tests/runtime/test_watchdog tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
+RUNTIME_TESTS = tests/runtime/test_predict tests/runtime/test_predict_replays tests/runtime/test_pool tests/runtime/test_owner tests/runtime/test_offload_names tests/runtime/test_laws tests/runtime/test_settle tests/runtime/test_balance tests/runtime/test_sched tests/runtime/test_sched_knowing tests/runtime/test_makespan tests/runtime/test_watchdog tests/runtime/test_traced tests/runtime/test_check tests/runtime/test_environment \
     tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
@@ -125,6 +125,8 @@ tests_runtime_test_check_SOURCES = tests/runtime/test_check.c
 tests_runtime_test_check_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_nested_tasks_SOURCES = tests/runtime/test_nested_tasks.c
 tests_runtime_test_nested_tasks_LDADD = $(DUITE_TEST_LIBS)
+tests_runtime_test_offload_names_SOURCES = tests/runtime/test_offload_names.c
+tests_runtime_test_offload_names_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_owner_SOURCES = tests/runtime/test_owner.c
 tests_runtime_test_owner_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_pool_SOURCES = tests/runtime/test_pool.c

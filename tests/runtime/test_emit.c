@@ -119,7 +119,7 @@ START_TEST(nodes)
     ck_assert_ptr_eq(plan->root[0], plan_task(plan, 0));
     for (size_t i = 0; i < 5; i++) {
         const struct task *task = plan_task(plan, i);
-        ck_assert_int_eq(task->kind, type[i]);
+        ck_assert_int_eq(task->type, type[i]);
         ck_assert_uint_eq(plan->first[i], first[i]);
         ck_assert_uint_eq(task->node->steady, steady[i]);
         ck_assert_uint_eq(plan->owner[i], owner[i]);

@@ -1,0 +1,82 @@
+#ifndef DUITE_OFFLOAD_MESSAGE_H
+#define DUITE_OFFLOAD_MESSAGE_H
+
+#include "runtime/offload/offload.h"
+#include "runtime/task/internal.h"
+
+/* The message of an offloaded task and that of its result; shared by send.c and receive.c.
+ * Everything after the first table begins on a cache line of its own.
+ *
+ * There, a packet of kind DATA_OFFLOADED (key.slot: the rank it comes from, key.number: its name
+ * there: names.h): an offload_message, an offload_param for each parameter, the arguments, and the
+ * values that the body reads.
+ *
+ * Back, DATA_RESULT (key.number: that name). A body that did not fail: for each parameter a count
+ * of bytes (0 under r), then these values; then, with MESSAGE_TOLD, the first failure among its
+ * descendants. One that failed, MESSAGE_FAILED: its failure, then that first one. */
+struct offload_message {
+    uint64_t number; /* of the main program's task that it is or descends from */
+    uint64_t index;  /* in its scope */
+    uint32_t kernel, n, block;
+    int32_t priority;
+    float cost;
+    uint32_t path_length; /* its place below `number`: see data_failure */
+    uint8_t path[sizeof((struct data_failure *)0)->path];
+};
+
+struct offload_param {
+    uint64_t bytes, most; /* that travel; elements there may be */
+    uint32_t type, sized;
+};
+
+enum { MESSAGE_FAILED = 1, MESSAGE_TOLD = 2 }; /* packet->pieces */
+
+static inline size_t message_lines(size_t bytes)
+{
+    return (bytes + 63) / 64 * 64;
+}
+
+/* Of a value that is read: each has an address of its own, even if it is empty. */
+static inline size_t message_value(uint32_t mode, size_t bytes)
+{
+    return mode == DUITE_R || mode == DUITE_RW ? message_lines(bytes ? bytes : 1) : 0;
+}
+
+/* Where the arguments begin. */
+static inline size_t message_head(size_t n)
+{
+    return message_lines(sizeof(struct offload_message) + n * sizeof(struct offload_param));
+}
+
+/* Where the values of a result begin. */
+static inline size_t message_counts(size_t n)
+{
+    return message_lines(n * sizeof(uint64_t));
+}
+
+/* Copies bytes to a place in a packet's payload, and clears the rest of the last line; returns the
+ * place of what follows. */
+size_t offload_message_put(struct data_packet *packet, size_t at, const void *from, size_t bytes);
+
+/* A task that is away. */
+struct offload_away {
+    struct task_send send; /* first: the task's */
+    struct task *task;
+    _Atomic int left;           /* it is sent; it came back */
+    struct data_packet *result; /* NULL: lost */
+};
+
+/* A task of another rank. */
+struct offload_task {
+    struct task_scope above;   /* first: the top of its reference order; the failures of its subtree
+                                   end up here */
+    struct data_failure place; /* where it stands at home: number and path */
+    struct data_packet *message; /* what came; the body reads there */
+    struct data_packet *result;  /* what goes; the body writes there */
+    struct task *task;
+    struct task_scope *inner; /* of its children, or NULL */
+    const struct data_failure *failure;
+    struct task_send send;
+};
+
+#endif

@@ -1,0 +1,61 @@
+#ifndef DUITE_OFFLOAD_OFFLOAD_H
+#define DUITE_OFFLOAD_OFFLOAD_H
+
+#include "runtime/task/task.h"
+
+/* Offloading: leaf tasks that run on another rank than the one that forked them.
+ *
+ * At home (send.c) such a task is away: it stays unfinished until the result of its body comes;
+ * then it does what the body would have done. On the other rank (receive.c) it is an offloaded
+ * task. That one has a small reference order of its own, waits for nothing, as its descendants wait
+ * for nothing but one another, and belongs to no rank's count of tasks. The layers above decide
+ * which tasks go, and measure. Any worker may call these functions. */
+
+/* Whether a ready task may run on another rank; *bytes: that go there and come back. */
+bool offload_may_go(const struct task_graph *graph, const struct task *task, size_t *bytes);
+
+/* A ready task that may go is to run on rank `to`, which it is posted to. False without memory, or
+ * if everything is being given up: it stays as it was. */
+bool offload_send(struct task_graph *graph, struct worker *worker, struct task *task, int to);
+
+/* What a task that is away left came; the callee owns it. A result whose name is none of a task
+ * that is away is dropped. */
+void offload_result_arrived(struct task_graph *graph, struct worker *worker,
+                            struct data_packet *packet);
+
+/* Communication broke: no task comes home any more, and none goes. */
+void offload_lost(struct task_graph *graph, struct worker *worker);
+
+/* No task is left and no message comes any more: frees what was kept for them. */
+void offload_stop(struct task_graph *graph);
+
+/* Calls back with each task that is away, which stays so during the call. */
+void offload_look(struct task_graph *graph,
+                  void (*away)(void *context, const struct task *task, int rank), void *context);
+
+/* A task of another rank came; the packet becomes its. False without memory: it is the caller's. */
+bool offload_arrived(struct task_graph *graph, struct worker *worker, struct data_packet *packet);
+
+/* Runs an offloaded task; returns whether a body ran. */
+bool offload_run(struct task_graph *graph, struct worker *worker, struct task *task,
+                 const duite_call *call);
+/* Its body is over. */
+void offload_body_over(struct worker *worker, struct task *task);
+/* Its descendants are over, too: its result is sent. `above` is the top of its scopes. */
+void offload_over(struct task_scope *above, struct worker *worker);
+/* Its result is sent: frees it. */
+void offload_answered(struct task_graph *graph, struct task *task);
+
+/* A task that went away is sent. */
+void offload_sent(struct task_graph *graph, struct worker *worker, struct task *task);
+
+/* The rank that an offloaded task comes from. */
+int offload_home(const struct task *own);
+
+/* Offloaded tasks that are here, until their results are sent. */
+static inline uint64_t offload_count(const struct task_graph *graph)
+{
+    return atomic_load_explicit(&graph->offloaded, memory_order_acquire);
+}
+
+#endif

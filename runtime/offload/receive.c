@@ -1,0 +1,241 @@
+/* Offloaded tasks on the rank that runs them. The body works on the message that came and on the
+ * result that goes, without versions. The task has a top of its scopes of its own, so that failures
+ * get their place from home and are told there. It is over when all that it forked is; then its
+ * result is sent. */
+#include "runtime/offload/message.h"
+
+#include "runtime/base/pool.h"
+#include "runtime/data/mode.h"
+
+#include <string.h>
+
+static const struct offload_message *message_of(const struct offload_task *own)
+{
+    return data_payload(own->message);
+}
+
+static const struct offload_param *param_of(const struct offload_task *own)
+{
+    return (const void *)(message_of(own) + 1);
+}
+
+int offload_home(const struct task *task)
+{
+    return (int)task->offloaded->message->key.slot;
+}
+
+/* ---- Arriving ---- */
+
+static void offloaded_init(struct offload_task *own, struct task_graph *graph,
+                           struct data_packet *packet)
+{
+    const struct offload_message *message = data_payload(packet);
+    *own = (struct offload_task){
+        .above = {.graph = graph, .top = &own->above},
+        .place = {.number = message->number, .path_length = message->path_length},
+        .message = packet};
+    memcpy(own->place.path, message->path, sizeof message->path);
+    own->above.place = &own->place;
+}
+
+bool offload_arrived(struct task_graph *graph, struct worker *worker, struct data_packet *packet)
+{
+    const struct offload_message *message = data_payload(packet);
+    struct offload_task *own = base_pool_take(sizeof *own);
+    if (!own)
+        return false;
+    offloaded_init(own, graph, packet);
+    struct task *task = task_make(&own->above, TASK_OFFLOADED, message->n, 0);
+    if (!task) {
+        base_pool_give(own, sizeof *own);
+        return false;
+    }
+    own->task = task;
+    task->offloaded = own;
+    task->number = message->index;
+    task->kernel = message->kernel;
+    task->block = message->block;
+    task->priority = message->priority;
+    task->cost = message->cost;
+    for (uint32_t i = 0; i < task->n; i++) {
+        task->access[i].waiter.mode = data_mode_of(graph->kernels[task->kernel], i);
+        task->access[i].sized = param_of(own)[i].sized;
+    }
+    atomic_fetch_add_explicit(&graph->offloaded, 1, memory_order_relaxed);
+    work_ready(graph->pool, worker, task);
+    return true;
+}
+
+/* ---- Running ---- */
+
+static size_t param_room(const struct task *task, size_t i)
+{
+    const struct offload_param *param = &param_of(task->offloaded)[i];
+    return task->access[i].waiter.mode == DUITE_R
+               ? 0
+               : param->most * data_type_size((duite_type)param->type);
+}
+
+/* What the body finds under w is unspecified; under rw it is what came, under cw the law's neutral
+ * element. */
+static void param_fill(const struct task *task, size_t i, const void *came, void *data)
+{
+    const struct offload_param *param = &param_of(task->offloaded)[i];
+    const duite_kernel *kernel = task->scope->graph->kernels[task->kernel];
+    if (task->access[i].waiter.mode == DUITE_RW && param->bytes)
+        memcpy(data, came, param->bytes);
+    else if (task->access[i].waiter.mode == DUITE_CW)
+        data_law_neutral(data_law_of(kernel, i), data, param->most, (duite_type)param->type);
+}
+
+/* Gives the body its parameters. False without memory. */
+static bool params_lay_out(const struct task *task, duite_param *param, const void **args)
+{
+    struct offload_task *own = task->offloaded;
+    uint32_t stamp = task->n ? task_new_stamp() : 0;
+    size_t bytes = message_counts(task->n) + sizeof(struct data_failure);
+    for (size_t i = 0; i < task->n; i++)
+        bytes += message_lines(param_room(task, i));
+    own->result = data_packet_new(bytes, false);
+    if (!own->result)
+        return false;
+    char *in = (char *)data_payload(own->message) + message_head(task->n);
+    char *out = (char *)data_payload(own->result) + message_counts(task->n);
+    *args = in;
+    in += message_lines(task->scope->graph->kernels[task->kernel]->args_size);
+    for (uint32_t i = 0; i < task->n; i++) {
+        const struct offload_param *came = &param_of(own)[i];
+        duite_type type = (duite_type)came->type;
+        duite_mode mode = (duite_mode)task->access[i].waiter.mode;
+        bool fresh = !came->sized || mode == DUITE_W;
+        param[i] = (duite_param){.data = mode == DUITE_R ? in : out,
+                                 .count = fresh ? came->most : came->bytes / data_type_size(type),
+                                 .type = type,
+                                 .most = came->most,
+                                 .object = {TASK_LOCAL_NAME | i, stamp}};
+        param_fill(task, i, in, out);
+        in += message_value(mode, came->bytes);
+        out += message_lines(param_room(task, i));
+    }
+    return true;
+}
+
+/* The values move together: those of objects that change their size may be smaller than their room.
+ */
+static void result_close_up(const struct task *task, const duite_param *param)
+{
+    struct data_packet *result = task->offloaded->result;
+    uint64_t *bytes = data_payload(result);
+    size_t at = message_counts(task->n);
+    memset(bytes, 0, at);
+    for (uint32_t i = 0; i < task->n; i++) {
+        if (task->access[i].waiter.mode == DUITE_R)
+            continue;
+        bytes[i] = param[i].count * data_type_size(param[i].type);
+        at = offload_message_put(result, at, param[i].data, bytes[i]);
+    }
+    data_packet_resize(result, at);
+}
+
+static bool body_run(struct task_graph *graph, struct worker *worker, struct task *task,
+                     duite_param *param, const duite_call *call)
+{
+    struct offload_task *own = task->offloaded;
+    const void *args = NULL;
+    own->failure = task_given_up(graph);
+    if (!own->failure && !params_lay_out(task, param, &args))
+        own->failure = task_fail_memory(task);
+    if (own->failure)
+        return false;
+    if (!graph->kernels[task->kernel]->args_size)
+        args = NULL;
+    own->failure = task_call_body(graph, worker, task, args, param, &own->inner, call);
+    if (!own->failure)
+        result_close_up(task, param);
+    return true;
+}
+
+bool offload_run(struct task_graph *graph, struct worker *worker, struct task *task,
+                 const duite_call *call)
+{
+    enum { FEW = 8 };
+    duite_param few[FEW];
+    size_t bytes = task->n * sizeof few[0];
+    duite_param *param = task->n <= FEW ? few : base_pool_take(bytes);
+    if (!param) {
+        task->offloaded->failure = task_fail_memory(task);
+        return false;
+    }
+    bool ran = body_run(graph, worker, task, param, call);
+    if (param != few)
+        base_pool_give(param, bytes);
+    return ran;
+}
+
+/* ---- Going home ---- */
+
+void offload_body_over(struct worker *worker, struct task *task)
+{
+    struct offload_task *own = task->offloaded;
+    if (own->inner)
+        task_scope_end(own->inner, worker);
+    else
+        offload_over(&own->above, worker);
+}
+
+/* NULL without memory. */
+static struct data_packet *result_failures(const struct offload_task *own,
+                                           const struct data_failure *told)
+{
+    struct data_packet *packet = data_packet_new(2 * sizeof *told, true);
+    if (!packet)
+        return NULL;
+    struct data_failure *both = data_payload(packet);
+    both[0] = *own->failure;
+    if (told)
+        both[1] = *told;
+    packet->pieces = MESSAGE_FAILED | (told ? MESSAGE_TOLD : 0);
+    return packet;
+}
+
+static void result_append(struct data_packet *packet, const struct data_failure *told)
+{
+    size_t at = packet->bytes;
+    data_packet_resize(packet, at + sizeof *told);
+    offload_message_put(packet, at, told, sizeof *told);
+    packet->pieces = MESSAGE_TOLD;
+}
+
+void offload_over(struct task_scope *above, struct worker *worker)
+{
+    struct offload_task *own = (struct offload_task *)above;
+    struct task_graph *graph = above->graph;
+    struct task *task = own->task;
+    const struct data_failure *told = task_first_failure(above);
+    if (own->failure) {
+        data_packet_free(own->result);
+        own->result = result_failures(own, told);
+    } else if (told) {
+        result_append(own->result, told);
+    }
+    struct data_packet *result = own->result;
+    own->send =
+        (struct task_send){.key = own->message->key, .to = offload_home(task), .packet = result};
+    if (result) {
+        result->kind = DATA_RESULT;
+        result->key = own->send.key;
+    }
+    task->state = TASK_LEAVES;
+    task->n = 0; /* nothing of what it read is sent */
+    task->send = &own->send;
+    work_ready(graph->pool, worker, task);
+}
+
+void offload_answered(struct task_graph *graph, struct task *task)
+{
+    struct offload_task *own = (struct offload_task *)task->scope;
+    data_packet_free(own->message);
+    base_pool_give(own, sizeof *own);
+    base_pool_give(task, (size_t)task->grains * TASK_GRAIN);
+    atomic_fetch_sub_explicit(&graph->offloaded, 1, memory_order_acq_rel);
+}

@@ -1,0 +1,259 @@
+/* Tasks that are away. The versions that such a task reads and takes over stay here, held by it as
+ * before, so nothing else changes for those who wait for it. It goes on when two things happened,
+ * in whichever order: the packet is gone, and the answer came. */
+#include "runtime/offload/message.h"
+
+#include "runtime/base/memory.h"
+#include "runtime/base/pool.h"
+#include "runtime/data/mode.h"
+#include "runtime/offload/names.h"
+
+#include <string.h>
+
+/* ---- Going ---- */
+
+size_t offload_message_put(struct data_packet *packet, size_t at, const void *from, size_t bytes)
+{
+    char *to = (char *)data_payload(packet) + at;
+    size_t end = message_lines(at + bytes);
+    if (bytes)
+        memmove(to, from, bytes);
+    memset(to + bytes, 0, end - at - bytes);
+    return end;
+}
+
+/* What the body finds: under r and rw, unless it is poisoned. */
+static const struct data_version *access_value(const struct task_access *access)
+{
+    bool reads = access->waiter.mode == DUITE_R || access->waiter.mode == DUITE_RW;
+    return reads ? access->in : NULL;
+}
+
+static size_t access_room(const struct task_access *access)
+{
+    const struct data_version *out = task_written(access);
+    if (out)
+        return data_version_room(out);
+    return access->waiter.mode == DUITE_CW ? access->sum->count * data_type_size(access->sum->type)
+                                           : 0;
+}
+
+bool offload_may_go(const struct task_graph *graph, const struct task *task, size_t *bytes)
+{
+    if (task->type != TASK_BODY || task->state != TASK_STAYS || task->inner || task->pinned)
+        return false;
+    /* What an offloaded task forks stays with it: it waits for nothing on another rank. */
+    if (task->scope->top != &graph->root)
+        return false;
+    const duite_kernel *kernel = graph->kernels[task->kernel];
+    if (kernel->side_effects || kernel->stays || kernel->replicated)
+        return false;
+    size_t there = message_head(task->n) + kernel->args_size, back = message_counts(task->n);
+    for (uint32_t i = 0; i < task->n; i++) {
+        const struct data_version *in = access_value(&task->access[i]);
+        if (in && !data_version_packet(in))
+            return false;
+        there += in ? message_lines(in->packet->bytes) + 64 : 0;
+        back += message_lines(access_room(&task->access[i]));
+    }
+    *bytes = there + back + 2 * sizeof(struct data_packet);
+    return there < DATA_MOST_BYTES && back < DATA_MOST_BYTES;
+}
+
+static struct offload_param access_param(const struct task_access *access)
+{
+    const struct data_version *in = access_value(access), *out = task_written(access);
+    const struct data_version *version = in ? in : out;
+    if (!version)
+        return (struct offload_param){.most = access->sum->count, .type = access->sum->type};
+    return (struct offload_param){.bytes = in ? in->packet->bytes : 0,
+                                  .most = version->most,
+                                  .type = version->type,
+                                  .sized = version->sized};
+}
+
+static struct offload_message message_of_task(const struct task *task)
+{
+    struct data_failure place = {0};
+    task_failure_place(&place, task, NULL);
+    struct offload_message message = {.number = place.number,
+                                      .index = task->number,
+                                      .kernel = task->kernel,
+                                      .n = task->n,
+                                      .block = task->block,
+                                      .priority = task->priority,
+                                      .cost = task->cost,
+                                      .path_length = place.path_length};
+    memcpy(message.path, place.path, sizeof message.path);
+    return message;
+}
+
+/* NULL without memory. */
+static struct data_packet *message_pack(const struct task_graph *graph, struct task *task)
+{
+    const struct offload_message message = message_of_task(task);
+    size_t args = graph->kernels[task->kernel]->args_size, n = task->n;
+    size_t bytes = message_head(n) + message_lines(args);
+    for (size_t i = 0; i < n; i++)
+        bytes += message_value(task->access[i].waiter.mode, access_param(&task->access[i]).bytes);
+    struct data_packet *packet = data_packet_new(bytes, false);
+    if (!packet)
+        return NULL;
+    struct offload_param *param = (void *)((char *)data_payload(packet) + sizeof message);
+    memset(data_payload(packet), 0, message_head(n));
+    memcpy(data_payload(packet), &message, sizeof message);
+    size_t at = offload_message_put(packet, message_head(n), task_rest(task, n), args);
+    for (size_t i = 0; i < n; i++) {
+        const struct data_version *in = access_value(&task->access[i]);
+        param[i] = access_param(&task->access[i]);
+        if (in)
+            offload_message_put(packet, at, data_payload(in->packet), in->packet->bytes);
+        at += message_value(task->access[i].waiter.mode, param[i].bytes);
+    }
+    return packet;
+}
+
+/* The name that its result will come back by; 0 without memory, or if it is too late. */
+static uint64_t away_enter(struct task_graph *graph, struct offload_away *away)
+{
+    uint64_t name = 0;
+    pthread_mutex_lock(&graph->lock);
+    if (!graph->away && !graph->away_closed)
+        graph->away = base_alloc_zero(sizeof *graph->away);
+    if (graph->away)
+        name = offload_name_give(graph->away, away);
+    pthread_mutex_unlock(&graph->lock);
+    return name;
+}
+
+bool offload_send(struct task_graph *graph, struct worker *worker, struct task *task, int to)
+{
+    struct data_packet *packet = message_pack(graph, task);
+    struct offload_away *away = packet ? base_pool_take(sizeof *away) : NULL;
+    if (!away) {
+        data_packet_free(packet);
+        return false;
+    }
+    *away = (struct offload_away){.send = {.to = to, .packet = packet}, .task = task, .left = 2};
+    uint64_t name = away_enter(graph, away);
+    if (!name) {
+        data_packet_free(packet);
+        base_pool_give(away, sizeof *away);
+        return false;
+    }
+    packet->kind = DATA_OFFLOADED;
+    packet->key = (struct data_key){.slot = (uint32_t)graph->rank, .number = name};
+    away->send.key = packet->key;
+    task->state = TASK_AWAY;
+    task->send = &away->send;
+    work_ready(graph->pool, worker, task);
+    return true;
+}
+
+/* ---- Coming home ---- */
+
+/* What the body left becomes what its parameters have; or its failure, kept here as if it had
+ * failed here. */
+static const struct data_failure *result_unpack(const struct task *task, duite_param *param,
+                                                struct data_packet *packet)
+{
+    struct task_graph *graph = task->scope->graph;
+    char *payload = data_payload(packet);
+    const uint64_t *bytes = (const void *)payload;
+    size_t at = message_counts(task->n);
+    if (packet->pieces & MESSAGE_FAILED) {
+        const struct data_failure *both = (const void *)payload;
+        if (packet->pieces & MESSAGE_TOLD)
+            task_fail_below(graph, &both[1], task->scope);
+        return task_fail(graph, &both[0], false);
+    }
+    for (uint32_t i = 0; i < task->n; i++) {
+        if (bytes[i])
+            memcpy(param[i].data, payload + at, bytes[i]);
+        if (task->access[i].waiter.mode != DUITE_R)
+            param[i].count = bytes[i] / data_type_size(param[i].type);
+        at += message_lines(bytes[i]);
+    }
+    if (packet->pieces & MESSAGE_TOLD)
+        task_fail_below(graph, (const void *)(payload + at), task->scope);
+    return NULL;
+}
+
+static const struct data_failure *result_take(const struct task *task, duite_param *param,
+                                              struct data_packet *result)
+{
+    return result ? result_unpack(task, param, result) : task_lost_failure();
+}
+
+/* One of two things happened; `away` may be gone afterwards, and the task. */
+static void away_one_less(struct task_graph *graph, struct worker *worker,
+                          struct offload_away *away)
+{
+    struct task *task = away->task;
+    struct data_packet *result;
+    if (atomic_fetch_sub_explicit(&away->left, 1, memory_order_acq_rel) != 1)
+        return;
+    result = away->result;
+    base_pool_give(away, sizeof *away);
+    task->state = TASK_STAYS;
+    task->inner = NULL;
+    task_run_result(graph, task, result_take, result);
+    data_packet_free(result);
+    task_finish(graph, worker, task);
+}
+
+void offload_sent(struct task_graph *graph, struct worker *worker, struct task *task)
+{
+    away_one_less(graph, worker, (struct offload_away *)task->send);
+}
+
+void offload_result_arrived(struct task_graph *graph, struct worker *worker,
+                            struct data_packet *packet)
+{
+    struct offload_away *away = NULL;
+    pthread_mutex_lock(&graph->lock);
+    if (graph->away)
+        away = offload_name_take(graph->away, packet->key.number);
+    pthread_mutex_unlock(&graph->lock);
+    if (!away) { /* it was given up, or the name is none of ours */
+        data_packet_free(packet);
+        return;
+    }
+    away->result = packet;
+    away_one_less(graph, worker, away);
+}
+
+void offload_lost(struct task_graph *graph, struct worker *worker)
+{
+    pthread_mutex_lock(&graph->lock);
+    struct offload_names *names = graph->away;
+    graph->away = NULL;
+    graph->away_closed = true;
+    pthread_mutex_unlock(&graph->lock);
+    for (uint32_t i = 0; names && i < names->n; i++)
+        if (names->slot[i].away)
+            away_one_less(graph, worker, names->slot[i].away);
+    if (names)
+        offload_names_free(names);
+    base_free(names);
+}
+
+void offload_look(struct task_graph *graph,
+                  void (*look)(void *context, const struct task *task, int rank), void *context)
+{
+    pthread_mutex_lock(&graph->lock);
+    for (uint32_t i = 0; graph->away && i < graph->away->n; i++) {
+        const struct offload_away *away = graph->away->slot[i].away;
+        if (away)
+            look(context, away->task, away->send.to);
+    }
+    pthread_mutex_unlock(&graph->lock);
+}
+
+void offload_stop(struct task_graph *graph)
+{
+    if (graph->away)
+        offload_names_free(graph->away);
+    base_free(graph->away);
+    graph->away = NULL;
+}

@@ -176,9 +176,10 @@ static int access_contribute(struct task_scope *scope, struct worker *worker, in
     return code;
 }
 
-int task_depend(struct task_scope *scope, struct worker *worker, int at, const duite_kernel *kernel,
-                size_t i, duite_mode declared, struct data_object *object, struct task *task,
-                uint32_t *done)
+/* Access i of a task that runs on rank `at`; `task` is NULL on the other ranks. */
+static int access_depend(struct task_scope *scope, struct worker *worker, int at,
+                         const duite_kernel *kernel, size_t i, duite_mode declared,
+                         struct data_object *object, struct task *task, uint32_t *done)
 {
     struct task_graph *graph = scope->graph;
     duite_mode mode = task_immediate(declared);
@@ -212,5 +213,26 @@ int task_depend(struct task_scope *scope, struct worker *worker, int at, const d
         return postponed ? access_lend(task, i, object, version, done)
                          : task_overwrite(graph, task, i, object, version, done);
     task_forget(graph, worker, object);
+    return DUITE_OK;
+}
+
+int task_depend(struct task_scope *scope, struct worker *worker, int at, const duite_kernel *kernel,
+                size_t n, const duite_object *objects, struct data_object *const *few,
+                struct task *task)
+{
+    uint32_t done = 0;
+    for (size_t i = 0; i < n; i++) {
+        struct data_object *object = task_named_object(scope, few, i, objects[i]);
+        duite_mode mode = data_mode_of(kernel, i);
+        if (task)
+            task->access[i].waiter.mode = mode;
+        int code = access_depend(scope, worker, at, kernel, i, mode, object, task, &done);
+        if (code && task)
+            task_void(scope->graph, worker, task, i, done);
+        if (code)
+            return code;
+    }
+    if (task)
+        task_settled(scope->graph, worker, task, done);
     return DUITE_OK;
 }

@@ -68,26 +68,16 @@ static int fork_check_law(const duite_kernel *kernel, size_t i, const struct dat
 }
 
 /* What is known of a task before anything is changed for it. */
-enum { FEW = 16 };
 struct fork_sketch {
-    uint32_t kernel;                 /* index in the list given at start */
-    uint32_t owner;                  /* the parameter it runs for, or TASK_NOBODY */
-    bool views;                      /* some are views */
-    struct data_object *object[FEW]; /* the first ones */
+    uint32_t kernel;                      /* index in the list given at start */
+    uint32_t owner;                       /* the parameter it runs for, or TASK_NOBODY */
+    bool views;                           /* some are views */
+    struct data_object *object[TASK_FEW]; /* the first ones */
 };
-
-/* Object i, whose name was checked. */
-static struct data_object *sketch_object(struct task_scope *scope,
-                                         const struct fork_sketch *fork_sketch, size_t i,
-                                         duite_object name)
-{
-    duite_mode right;
-    return i < FEW ? fork_sketch->object[i] : task_find_object(scope, name, &right);
-}
 
 /* It exists, is named once, may be used so, and can be accumulated into where it is. */
 static int fork_check_object(struct task_scope *scope, const duite_kernel *kernel, size_t i,
-                             duite_mode mode, duite_object name, struct fork_sketch *fork_sketch)
+                             duite_mode mode, duite_object name, struct fork_sketch *sketch)
 {
     duite_mode right = DUITE_RWP;
     struct data_object *object = scope->depth ? task_find_object(scope, name, &right)
@@ -110,9 +100,9 @@ static int fork_check_object(struct task_scope *scope, const duite_kernel *kerne
     if (code)
         return code;
     object->mark = scope->forks + 1;
-    fork_sketch->views |= object->view != NULL;
-    if (i < FEW)
-        fork_sketch->object[i] = object;
+    sketch->views |= object->view != NULL;
+    if (i < TASK_FEW)
+        sketch->object[i] = object;
     return DUITE_OK;
 }
 
@@ -137,14 +127,13 @@ static int fork_check_rights(struct task_scope *scope, const duite_kernel *kerne
 }
 
 static int fork_check_objects(struct task_scope *scope, const duite_kernel *kernel, size_t n,
-                              const duite_object *objects, struct fork_sketch *fork_sketch)
+                              const duite_object *objects, struct fork_sketch *sketch)
 {
-    const struct task_fixed *fixed = &scope->graph->fixed[fork_sketch->kernel];
-    fork_sketch->owner = fixed->owner[n > fixed->n];
-    fork_sketch->views = false;
+    const struct task_fixed *fixed = &scope->graph->fixed[sketch->kernel];
+    sketch->owner = fixed->owner[n > fixed->n];
+    sketch->views = false;
     for (uint32_t i = 0; i < n; i++) {
-        int code =
-            fork_check_object(scope, kernel, i, data_mode_of(kernel, i), objects[i], fork_sketch);
+        int code = fork_check_object(scope, kernel, i, data_mode_of(kernel, i), objects[i], sketch);
         if (code) {
             task_unmark(scope, i, objects);
             return code;
@@ -155,22 +144,22 @@ static int fork_check_objects(struct task_scope *scope, const duite_kernel *kern
 
 static int fork_check(struct task_scope *scope, int at, const duite_kernel *kernel,
                       const void *args, size_t n, const duite_object *objects,
-                      struct fork_sketch *fork_sketch)
+                      struct fork_sketch *sketch)
 {
-    int code = fork_kernel(scope->graph, kernel, &fork_sketch->kernel);
+    int code = fork_kernel(scope->graph, kernel, &sketch->kernel);
     if (!code)
-        code = fork_check_call(scope->graph, at, fork_sketch->kernel, args, n, objects);
+        code = fork_check_call(scope->graph, at, sketch->kernel, args, n, objects);
     if (!code && scope->depth)
         code = fork_check_rights(scope, kernel, n, objects);
-    return code ? code : fork_check_objects(scope, kernel, n, objects, fork_sketch);
+    return code ? code : fork_check_objects(scope, kernel, n, objects, sketch);
 }
 
 int task_check_fork(struct task_scope *scope, int at, const duite_kernel *kernel, const void *args,
                     size_t n, const duite_object *objects, uint32_t *index)
 {
-    struct fork_sketch fork_sketch;
-    int code = fork_check(scope, at, kernel, args, n, objects, &fork_sketch);
-    *index = fork_sketch.kernel;
+    struct fork_sketch sketch;
+    int code = fork_check(scope, at, kernel, args, n, objects, &sketch);
+    *index = sketch.kernel;
     return code;
 }
 
@@ -259,13 +248,13 @@ static struct task *fork_body(struct task_scope *scope, struct worker *worker,
 
 /* All of them before any other access: the task may write their parents. */
 static int fork_gather_views(struct task_scope *scope, struct worker *worker,
-                             const struct fork_sketch *fork_sketch, size_t n,
+                             const struct fork_sketch *sketch, size_t n,
                              const duite_object *objects)
 {
     int code = DUITE_OK;
     for (size_t i = 0; i < n && !code; i++)
         code = task_view_gather(scope->graph, worker,
-                                sketch_object(scope, fork_sketch, i, objects[i]));
+                                task_named_object(scope, sketch->object, i, objects[i]));
     return code;
 }
 
@@ -283,43 +272,28 @@ static void fork_give_block(struct task *task, struct data_object *own, bool fol
 
 /* Checked: nothing but memory can be missing. */
 static int fork_checked(struct task_scope *scope, struct worker *worker,
-                        const struct task_options *how, const struct fork_sketch *fork_sketch,
+                        const struct task_options *how, const struct fork_sketch *sketch,
                         const void *args, size_t n, const duite_object *objects)
 {
     struct task_graph *graph = scope->graph;
-    const duite_kernel *kernel = graph->kernels[fork_sketch->kernel];
+    const duite_kernel *kernel = graph->kernels[sketch->kernel];
     struct data_object *own =
-        fork_sketch->owner == TASK_NOBODY
+        sketch->owner == TASK_NOBODY
             ? NULL
-            : sketch_object(scope, fork_sketch, fork_sketch->owner, objects[fork_sketch->owner]);
-    int code =
-        fork_sketch->views ? fork_gather_views(scope, worker, fork_sketch, n, objects) : DUITE_OK;
+            : task_named_object(scope, sketch->object, sketch->owner, objects[sketch->owner]);
+    int code = sketch->views ? fork_gather_views(scope, worker, sketch, n, objects) : DUITE_OK;
     if (code)
         return code;
     struct task *task = NULL;
-    uint32_t done = 0;
     int at = scope->depth ? graph->rank
                           : task_owner_rank(how->at, kernel->replicated, own ? own->home : -1);
     if (at == TASK_EVERYWHERE)
         at = graph->rank;
-    if (at == graph->rank && !(task = fork_body(scope, worker, how, fork_sketch->kernel, args, n)))
+    if (at == graph->rank && !(task = fork_body(scope, worker, how, sketch->kernel, args, n)))
         return DUITE_E_MEMORY;
     if (task && own)
         fork_give_block(task, own, task_owner_decides(how->at, kernel->replicated));
-    for (size_t i = 0; i < n; i++) {
-        struct data_object *object = sketch_object(scope, fork_sketch, i, objects[i]);
-        duite_mode mode = data_mode_of(kernel, i);
-        if (task)
-            task->access[i].waiter.mode = mode;
-        code = task_depend(scope, worker, at, kernel, i, mode, object, task, &done);
-        if (code && task)
-            task_void(graph, worker, task, i, done);
-        if (code)
-            return code;
-    }
-    if (task)
-        task_settled(graph, worker, task, done);
-    return DUITE_OK;
+    return task_depend(scope, worker, at, kernel, n, objects, sketch->object, task);
 }
 
 static void fork_mix(struct task_graph *graph, uint32_t kernel, int at, size_t n,
@@ -334,12 +308,12 @@ static void fork_mix(struct task_graph *graph, uint32_t kernel, int at, size_t n
 int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *how,
               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
 {
-    struct fork_sketch fork_sketch;
-    int code = fork_check(scope, how->at, kernel, args, n, objects, &fork_sketch);
+    struct fork_sketch sketch;
+    int code = fork_check(scope, how->at, kernel, args, n, objects, &sketch);
     if (code)
         return code;
     scope->forks++;
     if (!scope->depth)
-        fork_mix(scope->graph, fork_sketch.kernel, how->at, n, objects);
-    return fork_checked(scope, worker, how, &fork_sketch, args, n, objects);
+        fork_mix(scope->graph, sketch.kernel, how->at, n, objects);
+    return fork_checked(scope, worker, how, &sketch, args, n, objects);
 }

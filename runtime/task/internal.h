@@ -40,12 +40,12 @@ struct data_version *task_rename(struct task_graph *graph, struct worker *worker
  * if it was never written. NULL: out of memory, broken. */
 struct data_version *task_local(struct task_graph *graph, struct data_object *object);
 
-/* Access i of a task that runs on rank `at`: what it reads and makes, as versions. `task` is NULL
- * on the other ranks. *done grows by one if there is nothing to wait for. Errors: memory, broken.
- */
+/* What a task that runs on rank `at` reads and makes, as versions; `task` is NULL on the other
+ * ranks. It is ready once all of it is there. few: see task_named_object. Errors: memory, broken;
+ * the accesses before that are kept, and the task runs as one that is void. */
 int task_depend(struct task_scope *scope, struct worker *worker, int at, const duite_kernel *kernel,
-                size_t i, duite_mode mode, struct data_object *object, struct task *task,
-                uint32_t *done);
+                size_t n, const duite_object *objects, struct data_object *const *few,
+                struct task *task);
 
 /* Sees to it that rank `to` gets the current version: sends, awaits, or notes that others do. */
 int task_fetch(struct task_graph *graph, struct worker *worker, struct data_object *object, int to);
@@ -134,6 +134,15 @@ void task_left(struct task_graph *graph, struct task_scope *scope, struct worker
 /* The object of that name, with the right held on it; NULL with the error's sentence set. */
 struct data_object *task_find_object(struct task_scope *scope, duite_object name,
                                      duite_mode *right);
+/* Object i of a fork, whose name was checked: the first ones have been looked up. */
+enum { TASK_FEW = 16 };
+static inline struct data_object *task_named_object(struct task_scope *scope,
+                                                    struct data_object *const *few, size_t i,
+                                                    duite_object name)
+{
+    duite_mode right;
+    return i < TASK_FEW ? few[i] : task_find_object(scope, name, &right);
+}
 /* Takes the name of an object that the task made out of use. */
 void task_drop(struct task_scope *scope, struct data_object *object);
 /* The slots of the names that bodies use: parameters first, then the objects they made. */

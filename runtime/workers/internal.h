@@ -16,7 +16,7 @@
 /* A worker that sleeps for short pauses begins with this one; each is twice as long as the last. */
 #define WORK_FIRST_PAUSE_SECONDS 2e-5
 
-struct counts {
+struct work_counts {
     _Atomic uint64_t over, more; /* tasks of all kinds; what is waited for beside the forked ones */
     _Atomic uint64_t tasks, placed, stolen, chained, delegated;
     _Atomic uint64_t far;                 /* of those stolen: not from the nearest */
@@ -48,7 +48,7 @@ struct worker {
     uint64_t awaited_then;          /* comm_awaited_ticks when it began to idle */
     double pause;
     duite_call call;
-    struct counts counts;
+    struct work_counts counts;
     _Atomic(const struct task *) runs; /* whose body runs, for the monitor */
     pthread_t thread;
     int unit;          /* to be bound to, or -1 */

@@ -7,7 +7,7 @@
 void work_count(struct work_pool *pool, duite_counters *counters)
 {
     for (unsigned i = 0; i < pool->setup.threads; i++) {
-        struct counts *counts = &pool->worker[i].counts;
+        struct work_counts *counts = &pool->worker[i].counts;
         counters->tasks += atomic_load_explicit(&counts->tasks, memory_order_relaxed);
         counters->placed += atomic_load_explicit(&counts->placed, memory_order_relaxed);
         counters->stolen += atomic_load_explicit(&counts->stolen, memory_order_relaxed);
@@ -107,7 +107,7 @@ void work_note(struct work_pool *pool, const struct trace_event *event)
 void work_note_counters(struct work_pool *pool, struct trace_counters *counters)
 {
     for (unsigned i = 0; i < pool->setup.threads; i++) {
-        struct counts *from = &pool->worker[i].counts;
+        struct work_counts *from = &pool->worker[i].counts;
         counters[i] = (struct trace_counters){
             .tasks = atomic_load_explicit(&from->tasks, memory_order_relaxed),
             .stolen = atomic_load_explicit(&from->stolen, memory_order_relaxed),

@@ -46,7 +46,7 @@ static uint64_t pool_movement(struct work_pool *pool)
         sum * odd + atomic_load_explicit(&pool->setup.graph->root.unfinished, memory_order_relaxed);
     for (unsigned i = 0; i < pool->setup.threads; i++) {
         const struct worker *worker = &pool->worker[i];
-        const struct counts *counts = &worker->counts;
+        const struct work_counts *counts = &worker->counts;
         sum = sum * odd + (uintptr_t)atomic_load_explicit(&worker->runs, memory_order_relaxed);
         sum = sum * odd + atomic_load_explicit(&counts->over, memory_order_relaxed);
         sum = sum * odd + atomic_load_explicit(&counts->tasks, memory_order_relaxed);

@@ -150,7 +150,7 @@ void work_starved(struct work_pool *pool, const char *what)
 #define MPI_Test(request, done, status)                        done_at_once(done)
 #define MPI_Type_contiguous(n, type, new_type)                 success(0)
 #define MPI_Type_commit(type)                                  success(0)
-#define comm_heartbeat_start(comm, monitor)                    success(0)
+#define comm_heartbeat_start(comm, monitor)                    ((void)(monitor), success(0))
 #define comm_heartbeat_open(...)                               success(0, __VA_ARGS__)
 #define comm_heartbeat_stop(comm)                              success(0)
 

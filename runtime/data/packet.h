@@ -13,10 +13,10 @@ enum data_packet_kind {
     DATA_POISON,
     DATA_FAREWELL,
     DATA_QUESTION,
-    DATA_ASK,    /* a rank without work asks for tasks */
-    DATA_LAST,   /* ... and will not ask again */
-    DATA_OFFLOADED,  /* a task to be run here */
-    DATA_RESULT, /* what such a task left */
+    DATA_ASK,       /* a rank without work asks for tasks */
+    DATA_LAST,      /* ... and will not ask again */
+    DATA_OFFLOADED, /* a task to be run here */
+    DATA_RESULT,    /* what such a task left */
 };
 
 /* Names a version on all ranks: the object and how many writes it had. */

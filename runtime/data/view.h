@@ -4,8 +4,8 @@
 #include "runtime/data/object.h"
 
 /* Views: an index list of an object, and the object of its own that has the listed elements. That
- * one is written by nobody but the task that gathers them (task/objects.c). The list is shared by the
- * view, tasks that gather, and plans; it never changes. */
+ * one is written by nobody but the task that gathers them (task/objects.c). The list is shared by
+ * the view, tasks that gather, and plans; it never changes. */
 struct data_view {
     _Atomic uint32_t refs;
     /* Main thread only. */

@@ -35,7 +35,8 @@ struct scene_wrong {
     const char *error;     /* after the path of the file, or all of it when there is a set */
 };
 
-/* Fails the test unless reading the text, with the set if there is one, gives this error. */
+/* Fails the test unless reading the text, with the set if there is one, gives this error; one that
+ * ends with "..." says how it begins, so a list of keys may grow. */
 void scene_expect_error(const char *text, const char *set, const char *error);
 void scene_expect_errors(const struct scene_wrong *wrong, size_t n);
 

@@ -68,9 +68,7 @@ START_TEST(wrong_kinds)
          .error = ":2:10: gravity is a list of 2; a list of 3 numbers (m/s^2) is expected"},
         {"gravity: [0, -9.81, 0]", "gravity: [0, {a: 1}, 0]",
          .error = ":2:14: gravity[1] is a map of 1; a finite number is expected"},
-        {"time: {h: 0.001, end: 0.1}", "time: 3",
-         .error = ":12:7: time is 3; a map of h, end, fps, halving, stretch_growth, "
-                  "stretch_limit, energy_growth, rest is expected"},
+        {"time: {h: 0.001, end: 0.1}", "time: 3", .error = ":12:7: time is 3; a map of h, ..."},
         {"name: sheet", "name: ''",
          .error = ":4:11: cloths[0].name is the text ''; a text is expected"},
         {"name: sheet", "name: [a]",
@@ -99,23 +97,17 @@ END_TEST
 START_TEST(unknown_and_missing_keys)
 {
     EXPECT({"time:", "tiem:",
-            .error = ":12:1: tiem is not a key of the scene; did you mean 'time'? Allowed: schema, "
-                     "name, gravity, air, cloths, "
-                     "materials, obstacles, contact, time, integrator, energies, newton, solver, "
-                     "probes, grain"},
+            .error =
+                ":12:1: tiem is not a key of the scene; did you mean 'time'? Allowed: schema, ..."},
            {"h: 0.001", "h: 0.001, dt: 1",
-            .error = ":12:18: dt is not a key of time; allowed: h, end, fps, halving, "
-                     "stretch_growth, stretch_limit, energy_growth, rest"},
+            .error = ":12:18: dt is not a key of time; allowed: h, ..."},
            {"h: 0.001", "h: 0.001, fsp: 1",
-            .error = ":12:18: fsp is not a key of time; did you mean 'fps'? Allowed: h, end, fps, "
-                     "halving, stretch_growth, stretch_limit, energy_growth, rest"},
+            .error = ":12:18: fsp is not a key of time; did you mean 'fps'? Allowed: h, ..."},
            {"stretch: 50", "strech: 50",
             .error = ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
-                     "Allowed: like, density, model, stretch, ea, shear, poisson, forces, bend, "
-                     "bending, damping, diagonals"},
+                     "Allowed: like, ..."},
            {"vertices: [11]", "vertex: [11]",
-            .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, "
-                     "nearest, radius, box, edges, force, course"},
+            .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, ..."},
            {"plane:", "plan:",
             .error =
                 ":11:14: plan is not a key of obstacles[0]; did you mean 'plane'? Allowed: plane"},
@@ -156,16 +148,10 @@ START_TEST(files_that_are_no_scenes)
     scene_expect_error(
         "schema: 1\nname: \303\244\377b\n", NULL,
         ":2:8: not readable as text: invalid leading UTF-8 octet; a scene is YAML in UTF-8");
-    scene_expect_error(
-        "a: &a [*a]\n", NULL,
-        ":1:1: a is not a key of the scene; allowed: schema, name, gravity, air, cloths, "
-        "materials, obstacles, contact, "
-        "time, integrator, energies, newton, solver, probes, grain");
-    scene_expect_error(
-        "schema: 1\ncloths: &a [*a]\n", NULL,
-        ":2:9: cloths[0] is a list of 1; a map of name, mesh, transform, material, regions, rest, "
-        "mass_per_vertex, velocity, "
-        "pins, loads, masses, start, cost is expected");
+    scene_expect_error("a: &a [*a]\n", NULL,
+                       ":1:1: a is not a key of the scene; allowed: schema, ...");
+    scene_expect_error("schema: 1\ncloths: &a [*a]\n", NULL,
+                       ":2:9: cloths[0] is a list of 1; a map of name, ...");
 }
 END_TEST
 
@@ -192,8 +178,7 @@ START_TEST(sets_that_are_wrong)
         const char *set, *error;
     } all[] = {
         {"time.h=-1", "time.h is -1; a finite number > 0 (s) is expected"},
-        {"time.hh=1", "hh is not a key of time; did you mean 'h'? Allowed: h, end, fps, halving, "
-                      "stretch_growth, stretch_limit, energy_growth, rest"},
+        {"time.hh=1", "hh is not a key of time; did you mean 'h'? Allowed: h, ..."},
         {"time.h.x=1", "'time.h' is not a map"},
         {"cloths.x=1", "'cloths' is not a map"},
         {"time[0]=1", "'time' is not a list"},

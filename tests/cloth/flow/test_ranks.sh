@@ -14,5 +14,7 @@ done
 for cases in motion integrators; do # their other cases are of one block, which is no work for two ranks
     ok "test_$cases on 2 ranks" ranks 2 env CK_RUN_CASE=$cases "tests/cloth/flow/test_$cases"
 done
-ok "test_checked on 2 ranks" ranks 2 tests/cloth/flow/test_checked quick
+# As in run.sh.
+ok "test_checked on 2 ranks" ranks 2 env ASAN_OPTIONS="${ASAN_OPTIONS:-}:fast_unwind_on_malloc=1:detect_leaks=0" \
+    tests/cloth/flow/test_checked quick
 ok "test_late on 3 ranks" ranks 3 tests/cloth/flow/test_late

@@ -129,6 +129,17 @@ git_sees_sources_only() { # nothing that make leaves in its folders is untracked
     test ! -s "$scratch/programs"
 }
 
+# Each function that a guided tour of docs/design.md stops at is defined in the file that the tour names.
+tours() { # DOCUMENT
+    sed -n 's/^| `\([a-z]*\/[a-z_]*\.c\)` | `\([a-z_`, ]*\)` |.*/\1 \2/p' "$1" | tr -d '`,' > "$scratch/stops"
+    test "$(wc -l < "$scratch/stops")" -ge 15 || { echo "the tours have few stops" && return 1; }
+    while read -r file names; do
+        for name in $names; do
+            grep -q "^[a-z].*[ *]$name(" "$srcdir/runtime/$file" || { echo "$file has no $name" && return 1; }
+        done
+    done < "$scratch/stops"
+}
+
 plan_later
 ok "docs/runtime.md quotes the examples as they are" quotes "$document"
 ok "a quotation that differs is seen" sees 's/ += x\[i\] \* y\[i\];/ += x[i] - y[i];/'
@@ -142,6 +153,7 @@ ok "duite.3 names every function, macro, code and mode" page_is_whole
 ok "no document names what is not there" page_invents_nothing
 ok "duite.3 formats without warnings" formats
 ok "every public function has a comment before it" commented
+ok "guided tours stop at functions that are there" tours "$srcdir/docs/design.md"
 for program in duite-cloth duite-view duite-trace duite-predict bench/duite-bench bench/compare bench/graph-run; do
     if test -x $program; then
         ok "every option in --help of $program says what it is by itself" stands_alone ./$program

@@ -43,9 +43,7 @@ static void tell_difference(struct comm *comm, int rank)
 static void settle(struct comm *comm)
 {
     const struct comm_word *words = comm->words;
-    comm->calls.to_hear = 0;
     for (int i = 0; i < comm->n_ranks; i++) {
-        comm->calls.to_hear += i == comm->rank ? 0 : words[i].questions;
         if (words[i].fingerprint != words[0].fingerprint)
             tell_difference(comm, i);
         else if (words[i].homes != words[0].homes)
@@ -78,7 +76,6 @@ static void put_word(struct comm *comm, const struct comm_word *own)
 {
     struct comm_word *word = &comm->words[comm->n_ranks];
     *word = *own;
-    word->questions = comm->calls.questions;
     word->homes = comm->graph->table.homes;
 }
 
@@ -112,6 +109,6 @@ int comm_sum(struct comm *comm, struct comm_word *word, int n, void (*between)(v
 void comm_catch_up(struct comm *comm)
 {
     MPI_Wait(&comm->request, MPI_STATUS_IGNORE);
-    while (comm->entered < comm->farewells.entered && enter(comm))
+    while (comm->entered < comm->control.entered && enter(comm))
         MPI_Wait(&comm->request, MPI_STATUS_IGNORE);
 }

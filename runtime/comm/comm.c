@@ -28,9 +28,8 @@ static int prepare(struct comm *comm, struct base_monitor *monitor)
     if (MPI_Comm_rank(comm->mpi, &comm->rank) || MPI_Comm_size(comm->mpi, &comm->n_ranks))
         return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
     comm->words = base_alloc((size_t)(comm->n_ranks + 1) * sizeof *comm->words);
-    if (!comm_farewells_start(&comm->farewells, comm->n_ranks) ||
-        !comm_calls_start(&comm->calls, comm->n_ranks) ||
-        !comm_asks_start(&comm->asks, comm->n_ranks) || !comm->words)
+    if (!comm_control_start(&comm->control, comm->n_ranks) || !comm_calls_start(&comm->calls) ||
+        !comm->words)
         return base_no_memory("communication");
     if (MPI_Type_contiguous(sizeof(struct data_packet), MPI_BYTE, &comm->line) ||
         MPI_Type_commit(&comm->line))
@@ -67,11 +66,12 @@ void comm_tell(struct comm *comm, comm_told *tell)
     comm->tell = tell;
 }
 
-void comm_open(struct comm *comm, bool asks)
+void comm_open(struct comm *comm, bool requests)
 {
     if (!comm)
         return;
-    comm->may_ask = asks;
+    comm->open = true;
+    comm->may_request = requests;
     comm_unlock(comm);
 }
 
@@ -80,15 +80,15 @@ static bool is_over(struct comm *comm)
 {
     if (comm_is_broken(comm))
         return comm_is_lost(comm) || comm_is_quiet(comm);
-    return comm_questions_over(comm) && !comm->sends.n && (!comm->may_ask || comm_asks_over(comm));
+    return !comm->open || (!comm->sends.n && comm_control_over(comm));
 }
 
 bool comm_stop(struct comm *comm)
 {
     if (!comm)
         return true;
-    if (comm->may_ask)
-        comm_asks_end(comm);
+    if (comm->open)
+        comm_control_end(comm);
     while (!is_over(comm)) {
         comm_poll(comm, NULL);
         sched_yield();
@@ -103,9 +103,8 @@ bool comm_stop(struct comm *comm)
         MPI_Type_free(&comm->line);
     comm_requests_free(&comm->sends);
     comm_requests_free(&comm->receives);
-    comm_farewells_stop(&comm->farewells);
+    comm_control_stop(&comm->control);
     comm_calls_stop(&comm->calls);
-    comm_asks_stop(&comm->asks);
     comm_arrivals_stop(&comm->arrivals);
     base_free(comm->words);
     base_free(comm);
@@ -173,11 +172,20 @@ static void start_sends(struct comm *comm, struct found *found)
 
 /* ---- Receiving ---- */
 
-/* A message that there is no room for: MPI may forget it, and its sender goes on. */
-static void refuse(struct comm *comm, MPI_Message *message)
+/* A message that there is no memory for. A control message needs none: a rank that is about to
+ * leave must not break for want of memory, since others may have left. Any other is lost: MPI
+ * forgets it, and its sender goes on. */
+static void receive_without_memory(struct comm *comm, MPI_Message *message, int lines)
 {
-    comm_broke_memory(comm, "a message");
-    MPI_Mrecv(NULL, 0, comm->line, message, MPI_STATUS_IGNORE); /* truncated, as it is meant */
+    struct data_packet *spare = comm->control.spare;
+    if (lines > (int)data_packet_lines(sizeof(struct comm_abort))) {
+        comm_broke_memory(comm, "a message");
+        MPI_Mrecv(NULL, 0, comm->line, message, MPI_STATUS_IGNORE); /* truncated, as it is meant */
+        return;
+    }
+    int mpi = MPI_Mrecv(spare, lines, comm->line, message, MPI_STATUS_IGNORE);
+    if (comm_mpi_ok(comm, mpi, "MPI_Mrecv") && !comm_control_hear(comm, spare))
+        comm_broke_memory(comm, "a message");
 }
 
 static bool start_receive(struct comm *comm)
@@ -196,7 +204,7 @@ static bool start_receive(struct comm *comm)
     MPI_Request *request = packet ? comm_requests_place(&comm->receives) : NULL;
     if (!request) {
         data_packet_free(packet);
-        refuse(comm, &message);
+        receive_without_memory(comm, &message, lines);
         return true;
     }
     mpi = MPI_Imrecv(packet, lines, comm->line, &message, request);
@@ -209,27 +217,6 @@ static bool start_receive(struct comm *comm)
     return true;
 }
 
-/* What is the comm's own is seen to at once; true: that was it. */
-static bool hear(struct comm *comm, struct data_packet *packet)
-{
-    switch (packet->kind) {
-    case DATA_FAREWELL:
-        comm_farewell_hear(comm, packet);
-        break;
-    case DATA_QUESTION:
-        comm_question_hear(comm, packet);
-        break;
-    case DATA_ASK:
-    case DATA_LAST:
-        comm_ask_hear(comm, packet);
-        break;
-    default:
-        return false;
-    }
-    data_packet_free(packet);
-    return true;
-}
-
 static void receive(struct comm *comm, struct found *found)
 {
     int done;
@@ -239,8 +226,10 @@ static void receive(struct comm *comm, struct found *found)
     for (int i = 0; i < done; i++) {
         struct data_packet *packet = comm->receives.what[comm->receives.n + i];
         data_packet_came(packet);
-        if (hear(comm, packet))
+        if (comm_control_hear(comm, packet)) {
+            data_packet_free(packet);
             continue;
+        }
         atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
         packet->next = found->packets;
         found->packets = packet;
@@ -368,8 +357,7 @@ static void look_around(struct comm *comm, struct found *found)
     if (comm->channels.awaited.n && ++comm->channels.looks % SELDOM)
         return;
     receive(comm, found);
-    comm_question_ask(comm);
-    comm_farewell_say(comm);
+    comm_control_pass(comm);
 }
 
 static bool pass(struct comm *comm, struct worker *worker, bool looks)
@@ -425,8 +413,8 @@ uint64_t comm_awaited_ticks(const struct comm *comm)
 
 void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
 {
-    uint64_t asked = atomic_load_explicit(&comm->asks.sent, memory_order_relaxed);
-    *messages = atomic_load_explicit(&comm->messages, memory_order_relaxed) + asked;
+    uint64_t requested = atomic_load_explicit(&comm->control.requested, memory_order_relaxed);
+    *messages = atomic_load_explicit(&comm->messages, memory_order_relaxed) + requested;
     *bytes = atomic_load_explicit(&comm->bytes, memory_order_relaxed) +
-             asked * sizeof(struct data_packet);
+             requested * sizeof(struct data_packet);
 }

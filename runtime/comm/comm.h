@@ -29,10 +29,10 @@ void comm_ring(struct comm *comm, double seconds, const char *host);
 typedef void comm_told(struct worker *worker, bool sends, int peer, size_t bytes);
 void comm_tell(struct comm *comm, comm_told *tell);
 
-/* From now on messages are sent and received; `asks`: ranks may ask others for tasks, the same on
- * all. Before, the lock keeps workers out of MPI, so that the main thread may call it while it
- * starts. All ranks come here or none. NULL is fine. */
-void comm_open(struct comm *comm, bool asks);
+/* From now on messages are sent and received; `requests`: ranks may request tasks of
+ * others, the same on all. Before, the lock keeps workers out of MPI, so that the main thread may
+ * call it while it starts. All ranks come here or none. NULL is fine. */
+void comm_open(struct comm *comm, bool requests);
 
 /* Frees everything; no other thread is left, no task either. All ranks have agreed (comm_agree)
  * that nothing is on its way; or communication is broken, and it waits until that is so:
@@ -89,21 +89,21 @@ void comm_measure(struct comm *comm);
 /* Seconds for a message there and another one back, of so many bytes together. */
 double comm_transfer(const struct comm *comm, size_t bytes);
 
-/* Asks a rank for tasks, for so many workers; the question stands for so many seconds. False: not
- * now. */
-bool comm_ask(struct comm *comm, int rank, unsigned idle, double seconds);
+/* Requests tasks of a rank, for so many idle workers; the request stands for so many seconds.
+ * False: not now. */
+bool comm_request(struct comm *comm, int rank, unsigned idle, double seconds);
 
-/* A question that stands here. */
-struct comm_asker {
+/* A request that stands here. */
+struct comm_requester {
     int rank;
     unsigned idle;
     double until;
 };
 
-/* Whether there may be one; takes one, false: none now; puts one back that got no answer. */
-bool comm_is_asked(struct comm *comm);
-bool comm_asked(struct comm *comm, struct comm_asker *asker);
-void comm_asks_again(struct comm *comm, const struct comm_asker *asker);
+/* Whether there may be one; takes one, false: none now; puts one back that got no grant. */
+bool comm_has_requests(struct comm *comm);
+bool comm_take_request(struct comm *comm, struct comm_requester *requester);
+void comm_return_request(struct comm *comm, const struct comm_requester *requester);
 
 /* ---- Calls that block, made by all ranks alike ---- */
 
@@ -120,7 +120,6 @@ enum { COMM_MOST_SUMS = sizeof(struct data_failure) / sizeof(double) };
 /* What the ranks tell one another when they wait for all: each its own, `all` one a rank. */
 struct comm_word {
     uint64_t forks, fingerprint, homes; /* to be the same on all; homes is set by the comm */
-    uint64_t questions;                 /* the comm's own */
     uint64_t failed; /* number + 1 of this rank's first failed task in fork order, or 0 */
     union {
         struct data_failure failure;
@@ -142,21 +141,21 @@ int comm_sum(struct comm *comm, struct comm_word *word, int n, void (*between)(v
 /* ---- When it breaks ----
  *
  * A rank on which a message was lost, or that cannot go on for another reason, breaks: it sends
- * nothing but a farewell with the reason to all others, which break in turn. Blocking calls return
- * the code; the main thread gives up what is still expected; stop is all that is left. */
+ * nothing but an abort message with the reason to all others, which break in turn. Blocking calls
+ * return the code; the main thread gives up what is still expected; stop is all that is left. */
 
 /* Breaks; the first reason counts. Any thread. */
-void comm_broke(struct comm *comm, int code, const char *sentence);
+void comm_broke(struct comm *comm, int code, const char *message);
 /* The same for want of memory for something. */
 void comm_broke_memory(struct comm *comm, const char *what);
 
-/* The code with the sentence set once communication is broken, else 0. */
+/* The code with the message set once communication is broken, else 0. */
 int comm_broken(struct comm *comm);
 
 /* It is broken because MPI failed or a rank was lost: MPI must not be relied on, nor finalised. */
 bool comm_is_cut(struct comm *comm);
 
-/* It is broken for that reason: polls for a moment, so that the farewells of this rank go out. Main
+/* It is broken for that reason: polls for a moment, so that its abort messages go out. Main
  * thread. */
 void comm_part(struct comm *comm, struct worker *worker);
 

@@ -2,12 +2,11 @@
 #define DUITE_COMM_INTERNAL_H
 
 #include "runtime/comm/arrivals.h"
-#include "runtime/comm/ask.h"
 #include "runtime/comm/channel.h"
 #include "runtime/comm/comm.h"
-#include "runtime/comm/farewell.h"
+#include "runtime/comm/control.h"
+#include "runtime/comm/divergence.h"
 #include "runtime/comm/heartbeat.h"
-#include "runtime/comm/question.h"
 #include "runtime/comm/requests.h"
 
 /* Shared by the files of this folder only. */
@@ -26,15 +25,15 @@ struct comm {
     struct comm_arrivals arrivals;
     struct comm_channels channels;
     _Atomic int broken;
-    atomic_flag breaking;        /* taken by the one who breaks */
-    struct comm_farewell reason; /* of `broken`, written before it is set */
-    struct comm_farewells farewells;
+    atomic_flag breaking;     /* taken by the one who breaks */
+    struct comm_abort reason; /* of `broken`, written before it is set */
+    struct comm_control control;
     struct comm_heartbeat heartbeat;
     struct comm_calls calls;
-    comm_told *tell;       /* NULL: nobody */
-    struct worker *worker; /* under the lock: who passes */
-    bool may_ask;
-    struct comm_asks asks;
+    comm_told *tell;                        /* NULL: nobody */
+    struct worker *worker;                  /* under the lock: who passes */
+    bool open, may_request;                 /* comm_open was called; with requests */
+    double latency, per_byte;               /* seconds: of the slowest link measured */
     uint64_t entered;                       /* collective calls */
     MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words;                /* one a rank, and this rank's own */

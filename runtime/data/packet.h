@@ -11,10 +11,6 @@ enum data_packet_kind {
     DATA_VALUE = 1,
     DATA_PIECES,
     DATA_POISON,
-    DATA_FAREWELL,
-    DATA_QUESTION,
-    DATA_ASK,       /* a rank without work asks for tasks */
-    DATA_LAST,      /* ... and will not ask again */
     DATA_OFFLOADED, /* a task to be run here */
     DATA_RESULT,    /* what such a task left */
 };

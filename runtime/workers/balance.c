@@ -176,14 +176,14 @@ static bool given_at_once(struct worker *worker, struct task *task, const duite_
 {
     const struct work_pool *pool = worker->pool;
     size_t others = work_queue_size(&worker->queue) + work_queue_size(&pool->shared);
-    struct comm_asker asker;
-    if (!comm_asked(pool->setup.comm, &asker))
+    struct comm_requester requester;
+    if (!comm_take_request(pool->setup.comm, &requester))
         return false;
     const duite_asked asked = {
-        .rank = asker.rank, .idle = asker.idle, .ready = 1 + (unsigned)others};
-    bool given = balancer_gives(worker, &asked, leaf) && send(worker, task, asker.rank);
+        .rank = requester.rank, .idle = requester.idle, .ready = 1 + (unsigned)others};
+    bool given = balancer_gives(worker, &asked, leaf) && send(worker, task, requester.rank);
     if (!given)
-        comm_asks_again(pool->setup.comm, &asker);
+        comm_return_request(pool->setup.comm, &requester);
     return given;
 }
 
@@ -193,7 +193,7 @@ bool work_placed_away(struct worker *worker, struct task *task)
     const duite_balancer *balancer = pool->balance->balancer;
     int own = pool->setup.graph->rank, to = own;
     duite_leaf leaf;
-    bool asked = balancer->give && comm_is_asked(pool->setup.comm);
+    bool asked = balancer->give && comm_has_requests(pool->setup.comm);
     if ((!balancer->place && !asked) || !describe(pool, task, &leaf))
         return false;
     if (balancer->place)
@@ -237,10 +237,11 @@ static void give_from(struct gift *gift, struct work_queue *queue)
     give_or_keep(gift, queue, taken);
 }
 
-static void give(struct worker *worker, const struct comm_asker *asker, unsigned *given)
+static void give(struct worker *worker, const struct comm_requester *requester, unsigned *given)
 {
     struct work_pool *pool = worker->pool;
-    struct gift gift = {.worker = worker, .asked = {.rank = asker->rank, .idle = asker->idle}};
+    struct gift gift = {.worker = worker,
+                        .asked = {.rank = requester->rank, .idle = requester->idle}};
     give_from(&gift, &worker->queue);
     if (!atomic_flag_test_and_set_explicit(&pool->shared.token, memory_order_acquire)) {
         give_from(&gift, &pool->shared);
@@ -257,17 +258,17 @@ void work_serve(struct worker *worker)
 {
     struct work_balance *balance = worker->pool->balance;
     struct comm *comm = worker->pool->setup.comm;
-    struct comm_asker asker;
+    struct comm_requester requester;
     uint64_t now = base_ticks();
-    if (!comm_is_asked(comm) ||
+    if (!comm_has_requests(comm) ||
         now - atomic_load_explicit(&balance->served, memory_order_relaxed) < balance->serve_ticks)
         return;
     atomic_store_explicit(&balance->served, now, memory_order_relaxed);
     unsigned given = 1;
-    while (given && comm_asked(comm, &asker)) {
-        give(worker, &asker, &given);
+    while (given && comm_take_request(comm, &requester)) {
+        give(worker, &requester, &given);
         if (!given)
-            comm_asks_again(comm, &asker);
+            comm_return_request(comm, &requester);
     }
     work_poll(worker);
 }
@@ -290,7 +291,7 @@ static void ask(struct worker *worker)
     seconds = fmin(fmax(seconds, 0), LONGEST_ASK_SECONDS); /* whatever it says */
     unsigned idle = 1 + (unsigned)atomic_load_explicit(&pool->parked, memory_order_relaxed);
     bool other = rank >= 0 && rank < pool->setup.graph->n_ranks && rank != pool->setup.graph->rank;
-    if (other && !comm_ask(pool->setup.comm, rank, idle, seconds))
+    if (other && !comm_request(pool->setup.comm, rank, idle, seconds))
         return;
     if (other)
         work_note_message(worker, true, rank, sizeof(struct data_packet));

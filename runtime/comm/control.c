@@ -1,0 +1,289 @@
+/* A control message is sent once and freed when MPI has sent it. Abort messages and last messages
+ * are made at the start and sent at most once to each rank; the set of requests always has room for
+ * them. */
+#include "runtime/comm/control.h"
+
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/base/memory.h"
+#include "runtime/comm/internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- Start and stop ---- */
+
+/* Requests for what must be sent without memory, an abort message and a last one to each rank, and
+ * for one message more. */
+static size_t control_reserve(int n_ranks)
+{
+    return 2 * (size_t)n_ranks + 1;
+}
+
+bool comm_control_start(struct comm_control *control, int n_ranks)
+{
+    control->abort = data_packet_new(sizeof(struct comm_abort), true);
+    control->last = data_packet_new(0, true);
+    control->spare = data_packet_new(sizeof(struct comm_abort), true);
+    control->standing = base_alloc_zero((size_t)n_ranks * sizeof *control->standing);
+    return control->abort && control->last && control->spare && control->standing &&
+           comm_requests_room(&control->sends, control_reserve(n_ranks));
+}
+
+void comm_control_stop(struct comm_control *control)
+{
+    comm_requests_free(&control->sends);
+    data_packet_free(control->abort);
+    data_packet_free(control->last);
+    data_packet_free(control->spare);
+    base_free(control->standing);
+}
+
+/* ---- Sending ---- */
+
+static int control_isend(struct comm *comm, int to, struct data_packet *packet, bool own)
+{
+    struct comm_requests *sends = &comm->control.sends;
+    int mpi = MPI_Isend(packet, (int)data_packet_lines(packet->bytes), comm->line, to, COMM_PACKETS,
+                        comm->mpi, &sends->request[sends->n]);
+    if (mpi == MPI_SUCCESS)
+        comm_requests_started(sends, own ? NULL : packet);
+    return mpi;
+}
+
+bool comm_control_send(struct comm *comm, int to, struct data_packet *packet)
+{
+    struct comm_requests *sends = &comm->control.sends;
+    packet->key.slot = (uint32_t)comm->rank;
+    if (!comm_requests_room(sends, (size_t)sends->n + control_reserve(comm->n_ranks))) {
+        comm_broke_memory(comm, "a control message");
+    } else {
+        int mpi = control_isend(comm, to, packet, false);
+        if (comm_mpi_ok(comm, mpi, "MPI_Isend"))
+            return true;
+    }
+    data_packet_free(packet);
+    return false;
+}
+
+/* Frees what is sent. True: all is. */
+static bool control_sent(struct comm *comm)
+{
+    struct comm_requests *sends = &comm->control.sends;
+    int done;
+    if (sends->n && comm_mpi_ok(comm, comm_requests_test(sends, &done), "MPI_Testsome"))
+        for (int i = 0; i < done; i++)
+            data_packet_free(sends->what[sends->n + i]);
+    return !sends->n;
+}
+
+/* ---- Abort ---- */
+
+void comm_broke(struct comm *comm, int code, const char *message)
+{
+    if (atomic_flag_test_and_set(&comm->breaking))
+        return;
+    comm->reason.code = code;
+    snprintf(comm->reason.message, sizeof comm->reason.message, "%s", message);
+    atomic_store(&comm->broken, code);
+    work_notify(comm->graph->pool);
+}
+
+void comm_broke_memory(struct comm *comm, const char *what)
+{
+    char message[100];
+    snprintf(message, sizeof message, "out of memory for %s", what);
+    comm_broke(comm, DUITE_E_MEMORY, message);
+}
+
+bool comm_mpi_ok(struct comm *comm, int mpi, const char *what)
+{
+    if (mpi == MPI_SUCCESS)
+        return true;
+    char reason[MPI_MAX_ERROR_STRING] = "", message[MPI_MAX_ERROR_STRING + 64];
+    int length = 0;
+    MPI_Error_string(mpi, reason, &length);
+    snprintf(message, sizeof message, "%s: %s", what, reason);
+    comm_broke(comm, DUITE_E_MPI, message);
+    return false;
+}
+
+int comm_broken(struct comm *comm)
+{
+    int code = atomic_load_explicit(&comm->broken, memory_order_acquire);
+    return code ? base_error(code, "%s", comm->reason.message) : DUITE_OK;
+}
+
+bool comm_is_cut(struct comm *comm)
+{
+    return comm_is_lost(comm);
+}
+
+/* A send that fails here is a failure of MPI: there is nobody left to tell. */
+static void abort_send(struct comm *comm)
+{
+    struct comm_control *control = &comm->control;
+    if (control->aborts || !comm_is_broken(comm))
+        return;
+    control->aborts = true;
+    control->abort->kind = COMM_ABORT;
+    control->abort->key.slot = (uint32_t)comm->rank;
+    comm->reason.entered = comm->entered;
+    memcpy(data_payload(control->abort), &comm->reason, sizeof comm->reason);
+    for (int to = 0; to < comm->n_ranks; to++)
+        if (to != comm->rank)
+            control_isend(comm, to, control->abort, true);
+}
+
+static void abort_hear(struct comm *comm, struct data_packet *packet)
+{
+    struct comm_abort *abort = data_payload(packet);
+    char message[sizeof abort->message + 32];
+    abort->message[sizeof abort->message - 1] = '\0';
+    snprintf(message, sizeof message, "rank %u: %s", packet->key.slot, abort->message);
+    comm->control.heard++;
+    if (abort->entered > comm->control.entered)
+        comm->control.entered = abort->entered;
+    comm_broke(comm, abort->code, message);
+}
+
+bool comm_is_quiet(struct comm *comm)
+{
+    if (!comm_try_lock(comm))
+        return false;
+    bool quiet = comm->control.aborts && comm->control.heard == comm->n_ranks - 1 &&
+                 !comm->sends.n && !comm->receives.n && control_sent(comm);
+    comm_unlock(comm);
+    return quiet;
+}
+
+/* ---- Requests for tasks ---- */
+
+bool comm_request(struct comm *comm, int rank, unsigned idle, double seconds)
+{
+    struct data_packet *packet = comm_is_broken(comm) ? NULL : data_packet_new(0, true);
+    bool sent = false;
+    if (packet && comm_try_lock(comm)) {
+        packet->kind = COMM_REQUEST;
+        packet->pieces = idle;
+        packet->key.number = (uint64_t)(1e9 * seconds);
+        sent = comm_control_send(comm, rank, packet);
+        comm_unlock(comm); /* what was posted meanwhile is sent by the caller's next poll */
+        atomic_fetch_add_explicit(&comm->control.requested, sent, memory_order_relaxed);
+    } else {
+        data_packet_free(packet);
+    }
+    return sent;
+}
+
+static void request_hear(struct comm *comm, struct data_packet *packet)
+{
+    struct comm_control *control = &comm->control;
+    control->standing[packet->key.slot] = (struct comm_standing){
+        .until = base_seconds() + 1e-9 * (double)packet->key.number, .idle = packet->pieces};
+    atomic_store_explicit(&control->standing_any, 1, memory_order_relaxed);
+}
+
+bool comm_has_requests(struct comm *comm)
+{
+    return atomic_load_explicit(&comm->control.standing_any, memory_order_relaxed);
+}
+
+bool comm_take_request(struct comm *comm, struct comm_requester *requester)
+{
+    struct comm_control *control = &comm->control;
+    double now = base_seconds();
+    bool found = false;
+    if (!comm_try_lock(comm))
+        return false;
+    for (int i = 0; i < comm->n_ranks && !found; i++) {
+        int rank = control->turn = (control->turn + 1) % comm->n_ranks;
+        struct comm_standing *standing = &control->standing[rank];
+        found = standing->until > now;
+        if (found)
+            *requester = (struct comm_requester){rank, standing->idle, standing->until};
+        standing->until = 0;
+    }
+    if (!found)
+        atomic_store_explicit(&control->standing_any, 0, memory_order_relaxed);
+    comm_unlock(comm);
+    return found;
+}
+
+void comm_return_request(struct comm *comm, const struct comm_requester *requester)
+{
+    struct comm_standing *standing = &comm->control.standing[requester->rank];
+    if (!comm_try_lock(comm))
+        return; /* that rank will request again */
+    if (standing->until < requester->until)
+        *standing = (struct comm_standing){requester->until, requester->idle};
+    atomic_store_explicit(&comm->control.standing_any, 1, memory_order_relaxed);
+    comm_unlock(comm);
+}
+
+/* ---- The end ---- */
+
+/* Any rank may request tasks of any other; checks go along the tree. */
+static bool last_is_for(const struct comm *comm, int rank)
+{
+    return rank != comm->rank && (comm->may_request || comm_check_joins(comm->rank, rank));
+}
+
+void comm_control_end(struct comm *comm)
+{
+    struct comm_control *control = &comm->control;
+    control->last->kind = COMM_LAST;
+    control->last->key.slot = (uint32_t)comm->rank;
+    for (int to = 0; to < comm->n_ranks && !comm_is_broken(comm); to++)
+        if (last_is_for(comm, to))
+            comm_mpi_ok(comm, control_isend(comm, to, control->last, true), "MPI_Isend");
+}
+
+static void last_hear(struct comm *comm, struct data_packet *packet)
+{
+    (void)packet;
+    comm->control.last_heard++;
+}
+
+bool comm_control_over(struct comm *comm)
+{
+    int expected = 0;
+    for (int from = 0; from < comm->n_ranks; from++)
+        expected += last_is_for(comm, from);
+    return comm->control.last_heard == expected && !comm->receives.n && control_sent(comm);
+}
+
+/* ---- All kinds ---- */
+
+static void check_hear(struct comm *comm, struct data_packet *packet)
+{
+    comm_check_hear(comm, (int)packet->key.slot, data_payload(packet));
+}
+
+static const struct control_kind {
+    uint32_t kind;
+    void (*hear)(struct comm *comm, struct data_packet *packet);
+} CONTROL_KINDS[] = {
+    {COMM_ABORT, abort_hear},
+    {COMM_CHECK, check_hear},
+    {COMM_REQUEST, request_hear},
+    {COMM_LAST, last_hear},
+};
+
+bool comm_control_hear(struct comm *comm, struct data_packet *packet)
+{
+    for (size_t i = 0; i < sizeof CONTROL_KINDS / sizeof *CONTROL_KINDS; i++)
+        if (packet->kind == CONTROL_KINDS[i].kind) {
+            CONTROL_KINDS[i].hear(comm, packet);
+            return true;
+        }
+    return false;
+}
+
+void comm_control_pass(struct comm *comm)
+{
+    control_sent(comm);
+    if (!comm_is_broken(comm))
+        comm_check_pass(comm);
+    abort_send(comm);
+}

@@ -1,0 +1,182 @@
+/* An entry of the log is written before `made` counts it and stays until all ranks agreed on it. A
+ * rank that has not heard of the last agreement yet may see entries of the log after it: there is
+ * room for the entries of two logs. */
+#include "runtime/comm/divergence.h"
+
+#include "runtime/base/clock.h"
+#include "runtime/base/memory.h"
+#include "runtime/comm/internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define PATIENCE_SECONDS 0.2
+
+enum { SEEN_CALLS = 2 * COMM_LOGGED_CALLS };
+
+bool comm_calls_start(struct comm_calls *calls)
+{
+    calls->log = base_alloc_zero(COMM_LOGGED_CALLS * sizeof *calls->log);
+    calls->seen = base_alloc_zero(SEEN_CALLS * sizeof *calls->seen);
+    return calls->log && calls->seen;
+}
+
+void comm_calls_stop(struct comm_calls *calls)
+{
+    base_free(calls->log);
+    base_free(calls->seen);
+}
+
+/* ---- The log ---- */
+
+static struct comm_called *call_logged(struct comm_calls *calls, uint64_t number)
+{
+    return &calls->log[number % COMM_LOGGED_CALLS];
+}
+
+bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint)
+{
+    struct comm_calls *calls = &comm->calls;
+    uint64_t number = atomic_load_explicit(&calls->made, memory_order_relaxed) + 1;
+    struct comm_called *call = call_logged(calls, number);
+    *call = (struct comm_called){.number = number,
+                                 .fingerprint = fingerprint,
+                                 .homes = comm->graph->table.homes,
+                                 .rank = comm->rank};
+    snprintf(call->name, sizeof call->name, "%s", name);
+    atomic_store_explicit(&calls->made, number, memory_order_release);
+    return number - atomic_load_explicit(&calls->agreed, memory_order_relaxed) == COMM_LOGGED_CALLS;
+}
+
+void comm_calls_agreed(struct comm *comm)
+{
+    atomic_store_explicit(&comm->calls.agreed,
+                          atomic_load_explicit(&comm->calls.made, memory_order_relaxed),
+                          memory_order_relaxed);
+}
+
+void comm_waits(struct comm *comm, bool waits)
+{
+    struct comm_calls *calls = &comm->calls;
+    uint64_t number = waits ? atomic_load_explicit(&calls->made, memory_order_relaxed) : 0;
+    atomic_store_explicit(&calls->waits, number, memory_order_release);
+}
+
+/* ---- The tree ---- */
+
+static int tree_parent(int rank)
+{
+    return rank & (rank - 1);
+}
+
+bool comm_check_joins(int a, int b)
+{
+    return a != b && (a < b ? tree_parent(b) == a : tree_parent(a) == b);
+}
+
+static void check_send(struct comm *comm, int to, const struct comm_called *call)
+{
+    struct data_packet *packet = data_packet_new(sizeof *call, true);
+    if (!packet) {
+        comm_broke_memory(comm, "a control message");
+        return;
+    }
+    packet->kind = COMM_CHECK;
+    memcpy(data_payload(packet), call, sizeof *call);
+    comm_control_send(comm, to, packet);
+}
+
+/* To all neighbours but one. */
+static void check_pass_on(struct comm *comm, int from, const struct comm_called *call)
+{
+    int rank = comm->rank;
+    if (rank && tree_parent(rank) != from)
+        check_send(comm, tree_parent(rank), call);
+    for (int bit = 1; rank + bit < comm->n_ranks && !(rank & bit); bit <<= 1)
+        if (rank + bit != from)
+            check_send(comm, rank + bit, call);
+}
+
+/* ---- Comparing ---- */
+
+void comm_homes_differ(struct comm *comm, int a, int b)
+{
+    char message[300];
+    snprintf(message, sizeof message,
+             "the mapping gave objects other homes on rank %d than on rank %d: its function `map` "
+             "must write the same homes on every rank, and may not look at the rank, the time or "
+             "the machine",
+             a, b);
+    comm_broke(comm, DUITE_E_DIFFERENT, message);
+}
+
+/* Breaks if two ranks' calls of one number are different. */
+static void call_compare(struct comm *comm, const struct comm_called *a,
+                         const struct comm_called *b)
+{
+    char message[300];
+    if (a->fingerprint == b->fingerprint && !strcmp(a->name, b->name)) {
+        if (a->homes != b->homes)
+            comm_homes_differ(comm, a->rank, b->rank);
+        return;
+    }
+    snprintf(message, sizeof message,
+             "ranks %d and %d forked different tasks, made different objects, or made different "
+             "calls: the blocking call of number %llu is %s on rank %d and %s on rank %d",
+             a->rank, b->rank, (unsigned long long)a->number, a->name, a->rank, b->name, b->rank);
+    comm_broke(comm, DUITE_E_DIFFERENT, message);
+}
+
+/* An entry of this rank itself, or one that `from` sent. */
+static void check_see(struct comm *comm, int from, const struct comm_called *call)
+{
+    struct comm_calls *calls = &comm->calls;
+    struct comm_called *seen = &calls->seen[call->number % SEEN_CALLS];
+    if (call->number <= atomic_load_explicit(&calls->agreed, memory_order_relaxed))
+        return;
+    if (seen->number == call->number) {
+        call_compare(comm, seen, call);
+        return;
+    }
+    *seen = *call;
+    if (call->number > calls->last_seen)
+        calls->last_seen = call->number;
+    if (call->number <= calls->compared)
+        call_compare(comm, call_logged(calls, call->number), call);
+    check_pass_on(comm, from, call);
+}
+
+void comm_check_hear(struct comm *comm, int from, const struct comm_called *theirs)
+{
+    if (!comm_is_broken(comm))
+        check_see(comm, from, theirs);
+}
+
+/* Calls that this rank made since the last time. */
+static void check_new_calls(struct comm *comm)
+{
+    struct comm_calls *calls = &comm->calls;
+    uint64_t made = atomic_load_explicit(&calls->made, memory_order_acquire);
+    uint64_t agreed = atomic_load_explicit(&calls->agreed, memory_order_relaxed);
+    uint64_t last = calls->last_seen < made ? calls->last_seen : made;
+    for (uint64_t n = 1 + (agreed > calls->compared ? agreed : calls->compared); n <= last; n++)
+        if (calls->seen[n % SEEN_CALLS].number == n)
+            call_compare(comm, call_logged(calls, n), &calls->seen[n % SEEN_CALLS]);
+    calls->compared = made;
+}
+
+void comm_check_pass(struct comm *comm)
+{
+    struct comm_calls *calls = &comm->calls;
+    uint64_t number = atomic_load_explicit(&calls->waits, memory_order_acquire);
+    check_new_calls(comm);
+    if (!number || calls->seen[number % SEEN_CALLS].number == number)
+        return;
+    double now = base_seconds();
+    if (number != calls->waited) {
+        calls->waited = number;
+        calls->since = now;
+    } else if (now - calls->since > PATIENCE_SECONDS) {
+        check_see(comm, comm->rank, call_logged(calls, number));
+    }
+}

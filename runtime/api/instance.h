@@ -87,9 +87,13 @@ void program_throttle(duite *rt);
 /* Waits until all ranks made this call, found that they forked the same, and have no task left that
  * was forked before it. */
 int program_meet(duite *rt, const char *call);
-/* Exchanges words: own, whose head is filled in; *words, one a rank. There are several ranks. */
-int program_agree(duite *rt, const struct work_why *why, struct comm_word *own,
-                  struct comm_word **words);
+/* One reduction over all ranks: own, whose head is filled in here, gets the first failure's number.
+ * There are several ranks. Errors: as comm_agree. */
+int program_agree(duite *rt, const struct work_why *why, struct comm_word *own);
+/* Gathers words: own, whose head is filled in; *words, one a rank. All ranks have agreed on the
+ * call that this is a part of. */
+int program_gather(duite *rt, const struct work_why *why, struct comm_word *own,
+                   struct comm_word **words);
 /* ---- migrate.c ---- */
 
 /* The `replay`-th replay of a recorded graph begins, from 0: if it is time, blocks of objects move

@@ -132,7 +132,7 @@ static size_t migration_part_end(size_t all, size_t at)
 static int migration_exchange(struct migration *m, struct comm_word *own, struct comm_word **words)
 {
     static const struct work_why why = {"duite_replay", "the other ranks to move blocks", NULL};
-    return program_agree(m->rt, &why, own, words);
+    return program_gather(m->rt, &why, own, words);
 }
 
 static int migration_gather(struct migration *m)

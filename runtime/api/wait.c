@@ -38,13 +38,19 @@ static struct comm_word own_word(const struct task_graph *graph)
     return own;
 }
 
-int program_agree(duite *rt, const struct work_why *why, struct comm_word *own,
-                  struct comm_word **words)
+/* A collective call begins; other ranks may not come to it, which the divergence check finds. */
+static void collective_begin(duite *rt, const struct work_why *why, struct comm_word *own)
 {
     own->forks = rt->graph.root.forks;
     own->fingerprint = rt->graph.fingerprint;
     work_waits(rt->pool, why);
-    int code = comm_agree(rt->comm, own, words, between, rt->pool);
+    comm_waits(rt->comm, true);
+}
+
+/* Returns the code. */
+static int collective_end(duite *rt, int code)
+{
+    comm_waits(rt->comm, false);
     work_waits(rt->pool, NULL);
     work_idle_ends(rt->pool);
     if (code)
@@ -52,22 +58,30 @@ int program_agree(duite *rt, const struct work_why *why, struct comm_word *own,
     return code;
 }
 
-static int agree(duite *rt, const struct work_why *why, struct comm_word **words)
+int program_agree(duite *rt, const struct work_why *why, struct comm_word *own)
 {
-    struct comm_word own = own_word(&rt->graph);
-    return program_agree(rt, why, &own, words);
+    collective_begin(rt, why, own);
+    return collective_end(rt, comm_agree(rt->comm, own, between, rt->pool));
+}
+
+int program_gather(duite *rt, const struct work_why *why, struct comm_word *own,
+                   struct comm_word **words)
+{
+    collective_begin(rt, why, own);
+    return collective_end(rt, comm_gather(rt->comm, own, words, between, rt->pool));
 }
 
 /* This rank makes a call that blocks, as all do. */
 static int enter_blocking(duite *rt, const char *call)
 {
-    struct comm_word *words;
+    struct comm_word own = {0};
     if (!rt->comm)
         return DUITE_OK;
     for (const char *c = call; *c; c++)
         task_mix(&rt->graph, (unsigned char)*c);
     const struct work_why why = {call, "the other ranks to come to it", NULL};
-    return comm_call(rt->comm, call, rt->graph.fingerprint) ? agree(rt, &why, &words) : DUITE_OK;
+    return comm_call(rt->comm, call, rt->graph.fingerprint) ? program_agree(rt, &why, &own)
+                                                            : DUITE_OK;
 }
 
 /* Works until the copy is there. */
@@ -163,20 +177,6 @@ static const struct data_failure *first_failure(const struct comm_word *words, i
     return first ? &first->failure : NULL;
 }
 
-int program_meet(duite *rt, const char *call)
-{
-    struct comm_word *words;
-    work_tick(rt->pool);
-    /* Before anything is waited for: did all ranks fork the same? */
-    int code = enter_blocking(rt, "duite_wait");
-    if (rt->comm && !code)
-        code = agree(rt, &(struct work_why){call, "the other ranks to come to it", NULL}, &words);
-    if (!code)
-        work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, drained,
-                   rt->pool);
-    return code;
-}
-
 /* No task's: after all that are. */
 #define POLICY_FAILED UINT64_MAX
 
@@ -194,6 +194,49 @@ static struct comm_word last_word(const duite *rt)
     return own;
 }
 
+/* Ranks that forked different tasks may wait here for what nobody sends: the divergence check finds
+ * it. */
+static int await_own_tasks(duite *rt, const char *call)
+{
+    work_tick(rt->pool);
+    int code = enter_blocking(rt, "duite_wait");
+    if (code)
+        return code;
+    if (rt->comm)
+        comm_waits(rt->comm, true);
+    work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, drained,
+               rt->pool);
+    if (rt->comm)
+        comm_waits(rt->comm, false);
+    return DUITE_OK;
+}
+
+int program_meet(duite *rt, const char *call)
+{
+    struct comm_word own = {0};
+    const struct work_why why = {call, "the tasks of other ranks", NULL};
+    const int code = await_own_tasks(rt, call);
+    return code || !rt->comm ? code : program_agree(rt, &why, &own);
+}
+
+/* All ranks have ended their tasks; *words, one a rank, are gathered only if something failed. */
+static int meet_and_tell(duite *rt, const char *call, struct comm_word *own,
+                         struct comm_word **words)
+{
+    const struct work_why why = {call, "the tasks of other ranks", NULL};
+    int code = await_own_tasks(rt, call);
+    if (code)
+        return code;
+    *own = last_word(rt);
+    if (!rt->comm)
+        return DUITE_OK;
+    struct comm_word first = *own;
+    code = program_agree(rt, &why, &first);
+    if (code || !first.failed)
+        return code;
+    return program_gather(rt, &why, own, words);
+}
+
 int program_wait(duite *rt, const char *call)
 {
     struct duite_call_private *body = inside_body(rt);
@@ -202,17 +245,14 @@ int program_wait(duite *rt, const char *call)
     int code = program_enter(rt, call);
     if (code)
         return code;
-    struct task_graph *graph = &rt->graph;
-    code = program_meet(rt, call);
+    struct comm_word own, *words = NULL;
+    code = meet_and_tell(rt, call, &own, &words);
     if (code)
-        return code;
-    struct comm_word own = last_word(rt), *words = &own;
-    const struct work_why why = {call, "the tasks of other ranks", NULL};
-    if (rt->comm && (code = program_agree(rt, &why, &own, &words)))
         return code;
     work_idle_ends(rt->pool);
     code = recall(rt);
-    const struct data_failure *failure = first_failure(words, graph->n_ranks);
+    const struct data_failure *failure =
+        words ? first_failure(words, rt->graph.n_ranks) : first_failure(&own, 1);
     if (code || !failure)
         return code;
     if (failure->number == POLICY_FAILED)
@@ -220,8 +260,8 @@ int program_wait(duite *rt, const char *call)
                           "scheduler %s names victims without an end (seen on rank %d): its victim "
                           "has to return DUITE_NO_QUEUE at last",
                           failure->text, failure->rank);
-    task_first_failure(&graph->root); /* told */
-    return task_failure_error(graph, failure);
+    task_first_failure(&rt->graph.root); /* told */
+    return task_failure_error(&rt->graph, failure);
 }
 
 int duite_wait(duite *rt)
@@ -255,6 +295,9 @@ int duite_count_all(duite *rt, duite_counters *counters)
     word.forks = rt->graph.root.forks;
     word.fingerprint = rt->graph.fingerprint;
     work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
+    struct comm_word agreed = word;
+    if (rt->comm && !code)
+        code = comm_agree(rt->comm, &agreed, between, rt->pool);
     if (rt->comm && !code)
         code = comm_sum(rt->comm, &word, 13, between, rt->pool);
     work_waits(rt->pool, NULL);

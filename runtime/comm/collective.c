@@ -1,23 +1,38 @@
-/* Collective calls of the main thread, all of one kind: words are gathered. A rank leaves a call
- * before it is over when communication broke; MPI goes on using the buffers, which therefore are
- * the comm's own, and at stop the ranks that did not come to it join it after all. */
+/* Collective calls of the main thread. There are two kinds: a small reduction, by which all ranks
+ * find whether they forked the same, and a gathering of words, which only follows a reduction that
+ * told all ranks alike to gather. So ranks that run different programs are in the same kind of call
+ * nevertheless.
+ *
+ * A rank leaves a call before it is over when communication broke; MPI goes on using the buffers,
+ * which therefore are the comm's own. No rank is more than one call ahead of another: at stop the
+ * ranks that did not come to the last one join it after all, in the kind that the abort message
+ * tells. */
 #include "runtime/base/error.h"
 #include "runtime/comm/internal.h"
 
 #include <stdio.h>
 
+/* ---- Entering and waiting ---- */
+
 /* Under the lock. */
-static bool enter(struct comm *comm)
+static bool collective_enter(struct comm *comm, bool gathers)
 {
     struct comm_word *own = &comm->words[comm->n_ranks];
     comm->entered++;
-    int mpi = MPI_Iallgather(own, sizeof *own, MPI_BYTE, comm->words, sizeof *own, MPI_BYTE,
-                             comm->mpi, &comm->request);
-    return comm_mpi_ok(comm, mpi, "MPI_Iallgather");
+    comm->gathers = gathers;
+    if (gathers)
+        return comm_mpi_ok(comm,
+                           MPI_Iallgather(own, sizeof *own, MPI_BYTE, comm->words, sizeof *own,
+                                          MPI_BYTE, comm->mpi, &comm->request),
+                           "MPI_Iallgather");
+    return comm_mpi_ok(comm,
+                       MPI_Iallreduce(&comm->own, &comm->most, COMM_REDUCED, MPI_UINT64_T, MPI_MAX,
+                                      comm->mpi, &comm->request),
+                       "MPI_Iallreduce");
 }
 
 /* Takes the lock, or false if communication broke meanwhile. */
-static bool lock(struct comm *comm, void (*between)(void *), void *context)
+static bool collective_lock(struct comm *comm, void (*between)(void *), void *context)
 {
     while (!comm_try_lock(comm))
         between(context);
@@ -27,36 +42,13 @@ static bool lock(struct comm *comm, void (*between)(void *), void *context)
     return false;
 }
 
-static void tell_difference(struct comm *comm, int rank)
-{
-    const struct comm_word *words = comm->words;
-    char sentence[200];
-    snprintf(
-        sentence, sizeof sentence,
-        "ranks 0 and %d forked different tasks, or made different objects, since the last wait "
-        "(%llu and %llu tasks since start)",
-        rank, (unsigned long long)words[0].forks, (unsigned long long)words[rank].forks);
-    comm_broke(comm, DUITE_E_DIFFERENT, sentence);
-}
-
-/* Under the lock, all words are there: did all ranks fork the same? */
-static void settle(struct comm *comm)
-{
-    const struct comm_word *words = comm->words;
-    for (int i = 0; i < comm->n_ranks; i++) {
-        if (words[i].fingerprint != words[0].fingerprint)
-            tell_difference(comm, i);
-        else if (words[i].homes != words[0].homes)
-            comm_homes_differ(comm, 0, i);
-    }
-    comm_calls_agreed(comm);
-}
-
-/* Gathers the words; runs `between` until they are there. The lock is held, and let go. */
-static int gather(struct comm *comm, void (*between)(void *), void *context)
+/* Enters, and runs `between` until the call is over; then `settle`. The lock is held, and let go.
+ */
+static int collective_run(struct comm *comm, bool gathers, void (*settle)(struct comm *),
+                          void (*between)(void *), void *context)
 {
     int done = 0;
-    bool fine = enter(comm);
+    bool fine = collective_enter(comm, gathers);
     comm_unlock(comm);
     while (fine && !done && !comm_is_broken(comm)) {
         if (comm_try_lock(comm)) {
@@ -72,43 +64,103 @@ static int gather(struct comm *comm, void (*between)(void *), void *context)
     return comm_broken(comm);
 }
 
-static void put_word(struct comm *comm, const struct comm_word *own)
+/* ---- Words ---- */
+
+static void words_put(struct comm *comm, const struct comm_word *own)
 {
     struct comm_word *word = &comm->words[comm->n_ranks];
     *word = *own;
     word->homes = comm->graph->table.homes;
 }
 
-int comm_agree(struct comm *comm, const struct comm_word *own, struct comm_word **all,
-               void (*between)(void *context), void *context)
+static void words_differ(struct comm *comm, int rank)
+{
+    const struct comm_word *words = comm->words;
+    char message[200];
+    snprintf(
+        message, sizeof message,
+        "ranks 0 and %d forked different tasks, or made different objects, since the last wait "
+        "(%llu and %llu tasks since start)",
+        rank, (unsigned long long)words[0].forks, (unsigned long long)words[rank].forks);
+    comm_broke(comm, DUITE_E_DIFFERENT, message);
+}
+
+/* Under the lock, all words are there: did all ranks fork the same? */
+static void words_settle(struct comm *comm)
+{
+    const struct comm_word *words = comm->words;
+    for (int i = 0; i < comm->n_ranks; i++)
+        if (words[i].fingerprint != words[0].fingerprint)
+            words_differ(comm, i);
+        else if (words[i].homes != words[0].homes)
+            comm_homes_differ(comm, 0, i);
+}
+
+int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word **all,
+                void (*between)(void *context), void *context)
 {
     *all = comm->words;
-    if (!lock(comm, between, context))
+    if (!collective_lock(comm, between, context))
         return comm_broken(comm);
-    put_word(comm, own);
-    return gather(comm, between, context);
+    words_put(comm, own);
+    return collective_run(comm, true, words_settle, between, context);
 }
 
 int comm_sum(struct comm *comm, struct comm_word *word, int n, void (*between)(void *context),
              void *context)
 {
-    if (!lock(comm, between, context))
-        return comm_broken(comm);
-    put_word(comm, word);
-    int code = gather(comm, between, context);
+    struct comm_word *words;
+    int code = comm_gather(comm, word, &words, between, context);
     if (code)
         return code;
     for (int i = 0; i < n; i++)
         word->sums[i] = 0;
     for (int rank = 0; rank < comm->n_ranks; rank++)
         for (int i = 0; i < n; i++)
-            word->sums[i] += comm->words[rank].sums[i];
+            word->sums[i] += words[rank].sums[i];
+    return DUITE_OK;
+}
+
+/* ---- Agreeing ---- */
+
+/* All ranks have the same: the largest is the smallest. */
+static bool reduced_are_same(const struct comm *comm)
+{
+    const struct comm_reduced *most = &comm->most;
+    return most->fingerprint == ~most->not_fingerprint && most->homes == ~most->not_homes;
+}
+
+/* Under the lock. */
+static void reduced_settle(struct comm *comm)
+{
+    if (reduced_are_same(comm))
+        comm_calls_agreed(comm);
+}
+
+int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
+               void *context)
+{
+    struct comm_word *words;
+    const uint64_t homes = comm->graph->table.homes;
+    if (!collective_lock(comm, between, context))
+        return comm_broken(comm);
+    comm->own = (struct comm_reduced){.fingerprint = own->fingerprint,
+                                      .not_fingerprint = ~own->fingerprint,
+                                      .homes = homes,
+                                      .not_homes = ~homes,
+                                      .failed = 0 - own->failed};
+    int code = collective_run(comm, false, reduced_settle, between, context);
+    if (code)
+        return code;
+    if (!reduced_are_same(comm))
+        return comm_gather(comm, own, &words, between, context); /* breaks: words differ */
+    own->failed = 0 - comm->most.failed;
     return DUITE_OK;
 }
 
 void comm_catch_up(struct comm *comm)
 {
     MPI_Wait(&comm->request, MPI_STATUS_IGNORE);
-    while (comm->entered < comm->control.entered && enter(comm))
+    while (comm->entered < comm->control.entered && collective_enter(comm, comm->control.gathers))
         MPI_Wait(&comm->request, MPI_STATUS_IGNORE);
 }

@@ -117,7 +117,7 @@ void comm_waits(struct comm *comm, bool waits);
 
 enum { COMM_MOST_SUMS = sizeof(struct data_failure) / sizeof(double) };
 
-/* What the ranks tell one another when they wait for all: each its own, `all` one a rank. */
+/* What a rank tells the others in a collective call. */
 struct comm_word {
     uint64_t forks, fingerprint, homes; /* to be the same on all; homes is set by the comm */
     uint64_t failed; /* number + 1 of this rank's first failed task in fork order, or 0 */
@@ -127,13 +127,19 @@ struct comm_word {
     };
 };
 
-/* Exchanges words; *all, one a rank, is the comm's and good until the next call. Calls
- * between(context) while it waits, so that others get on. DUITE_E_DIFFERENT if the fingerprints
- * differ: then communication is broken. Collective, main thread. */
-int comm_agree(struct comm *comm, const struct comm_word *own, struct comm_word **all,
-               void (*between)(void *context), void *context);
+/* One small reduction: have all ranks forked what own->fingerprint says, and do they have the same
+ * homes? own->failed becomes that of the first failed task of all ranks, or 0. Calls
+ * between(context) while it waits, so that others get on. DUITE_E_DIFFERENT if ranks differ: then
+ * words were gathered to find which, and communication is broken. Collective, main thread. */
+int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
+               void *context);
 
-/* Sums the first n <= COMM_MOST_SUMS `sums` of the words over all ranks, in place. As comm_agree.
+/* Gathers words; *all, one a rank, is the comm's and good until the next call. All ranks agreed on
+ * this call before (comm_agree). As comm_agree. */
+int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word **all,
+                void (*between)(void *context), void *context);
+
+/* Sums the first n <= COMM_MOST_SUMS `sums` of the words over all ranks, in place. As comm_gather.
  */
 int comm_sum(struct comm *comm, struct comm_word *word, int n, void (*between)(void *context),
              void *context);

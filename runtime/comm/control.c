@@ -129,6 +129,7 @@ static void abort_send(struct comm *comm)
     control->abort->kind = COMM_ABORT;
     control->abort->key.slot = (uint32_t)comm->rank;
     comm->reason.entered = comm->entered;
+    comm->reason.gathers = comm->gathers;
     memcpy(data_payload(control->abort), &comm->reason, sizeof comm->reason);
     for (int to = 0; to < comm->n_ranks; to++)
         if (to != comm->rank)
@@ -142,8 +143,10 @@ static void abort_hear(struct comm *comm, struct data_packet *packet)
     abort->message[sizeof abort->message - 1] = '\0';
     snprintf(message, sizeof message, "rank %u: %s", packet->key.slot, abort->message);
     comm->control.heard++;
-    if (abort->entered > comm->control.entered)
+    if (abort->entered > comm->control.entered) {
         comm->control.entered = abort->entered;
+        comm->control.gathers = abort->gathers;
+    }
     comm_broke(comm, abort->code, message);
 }
 

@@ -25,7 +25,8 @@ enum comm_kind {
 struct comm_abort {
     uint64_t entered; /* collective calls so far */
     int32_t code;
-    char message[1012];
+    int32_t gathers; /* the last of them gathers words */
+    char message[1008];
 };
 
 /* A request for tasks stands at the rank that got it until a task is granted or its time is over; a
@@ -43,6 +44,7 @@ struct comm_control {
     bool aborts;               /* the abort messages are sent */
     int heard;                 /* abort messages */
     uint64_t entered;          /* the most collective calls that an abort message told of */
+    bool gathers;              /* the last of these gathers words */
     int last_heard;
     struct comm_standing *standing; /* by rank */
     int turn;                       /* whose request is looked at next */

@@ -14,6 +14,13 @@
 /* Tags: of packets, of heartbeats, and from the last one on of channels. */
 enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_CHANNELS };
 
+/* What a small reduction takes the largest of; complements make it the smallest as well. */
+struct comm_reduced {
+    uint64_t fingerprint, not_fingerprint, homes, not_homes;
+    uint64_t failed; /* minus comm_word.failed: the first failed task of all ranks, or 0 */
+};
+enum { COMM_REDUCED = sizeof(struct comm_reduced) / sizeof(uint64_t) };
+
 struct comm {
     MPI_Comm mpi;
     MPI_Datatype line; /* 64 bytes: see data_packet_lines */
@@ -35,6 +42,8 @@ struct comm {
     bool open, may_request;                 /* comm_open was called; with requests */
     double latency, per_byte;               /* seconds: of the slowest link measured */
     uint64_t entered;                       /* collective calls */
+    bool gathers;                           /* the last of them gathers words */
+    struct comm_reduced own, most;          /* of the last reduction */
     MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words;                /* one a rank, and this rank's own */
     _Atomic uint64_t messages, bytes, came; /* the last one: received */

@@ -1,4 +1,5 @@
-/* How many control messages a check of the ranks takes. MPI's calls are counted on their way to MPI. */
+/* How many control messages a check of the ranks takes. MPI's calls are counted on their way to
+ * MPI. */
 #include "runtime/data/packet.h"
 #include "tests/negative/misuse.h"
 
@@ -89,6 +90,15 @@ static void check(duite *rt, duite_object object, int maker, int late)
     tap_case(!code && value > 0 && (ranks == 1 || sent > 0) && sent <= bound, line);
 }
 
+/* A wait is one small reduction; what failed is gathered only where something did. */
+static void reduce(duite *rt)
+{
+    collectives = bytes = 0;
+    const int code = duite_wait(rt);
+    tap_case(!code && collectives == (ranks > 1) && bytes <= 64,
+             "a wait: one collective call of at most 64 bytes");
+}
+
 int main(void)
 {
     duite_options options;
@@ -107,6 +117,7 @@ int main(void)
     duite_get(rt, object, &value);
     check(rt, object, 0, -1);
     check(rt, object, ranks - 1, 0);
+    reduce(rt);
     duite_free(rt, object);
     tap_case(duite_stop(&rt) == DUITE_OK, "and nothing is left at stop");
     return tap_done();

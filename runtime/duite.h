@@ -192,17 +192,17 @@ typedef struct duite_kernel {
     const char *name;
     duite_body *body;
     duite_mode access[DUITE_MAX_ACCESS]; /* modes of the first parameters, ended by DUITE_NONE */
-    duite_mode rest;  /* mode of any number of further ones; DUITE_NONE: none allowed */
-    size_t args_size; /* bytes of arguments, copied at the fork; no pointers inside */
+    duite_mode variadic; /* mode of any number of further ones; DUITE_NONE: none allowed */
+    size_t args_size;    /* bytes of arguments, copied at the fork; no pointers inside */
     int side_effects; /* 1: does more than write its parameters (files): checking mode runs it once
                        */
-    int stays; /* 1: its tasks run where duite_fork says, on no other rank, and an object that one
+    int fixed; /* 1: its tasks run where duite_fork says, on no other rank, and an object that one
                   of them ran for keeps its home: for bodies that need what only that rank's
                   context has */
     const duite_law
-        *law[DUITE_MAX_ACCESS]; /* of the parameters with DUITE_CW or CWP; NULL: duite_sum */
-    const duite_law *rest_law;  /* if rest is DUITE_CW or CWP; NULL: duite_sum */
-    int replicated;             /* 1: a task of the main program runs on every rank, see below */
+        *law[DUITE_MAX_ACCESS];    /* of the parameters with DUITE_CW or CWP; NULL: duite_sum */
+    const duite_law *variadic_law; /* if variadic is DUITE_CW or CWP; NULL: duite_sum */
+    int replicated;                /* 1: a task of the main program runs on every rank, see below */
 } duite_kernel;
 
 /* Replicated kernels: for small results that every rank needs, such as the scalars of an iteration.
@@ -274,7 +274,7 @@ const char *const *duite_balancer_names(void);
  * tasks, one at a time and ever less often, and is given some whose bodies are thought to take
  * longer than the way of their inputs there and of their outputs back. Tasks that may go are those
  * whose fork named no rank and whose kernel postpones nothing, has no side effects and does not say
- * `stays`; in recorded graphs, those of rounds that are forked. Such a body runs wherever there is
+ * `fixed`; in recorded graphs, those of rounds that are forked. Such a body runs wherever there is
  * time: what it finds by its context must serve there, too, and be there before the first such fork
  * of any rank (after a duite_wait that follows it on all of them). Results and failures are the
  * same; a failure names the rank on which the body ran. `scatter` sends leaves anywhere, for tests.
@@ -286,7 +286,7 @@ const char *const *duite_balancer_names(void);
  * and only there: of the second one (duite_replay and duite_replay_while, of any graph), and then
  * ever less often while nothing moves. Such a replay waits, like duite_wait, for all tasks forked
  * so far, on all ranks. Recorded graphs stay as they are; what a rank has of objects that leave is
- * freed. Objects keep their home if a task of a kernel that says `stays` ran for them; tasks whose
+ * freed. Objects keep their home if a task of a kernel that says `fixed` ran for them; tasks whose
  * fork named a rank run there whatever moves. Results are the same. `wander` moves objects, and
  * leaves, anywhere at any replay, for tests. */
 
@@ -388,8 +388,8 @@ int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite
  * bound to it; a view can be bound to an object that the graph does not write (DUITE_E_VIEW).
  *
  * DUITE_E_VIEW: an index is too large; the object is a view itself, or changes its size. Later: a
- * view is used otherwise than under r and rp, or set, hinted, or part of duite_follow; an object is
- * freed before its views (duite_free frees these). DUITE_E_ARGUMENT: n is 0. Main program only.
+ * view is used otherwise than under r and rp, or set, hinted, or part of duite_colocate; an object
+ * is freed before its views (duite_free frees these). DUITE_E_ARGUMENT: n is 0. Main program only.
  * Collective; no communication. */
 int duite_view(duite *rt, duite_object object, size_t n, const size_t *indices, duite_object *view);
 
@@ -429,7 +429,7 @@ int duite_hint(duite *rt, duite_object object, double weight, size_t n,
 
 /* The object gets the home of `leader` (or of its leader in turn), whatever the mapping; counts
  * like a hint. Following in a ring is DUITE_E_ARGUMENT. Collective. */
-int duite_follow(duite *rt, duite_object object, duite_object leader);
+int duite_colocate(duite *rt, duite_object object, duite_object leader);
 
 /* Settles the homes of all objects made so far, as a fork does, and returns the rank that
  * keeps this one; -1 for no such object. The answer holds until the next replay if options.balance
@@ -442,7 +442,7 @@ int duite_home(duite *rt, duite_object object);
  * the arguments take to compute, since the bytes at `args` are read on the rank that runs the task
  * only (in a build function they are copied on all). 1 of what is no object. Settles homes, like
  * duite_home. Collective as that is. */
-int duite_touches(duite *rt, duite_object object);
+int duite_is_local(duite *rt, duite_object object);
 
 /* ---- Tasks ---- */
 
@@ -466,19 +466,19 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
                   const duite_object *objects);
 
 /* How a task is run; what is left out is 0. */
-typedef struct duite_how {
+typedef struct duite_task_options {
     const int *at;    /* the rank that runs it, as of duite_fork_at; NULL: as duite_fork chooses */
     int32_t priority; /* of ready tasks the scheduler `priority` takes the one with the largest */
     double cost;      /* seconds that the body is thought to take; what is not > 0 says nothing */
-} duite_how;
+} duite_task_options;
 
 /* duite_fork, with what the program knows of the task (how NULL: nothing): duite_fork_with(rt,
- * &(duite_how){.priority = 3, .cost = 2e-5}, ...). Priority and cost are handed to schedulers
- * (duite_ready) and never change results; replays of a recorded fork have them, too. They may
- * differ between ranks, as measured costs do: those of the rank that runs the task count. Errors as
- * of duite_fork_at. Collective; returns at once. */
-int duite_fork_with(duite *rt, const duite_how *how, const duite_kernel *kernel, const void *args,
-                    size_t n, const duite_object *objects);
+ * &(duite_task_options){.priority = 3, .cost = 2e-5}, ...). Priority and cost are handed to
+ * schedulers (duite_ready) and never change results; replays of a recorded fork have them, too.
+ * They may differ between ranks, as measured costs do: those of the rank that runs the task count.
+ * Errors as of duite_fork_at. Collective; returns at once. */
+int duite_fork_with(duite *rt, const duite_task_options *how, const duite_kernel *kernel,
+                    const void *args, size_t n, const duite_object *objects);
 
 /* duite_fork with the objects, and a structure of arguments, written out:
  * DUITE_FORK(rt, &AXPY, DUITE_ARGS(struct axpy, .alpha = 2, .first = 7), x, y). In C++ before C++20

@@ -43,11 +43,11 @@ typedef struct duite_ready {
     uint64_t number;    /* its place in fork order */
     /* What its data belong to: the block of the first object it writes (w, rw), else of the first
      * it reads. Objects without leader are numbered on their home in the order they were made, from
-     * 0; those that follow one (duite_follow) are of its block. Of a task that only accumulates:
+     * 0; those that follow one (duite_colocate) are of its block. Of a task that only accumulates:
      * its place in fork order. */
     uint32_t block;
-    /* As given at the fork (duite_how), else 0. Tasks of the runtime itself (sums, copies for
-     * duite_get), which are short and waited for, have the priority INT32_MAX. */
+    /* As given at the fork (duite_task_options), else 0. Tasks of the runtime itself (sums, copies
+     * for duite_get), which are short and waited for, have the priority INT32_MAX. */
     int32_t priority;
     double cost; /* seconds; 0: not said */
     /* Of a task of the program in a replay, if the scheduler asks for it (`paths`): the longest
@@ -124,7 +124,7 @@ typedef struct duite_task_graph {
                               one (< i) of the same round, or any other (>= i) of the round before */
     const double *bytes;   /* start[n]: what it reads of it */
     size_t n_blocks;
-    const unsigned char *stays; /* n_blocks: 1: it must keep its home, see duite_kernel.stays */
+    const unsigned char *fixed; /* n_blocks: 1: it must keep its home, see duite_kernel.fixed */
     int n_ranks;
     const unsigned *workers;              /* a rank */
     double byte_seconds, message_seconds; /* a byte, and a message, from rank to rank, after a
@@ -152,8 +152,8 @@ typedef struct duite_mapping {
 /* ---- Balancers: which ready tasks run on another rank, and which objects move there ---- */
 
 /* A ready task that may run on any rank: a leaf (no parameter of its kernel is postponed) of the
- * main program's or of a tree of tasks, whose fork named no rank and whose kernel neither stays
- * (duite_kernel.stays) nor has side effects. Its inputs travel there and its outputs back. */
+ * main program's or of a tree of tasks, whose fork named no rank and whose kernel is neither fixed
+ * (duite_kernel.fixed) nor has side effects. Its inputs travel there and its outputs back. */
 typedef struct duite_leaf {
     const char *kernel;
     uint64_t number; /* its place in fork order */
@@ -164,16 +164,16 @@ typedef struct duite_leaf {
 } duite_leaf;
 
 /* A rank that asks for tasks, and what there is here. */
-typedef struct duite_asked {
+typedef struct duite_request {
     int rank;       /* who asks */
     unsigned idle;  /* workers there that have nothing to do */
     unsigned ready; /* tasks, leaves or not, that were ready here and found when it was served */
     unsigned given; /* of them to this rank, so far */
-} duite_asked;
+} duite_request;
 
 #define DUITE_NO_RANK (-1)
 
-/* Blocks: objects that live together, a leader and those that follow it (duite_follow); and what
+/* Blocks: objects that live together, a leader and those that follow it (duite_colocate); and what
  * was measured since the last time that the balancer was asked to move them. */
 typedef struct duite_blocks {
     /* n blocks, in the order in which they were made. weight: seconds in the bodies of tasks that
@@ -181,7 +181,7 @@ typedef struct duite_blocks {
      * one block read of the other, in all rounds since then. */
     duite_object_graph graph;
     const size_t *bytes;        /* n: of all its objects, which move with it */
-    const unsigned char *stays; /* n: 1: it must keep its home, see duite_kernel.stays */
+    const unsigned char *fixed; /* n: 1: it must keep its home, see duite_kernel.fixed */
     int n_ranks;
     const double *other;     /* a rank: seconds in all other bodies */
     const unsigned *workers; /* a rank */
@@ -207,7 +207,7 @@ typedef struct duite_balancer {
      * *seconds: for so long the question stands, and nobody else is asked. */
     int (*victim)(void *state, unsigned attempt, int giver, double *seconds);
     /* Whether the leaf goes to the rank that asks. Needed with victim. */
-    int (*give)(void *state, const duite_asked *asked, const duite_leaf *leaf);
+    int (*give)(void *state, const duite_request *asked, const duite_leaf *leaf);
     /* The rank on which a leaf that just became ready runs, asked for or not; the own one: here. */
     int (*place)(void *state, const duite_leaf *leaf);
     /* Moves blocks: home[n] has their homes, and those that are changed move, with all their

@@ -31,12 +31,12 @@ static int make_ring(struct tasks_session *session, struct ring *ring, bool spre
     if (!code)
         code = tasks_objects(session, DUITE_I64, 1, POINTS, ring->object[1]);
     for (size_t i = 0; i < POINTS && !code; i++) {
-        code = tasks_code(duite_follow(session->rt, ring->object[1][i], ring->object[0][i]));
+        code = tasks_code(duite_colocate(session->rt, ring->object[1][i], ring->object[0][i]));
         if (!code && i)
             code = tasks_code(
                 spread ? duite_hint(session->rt, ring->object[0][i], 1, 1, &ring->object[0][i - 1],
                                     NULL)
-                       : duite_follow(session->rt, ring->object[0][i], ring->object[0][0]));
+                       : duite_colocate(session->rt, ring->object[0][i], ring->object[0][0]));
     }
     return code;
 }

@@ -80,7 +80,7 @@ static int build(duite *rt, void *context)
 static void hint(struct ring *ring, bool told)
 {
     for (int i = 0; i < BLOCKS; i++) {
-        duite_follow(ring->rt, ring->block[1][i], ring->block[0][i]);
+        duite_colocate(ring->rt, ring->block[1][i], ring->block[0][i]);
         duite_hint(ring->rt, ring->block[0][i], told && i < BLOCKS / 2 ? 3 : 1, 0, NULL, NULL);
         duite_hint(ring->rt, ring->block[1][i], 0, 0, NULL, NULL);
     }

@@ -62,7 +62,7 @@ static int work(const duite_call *call)
 static const duite_kernel WORK = {.name = "work",
                                   .body = work,
                                   .access = {DUITE_W},
-                                  .rest = DUITE_R,
+                                  .variadic = DUITE_R,
                                   .args_size = sizeof(struct work)};
 
 static int build(duite *rt, void *context)
@@ -77,7 +77,8 @@ static int build(duite *rt, void *context)
         size_t n = 1;
         for (size_t k = graph->start[i]; k < graph->start[i + 1]; k++)
             objects[n++] = command->object[graph->from[k]];
-        code = duite_fork_with(rt, &(duite_how){.cost = graph->cost[i]}, &WORK, &args, n, objects);
+        code = duite_fork_with(rt, &(duite_task_options){.cost = graph->cost[i]}, &WORK, &args, n,
+                               objects);
     }
     free(objects);
     return code;
@@ -119,7 +120,7 @@ static int follow(const struct command *command, duite *rt)
         if (place == SWEEP_NO_PLACE)
             continue;
         if (first[place])
-            code = duite_follow(rt, command->object[i], command->object[first[place] - 1]);
+            code = duite_colocate(rt, command->object[i], command->object[first[place] - 1]);
         else
             first[place] = i + 1;
     }

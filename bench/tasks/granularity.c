@@ -137,7 +137,7 @@ static int point(const duite_call *call)
 const duite_kernel tasks_granularity_point = {.name = "granularity_point",
                                               .body = point,
                                               .access = {DUITE_W, DUITE_R},
-                                              .rest = DUITE_R,
+                                              .variadic = DUITE_R,
                                               .args_size = sizeof(struct point_args)};
 
 struct line {
@@ -194,7 +194,7 @@ static int place(duite *rt, const struct line *line)
     const duite_object *point = line->object;
     int code = 0;
     for (size_t i = 0; i < line->points; i++) {
-        code |= duite_follow(rt, point[line->points + i], point[i]);
+        code |= duite_colocate(rt, point[line->points + i], point[i]);
         if (i)
             code |= duite_hint(rt, point[i], 1, 1, &point[i - 1], NULL);
     }

@@ -19,7 +19,7 @@ static uint64_t start_hash_kernels(const struct task_graph *graph)
         uint64_t args_size = k->args_size;
         hash = XXH64(k->name, strlen(k->name) + 1, hash);
         hash = XXH64(k->access, sizeof k->access, hash);
-        hash = XXH64(&k->rest, sizeof k->rest, hash);
+        hash = XXH64(&k->variadic, sizeof k->variadic, hash);
         uint64_t replicated = k->replicated != 0;
         hash = XXH64(&args_size, sizeof args_size, hash);
         hash = XXH64(&replicated, sizeof replicated, hash);

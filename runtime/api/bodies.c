@@ -63,8 +63,8 @@ int inside_free(struct duite_call_private *body, duite_object object)
     return body_remember(body, code);
 }
 
-int inside_fork(struct duite_call_private *body, const duite_how *how, const duite_kernel *kernel,
-                const void *args, size_t n, const duite_object *objects)
+int inside_fork(struct duite_call_private *body, const duite_task_options *how,
+                const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
 {
     struct task_options own = {.at = TASK_ANYWHERE};
     int code = body_enter(body, "duite_fork");

@@ -136,8 +136,9 @@ struct duite_call_private *inside_body(const duite *rt);
 int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t most,
                bool sized, duite_object *object);
 int inside_free(struct duite_call_private *body, duite_object object);
-int inside_fork(struct duite_call_private *body, const duite_how *how, const duite_kernel *kernel,
-                const void *args, size_t n, const duite_object *objects);
+int inside_fork(struct duite_call_private *body, const duite_task_options *how,
+                const duite_kernel *kernel, const void *args, size_t n,
+                const duite_object *objects);
 int inside_set(struct duite_call_private *body, duite_object object, const void *values,
                const size_t *count, const char *call);
 /* Copies to the values, or tells the count. */

@@ -178,7 +178,7 @@ static uint64_t migration_ask(struct migration *m)
                                            .neighbour = m->traffic.neighbour,
                                            .edge_weight = m->traffic.bytes},
                                  .bytes = m->bytes,
-                                 .stays = m->fixed,
+                                 .fixed = m->fixed,
                                  .n_ranks = rt->graph.n_ranks,
                                  .other = m->other,
                                  .workers = m->workers,
@@ -200,7 +200,7 @@ static int migration_ask_mapping(struct migration *m, bool *again)
     struct map_tasks tasks;
     int code = map_tasks_find(&tasks, m->record, &m->blocks, m->seconds);
     *again = tasks.guessed;
-    tasks.graph.stays = m->fixed;
+    tasks.graph.fixed = m->fixed;
     tasks.graph.n_ranks = rt->graph.n_ranks;
     tasks.graph.workers = m->workers;
     tasks.graph.byte_seconds = migration_byte_seconds(rt);

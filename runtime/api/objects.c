@@ -108,9 +108,9 @@ int duite_hint(duite *rt, duite_object object, double weight, size_t n,
     return program_remember(rt, code);
 }
 
-int duite_follow(duite *rt, duite_object object, duite_object leader)
+int duite_colocate(duite *rt, duite_object object, duite_object leader)
 {
-    int code = program_enter(rt, "duite_follow");
+    int code = program_enter(rt, "duite_colocate");
     if (code)
         return code;
     mix_name(rt, object);
@@ -136,9 +136,9 @@ static bool object_is_here(const duite *rt, const struct data_object *object)
     return object->home == rank || object->holder == rank || object->current || object->sum;
 }
 
-int duite_touches(duite *rt, duite_object object)
+int duite_is_local(duite *rt, duite_object object)
 {
-    if (program_enter_any(rt, "duite_touches") || program_settle(rt))
+    if (program_enter_any(rt, "duite_is_local") || program_settle(rt))
         return 1;
     struct data_table *table = &rt->graph.table;
     const struct data_object *found = data_object_find(table, object);

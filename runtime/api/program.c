@@ -163,8 +163,8 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
     return fork_task(rt, &(struct task_options){.at = rank}, kernel, args, n, objects);
 }
 
-int duite_fork_with(duite *rt, const duite_how *how, const duite_kernel *kernel, const void *args,
-                    size_t n, const duite_object *objects)
+int duite_fork_with(duite *rt, const duite_task_options *how, const duite_kernel *kernel,
+                    const void *args, size_t n, const duite_object *objects)
 {
     struct duite_call_private *body = inside_body(rt);
     if (body)

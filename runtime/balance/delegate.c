@@ -37,7 +37,7 @@ static int delegate_victim(void *state, unsigned attempt, int giver, double *sec
     return (own->rank + 1 + (int)(duite_random(&own->random) % (uint64_t)others)) % own->n_ranks;
 }
 
-static int delegate_give(void *state, const duite_asked *asked, const duite_leaf *leaf)
+static int delegate_give(void *state, const duite_request *asked, const duite_leaf *leaf)
 {
     (void)state;
     return leaf->cost > leaf->transfer && asked->given < asked->ready / 2;

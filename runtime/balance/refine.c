@@ -96,7 +96,7 @@ struct move {
 
 static bool move_is_allowed(const struct parts *parts, size_t block, int from)
 {
-    return parts->home[block] == from && !parts->blocks->stays[block] &&
+    return parts->home[block] == from && !parts->blocks->fixed[block] &&
            parts->blocks->graph.weight[block] > 0;
 }
 
@@ -238,7 +238,7 @@ static bool parts_rename(const duite_blocks *blocks, const int *home, int *part)
     if (fine) {
         parts_name(overlap, blocks->n_ranks, rank_of);
         for (size_t i = 0; i < blocks->graph.n; i++)
-            part[i] = blocks->stays[i] ? home[i] : rank_of[part[i]];
+            part[i] = blocks->fixed[i] ? home[i] : rank_of[part[i]];
     }
     base_free(overlap);
     base_free(rank_of);

@@ -30,7 +30,7 @@ static uint64_t wander_migrate(void *state, const duite_blocks *blocks, int *hom
     struct wander_state *own = state;
     uint64_t of_four = duite_random(&own->random) % 5;
     for (size_t i = 0; i < blocks->graph.n; i++)
-        if (!blocks->stays[i] && duite_random(&own->random) % 4 < of_four)
+        if (!blocks->fixed[i] && duite_random(&own->random) % 4 < of_four)
             home[i] = wander_rank(own);
     return 1 + duite_random(&own->random) % 5 / 3;
 }

@@ -144,8 +144,8 @@ int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *la
 {
     for (unsigned i = 0; i <= DUITE_MAX_ACCESS; i++) {
         bool rest = i == DUITE_MAX_ACCESS;
-        const duite_law *law = rest ? kernel->rest_law : kernel->law[i];
-        duite_mode mode = rest ? kernel->rest : kernel->access[i];
+        const duite_law *law = rest ? kernel->variadic_law : kernel->law[i];
+        duite_mode mode = rest ? kernel->variadic : kernel->access[i];
         bool known = law_is_listed(built_in, law) || law_is_listed(laws, law);
         if (!law || ((mode == DUITE_CW || mode == DUITE_CWP) && known))
             continue;
@@ -163,7 +163,7 @@ int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *la
 const duite_law *data_law_of(const duite_kernel *kernel, size_t i)
 {
     bool listed = i < DUITE_MAX_ACCESS && kernel->access[i] != DUITE_NONE;
-    const duite_law *law = listed ? kernel->law[i] : kernel->rest_law;
+    const duite_law *law = listed ? kernel->law[i] : kernel->variadic_law;
     return law ? law : &duite_sum;
 }
 
@@ -199,5 +199,5 @@ uint64_t data_law_hash_kernel(const duite_kernel *kernel, uint64_t hash)
 {
     for (unsigned i = 0; i < DUITE_MAX_ACCESS; i++)
         hash = law_hash(kernel->law[i], hash);
-    return law_hash(kernel->rest_law, hash);
+    return law_hash(kernel->variadic_law, hash);
 }

@@ -7,7 +7,7 @@
 static inline duite_mode data_mode_of(const duite_kernel *kernel, size_t i)
 {
     duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : DUITE_NONE;
-    return mode != DUITE_NONE ? mode : kernel->rest;
+    return mode != DUITE_NONE ? mode : kernel->variadic;
 }
 
 #endif

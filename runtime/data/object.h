@@ -13,7 +13,7 @@ struct data_object {
     int holder;                   /* the rank that has the current version for certain */
     bool copied;                  /* some rank beside the holder has a copy: `copies` says which */
     bool sized;                   /* its versions differ in size */
-    bool stays;                   /* tasks that must stay run for it: its home does not change */
+    bool fixed;                   /* tasks that must stay run for it: its home does not change */
     uint64_t number;              /* of the current version: writes so far */
     struct data_version *current; /* this rank's copy of the current version, or NULL */
     uint64_t leaves;              /* contributions forked since the last other access */

@@ -39,7 +39,7 @@ static bool block_add(struct map_blocks *blocks, struct block_entry **table,
     struct map_block *block = &blocks->block[blocks->of[slot]];
     block->objects++;
     block->bytes += object->room;
-    block->fixed |= object->stays;
+    block->fixed |= object->fixed;
     return true;
 }
 

@@ -106,7 +106,7 @@ static void list_place(struct list_plan *plan, size_t task)
         plan->end[task] = list_arrival(plan, task, DUITE_NO_RANK) + graph->cost[task];
         return;
     }
-    if (!plan->placed[block] && !graph->stays[block])
+    if (!plan->placed[block] && !graph->fixed[block])
         plan->home[block] = list_choose(plan, task);
     plan->placed[block] = true;
     int rank = plan->rank[task] = plan->home[block];

@@ -92,14 +92,14 @@ static bool leader_is_above(struct data_table *table, uint32_t slot, uint32_t ob
 
 int map_colocate(struct data_table *table, duite_object object, duite_object leader)
 {
-    int code = hint_check_object(table, object, "duite_follow");
+    int code = hint_check_object(table, object, "duite_colocate");
     if (!code)
-        code = hint_check_object(table, leader, "duite_follow");
+        code = hint_check_object(table, leader, "duite_colocate");
     if (code)
         return code;
     struct data_hint *hint = data_hint_find(table, object.slot);
     if (leader_is_above(table, leader.slot, object.slot))
-        return base_error(DUITE_E_ARGUMENT, "duite_follow: object %u.%u would follow itself",
+        return base_error(DUITE_E_ARGUMENT, "duite_colocate: object %u.%u would follow itself",
                           object.slot, object.generation);
     if (hint)
         hint->leader = leader.slot;

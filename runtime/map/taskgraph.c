@@ -68,7 +68,7 @@ static void taskgraph_weigh(struct work *work, const duite_task_graph *graph)
         work->node[b] = DUITE_NO_BLOCK;
     for (size_t i = 0; i < graph->n; i++) {
         uint32_t block = graph->block[i];
-        if (block == DUITE_NO_BLOCK || graph->stays[block])
+        if (block == DUITE_NO_BLOCK || graph->fixed[block])
             continue;
         if (work->node[block] == DUITE_NO_BLOCK) {
             work->node[block] = (uint32_t)work->n;

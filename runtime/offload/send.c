@@ -46,7 +46,7 @@ bool offload_may_go(const struct task_graph *graph, const struct task *task, siz
     if (task->scope->top != &graph->root)
         return false;
     const duite_kernel *kernel = graph->kernels[task->kernel];
-    if (kernel->side_effects || kernel->stays || kernel->replicated)
+    if (kernel->side_effects || kernel->fixed || kernel->replicated)
         return false;
     size_t there = message_head(task->n) + kernel->args_size, back = message_counts(task->n);
     for (uint32_t i = 0; i < task->n; i++) {

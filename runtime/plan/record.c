@@ -149,8 +149,8 @@ static void record_fix_owner(struct plan_record *record, const struct plan_recor
     if (owner == PLAN_NONE)
         return;
     struct plan_recorded_object *object = &record->object[owner];
-    object->stays = true;
-    record->graph->table.object[object->bound.slot].stays = true;
+    object->fixed = true;
+    record->graph->table.object[object->bound.slot].fixed = true;
 }
 
 /* The bytes of the arguments are still to be written. */
@@ -181,7 +181,7 @@ static struct plan_recorded_fork *record_append(struct plan_record *record, uint
         task_mix(record->graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         record_use(record, objects[i], mode, mode == DUITE_CW ? data_law_of(body, i) : NULL);
     }
-    uint32_t owner = body ? task_owner(body->access, body->rest, n) : 0; /* parameter */
+    uint32_t owner = body ? task_owner(body->access, body->variadic, n) : 0; /* parameter */
     fork->owner = owner == TASK_NOBODY ? PLAN_NONE : record->access[fork->first + owner].object;
     return fork;
 }
@@ -203,7 +203,7 @@ int plan_record_fork(struct plan_record *record, const struct task_options *how,
         return DUITE_E_MEMORY;
     if (kernel->args_size)
         memcpy(record->args + fork->args, args, kernel->args_size);
-    if (kernel->stays)
+    if (kernel->fixed)
         record_fix_owner(record, fork);
     record->call[record->n_calls++] = record->n_forks - 1;
     return DUITE_OK;
@@ -297,7 +297,7 @@ int plan_record_bind(struct plan_record *record, duite_object recorded, duite_ob
     task_mix(record->graph, (uint64_t)recorded.slot << 32 | recorded.generation);
     task_mix(record->graph, (uint64_t)name.slot << 32 | name.generation);
     object->bound = name;
-    record->graph->table.object[name.slot].stays |= object->stays;
+    record->graph->table.object[name.slot].fixed |= object->fixed;
     record->rebound = true;
     return DUITE_OK;
 }

@@ -38,7 +38,7 @@ struct plan_recorded_object {
     bool reads_old;     /* the first access is not a w */
     bool leads, trails; /* contributions before any other access in a round, and after all others */
     bool named;         /* by a fork or set; else by its views only, and cannot be bound */
-    bool stays;         /* tasks that must stay run for it */
+    bool fixed;         /* tasks that must stay run for it */
     uint32_t parent;    /* of a view: the place of its object in `object`, plus 1; else 0 */
 };
 

@@ -20,7 +20,7 @@ struct move {
     struct map_traffic traffic;
     double *seconds; /* by block */
     size_t *bytes;
-    unsigned char *stays;
+    unsigned char *fixed;
     int *home;
     unsigned *workers; /* by host */
 };
@@ -81,16 +81,16 @@ static bool move_begin(struct move *m)
     const size_t n = m->blocks.n + 1, hosts = p->graph->cluster->hosts;
     m->seconds = base_alloc_zero(n * sizeof *m->seconds);
     m->bytes = base_alloc_zero(n * sizeof *m->bytes);
-    m->stays = base_alloc_zero(n);
+    m->fixed = base_alloc_zero(n);
     m->home = base_alloc(n * sizeof *m->home);
     m->workers = base_alloc(hosts * sizeof *m->workers);
-    if (!m->seconds || !m->bytes || !m->stays || !m->home || !m->workers)
+    if (!m->seconds || !m->bytes || !m->fixed || !m->home || !m->workers)
         return false;
     for (size_t h = 0; h < hosts; h++)
         m->workers[h] = p->graph->cluster->cores;
     for (size_t b = 0; b < m->blocks.n; b++) {
         m->home[b] = m->blocks.block[b].home;
-        m->stays[b] = m->blocks.block[b].fixed;
+        m->fixed[b] = m->blocks.block[b].fixed;
     }
     return true;
 }
@@ -101,7 +101,7 @@ static void move_end(struct move *m)
     map_traffic_free(&m->traffic);
     base_free(m->seconds);
     base_free(m->bytes);
-    base_free(m->stays);
+    base_free(m->fixed);
     base_free(m->home);
     base_free(m->workers);
 }
@@ -191,7 +191,7 @@ static int move_ask_balancer(struct move *m)
                                            .neighbour = m->traffic.neighbour,
                                            .edge_weight = m->traffic.bytes},
                                  .bytes = m->bytes,
-                                 .stays = m->stays,
+                                 .fixed = m->fixed,
                                  .n_ranks = (int)cluster->hosts,
                                  .other = moves->other,
                                  .workers = m->workers,
@@ -219,7 +219,7 @@ static int move_ask_mapping(struct move *m, struct predict_recorded *recorded)
     int code = block && predict_round(m->p, recorded, block, &tasks)
                    ? map_tasks_complete(&tasks, m->blocks.n, m->seconds)
                    : base_no_memory("the tasks of a recorded graph");
-    tasks.graph.stays = m->stays;
+    tasks.graph.fixed = m->fixed;
     tasks.graph.n_ranks = (int)cluster->hosts;
     tasks.graph.workers = m->workers;
     tasks.graph.byte_seconds = 1 / cluster->bandwidth;
@@ -244,7 +244,7 @@ static int move_check(const struct move *m)
     const struct predict_cluster *cluster = m->p->graph->cluster;
     for (size_t b = 0; b < m->blocks.n; b++) {
         int from = m->blocks.block[b].home, to = m->home[b];
-        if (to != from && (to < 0 || to >= (int)cluster->hosts || m->stays[b]))
+        if (to != from && (to < 0 || to >= (int)cluster->hosts || m->fixed[b]))
             return base_error(
                 DUITE_E_ARGUMENT, "%s moves a block to a rank that there is not, or one that stays",
                 cluster->balance && cluster->balance->migrate ? cluster->balance->name

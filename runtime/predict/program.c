@@ -19,7 +19,7 @@ uint32_t predict_owner(const struct predict_graph *graph, const struct predict_f
 {
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
     duite_mode access[DUITE_MAX_ACCESS] = {DUITE_NONE};
-    for (size_t i = 0; i < kernel->fixed && i < DUITE_MAX_ACCESS; i++)
+    for (size_t i = 0; i < kernel->n_modes && i < DUITE_MAX_ACCESS; i++)
         access[i] = trace_mode(kernel, i);
     const uint32_t own = task_owner(access, trace_mode(kernel, SIZE_MAX), fork->n);
     return own == TASK_NOBODY ? PREDICT_NONE : objects[own];
@@ -38,7 +38,7 @@ static void fork_stays(struct predict_program *p, uint32_t own)
 {
     uint32_t slot = own == PREDICT_NONE ? 0 : p->name[own].slot;
     if (slot)
-        p->table.object[slot].stays = true;
+        p->table.object[slot].fixed = true;
 }
 
 void predict_fork(struct predict_program *p, const struct predict_fork *fork)
@@ -71,7 +71,7 @@ void predict_fork(struct predict_program *p, const struct predict_fork *fork)
     for (size_t i = 0; i < fork->n; i++)
         predict_use(graph, node, fork->object[i], trace_mode(kernel, i), p->prepared[i]);
     predict_hold(graph, node);
-    if (kernel->stays && follows)
+    if (kernel->fixed && follows)
         fork_stays(p, own);
     predict_spend(p, follows ? own : PREDICT_NONE, host, seconds);
     p->tasks++;

@@ -32,9 +32,9 @@ static int fork_check_call(const struct task_graph *graph, int at, uint32_t inde
 {
     const duite_kernel *kernel = graph->kernels[index];
     size_t fixed = graph->fixed[index].n;
-    if (n < fixed || (n > fixed && kernel->rest == DUITE_NONE) || n > TASK_MAX_OBJECTS)
+    if (n < fixed || (n > fixed && kernel->variadic == DUITE_NONE) || n > TASK_MAX_OBJECTS)
         return base_error(DUITE_E_ACCESS, "kernel %s takes %s%zu objects, not %zu", kernel->name,
-                          kernel->rest == DUITE_NONE ? "" : "at least ", fixed, n);
+                          kernel->variadic == DUITE_NONE ? "" : "at least ", fixed, n);
     if (n && !objects)
         return base_error(DUITE_E_ARGUMENT, "kernel %s: no objects given", kernel->name);
     if (kernel->args_size && !args)
@@ -236,7 +236,7 @@ static struct task *fork_body(struct task_scope *scope, struct worker *worker,
     if (kernel->args_size)
         memcpy(task_rest(task, n), args, kernel->args_size);
     size_t fixed = scope->graph->fixed[index].n, postponed = scope->graph->fixed[index].postponed;
-    if (task_postponed(kernel->rest))
+    if (task_postponed(kernel->variadic))
         postponed += n - fixed;
     if (!postponed || (task->inner = task_scope_new(task, postponed)))
         return task;
@@ -263,7 +263,7 @@ static void fork_give_block(struct task *task, struct data_object *own, bool fol
 {
     task->block = own->block;
     task->placed = follows;
-    own->stays |= follows && task->scope->graph->kernels[task->kernel]->stays;
+    own->fixed |= follows && task->scope->graph->kernels[task->kernel]->fixed;
     if (task->inner) {
         task->inner->block = task->block;
         task->inner->placed = task->placed;

@@ -18,7 +18,7 @@ static int check_replicated(const duite_kernel *kernel)
 {
     const char *why = kernel->side_effects ? "has side effects" : NULL;
     for (uint32_t i = 0; i <= DUITE_MAX_ACCESS && !why; i++) {
-        duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : kernel->rest;
+        duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : kernel->variadic;
         if (mode == DUITE_CW)
             why = "accumulates (cw), which would count once for each rank";
         else if (task_postponed(mode))
@@ -47,11 +47,11 @@ static int check_kernel(const duite_kernel *kernel, uint32_t index, struct task_
         fixed->n += mode != DUITE_NONE;
         fixed->postponed += task_postponed(mode);
     }
-    if ((int)kernel->rest < DUITE_NONE || kernel->rest > DUITE_CWP)
+    if ((int)kernel->variadic < DUITE_NONE || kernel->variadic > DUITE_CWP)
         return base_error(DUITE_E_KERNEL, "kernel %s: `rest` has no such mode: %d", kernel->name,
-                          (int)kernel->rest);
-    fixed->owner[0] = task_owner(kernel->access, kernel->rest, fixed->n);
-    fixed->owner[1] = task_owner(kernel->access, kernel->rest, (size_t)fixed->n + 1);
+                          (int)kernel->variadic);
+    fixed->owner[0] = task_owner(kernel->access, kernel->variadic, fixed->n);
+    fixed->owner[1] = task_owner(kernel->access, kernel->variadic, (size_t)fixed->n + 1);
     return check_replicated(kernel);
 }
 

@@ -79,13 +79,13 @@ static bool file_write_kernels(struct trace *trace)
     for (size_t i = 0; i < n; i++) {
         const duite_kernel *from = kernels[i];
         struct trace_kernel *to = &kernel[i];
-        while (to->fixed < DUITE_MAX_ACCESS && from->access[to->fixed]) {
-            to->mode[to->fixed] = (uint8_t)from->access[to->fixed];
-            to->fixed++;
+        while (to->n_modes < DUITE_MAX_ACCESS && from->access[to->n_modes]) {
+            to->mode[to->n_modes] = (uint8_t)from->access[to->n_modes];
+            to->n_modes++;
         }
-        to->rest = (uint8_t)from->rest;
+        to->variadic = (uint8_t)from->variadic;
         to->replicated = from->replicated != 0;
-        to->stays = from->stays != 0;
+        to->fixed = from->fixed != 0;
         name = stpcpy(name, from->name) + 1;
     }
     bool fine = trace_write(trace, TRACE_KERNELS, (uint32_t)n,

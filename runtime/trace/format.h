@@ -50,7 +50,7 @@ struct trace_section {
 /* Modes of the first parameters; duite_mode of all further ones, 0: there are none. */
 struct trace_kernel {
     uint8_t mode[16];
-    uint8_t rest, replicated, stays, fixed; /* fixed: how many first ones */
+    uint8_t variadic, replicated, fixed, n_modes; /* n_modes: how many first ones */
     uint32_t unused;
 };
 

@@ -138,7 +138,7 @@ static int source_take_kernels(struct source *source, const struct trace_section
         const char *stop = memchr(name, 0, (size_t)(end - name));
         if (!stop)
             return source_damaged(source, at, "a kernel's name does not end");
-        if (run->kernel[run->n_kernels].fixed > 16)
+        if (run->kernel[run->n_kernels].n_modes > 16)
             return source_damaged(source, at, "a kernel with too many modes");
         run->kernel_name[run->n_kernels] = name;
         name = stop + 1;

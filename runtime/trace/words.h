@@ -57,7 +57,7 @@ static inline duite_mode trace_mode(const struct trace_kernel *kernel, size_t i)
 {
     static const duite_mode same[] = {DUITE_NONE, DUITE_R, DUITE_W,  DUITE_RW, DUITE_CW,
                                       DUITE_R,    DUITE_W, DUITE_RW, DUITE_CW};
-    const uint8_t mode = i < kernel->fixed ? kernel->mode[i] : kernel->rest;
+    const uint8_t mode = i < kernel->n_modes ? kernel->mode[i] : kernel->variadic;
     return mode < sizeof same / sizeof same[0] ? same[mode] : DUITE_R;
 }
 

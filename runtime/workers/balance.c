@@ -98,7 +98,7 @@ static int balancer_victim(const struct worker *worker, unsigned attempt, int gi
     return rank;
 }
 
-static bool balancer_gives(const struct worker *worker, const duite_asked *asked,
+static bool balancer_gives(const struct worker *worker, const duite_request *asked,
                            const duite_leaf *leaf)
 {
     base_mark_begin(mark_of(worker), BASE_BALANCER_GIVE);
@@ -179,7 +179,7 @@ static bool given_at_once(struct worker *worker, struct task *task, const duite_
     struct comm_requester requester;
     if (!comm_take_request(pool->setup.comm, &requester))
         return false;
-    const duite_asked asked = {
+    const duite_request asked = {
         .rank = requester.rank, .idle = requester.idle, .ready = 1 + (unsigned)others};
     bool given = balancer_gives(worker, &asked, leaf) && send(worker, task, requester.rank);
     if (!given)
@@ -207,7 +207,7 @@ bool work_placed_away(struct worker *worker, struct task *task)
 
 struct gift {
     struct worker *worker;
-    duite_asked asked;
+    duite_request asked;
 };
 
 /* Oldest first: the owner works on the newest. What is not given goes back in its old order. */

@@ -92,7 +92,7 @@ static void make(duite *rt, struct system *system) /* x = 0, so p = r = f */
         for (int b = 0; b < BLOCKS; b++) {
             duite_new(rt, DUITE_F64, LENGTH, &system->v[k][b]);
             if (k > 0)
-                duite_follow(rt, system->v[k][b], system->v[0][b]); /* on the same rank */
+                duite_colocate(rt, system->v[k][b], system->v[0][b]); /* on the same rank */
         }
     for (int i = 0; i < LENGTH; i++)
         ones[i] = 1;

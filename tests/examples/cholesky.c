@@ -56,7 +56,7 @@ static int update(const duite_call *call) /* C -= A transpose(B); B is A if it i
 static const duite_kernel FACTOR = {.name = "factor", .body = factor, .access = {DUITE_RW}};
 static const duite_kernel SOLVE = {.name = "solve", .body = solve, .access = {DUITE_R, DUITE_RW}};
 static const duite_kernel UPDATE = {
-    .name = "update", .body = update, .access = {DUITE_RW, DUITE_R}, .rest = DUITE_R};
+    .name = "update", .body = update, .access = {DUITE_RW, DUITE_R}, .variadic = DUITE_R};
 
 static void cholesky(duite *rt, duite_object a[TILES][TILES])
 {

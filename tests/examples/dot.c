@@ -42,7 +42,7 @@ static int run(duite *rt) /* returns 0 if the sum is right */
     for (int b = 0; b < BLOCKS; b++) {
         duite_new(rt, DUITE_F64, LENGTH, &x);
         duite_new(rt, DUITE_F64, LENGTH, &y);
-        duite_follow(rt, y, x); /* on the same rank */
+        duite_colocate(rt, y, x); /* on the same rank */
         DUITE_FORK(rt, &FILL, DUITE_ARGS(struct fill, .first = b * LENGTH + 1, .step = 1), x);
         DUITE_FORK(rt, &FILL, DUITE_ARGS(struct fill, .first = 2), y);
         DUITE_FORK(rt, &DOT, NULL, x, y, sum);

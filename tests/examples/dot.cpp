@@ -57,7 +57,7 @@ double run(duite *rt)
     for (std::size_t b = 0; b < BLOCKS; b++) {
         duite_new(rt, DUITE_F64, LENGTH, &x[b]);
         duite_new(rt, DUITE_F64, LENGTH, &y[b]);
-        duite_follow(rt, y[b], x[b]); // on the same rank
+        duite_colocate(rt, y[b], x[b]); // on the same rank
         DUITE_FORK(rt, &FILL, DUITE_ARGS(struct fill, static_cast<double>(b * LENGTH + 1), 1), x[b]);
         DUITE_FORK(rt, &FILL, DUITE_ARGS(fill, 2, 0), y[b]);
         DUITE_FORK(rt, &DOT, nullptr, x[b], y[b], sum);

@@ -21,7 +21,7 @@ static const duite_kernel SORT_SMALL = {
 static const duite_kernel SPLIT = {
     .name = "split", .body = split, .access = {DUITE_R, DUITE_W, DUITE_W, DUITE_W}};
 static const duite_kernel JOIN = {
-    .name = "join", .body = join, .access = {DUITE_W}, .rest = DUITE_R};
+    .name = "join", .body = join, .access = {DUITE_W}, .variadic = DUITE_R};
 
 static int sort(const duite_call *call)
 {

@@ -34,7 +34,7 @@ static int mean(const duite_call *call)
 }
 
 static const duite_kernel MEAN = {
-    .name = "mean", .body = mean, .access = {DUITE_W}, .rest = DUITE_R};
+    .name = "mean", .body = mean, .access = {DUITE_W}, .variadic = DUITE_R};
 
 static void step(duite *rt, const struct ring *ring, const duite_object *from,
                  const duite_object *to)
@@ -75,7 +75,7 @@ static int run(duite *rt, struct ring *ring)
     for (int b = 0; b < BLOCKS; b++) {
         duite_new(rt, DUITE_F64, LENGTH, &ring->now[b]);
         duite_new(rt, DUITE_F64, LENGTH, &ring->next[b]);
-        duite_follow(rt, ring->next[b], ring->now[b]);
+        duite_colocate(rt, ring->next[b], ring->now[b]);
     }
     for (int b = 0; b < BLOCKS; b++)
         for (int j = 0; j < ring->n; j++) /* so that neighbours share a rank */

@@ -45,7 +45,7 @@ const duite_kernel ADD = {.name = "add", .body = add_body, .access = {DUITE_CW}}
 const duite_kernel FAIL = {
     .name = "fail", .body = fail_body, .access = {DUITE_RW}, .args_size = sizeof(int32_t)};
 const duite_kernel MANY = {
-    .name = "many", .body = empty_body, .access = {DUITE_R}, .rest = DUITE_R};
+    .name = "many", .body = empty_body, .access = {DUITE_R}, .variadic = DUITE_R};
 const duite_kernel EMPTY = {.name = "empty", .body = empty_body};
 const duite_kernel EVERYWHERE = {
     .name = "everywhere", .body = copy_body, .access = {DUITE_R, DUITE_W}, .replicated = 1};

@@ -42,7 +42,7 @@ static void different_kernels(void)
     tap_case(start_with((const duite_kernel *[]){&other, NULL}) == DUITE_E_DIFFERENT,
              "another mode");
     other = ADD;
-    other.rest = last ? DUITE_R : DUITE_NONE;
+    other.variadic = last ? DUITE_R : DUITE_NONE;
     tap_case(start_with((const duite_kernel *[]){&other, NULL}) == DUITE_E_DIFFERENT,
              "another rest");
     other = ADD;
@@ -190,7 +190,7 @@ static void differ(duite *rt, enum difference what, duite_object a, duite_object
     if (what == ANOTHER_HINT && !duite_new(rt, DUITE_I32, 1, &made))
         duite_hint(rt, made, odd ? 1 : 2, 0, NULL, NULL);
     if (what == ANOTHER_LEADER && !duite_new(rt, DUITE_I32, 1, &made))
-        duite_follow(rt, made, odd ? a : b);
+        duite_colocate(rt, made, odd ? a : b);
     if (what >= ANOTHER_BUILD)
         differ_by_graphs(rt, what, a, b);
 }

@@ -140,7 +140,7 @@ static int run(void)
     for (int i = 0; i < OBJECTS; i++)
         a[i] = misuse_new(rt, COUNT);
     duite_hint(rt, a[1], 2, 1, &a[0], NULL);
-    duite_follow(rt, a[2], a[1]);
+    duite_colocate(rt, a[2], a[1]);
     work(rt, a);
     grow(rt);
     look(rt, a[1]);

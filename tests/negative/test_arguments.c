@@ -84,7 +84,7 @@ START_TEST(no_runtime)
     ck_assert_int_eq(duite_get(NULL, a, &value), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_get_at(NULL, a, 0, &value), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_hint(NULL, a, 1, 0, NULL, NULL), DUITE_E_ARGUMENT);
-    ck_assert_int_eq(duite_follow(NULL, a, b), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_colocate(NULL, a, b), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_home(NULL, a), -1);
     ck_assert_int_eq(duite_fork(NULL, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_fork_at(NULL, 0, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
@@ -148,9 +148,9 @@ START_TEST(ranks_outside)
 {
     int32_t value[4];
 
-    refused(duite_fork_with(rt, &(duite_how){.at = &(int){1}}, &ADD, NULL, 1, &a),
+    refused(duite_fork_with(rt, &(duite_task_options){.at = &(int){1}}, &ADD, NULL, 1, &a),
             DUITE_E_ARGUMENT);
-    refused(duite_fork_with(rt, &(duite_how){.at = &(int){-1}}, &ADD, NULL, 1, &a),
+    refused(duite_fork_with(rt, &(duite_task_options){.at = &(int){-1}}, &ADD, NULL, 1, &a),
             DUITE_E_ARGUMENT);
     refused(duite_fork_at(rt, 1, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
     refused(duite_fork_at(rt, -1, &ADD, NULL, 1, &a), DUITE_E_ARGUMENT);
@@ -168,11 +168,11 @@ START_TEST(hints_and_leaders)
     refused(duite_hint(rt, a, 1, 1, &b, &(double){__builtin_nan("")}), DUITE_E_ARGUMENT);
     refused(duite_hint(rt, a, __builtin_inf(), 0, NULL, NULL), DUITE_E_ARGUMENT);
     refused(duite_hint(rt, a, 1, 1, &DUITE_NO_OBJECT, &(double){1}), DUITE_E_OBJECT);
-    refused(duite_follow(rt, a, DUITE_NO_OBJECT), DUITE_E_OBJECT);
-    refused(duite_follow(rt, DUITE_NO_OBJECT, a), DUITE_E_OBJECT);
-    refused(duite_follow(rt, a, a), DUITE_E_ARGUMENT);
-    ck_assert_int_eq(duite_follow(rt, a, b), DUITE_OK);
-    refused(duite_follow(rt, b, a), DUITE_E_ARGUMENT);
+    refused(duite_colocate(rt, a, DUITE_NO_OBJECT), DUITE_E_OBJECT);
+    refused(duite_colocate(rt, DUITE_NO_OBJECT, a), DUITE_E_OBJECT);
+    refused(duite_colocate(rt, a, a), DUITE_E_ARGUMENT);
+    ck_assert_int_eq(duite_colocate(rt, a, b), DUITE_OK);
+    refused(duite_colocate(rt, b, a), DUITE_E_ARGUMENT);
     ck_assert_int_eq(duite_home(rt, a), 0);
     ck_assert_int_eq(duite_hint(rt, b, 1, 1, &a, NULL), DUITE_OK);
     ck_assert_int_eq(duite_home(rt, DUITE_NO_OBJECT), -1);

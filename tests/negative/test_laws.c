@@ -25,7 +25,7 @@ static int body(const duite_call *call)
 static const duite_kernel BY_DOUBLES = {
     .name = "by doubles", .body = body, .access = {DUITE_R, DUITE_CW}, .law = {[1] = &DOUBLES}};
 static const duite_kernel BY_BYTES = {
-    .name = "by bytes", .body = body, .rest = DUITE_CW, .rest_law = &BYTES};
+    .name = "by bytes", .body = body, .variadic = DUITE_CW, .variadic_law = &BYTES};
 static const duite_kernel BY_SUM = {.name = "by sum", .body = body, .access = {DUITE_CW}};
 
 static void says(const char *sentence)
@@ -77,7 +77,7 @@ START_TEST(no_cw)
     kernel.law[1] = &duite_min;
     refuses(kernel, NULL, "parameter 1: law min for a parameter that is not cw");
     kernel = BY_SUM;
-    kernel.rest_law = &duite_sum;
+    kernel.variadic_law = &duite_sum;
     refuses(kernel, NULL, "`rest`: law sum for a parameter that is not cw");
 }
 END_TEST

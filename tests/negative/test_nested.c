@@ -95,7 +95,7 @@ static int fork_something(const duite_call *call, const struct args *args)
         return duite_fork(call->rt, args->child == DUITE_CW ? &LEAST : &LEAST_POSTPONED, NULL, 1,
                           &call->param[0].object);
     case FORK_AT:
-        return duite_fork_with(call->rt, &(duite_how){.at = &(int){0}}, kernel, NULL, 1,
+        return duite_fork_with(call->rt, &(duite_task_options){.at = &(int){0}}, kernel, NULL, 1,
                                &call->param[0].object);
     case FORK_UNLISTED:
         return duite_fork(call->rt, &UNLISTED, NULL, 1, &call->param[0].object);

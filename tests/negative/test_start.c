@@ -40,7 +40,7 @@ START_TEST(malformed_kernels)
     kernel.access[1] = (duite_mode)17;
     refuses(kernel, "copy");
     kernel = MANY;
-    kernel.rest = (duite_mode)-1;
+    kernel.variadic = (duite_mode)-1;
     refuses(kernel, "many");
 }
 END_TEST
@@ -58,9 +58,9 @@ START_TEST(replicated_kernels)
     refuses(kernel, "add");
     kernel = MANY;
     kernel.replicated = 1;
-    kernel.rest = DUITE_CW;
+    kernel.variadic = DUITE_CW;
     refuses(kernel, "accumulates");
-    kernel.rest = DUITE_RP;
+    kernel.variadic = DUITE_RP;
     refuses(kernel, "postponed");
     kernel = COPY;
     kernel.replicated = 1;

@@ -35,7 +35,7 @@ static void try_all(struct attempt *attempt)
     *code++ = duite_get(rt, object, &value);
     *code++ = duite_get_at(rt, object, 0, &value);
     *code++ = duite_hint(rt, object, 1, 0, NULL, NULL);
-    *code++ = duite_follow(rt, object, object);
+    *code++ = duite_colocate(rt, object, object);
     *code++ = duite_view(rt, object, 1, (size_t[]){0}, &made);
     *code++ = duite_wait(rt);
     *code++ = duite_count_all(rt, &counters);

@@ -83,8 +83,8 @@ START_TEST(placing)
 {
     refused(duite_hint(rt, view, 1, 0, NULL, NULL), DUITE_E_VIEW, "duite_hint");
     refused(duite_hint(rt, a, 1, 1, &view, NULL), DUITE_E_VIEW, "duite_hint");
-    refused(duite_follow(rt, view, b), DUITE_E_VIEW, "duite_follow");
-    refused(duite_follow(rt, b, view), DUITE_E_VIEW, "duite_follow");
+    refused(duite_colocate(rt, view, b), DUITE_E_VIEW, "duite_colocate");
+    refused(duite_colocate(rt, b, view), DUITE_E_VIEW, "duite_colocate");
 }
 END_TEST
 

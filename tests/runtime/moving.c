@@ -20,7 +20,7 @@ static void note(const duite_blocks *blocks, const int *home)
     for (size_t i = 0; i < blocks->graph.n; i++) {
         seen.weight[i] = blocks->graph.weight[i];
         seen.bytes[i] = blocks->bytes[i];
-        seen.stays[i] = blocks->stays[i];
+        seen.fixed[i] = blocks->fixed[i];
         seen.home[i] = home[i];
         for (size_t e = blocks->graph.start[i]; e < blocks->graph.start[i + 1]; e++)
             seen.edge[i][blocks->graph.neighbour[e]] += blocks->graph.edge_weight[e];
@@ -34,7 +34,7 @@ static uint64_t migrate(void *state, const duite_blocks *blocks, int *home)
     for (size_t i = 0; i < blocks->graph.n; i++)
         if (wanted == WRONG)
             home[i] = ranks;
-        else if (wanted == FORCED || (wanted != STAY && !blocks->stays[i]))
+        else if (wanted == FORCED || (wanted != STAY && !blocks->fixed[i]))
             home[i] = wanted < 0 ? (home[i] + 1) % ranks : wanted;
     return 1;
 }
@@ -49,7 +49,7 @@ static int step_body(const duite_call *call)
 }
 const duite_kernel STEP = {.name = "step", .body = step_body, .access = {DUITE_RW, DUITE_R}};
 const duite_kernel STAYS = {
-    .name = "stays", .body = step_body, .access = {DUITE_RW, DUITE_R}, .stays = 1};
+    .name = "stays", .body = step_body, .access = {DUITE_RW, DUITE_R}, .fixed = 1};
 
 static int doze_body(const duite_call *call)
 {
@@ -58,7 +58,7 @@ static int doze_body(const duite_call *call)
     return 0;
 }
 const duite_kernel DOZE = {
-    .name = "doze", .body = doze_body, .access = {DUITE_RW}, .rest = DUITE_R};
+    .name = "doze", .body = doze_body, .access = {DUITE_RW}, .variadic = DUITE_R};
 
 /* The child runs for whom its parent runs, whatever it writes. */
 static int parent_body(const duite_call *call)
@@ -120,8 +120,8 @@ static int build(duite *rt, void *context)
     const struct things *things = context;
 
     for (int i = 0; i < things->tasks; i++)
-        duite_fork_with(rt, &(duite_how){.at = things->at < 0 ? NULL : &things->at}, things->kernel,
-                        NULL, (size_t)things->n, things->object);
+        duite_fork_with(rt, &(duite_task_options){.at = things->at < 0 ? NULL : &things->at},
+                        things->kernel, NULL, (size_t)things->n, things->object);
     return 0;
 }
 

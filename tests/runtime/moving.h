@@ -28,7 +28,7 @@ extern struct moving_seen {
     duite_blocks blocks; /* of which the arrays are gone */
     double weight[MOVING_BLOCKS], other[MOVING_RANKS], edge[MOVING_BLOCKS][MOVING_BLOCKS];
     size_t bytes[MOVING_BLOCKS];
-    unsigned char stays[MOVING_BLOCKS];
+    unsigned char fixed[MOVING_BLOCKS];
     int home[MOVING_BLOCKS];
 } seen;
 

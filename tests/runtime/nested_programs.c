@@ -152,7 +152,7 @@ static int call_one(duite *rt, const struct nest_action *action, duite_object *o
         return action->seed ? duite_set_sized(rt, objects[0], value, action->count)
                             : duite_set(rt, objects[0], NULL);
     case NEST_FORK:
-        return duite_fork_with(rt, &(duite_how){.priority = action->priority},
+        return duite_fork_with(rt, &(duite_task_options){.priority = action->priority},
                                &kernels[nest_kernel(&program.task[action->task])], &action->task,
                                program.task[action->task].n, objects);
     case NEST_GET:

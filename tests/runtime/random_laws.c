@@ -156,7 +156,7 @@ const duite_law *prog_law_given(enum prog_law law)
 enum prog_law prog_law(const duite_kernel *kernel, size_t i)
 {
     const int listed = i < DUITE_MAX_ACCESS && kernel->access[i] != DUITE_NONE;
-    const duite_law *law = listed ? kernel->law[i] : kernel->rest_law;
+    const duite_law *law = listed ? kernel->law[i] : kernel->variadic_law;
     enum prog_law found = PROG_SUM;
 
     for (int l = 0; l < PROG_N_LAWS; l++)

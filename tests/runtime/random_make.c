@@ -22,7 +22,7 @@ duite_mode prog_mode(const duite_kernel *kernel, size_t i)
     for (size_t k = 0; k < DUITE_MAX_ACCESS && kernel->access[k] != DUITE_NONE; k++)
         if (k == i)
             return kernel->access[k];
-    return kernel->rest;
+    return kernel->variadic;
 }
 
 static unsigned n_listed(const duite_kernel *kernel)
@@ -52,7 +52,7 @@ static const duite_law *draw_law(struct maker *m, duite_mode mode)
 
 static int may_replicate(const duite_kernel *kernel)
 {
-    int may = kernel->rest != DUITE_CW;
+    int may = kernel->variadic != DUITE_CW;
 
     for (unsigned i = 0; i < n_listed(kernel); i++)
         may &= kernel->access[i] != DUITE_CW;
@@ -77,8 +77,8 @@ static void make_kernels(struct maker *m)
             kernel->law[i] = draw_law(m, kernel->access[i]);
         }
         if (k >= 2 && make_one_in(m, 3))
-            kernel->rest = draw_mode(m);
-        kernel->rest_law = draw_law(m, kernel->rest);
+            kernel->variadic = draw_mode(m);
+        kernel->variadic_law = draw_law(m, kernel->variadic);
         kernel->args_size = sizeof(struct prog_args) - make_below(m, PROG_ARGS_PADDING);
         kernel->replicated = may_replicate(kernel) && make_one_in(m, 3);
         prog->list[k] = kernel;
@@ -211,7 +211,8 @@ int make_draft(struct maker *m, struct prog_op *draft)
     const struct prog *prog = m->prog;
     const unsigned kernel = make_below(m, make_one_in(m, 3) ? 2 : (unsigned)prog->n_kernels);
     const unsigned listed = n_listed(&prog->kernel[kernel]);
-    const unsigned more = prog->kernel[kernel].rest ? make_below(m, make_one_in(m, 4) ? 16 : 4) : 0;
+    const unsigned more =
+        prog->kernel[kernel].variadic ? make_below(m, make_one_in(m, 4) ? 16 : 4) : 0;
 
     draft->kernel = kernel;
     while (draft->n < listed + more) {

@@ -79,7 +79,7 @@ static void get_count(struct run *run, const struct prog_op *op, const struct pr
 static int fork_task(struct run *run, const struct prog_op *op)
 {
     const duite_kernel *kernel = &run->prog->kernel[op->kernel];
-    duite_how how = {.priority = op->priority + run->rank, .cost = op->cost};
+    duite_task_options how = {.priority = op->priority + run->rank, .cost = op->cost};
     duite_object objects[PROG_MAX_PARAMS];
     struct prog_args args;
     int rank = op->rank, code;
@@ -283,7 +283,7 @@ static void operation(struct run *run, const struct prog_op *op, const struct pr
         hint(run, op);
         break;
     case PROG_FOLLOW:
-        expect(run, "follow", duite_follow(run->rt, *object, run->object[op->objects[0]]),
+        expect(run, "follow", duite_colocate(run->rt, *object, run->object[op->objects[0]]),
                DUITE_OK);
         break;
     case PROG_HOME:

@@ -41,7 +41,7 @@ static const duite_kernel STAYS = {.name = "stays",
                                    .body = count_body,
                                    .access = {DUITE_RW},
                                    .args_size = sizeof(int32_t),
-                                   .stays = 1};
+                                   .fixed = 1};
 static const duite_kernel FILES = {.name = "files",
                                    .body = count_body,
                                    .access = {DUITE_RW},
@@ -140,7 +140,7 @@ static duite_object new_beside(duite *rt, duite_object leader)
 {
     const duite_object object = misuse_new(rt, 1);
 
-    duite_follow(rt, object, leader);
+    duite_colocate(rt, object, leader);
     return object;
 }
 

@@ -81,7 +81,7 @@ static int home_after(void (*settles)(void))
 {
     a[made] = misuse_new(rt, 1);
     settles();
-    duite_follow(rt, a[made], a[(made + 1) % ranks]);
+    duite_colocate(rt, a[made], a[(made + 1) % ranks]);
     return duite_home(rt, a[made++]);
 }
 

@@ -43,7 +43,7 @@ static int is_right(void)
     for (int i = 0; i < n; i++) {
         const int next = (i + 1) % n, before = (i + n - 1) % n;
         if (!took(seen.weight[i], i == n - 1 ? 4 : 3) || seen.bytes[i] != 4 * (100 + 7) ||
-            seen.home[i] != i % ranks || seen.stays[i] != (i == 1))
+            seen.home[i] != i % ranks || seen.fixed[i] != (i == 1))
             return 0;
         for (int k = 0; k < n; k++)
             if (seen.edge[i][k] != (k == next || k == before) * 3 * 400.0)
@@ -63,11 +63,11 @@ static void shown(void)
         ring.lead[i] = misuse_new(rt, 100);
     for (int i = 0; i < n; i++) {
         ring.follower[i] = misuse_new(rt, 7);
-        duite_follow(rt, ring.follower[i], ring.lead[i]);
+        duite_colocate(rt, ring.follower[i], ring.lead[i]);
     }
     duite_object gone = misuse_new(rt, 1000), alone = misuse_new(rt, 1000);
 
-    duite_follow(rt, gone, ring.lead[0]);
+    duite_colocate(rt, gone, ring.lead[0]);
     duite_graph_new(rt, build_ring, &ring, &graph);
     duite_graph_new(rt, build_ring, &ring, &unused); /* what is not replayed carries nothing */
     seen.calls = 0;
@@ -111,7 +111,7 @@ static void memory(void)
 
     for (int i = 0; i < N_LARGE; i++) {
         large[i] = misuse_new(rt, LARGE);
-        duite_follow(rt, large[i], large[0]);
+        duite_colocate(rt, large[i], large[0]);
         duite_fork(rt, &SET, &(int32_t){i}, 1, &large[i]);
     }
     duite_wait(rt);
@@ -126,7 +126,7 @@ static void memory(void)
     tap_case(duite_home(rt, large[N_LARGE - 1]) == next, "they have moved with their leader");
     tap_case(rank != next || before <= 0 || now > 0.9 * all, "the new home has them");
     tap_case(rank == next || now < 0.1 * all, "and the old one has not");
-    tap_case(rank == next || duite_touches(rt, large[3]) == 0, "and is not touched by them");
+    tap_case(rank == next || duite_is_local(rt, large[3]) == 0, "and is not touched by them");
     for (int i = 0; i < N_LARGE; i++) {
         int32_t *values = calloc(LARGE, sizeof *values);
 

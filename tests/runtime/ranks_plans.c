@@ -85,7 +85,7 @@ static void make(duite *rt, struct rod *rod)
         for (int b = 0; b < BLOCKS; b++) {
             duite_new(rt, DUITE_F64, LENGTH, &rod->x[way][b]);
             if (way)
-                duite_follow(rt, rod->x[1][b], rod->x[0][b]);
+                duite_colocate(rt, rod->x[1][b], rod->x[0][b]);
             else if (b)
                 duite_hint(rt, rod->x[0][b], 1, 1, &rod->x[0][b - 1], NULL);
         }

@@ -1,5 +1,5 @@
 /* What a rank keeps of other ranks' tasks and objects: nothing of forks that touch nothing of it,
- * copies until they are overwritten; and who says so (duite_touches). */
+ * copies until they are overwritten; and who says so (duite_is_local). */
 
 #include "tests/negative/misuse.h"
 
@@ -42,15 +42,16 @@ static void copies(duite *rt, const duite_object *object, int home, int reader)
     const double all = 4e-6 * OBJECTS * LARGE;
 
     tap_case(rank != reader || before <= 0 || with - before > 0.9 * all, "who reads keeps copies");
-    tap_case(rank == home || duite_touches(rt, object[0]) == (rank == reader),
+    tap_case(rank == home || duite_is_local(rt, object[0]) == (rank == reader),
              "and is touched by what names them");
     for (int i = 0; i < OBJECTS; i++)
         duite_fork_at(rt, home, &SET, &(int32_t){i + 1}, 1, &object[i]);
     duite_wait(rt);
     tap_case(rank != reader || megabytes() - before < 0.1 * all,
              "which are dropped when the objects are overwritten");
-    tap_case(rank == home || duite_touches(rt, object[0]) == 0, "and then is not touched any more");
-    tap_case(rank != home || duite_touches(rt, object[0]) == 1, "the home always is");
+    tap_case(rank == home || duite_is_local(rt, object[0]) == 0,
+             "and then is not touched any more");
+    tap_case(rank != home || duite_is_local(rt, object[0]) == 1, "the home always is");
 }
 
 /* Many forks, all of one rank's. */
@@ -78,7 +79,7 @@ static void misuse(duite *rt, const duite_object *small)
     tap_case(duite_fork(rt, &TOUCH, NULL, 2, small) == DUITE_E_ARGUMENT, "no arguments");
     tap_case(duite_fork(rt, &UNLISTED, NULL, 1, small) == DUITE_E_KERNEL, "a kernel not listed");
     tap_case(duite_wait(rt) == DUITE_E_ACCESS, "and told once more");
-    tap_case(duite_touches(rt, DUITE_NO_OBJECT) == 1, "nothing is everybody's business");
+    tap_case(duite_is_local(rt, DUITE_NO_OBJECT) == 1, "nothing is everybody's business");
     tap_case(duite_wait(rt) == DUITE_OK, "the ranks agree still");
 }
 
@@ -104,11 +105,11 @@ int main(void)
         return 1;
     for (int i = 0; i < OBJECTS; i++) {
         large[i] = misuse_new(rt, LARGE);
-        duite_follow(rt, large[i], large[0]);
+        duite_colocate(rt, large[i], large[0]);
     }
     for (int i = 0; i < 6; i++) {
         small[i] = misuse_new(rt, 1);
-        duite_follow(rt, small[i], large[0]);
+        duite_colocate(rt, small[i], large[0]);
     }
     const int home = duite_home(rt, large[0]), n_ranks = duite_ranks(rt);
 

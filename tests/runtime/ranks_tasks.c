@@ -35,7 +35,7 @@ static int look(const duite_task_graph *graph, int *home)
                  graph->block[0] == 0 && graph->block[1] == 1 && graph->block[2] == 1 &&
                  start[0] == 0 && start[1] == 0 && start[2] == 1 && start[3] == 2 &&
                  graph->from[0] == 0 && graph->bytes[0] == 4 * WIDTH && graph->from[1] == 1 &&
-                 graph->bytes[1] == 4 * 3 && !graph->stays[0] && graph->workers[ranks - 1] == 1 &&
+                 graph->bytes[1] == 4 * 3 && !graph->fixed[0] && graph->workers[ranks - 1] == 1 &&
                  graph->byte_seconds >= 0 && graph->message_seconds > 0;
     for (int i = 0; i < 3; i++)
         seen.cost[i] = graph->cost[i];
@@ -84,9 +84,10 @@ static int build_three(duite *rt, void *context)
     const struct three *t = context;
     const int32_t seven = 7;
 
-    duite_fork_with(rt, &(duite_how){.cost = 2}, &SET, &seven, 1, &t->x);
-    duite_fork_with(rt, &(duite_how){.cost = 3}, &LINK, NULL, 2, (duite_object[]){t->y, t->x});
-    return duite_fork_with(rt, &(duite_how){.cost = t->cost}, &ADD_UP, NULL, 1, &t->y);
+    duite_fork_with(rt, &(duite_task_options){.cost = 2}, &SET, &seven, 1, &t->x);
+    duite_fork_with(rt, &(duite_task_options){.cost = 3}, &LINK, NULL, 2,
+                    (duite_object[]){t->y, t->x});
+    return duite_fork_with(rt, &(duite_task_options){.cost = t->cost}, &ADD_UP, NULL, 1, &t->y);
 }
 
 /* Replays three times; how often is the mapping asked, and is the answer followed? */
@@ -98,7 +99,7 @@ static void shown(double cost, int calls, const char *name)
     int32_t value[3];
 
     t.z = misuse_new(rt, 1);
-    duite_follow(rt, t.z, t.x);
+    duite_colocate(rt, t.z, t.x);
     seen.calls = 0;
     duite_graph_new(rt, build_three, &t, &graph);
     for (int i = 0; i < 3; i++)
@@ -151,7 +152,7 @@ static int build_chains(duite *rt, void *context)
 
     for (int s = 0; s < LENGTH; s++)
         for (int c = 0; c < CHAINS; c++) {
-            const duite_how how = {.cost = 1e-3 * (c + 1)};
+            const duite_task_options how = {.cost = 1e-3 * (c + 1)};
 
             if (s)
                 duite_fork_with(

@@ -69,7 +69,7 @@ static int ask(void *state, unsigned attempt, int giver, double *seconds)
     return *(int *)state ? 0 : 1;
 }
 
-static int give(void *state, const duite_asked *asked, const duite_leaf *leaf)
+static int give(void *state, const duite_request *asked, const duite_leaf *leaf)
 {
     (void)state;
     (void)asked;

@@ -18,7 +18,7 @@ static struct {
     double weight[BLOCKS], edge[4 * BLOCKS], other[MOST_RANKS];
     size_t start[BLOCKS + 1], bytes[BLOCKS];
     uint32_t neighbour[4 * BLOCKS];
-    unsigned char stays[BLOCKS];
+    unsigned char fixed[BLOCKS];
     unsigned workers[MOST_RANKS];
     int home[BLOCKS];
     uint64_t state[64];
@@ -52,7 +52,7 @@ static void make(int n_ranks)
                                            .neighbour = grid.neighbour,
                                            .edge_weight = grid.edge},
                                  .bytes = grid.bytes,
-                                 .stays = grid.stays,
+                                 .fixed = grid.fixed,
                                  .n_ranks = n_ranks,
                                  .other = grid.other,
                                  .workers = grid.workers,
@@ -90,7 +90,7 @@ static int ask(uint64_t *next)
     for (int i = 0; i < BLOCKS; i++) {
         moved += grid.home[i] != before[i];
         ck_assert(grid.home[i] >= 0 && grid.home[i] < grid.blocks.n_ranks);
-        ck_assert(!grid.stays[i] || grid.home[i] == before[i]);
+        ck_assert(!grid.fixed[i] || grid.home[i] == before[i]);
     }
     if (next)
         *next = answer;
@@ -178,11 +178,11 @@ START_TEST(some_stay)
 {
     make_uneven(RANKS);
     for (int i = 0; i < BLOCKS; i++)
-        grid.stays[i] = grid.home[i] == 0 && i % 2;
+        grid.fixed[i] = grid.home[i] == 0 && i % 2;
     ck_assert(ask(NULL) > 0); /* which checks that these did */
     ck_assert(excess() < 0.05);
     make_uneven(RANKS);
-    memset(grid.stays, 1, sizeof grid.stays);
+    memset(grid.fixed, 1, sizeof grid.fixed);
     ck_assert_int_eq(ask(NULL), 0);
 }
 END_TEST

@@ -91,7 +91,7 @@ static int wrong_build(duite *rt, void *context)
     case 13:
         return duite_hint(rt, f->a, 1, 0, NULL, NULL);
     case 14:
-        return duite_follow(rt, f->a, f->b);
+        return duite_colocate(rt, f->a, f->b);
     case 15: {
         duite *copied = rt;
 

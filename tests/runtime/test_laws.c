@@ -88,10 +88,10 @@ static const duite_kernel FIND_LEAST = {.name = "find least",
 static const duite_kernel GIVE_ALL = {.name = "give all",
                                       .body = give_all,
                                       .access = {DUITE_CW, DUITE_CW, DUITE_CW},
-                                      .rest = DUITE_CW,
+                                      .variadic = DUITE_CW,
                                       .args_size = sizeof(int64_t),
                                       .law = {[1] = &duite_max, [2] = &DIGITS},
-                                      .rest_law = &duite_min};
+                                      .variadic_law = &duite_min};
 
 static duite *rt;
 

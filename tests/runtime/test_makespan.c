@@ -78,7 +78,8 @@ static int build(duite *rt, void *context)
         const int link = i >= LENGTH;
         const duite_object own = object[link ? LENGTH : i];
 
-        duite_fork_with(rt, &(duite_how){.cost = 1}, &UNIT, &link, 2, (duite_object[]){own, gate});
+        duite_fork_with(rt, &(duite_task_options){.cost = 1}, &UNIT, &link, 2,
+                        (duite_object[]){own, gate});
     }
     return 0;
 }

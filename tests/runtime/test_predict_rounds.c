@@ -29,7 +29,7 @@ static const duite_kernel LEAF = {.name = "leaf", .body = nothing, .access = {DU
 static const duite_kernel LEAVES = {
     .name = "leaves", .body = nothing, .access = {DUITE_CW, DUITE_CW}};
 static const duite_kernel READS = {
-    .name = "reads", .body = nothing, .access = {DUITE_RW}, .rest = DUITE_R};
+    .name = "reads", .body = nothing, .access = {DUITE_RW}, .variadic = DUITE_R};
 static const duite_kernel SAME = {
     .name = "same", .body = nothing, .access = {DUITE_R, DUITE_RW}, .replicated = 1};
 static const duite_kernel *const KERNELS[] = {&READ_WRITE, &CHANGE, &LEAF, &LEAVES,
@@ -79,10 +79,10 @@ static int build(duite *rt, void *context)
         duite_object objects[4];
         draw_objects(kernel, objects);
         if (draw(8))
-            code = duite_fork_with(
-                rt,
-                &(duite_how){.at = named ? &rank : NULL, .cost = 0x1p-10 * (double)(1 + draw(7))},
-                KERNELS[kernel], NULL, PARAMETERS[kernel], objects);
+            code = duite_fork_with(rt,
+                                   &(duite_task_options){.at = named ? &rank : NULL,
+                                                         .cost = 0x1p-10 * (double)(1 + draw(7))},
+                                   KERNELS[kernel], NULL, PARAMETERS[kernel], objects);
         else
             code = duite_set(rt, now.name[draw(OBJECTS)], values);
     }

@@ -120,7 +120,8 @@ static int build_urgent(duite *rt, void *context)
     const duite_object *object = context;
 
     for (int i = 0; i < TASKS; i++)
-        duite_fork_with(rt, &(duite_how){.priority = URGENCY(i)}, &NOTE, &i, 1, &object[i]);
+        duite_fork_with(rt, &(duite_task_options){.priority = URGENCY(i)}, &NOTE, &i, 1,
+                        &object[i]);
     return 0;
 }
 
@@ -160,7 +161,7 @@ static int32_t run_ring(const char *scheduler, unsigned threads, duite_counters 
     for (int i = 0; i < BLOCKS; i++) {
         a[i] = misuse_new(rt, 1);
         b[i] = misuse_new(rt, 1);
-        duite_follow(rt, b[i], a[i]);
+        duite_colocate(rt, b[i], a[i]);
     }
     for (int s = 0; s < STEPS; s++)
         for (int i = 0; i < BLOCKS; i++) {
@@ -307,9 +308,9 @@ static int build_told(duite *rt, void *context)
 
     duite_fork(rt, &NOTE, &here, 1, a);
     duite_fork_with(rt, NULL, &NOTE, &here, 1, a);
-    duite_fork_with(rt, &(duite_how){.priority = -7, .cost = -1}, &NOTE, &here, 1, a);
-    duite_fork_with(rt, &(duite_how){.at = &here, .priority = INT32_MAX, .cost = 2.5}, &NOTE, &here,
-                    1, a);
+    duite_fork_with(rt, &(duite_task_options){.priority = -7, .cost = -1}, &NOTE, &here, 1, a);
+    duite_fork_with(rt, &(duite_task_options){.at = &here, .priority = INT32_MAX, .cost = 2.5},
+                    &NOTE, &here, 1, a);
     return 0;
 }
 

@@ -44,10 +44,10 @@ static int build_chain(duite *rt, void *context)
     const duite_object *object = context;
 
     for (int i = 0; i < 20; i++)
-        duite_fork_with(rt, &(duite_how){.cost = 1}, &NOTE, &i, 1, &object[i]);
+        duite_fork_with(rt, &(duite_task_options){.cost = 1}, &NOTE, &i, 1, &object[i]);
     for (int i = 20; i < 23; i++)
-        duite_fork_with(rt, &(duite_how){.cost = 10}, &NOTE, &i, 1, &object[20]);
-    duite_fork_with(rt, &(duite_how){.cost = 25}, &NOTE, &(int){23}, 1, &object[21]);
+        duite_fork_with(rt, &(duite_task_options){.cost = 10}, &NOTE, &i, 1, &object[20]);
+    duite_fork_with(rt, &(duite_task_options){.cost = 25}, &NOTE, &(int){23}, 1, &object[21]);
     return duite_fork(rt, &NOTE, &(int){24}, 1, &object[22]);
 }
 

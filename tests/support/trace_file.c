@@ -141,8 +141,8 @@ static void write_kernels(FILE *out)
     char names[64] = "", *name = names;
     for (int i = 0; i < FILE_KERNELS; i++) {
         memcpy(kernel[i].mode, KERNELS[i].mode, sizeof KERNELS[i].mode);
-        for (kernel[i].fixed = 0; kernel[i].fixed < 3 && KERNELS[i].mode[kernel[i].fixed];)
-            kernel[i].fixed++;
+        for (kernel[i].n_modes = 0; kernel[i].n_modes < 3 && KERNELS[i].mode[kernel[i].n_modes];)
+            kernel[i].n_modes++;
         kernel[i].replicated = KERNELS[i].replicated;
         name = stpcpy(name, KERNELS[i].name) + 1;
     }

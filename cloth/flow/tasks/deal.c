@@ -262,7 +262,7 @@ void flow_parcels_make(struct flow_state *state)
     for (uint32_t b = 0; b < tables->n_blocks; b++) {
         duite_new_sized(state->rt, DUITE_BYTE, 0, FLOW_VERTEX_BYTES * (size_t)tables->block[b].n,
                         state->parcel + b);
-        duite_follow(state->rt, state->parcel[b], state->block[b].x);
+        duite_colocate(state->rt, state->parcel[b], state->block[b].x);
     }
 }
 

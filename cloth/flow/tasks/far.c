@@ -102,7 +102,7 @@ static void make_rim(struct flow_state *state, uint32_t b, int home)
     far->n_rows += rim->n;
     for (int i = 0; i < 2; i++) {
         duite_new(state->rt, DUITE_F64, 3 * (size_t)rim->n, object + i);
-        duite_follow(state->rt, object[i], state->block[b].x);
+        duite_colocate(state->rt, object[i], state->block[b].x);
     }
     for (uint32_t s = 0; s < t->n_slots; s++) {
         if (far->home[t->slot[s]] != home)

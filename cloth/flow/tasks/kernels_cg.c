@@ -113,7 +113,7 @@ const duite_kernel flow_pass = {.name = "cg_pass",
                                 .body = pass_timed,
                                 .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW,
                                            DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_CW},
-                                .rest = DUITE_R,
+                                .variadic = DUITE_R,
                                 .args_size = sizeof(struct flow_args)};
 
 static struct solve_stop stop_of(const struct model *model)

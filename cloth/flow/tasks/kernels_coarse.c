@@ -27,7 +27,7 @@ static int basis(const duite_call *call)
 const duite_kernel flow_basis = {.name = "basis",
                                  .body = basis,
                                  .access = {DUITE_R, DUITE_W, DUITE_W},
-                                 .rest = DUITE_R,
+                                 .variadic = DUITE_R,
                                  .args_size = ARGS};
 
 static int basis_copies(const duite_call *call)
@@ -45,7 +45,7 @@ static int basis_copies(const duite_call *call)
 const duite_kernel flow_basis_copies = {.name = "basis_copies",
                                         .body = basis_copies,
                                         .access = {DUITE_R, DUITE_W},
-                                        .rest = DUITE_R,
+                                        .variadic = DUITE_R,
                                         .args_size = ARGS};
 
 /* ---- Of each step's matrix ---- */
@@ -126,6 +126,6 @@ FLOW_TIMED_PLAIN(factor_coarse, FLOW_CG)
 const duite_kernel flow_factor_coarse = {.name = "factor_coarse",
                                          .body = factor_coarse_timed,
                                          .access = {DUITE_W},
-                                         .rest = DUITE_R,
+                                         .variadic = DUITE_R,
                                          .args_size = ARGS,
                                          .replicated = 1};

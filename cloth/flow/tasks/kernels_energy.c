@@ -30,7 +30,7 @@ static int energy(const duite_call *call)
 const duite_kernel flow_energy = {.name = "energy",
                                   .body = energy,
                                   .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_CW},
-                                  .rest = DUITE_R,
+                                  .variadic = DUITE_R,
                                   .args_size = ARGS};
 
 /* f becomes v and half a kick more: the velocity where x is, of steps that hold them half a step

@@ -60,7 +60,7 @@ const duite_kernel flow_euler = {
     .name = "euler",
     .body = euler_timed,
     .access = {DUITE_R, DUITE_RW, DUITE_RW, DUITE_W, DUITE_W, DUITE_CW},
-    .rest = DUITE_R,
+    .variadic = DUITE_R,
     .args_size = ARGS};
 
 static int beside(const duite_call *call)
@@ -72,7 +72,7 @@ const duite_kernel flow_euler_beside = {
     .name = "euler_beside",
     .body = beside_timed,
     .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_CW},
-    .rest = DUITE_R,
+    .variadic = DUITE_R,
     .args_size = ARGS};
 
 /* ---- Velocity Verlet ---- */
@@ -120,7 +120,7 @@ const duite_kernel flow_verlet_second = {
     .name = "verlet_second",
     .body = verlet_second_timed,
     .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_R, DUITE_W, DUITE_CW},
-    .rest = DUITE_R,
+    .variadic = DUITE_R,
     .args_size = ARGS};
 
 /* ---- Runge-Kutta ---- */
@@ -153,5 +153,5 @@ const duite_kernel flow_runge = {.name = "runge",
                                  .body = stage_timed,
                                  .access = {DUITE_R, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW,
                                             DUITE_RW, DUITE_RW, DUITE_W, DUITE_W, DUITE_CW},
-                                 .rest = DUITE_R,
+                                 .variadic = DUITE_R,
                                  .args_size = ARGS};

@@ -31,7 +31,7 @@ FLOW_TIMED_PLAIN(frame, FLOW_OUTPUT)
 const duite_kernel flow_frame = {.name = "frame",
                                  .body = frame_timed,
                                  .access = {DUITE_RW},
-                                 .rest = DUITE_R,
+                                 .variadic = DUITE_R,
                                  .args_size = sizeof(struct flow_args),
                                  .side_effects = 1};
 
@@ -70,7 +70,7 @@ const duite_kernel flow_stretch = {.name = "stretch",
                                    .body = stretch,
                                    .access = {DUITE_R, DUITE_R, DUITE_CW},
                                    .law = {NULL, NULL, &duite_max},
-                                   .rest = DUITE_R,
+                                   .variadic = DUITE_R,
                                    .args_size = sizeof(struct flow_args)};
 
 /* Runs when nothing else does. */

@@ -93,7 +93,7 @@ FLOW_TIMED(force, FLOW_FORCE)
 const duite_kernel flow_force = {.name = "force",
                                  .body = force_timed,
                                  .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W},
-                                 .rest = DUITE_R,
+                                 .variadic = DUITE_R,
                                  .args_size = ARGS};
 
 static int force_free(const duite_call *call)
@@ -106,7 +106,7 @@ FLOW_TIMED(force_free, FLOW_FORCE)
 const duite_kernel flow_force_free = {.name = "force_free",
                                       .body = force_free_timed,
                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W},
-                                      .rest = DUITE_R,
+                                      .variadic = DUITE_R,
                                       .args_size = ARGS};
 
 /* What a filtered solve lost: entries to held rows and rows in contact do not cancel. */

@@ -164,7 +164,7 @@ FLOW_TIMED(system_all, FLOW_MATRIX)
 const duite_kernel flow_system_all = {.name = "system",
                                       .body = system_all_timed,
                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W, DUITE_W},
-                                      .rest = DUITE_R,
+                                      .variadic = DUITE_R,
                                       .args_size = ARGS};
 
 static int system_rest(const duite_call *call)
@@ -175,7 +175,7 @@ FLOW_TIMED(system_rest, FLOW_MATRIX)
 const duite_kernel flow_system_rest = {.name = "system_of_forces",
                                        .body = system_rest_timed,
                                        .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W},
-                                       .rest = DUITE_R,
+                                       .variadic = DUITE_R,
                                        .args_size = ARGS};
 
 static int matrix(const duite_call *call)
@@ -194,5 +194,5 @@ FLOW_TIMED(matrix, FLOW_MATRIX)
 const duite_kernel flow_matrix = {.name = "matrix",
                                   .body = matrix_timed,
                                   .access = {DUITE_R, DUITE_R, DUITE_W},
-                                  .rest = DUITE_R,
+                                  .variadic = DUITE_R,
                                   .args_size = ARGS};

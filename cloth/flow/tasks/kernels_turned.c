@@ -89,7 +89,7 @@ const duite_kernel flow_start_turned = {.name = "cg_start_turned",
                                         .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W, DUITE_W,
                                                    DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W,
                                                    DUITE_W, DUITE_W},
-                                        .rest = DUITE_R,
+                                        .variadic = DUITE_R,
                                         .args_size = ARGS};
 
 /* Parameters of a pass; behind the neighbours, with a coarse part, basis, that of the copies, and
@@ -252,7 +252,7 @@ const duite_kernel flow_pass_turned = {.name = "cg_pass_turned",
                                        .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW,
                                                   DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW,
                                                   DUITE_RW, DUITE_RW, DUITE_RW, DUITE_R},
-                                       .rest = DUITE_R,
+                                       .variadic = DUITE_R,
                                        .args_size = ARGS};
 
 /* ---- Scalars, on every rank ---- */
@@ -307,7 +307,7 @@ static int scalars_turned(const duite_call *call)
 const duite_kernel flow_scalars_turned = {.name = "cg_scalars_turned",
                                           .body = scalars_turned,
                                           .access = {DUITE_W, DUITE_R},
-                                          .rest = DUITE_R,
+                                          .variadic = DUITE_R,
                                           .args_size = ARGS,
                                           .replicated = 1};
 
@@ -336,7 +336,7 @@ FLOW_TIMED_PLAIN(scalars_coarse, FLOW_CG)
 const duite_kernel flow_scalars_coarse = {.name = "cg_scalars_coarse",
                                           .body = scalars_coarse_timed,
                                           .access = {DUITE_W, DUITE_W, DUITE_R, DUITE_R},
-                                          .rest = DUITE_R,
+                                          .variadic = DUITE_R,
                                           .args_size = ARGS,
                                           .replicated = 1};
 
@@ -350,6 +350,6 @@ FLOW_TIMED_PLAIN(begin_coarse, FLOW_CG)
 const duite_kernel flow_begin_coarse = {.name = "cg_begin_coarse",
                                         .body = begin_coarse_timed,
                                         .access = {DUITE_W, DUITE_W, DUITE_R},
-                                        .rest = DUITE_R,
+                                        .variadic = DUITE_R,
                                         .args_size = ARGS,
                                         .replicated = 1};

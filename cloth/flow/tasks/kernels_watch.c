@@ -33,7 +33,7 @@ const duite_kernel flow_watch_block = {.name = "watch",
                                        .body = watch_timed,
                                        .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_CW},
                                        .law = {[3] = &duite_max},
-                                       .rest = DUITE_R,
+                                       .variadic = DUITE_R,
                                        .args_size = ARGS};
 
 /* m a - f of a row that is held, a the acceleration that its pin gives it. */
@@ -144,6 +144,6 @@ FLOW_TIMED_PLAIN(row, FLOW_OUTPUT)
 const duite_kernel flow_row = {.name = "row",
                                .body = row_timed,
                                .access = {DUITE_RW, DUITE_R, DUITE_R, DUITE_R},
-                               .rest = DUITE_R,
+                               .variadic = DUITE_R,
                                .args_size = ARGS,
                                .side_effects = 1};

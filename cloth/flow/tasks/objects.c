@@ -9,7 +9,7 @@
 static void make_numbers(duite *rt, size_t n, duite_object x, duite_object *object)
 {
     duite_new(rt, DUITE_F64, n ? n : 1, object);
-    duite_follow(rt, *object, x);
+    duite_colocate(rt, *object, x);
 }
 
 static void make(duite *rt, size_t rows, duite_object x, duite_object *object)
@@ -25,7 +25,7 @@ static void make_block(duite *rt, const struct flow_table *t, struct flow_object
     make(rt, t->n_rim, o->x, &o->rim_x);
     make(rt, t->n_rim, o->x, &o->rim_v);
     duite_new(rt, DUITE_BYTE, flow_table_bytes(t), &o->table);
-    duite_follow(rt, o->table, o->x);
+    duite_colocate(rt, o->table, o->x);
 }
 
 static void make_implicit(duite *rt, const struct flow_table *t, bool filtered,
@@ -90,7 +90,7 @@ static void make_shared(struct flow_state *state, duite_type type, size_t count,
                         duite_object *object)
 {
     duite_new(state->rt, type, count, object);
-    duite_follow(state->rt, *object, state->block[0].x);
+    duite_colocate(state->rt, *object, state->block[0].x);
 }
 
 void flow_objects_make(struct flow_state *state)

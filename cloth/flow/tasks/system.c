@@ -191,7 +191,7 @@ static int save(const duite_call *call)
 const duite_kernel flow_system_save = {.name = "system_save",
                                        .body = save,
                                        .access = {DUITE_RW},
-                                       .rest = DUITE_R,
+                                       .variadic = DUITE_R,
                                        .args_size = sizeof(struct flow_args),
                                        .side_effects = 1};
 
@@ -206,7 +206,7 @@ static int fork_parts(struct flow_state *state, duite_object *part)
         const struct flow_table *t = tables->block + b;
         code = duite_new(state->rt, DUITE_F64, rim_at(t) + t->n_rim, part + b);
         if (!code)
-            code = duite_follow(state->rt, part[b], state->block[b].x);
+            code = duite_colocate(state->rt, part[b], state->block[b].x);
     }
     for (; args.block < tables->n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;

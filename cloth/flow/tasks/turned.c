@@ -118,7 +118,7 @@ void flow_turned_free(struct flow *flow)
 static void make(struct flow_state *state, size_t n, duite_object beside, duite_object *object)
 {
     duite_new(state->rt, DUITE_F64, n ? n : 1, object);
-    duite_follow(state->rt, *object, beside);
+    duite_colocate(state->rt, *object, beside);
 }
 
 static void make_coarse(struct flow_state *state, uint32_t b)

@@ -22,7 +22,7 @@ void flow_watch_make(struct flow_state *state)
 {
     for (int i = 0; i < 2; i++) {
         duite_new(state->rt, DUITE_F64, FLOW_PEAKS, state->peaks + i);
-        duite_follow(state->rt, state->peaks[i], state->block[0].x);
+        duite_colocate(state->rt, state->peaks[i], state->block[0].x);
     }
     for (uint32_t b = 0; b < state->flow->tables.n_blocks && tells(state); b++) {
         const struct flow_table *t = state->flow->tables.block + b;
@@ -30,9 +30,9 @@ void flow_watch_make(struct flow_state *state)
         if (!t->n_watched)
             continue;
         duite_new(state->rt, DUITE_F64, 4 * (size_t)t->n, &o->felt);
-        duite_follow(state->rt, o->felt, o->x);
+        duite_colocate(state->rt, o->felt, o->x);
         duite_new(state->rt, DUITE_F64, FLOW_SEEN * (size_t)t->n_watched, &o->seen);
-        duite_follow(state->rt, o->seen, o->x);
+        duite_colocate(state->rt, o->seen, o->x);
     }
 }
 

@@ -152,8 +152,8 @@ typedef struct duite_mapping {
 /* ---- Balancers: which ready tasks run on another rank, and which objects move there ---- */
 
 /* A ready task that may run on any rank: a leaf (no parameter of its kernel is postponed) of the
- * main program's or of a tree of tasks, whose fork named no rank and whose kernel is neither fixed
- * (duite_kernel.fixed) nor has side effects. Its inputs travel there and its outputs back. */
+ * main program's or of a tree of tasks, whose fork named no rank and whose kernel is not fixed
+ * (duite_kernel.fixed) and has no side effects. Its inputs travel there and its outputs back. */
 typedef struct duite_leaf {
     const char *kernel;
     uint64_t number; /* its place in fork order */

@@ -109,7 +109,7 @@ static void plan(struct measure *measure, const struct bench_options *options)
         measure_value(measure, &first[i], 1e3, "ms", "sheet_%ux%u_%s_%s_%s_ms", c->ranks,
                       c->threads, c->scheduler, c->mapping, c->balance);
         struct measure_metric *one =
-            measure_metric(measure, "x", ratio, "foretold_%ux%u_%s_%s_%s_vs_run", c->ranks,
+            measure_metric(measure, "x", ratio, "predicted_%ux%u_%s_%s_%s_vs_run", c->ranks,
                            c->threads, c->scheduler, c->mapping, c->balance);
         one->of = first;
         one->scale = i;

@@ -1,5 +1,5 @@
 /* The calls of the main program (a body's go to inside.c): each checks that it may be made, settles
- * the homes of new objects where they matter, and leaves the work to graph/. An error of a call
+ * the homes of new objects where they matter, and leaves the work to task/ and plan/. An error of a call
  * that returns at once is remembered for the next get, wait or stop. */
 #include "runtime/api/instance.h"
 

@@ -8,7 +8,7 @@
 
 /* Ranks stand in a ring: each sends the next one a heartbeat sixteen times in `seconds`, and
  * listens to the one before it. If that one is not heard at sixteen looks in a row it is lost: then
- * communication breaks, and the farewell tells all others. So a rank sends and hears one message a
+ * communication breaks, and abort messages tell all others. So a rank sends and hears one message a
  * look, however many there are; and wherever the ring is cut in two, both parts find out, since on
  * each side somebody listens to the other.
  *

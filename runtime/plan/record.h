@@ -9,7 +9,7 @@
 /* Recorded graphs: what a build function forked, kept to be replayed.
  *
  * The record is the program's view: forks in order, with the objects and arguments that the next
- * replay uses. From it comes a plan (replay.h), which one rank replays by itself; any number of
+ * replay uses. From it comes a plan (plan.h), which one rank replays by itself; any number of
  * ranks can fork the record round by round instead, with the same results. Main thread only. */
 
 #define PLAN_SETS UINT32_MAX /* in place of a kernel: a duite_set */

@@ -1,5 +1,5 @@
 /* Packets: in a round of a replay all that goes from one host to another in a phase is one message,
- * as graph/spread.c has it. A phase is the number of messages on the longest path to what is sent.
+ * as plan/messages.c has it. A phase is the number of messages on the longest path to what is sent.
  * The set of a round's packets is an open table; outside of replays each message is a packet. */
 #include "runtime/predict/graph.h"
 

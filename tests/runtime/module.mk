@@ -116,10 +116,10 @@ RUNTIME_TESTS = tests/runtime/test_predict tests/runtime/test_predict_replays te
     tests/runtime/test_nested_tasks tests/runtime/test_graphs tests/runtime/test_graphs_change tests/runtime/test_graphs_refused tests/runtime/test_graph_print tests/runtime/test_views
 check_PROGRAMS += $(RUNTIME_TESTS)
 TESTS += $(RUNTIME_TESTS)
-FORETELL_FILES = tests/runtime/foretell.c tests/runtime/foretell.h tests/support/trace_file.c tests/support/trace_file.h
-tests_runtime_test_predict_SOURCES = tests/runtime/test_predict.c $(FORETELL_FILES)
+PREDICTED_FILES = tests/runtime/predicted.c tests/runtime/predicted.h tests/support/trace_file.c tests/support/trace_file.h
+tests_runtime_test_predict_SOURCES = tests/runtime/test_predict.c $(PREDICTED_FILES)
 tests_runtime_test_predict_LDADD = libduite_predict.la $(DUITE_TEST_LIBS)
-tests_runtime_test_predict_replays_SOURCES = tests/runtime/test_predict_replays.c $(FORETELL_FILES)
+tests_runtime_test_predict_replays_SOURCES = tests/runtime/test_predict_replays.c $(PREDICTED_FILES)
 tests_runtime_test_predict_replays_LDADD = libduite_predict.la $(DUITE_TEST_LIBS)
 RUNTIME_TESTS += tests/runtime/test_bounds
 tests_runtime_test_bounds_SOURCES = tests/runtime/test_bounds.c tests/support/trace_file.c tests/support/trace_file.h
@@ -172,7 +172,8 @@ check_PROGRAMS += $(PASSES_TESTS)
 TESTS += $(PASSES_TESTS)
 tests_runtime_test_passes_SOURCES = tests/runtime/test_passes.c tests/runtime/rounds.c tests/runtime/rounds.h
 tests_runtime_test_passes_LDADD = $(DUITE_TEST_LIBS)
-tests_runtime_test_passes_random_SOURCES = tests/runtime/test_passes_random.c tests/runtime/rounds.c tests/runtime/rounds.h
+tests_runtime_test_passes_random_SOURCES = tests/runtime/test_passes_random.c tests/runtime/rounds.c tests/runtime/rounds.h \
+    tests/runtime/rounds_run.c tests/runtime/rounds_run.h
 tests_runtime_test_passes_random_LDADD = $(DUITE_TEST_LIBS)
 tests_runtime_test_emit_SOURCES = tests/runtime/test_emit.c
 tests_runtime_test_emit_LDADD = $(DUITE_TEST_LIBS)

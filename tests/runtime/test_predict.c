@@ -3,7 +3,7 @@
 #include "runtime/map/map.h"
 #include "runtime/predict/predict.h"
 #include "runtime/sched/sched.h"
-#include "tests/runtime/foretell.h"
+#include "tests/runtime/predicted.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
@@ -22,11 +22,11 @@ static void is(double value, double expected)
 /* Three tasks in a row: 1 + 2 + 3 ms, however many cores. */
 START_TEST(chain)
 {
-    struct trace_file file = foretell_begun(1, 8);
+    struct trace_file file = predicted_trace(1, 8);
     for (int i = 1; i <= 3; i++)
         trace_file_fork(&file, FILE_RW, i * MS, 0, 1, SLOTS(1));
-    const struct predict_cluster four = foretell_machine(1, 4);
-    struct predict_result r = foretell(&file, &four);
+    const struct predict_cluster four = predicted_machine(1, 4);
+    struct predict_result r = predicted(&file, &four);
     is(r.makespan, 6 * MS);
     is(r.critical_path, 6 * MS);
     is(r.idle, 0.75);
@@ -39,12 +39,12 @@ END_TEST
 /* Tasks of 3, 3, 2, 2, 2 ms on two cores, first come, first served: 3 + 2 + 2 and 3 + 2. */
 START_TEST(independent)
 {
-    struct trace_file file = foretell_begun(5, 8);
+    struct trace_file file = predicted_trace(5, 8);
     const double took[] = {3, 3, 2, 2, 2};
     for (uint32_t i = 0; i < 5; i++)
         trace_file_fork(&file, FILE_W, took[i] * MS, 0, 1, SLOTS(i + 1));
-    const struct predict_cluster two = foretell_machine(1, 2);
-    struct predict_result r = foretell(&file, &two);
+    const struct predict_cluster two = predicted_machine(1, 2);
+    struct predict_result r = predicted(&file, &two);
     is(r.makespan, 7 * MS);
     is(r.work, 12 * MS);
     is(r.critical_path, 3 * MS);
@@ -55,13 +55,13 @@ END_TEST
 /* A writer waits for all readers of what it overwrites, and two readers run at once: 1 + 4 + 1. */
 START_TEST(readers)
 {
-    struct trace_file file = foretell_begun(3, 8);
+    struct trace_file file = predicted_trace(3, 8);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_R_W, 2 * MS, 0, 2, SLOTS(1, 2));
     trace_file_fork(&file, FILE_R_W, 4 * MS, 0, 2, SLOTS(1, 3));
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
-    const struct predict_cluster two = foretell_machine(1, 2);
-    is(foretell(&file, &two).makespan, 6 * MS);
+    const struct predict_cluster two = predicted_machine(1, 2);
+    is(predicted(&file, &two).makespan, 6 * MS);
 }
 END_TEST
 
@@ -69,13 +69,13 @@ END_TEST
  * that the longest chain of tasks is 8 ms, too, is nothing that held it up. */
 START_TEST(the_largest_share_limits)
 {
-    struct trace_file file = foretell_begun(3, 8);
+    struct trace_file file = predicted_trace(3, 8);
     trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(2));
     trace_file_fork(&file, FILE_W, 8 * MS, 0, 1, SLOTS(3));
-    struct predict_cluster two = foretell_machine(1, 2);
+    struct predict_cluster two = predicted_machine(1, 2);
     two.scheduler = &sched_fifo;
-    struct predict_result r = foretell(&file, &two);
+    struct predict_result r = predicted(&file, &two);
     is(r.makespan, 10 * MS);
     is(r.critical_path, 8 * MS);
     is(r.chain[PREDICT_WORK], 8 * MS);
@@ -88,15 +88,15 @@ END_TEST
 START_TEST(priorities)
 {
     for (int urgent = 0; urgent < 2; urgent++) {
-        struct trace_file file = foretell_begun(4, 8);
+        struct trace_file file = predicted_trace(4, 8);
         for (uint32_t i = 0; i < 3; i++)
             trace_file_fork(&file, FILE_W, 2 * MS, 0, 1, SLOTS(i + 1));
         trace_file_fork(&file, FILE_W, 6 * MS, urgent, 1, SLOTS(4));
-        struct predict_cluster two = foretell_machine(1, 2);
+        struct predict_cluster two = predicted_machine(1, 2);
         two.scheduler = urgent ? &sched_priority : &sched_fifo;
         /* The main thread forks in no time, then worker 0 serves, and worker 1 was served before:
          * it has the first task either way. */
-        is(foretell(&file, &two).makespan, urgent ? 6 * MS : 8 * MS);
+        is(predicted(&file, &two).makespan, urgent ? 6 * MS : 8 * MS);
     }
 }
 END_TEST
@@ -104,13 +104,13 @@ END_TEST
 /* 1 ms on host 0, 1,000,000 bytes in 2 ms and 0.5 ms on their way, 1 ms on host 1. */
 START_TEST(message)
 {
-    struct trace_file file = foretell_begun(2, 1000000);
+    struct trace_file file = predicted_trace(2, 1000000);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(1, 2));
-    struct predict_cluster two = foretell_machine(2, 1);
+    struct predict_cluster two = predicted_machine(2, 1);
     two.latency = 0.5 * MS;
     two.bandwidth = 5e8;
-    struct predict_result r = foretell(&file, &two);
+    struct predict_result r = predicted(&file, &two);
     is(r.makespan, 4.5 * MS);
     is(r.critical_path, 2 * MS);
     is(r.chain[PREDICT_LATENCY], 0.5 * MS);
@@ -125,14 +125,14 @@ END_TEST
  * host 1 in 2 ms each, one after the other. */
 START_TEST(cards)
 {
-    struct trace_file file = foretell_begun(4, 1000000);
+    struct trace_file file = predicted_trace(4, 1000000);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(2));
     trace_file_fork(&file, FILE_RR_W, 1 * MS, 0, 3, SLOTS(1, 2, 3));
     trace_file_fork(&file, FILE_RR_W, 1 * MS, 0, 3, SLOTS(1, 2, 4));
-    struct predict_cluster two = foretell_machine(2, 2);
+    struct predict_cluster two = predicted_machine(2, 2);
     two.bandwidth = 5e8;
-    struct predict_result r = foretell(&file, &two);
+    struct predict_result r = predicted(&file, &two);
     ck_assert_uint_eq(r.messages, 2);
     /* Both tasks on host 0 begin at 0: 2 goes until 2, then 1 until 4; then both readers. */
     is(r.makespan, 5 * MS);
@@ -143,13 +143,13 @@ END_TEST
 /* One card sends to two hosts: 2 ms, then 2 ms more. */
 START_TEST(sender)
 {
-    struct trace_file file = foretell_begun(3, 1000000);
+    struct trace_file file = predicted_trace(3, 1000000);
     trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_R_W, 0, 0, 2, SLOTS(1, 2));
     trace_file_fork(&file, FILE_R_W, 0, 0, 2, SLOTS(1, 3));
-    struct predict_cluster three = foretell_machine(3, 1);
+    struct predict_cluster three = predicted_machine(3, 1);
     three.bandwidth = 5e8;
-    is(foretell(&file, &three).makespan, 4 * MS);
+    is(predicted(&file, &three).makespan, 4 * MS);
 }
 END_TEST
 
@@ -157,15 +157,15 @@ END_TEST
 START_TEST(fabric)
 {
     for (int slow = 0; slow < 2; slow++) {
-        struct trace_file file = foretell_begun(8, 1000000);
+        struct trace_file file = predicted_trace(8, 1000000);
         for (uint32_t i = 0; i < 4; i++)
             trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(2 * i + 1));
         for (uint32_t i = 0; i < 4; i++)
             trace_file_fork(&file, FILE_R_W, 0, 0, 2, SLOTS(2 * i + 1, (2 * i + 3) % 8 + 1));
-        struct predict_cluster four = foretell_machine(4, 1);
+        struct predict_cluster four = predicted_machine(4, 1);
         four.bandwidth = 1e9;
         four.capacity = slow ? 1e9 : INFINITY;
-        is(foretell(&file, &four).makespan, slow ? 4 * MS : 1 * MS);
+        is(predicted(&file, &four).makespan, slow ? 4 * MS : 1 * MS);
     }
 }
 END_TEST
@@ -173,12 +173,12 @@ END_TEST
 /* Contributions run at once; who reads the sum waits for them all. */
 START_TEST(sums)
 {
-    struct trace_file file = foretell_begun(5, 8);
+    struct trace_file file = predicted_trace(5, 8);
     for (uint32_t i = 0; i < 3; i++)
         trace_file_fork(&file, FILE_R_CW, (i + 1) * MS, 0, 2, SLOTS(i + 1, 4));
     trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(4, 5));
-    const struct predict_cluster three = foretell_machine(1, 3);
-    is(foretell(&file, &three).makespan, 4 * MS);
+    const struct predict_cluster three = predicted_machine(1, 3);
+    is(predicted(&file, &three).makespan, 4 * MS);
 }
 END_TEST
 
@@ -186,7 +186,7 @@ END_TEST
 START_TEST(waits)
 {
     for (int get = 0; get < 2; get++) {
-        struct trace_file file = foretell_begun(3, 8);
+        struct trace_file file = predicted_trace(3, 8);
         trace_file_fork(&file, FILE_W, 5 * MS, 0, 1, SLOTS(1));
         trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(2));
         if (get)
@@ -194,8 +194,8 @@ START_TEST(waits)
         else
             trace_file_wait(&file);
         trace_file_fork(&file, FILE_W, 3 * MS, 0, 1, SLOTS(3));
-        const struct predict_cluster two = foretell_machine(1, 3);
-        is(foretell(&file, &two).makespan, get ? 5 * MS : 8 * MS);
+        const struct predict_cluster two = predicted_machine(1, 3);
+        is(predicted(&file, &two).makespan, get ? 5 * MS : 8 * MS);
     }
 }
 END_TEST
@@ -203,13 +203,13 @@ END_TEST
 /* A core of twice the speed, and half a millisecond between tasks. */
 START_TEST(speed_and_overhead)
 {
-    struct trace_file file = foretell_begun(1, 8);
+    struct trace_file file = predicted_trace(1, 8);
     for (int i = 0; i < 4; i++)
         trace_file_fork(&file, FILE_RW, 2 * MS, 0, 1, SLOTS(1));
-    struct predict_cluster one = foretell_machine(1, 1);
+    struct predict_cluster one = predicted_machine(1, 1);
     one.core_speed = 2;
     one.overhead = 0.5 * MS;
-    struct predict_result r = foretell(&file, &one);
+    struct predict_result r = predicted(&file, &one);
     is(r.makespan, 4 * MS + 3 * 0.5 * MS);
     is(r.chain[PREDICT_OVERHEAD], 1.5 * MS);
 }
@@ -219,13 +219,13 @@ END_TEST
 START_TEST(steady)
 {
     for (int is_steady = 0; is_steady < 2; is_steady++) {
-        struct trace_file file = foretell_begun(2, 8);
+        struct trace_file file = predicted_trace(2, 8);
         for (int i = 0; i < 5; i++)
             trace_file_fork(&file, FILE_RW, (i == 3 ? 9 : 1) * MS, 0, 1, SLOTS(1));
         trace_file_fork(&file, FILE_R_W, 2 * MS, 0, 2, SLOTS(1, 2));
-        struct predict_cluster one = foretell_machine(1, 1);
+        struct predict_cluster one = predicted_machine(1, 1);
         one.steady = is_steady;
-        is(foretell(&file, &one).makespan, is_steady ? 7 * MS : 15 * MS);
+        is(predicted(&file, &one).makespan, is_steady ? 7 * MS : 15 * MS);
     }
 }
 END_TEST
@@ -233,13 +233,13 @@ END_TEST
 /* Replicated: once, everywhere; what it reads goes to all. */
 START_TEST(replicated)
 {
-    struct trace_file file = foretell_begun(3, 1000);
+    struct trace_file file = predicted_trace(3, 1000);
     trace_file_fork(&file, FILE_W, 1 * MS, 0, 1, SLOTS(1));
     trace_file_fork(&file, FILE_SAME, 1 * MS, 0, 2, SLOTS(1, 2));
     trace_file_fork(&file, FILE_R_W, 1 * MS, 0, 2, SLOTS(2, 3));
-    struct predict_cluster three = foretell_machine(3, 1);
+    struct predict_cluster three = predicted_machine(3, 1);
     three.latency = 1 * MS;
-    struct predict_result r = foretell(&file, &three);
+    struct predict_result r = predicted(&file, &three);
     ck_assert_uint_eq(r.messages, 2);
     ck_assert(r.makespan > 4 * MS && r.makespan < 4.001 * MS);
 }
@@ -249,13 +249,13 @@ END_TEST
 START_TEST(schedulers)
 {
     for (size_t k = 0; duite_scheduler_names()[k]; k++) {
-        struct trace_file file = foretell_begun(20, 8);
+        struct trace_file file = predicted_trace(20, 8);
         for (uint32_t i = 0; i < 200; i++)
             trace_file_fork(&file, FILE_RR_W, (i % 7) * 0.1 * MS, (int32_t)i % 3, 3,
                             SLOTS(i % 20 + 1, (i + 3) % 20 + 1, (i + 7) % 20 + 1));
-        struct predict_cluster some = foretell_machine(2, 3);
+        struct predict_cluster some = predicted_machine(2, 3);
         some.scheduler = duite_scheduler_find(duite_scheduler_names()[k]);
-        struct predict_result r = foretell(&file, &some);
+        struct predict_result r = predicted(&file, &some);
         ck_assert_msg(r.makespan >= r.critical_path - 1e-9 && r.makespan >= r.work / 6 - 1e-9,
                       "%s: sooner than can be", some.scheduler->name);
         ck_assert_msg(r.makespan <= r.work + 1e-9, "%s: later than one after the other",
@@ -267,7 +267,7 @@ END_TEST
 static void refused(struct trace_file *file, const struct predict_cluster *cluster, const char *why)
 {
     struct predict_result result;
-    struct trace_run *run = foretell_written(file);
+    struct trace_run *run = predicted_run(file);
     ck_assert_int_eq(predict(run, cluster, &result, NULL), DUITE_E_ARGUMENT);
     ck_assert_msg(strstr(duite_message(), why) != NULL, "%s", duite_message());
     trace_run_free(run);
@@ -275,34 +275,34 @@ static void refused(struct trace_file *file, const struct predict_cluster *clust
 
 START_TEST(refusals)
 {
-    const struct predict_cluster one = foretell_machine(1, 1);
-    struct predict_cluster other = foretell_machine(2, 1);
-    struct trace_file file = foretell_begun(1, 8);
+    const struct predict_cluster one = predicted_machine(1, 1);
+    struct predict_cluster other = predicted_machine(2, 1);
+    struct trace_file file = predicted_trace(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
     file.lost = 3;
     refused(&file, &one, "is not whole (3 events or words are missing)");
-    file = foretell_begun(1, 8);
+    file = predicted_trace(1, 8);
     refused(&file, &one, "no tasks");
-    file = foretell_begun(1, 8);
+    file = predicted_trace(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(7));
     refused(&file, &one, "damaged");
-    file = foretell_begun(1, 8);
+    file = predicted_trace(1, 8);
     trace_file_word(&file, 200);
     refused(&file, &one, "damaged");
-    file = foretell_begun(1, 8);
+    file = predicted_trace(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
     other.mapping = NULL;
     refused(&file, &other, "name a mapping");
-    file = foretell_begun(1, 8);
+    file = predicted_trace(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
-    other = foretell_machine(0, 1);
+    other = predicted_machine(0, 1);
     refused(&file, &other, "are invalid");
-    file = foretell_begun(1, 8);
+    file = predicted_trace(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
-    other = foretell_machine(2, 1);
+    other = predicted_machine(2, 1);
     other.balance = duite_balancer_find("delegate");
     refused(&file, &other, "are not predicted");
-    file = foretell_begun(1, 8);
+    file = predicted_trace(1, 8);
     trace_file_fork(&file, FILE_RW, 1 * MS, 0, 1, SLOTS(1));
     other = one;
     other.balance = duite_balancer_find("migrate");
@@ -314,7 +314,7 @@ END_TEST
 static void costs_little(struct trace_file *file)
 {
     enum { MOST_KIB = 50 << 10 };
-    const struct predict_cluster one = foretell_machine(1, 1);
+    const struct predict_cluster one = predicted_machine(1, 1);
     struct rusage before, after;
     ck_assert_int_eq(getrusage(RUSAGE_SELF, &before), 0);
     refused(file, &one, "damaged");
@@ -325,7 +325,7 @@ static void costs_little(struct trace_file *file)
 
 START_TEST(a_far_slot_costs_little)
 {
-    struct trace_file file = foretell_begun(1, 8);
+    struct trace_file file = predicted_trace(1, 8);
     trace_file_object(&file, (1u << 28) - 1, 8);
     costs_little(&file);
 }
@@ -336,13 +336,13 @@ END_TEST
 START_TEST(poisoned_rounds_take_no_time)
 {
     const struct trace_file_node node = {FILE_RW, 1 * MS, 0, 1, {0}};
-    const struct predict_cluster one = foretell_machine(1, 1);
-    struct trace_file file = foretell_begun(1, 8);
+    const struct predict_cluster one = predicted_machine(1, 1);
+    struct trace_file file = predicted_trace(1, 8);
     trace_file_graph(&file, 1, 1, &node);
     trace_file_replay(&file, 1, 1, &node, 2);
     ck_assert_uint_eq(file.word[file.n_words - 5], 2);
     file.word[file.n_words - 5] = 2000000000;
-    struct predict_result r = foretell(&file, &one);
+    struct predict_result r = predicted(&file, &one);
     is(r.makespan, 2 * MS);
     ck_assert_uint_eq(r.tasks, 2);
 }
@@ -353,21 +353,21 @@ START_TEST(poisoned_tasks_are_no_damage)
 {
     static const struct trace_file_node nodes[] = {
         {FILE_RW, 1 * MS, 0, 1, {0}}, {FILE_RW, 1 * MS, 0, 1, {1}}, {FILE_RW, 1 * MS, 0, 1, {2}}};
-    const struct predict_cluster one = foretell_machine(1, 1);
-    struct trace_file file = foretell_begun(3, 8);
+    const struct predict_cluster one = predicted_machine(1, 1);
+    struct trace_file file = predicted_trace(3, 8);
     trace_file_graph(&file, 3, 3, nodes);
     trace_file_replay(&file, 3, 3, nodes, 1000);
     for (size_t i = 0; i < file.n_events; i++)
         if (i % 3)
             file.event[i].number = 1; /* some nested task of the first one */
-    ck_assert_uint_eq(foretell(&file, &one).tasks, 3000);
+    ck_assert_uint_eq(predicted(&file, &one).tasks, 3000);
 }
 END_TEST
 
 /* Rounds without tasks: all that says how many there were is a number. */
 START_TEST(many_rounds_cost_little)
 {
-    struct trace_file file = foretell_begun(1, 8);
+    struct trace_file file = predicted_trace(1, 8);
     trace_file_graph(&file, 1, 0, NULL);
     trace_file_replay(&file, 1, 0, NULL, 2000000);
     costs_little(&file);
@@ -376,7 +376,7 @@ END_TEST
 
 START_TEST(a_far_graph_costs_little)
 {
-    struct trace_file file = foretell_begun(1, 8);
+    struct trace_file file = predicted_trace(1, 8);
     trace_file_word(&file, TRACE_GRAPH);
     trace_file_word(&file, (1u << 20) - 1);
     trace_file_word(&file, 0);
@@ -389,7 +389,7 @@ START_TEST(more_objects_than_words_cost_little)
     static const enum trace_call call[] = {TRACE_FORK, TRACE_HINT, TRACE_HOMES, TRACE_GRAPH,
                                            TRACE_REPLAY};
     for (size_t i = 0; i < sizeof call / sizeof *call; i++) {
-        struct trace_file file = foretell_begun(1, 8);
+        struct trace_file file = predicted_trace(1, 8);
         trace_file_word(&file, 0xffffff00u | call[i]);
         for (int k = 0; k < 20; k++)
             trace_file_word(&file, 0);

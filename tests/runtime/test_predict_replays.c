@@ -2,7 +2,7 @@
  * mappings, schedulers and balancers that know them make of them. */
 #include "runtime/map/map.h"
 #include "runtime/sched/sched.h"
-#include "tests/runtime/foretell.h"
+#include "tests/runtime/predicted.h"
 #include "tests/support/unit.h"
 
 #include <math.h>
@@ -15,12 +15,12 @@ START_TEST(packets)
                                                    {FILE_W, 1 * MS, 0, 1, {1}},
                                                    {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 2}},
                                                    {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 3}}};
-    struct trace_file file = foretell_begun(4, 1000);
+    struct trace_file file = predicted_trace(4, 1000);
     trace_file_graph(&file, 4, 4, nodes);
     trace_file_replay(&file, 4, 4, nodes, 5);
-    struct predict_cluster two = foretell_machine(2, 1);
+    struct predict_cluster two = predicted_machine(2, 1);
     two.message = 0.1 * MS;
-    struct predict_result r = foretell(&file, &two);
+    struct predict_result r = predicted(&file, &two);
     ck_assert_uint_eq(r.messages, 5);
     ck_assert_uint_eq(r.bytes, 10 * 1000);
     /* Host 1: two writers, ten tasks, and five packets that are taken meanwhile; looks for others
@@ -49,15 +49,15 @@ START_TEST(mappings)
             nodes[i] = (struct trace_file_node){
                 FILE_RW, seconds, cases[k].told ? (float)seconds : 0, 1, {i}};
         }
-        struct trace_file file = foretell_begun(4, 1000);
+        struct trace_file file = predicted_trace(4, 1000);
         for (uint32_t i = 0; i < 4; i++)
             trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(i + 1));
         trace_file_graph(&file, 4, 4, nodes);
         for (int i = 0; i < 3; i++)
             trace_file_replay(&file, 4, 4, nodes, 1);
-        struct predict_cluster two = foretell_machine(2, 1);
+        struct predict_cluster two = predicted_machine(2, 1);
         two.mapping = cases[k].mapping;
-        struct predict_result r = foretell(&file, &two);
+        struct predict_result r = predicted(&file, &two);
         ck_assert_msg(fabs(r.makespan - cases[k].expected * MS) < 1e-6, "%s, told %d: %.9g s",
                       two.mapping->name, cases[k].told, r.makespan);
     }
@@ -75,12 +75,12 @@ START_TEST(paths)
         nodes[i] = (struct trace_file_node){
             i < SHORT ? FILE_W : FILE_RW, 1 * MS, 0, 1, {i < SHORT ? i : SHORT}};
     for (int knows = 0; knows < 2; knows++) {
-        struct trace_file file = foretell_begun(SHORT + 1, 8);
+        struct trace_file file = predicted_trace(SHORT + 1, 8);
         trace_file_graph(&file, SHORT + 1, SHORT + CHAIN, nodes);
         trace_file_replay(&file, SHORT + 1, SHORT + CHAIN, nodes, 1);
-        struct predict_cluster many = foretell_machine(1, 16);
+        struct predict_cluster many = predicted_machine(1, 16);
         many.scheduler = knows ? &sched_priority : &sched_fifo;
-        const double makespan = foretell(&file, &many).makespan;
+        const double makespan = predicted(&file, &many).makespan;
         ck_assert_msg(knows ? fabs(makespan - 11 * MS) < 1e-6 : makespan > 18 * MS, "%.9g s",
                       makespan);
     }
@@ -129,16 +129,16 @@ START_TEST(warmth)
                                               .chain = never};
     static const struct trace_file_node nodes[] = {{FILE_RW, 1 * MS, 0, 1, {0}},
                                                    {FILE_RW, 1 * MS, 0, 1, {1}}};
-    struct trace_file file = foretell_begun(2, 8);
+    struct trace_file file = predicted_trace(2, 8);
     for (uint32_t i = 0; i < 2; i++)
         trace_file_fork(&file, FILE_W, 0, 0, 1, SLOTS(i + 1));
     trace_file_graph(&file, 2, 2, nodes);
     trace_file_replay(&file, 2, 2, nodes, 2);
-    struct predict_cluster one = foretell_machine(1, 2);
+    struct predict_cluster one = predicted_machine(1, 2);
     one.scheduler = &LISTENING;
     n_told = 0;
-    foretell(&file, &one);
-    ck_assert_uint_eq(n_told, 2 * 6); /* it is foretold twice */
+    predicted(&file, &one);
+    ck_assert_uint_eq(n_told, 2 * 6); /* it is predicted twice */
     for (unsigned i = 0; i < n_told; i++)
         ck_assert_uint_eq(told[i], i % 6 < 4 ? 0 : 1 + 1);
 }
@@ -152,13 +152,13 @@ START_TEST(migration)
         struct trace_file_node nodes[8];
         for (uint32_t i = 0; i < 8; i++)
             nodes[i] = (struct trace_file_node){FILE_RW, (i < 4 ? 3 : 1) * MS, 0, 1, {i}};
-        struct trace_file file = foretell_begun(8, 1000);
+        struct trace_file file = predicted_trace(8, 1000);
         trace_file_graph(&file, 8, 8, nodes);
         for (int i = 0; i < 10; i++)
             trace_file_replay(&file, 8, 8, nodes, 1);
-        struct predict_cluster two = foretell_machine(2, 1);
+        struct predict_cluster two = predicted_machine(2, 1);
         two.balance = duite_balancer_find(moves ? "migrate" : "none");
-        struct predict_result r = foretell(&file, &two);
+        struct predict_result r = predicted(&file, &two);
         makespan[moves] = r.makespan;
         ck_assert((r.migrated > 0) == moves);
         ck_assert(fabs(r.work - 160 * MS) < 1e-6); /* of floats */

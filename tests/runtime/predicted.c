@@ -1,5 +1,5 @@
 /* A trace that a test has made is a file of this process only as long as it is read. */
-#include "tests/runtime/foretell.h"
+#include "tests/runtime/predicted.h"
 
 #include "runtime/map/map.h"
 #include "runtime/sched/sched.h"
@@ -13,7 +13,7 @@
 
 static char path[64];
 
-struct predict_cluster foretell_machine(uint32_t hosts, uint32_t cores)
+struct predict_cluster predicted_machine(uint32_t hosts, uint32_t cores)
 {
     return (struct predict_cluster){.hosts = hosts,
                                     .cores = cores,
@@ -27,7 +27,7 @@ struct predict_cluster foretell_machine(uint32_t hosts, uint32_t cores)
                                     .seed = 1};
 }
 
-struct trace_run *foretell_written(struct trace_file *file)
+struct trace_run *predicted_run(struct trace_file *file)
 {
     struct trace_run *run;
     snprintf(path, sizeof path, "test_predict.%d.trace", (int)getpid());
@@ -37,10 +37,10 @@ struct trace_run *foretell_written(struct trace_file *file)
     return run;
 }
 
-struct predict_result foretell(struct trace_file *file, const struct predict_cluster *cluster)
+struct predict_result predicted(struct trace_file *file, const struct predict_cluster *cluster)
 {
     struct predict_result result, again;
-    struct trace_run *run = foretell_written(file);
+    struct trace_run *run = predicted_run(file);
     ck_assert_msg(!predict(run, cluster, &result, NULL), "%s", duite_message());
     ck_assert_int_eq(predict(run, cluster, &again, NULL), DUITE_OK);
     ck_assert_msg(!memcmp(&result, &again, offsetof(struct predict_result, limit)) &&
@@ -50,7 +50,7 @@ struct predict_result foretell(struct trace_file *file, const struct predict_clu
     return result;
 }
 
-struct trace_file foretell_begun(uint32_t n, uint64_t bytes)
+struct trace_file predicted_trace(uint32_t n, uint64_t bytes)
 {
     struct trace_file file = {0};
     for (uint32_t slot = 1; slot <= n; slot++)

@@ -1,5 +1,5 @@
-#ifndef TESTS_RUNTIME_FORETELL_H
-#define TESTS_RUNTIME_FORETELL_H
+#ifndef TESTS_RUNTIME_PREDICTED_H
+#define TESTS_RUNTIME_PREDICTED_H
 
 #include "runtime/predict/predict.h"
 #include "tests/support/trace_file.h"
@@ -11,15 +11,15 @@
 #define MS         1e-3
 
 /* Hosts on which nothing but bodies takes time, first come, first served. */
-struct predict_cluster foretell_machine(uint32_t hosts, uint32_t cores);
+struct predict_cluster predicted_machine(uint32_t hosts, uint32_t cores);
 
 /* n objects of so many bytes, recorded from now on. */
-struct trace_file foretell_begun(uint32_t n, uint64_t bytes);
+struct trace_file predicted_trace(uint32_t n, uint64_t bytes);
 
 /* The file, written and read; the caller frees the run. The file is empty then. */
-struct trace_run *foretell_written(struct trace_file *file);
+struct trace_run *predicted_run(struct trace_file *file);
 
-/* Foretold twice; fails the test unless both are the same. */
-struct predict_result foretell(struct trace_file *file, const struct predict_cluster *cluster);
+/* Predicted twice; fails the test unless both are the same. */
+struct predict_result predicted(struct trace_file *file, const struct predict_cluster *cluster);
 
 #endif

@@ -297,7 +297,8 @@ static bool plan_compile(struct plan *plan, const struct plan_record *record,
     }
     fine = fine && plan_edges(several ? &part : &round);
     if (fine && plan->graph->paths)
-        fine = (emit.path = path = plan_record_paths(record)) != NULL;
+        fine = (!several || plan_edges(&round)) &&
+               (emit.path = path = plan_paths_find(&round)) != NULL;
     fine = fine && emit_all(plan, &emit);
     if (fine && several)
         fine = !plan_open(plan, &part);

@@ -342,4 +342,11 @@ struct plan_tasks {
 bool plan_tasks_find(struct plan_tasks *tasks, const struct plan_round *round);
 void plan_tasks_free(struct plan_tasks *tasks);
 
+/* ---- What schedulers see ---- */
+
+/* Takes a lowered round with its edges. Returns, by fork, the seconds on the longest path from it
+ * to the end of the round, see duite_ready.path. A fork that did not say its cost counts the mean
+ * of those that did. The caller frees it by base_free. NULL without memory. */
+float *plan_paths_find(const struct plan_round *round);
+
 #endif

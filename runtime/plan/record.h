@@ -134,10 +134,6 @@ uint32_t plan_record_flag(const struct plan_record *record, duite_object flag);
 /* What mappings see of a round of it. Errors: memory; plan_tasks_free is due all the same. */
 int plan_record_tasks(const struct plan_record *record, struct plan_tasks *tasks);
 
-/* By fork: seconds on the longest path from it to the end of the round, see duite_ready.path; to be
- * freed by base_free. NULL without memory. */
-float *plan_record_paths(const struct plan_record *record);
-
 /* Writes the record as dot, with the objects of the next replay. Errors: memory, DUITE_E_SYSTEM. */
 int plan_record_print(const struct plan_record *record, FILE *file);
 

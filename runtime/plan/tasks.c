@@ -135,21 +135,15 @@ static void path_find(const struct plan_round *round, double *longest)
     }
 }
 
-float *plan_record_paths(const struct plan_record *record)
+float *plan_paths_find(const struct plan_round *round)
 {
-    struct plan_source source;
-    struct plan_round round = {0};
-    bool fine = plan_record_source(record, NULL, &source) && plan_lower(&round, &source) &&
-                plan_edges(&round);
-    double *longest = fine ? base_alloc_zero((round.n_nodes + 1) * sizeof *longest) : NULL;
-    float *path = longest ? base_alloc_zero((record->n_forks + 1) * sizeof *path) : NULL;
+    double *longest = base_alloc_zero((round->n_nodes + 1) * sizeof *longest);
+    float *path = longest ? base_alloc_zero((round->source->n_forks + 1) * sizeof *path) : NULL;
     if (path)
-        path_find(&round, longest);
-    for (size_t i = 0; path && i < round.n_nodes; i++)
-        if (round.node[i].kind == PLAN_TASK)
-            path[round.node[i].fork] = (float)longest[i];
+        path_find(round, longest);
+    for (size_t i = 0; path && i < round->n_nodes; i++)
+        if (round->node[i].kind == PLAN_TASK)
+            path[round->node[i].fork] = (float)longest[i];
     base_free(longest);
-    plan_round_free(&round);
-    plan_source_free(&source);
     return path;
 }

@@ -1,4 +1,5 @@
 /* The command line of duite-predict. */
+#include "runtime/predict/command.h"
 #include "runtime/predict/predict.h"
 
 #include <duite.h>
@@ -146,16 +147,8 @@ static error_t option_read(int key, char *value, struct argp_state *state)
     case PAJE:
         command->paje = value;
         return 0;
-    case ARGP_KEY_ARG:
-        if (command->file)
-            argp_error(state, "%s: a second trace; one is expected", value);
-        command->file = value;
-        return 0;
-    case ARGP_KEY_NO_ARGS:
-        argp_error(state, "the file of a trace is expected");
-        return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return predict_trace_argument(key, value, state, &command->file);
     }
 }
 

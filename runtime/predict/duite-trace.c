@@ -1,4 +1,5 @@
 /* The command line of duite-trace: reads a trace once, and writes each form that is asked for. */
+#include "runtime/predict/command.h"
 #include "runtime/predict/predict.h"
 #include "runtime/trace/export.h"
 #include "runtime/trace/sums.h"
@@ -64,16 +65,8 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case PARTIAL:
         command->partial = true;
         return 0;
-    case ARGP_KEY_ARG:
-        if (command->file)
-            argp_error(state, "%s: a second trace; one is expected", value);
-        command->file = value;
-        return 0;
-    case ARGP_KEY_NO_ARGS:
-        argp_error(state, "the file of a trace is expected");
-        return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return predict_trace_argument(key, value, state, &command->file);
     }
 }
 

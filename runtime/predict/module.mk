@@ -7,9 +7,9 @@ libduite_predict_la_SOURCES = runtime/predict/conclude.c runtime/predict/export.
 
 bin_PROGRAMS += duite-trace
 dist_man_MANS += runtime/predict/duite-trace.1
-duite_trace_SOURCES = runtime/predict/duite-trace.c
+duite_trace_SOURCES = runtime/predict/duite-trace.c runtime/predict/command.h
 duite_trace_LDADD = libduite_predict.la libduite_core.la
 bin_PROGRAMS += duite-predict
 dist_man_MANS += runtime/predict/duite-predict.1
-duite_predict_SOURCES = runtime/predict/duite-predict.c
+duite_predict_SOURCES = runtime/predict/duite-predict.c runtime/predict/command.h
 duite_predict_LDADD = libduite_predict.la libduite_core.la

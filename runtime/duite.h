@@ -143,7 +143,7 @@ typedef struct duite_param {
     void *data;   /* 64-byte aligned; const under DUITE_R; dies with the body; NULL if postponed */
     size_t count; /* elements; of an object that changes its size, if postponed, its maximum */
     duite_type type;     /* of the elements */
-    size_t most;         /* elements there is room for under w and rw: see duite_resize */
+    size_t max;          /* elements there is room for under w and rw: see duite_resize */
     duite_object object; /* its name in this body, for its calls; no other task knows it */
 } duite_param;
 
@@ -370,11 +370,11 @@ int duite_oversubscribed(const duite *rt);
 /* Makes an object of count elements, all zero. Collective; no communication. */
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
 
-/* Makes an object whose size changes: 0 to `most` elements, count zeros to begin with. Bodies under
- * w and rw find room for `most` and say how many there are (duite_resize); readers, messages and
+/* Makes an object whose size changes: 0 to `max` elements, count zeros to begin with. Bodies under
+ * w and rw find room for `max` and say how many there are (duite_resize); readers, messages and
  * gets have as many as there are. It cannot be accumulated into (cw: DUITE_E_ACCESS). Collective;
  * no communication. */
-int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite_object *object);
+int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object);
 
 /* Makes a view of an object: a name for some of its elements, used like that of an object of its
  * own with n elements, in the order of `indices` (copied; each below the object's count; one may
@@ -579,11 +579,11 @@ int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *g
 int duite_replay(duite *rt, duite_graph graph, uint64_t rounds);
 
 /* Replays while the first element of `flag`, an object that the graph uses or any other, is not
- * zero after a round: at least one round, at most `most`. A flag that is poisoned ends it. Tasks
- * forked later are numbered as if there had been `most` rounds. All ranks must be able to read the
- * flag: written by a replicated kernel it costs no message. Collective; returns at once, or, if the
- * rounds are forked (duite_replay), when the last one is. */
-int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t most);
+ * zero after a round: at least one round, at most `max_rounds`. A flag that is poisoned ends it.
+ * Tasks forked later are numbered as if there had been `max_rounds`. All ranks must be able to read
+ * the flag: written by a replicated kernel it costs no message. Collective; returns at once, or, if
+ * the rounds are forked (duite_replay), when the last one is. */
+int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t max_rounds);
 
 /* Waits for the last replay of the graph and writes how many rounds it had; 0 before the first.
  * Collective. */

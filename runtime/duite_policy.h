@@ -57,7 +57,7 @@ typedef struct duite_ready {
     /* Of a task of the program in a replay: 1 and the number of the worker that ran the last one of
      * this graph that is placed by the same object, if that took 2 microseconds or more: its core's
      * caches may have the data. 0: it took less, there was none, or no object places it. */
-    uint32_t warm;
+    uint32_t affinity;
 } duite_ready;
 
 /* The other workers as one of them sees them. */
@@ -88,10 +88,12 @@ typedef struct duite_scheduler {
      * without an end is ended after 64 tries and 16 for each worker, and is an error that the next
      * duite_wait tells. */
     unsigned (*victim)(void *state, unsigned attempt);
-    /* Whether a task that just became ready may run directly after the one that made it so. */
+    /* Whether a task that just became ready may run inline: directly after the task that made it
+     * ready, on the same worker. Such tasks form a chain, hence the name, and
+     * duite_counters.chained. */
     int (*chain)(void *state, const duite_ready *task);
     /* After start: where this worker is; `near` is alive as long as the state. Optional. */
-    void (*look)(void *state, const duite_near *near);
+    void (*locate)(void *state, const duite_near *near);
     int paths; /* 1: duite_ready.path is wanted, which costs time when a graph is compiled */
 } duite_scheduler;
 
@@ -165,10 +167,10 @@ typedef struct duite_leaf {
 
 /* A rank that asks for tasks, and what there is here. */
 typedef struct duite_request {
-    int rank;       /* who asks */
-    unsigned idle;  /* workers there that have nothing to do */
-    unsigned ready; /* tasks, leaves or not, that were ready here and found when it was served */
-    unsigned given; /* of them to this rank, so far */
+    int rank;         /* who asks */
+    unsigned idle;    /* workers there that have nothing to do */
+    unsigned ready;   /* tasks, leaves or not, that were ready here and found when it was served */
+    unsigned granted; /* of them to this rank, so far */
 } duite_request;
 
 #define DUITE_NO_RANK (-1)
@@ -187,7 +189,7 @@ typedef struct duite_blocks {
     const unsigned *workers; /* a rank */
     double byte_seconds;     /* a byte to another rank, after a measurement at start */
     double seconds;          /* since the last time */
-    double look_seconds;     /* that deciding and moving took then, all ranks waiting; 0 at first */
+    double migrate_seconds;  /* that deciding and moving took then, all ranks waiting; 0 at first */
     uint64_t replays, since; /* since start; since the last time */
     const duite_mapping *mapping; /* the program's */
     uint64_t seed;
@@ -203,11 +205,11 @@ typedef struct duite_balancer {
      * moves. */
     void (*start)(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed);
     /* This rank has nothing to do, for the attempt-th time in a row (0, 1, ...): the rank to ask
-     * for tasks, or DUITE_NO_RANK: none now. `giver` is the one that gave last, or DUITE_NO_RANK.
-     * *seconds: for so long the question stands, and nobody else is asked. */
-    int (*victim)(void *state, unsigned attempt, int giver, double *seconds);
-    /* Whether the leaf goes to the rank that asks. Needed with victim. */
-    int (*give)(void *state, const duite_request *asked, const duite_leaf *leaf);
+     * for tasks, or DUITE_NO_RANK: none now. `granter` is the rank that granted a leaf last, or
+     * DUITE_NO_RANK. *seconds: for so long the request stands, and no other rank is asked. */
+    int (*victim)(void *state, unsigned attempt, int granter, double *seconds);
+    /* Whether the leaf goes to the rank that requests tasks. Needed with victim. */
+    int (*grant)(void *state, const duite_request *request, const duite_leaf *leaf);
     /* The rank on which a leaf that just became ready runs, asked for or not; the own one: here. */
     int (*place)(void *state, const duite_leaf *leaf);
     /* Moves blocks: home[n] has their homes, and those that are changed move, with all their

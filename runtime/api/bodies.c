@@ -39,7 +39,7 @@ static int body_recall(struct duite_call_private *body)
     return code ? base_error(code, "%s", body->sentence) : DUITE_OK;
 }
 
-int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t most,
+int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,
                bool sized, duite_object *object)
 {
     if (!object)
@@ -47,7 +47,7 @@ int inside_new(struct duite_call_private *body, duite_type type, size_t count, s
                                               sized ? "duite_new_sized" : "duite_new"));
     int code = body_enter(body, sized ? "duite_new_sized" : "duite_new");
     if (!code)
-        code = task_make_object(body, type, count, most, sized, object);
+        code = task_make_object(body, type, count, max, sized, object);
     return body_remember(body, code);
 }
 

@@ -180,8 +180,8 @@ int duite_graph_print(duite *rt, duite_graph graph, FILE *file)
 
 static int graph_check_rounds(const struct plan_record *record, uint64_t rounds)
 {
-    uint64_t most = UINT64_C(1) << PLAN_MAX_TASKS_BITS;
-    if (rounds <= most / (record->n_forks + 1))
+    uint64_t max = UINT64_C(1) << PLAN_MAX_TASKS_BITS;
+    if (rounds <= max / (record->n_forks + 1))
         return DUITE_OK;
     return base_error(DUITE_E_ARGUMENT, "%llu rounds of %zu tasks are more than 2^%d",
                       (unsigned long long)rounds, record->n_forks, PLAN_MAX_TASKS_BITS);
@@ -270,8 +270,7 @@ int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
 }
 
 /* Rounds of the dynamic path, the flag read after each. */
-static int replay_fork_while(duite *rt, struct plan_record *record, duite_object flag,
-                             uint64_t most)
+static int replay_fork_while(duite *rt, struct plan_record *record, duite_object flag, uint64_t max)
 {
     const struct data_object *object = data_object_find(&rt->graph.table, flag);
     uint64_t forks = rt->graph.root.forks;
@@ -280,7 +279,7 @@ static int replay_fork_while(duite *rt, struct plan_record *record, duite_object
     bool holds = true;
     size_t count;
     int code = values ? DUITE_OK : base_no_memory("a flag");
-    while (!code && holds && record->rounds < most) {
+    while (!code && holds && record->rounds < max) {
         code = replay_fork_rounds(rt, record, 1);
         if (!code) /* a failure is told by the next wait */
             holds = !program_get(rt, flag, TASK_ANYWHERE, values, &count, "duite_replay_while") &&
@@ -288,26 +287,26 @@ static int replay_fork_while(duite *rt, struct plan_record *record, duite_object
         if (!code && instance_is_broken(rt))
             code = rt->comm ? comm_broken(rt->comm) : rt->graph.broken;
     }
-    rt->graph.root.forks = forks + most * record->n_calls;
+    rt->graph.root.forks = forks + max * record->n_calls;
     base_free(values);
     return code;
 }
 
 static int replay_rounds_while(duite *rt, struct plan_record *record, duite_object flag,
-                               uint64_t most)
+                               uint64_t max)
 {
     uint64_t before, after;
     if (!data_object_find(&rt->graph.table, flag))
         return DUITE_E_OBJECT;
-    plan_replay_split(record, &flag, most, &before, &after);
+    plan_replay_split(record, &flag, max, &before, &after);
     record->rounds = 0;
-    record->by_plan = most > before;
+    record->by_plan = max > before;
     if (!record->by_plan)
-        return replay_fork_while(rt, record, flag, most);
-    return replay_by_plan(rt, record, &flag, most);
+        return replay_fork_while(rt, record, flag, max);
+    return replay_by_plan(rt, record, &flag, max);
 }
 
-int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t most)
+int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t max)
 {
     int code = program_enter(rt, "duite_replay_while");
     if (code)
@@ -316,14 +315,14 @@ int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t
     if (!found)
         return program_remember(rt, DUITE_E_OBJECT);
     task_mix(&rt->graph, graph.slot);
-    task_mix(&rt->graph, most);
+    task_mix(&rt->graph, max);
     task_mix(&rt->graph, (uint64_t)flag.slot << 32 | flag.generation);
-    code = graph_prepare(rt, found, most);
-    if (!code && !most)
+    code = graph_prepare(rt, found, max);
+    if (!code && !max)
         code = base_error(DUITE_E_ARGUMENT, "duite_replay_while: at most 0 rounds");
     if (!code)
-        trace_replay(rt->trace, graph.slot - 1, found->record, &flag, most);
-    return program_remember(rt, code ? code : replay_rounds_while(rt, found->record, flag, most));
+        trace_replay(rt->trace, graph.slot - 1, found->record, &flag, max);
+    return program_remember(rt, code ? code : replay_rounds_while(rt, found->record, flag, max));
 }
 
 static bool replay_is_over(void *context)

@@ -133,7 +133,7 @@ void recorded_stop(duite *rt);
 
 /* The body that runs on this thread, or NULL; and its calls. */
 struct duite_call_private *inside_body(const duite *rt);
-int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t most,
+int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,
                bool sized, duite_object *object);
 int inside_free(struct duite_call_private *body, duite_object object);
 int inside_fork(struct duite_call_private *body, const duite_task_options *how,

@@ -126,7 +126,7 @@ static size_t migration_length(const struct migration *m, int rank)
 
 static size_t migration_part_end(size_t all, size_t at)
 {
-    return all > at + COMM_MOST_SUMS ? at + COMM_MOST_SUMS : all;
+    return all > at + COMM_MAX_SUMS ? at + COMM_MAX_SUMS : all;
 }
 
 static int migration_exchange(struct migration *m, struct comm_word *own, struct comm_word **words)
@@ -143,7 +143,7 @@ static int migration_gather(struct migration *m)
     for (int r = 0; r < graph->n_ranks; r++)
         longest = migration_length(m, r) > longest ? migration_length(m, r) : longest;
     migration_fill_own(m);
-    for (size_t at = 0; at < longest && !code; at += COMM_MOST_SUMS) {
+    for (size_t at = 0; at < longest && !code; at += COMM_MAX_SUMS) {
         struct comm_word own = {0}, *words;
         for (size_t i = at; i < migration_part_end(migration_length(m, graph->rank), at); i++)
             own.sums[i - at] = m->values[i];
@@ -184,7 +184,7 @@ static uint64_t migration_ask(struct migration *m)
                                  .workers = m->workers,
                                  .byte_seconds = migration_byte_seconds(rt),
                                  .seconds = base_seconds() - last->since,
-                                 .look_seconds = last->took,
+                                 .migrate_seconds = last->took,
                                  .replays = last->replays,
                                  .since = last->replays - last->looked,
                                  .mapping = rt->mapping.own,
@@ -261,7 +261,7 @@ static int migration_announce(struct migration *m)
 {
     size_t all = ANSWER_BLOCKS;
     int code = DUITE_OK;
-    for (size_t at = 0; at < all && !code; at += COMM_MOST_SUMS) {
+    for (size_t at = 0; at < all && !code; at += COMM_MAX_SUMS) {
         struct comm_word own = {0}, *words;
         if (!m->rt->graph.rank)
             all = ANSWER_BLOCKS + (size_t)m->values[ANSWER_MOVES];

@@ -29,13 +29,13 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
     return program_remember(rt, code);
 }
 
-int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite_object *object)
+int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object)
 {
     struct duite_call_private *body = inside_body(rt);
     if (object)
         *object = DUITE_NO_OBJECT;
     if (body)
-        return inside_new(body, type, count, most, true, object);
+        return inside_new(body, type, count, max, true, object);
     int code = program_enter(rt, "duite_new_sized");
     if (code)
         return code;
@@ -43,9 +43,9 @@ int duite_new_sized(duite *rt, duite_type type, size_t count, size_t most, duite
         return program_remember(
             rt, base_error(DUITE_E_ARGUMENT, "duite_new_sized: nowhere to put the object"));
     task_mix(&rt->graph, count);
-    task_mix(&rt->graph, most);
+    task_mix(&rt->graph, max);
     task_mix(&rt->graph, (uint64_t)type);
-    code = data_object_new_sized(&rt->graph.table, type, count, most, object);
+    code = data_object_new_sized(&rt->graph.table, type, count, max, object);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *object);
     return program_remember(rt, code);

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_THREADS = 4096 };
+enum { MAX_THREADS = 4096 };
 
 /* What no program means: the environment's number makes no sense. */
 static const unsigned NO_THREADS = UINT_MAX;
@@ -30,8 +30,8 @@ static double environment_seconds(const char *text, double otherwise)
     return end == text || *end ? -1 : seconds;
 }
 
-/* A whole number of the environment, or `wrong` if it is none up to `most`. */
-static uint64_t environment_number(const char *text, uint64_t otherwise, uint64_t most,
+/* A whole number of the environment, or `wrong` if it is none up to `max`. */
+static uint64_t environment_number(const char *text, uint64_t otherwise, uint64_t max,
                                    uint64_t wrong)
 {
     char *end;
@@ -41,12 +41,12 @@ static uint64_t environment_number(const char *text, uint64_t otherwise, uint64_
         return wrong;
     errno = 0;
     const uint64_t number = strtoull(text, &end, 10);
-    return *end || errno || number > most ? wrong : number;
+    return *end || errno || number > max ? wrong : number;
 }
 
 static unsigned environment_threads(void)
 {
-    return (unsigned)environment_number(getenv("DUITE_THREADS"), 0, MOST_THREADS, NO_THREADS);
+    return (unsigned)environment_number(getenv("DUITE_THREADS"), 0, MAX_THREADS, NO_THREADS);
 }
 
 static uint64_t environment_seed(void)
@@ -80,13 +80,13 @@ duite_options duite_options_default(void)
 
 static int options_state_too_large(const duite_scheduler *scheduler, const duite_balancer *balance)
 {
-    const bool schedules = scheduler->state_size > BASE_MOST_STATE;
+    const bool schedules = scheduler->state_size > BASE_MAX_STATE;
     return base_error(DUITE_E_ARGUMENT,
                       "duite_start: the %s %s wants a state of %zu bytes for each worker "
                       "(state_size); at most %zu are given",
                       schedules ? "scheduler" : "balancer",
                       schedules ? scheduler->name : balance->name,
-                      schedules ? scheduler->state_size : balance->state_size, BASE_MOST_STATE);
+                      schedules ? scheduler->state_size : balance->state_size, BASE_MAX_STATE);
 }
 
 int options_check(const duite_options *options)
@@ -123,7 +123,7 @@ static int options_check_environment(const duite_options *options)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: DUITE_THREADS=%s in the environment: a whole number from 0 "
                           "to %d is expected; 0: the rank's share of the cores",
-                          getenv("DUITE_THREADS"), MOST_THREADS);
+                          getenv("DUITE_THREADS"), MAX_THREADS);
     if (options->seed == NO_SEED && environment_seed() == NO_SEED)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: DUITE_SEED=%s in the environment: a whole number from 0 to "
@@ -141,10 +141,10 @@ static int options_check_policies(const duite_options *options)
     if (!options->mapping || !options->mapping->name || !options->mapping->map)
         return base_error(DUITE_E_ARGUMENT, "duite_start: no mapping");
     const duite_balancer *b = options->balance;
-    if (!b || !b->name || !b->victim != !b->give)
+    if (!b || !b->name || !b->victim != !b->grant)
         return base_error(DUITE_E_ARGUMENT,
-                          "duite_start: no balancer, or one with only one of victim and give");
-    if (s->state_size > BASE_MOST_STATE || b->state_size > BASE_MOST_STATE)
+                          "duite_start: no balancer, or one with only one of victim and grant");
+    if (s->state_size > BASE_MAX_STATE || b->state_size > BASE_MAX_STATE)
         return options_state_too_large(s, b);
     return DUITE_OK;
 }
@@ -179,9 +179,9 @@ int options_check_rest(const duite_options *options)
         code = options_check_seconds(options);
     if (code)
         return code;
-    if (options->threads > MOST_THREADS)
+    if (options->threads > MAX_THREADS)
         return base_error(DUITE_E_ARGUMENT, "duite_start: %u threads are more than %d",
-                          options->threads, MOST_THREADS);
+                          options->threads, MAX_THREADS);
     if (options->check < 0)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: DUITE_CHECK has no such mode; there is \"accesses\"");

@@ -69,7 +69,7 @@ static int instance_start_graph(duite *rt, const duite_options *options)
                                    code ? NULL : options->laws);
     if (!code)
         code = started;
-    rt->graph.rename_most = options->rename_bytes;
+    rt->graph.rename_max = options->rename_bytes;
     if (!code && options->check)
         code = check_start(&rt->check);
     if (!code && n > 1)

@@ -1,8 +1,9 @@
 /* delegate: an idle rank asks one other for tasks, the one that gave last or a random one, and
  * waits ever longer before it asks again; who is asked gives half of what is ready, of it what
- * costs more than its way. Half, because the giver works on meanwhile; and the last ready task
- * stays, since the giver's own worker takes it next. After Blumofe & Leiserson (1999), with half of
- * a queue instead of one task: Hendler & Shavit, Non-blocking steal-half work queues, PODC 2002. */
+ * costs more than its way. Half, because the granter works on meanwhile; and the last ready task
+ * stays, since the granter's own worker takes it next. After Blumofe & Leiserson (1999), with half
+ * of a queue instead of one task: Hendler & Shavit, Non-blocking steal-half work queues, PODC 2002.
+ */
 #include "runtime/balance/balance.h"
 
 /* How long a question stands: the first, and the longest. */
@@ -22,7 +23,7 @@ static void delegate_start(void *state, int rank, int n_ranks, unsigned worker, 
                                    .n_ranks = n_ranks};
 }
 
-static int delegate_victim(void *state, unsigned attempt, int giver, double *seconds)
+static int delegate_victim(void *state, unsigned attempt, int granter, double *seconds)
 {
     struct delegate_state *own = state;
     double pause = FIRST_SECONDS;
@@ -31,16 +32,16 @@ static int delegate_victim(void *state, unsigned attempt, int giver, double *sec
     *seconds = pause < LONGEST_SECONDS ? pause : LONGEST_SECONDS;
     if (own->n_ranks == 1)
         return DUITE_NO_RANK;
-    if (!attempt && giver != DUITE_NO_RANK)
-        return giver;
+    if (!attempt && granter != DUITE_NO_RANK)
+        return granter;
     int others = own->n_ranks - 1;
     return (own->rank + 1 + (int)(duite_random(&own->random) % (uint64_t)others)) % own->n_ranks;
 }
 
-static int delegate_give(void *state, const duite_request *asked, const duite_leaf *leaf)
+static int delegate_grant(void *state, const duite_request *asked, const duite_leaf *leaf)
 {
     (void)state;
-    return leaf->cost > leaf->transfer && asked->given < asked->ready / 2;
+    return leaf->cost > leaf->transfer && asked->granted < asked->ready / 2;
 }
 
 const duite_balancer balance_delegate = {
@@ -49,5 +50,5 @@ const duite_balancer balance_delegate = {
     .state_size = sizeof(struct delegate_state),
     .start = delegate_start,
     .victim = delegate_victim,
-    .give = delegate_give,
+    .grant = delegate_grant,
 };

@@ -9,12 +9,12 @@
 
 #define LEAST_SLACK                                                                                \
     0.05 /* a rank may have so much more than the mean; it grows if moves are in vain */
-#define MOST_SLACK 0.4
+#define MAX_SLACK  0.4
 #define LEAST_LOAD 1e-3 /* seconds a worker: what is less says nothing yet */
 #define LOOK_SHARE 0.01 /* of the time may go into looking */
 #define ANEW       0.95 /* of what a few moves come to: then a new map, which moves many, is better */
 
-enum { LONGEST = 32, MOST_REPLAYS = 1 << 20 };
+enum { LONGEST = 32, MAX_REPLAYS = 1 << 20 };
 
 struct migrate_state {
     double slack, before; /* before: the measured excess at the last move, or 0 */
@@ -33,7 +33,7 @@ static void migrate_start(void *state, int rank, int n_ranks, unsigned worker, u
 /* What the homes cost over the time to come. */
 static double bill_total(const struct balance_bill *bill, double periods)
 {
-    return (bill->most + bill->cut) * periods + bill->move;
+    return (bill->max + bill->cut) * periods + bill->move;
 }
 
 /* The better ones of refined and new homes, if they are better than the present ones. The program
@@ -68,7 +68,7 @@ static bool homes_improve(const duite_blocks *blocks, const struct balance_bill 
 static void slack_learn(struct migrate_state *own, double excess)
 {
     if (own->before > 0 && excess > 0.75 * own->before)
-        own->slack = own->slack < MOST_SLACK / 2 ? 2 * own->slack : MOST_SLACK;
+        own->slack = own->slack < MAX_SLACK / 2 ? 2 * own->slack : MAX_SLACK;
     else if (own->slack > LEAST_SLACK && excess < own->slack / 2)
         own->slack /= 2;
     own->before = 0;
@@ -78,9 +78,9 @@ static void slack_learn(struct migrate_state *own, double excess)
 static uint64_t migrate_next_look(const struct migrate_state *own, const duite_blocks *blocks)
 {
     double replay = blocks->seconds / (double)blocks->since;
-    double least = replay > 0 ? blocks->look_seconds / (LOOK_SHARE * replay) : 1;
-    if (least > MOST_REPLAYS)
-        return MOST_REPLAYS;
+    double least = replay > 0 ? blocks->migrate_seconds / (LOOK_SHARE * replay) : 1;
+    if (least > MAX_REPLAYS)
+        return MAX_REPLAYS;
     return (uint64_t)least > own->interval ? (uint64_t)least : own->interval;
 }
 
@@ -93,7 +93,7 @@ static uint64_t migrate_blocks(void *state, const duite_blocks *blocks, int *hom
     double periods = (double)blocks->replays / (double)blocks->since;
     bool moved = false;
     if (balance_bill(blocks, home, home, &now) && now.even > LEAST_LOAD) {
-        double excess = now.most / now.even - 1;
+        double excess = now.max / now.even - 1;
         slack_learn(own, excess);
         moved = excess > own->slack && homes_improve(blocks, &now, periods, home);
         own->before = moved ? excess : 0;

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GOAL     1.01  /* even enough: the most that a rank has, over the mean */
-#define WORTH    0.002 /* of the mean: moves that relieve a rank by less are not made */
-#define MOST_OPS 1e8   /* looks at blocks and ranks: then it is good enough */
+#define GOAL    1.01  /* even enough: the most that a rank has, over the mean */
+#define WORTH   0.002 /* of the mean: moves that relieve a rank by less are not made */
+#define MAX_OPS 1e8   /* looks at blocks and ranks: then it is good enough */
 
 struct parts {
     const duite_blocks *blocks;
@@ -44,11 +44,11 @@ static double load_add_up(const duite_blocks *blocks, const int *home, double *l
 
 static int load_heaviest(const struct parts *parts)
 {
-    int most = 0;
+    int max = 0;
     for (int r = 1; r < parts->blocks->n_ranks; r++)
-        if (parts->load[r] > parts->load[most])
-            most = r;
-    return most;
+        if (parts->load[r] > parts->load[max])
+            max = r;
+    return max;
 }
 
 bool balance_bill(const duite_blocks *blocks, const int *present, const int *home,
@@ -60,7 +60,7 @@ bool balance_bill(const duite_blocks *blocks, const int *present, const int *hom
         return false;
     *bill = (struct balance_bill){.even = load_add_up(blocks, home, load)};
     for (int r = 0; r < blocks->n_ranks; r++)
-        bill->most = load[r] > bill->most ? load[r] : bill->most;
+        bill->max = load[r] > bill->max ? load[r] : bill->max;
     for (size_t i = 0; i < graph->n; i++) {
         moved += home[i] != present[i] ? (double)blocks->bytes[i] : 0;
         for (size_t e = graph->start[i]; e < graph->start[i + 1]; e++)
@@ -154,7 +154,7 @@ static void moves_make(struct parts *parts)
 {
     const duite_blocks *blocks = parts->blocks;
     double pass = 2.0 * ((double)blocks->graph.n * (1 + 0.5 * blocks->n_ranks));
-    while (parts->ops < MOST_OPS) {
+    while (parts->ops < MAX_OPS) {
         struct move move;
         int from = load_heaviest(parts);
         double best = parts->load[from] > GOAL * parts->even ? move_best_relief(parts, from) : 0;

@@ -8,7 +8,7 @@
 
 /* What some homes cost in the time that was measured. */
 struct balance_bill {
-    double most; /* seconds a worker of the rank that has most to do */
+    double max;  /* seconds a worker of the rank that has most to do */
     double even; /* the same if all had alike */
     double cut;  /* seconds of messages between ranks, a rank */
     double move; /* seconds that the move from the present homes takes */

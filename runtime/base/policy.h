@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 /* Bytes of private state that a policy may want for each worker. */
-#define BASE_MOST_STATE ((size_t)1 << 30)
+#define BASE_MAX_STATE ((size_t)1 << 30)
 
 /* The policies of one kind. The built-in ones stand twice, in the same order: those for programs,
  * NULL, those for tests, NULL. The latter are adversaries: found by name, but in no list of all. */

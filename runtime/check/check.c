@@ -47,7 +47,7 @@ static size_t param_bytes(const duite_param *param)
 /* What the body may touch: under w and rw an object that changes size may grow. */
 static size_t param_room(const duite_param *param, duite_mode mode)
 {
-    size_t n = mode == DUITE_R || param->most < param->count ? param->count : param->most;
+    size_t n = mode == DUITE_R || param->max < param->count ? param->count : param->max;
     return n * data_type_size(param->type);
 }
 

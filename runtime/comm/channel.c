@@ -35,11 +35,11 @@ struct comm_group {
 
 bool comm_channels_start(struct comm *comm)
 {
-    int *most = NULL, known = 0;
+    int *max = NULL, known = 0;
     comm->channels.next_tag = COMM_CHANNELS;
-    if (MPI_Comm_get_attr(comm->mpi, MPI_TAG_UB, &most, &known))
+    if (MPI_Comm_get_attr(comm->mpi, MPI_TAG_UB, &max, &known))
         return false;
-    comm->channels.last_tag = known ? *most : 32767; /* what MPI guarantees */
+    comm->channels.last_tag = known ? *max : 32767; /* what MPI guarantees */
     return true;
 }
 

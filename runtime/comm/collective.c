@@ -26,7 +26,7 @@ static bool collective_enter(struct comm *comm, bool gathers)
                                           MPI_BYTE, comm->mpi, &comm->request),
                            "MPI_Iallgather");
     return comm_mpi_ok(comm,
-                       MPI_Iallreduce(&comm->own, &comm->most, COMM_REDUCED, MPI_UINT64_T, MPI_MAX,
+                       MPI_Iallreduce(&comm->own, &comm->max, COMM_REDUCED, MPI_UINT64_T, MPI_MAX,
                                       comm->mpi, &comm->request),
                        "MPI_Iallreduce");
 }
@@ -126,8 +126,8 @@ int comm_sum(struct comm *comm, struct comm_word *word, int n, void (*between)(v
 /* All ranks have the same: the largest is the smallest. */
 static bool reduced_are_same(const struct comm *comm)
 {
-    const struct comm_reduced *most = &comm->most;
-    return most->fingerprint == ~most->not_fingerprint && most->homes == ~most->not_homes;
+    const struct comm_reduced *max = &comm->max;
+    return max->fingerprint == ~max->not_fingerprint && max->homes == ~max->not_homes;
 }
 
 /* Under the lock. */
@@ -154,7 +154,7 @@ int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *c
         return code;
     if (!reduced_are_same(comm))
         return comm_gather(comm, own, &words, between, context); /* breaks: words differ */
-    own->failed = 0 - comm->most.failed;
+    own->failed = 0 - comm->max.failed;
     return DUITE_OK;
 }
 

@@ -43,7 +43,7 @@ struct comm {
     double latency, per_byte;               /* seconds: of the slowest link measured */
     uint64_t entered;                       /* collective calls */
     bool gathers;                           /* the last of them gathers words */
-    struct comm_reduced own, most;          /* of the last reduction */
+    struct comm_reduced own, max;           /* of the last reduction */
     MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words;                /* one a rank, and this rank's own */
     _Atomic uint64_t messages, bytes, came; /* the last one: received */

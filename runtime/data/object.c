@@ -73,20 +73,20 @@ static int table_reserve(struct data_table *table)
     return DUITE_OK;
 }
 
-int data_object_check(duite_type type, size_t count, size_t most)
+int data_object_check(duite_type type, size_t count, size_t max)
 {
     size_t size = data_type_size(type);
     if (!size)
         return base_error(DUITE_E_ARGUMENT, "duite_new: %d is no element type", (int)type);
-    if (!most)
+    if (!max)
         return base_error(DUITE_E_ARGUMENT, "duite_new: an object has at least one element");
-    if (most > DATA_MOST_BYTES / size)
+    if (max > DATA_MOST_BYTES / size)
         return base_error(DUITE_E_ARGUMENT,
-                          "duite_new: %zu elements of %zu bytes are more than %zu bytes", most,
-                          size, DATA_MOST_BYTES);
-    if (count > most)
+                          "duite_new: %zu elements of %zu bytes are more than %zu bytes", max, size,
+                          DATA_MOST_BYTES);
+    if (count > max)
         return base_error(DUITE_E_ARGUMENT,
-                          "duite_new_sized: %zu elements are more than %zu at most", count, most);
+                          "duite_new_sized: %zu elements are more than %zu at most", count, max);
     return DUITE_OK;
 }
 
@@ -109,7 +109,7 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, dui
                                    .type = type,
                                    .count = count,
                                    .bytes = count * data_type_size(type),
-                                   .most = count,
+                                   .max = count,
                                    .room = count * data_type_size(type),
                                    .home = -1,
                                    .hint = (uint32_t)table->n_unsettled,
@@ -121,13 +121,13 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, dui
     return DUITE_OK;
 }
 
-int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t most,
+int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t max,
                           duite_object *name)
 {
     *name = (duite_object){0, 0};
-    int code = data_object_check(type, count, most);
+    int code = data_object_check(type, count, max);
     if (!code)
-        code = data_object_new(table, type, most, name);
+        code = data_object_new(table, type, max, name);
     if (code)
         return code;
     struct data_object *object = &table->object[name->slot];

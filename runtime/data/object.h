@@ -24,7 +24,7 @@ struct data_object {
     duite_type type;
     uint32_t n_views;    /* views of it that are alive */
     size_t count, bytes; /* of the zeros that it begins with */
-    size_t most, room;   /* elements and bytes of the largest version */
+    size_t max, room;    /* elements and bytes of the largest version */
     uint32_t block;      /* its place among the leaders with its home, in the order they were made;
                             followers share their leader's */
     uint32_t hint;       /* while home is -1: its place in `unsettled` */
@@ -58,13 +58,13 @@ int data_table_start(struct data_table *table, int n_ranks);
 void data_table_stop(struct data_table *table);
 
 /* Whether there can be such an object. Errors: type, count. */
-int data_object_check(duite_type type, size_t count, size_t most);
+int data_object_check(duite_type type, size_t count, size_t max);
 
 /* Makes an object without home. Errors: type, count, memory. */
 int data_object_new(struct data_table *table, duite_type type, size_t count, duite_object *name);
 
-/* The same with versions of 0 to `most` elements, count of them to begin with. */
-int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t most,
+/* The same with versions of 0 to `max` elements, count of them to begin with. */
+int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t max,
                           duite_object *name);
 
 /* Sets the sentence of the error that no object has this name. Returns NULL. */
@@ -99,7 +99,7 @@ void data_object_hand_on(const struct data_table *table, struct data_object *obj
 /* A version of the object, as of data_version_new. */
 static inline struct data_version *data_object_version(const struct data_object *object)
 {
-    return data_version_new(object->type, object->most, object->sized);
+    return data_version_new(object->type, object->max, object->sized);
 }
 
 /* The hint of the object in a slot, or NULL if its home is settled. The slot is not free. */

@@ -30,8 +30,8 @@ struct data_version {
     bool sized, renamed; /* its size is its own; other bytes took its place, see rename_bytes */
     bool poisoned;       /* in place of bytes; set before it is produced */
     uint8_t type;
-    size_t most; /* elements there may be; there are as many, or fewer if it is sized */
-    union {      /* set before the object's hold is released */
+    size_t max; /* elements there may be; there are as many, or fewer if it is sized */
+    union {     /* set before the object's hold is released */
         struct data_waiter *heir;
         _Atomic uint64_t *rename_bytes; /* renamed: there its room is counted until it dies */
     };
@@ -46,13 +46,13 @@ extern struct data_waiter data_produced_mark;
 #define DATA_PRODUCED (&data_produced_mark)
 
 /* A version held by its producer and by its object. NULL without memory. */
-static inline struct data_version *data_version_new(duite_type type, size_t most, bool sized)
+static inline struct data_version *data_version_new(duite_type type, size_t max, bool sized)
 {
     struct data_version *version = base_pool_take(sizeof *version);
     if (!version)
         return NULL;
     *version = (struct data_version){
-        .holds = 2, .type = (uint8_t)type, .most = most, .sized = sized, .heir = NULL};
+        .holds = 2, .type = (uint8_t)type, .max = max, .sized = sized, .heir = NULL};
     return version;
 }
 
@@ -65,7 +65,7 @@ static inline void data_version_free(struct data_version *version)
 /* Bytes of the largest version. */
 static inline size_t data_version_room(const struct data_version *version)
 {
-    return version->most * data_type_size((duite_type)version->type);
+    return version->max * data_type_size((duite_type)version->type);
 }
 
 /* Why there are no bytes, or NULL. */

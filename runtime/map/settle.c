@@ -132,12 +132,12 @@ static void nodes_free(struct nodes *nodes)
 
 static int nodes_allocate(const struct data_table *table, struct nodes *nodes)
 {
-    size_t most = table->n_unsettled;
-    nodes->node = base_alloc(most * sizeof *nodes->node);
-    nodes->weight = base_alloc_zero(most * sizeof *nodes->weight);
-    nodes->home = base_alloc_zero(most * sizeof *nodes->home);
-    nodes->start = base_alloc_zero((most + 1) * sizeof *nodes->start);
-    nodes->end = base_alloc_zero((most + 1) * sizeof *nodes->end);
+    size_t max = table->n_unsettled;
+    nodes->node = base_alloc(max * sizeof *nodes->node);
+    nodes->weight = base_alloc_zero(max * sizeof *nodes->weight);
+    nodes->home = base_alloc_zero(max * sizeof *nodes->home);
+    nodes->start = base_alloc_zero((max + 1) * sizeof *nodes->start);
+    nodes->end = base_alloc_zero((max + 1) * sizeof *nodes->end);
     if (!nodes->node || !nodes->weight || !nodes->home || !nodes->start || !nodes->end)
         return base_no_memory("the mapping");
     return DUITE_OK;

@@ -25,7 +25,7 @@ struct offload_message {
 };
 
 struct offload_param {
-    uint64_t bytes, most; /* that travel; elements there may be */
+    uint64_t bytes, max; /* that travel; elements there may be */
     uint32_t type, sized;
 };
 

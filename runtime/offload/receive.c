@@ -73,7 +73,7 @@ static size_t param_room(const struct task *task, size_t i)
     const struct offload_param *param = &param_of(task->offloaded)[i];
     return task->access[i].waiter.mode == DUITE_R
                ? 0
-               : param->most * data_type_size((duite_type)param->type);
+               : param->max * data_type_size((duite_type)param->type);
 }
 
 /* What the body finds under w is unspecified; under rw it is what came, under cw the law's neutral
@@ -85,7 +85,7 @@ static void param_fill(const struct task *task, size_t i, const void *came, void
     if (task->access[i].waiter.mode == DUITE_RW && param->bytes)
         memcpy(data, came, param->bytes);
     else if (task->access[i].waiter.mode == DUITE_CW)
-        data_law_neutral(data_law_of(kernel, i), data, param->most, (duite_type)param->type);
+        data_law_neutral(data_law_of(kernel, i), data, param->max, (duite_type)param->type);
 }
 
 /* Gives the body its parameters. False without memory. */
@@ -109,9 +109,9 @@ static bool params_lay_out(const struct task *task, duite_param *param, const vo
         duite_mode mode = (duite_mode)task->access[i].waiter.mode;
         bool fresh = !came->sized || mode == DUITE_W;
         param[i] = (duite_param){.data = mode == DUITE_R ? in : out,
-                                 .count = fresh ? came->most : came->bytes / data_type_size(type),
+                                 .count = fresh ? came->max : came->bytes / data_type_size(type),
                                  .type = type,
-                                 .most = came->most,
+                                 .max = came->max,
                                  .object = {TASK_LOCAL_NAME | i, stamp}};
         param_fill(task, i, in, out);
         in += message_value(mode, came->bytes);

@@ -65,9 +65,9 @@ static struct offload_param access_param(const struct task_access *access)
     const struct data_version *in = access_value(access), *out = task_written(access);
     const struct data_version *version = in ? in : out;
     if (!version)
-        return (struct offload_param){.most = access->sum->count, .type = access->sum->type};
+        return (struct offload_param){.max = access->sum->count, .type = access->sum->type};
     return (struct offload_param){.bytes = in ? in->packet->bytes : 0,
-                                  .most = version->most,
+                                  .max = version->max,
                                   .type = version->type,
                                   .sized = version->sized};
 }

@@ -84,7 +84,7 @@ static void emit_params(struct plan *plan)
     for (size_t i = 0; i < plan->n_uses; i++) {
         struct plan_place *place = &plan->place[plan->use[i].place];
         plan->param[i] = (duite_param){
-            .data = place->data, .count = place->count, .type = place->type, .most = place->count};
+            .data = place->data, .count = place->count, .type = place->type, .max = place->count};
         place->n_params++;
     }
     size_t at = 0;

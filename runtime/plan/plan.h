@@ -45,14 +45,14 @@ struct plan_place {
     size_t count, bytes;
     const duite_law *law;         /* of a contribution */
     size_t first_param, n_params; /* in param_of: those that point here */
-    _Atomic uint32_t warm;        /* see duite_ready.warm */
+    _Atomic uint32_t affinity;    /* see duite_ready.affinity */
 };
 
 struct plan {
     _Atomic uint32_t refs; /* the record, and each replay on its way */
     struct task_graph *graph;
-    _Atomic bool warm; /* something became so in this replay */
-    size_t n_filled;   /* nodes that were made so far */
+    _Atomic bool affinity; /* some place got one in this replay */
+    size_t n_filled;       /* nodes that were made so far */
     size_t n_nodes, n_calls, n_uses, n_roots, n_sinks, n_places;
     size_t n_objects;     /* places that are objects */
     unsigned char *nodes; /* the tasks: PLAN_NODE_BYTES each */
@@ -113,28 +113,28 @@ static inline struct plan_place *plan_node_place(const struct task *task)
     return plan->owner[at] == PLAN_NONE ? NULL : &plan->place[plan->owner[at]];
 }
 
-/* What takes less is over before another core has its data: it leaves nothing warm. */
-#define PLAN_WARM_SECONDS 2e-6
+/* What takes less is over before another core has its data: it leaves no affinity. */
+#define PLAN_AFFINITY_SECONDS 2e-6
 
 /* Tells whose caches may have what the node runs for: 1 and the worker, or 0. All workers read what
  * this writes: it is written only where it changes. */
-static inline void plan_task_warms(const struct task *task, uint32_t warm)
+static inline void plan_task_set_affinity(const struct task *task, uint32_t affinity)
 {
     struct plan_place *place = plan_node_place(task);
-    if (place && atomic_load_explicit(&place->warm, memory_order_relaxed) != warm)
-        atomic_store_explicit(&place->warm, warm, memory_order_relaxed);
-    if (warm && !atomic_load_explicit(&task->node->plan->warm, memory_order_relaxed))
-        atomic_store_explicit(&task->node->plan->warm, true, memory_order_relaxed);
+    if (place && atomic_load_explicit(&place->affinity, memory_order_relaxed) != affinity)
+        atomic_store_explicit(&place->affinity, affinity, memory_order_relaxed);
+    if (affinity && !atomic_load_explicit(&task->node->plan->affinity, memory_order_relaxed))
+        atomic_store_explicit(&task->node->plan->affinity, true, memory_order_relaxed);
 }
 
-/* See duite_ready.warm. */
-static inline uint32_t plan_task_warm(const struct task *task)
+/* See duite_ready.affinity. */
+static inline uint32_t plan_task_affinity(const struct task *task)
 {
     if (task->type != TASK_NODE ||
-        !atomic_load_explicit(&task->node->plan->warm, memory_order_relaxed))
+        !atomic_load_explicit(&task->node->plan->affinity, memory_order_relaxed))
         return 0;
     const struct plan_place *place = plan_node_place(task);
-    return place ? atomic_load_explicit(&place->warm, memory_order_relaxed) : 0;
+    return place ? atomic_load_explicit(&place->affinity, memory_order_relaxed) : 0;
 }
 
 /* Compiles a record for a fixed number of rounds, or with a flag: an object of the record that is

@@ -90,7 +90,7 @@ static uint32_t record_index(struct plan_record *record, duite_object name)
         record->object[record->n_objects] = (struct plan_recorded_object){.recorded = name,
                                                                           .bound = name,
                                                                           .type = object->type,
-                                                                          .count = object->most,
+                                                                          .count = object->max,
                                                                           .sized = object->sized};
         *index = (uint32_t)++record->n_objects;
     }
@@ -215,7 +215,7 @@ int plan_record_set(struct plan_record *record, duite_object name, const void *v
     const struct data_object *object = data_object_find(&record->graph->table, name);
     if (!object)
         return DUITE_E_OBJECT;
-    size_t count = wanted ? *wanted : object->most;
+    size_t count = wanted ? *wanted : object->max;
     size_t bytes = values ? count * data_type_size(object->type) : 0;
     int code = task_set_check(record->graph, object, name, count);
     if (code)
@@ -280,15 +280,14 @@ int plan_record_bind(struct plan_record *record, duite_object recorded, duite_ob
                           "duite_graph_bind: object %u.%u, to become %u.%u, is not one that the "
                           "graph was recorded with",
                           recorded.slot, recorded.generation, name.slot, name.generation);
-    if (other->type != object->type || other->most != object->count ||
-        other->sized != object->sized)
+    if (other->type != object->type || other->max != object->count || other->sized != object->sized)
         return base_error(
             DUITE_E_BINDING,
             "duite_graph_bind: object %u.%u has %s%zu elements (%s), and object %u.%u, "
             "bound to it, has %s%zu (%s)",
             recorded.slot, recorded.generation, object->sized ? "at most " : "", object->count,
             data_type_name(object->type), name.slot, name.generation,
-            other->sized ? "at most " : "", other->most, data_type_name(other->type));
+            other->sized ? "at most " : "", other->max, data_type_name(other->type));
     if (object->written || object->sums) {
         int code = data_view_refuse(&record->graph->table, other, "duite_graph_bind");
         if (code)

@@ -96,7 +96,7 @@ void plan_replay_run(struct task *task)
     plan->replay = task;
     plan->last = replay->rounds - 1;
     plan->stop = false;
-    atomic_store_explicit(&plan->warm, false, memory_order_relaxed);
+    atomic_store_explicit(&plan->affinity, false, memory_order_relaxed);
     atomic_store_explicit(&plan->tainted, 0, memory_order_relaxed);
     atomic_store_explicit(&plan->left, plan->decides ? UNKNOWN : (int64_t)plan->n_sinks,
                           memory_order_relaxed);

@@ -12,8 +12,8 @@ duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
 {
     const struct predict_node *n = &m->graph->node[node];
     const struct trace_run *run = m->graph->run;
-    const uint32_t ran = n->placed ? m->warm[n->placed - 1] : PREDICT_NONE;
-    const bool warm = ran != PREDICT_NONE && ran / m->cluster->cores == n->host;
+    const uint32_t ran = n->placed ? m->affinity[n->placed - 1] : PREDICT_NONE;
+    const bool has_affinity = ran != PREDICT_NONE && ran / m->cluster->cores == n->host;
     return (duite_ready){.kernel = n->kernel < run->n_kernels
                                        ? run->kernel_name[n->kernel]
                                        : task_own_name(n->kernel - run->n_kernels),
@@ -22,7 +22,7 @@ duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
                          .priority = n->priority,
                          .cost = (double)n->cost,
                          .path = (double)n->path,
-                         .warm = warm ? 1 + ran % m->cluster->cores : 0};
+                         .affinity = has_affinity ? 1 + ran % m->cluster->cores : 0};
 }
 
 static double conclude_path(const struct predict_graph *graph, double *path)

@@ -73,14 +73,14 @@ static double option_number(struct argp_state *state, const char *option, const 
 }
 
 static uint64_t option_whole(struct argp_state *state, const char *option, const char *text,
-                             uint64_t least, uint64_t most)
+                             uint64_t least, uint64_t max)
 {
     char *end;
     errno = 0;
     uint64_t value = strtoull(text, &end, 10);
-    if (*text < '0' || *text > '9' || *end || errno || value < least || value > most)
+    if (*text < '0' || *text > '9' || *end || errno || value < least || value > max)
         argp_error(state, "--%s %s: a whole number from %llu to %llu is expected", option, text,
-                   (unsigned long long)least, (unsigned long long)most);
+                   (unsigned long long)least, (unsigned long long)max);
     return value;
 }
 

@@ -143,7 +143,7 @@ double predict_exchange(struct predict_network *network, double now,
 static bool machine_near(struct predict_machine *m)
 {
     const size_t cores = m->cluster->cores, others = cores - 1;
-    if (!m->scheduler->look)
+    if (!m->scheduler->locate)
         return true;
     m->near = base_alloc(cores * sizeof *m->near);
     m->other = base_alloc((cores * others + 1) * sizeof *m->other);
@@ -169,7 +169,7 @@ static bool machine_prepare(struct predict_machine *m, bool paje)
     m->state = base_alloc_zero(workers);
     m->next = base_alloc(workers * sizeof *m->next);
     m->ran = base_alloc(workers * sizeof *m->ran);
-    m->warm = base_alloc(graph->n_objects * sizeof *m->warm + 1);
+    m->affinity = base_alloc(graph->n_objects * sizeof *m->affinity + 1);
     m->last = base_alloc(hosts * sizeof *m->last);
     m->idle = base_alloc(hosts * sizeof *m->idle);
     m->looked = base_alloc_zero(workers * sizeof *m->looked);
@@ -181,7 +181,7 @@ static bool machine_prepare(struct predict_machine *m, bool paje)
     m->end = base_alloc(n * sizeof *m->end + 1);
     m->cause = base_alloc_zero(n * sizeof *m->cause + 1);
     m->runs_on = paje ? base_alloc_zero(n * sizeof *m->runs_on + 1) : NULL;
-    return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->warm &&
+    return m->states && m->queue && m->shared && m->state && m->next && m->ran && m->affinity &&
            m->last && m->idle && m->looked && m->handled && m->paid && m->network.out &&
            m->network.in && m->begin && m->end && m->cause && (m->runs_on || !paje) &&
            machine_near(m);
@@ -196,9 +196,9 @@ static void machine_scheduler(struct predict_machine *m, uint32_t worker)
     if (scheduler->start)
         scheduler->start(state, worker % cores, cores, m->cluster->seed);
     base_mark_end(m->mark);
-    base_mark_begin(m->mark, BASE_SCHEDULER_LOOK);
-    if (scheduler->look)
-        scheduler->look(state, &m->near[worker % cores]);
+    base_mark_begin(m->mark, BASE_SCHEDULER_LOCATE);
+    if (scheduler->locate)
+        scheduler->locate(state, &m->near[worker % cores]);
     base_mark_end(m->mark);
     base_mark_begin(m->mark, BASE_SCHEDULER_SERVE);
     m->queue[worker].heap = scheduler->serve(state) == DUITE_HIGHEST;
@@ -221,7 +221,7 @@ static void machine_init(struct predict_machine *m)
     for (size_t i = 0; i < m->graph->n_nodes; i++)
         m->end[i] = -1;
     for (size_t i = 0; i < m->graph->n_objects; i++)
-        m->warm[i] = PREDICT_NONE;
+        m->affinity[i] = PREDICT_NONE;
 }
 
 bool predict_machine_start(struct predict_machine *m, bool paje)
@@ -242,7 +242,7 @@ void predict_machine_stop(struct predict_machine *m)
     void *const all[] = {m->states,  m->queue,       m->shared,     m->state, m->next,  m->ran,
                          m->last,    m->network.out, m->network.in, m->begin, m->end,   m->cause,
                          m->idle,    m->runs_on,     m->near,       m->other, m->level, m->looked,
-                         m->handled, m->paid,        m->warm};
+                         m->handled, m->paid,        m->affinity};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         base_free(all[i]);
 }

@@ -74,7 +74,7 @@ struct predict_machine {
     unsigned char *state;                 /* by worker */
     uint32_t *next;                       /* by worker: chained, or NONE */
     uint32_t *ran;                        /* by worker: the node it ran last */
-    uint32_t *warm;                       /* by object: who ran a replayed task of it, or NONE */
+    uint32_t *affinity;                   /* by object: who ran a replayed task of it, or NONE */
     uint32_t *last;                       /* by host: the worker that ended last */
     uint32_t *idle;                       /* by host: how many */
     struct predict_events events;

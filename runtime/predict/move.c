@@ -137,14 +137,14 @@ static void move_weigh(struct move *m)
 static double move_seconds(const struct move *m)
 {
     const uint32_t hosts = m->p->graph->cluster->hosts;
-    double most = 0;
+    double max = 0;
     for (uint32_t h = 0; h < hosts; h++) {
         double sum = m->p->moves.other[h];
         for (size_t b = 0; b < m->blocks.n; b++)
             sum += m->blocks.block[b].home == (int)h ? m->seconds[b] : 0;
-        most = fmax(most, sum / m->workers[h]);
+        max = fmax(max, sum / m->workers[h]);
     }
-    return most;
+    return max;
 }
 
 static bool move_traffic(struct move *m, const struct predict_recorded *recorded)

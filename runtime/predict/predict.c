@@ -37,12 +37,12 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
         return base_error(DUITE_E_ARGUMENT,
                           "the seconds of a policy (DUITE_POLICY_SECONDS) are no number from 0 to "
                           "1e9");
-    if (c->scheduler->state_size > BASE_MOST_STATE ||
-        (c->balance && c->balance->state_size > BASE_MOST_STATE))
+    if (c->scheduler->state_size > BASE_MAX_STATE ||
+        (c->balance && c->balance->state_size > BASE_MAX_STATE))
         return base_error(DUITE_E_ARGUMENT,
                           "the scheduler or the balancer wants a state (state_size) of more than "
                           "%zu bytes",
-                          BASE_MOST_STATE);
+                          BASE_MAX_STATE);
     if (!(c->message >= 0))
         return base_error(DUITE_E_ARGUMENT, "the cost of a message is a number >= 0");
     if (c->balance && (c->balance->victim || c->balance->place))

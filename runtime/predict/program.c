@@ -277,7 +277,7 @@ static int program_walk(struct predict_program *p)
 
 /* Tasks that ran left an event each. Of the rounds that count, one task in 16 ran at least: others
  * were poisoned. Some more: for rounds without tasks. */
-static uint64_t program_most_replayed(const struct trace_run *run)
+static uint64_t program_max_replayed(const struct trace_run *run)
 {
     uint64_t n = 0;
     for (uint32_t r = 0; r < run->n_ranks; r++)
@@ -316,7 +316,7 @@ int predict_build(struct predict_graph *graph)
 {
     struct predict_program p = {.graph = graph,
                                 .words = trace_words_of(graph->run),
-                                .most_replayed = program_most_replayed(graph->run)};
+                                .max_replayed = program_max_replayed(graph->run)};
     int code = program_prepare(&p) ? program_walk(&p) : base_no_memory("the graph of a trace");
     graph->n_tasks = p.tasks;
     predict_moves_stop(&p);

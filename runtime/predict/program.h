@@ -56,10 +56,10 @@ struct predict_program {
     size_t n_recorded, recorded_capacity;
     struct predict_moves moves;
     uint64_t forks, tasks;
-    uint64_t replayed, most_replayed; /* tasks by replays; at most, for each left an event */
-    uint64_t since;                   /* ticks: when the main program last went on */
-    size_t first_op;                  /* since then */
-    uint64_t forked;                  /* nodes since then, those of replays left out */
+    uint64_t replayed, max_replayed; /* tasks by replays; at most, for each left an event */
+    uint64_t since;                  /* ticks: when the main program last went on */
+    size_t first_op;                 /* since then */
+    uint64_t forked;                 /* nodes since then, those of replays left out */
 };
 
 /* The object that a slot names. */

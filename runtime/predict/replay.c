@@ -184,12 +184,12 @@ static void round_nodes(struct predict_program *p, const struct predict_recorded
 static bool round_is_seen(struct predict_program *p, const struct predict_recorded *recorded)
 {
     p->replayed += recorded->n_calls ? recorded->n_calls : 1;
-    p->damaged |= p->replayed > p->most_replayed;
+    p->damaged |= p->replayed > p->max_replayed;
     return !p->damaged;
 }
 
 static void replay_rounds(struct predict_program *p, struct predict_recorded *recorded,
-                          uint32_t flag, uint64_t most)
+                          uint32_t flag, uint64_t max)
 {
     struct predict_graph *graph = p->graph;
     const uint32_t *bound = recorded->bound;
@@ -197,7 +197,7 @@ static void replay_rounds(struct predict_program *p, struct predict_recorded *re
     predict_op_replays(p, true);
     replay_gate(p, bound, recorded->n_objects);
     graph->replays = true;
-    for (uint64_t i = 0; i < most && !graph->failed; i++) {
+    for (uint64_t i = 0; i < max && !graph->failed; i++) {
         uint64_t first = p->forks + i * recorded->n_calls;
         if (!round_ran(p, recorded, first) || !round_is_seen(p, recorded))
             break;
@@ -215,7 +215,7 @@ static void replay_rounds(struct predict_program *p, struct predict_recorded *re
 void predict_replay(struct predict_program *p, size_t n_objects)
 {
     uint32_t name = trace_words_next(&p->words), flag_slot = trace_words_next(&p->words);
-    uint64_t most = trace_words_next2(&p->words);
+    uint64_t max = trace_words_next2(&p->words);
     p->forks = trace_words_next2(&p->words);
     if (name >= p->n_recorded || p->recorded[name].n_objects != n_objects) {
         p->damaged = true;
@@ -231,7 +231,7 @@ void predict_replay(struct predict_program *p, size_t n_objects)
     recorded->bound = bound;
     if (bound && !p->damaged && !p->words.short_of) {
         predict_move(p, recorded);
-        replay_rounds(p, recorded, flag, most);
+        replay_rounds(p, recorded, flag, max);
     }
-    p->forks += most * recorded->n_calls;
+    p->forks += max * recorded->n_calls;
 }

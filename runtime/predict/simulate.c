@@ -57,7 +57,8 @@ static void worker_begin(struct predict_machine *m, uint32_t node, uint32_t work
     m->busy += (double)n->seconds;
     m->ran[worker] = node;
     if (n->placed)
-        m->warm[n->placed - 1] = (double)n->seconds >= PLAN_WARM_SECONDS ? worker : PREDICT_NONE;
+        m->affinity[n->placed - 1] =
+            (double)n->seconds >= PLAN_AFFINITY_SECONDS ? worker : PREDICT_NONE;
     if (m->state[worker] == IDLE)
         m->idle[n->host]--;
     m->state[worker] = BUSY;

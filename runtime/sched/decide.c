@@ -18,7 +18,7 @@ unsigned sched_place_shared(void *state, const duite_ready *task)
 unsigned sched_place_affinity(void *state, const duite_ready *task)
 {
     const struct sched_state *own = state;
-    return task->warm ? task->warm - 1 : own->worker;
+    return task->affinity ? task->affinity - 1 : own->worker;
 }
 
 unsigned sched_place_owner(void *state, const duite_ready *task)

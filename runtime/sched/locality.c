@@ -11,7 +11,7 @@ struct locality_state {
     unsigned begin, end; /* the attempts of the ring that is tried */
 };
 
-static void locality_look(void *state, const duite_near *near)
+static void locality_locate(void *state, const duite_near *near)
 {
     ((struct locality_state *)state)->near = near;
 }
@@ -43,5 +43,5 @@ const duite_scheduler sched_locality = {
     .serve = sched_serve_newest,
     .victim = locality_victim,
     .chain = sched_chain_affinity,
-    .look = locality_look,
+    .locate = locality_locate,
 };

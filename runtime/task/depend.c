@@ -40,10 +40,10 @@ struct data_version *task_rename(struct task_graph *graph, struct worker *worker
 {
     struct data_version *version = object->current;
     uint64_t bytes = data_packet_memory(object->room);
-    if (!version || bytes > graph->rename_most || data_version_is_alone(version))
+    if (!version || bytes > graph->rename_max || data_version_is_alone(version))
         return version;
     if (atomic_fetch_add_explicit(&graph->rename_bytes, bytes, memory_order_relaxed) >
-        graph->rename_most - bytes) {
+        graph->rename_max - bytes) {
         atomic_fetch_sub_explicit(&graph->rename_bytes, bytes, memory_order_relaxed);
         return version;
     }

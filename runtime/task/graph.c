@@ -197,14 +197,14 @@ void task_failure_place(struct data_failure *failure, const struct task *task,
                         const struct task_scope *inner)
 {
     uint64_t index[sizeof failure->path];
-    uint32_t depth = task->scope->depth, most = sizeof index / sizeof index[0];
+    uint32_t depth = task->scope->depth, max = sizeof index / sizeof index[0];
     const struct data_failure *home = place_at_home(task->scope);
-    if (depth && depth <= most)
+    if (depth && depth <= max)
         index[depth - 1] = task->number;
     failure->number = task->number;
     for (const struct task_scope *scope = task->scope; scope->depth; scope = scope->parent) {
         failure->number = scope->number;
-        if (scope->depth > 1 && scope->depth - 2 < most)
+        if (scope->depth > 1 && scope->depth - 2 < max)
             index[scope->depth - 2] = scope->number;
     }
     if (home) {
@@ -212,7 +212,7 @@ void task_failure_place(struct data_failure *failure, const struct task *task,
         failure->path_length = home->path_length;
         memcpy(failure->path, home->path, sizeof home->path);
     }
-    for (uint32_t i = 0; i < depth && i < most; i++)
+    for (uint32_t i = 0; i < depth && i < max; i++)
         data_path_add(failure, index[i]);
     if (inner && inner->segment)
         data_path_add(failure, inner->segment);

@@ -104,11 +104,11 @@ int task_set_check(const struct task_graph *graph, const struct data_object *obj
     int code = data_view_refuse(&graph->table, object, "duite_set");
     if (code)
         return code;
-    if (count == object->most || (object->sized && count < object->most))
+    if (count == object->max || (object->sized && count < object->max))
         return DUITE_OK;
     return base_error(DUITE_E_SIZE, "duite_set_sized: %zu elements, and object %u.%u has %s%zu",
                       count, name.slot, name.generation, object->sized ? "at most " : "",
-                      object->most);
+                      object->max);
 }
 
 int task_set_object(struct task_scope *scope, struct worker *worker, duite_object name,
@@ -119,7 +119,7 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
     struct data_object *object = task_find_object(scope, name, &right);
     if (!object)
         return DUITE_E_OBJECT;
-    size_t count = wanted ? *wanted : object->most;
+    size_t count = wanted ? *wanted : object->max;
     int code = task_set_check(graph, object, name, count);
     if (code)
         return code;
@@ -279,7 +279,7 @@ static int resize_refuse(const duite_call *call, size_t i, bool sized, size_t co
         duite_fail(call, 0, "duite_resize: parameter %zu is only read", i);
     else
         duite_fail(call, 0, "duite_resize: parameter %zu: %zu elements are more than %zu at most",
-                   i, count, call->param[i].most);
+                   i, count, call->param[i].max);
     call->own->refused = DUITE_E_SIZE;
     return base_error(DUITE_E_SIZE, "%s", call->own->text);
 }
@@ -288,7 +288,7 @@ int duite_resize(const duite_call *call, size_t i, size_t count)
 {
     struct task *task = call->own->task;
     bool sized = i < call->n_params && param_is_sized(task, i);
-    if (!sized || !param_is_written(task, i) || count > call->param[i].most)
+    if (!sized || !param_is_written(task, i) || count > call->param[i].max)
         return resize_refuse(call, i, sized, count);
     duite_param *param = (duite_param *)&call->param[i]; /* ours to write */
     size_t size = data_type_size(param->type);

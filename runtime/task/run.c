@@ -39,14 +39,14 @@ static void param_describe(duite_param *param, const struct data_version *versio
     struct data_packet *packet = data_version_packet(version);
     param->data = packet ? data_payload(packet) : NULL;
     param->count =
-        version->sized && packet && !fresh ? packet->bytes / data_type_size(type) : version->most;
+        version->sized && packet && !fresh ? packet->bytes / data_type_size(type) : version->max;
     param->type = type;
-    param->most = version->most;
+    param->max = version->max;
 }
 
 static void param_describe_lent(duite_param *param, const struct data_object *object)
 {
-    *param = (duite_param){.count = object->most, .type = object->type, .most = object->most};
+    *param = (duite_param){.count = object->max, .type = object->type, .max = object->max};
 }
 
 static const struct data_failure *leaf_open(const struct task *task,
@@ -59,7 +59,7 @@ static const struct data_failure *leaf_open(const struct task *task,
     *param = (duite_param){.data = packet ? data_payload(packet) : NULL,
                            .count = sum->count,
                            .type = sum->type,
-                           .most = sum->count};
+                           .max = sum->count};
     return failure;
 }
 

@@ -157,7 +157,7 @@ void task_lend(struct task *task, size_t i, const struct data_object *object,
                                                      .sized = object->sized,
                                                      .count = object->count,
                                                      .bytes = object->bytes,
-                                                     .most = object->most,
+                                                     .max = object->max,
                                                      .room = object->room,
                                                      .home = rank,
                                                      .holder = rank,
@@ -191,13 +191,13 @@ static int nest_take_places(struct task_nest *nest, uint32_t n, uint32_t *first)
     return DUITE_OK;
 }
 
-int task_make_object(struct duite_call_private *body, duite_type type, size_t count, size_t most,
+int task_make_object(struct duite_call_private *body, duite_type type, size_t count, size_t max,
                      bool sized, duite_object *name)
 {
     struct task_scope *scope = task_inside(body);
     struct task_nest *nest = task_nest_of(scope);
     uint32_t at;
-    int code = data_object_check(type, count, most);
+    int code = data_object_check(type, count, max);
     if (!code && !scope)
         code = DUITE_E_MEMORY;
     if (!code && nest->vacant) {
@@ -215,8 +215,8 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
                                            .sized = sized,
                                            .count = count,
                                            .bytes = count * size,
-                                           .most = most,
-                                           .room = most * size,
+                                           .max = max,
+                                           .room = max * size,
                                            .home = rank,
                                            .holder = rank,
                                            .block = (uint32_t)scope->forks};
@@ -236,7 +236,7 @@ static struct data_version *read_version(const struct duite_call_private *body, 
     const duite_param *param = &body->param[i];
     size_t bytes = param->count * data_type_size(param->type);
     struct data_version *version =
-        data_version_new(param->type, param->most, param->count != param->most);
+        data_version_new(param->type, param->max, param->count != param->max);
     if (version)
         version->packet = data_packet_new(bytes, false);
     if (!version || !version->packet) {
@@ -268,9 +268,9 @@ int task_lend_reads(struct task_scope *scope)
         if (data_mode_of(scope->graph->kernels[task->kernel], i) != DUITE_R)
             continue;
         *object = (struct data_object){.type = param->type,
-                                       .sized = param->count != param->most,
-                                       .most = param->most,
-                                       .room = param->most * data_type_size(param->type),
+                                       .sized = param->count != param->max,
+                                       .max = param->max,
+                                       .room = param->max * data_type_size(param->type),
                                        .home = rank,
                                        .holder = rank,
                                        .block = task->block,

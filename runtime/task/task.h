@@ -204,7 +204,7 @@ struct task_graph {
         uint32_t index, n, owner; /* in the list; objects, and which of them it runs for */
         unsigned reads, writes;   /* a bit an object; no other use */
     } prune;
-    uint64_t rename_most; /* limit of `rename_bytes` */
+    uint64_t rename_max; /* limit of `rename_bytes` */
     struct data_table table;
     /* Seldom used. */
     _Alignas(64) _Atomic int broken; /* memory ran out in a fork: the code of every later call */
@@ -302,9 +302,9 @@ static inline bool task_body_forked(const duite_call *call)
 /* The scope of a running body, made when it is first asked for. NULL without memory. */
 struct task_scope *task_inside(struct duite_call_private *body);
 
-/* Makes an object of `count` zeros, and at most `most` elements if its size changes, that belongs
+/* Makes an object of `count` zeros, and at most `max` elements if its size changes, that belongs
  * to the task. Errors: type, count, memory. */
-int task_make_object(struct duite_call_private *body, duite_type type, size_t count, size_t most,
+int task_make_object(struct duite_call_private *body, duite_type type, size_t count, size_t max,
                      bool sized, duite_object *name);
 
 /* All tasks forked in this scope are over, with their descendants. */

@@ -17,7 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MOST_RANKS = 1 << 24, MOST_WORKERS = 4096 };
+enum { MAX_RANKS = 1 << 24, MOST_WORKERS = 4096 };
 
 /* One file while it is read. */
 struct source {
@@ -80,12 +80,12 @@ static int source_check_size(struct source *source)
 
 /* Each worker's counters are in the file of a run that came to its end. Only a file that lost
  * something may lack them, and such a file is not predicted. */
-static size_t source_most_workers(const struct source *source)
+static size_t source_max_workers(const struct source *source)
 {
     const size_t each = sizeof(struct trace_section) + sizeof(struct trace_counters);
     const struct trace_header *header = source->rank->header;
-    const size_t most = source->size / each + 1;
-    return header->whole && !header->lost && most < MOST_WORKERS ? most : MOST_WORKERS;
+    const size_t max = source->size / each + 1;
+    return header->whole && !header->lost && max < MOST_WORKERS ? max : MOST_WORKERS;
 }
 
 static int source_check_header(struct source *source, uint32_t rank)
@@ -108,7 +108,7 @@ static int source_check_header(struct source *source, uint32_t rank)
         return source_damaged(source, offsetof(struct trace_header, version), text);
     }
     if (header->rank != rank || !header->n_ranks || !header->workers || !(header->tick > 0) ||
-        header->n_ranks > MOST_RANKS || header->workers > source_most_workers(source))
+        header->n_ranks > MAX_RANKS || header->workers > source_max_workers(source))
         return source_damaged(source, offsetof(struct trace_header, rank),
                               "another rank, or nonsense, where this one was expected");
     if (rank && (header->run != first->run || header->n_ranks != first->n_ranks))

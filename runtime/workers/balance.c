@@ -101,8 +101,8 @@ static int balancer_victim(const struct worker *worker, unsigned attempt, int gi
 static bool balancer_gives(const struct worker *worker, const duite_request *asked,
                            const duite_leaf *leaf)
 {
-    base_mark_begin(mark_of(worker), BASE_BALANCER_GIVE);
-    const int given = worker->pool->balance->balancer->give(state_of(worker), asked, leaf);
+    base_mark_begin(mark_of(worker), BASE_BALANCER_GRANT);
+    const int given = worker->pool->balance->balancer->grant(state_of(worker), asked, leaf);
     base_mark_end(mark_of(worker));
     return given;
 }
@@ -193,7 +193,7 @@ bool work_placed_away(struct worker *worker, struct task *task)
     const duite_balancer *balancer = pool->balance->balancer;
     int own = pool->setup.graph->rank, to = own;
     duite_leaf leaf;
-    bool asked = balancer->give && comm_has_requests(pool->setup.comm);
+    bool asked = balancer->grant && comm_has_requests(pool->setup.comm);
     if ((!balancer->place && !asked) || !describe(pool, task, &leaf))
         return false;
     if (balancer->place)
@@ -219,7 +219,7 @@ static void give_or_keep(struct gift *gift, struct work_queue *queue, struct tas
         duite_leaf leaf;
         if (describe(pool, task, &leaf) && balancer_gives(gift->worker, &gift->asked, &leaf) &&
             send(gift->worker, task, gift->asked.rank))
-            gift->asked.given++;
+            gift->asked.granted++;
         else
             work_queue_push(queue, task);
         task = next;
@@ -249,9 +249,9 @@ static void give(struct worker *worker, const struct comm_requester *requester, 
     }
     /* Those who did not find them meanwhile look again. */
     atomic_thread_fence(memory_order_seq_cst);
-    if (gift.asked.ready > gift.asked.given)
+    if (gift.asked.ready > gift.asked.granted)
         work_wake_one(pool, DUITE_NO_QUEUE);
-    *given = gift.asked.given;
+    *given = gift.asked.granted;
 }
 
 void work_serve(struct worker *worker)

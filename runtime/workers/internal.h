@@ -184,15 +184,17 @@ static inline unsigned work_victim(struct worker *worker, unsigned attempt)
     return victim;
 }
 
-/* A task took so many ticks. In replays of short ones, nothing is warm and nothing is looked up. */
-static inline void work_warms(const struct worker *worker, const struct task *task, uint64_t took)
+/* A task took so many ticks. In replays of short ones no place has an affinity, and none is looked
+ * up. */
+static inline void work_set_affinity(const struct worker *worker, const struct task *task,
+                                     uint64_t took)
 {
     if (task->type != TASK_NODE)
         return;
-    if ((double)took * worker->pool->tick >= PLAN_WARM_SECONDS)
-        plan_task_warms(task, worker->index + 1);
-    else if (atomic_load_explicit(&task->node->plan->warm, memory_order_relaxed))
-        plan_task_warms(task, 0);
+    if ((double)took * worker->pool->tick >= PLAN_AFFINITY_SECONDS)
+        plan_task_set_affinity(task, worker->index + 1);
+    else if (atomic_load_explicit(&task->node->plan->affinity, memory_order_relaxed))
+        plan_task_set_affinity(task, 0);
 }
 
 #endif

@@ -99,21 +99,21 @@ static bool window_has_room(void *context)
     return work_unfinished(pool) < atomic_load_explicit(&pool->wanted, memory_order_relaxed);
 }
 
-void work_throttle(struct work_pool *pool, uint64_t most)
+void work_throttle(struct work_pool *pool, uint64_t max)
 {
     const struct task_graph *graph = pool->setup.graph;
     if (graph->tasks < pool->look)
         return;
     uint64_t left = work_unfinished(pool);
-    if (left > most) {
-        atomic_store(&pool->wanted, most - most / 4 + 1);
+    if (left > max) {
+        atomic_store(&pool->wanted, max - max / 4 + 1);
         work_until(pool, &(struct work_why){"duite_fork", "room in its window", NULL},
                    window_has_room, pool);
         atomic_store(&pool->wanted, 0);
         left = work_unfinished(pool);
     }
-    /* There cannot be more than `most` before so many are added. */
-    pool->look = graph->tasks + (left < most ? most - left : 0) + 1;
+    /* There cannot be more than `max` before so many are added. */
+    pool->look = graph->tasks + (left < max ? max - left : 0) + 1;
 }
 
 /* ---- Calls that do not wait ---- */

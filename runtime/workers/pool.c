@@ -30,9 +30,9 @@ static void worker_start_scheduler(struct worker *worker)
     if (scheduler->start)
         scheduler->start(worker->state, worker->index, setup->threads, setup->seed);
     base_mark_end(worker->mark);
-    base_mark_begin(worker->mark, BASE_SCHEDULER_LOOK);
-    if (scheduler->look)
-        scheduler->look(worker->state, work_near_of(&worker->pool->near, worker->index));
+    base_mark_begin(worker->mark, BASE_SCHEDULER_LOCATE);
+    if (scheduler->locate)
+        scheduler->locate(worker->state, work_near_of(&worker->pool->near, worker->index));
     base_mark_end(worker->mark);
 }
 

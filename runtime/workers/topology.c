@@ -66,8 +66,8 @@ static int cores_list(struct work_cores *cores)
     hwloc_obj_type_t type = HWLOC_OBJ_CORE;
     if (hwloc_get_nbobjs_by_type(topology, type) < 1)
         type = HWLOC_OBJ_PU;
-    unsigned most = (unsigned)hwloc_get_nbobjs_by_type(topology, type);
-    cores->unit = base_alloc(most * sizeof *cores->unit);
+    unsigned max = (unsigned)hwloc_get_nbobjs_by_type(topology, type);
+    cores->unit = base_alloc(max * sizeof *cores->unit);
     hwloc_obj_t core = NULL;
     while (cores->unit && (core = hwloc_get_next_obj_by_type(topology, type, core))) {
         hwloc_bitmap_t here = hwloc_bitmap_dup(core->cpuset);

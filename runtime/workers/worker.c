@@ -25,7 +25,7 @@ static duite_ready ready_describe(const struct task_graph *graph, const struct t
                          .priority = task->priority,
                          .cost = task->cost,
                          .path = task_path(task),
-                         .warm = plan_task_warm(task)};
+                         .affinity = plan_task_affinity(task)};
 }
 
 static void ready_place(struct worker *worker, struct task *task, const duite_ready *ready)
@@ -173,7 +173,7 @@ static uint64_t run_body(struct worker *worker, struct task *task, uint64_t star
     work_leaves(worker, below);
     uint64_t end = base_ticks(), took = end > start ? end - start : 0;
     uint64_t own = took > worker->within ? took - worker->within : 0;
-    work_warms(worker, task, took);
+    work_set_affinity(worker, task, took);
     if (worker->ring)
         work_note_task(worker, task, &(struct work_ran){start, took, took - own, body, inlined});
     worker->within = outer + took;

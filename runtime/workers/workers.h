@@ -81,9 +81,9 @@ uint64_t work_unfinished(const struct work_pool *pool);
 /* The name of the scheduler if it named victims without an end, which is an error; else NULL. */
 const char *work_endless(const struct work_pool *pool);
 
-/* Works while more than `most` of them are not, until a quarter less is, or communication broke.
+/* Works while more than `max` of them are not, until a quarter less is, or communication broke.
  * Main thread. */
-void work_throttle(struct work_pool *pool, uint64_t most);
+void work_throttle(struct work_pool *pool, uint64_t max);
 
 /* Counts of all workers of this rank. Exact when no task is left. */
 void work_count(struct work_pool *pool, duite_counters *counters);

@@ -40,9 +40,9 @@ static bool wanted(const char *name)
     return found;
 }
 
-static uint64_t most(const struct explore_case *small)
+static uint64_t max(const struct explore_case *small)
 {
-    return report.deep ? small->most_deep : small->most;
+    return report.deep ? small->max_deep : small->max;
 }
 
 void explore_line(bool fine, const char *name, const char *text)
@@ -78,7 +78,7 @@ void explore_passes(const struct explore_case *small)
         return;
     struct timespec began, ended;
     clock_gettime(CLOCK_MONOTONIC, &began);
-    struct search_result result = search_all(small, (struct explore_plant){0}, most(small));
+    struct search_result result = search_all(small, (struct explore_plant){0}, max(small));
     clock_gettime(CLOCK_MONOTONIC, &ended);
     snprintf(text, sizeof text, "%s %llu executions of up to %d steps",
              result.all ? "all" : "first", (unsigned long long)result.executions, result.longest);
@@ -93,7 +93,7 @@ void explore_finds(const struct explore_case *small, struct explore_plant plant)
     char text[240];
     if (!wanted(small->name))
         return;
-    struct search_result result = search_all(small, plant, most(small));
+    struct search_result result = search_all(small, plant, max(small));
     snprintf(text, sizeof text, "with %s %s in %s: %s (%llu executions)", plant.what,
              plant.change == EXPLORE_DROP ? "left out" : "relaxed", plant.function,
              result.wrong     ? result.wrong

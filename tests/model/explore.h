@@ -46,12 +46,12 @@ struct explore_case {
     void (*start)(void);
     void (*thread[EXPLORE_THREADS])(void); /* up to the first NULL */
     void (*end)(void);
-    bool served;        /* all is well once the first thread is over; others may sleep for ever */
-    bool every;         /* all orders, without reduction */
-    unsigned timeouts;  /* times that timed waits of the first thread may run out; others' last for
-                           ever, but  a thread in one will go on */
-    uint64_t most;      /* executions; 0: all there are */
-    uint64_t most_deep; /* the same with --deep */
+    bool served;       /* all is well once the first thread is over; others may sleep for ever */
+    bool every;        /* all orders, without reduction */
+    unsigned timeouts; /* times that timed waits of the first thread may run out; others' last for
+                          ever, but  a thread in one will go on */
+    uint64_t max;      /* executions; 0: all there are */
+    uint64_t max_deep; /* the same with --deep */
 };
 
 /* Prints one line of TAP: that no execution of the case goes wrong, or that with the plant one

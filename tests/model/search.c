@@ -196,13 +196,13 @@ static bool next_execution(void)
 }
 
 struct search_result search_all(const struct explore_case *small, struct explore_plant plant,
-                                uint64_t most)
+                                uint64_t max)
 {
     struct search_result result = {0};
     bool more = true;
     depth = fixed = 0;
     every = small->every;
-    while (more && !result.wrong && (!most || result.executions < most)) {
+    while (more && !result.wrong && (!max || result.executions < max)) {
         enum machine_end end = machine_run(small, plant);
         result.executions += end != MACHINE_CUT;
         result.cut += end == MACHINE_CUT;

@@ -11,9 +11,9 @@ struct search_result {
     const char *wrong;        /* what the last execution did, or NULL */
 };
 
-/* Runs executions of the case until one goes wrong, all are done, or there are `most` (if > 0). */
+/* Runs executions of the case until one goes wrong, all are done, or there are `max` (if > 0). */
 struct search_result search_all(const struct explore_case *small, struct explore_plant plant,
-                                uint64_t most);
+                                uint64_t max);
 /* The steps of the last execution. */
 void search_print(void);
 

@@ -244,7 +244,7 @@ static void random_programs(unsigned programs)
     const struct explore_case random = {
         .start = random_start, .thread = {run_0, run_1, run_2}, .end = random_end};
     bool fine = true;
-    unsigned most = 0;
+    unsigned max = 0;
     for (unsigned i = 0; i < programs && fine; i++) {
         random_state = i;
         for (int j = 0; j < 3 * OPERATIONS; j++)
@@ -253,11 +253,11 @@ static void random_programs(unsigned programs)
         n_reached = 0;
         unsigned reduced = count_outcomes(&random, false);
         fine = count_outcomes(&random, true) == reduced;
-        most = reduced > most ? reduced : most;
+        max = reduced > max ? reduced : max;
         if (!fine)
             printf("# program %u: %u outcomes, %u without reduction\n", i, reduced, n_reached);
     }
-    printf("# %u random programs of up to %u outcomes\n", programs, most);
+    printf("# %u random programs of up to %u outcomes\n", programs, max);
     explore_line(fine, "random programs", "the reduction loses no outcome");
 }
 

@@ -394,18 +394,18 @@ enum { MOST = 0, MOST_DEEP = 0 };
 
 #define CASE(title, main)                                                                          \
     {                                                                                              \
-        .name = title, .start = begin, .thread = {main}, .most = MOST, .most_deep = MOST_DEEP      \
+        .name = title, .start = begin, .thread = {main}, .max = MOST, .max_deep = MOST_DEEP        \
     }
 /* Without a stop at the end, the other threads may sleep for ever then. */
 #define SERVED(title, main)                                                                        \
     {                                                                                              \
         .name = title, .start = begin, .thread = {main}, .served = true, .timeouts = 1,            \
-        .most = MOST, .most_deep = MOST_DEEP                                                       \
+        .max = MOST, .max_deep = MOST_DEEP                                                         \
     }
 #define LARGE(title, main)                                                                         \
     {                                                                                              \
-        .name = title, .start = begin, .thread = {main}, .served = true, .most = 10000,            \
-        .most_deep = 1000000                                                                       \
+        .name = title, .start = begin, .thread = {main}, .served = true, .max = 10000,             \
+        .max_deep = 1000000                                                                        \
     }
 
 static const struct explore_case cases[] = {

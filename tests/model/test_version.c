@@ -126,7 +126,7 @@ static void rename_away(void)
 static void start(void)
 {
     memset(&its, 0, sizeof its);
-    its.object = (struct data_object){.type = DUITE_F64, .most = 1};
+    its.object = (struct data_object){.type = DUITE_F64, .max = 1};
     its.object.current = its.version = data_object_version(&its.object);
 }
 

@@ -115,11 +115,11 @@ START_TEST(no_accumulation)
 }
 END_TEST
 
-static void makes(duite_type type, size_t count, size_t most, int code, const char *sentence)
+static void makes(duite_type type, size_t count, size_t max, int code, const char *sentence)
 {
     duite_object object = sized;
 
-    ck_assert_int_eq(duite_new_sized(rt, type, count, most, &object), code);
+    ck_assert_int_eq(duite_new_sized(rt, type, count, max, &object), code);
     says(sentence);
     ck_assert_uint_eq(object.slot, 0);
     ck_assert_int_eq(duite_wait(rt), code);

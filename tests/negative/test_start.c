@@ -156,7 +156,7 @@ START_TEST(malformed_policies)
     options.balance = NULL;
     refuses_options(&options, "balancer");
     options.balance = &balance;
-    balance.give = NULL;
+    balance.grant = NULL;
     refuses_options(&options, "balancer");
     balance = *duite_balancer_find("delegate");
     balance.state_size = SIZE_MAX;

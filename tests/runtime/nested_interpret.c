@@ -23,7 +23,7 @@ struct subtree {
 
 struct cell {
     duite_type type;
-    size_t count, most;
+    size_t count, max;
     unsigned law; /* of the open contributions */
     _Alignas(8) unsigned char value[BYTES];
     struct failure poison, pending; /* pending: of the contributions */
@@ -149,12 +149,12 @@ static void settle(struct cell *cell)
     cell->pending = NONE;
 }
 
-static void start(struct cell *cell, duite_type type, size_t count, size_t most)
+static void start(struct cell *cell, duite_type type, size_t count, size_t max)
 {
     memset(cell, 0, sizeof *cell);
     cell->type = type;
     cell->count = count;
-    cell->most = most;
+    cell->max = max;
     cell->poison = cell->pending = NONE;
 }
 
@@ -167,7 +167,7 @@ static void set(const struct nest_action *action, struct cell *cell)
     cell->writes++;
     cell->poison = NONE;
     memset(cell->value, 0, BYTES);
-    cell->count = action->seed ? action->count : cell->most;
+    cell->count = action->seed ? action->count : cell->max;
     if (action->seed)
         nest_values(cell->type, cell->count, action->seed, cell->value);
 }
@@ -210,7 +210,7 @@ static uint64_t act(struct machine *m, struct frame *frame, uint64_t digest)
         frame->n_done = a + 1;
         if (action->kind == NEST_REPLAY) {
             frame->n_done = a + 1 + (unsigned)action->count;
-            for (size_t round = 0; round < action->most; round++) {
+            for (size_t round = 0; round < action->max; round++) {
                 frame->first_pending = a + 1;
                 end_segment(m, frame);
             }
@@ -218,7 +218,7 @@ static uint64_t act(struct machine *m, struct frame *frame, uint64_t digest)
         } else if (action->kind == NEST_NEW) {
             struct cell *cell = &frame->made[frame->n_objects];
 
-            start(cell, action->type, action->count, action->most);
+            start(cell, action->type, action->count, action->max);
             frame->object[frame->n_objects++] = cell;
         } else if (action->kind == NEST_GET) {
             struct cell *cell = frame->object[action->object[0]];
@@ -257,9 +257,9 @@ static struct failure enter(struct frame *frame, struct frame *above, const unsi
         frame->object[i] = immediate(mode) || mode == DUITE_CWP ? &own[i] : cell;
         if (mode != DUITE_CW && mode != DUITE_CWP)
             settle(cell);
-        start(&own[i], cell->type, mode == DUITE_W ? cell->most : cell->count, cell->most);
+        start(&own[i], cell->type, mode == DUITE_W ? cell->max : cell->count, cell->max);
         own[i].law = frame->task->law;
-        param[i] = (duite_param){.count = own[i].count, .type = cell->type, .most = cell->most};
+        param[i] = (duite_param){.count = own[i].count, .type = cell->type, .max = cell->max};
         if (immediate(mode))
             param[i].data = own[i].value;
         if (mode == DUITE_R || mode == DUITE_RW) {
@@ -289,7 +289,7 @@ static void leave(const struct frame *frame, struct frame *above, const unsigned
             settle(cell);
             if (mode == DUITE_WP && cell->writes == frame->writes[i]) {
                 memset(cell->value, 0, BYTES); /* what was there does not count */
-                cell->count = cell->most;
+                cell->count = cell->max;
                 cell->poison = NONE;
             }
             cell->writes++;

@@ -14,7 +14,7 @@ struct table {
     bool made[NEST_MAX_OBJECTS], written[NEST_MAX_OBJECTS];
     bool sized[NEST_MAX_OBJECTS];
     duite_type type[NEST_MAX_OBJECTS];
-    size_t most[NEST_MAX_OBJECTS];
+    size_t max[NEST_MAX_OBJECTS];
 };
 
 struct maker {
@@ -107,7 +107,7 @@ static void make_fork(struct maker *maker, unsigned self, struct table *table, i
         given.right[given.n] = mode;
         task->sized[given.n] = given.sized[given.n] = table->sized[object];
         given.type[given.n] = table->type[object];
-        given.most[given.n++] = table->most[object];
+        given.max[given.n++] = table->max[object];
     }
     task->n = given.n;
     maker->plain = false;
@@ -120,14 +120,14 @@ static void make_new(struct maker *maker, struct nest_task *task, struct table *
     struct nest_action *action = add(task, NEST_NEW);
 
     action->type = TYPES[draw(maker, 5)];
-    action->most = 1 + draw(maker, NEST_MAX_COUNT);
+    action->max = 1 + draw(maker, NEST_MAX_COUNT);
     action->sized = draw(maker, 4) == 0;
-    action->count = action->sized ? draw(maker, (unsigned)action->most + 1) : action->most;
+    action->count = action->sized ? draw(maker, (unsigned)action->max + 1) : action->max;
     table->sized[table->n] = action->sized;
     table->made[table->n] = true;
     table->right[table->n] = DUITE_RWP;
     table->type[table->n] = action->type;
-    table->most[table->n++] = action->most;
+    table->max[table->n++] = action->max;
 }
 
 static void make_set(struct maker *maker, struct nest_task *task, struct table *table,
@@ -137,10 +137,10 @@ static void make_set(struct maker *maker, struct nest_task *task, struct table *
 
     action->object[0] = object;
     action->type = table->type[object];
-    action->count = action->most = table->most[object];
+    action->count = action->max = table->max[object];
     action->seed = draw(maker, 4) ? duite_random(&maker->random) : 0;
     if (table->sized[object] && action->seed)
-        action->count = draw(maker, (unsigned)action->most + 1);
+        action->count = draw(maker, (unsigned)action->max + 1);
     table->written[object] = true;
 }
 
@@ -166,7 +166,7 @@ static void make_other(struct maker *maker, struct nest_task *task, struct table
     struct nest_action *action = add(task, kind);
     action->object[0] = object;
     action->type = table->type[object];
-    action->count = action->most = table->most[object];
+    action->count = action->max = table->max[object];
     action->sized = table->sized[object];
     if (kind == NEST_FREE)
         table->right[object] = DUITE_NONE;
@@ -181,7 +181,7 @@ static void make_replay(struct maker *maker, struct table *table)
 
     const bool plain = draw(maker, 3) > 0;
 
-    replay->most = 1 + draw(maker, 3);
+    replay->max = 1 + draw(maker, 3);
     for (unsigned tries = 0; tries < n; tries++) {
         const unsigned object = draw(maker, table->n);
 
@@ -202,11 +202,11 @@ static void make_actions(struct maker *maker, unsigned self, struct table *table
 {
     struct nest_program *program = maker->program;
     struct nest_task *task = &program->task[self];
-    const unsigned most = (self ? 1 : 5) + draw(maker, NEST_MAX_ACTIONS - NEST_MAX_PARAMS - 6);
+    const unsigned max = (self ? 1 : 5) + draw(maker, NEST_MAX_ACTIONS - NEST_MAX_PARAMS - 6);
 
     for (unsigned i = 0; !self && i < 3; i++)
         make_new(maker, task, table);
-    while (task->n_actions < most) {
+    while (task->n_actions < max) {
         const unsigned what = draw(maker, 10);
 
         if (what < 2 && table->n < NEST_MAX_OBJECTS && (self || table->n < 4))
@@ -229,7 +229,7 @@ static void make_get(struct nest_task *task, const struct table *table, unsigned
 
     action->object[0] = object;
     action->type = table->type[object];
-    action->count = action->most = table->most[object];
+    action->count = action->max = table->max[object];
     action->sized = table->sized[object];
 }
 
@@ -290,10 +290,10 @@ static void print_task(const struct nest_program *program, unsigned self, int in
         for (unsigned i = 0; action->kind == NEST_FORK && i < child->n; i++)
             printf(" %u %s", action->object[i], modes[child->mode[i]]);
         if (action->kind == NEST_NEW)
-            printf(" type %d count %zu of %zu%s", (int)action->type, action->count, action->most,
+            printf(" type %d count %zu of %zu%s", (int)action->type, action->count, action->max,
                    action->sized ? ", sized" : "");
         else if (action->kind == NEST_REPLAY)
-            printf(" the next %zu, %zu times", action->count, action->most);
+            printf(" the next %zu, %zu times", action->count, action->max);
         else if (action->kind != NEST_FORK && action->kind != NEST_WAIT)
             printf(" %u", action->object[0]);
         printf("\n");

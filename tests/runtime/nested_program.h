@@ -30,7 +30,7 @@ enum nest_kind {
     NEST_FORK,
     NEST_GET,
     NEST_WAIT,
-    NEST_REPLAY /* main program: the next `count` actions, forks and sets, `most` times */
+    NEST_REPLAY /* main program: the next `count` actions, forks and sets, `max` times */
 };
 
 /* What a task does, one thing after the other; objects by their place in its table. */
@@ -39,7 +39,7 @@ struct nest_action {
     unsigned object[NEST_MAX_PARAMS];
     unsigned task; /* fork: which */
     duite_type type;
-    size_t count, most; /* of the object, or (count) of what is set; they differ if it is sized */
+    size_t count, max; /* of the object, or (count) of what is set; they differ if it is sized */
     bool sized;
     int32_t priority; /* fork */
     uint64_t seed;    /* set; 0: zeros, as many as there can be */

@@ -105,7 +105,7 @@ size_t nest_count(const struct nest_task *task, const duite_param *param, unsign
     if (!task->sized[i] || !writes)
         return param[i].count;
     digest += i;
-    return duite_random(&digest) % (param[i].most + 1);
+    return duite_random(&digest) % (param[i].max + 1);
 }
 
 void nest_law(void *left, const void *right, size_t count, duite_type type)
@@ -143,7 +143,7 @@ static int call_one(duite *rt, const struct nest_action *action, duite_object *o
         objects[i] = object[action->object[i]];
     switch (action->kind) {
     case NEST_NEW:
-        return action->sized ? duite_new_sized(rt, action->type, action->count, action->most, made)
+        return action->sized ? duite_new_sized(rt, action->type, action->count, action->max, made)
                              : duite_new(rt, action->type, action->count, made);
     case NEST_FREE:
         return duite_free(rt, objects[0]);
@@ -156,7 +156,7 @@ static int call_one(duite *rt, const struct nest_action *action, duite_object *o
                                &kernels[nest_kernel(&program.task[action->task])], &action->task,
                                program.task[action->task].n, objects);
     case NEST_GET:
-        *count = action->most;
+        *count = action->max;
         if (action->sized && (code = duite_get_count(rt, objects[0], count)))
             return code;
         return duite_get(rt, objects[0], value);
@@ -190,7 +190,7 @@ static int replay(duite *rt, const struct nest_action *action, duite_object *obj
 
     if (code)
         return code;
-    code = duite_replay(rt, graph, action->most);
+    code = duite_replay(rt, graph, action->max);
     return code ? code : duite_graph_free(rt, graph);
 }
 

@@ -120,11 +120,11 @@ static int is_neutral(const struct prog_args *args, const duite_param *param, si
 /* Whether a parameter has the size it should have: its own; if it changes, its maximum under w. */
 static int has_size(const struct prog_args *args, const duite_param *param, size_t i)
 {
-    const size_t most = args->most[i] ? args->most[i] : args->count[i];
+    const size_t max = args->max[i] ? args->max[i] : args->count[i];
 
-    if (param->most != most || param->count > most)
+    if (param->max != max || param->count > max)
         return 0;
-    return args->most[i] ? args->mode[i] != DUITE_W || param->count == most : param->count == most;
+    return args->max[i] ? args->mode[i] != DUITE_W || param->count == max : param->count == max;
 }
 
 /* The line of the first of the call's promises that is broken; 0 if none is. */
@@ -184,9 +184,9 @@ static void resize(const duite_call *call, size_t i, size_t count)
 
 /* A size that follows from the hash, by way of another one at times; returns how many elements the
  * body writes: the others are zero. */
-static size_t change_size(const duite_call *call, size_t i, size_t most, uint64_t hash)
+static size_t change_size(const duite_call *call, size_t i, size_t max, uint64_t hash)
 {
-    const size_t count = hash / 7 % (most + 1);
+    const size_t count = hash / 7 % (max + 1);
 
     if (hash % 7 < 2)
         return duite_count(call, i);
@@ -208,7 +208,7 @@ static int exceed(const duite_call *call, const struct prog_args *args)
 
     if (!context)
         return DUITE_E_SIZE;
-    if (duite_resize(call, i, call->param[i].most + 1) != DUITE_E_SIZE)
+    if (duite_resize(call, i, call->param[i].max + 1) != DUITE_E_SIZE)
         atomic_compare_exchange_strong(&context->wrong, &none, __LINE__);
     return args->seed % 2 ? DUITE_E_SIZE : DUITE_OK;
 }
@@ -233,7 +233,7 @@ int prog_body(const duite_call *call)
         if (args->mode[i] == DUITE_R)
             continue;
         const size_t count =
-            args->most[i] ? change_size(call, i, args->most[i], state / 3) : duite_count(call, i);
+            args->max[i] ? change_size(call, i, args->max[i], state / 3) : duite_count(call, i);
 
         for (size_t e = 0; e < count; e += stride)
             put(args->type[i], mode, call->param[i].data, e, duite_random(&state));
@@ -263,7 +263,7 @@ void prog_args_fill(const struct prog *prog, const struct prog_op *op, struct pr
     args->n = op->n;
     for (unsigned i = 0; i < op->n; i++) {
         args->count[i] = (uint32_t)prog->objects[op->objects[i]].count;
-        args->most[i] = (uint32_t)prog->objects[op->objects[i]].most;
+        args->max[i] = (uint32_t)prog->objects[op->objects[i]].max;
         args->type[i] = (uint8_t)prog->objects[op->objects[i]].type;
         args->mode[i] = (uint8_t)prog_mode(&prog->kernel[op->kernel], i);
         args->law[i] = (uint8_t)prog_law(&prog->kernel[op->kernel], i);

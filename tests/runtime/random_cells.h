@@ -19,7 +19,7 @@ enum { PROG_MAX_LEVELS = 32 };
 
 struct prog_cell {
     duite_type type;
-    size_t count, most; /* elements; of the largest value */
+    size_t count, max; /* elements; of the largest value */
     unsigned char *value;
     struct prog_failure poison;
     struct prog_failure pending; /* of the contributions */

@@ -38,10 +38,10 @@ static int draw_graph(struct maker *m)
 static void record(struct maker *m, enum prog_kind kind, unsigned graph)
 {
     const size_t first = m->prog->n_ops;
-    const unsigned most = make_one_in(m, 10) ? 0 : 1 + make_below(m, MOST_RECORDED - 2);
+    const unsigned max = make_one_in(m, 10) ? 0 : 1 + make_below(m, MOST_RECORDED - 2);
 
     make_push(m, kind, 0)->graph = graph;
-    while (m->prog->n_ops < first + 1 + most) {
+    while (m->prog->n_ops < first + 1 + max) {
         struct prog_op draft = {.kind = PROG_GRAPH_FORK};
 
         if (make_one_in(m, 8)) {
@@ -117,7 +117,7 @@ static void bind(struct maker *m, unsigned graph)
     const int both = !make_one_in(m, 4);
 
     if (objects[from].type != objects[to].type || objects[from].count != objects[to].count ||
-        objects[from].most != objects[to].most || !prog_records(m->prog, m->graph[graph], from))
+        objects[from].max != objects[to].max || !prog_records(m->prog, m->graph[graph], from))
         return;
     for (int way = 0; way < 1 + both; way++) {
         struct prog_op *op = make_push(m, PROG_GRAPH_BIND, way ? to : from);

@@ -78,8 +78,8 @@ static int fork_task(struct machine *m, const struct prog_op *op)
         const duite_mode mode = prog_mode(kernel, i);
         struct prog_cell *cell = &m->cells[op->objects[i]];
 
-        param[i] = (duite_param){.data = calloc(cell->most, prog_size(cell->type)),
-                                 .count = mode == DUITE_W ? cell->most : cell->count,
+        param[i] = (duite_param){.data = calloc(cell->max, prog_size(cell->type)),
+                                 .count = mode == DUITE_W ? cell->max : cell->count,
                                  .type = cell->type};
         if (!param[i].data)
             return -1;
@@ -331,9 +331,9 @@ static int make_object(struct machine *m, const struct prog_op *op)
 
     cell->type = object->type;
     cell->count = op->count;
-    cell->most = object->most ? object->most : op->count;
+    cell->max = object->max ? object->max : op->count;
     cell->poison = cell->pending = PROG_NO_FAILURE;
-    cell->value = calloc(cell->most, prog_size(cell->type));
+    cell->value = calloc(cell->max, prog_size(cell->type));
     return cell->value ? 0 : -1;
 }
 

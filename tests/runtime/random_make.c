@@ -118,17 +118,17 @@ static void make_new(struct maker *m)
     op->type = TYPES[make_below(m, sizeof TYPES / sizeof *TYPES)];
     op->count = draw_count(m);
     if (make_one_in(m, m->sized)) {
-        op->most = op->count;
-        op->count = make_below(m, (unsigned)op->most + 1);
+        op->max = op->count;
+        op->count = make_below(m, (unsigned)op->max + 1);
     }
     if (m->n_live && make_one_in(m, 3)) { /* one that may be bound in place of another */
         const struct prog_object *like = &prog->objects[make_draw_object(m)];
 
         op->type = like->type;
         op->count = like->count;
-        op->most = like->most;
+        op->max = like->max;
     }
-    prog->objects[prog->n_objects] = (struct prog_object){op->type, op->count, op->most, -1, -1};
+    prog->objects[prog->n_objects] = (struct prog_object){op->type, op->count, op->max, -1, -1};
     m->live[m->n_live++] = (unsigned)prog->n_objects++;
 }
 
@@ -164,7 +164,7 @@ static int draw_other(struct maker *m, const struct prog_op *op, int may_bytes, 
         const unsigned object = make_draw_object(m);
         int taken = m->prog->objects[object].type == DUITE_BYTE ? !may_bytes : !may_numbers;
 
-        taken |= m->prog->objects[object].most && !(may_bytes && may_numbers);
+        taken |= m->prog->objects[object].max && !(may_bytes && may_numbers);
         taken |= prog_is_view(m->prog, object) && !may_views;
 
         for (unsigned i = 0; i < op->n; i++)
@@ -301,7 +301,7 @@ void make_set(struct maker *m, enum prog_kind kind, int zeros)
     struct prog_op *op = make_push(m, kind, make_draw_plain(m));
     const struct prog_object *object = &m->prog->objects[op->object];
 
-    op->count = object->most ? make_below(m, (unsigned)object->most + 1) : object->count;
+    op->count = object->max ? make_below(m, (unsigned)object->max + 1) : object->count;
     if (zeros)
         op->seed = 0;
 }

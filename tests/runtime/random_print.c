@@ -58,8 +58,8 @@ void prog_print(FILE *file, const struct prog *prog, size_t index)
         fprintf(file, " object %u", op->object);
     if (op->kind == PROG_NEW)
         fprintf(file, " %s x %zu", TYPES[op->type], op->count);
-    if (op->most)
-        fprintf(file, " of %zu", op->most);
+    if (op->max)
+        fprintf(file, " of %zu", op->max);
     if (sets)
         fprintf(file, " x %zu", op->count);
     for (unsigned i = 0; (forks || op->kind < PROG_GRAPH) && i < op->n; i++)

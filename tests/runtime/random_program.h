@@ -55,7 +55,7 @@ struct prog_op {
     int rank;        /* fork, get_at; -1: none named */
     duite_type type; /* new */
     size_t count;    /* new: elements; set: of an object whose size changes; graphs: see there */
-    size_t most;     /* new: elements at most, 0: the size is fixed */
+    size_t max;      /* new: elements at most, 0: the size is fixed */
     uint64_t seed;   /* set: of the values, 0: zeros; fork: of the body */
     unsigned pause;  /* fork: how the body wastes time */
     int fails;       /* fork: the code the body returns */
@@ -75,16 +75,16 @@ struct prog_args {
     int fails, rank;
     uint8_t sometimes, ends;
     unsigned pause, number, n, exceeds;
-    uint32_t count[PROG_MAX_PARAMS], most[PROG_MAX_PARAMS]; /* most 0: the size is fixed */
+    uint32_t count[PROG_MAX_PARAMS], max[PROG_MAX_PARAMS]; /* most 0: the size is fixed */
     uint8_t type[PROG_MAX_PARAMS], mode[PROG_MAX_PARAMS], law[PROG_MAX_PARAMS];
     char padding[PROG_ARGS_PADDING]; /* kernels copy some of it, so that argument sizes vary */
 };
 
 struct prog_object {
     duite_type type;
-    size_t count, most; /* most 0: the size is fixed */
-    int leader;         /* follows this object for certain; -1: none */
-    int parent;         /* is a view of this object; -1: is none */
+    size_t count, max; /* most 0: the size is fixed */
+    int leader;        /* follows this object for certain; -1: none */
+    int parent;        /* is a view of this object; -1: is none */
 };
 
 struct prog {

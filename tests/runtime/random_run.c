@@ -143,7 +143,7 @@ static int set(struct run *run, const struct prog_op *op)
 {
     const struct prog_object *object = &run->prog->objects[op->object];
     const void *values = op->seed ? run->bytes : NULL;
-    const int whole = op->count == (object->most ? object->most : object->count);
+    const int whole = op->count == (object->max ? object->max : object->count);
 
     prog_values(object->type, op->count, op->seed, run->bytes);
     const int code = whole && op->count % 2
@@ -162,8 +162,8 @@ static void make(struct run *run, const struct prog_op *op)
         expect(run, "view",
                prog_make_view(run->rt, run->prog, op, run->object[op->objects[0]], object),
                DUITE_OK);
-    else if (op->most)
-        expect(run, "new_sized", duite_new_sized(run->rt, op->type, op->count, op->most, object),
+    else if (op->max)
+        expect(run, "new_sized", duite_new_sized(run->rt, op->type, op->count, op->max, object),
                DUITE_OK);
     else
         expect(run, "new", duite_new(run->rt, op->type, op->count, object), DUITE_OK);
@@ -361,10 +361,10 @@ void prog_run(const struct prog *prog, const struct prog_answers *answers,
     context.rank = run.rank;
     for (size_t i = 0; i < prog->n_objects; i++) {
         const struct prog_object *object = &prog->objects[i];
-        const size_t most = object->most ? object->most : object->count;
+        const size_t max = object->max ? object->max : object->count;
 
-        if (most * prog_size(object->type) > run.largest)
-            run.largest = most * prog_size(object->type);
+        if (max * prog_size(object->type) > run.largest)
+            run.largest = max * prog_size(object->type);
     }
     run.object = calloc(prog->n_objects + 1, sizeof *run.object);
     run.home = malloc((prog->n_objects + 1) * sizeof *run.home);

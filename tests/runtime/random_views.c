@@ -40,7 +40,7 @@ void make_view(struct maker *m)
     const unsigned parent = make_draw_object(m);
     const struct prog_object of = prog->objects[parent];
 
-    if (of.most || prog_is_view(prog, parent) || m->n_live == MAX_LIVE ||
+    if (of.max || prog_is_view(prog, parent) || m->n_live == MAX_LIVE ||
         prog->n_objects == MAX_MADE)
         return;
     struct prog_op *op = make_push(m, PROG_VIEW, (unsigned)prog->n_objects);

@@ -57,7 +57,7 @@ static int slow_body(const duite_call *call)
 static const duite_kernel SLOW = {.name = "slow", .body = slow_body, .access = {DUITE_RW}};
 
 /* The largest of all ranks. */
-static int most(duite *rt, int own)
+static int max(duite *rt, int own)
 {
     int all = 0;
     duite_mpi_begin(rt);
@@ -84,7 +84,7 @@ static void check(duite *rt, duite_object object, int maker, int late)
     if (rank == late)
         usleep(500000); /* it hears of the call before it makes it */
     const int code = duite_get(rt, object, &value);
-    const int sent = most(rt, control), bound = 2 * log2_of_ranks();
+    const int sent = max(rt, control), bound = 2 * log2_of_ranks();
     snprintf(line, sizeof line, "a get of 0.8 s: at most %d control messages of a rank (%d)", bound,
              sent);
     tap_case(!code && value > 0 && (ranks == 1 || sent > 0) && sent <= bound, line);

@@ -20,7 +20,7 @@ static int change(const duite_call *call)
     int64_t *values = duite_out(call, 0, int64_t);
     const size_t before = duite_count(call, 0);
 
-    if (before != args->before || call->param[0].most != MOST)
+    if (before != args->before || call->param[0].max != MOST)
         return duite_fail(call, 1, "%zu elements instead of %zu", before, args->before);
     for (size_t i = 0; i < before; i++)
         if (values[i] != (int64_t)(i + before))

@@ -169,7 +169,7 @@ static void judge(const char *mapping, double *uneven, int *cut)
 {
     duite *rt = start(duite_mapping_find(mapping));
     duite_object object[CHAINS * LENGTH];
-    double load[16] = {0}, most = 0, all = 0;
+    double load[16] = {0}, max = 0, all = 0;
     duite_graph graph;
     int32_t value[WIDTH];
 
@@ -186,8 +186,8 @@ static void judge(const char *mapping, double *uneven, int *cut)
         *cut += i >= CHAINS && duite_home(rt, object[i - CHAINS]) != home;
     }
     for (int r = 0; r < ranks; r++)
-        most = load[r] > most ? load[r] : most;
-    *uneven = most * ranks / all;
+        max = load[r] > max ? load[r] : max;
+    *uneven = max * ranks / all;
     tap_case(duite_get(rt, object[CHAINS * LENGTH - 1], value) == DUITE_OK &&
                  value[0] == CHAINS - 1 + LENGTH - 1,
              "results are right");

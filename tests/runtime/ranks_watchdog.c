@@ -60,21 +60,21 @@ static int map_tasks(const duite_task_graph *graph, int *home)
     return 0;
 }
 
-static int ask(void *state, unsigned attempt, int giver, double *seconds)
+static int ask(void *state, unsigned attempt, int granter, double *seconds)
 {
     (void)attempt;
-    (void)giver;
+    (void)granter;
     may_hang("victim");
     *seconds = 1e-3;
     return *(int *)state ? 0 : 1;
 }
 
-static int give(void *state, const duite_request *asked, const duite_leaf *leaf)
+static int grant(void *state, const duite_request *asked, const duite_leaf *leaf)
 {
     (void)state;
     (void)asked;
     (void)leaf;
-    may_hang("give");
+    may_hang("grant");
     return 0;
 }
 
@@ -137,7 +137,7 @@ static const duite_balancer ASKING = {.name = "hanging",
                                       .state_size = sizeof(int),
                                       .start = begin,
                                       .victim = ask,
-                                      .give = give},
+                                      .grant = grant},
                             SENDING = {.name = "hanging",
                                        .summary = "for tests",
                                        .state_size = sizeof(int),
@@ -240,7 +240,7 @@ int main(void)
     }
     one_hangs("mapping", "map_tasks", 0, &(duite_options){.mapping = &MAPPING});
     one_hangs("balancer", "victim", 1, &(duite_options){.balance = &ASKING});
-    one_hangs("balancer", "give", 0, &(duite_options){.balance = &ASKING});
+    one_hangs("balancer", "grant", 0, &(duite_options){.balance = &ASKING});
     one_hangs("balancer", "place", 0, &(duite_options){.balance = &SENDING});
     one_hangs("balancer", "migrate", 0, &(duite_options){.balance = &MOVING});
     return tap_done();

@@ -10,16 +10,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 16, BLOCKS = SIDE * SIDE, RANKS = 4, MOST_RANKS = 8 };
+enum { SIDE = 16, BLOCKS = SIDE * SIDE, RANKS = 4, MAX_RANKS = 8 };
 
 /* A grid of blocks that exchange 1000 bytes with each neighbour, in quadrants or stripes. */
 static struct {
     duite_blocks blocks;
-    double weight[BLOCKS], edge[4 * BLOCKS], other[MOST_RANKS];
+    double weight[BLOCKS], edge[4 * BLOCKS], other[MAX_RANKS];
     size_t start[BLOCKS + 1], bytes[BLOCKS];
     uint32_t neighbour[4 * BLOCKS];
     unsigned char fixed[BLOCKS];
-    unsigned workers[MOST_RANKS];
+    unsigned workers[MAX_RANKS];
     int home[BLOCKS];
     uint64_t state[64];
 } grid;
@@ -58,7 +58,7 @@ static void make(int n_ranks)
                                  .workers = grid.workers,
                                  .byte_seconds = 1e-9,
                                  .seconds = 0.1,
-                                 .look_seconds = 1e-5,
+                                 .migrate_seconds = 1e-5,
                                  .replays = 10,
                                  .since = 1,
                                  .mapping = duite_mapping_find("metis"),
@@ -100,7 +100,7 @@ static int ask(uint64_t *next)
 static double excess(void)
 {
     const struct balance_bill now = bill(grid.home);
-    return now.most / now.even - 1;
+    return now.max / now.even - 1;
 }
 
 /* One rank's blocks three times as dear. */
@@ -168,7 +168,7 @@ END_TEST
 /* The dear rank is the first of a line: what it gives goes on to those behind. */
 START_TEST(line)
 {
-    make_uneven(MOST_RANKS);
+    make_uneven(MAX_RANKS);
     ask(NULL);
     ck_assert(excess() < 0.05);
 }
@@ -250,7 +250,7 @@ START_TEST(dear_looks)
 {
     uint64_t next;
     make(RANKS);
-    grid.blocks.look_seconds = 0.1;
+    grid.blocks.migrate_seconds = 0.1;
     ask(&next);
     ck_assert_uint_ge(next, 100);
 }

@@ -310,7 +310,7 @@ static uint64_t doubled(unsigned times)
 }
 
 /* The flag counts down from `from`; x and y are 0 before. */
-static void check_loop(unsigned threads, int32_t from, uint64_t most, uint64_t expected)
+static void check_loop(unsigned threads, int32_t from, uint64_t max, uint64_t expected)
 {
     duite *rt = start(threads, "steal");
     struct loop loop = {.x = number(rt, 0), .y = number(rt, 0)};
@@ -320,7 +320,7 @@ static void check_loop(unsigned threads, int32_t from, uint64_t most, uint64_t e
 
     for (unsigned again = 1; again < 4; again++) {
         ck_assert_int_eq(duite_set(rt, loop.flag, &from), 0);
-        ck_assert_int_eq(duite_replay_while(rt, graph, loop.flag, most), 0);
+        ck_assert_int_eq(duite_replay_while(rt, graph, loop.flag, max), 0);
         if (again < 3)
             ck_assert_uint_eq(rounds_of(rt, graph), expected);
         ck_assert_uint_eq(value_of(rt, loop.x), doubled(again * (unsigned)expected));

@@ -79,7 +79,7 @@ static int append(const duite_call *call)
     const size_t n = duite_count(call, 0);
     int32_t *values = duite_out(call, 0, int32_t);
 
-    if (n == call->param[0].most) {
+    if (n == call->param[0].max) {
         values[0] = values[0] % 100000000 * 10 + args_of(call)->n;
         return 0;
     }

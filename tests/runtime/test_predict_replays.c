@@ -94,7 +94,7 @@ static unsigned n_told;
 static unsigned listen(void *state, const duite_ready *task)
 {
     (void)state;
-    told[n_told++ % 16] = task->warm;
+    told[n_told++ % 16] = task->affinity;
     return 1; /* the second worker runs all */
 }
 

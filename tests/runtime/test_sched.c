@@ -355,7 +355,7 @@ START_TEST(what_is_said)
     check_told(told);
     ck_assert_str_eq(told[4].kernel, "duite_get");
     for (int i = 0; i < 5; i++)
-        ck_assert_uint_eq(told[i].warm, 0);
+        ck_assert_uint_eq(told[i].affinity, 0);
     ck_assert_int_eq(told[4].priority, INT32_MAX);
     ck_assert_double_eq(told[4].cost, 0);
     n_told = 0;
@@ -403,7 +403,7 @@ START_TEST(what_is_warm)
     ck_assert_int_eq(duite_wait(rt), DUITE_OK);
     ck_assert_uint_eq(n_told, 4);
     for (unsigned i = 0; i < n_told; i++)
-        ck_assert_uint_eq(told[i].warm, i > 1); /* after the first round, worker 0 */
+        ck_assert_uint_eq(told[i].affinity, i > 1); /* after the first round, worker 0 */
     duite_free(rt, a);
     duite_graph_free(rt, graph);
     ck_assert_int_eq(duite_stop(&rt), DUITE_OK);
@@ -429,8 +429,8 @@ START_TEST(stays_warm)
     for (int i = 0; i < 2; i++) {
         const struct duite_scheduler *s = duite_scheduler_find(NAMES[i]);
         void *state = calloc(1, s->state_size);
-        const duite_ready own = {.kernel = "note", .warm = 1 + 2};
-        const duite_ready other = {.kernel = "note", .warm = 1 + 3};
+        const duite_ready own = {.kernel = "note", .affinity = 1 + 2};
+        const duite_ready other = {.kernel = "note", .affinity = 1 + 3};
 
         s->start(state, 2, 4, 1);
         ck_assert_uint_eq(s->place(state, &own), 2);

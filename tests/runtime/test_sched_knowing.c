@@ -85,7 +85,7 @@ START_TEST(nearest_first)
     unsigned firsts = 0;
 
     s->start(state, 3, 6, 1);
-    s->look(state, &(duite_near){5, WORKER, DISTANCE});
+    s->locate(state, &(duite_near){5, WORKER, DISTANCE});
     for (int round = 0; round < 50; round++) {
         unsigned seen = 0, victim = 0;
 

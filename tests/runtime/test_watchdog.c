@@ -17,7 +17,7 @@ enum { TASKS = 40, TIMES = 3, MOST_WAITS = 120000 };
 
 #define SECONDS 0.2
 
-static const char *const FUNCTION[] = {"place", "serve", "victim", "chain", "start", "look"};
+static const char *const FUNCTION[] = {"place", "serve", "victim", "chain", "start", "locate"};
 enum { AT_WORK = 4, ALL = 6 };
 
 static void pause_for(double seconds)
@@ -61,11 +61,11 @@ static void start(void *state, unsigned worker, unsigned n_workers, uint64_t see
     *(unsigned *)state = worker;
 }
 
-static void look(void *state, const duite_near *near)
+static void locate(void *state, const duite_near *near)
 {
     (void)state;
     (void)near;
-    may_hang("look");
+    may_hang("locate");
 }
 
 static unsigned place(void *state, const duite_ready *task)
@@ -101,7 +101,7 @@ static const duite_scheduler HANGING = {.name = "hanging",
                                         .summary = "for tests",
                                         .state_size = sizeof(unsigned),
                                         .start = start,
-                                        .look = look,
+                                        .locate = locate,
                                         .place = place,
                                         .serve = serve,
                                         .victim = victim,

@@ -200,16 +200,16 @@ static void complete(const struct pairs *pairs, bool chosen[FACTORS], size_t tur
                      size_t pick[FACTORS])
 {
     for (size_t f = 0; f < FACTORS; f++) {
-        size_t most = 0;
+        size_t max = 0;
         if (chosen[f])
             continue;
         pick[f] = turn % pairs->values[f];
         for (size_t i = 0; i < pairs->values[f]; i++) {
             const size_t value = (turn + i) % pairs->values[f];
             const size_t n = new_pairs(pairs, chosen, pick, f, value);
-            if (n <= most)
+            if (n <= max)
                 continue;
-            most = n;
+            max = n;
             pick[f] = value;
         }
         chosen[f] = true;

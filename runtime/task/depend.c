@@ -137,102 +137,112 @@ int task_fetch_all(struct task_graph *graph, struct worker *worker, struct data_
 
 /* ---- Accesses ---- */
 
-static void access_read(struct task *task, size_t i, const struct data_object *object,
-                        struct data_version *version, bool postponed, uint32_t *done)
+static void access_read(struct task_fork_call *call, size_t i, const struct data_object *object,
+                        struct data_version *version, bool postponed)
 {
     if (!postponed) {
-        task_read(task, i, version, done);
+        task_read(call->task, i, version, &call->done);
         return;
     }
     data_version_hold(version);
-    task_lend(task, i, object, version, NULL);
-    *done += 1;
+    task_lend(call->task, i, object, version, NULL);
+    call->done++;
 }
 
 /* The scope of the task gets the object's hold on the version; the object has from now on the one
  * that its children will leave. */
-static int access_lend(struct task *task, size_t i, struct data_object *object,
-                       struct data_version *version, uint32_t *done)
+static int access_lend(struct task_fork_call *call, size_t i, struct data_object *object,
+                       struct data_version *version)
 {
     struct data_version *out = data_object_version(object);
     if (!out) {
         base_no_memory("a version");
-        return task_break(task->scope->graph);
+        return task_break(call->scope->graph);
     }
-    task_lend(task, i, object, version, out);
+    task_lend(call->task, i, object, version, out);
     object->current = out;
-    *done += 1;
+    call->done++;
     return DUITE_OK;
 }
 
-static int access_contribute(struct task_scope *scope, struct worker *worker, int at,
-                             const duite_kernel *kernel, size_t i, struct data_object *object,
-                             struct task *task, uint32_t *done)
+static int access_contribute(struct task_fork_call *call, size_t i, struct data_object *object,
+                             bool postponed)
 {
-    int code = task_contribute(scope, worker, object, data_law_of(kernel, i), at, task, i);
-    if (!code && task && task_postponed((duite_mode)task->access[i].waiter.mode))
-        task_lend(task, i, object, NULL, NULL);
-    *done += !code;
+    int code = task_contribute(call, object, i);
+    if (!code && call->task && postponed)
+        task_lend(call->task, i, object, NULL, NULL);
+    call->done += !code;
     return code;
 }
 
-/* Access i of a task that runs on rank `at`; `task` is NULL on the other ranks. */
-static int access_depend(struct task_scope *scope, struct worker *worker, int at,
-                         const duite_kernel *kernel, size_t i, duite_mode declared,
-                         struct data_object *object, struct task *task, uint32_t *done)
+/* The rank that runs the task, or all of them, gets the value that the task reads. */
+static int access_fetch(struct task_fork_call *call, struct data_object *object, bool everywhere)
 {
-    struct task_graph *graph = scope->graph;
+    struct task_graph *graph = call->scope->graph;
+    return everywhere ? task_fetch_all(graph, call->worker, object)
+                      : task_fetch(graph, call->worker, object, call->at);
+}
+
+/* The task is the object's writer: on this rank it has a new version, or none any more. */
+static int access_write(struct task_fork_call *call, size_t i, struct data_object *object,
+                        struct data_version *version, duite_mode declared, bool everywhere)
+{
+    struct task_graph *graph = call->scope->graph;
+    object->number++;
+    data_object_moved(object, everywhere ? object->home : call->at);
+    for (int rank = 0; everywhere && rank < graph->n_ranks; rank++)
+        data_object_add_copy(&graph->table, object, rank);
+    if (!call->task) {
+        task_forget(graph, call->worker, object);
+        return DUITE_OK;
+    }
+    if (task_immediate(declared) == DUITE_W)
+        version = task_rename(graph, call->worker, object);
+    return task_postponed(declared)
+               ? access_lend(call, i, object, version)
+               : task_overwrite(graph, call->task, i, object, version, &call->done);
+}
+
+static int access_depend(struct task_fork_call *call, size_t i, duite_mode declared)
+{
+    struct task_graph *graph = call->scope->graph;
+    struct data_object *object = task_fork_object(call, i);
     duite_mode mode = task_immediate(declared);
-    bool postponed = task_postponed(declared);
-    bool everywhere = kernel->replicated && !scope->depth;
+    bool everywhere = call->kernel->replicated && !call->scope->depth;
     int code = DUITE_OK;
     if (mode == DUITE_CW)
-        return access_contribute(scope, worker, at, kernel, i, object, task, done);
+        return access_contribute(call, i, object, task_postponed(declared));
     if (object->leaves)
-        code = task_reduce(scope, worker, object);
+        code = task_reduce(call->scope, call->worker, object);
     if (!code && mode != DUITE_W && graph->n_ranks > 1)
-        code = everywhere ? task_fetch_all(graph, worker, object)
-                          : task_fetch(graph, worker, object, at);
+        code = access_fetch(call, object, everywhere);
     if (code)
         return code;
     struct data_version *version = object->current;
-    if (task && mode != DUITE_W && !(version = task_local(graph, object)))
+    if (call->task && mode != DUITE_W && !(version = task_local(graph, object)))
         return DUITE_E_MEMORY;
-    if (mode == DUITE_R) {
-        if (task)
-            access_read(task, i, object, version, postponed, done);
-        return DUITE_OK;
-    }
-    object->number++;
-    data_object_moved(object, everywhere ? object->home : at);
-    for (int rank = 0; everywhere && rank < graph->n_ranks; rank++)
-        data_object_add_copy(&graph->table, object, rank);
-    if (mode == DUITE_W && task)
-        version = task_rename(graph, worker, object);
-    if (task)
-        return postponed ? access_lend(task, i, object, version, done)
-                         : task_overwrite(graph, task, i, object, version, done);
-    task_forget(graph, worker, object);
+    if (mode != DUITE_R)
+        return access_write(call, i, object, version, declared, everywhere);
+    if (call->task)
+        access_read(call, i, object, version, task_postponed(declared));
     return DUITE_OK;
 }
 
-int task_depend(struct task_scope *scope, struct worker *worker, int at, const duite_kernel *kernel,
-                size_t n, const duite_object *objects, struct data_object *const *few,
-                struct task *task)
+int task_depend(struct task_fork_call *call)
 {
-    uint32_t done = 0;
-    for (size_t i = 0; i < n; i++) {
-        struct data_object *object = task_named_object(scope, few, i, objects[i]);
-        duite_mode mode = data_mode_of(kernel, i);
+    struct task *task = call->task;
+    struct task_graph *graph = call->scope->graph;
+    for (size_t i = 0; i < call->n; i++) {
+        duite_mode mode = data_mode_of(call->kernel, i);
         if (task)
             task->access[i].waiter.mode = mode;
-        int code = access_depend(scope, worker, at, kernel, i, mode, object, task, &done);
+        int code = access_depend(call, i, mode);
         if (code && task)
-            task_void(scope->graph, worker, task, i, done);
+            task_void(graph, call->worker, task, i, call->done);
         if (code)
             return code;
     }
     if (task)
-        task_settled(scope->graph, worker, task, done);
+        task_settled(graph, call->worker, task, call->done);
     return DUITE_OK;
 }

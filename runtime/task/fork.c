@@ -67,18 +67,13 @@ static int fork_check_law(const duite_kernel *kernel, size_t i, const struct dat
                       name.generation, data_type_name(object->type));
 }
 
-/* What is known of a task before anything is changed for it. */
-struct fork_sketch {
-    uint32_t kernel;                      /* index in the list given at start */
-    uint32_t owner;                       /* the parameter it runs for, or TASK_NOBODY */
-    bool views;                           /* some are views */
-    struct data_object *object[TASK_FEW]; /* the first ones */
-};
-
 /* It exists, is named once, may be used so, and can be accumulated into where it is. */
-static int fork_check_object(struct task_scope *scope, const duite_kernel *kernel, size_t i,
-                             duite_mode mode, duite_object name, struct fork_sketch *sketch)
+static int fork_check_object(struct task_fork_call *call, size_t i)
 {
+    struct task_scope *scope = call->scope;
+    const duite_kernel *kernel = call->kernel;
+    const duite_mode mode = task_immediate(data_mode_of(kernel, i));
+    const duite_object name = call->objects[i];
     duite_mode right = DUITE_RWP;
     struct data_object *object = scope->depth ? task_find_object(scope, name, &right)
                                               : data_object_find(&scope->graph->table, name);
@@ -91,18 +86,18 @@ static int fork_check_object(struct task_scope *scope, const duite_kernel *kerne
                           "kernel %s, parameter %zu: the task names object %u.%u twice",
                           kernel->name, i, name.slot, name.generation);
     int code = DUITE_OK;
-    if (object->view && task_immediate(mode) != DUITE_R)
+    if (object->view && mode != DUITE_R)
         code = data_view_refuse(&scope->graph->table, object, kernel->name);
-    if (!code && task_immediate(mode) == DUITE_CW)
+    if (!code && mode == DUITE_CW)
         code = fork_check_law(kernel, i, object, name);
     if (!code && right == DUITE_CWP && data_law_of(kernel, i) != object->law)
         code = task_wrong_law(scope, kernel, i, name);
     if (code)
         return code;
     object->mark = scope->forks + 1;
-    sketch->views |= object->view != NULL;
+    call->views |= object->view != NULL;
     if (i < TASK_FEW)
-        sketch->object[i] = object;
+        call->object[i] = object;
     return DUITE_OK;
 }
 
@@ -117,49 +112,63 @@ void task_unmark(struct task_scope *scope, size_t n, const duite_object *objects
 }
 
 /* A body's rights. What it reads may come into its scope, whose objects move then. */
-static int fork_check_rights(struct task_scope *scope, const duite_kernel *kernel, size_t n,
-                             const duite_object *objects)
+static int fork_check_rights(const struct task_fork_call *call)
 {
     int code = DUITE_OK;
-    for (size_t i = 0; i < n && !code; i++)
-        code = task_check_right(scope, kernel->name, i, objects[i], data_mode_of(kernel, i));
+    for (size_t i = 0; i < call->n && !code; i++)
+        code = task_check_right(call->scope, call->kernel->name, i, call->objects[i],
+                                data_mode_of(call->kernel, i));
     return code;
 }
 
-static int fork_check_objects(struct task_scope *scope, const duite_kernel *kernel, size_t n,
-                              const duite_object *objects, struct fork_sketch *sketch)
+static int fork_check_objects(struct task_fork_call *call)
 {
-    const struct task_fixed *fixed = &scope->graph->fixed[sketch->kernel];
-    sketch->owner = fixed->owner[n > fixed->n];
-    sketch->views = false;
-    for (uint32_t i = 0; i < n; i++) {
-        int code = fork_check_object(scope, kernel, i, data_mode_of(kernel, i), objects[i], sketch);
+    const struct task_fixed *fixed = &call->scope->graph->fixed[call->index];
+    call->owner = fixed->owner[call->n > fixed->n];
+    for (size_t i = 0; i < call->n; i++) {
+        int code = fork_check_object(call, i);
         if (code) {
-            task_unmark(scope, i, objects);
+            task_unmark(call->scope, i, call->objects);
             return code;
         }
     }
     return DUITE_OK;
 }
 
-static int fork_check(struct task_scope *scope, int at, const duite_kernel *kernel,
-                      const void *args, size_t n, const duite_object *objects,
-                      struct fork_sketch *sketch)
+/* `at`: the rank that the fork names, or TASK_ANYWHERE. */
+static int fork_check(struct task_fork_call *call, int at, const void *args)
 {
-    int code = fork_kernel(scope->graph, kernel, &sketch->kernel);
+    const struct task_graph *graph = call->scope->graph;
+    int code = fork_kernel(graph, call->kernel, &call->index);
     if (!code)
-        code = fork_check_call(scope->graph, at, sketch->kernel, args, n, objects);
-    if (!code && scope->depth)
-        code = fork_check_rights(scope, kernel, n, objects);
-    return code ? code : fork_check_objects(scope, kernel, n, objects, sketch);
+        code = fork_check_call(graph, at, call->index, args, call->n, call->objects);
+    if (!code && call->scope->depth)
+        code = fork_check_rights(call);
+    return code ? code : fork_check_objects(call);
+}
+
+/* `object` stays unset, which would take time: each is looked up before it is used. */
+static void fork_call_init(struct task_fork_call *call, struct task_scope *scope,
+                           struct worker *worker, const duite_kernel *kernel, size_t n,
+                           const duite_object *objects)
+{
+    call->scope = scope;
+    call->worker = worker;
+    call->kernel = kernel;
+    call->n = n;
+    call->objects = objects;
+    call->task = NULL;
+    call->done = 0;
+    call->views = false;
 }
 
 int task_check_fork(struct task_scope *scope, int at, const duite_kernel *kernel, const void *args,
                     size_t n, const duite_object *objects, uint32_t *index)
 {
-    struct fork_sketch sketch;
-    int code = fork_check(scope, at, kernel, args, n, objects, &sketch);
-    *index = sketch.kernel;
+    struct task_fork_call call;
+    fork_call_init(&call, scope, NULL, kernel, n, objects);
+    int code = fork_check(&call, at, args);
+    *index = call.index;
     return code;
 }
 
@@ -221,40 +230,38 @@ void task_void(struct task_graph *graph, struct worker *worker, struct task *tas
 }
 
 /* NULL without memory. */
-static struct task *fork_body(struct task_scope *scope, struct worker *worker,
-                              const struct task_options *how, uint32_t index, const void *args,
-                              size_t n)
+static struct task *fork_body(const struct task_fork_call *call, const struct task_options *how,
+                              const void *args)
 {
-    const duite_kernel *kernel = scope->graph->kernels[index];
-    struct task *task = task_new(scope, TASK_BODY, n, kernel->args_size);
+    struct task_scope *scope = call->scope;
+    const duite_kernel *kernel = call->kernel;
+    struct task *task = task_new(scope, TASK_BODY, call->n, kernel->args_size);
     if (!task)
         return NULL;
-    task->kernel = index;
+    task->kernel = call->index;
     task->priority = how->priority;
     task->cost = (float)how->cost;
     task->pinned = how->at != TASK_ANYWHERE;
     if (kernel->args_size)
-        memcpy(task_rest(task, n), args, kernel->args_size);
-    size_t fixed = scope->graph->fixed[index].n, postponed = scope->graph->fixed[index].postponed;
+        memcpy(task_rest(task, call->n), args, kernel->args_size);
+    const struct task_fixed *fixed = &scope->graph->fixed[call->index];
+    size_t postponed = fixed->postponed;
     if (task_postponed(kernel->variadic))
-        postponed += n - fixed;
+        postponed += call->n - fixed->n;
     if (!postponed || (task->inner = task_scope_new(task, postponed)))
         return task;
     base_no_memory("a task");
     task_break(scope->graph);
-    task_void(scope->graph, worker, task, 0, 0);
+    task_void(scope->graph, call->worker, task, 0, 0);
     return NULL;
 }
 
 /* All of them before any other access: the task may write their parents. */
-static int fork_gather_views(struct task_scope *scope, struct worker *worker,
-                             const struct fork_sketch *sketch, size_t n,
-                             const duite_object *objects)
+static int fork_gather_views(const struct task_fork_call *call)
 {
     int code = DUITE_OK;
-    for (size_t i = 0; i < n && !code; i++)
-        code = task_view_gather(scope->graph, worker,
-                                task_named_object(scope, sketch->object, i, objects[i]));
+    for (size_t i = 0; i < call->n && !code; i++)
+        code = task_view_gather(call->scope->graph, call->worker, task_fork_object(call, i));
     return code;
 }
 
@@ -271,49 +278,45 @@ static void fork_give_block(struct task *task, struct data_object *own, bool fol
 }
 
 /* Checked: nothing but memory can be missing. */
-static int fork_checked(struct task_scope *scope, struct worker *worker,
-                        const struct task_options *how, const struct fork_sketch *sketch,
-                        const void *args, size_t n, const duite_object *objects)
+static int fork_checked(struct task_fork_call *call, const struct task_options *how,
+                        const void *args)
 {
-    struct task_graph *graph = scope->graph;
-    const duite_kernel *kernel = graph->kernels[sketch->kernel];
+    const struct task_graph *graph = call->scope->graph;
+    const bool replicated = call->kernel->replicated;
     struct data_object *own =
-        sketch->owner == TASK_NOBODY
-            ? NULL
-            : task_named_object(scope, sketch->object, sketch->owner, objects[sketch->owner]);
-    int code = sketch->views ? fork_gather_views(scope, worker, sketch, n, objects) : DUITE_OK;
+        call->owner == TASK_NOBODY ? NULL : task_fork_object(call, call->owner);
+    int code = call->views ? fork_gather_views(call) : DUITE_OK;
     if (code)
         return code;
-    struct task *task = NULL;
-    int at = scope->depth ? graph->rank
-                          : task_owner_rank(how->at, kernel->replicated, own ? own->home : -1);
-    if (at == TASK_EVERYWHERE)
-        at = graph->rank;
-    if (at == graph->rank && !(task = fork_body(scope, worker, how, sketch->kernel, args, n)))
+    call->at = call->scope->depth ? graph->rank
+                                  : task_owner_rank(how->at, replicated, own ? own->home : -1);
+    if (call->at == TASK_EVERYWHERE)
+        call->at = graph->rank;
+    if (call->at == graph->rank && !(call->task = fork_body(call, how, args)))
         return DUITE_E_MEMORY;
-    if (task && own)
-        fork_give_block(task, own, task_owner_decides(how->at, kernel->replicated));
-    return task_depend(scope, worker, at, kernel, n, objects, sketch->object, task);
+    if (call->task && own)
+        fork_give_block(call->task, own, task_owner_decides(how->at, replicated));
+    return task_depend(call);
 }
 
-static void fork_mix(struct task_graph *graph, uint32_t kernel, int at, size_t n,
-                     const duite_object *objects)
+static void fork_mix(const struct task_fork_call *call, int at)
 {
-    uint64_t hash = task_fork_hash(kernel, at);
-    for (size_t i = 0; i < n; i++)
-        hash = task_fork_hash_on(hash, objects[i]);
-    task_mix(graph, hash);
+    uint64_t hash = task_fork_hash(call->index, at);
+    for (size_t i = 0; i < call->n; i++)
+        hash = task_fork_hash_on(hash, call->objects[i]);
+    task_mix(call->scope->graph, hash);
 }
 
 int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *how,
               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
 {
-    struct fork_sketch sketch;
-    int code = fork_check(scope, how->at, kernel, args, n, objects, &sketch);
+    struct task_fork_call call;
+    fork_call_init(&call, scope, worker, kernel, n, objects);
+    int code = fork_check(&call, how->at, args);
     if (code)
         return code;
     scope->forks++;
-    if (!scope->depth)
-        fork_mix(scope->graph, sketch.kernel, how->at, n, objects);
-    return fork_checked(scope, worker, how, &sketch, args, n, objects);
+    if (!scope->depth && scope->graph->n_ranks > 1)
+        fork_mix(&call, how->at);
+    return fork_checked(&call, how, args);
 }

@@ -5,6 +5,8 @@
 
 /* Shared by the files of this folder only. */
 
+struct task_fork_call;
+
 /* A task with n accesses and `extra` bytes behind them (task_rest); pending is n + 1; counted
  * as unfinished. NULL without memory: then the graph is broken. */
 struct task *task_new(struct task_scope *scope, enum task_type type, size_t n, size_t extra);
@@ -40,13 +42,6 @@ struct data_version *task_rename(struct task_graph *graph, struct worker *worker
  * if it was never written. NULL: out of memory, broken. */
 struct data_version *task_local(struct task_graph *graph, struct data_object *object);
 
-/* What a task that runs on rank `at` reads and makes, as versions; `task` is NULL on the other
- * ranks. It is ready once all of it is there. few: see task_named_object. Errors: memory, broken;
- * the accesses before that are kept, and the task runs as one that is void. */
-int task_depend(struct task_scope *scope, struct worker *worker, int at, const duite_kernel *kernel,
-                size_t n, const duite_object *objects, struct data_object *const *few,
-                struct task *task);
-
 /* Sees to it that rank `to` gets the current version: sends, awaits, or notes that others do. */
 int task_fetch(struct task_graph *graph, struct worker *worker, struct data_object *object, int to);
 /* The same for all ranks. */
@@ -59,10 +54,9 @@ int task_view_gather(struct task_graph *graph, struct worker *worker, struct dat
 /* The object has a new version on another rank: this rank's copy is stale. */
 void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object);
 
-/* Contributions: adds a leaf for access i (task NULL: it runs elsewhere, on rank `at`) after ending
- * a run of another law, and ends the run of them. */
-int task_contribute(struct task_scope *scope, struct worker *worker, struct data_object *object,
-                    const duite_law *law, int at, struct task *task, size_t i);
+/* Contributions: adds a leaf for access i of the fork, after ending a run of another law; and ends
+ * the run of them. */
+int task_contribute(const struct task_fork_call *call, struct data_object *object, size_t i);
 int task_reduce(struct task_scope *scope, struct worker *worker, struct data_object *object);
 void task_run_combine(struct task *task);
 void task_run_pieces(struct task *task);
@@ -134,15 +128,36 @@ void task_left(struct task_graph *graph, struct task_scope *scope, struct worker
 /* The object of that name, with the right held on it; NULL with the error's sentence set. */
 struct data_object *task_find_object(struct task_scope *scope, duite_object name,
                                      duite_mode *right);
-/* Object i of a fork, whose name was checked: the first ones have been looked up. */
+/* A fork under way. fork.c checks it, and says where its task runs; depend.c goes through its
+ * objects. Passed on by pointer: what a fork costs is mostly what its stages hand to one another.
+ */
 enum { TASK_FEW = 16 };
-static inline struct data_object *task_named_object(struct task_scope *scope,
-                                                    struct data_object *const *few, size_t i,
-                                                    duite_object name)
+struct task_fork_call {
+    struct task_scope *scope; /* where it is forked */
+    struct worker *worker;    /* who forks */
+    const duite_kernel *kernel;
+    size_t n;
+    const duite_object *objects;
+    struct task *task;                    /* NULL: other ranks run it */
+    int at;                               /* the rank that runs it */
+    uint32_t index;                       /* of the kernel, in the list given at start */
+    uint32_t owner;                       /* the parameter it runs for, or TASK_NOBODY */
+    uint32_t done;                        /* accesses that have nothing to wait for, so far */
+    bool views;                           /* some objects are views */
+    struct data_object *object[TASK_FEW]; /* the first ones */
+};
+
+/* Object i of the fork, whose name was checked: the first ones were looked up then. */
+static inline struct data_object *task_fork_object(const struct task_fork_call *call, size_t i)
 {
     duite_mode right;
-    return i < TASK_FEW ? few[i] : task_find_object(scope, name, &right);
+    return i < TASK_FEW ? call->object[i] : task_find_object(call->scope, call->objects[i], &right);
 }
+
+/* What the task reads and makes, as versions on this rank. The task is ready once all of it is
+ * there. Errors: memory, broken; the accesses before that are kept, and the task is void. */
+int task_depend(struct task_fork_call *call);
+
 /* Takes the name of an object that the task made out of use. */
 void task_drop(struct task_scope *scope, struct data_object *object);
 /* The slots of the names that bodies use: parameters first, then the objects they made. */

@@ -20,11 +20,11 @@ static const struct data_failure sum_no_memory = {
 
 /* ---- Contributing and reducing: at forks ---- */
 
-static int leaf_add(struct task_graph *graph, struct data_object *object, int at, struct task *task,
-                    size_t i)
+static int leaf_add(const struct task_fork_call *call, struct data_object *object, size_t i)
 {
+    struct task_graph *graph = call->scope->graph;
     bool adder = object->holder == graph->rank;
-    if (!object->sum && (adder || task)) {
+    if (!object->sum && (adder || call->task)) {
         object->sum = data_sum_new(graph->n_ranks, object->law, object->type, object->count);
         if (!object->sum) {
             base_no_memory("contributions");
@@ -32,11 +32,11 @@ static int leaf_add(struct task_graph *graph, struct data_object *object, int at
         }
     }
     uint64_t first = object->leaves++;
-    if (adder && !task)
-        data_sum_sender(object->sum, at);
-    if (!task)
+    if (adder && !call->task)
+        data_sum_sender(object->sum, call->at);
+    if (!call->task)
         return DUITE_OK;
-    struct task_access *access = &task->access[i];
+    struct task_access *access = &call->task->access[i];
     access->sum = object->sum;
     access->leaf = data_sum_leaf(object->sum, first);
     if (access->leaf)
@@ -46,14 +46,14 @@ static int leaf_add(struct task_graph *graph, struct data_object *object, int at
     return task_break(graph);
 }
 
-int task_contribute(struct task_scope *scope, struct worker *worker, struct data_object *object,
-                    const duite_law *law, int at, struct task *task, size_t i)
+int task_contribute(const struct task_fork_call *call, struct data_object *object, size_t i)
 {
+    const duite_law *law = data_law_of(call->kernel, i);
     int code = DUITE_OK;
     if (object->leaves && object->law != law)
-        code = task_reduce(scope, worker, object);
+        code = task_reduce(call->scope, call->worker, object);
     object->law = law;
-    return code ? code : leaf_add(scope->graph, object, at, task, i);
+    return code ? code : leaf_add(call, object, i);
 }
 
 /* A task that waits for all contributions, which leave the object; pending counts them as one.

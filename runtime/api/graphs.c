@@ -316,7 +316,7 @@ int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t
         return program_remember(rt, DUITE_E_OBJECT);
     task_mix(&rt->graph, graph.slot);
     task_mix(&rt->graph, max);
-    task_mix(&rt->graph, (uint64_t)flag.slot << 32 | flag.generation);
+    task_mix(&rt->graph, task_name_bits(flag));
     code = graph_prepare(rt, found, max);
     if (!code && !max)
         code = base_error(DUITE_E_ARGUMENT, "duite_replay_while: at most 0 rounds");

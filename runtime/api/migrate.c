@@ -126,7 +126,7 @@ static size_t migration_length(const struct migration *m, int rank)
 
 static size_t migration_part_end(size_t all, size_t at)
 {
-    return all > at + COMM_MAX_SUMS ? at + COMM_MAX_SUMS : all;
+    return all > at + COMM_WORD_NUMBERS ? at + COMM_WORD_NUMBERS : all;
 }
 
 static int migration_exchange(struct migration *m, struct comm_word *own, struct comm_word **words)
@@ -143,14 +143,14 @@ static int migration_gather(struct migration *m)
     for (int r = 0; r < graph->n_ranks; r++)
         longest = migration_length(m, r) > longest ? migration_length(m, r) : longest;
     migration_fill_own(m);
-    for (size_t at = 0; at < longest && !code; at += COMM_MAX_SUMS) {
+    for (size_t at = 0; at < longest && !code; at += COMM_WORD_NUMBERS) {
         struct comm_word own = {0}, *words;
         for (size_t i = at; i < migration_part_end(migration_length(m, graph->rank), at); i++)
-            own.sums[i - at] = m->values[i];
+            own.number[i - at] = m->values[i];
         code = migration_exchange(m, &own, &words);
         for (int r = 0; r < graph->n_ranks && !graph->rank && !code; r++)
             for (size_t i = at; i < migration_part_end(migration_length(m, r), at); i++)
-                migration_take(m, r, i, words[r].sums[i - at]);
+                migration_take(m, r, i, words[r].number[i - at]);
     }
     return code;
 }
@@ -261,17 +261,17 @@ static int migration_announce(struct migration *m)
 {
     size_t all = ANSWER_BLOCKS;
     int code = DUITE_OK;
-    for (size_t at = 0; at < all && !code; at += COMM_MAX_SUMS) {
+    for (size_t at = 0; at < all && !code; at += COMM_WORD_NUMBERS) {
         struct comm_word own = {0}, *words;
         if (!m->rt->graph.rank)
             all = ANSWER_BLOCKS + (size_t)m->values[ANSWER_MOVES];
         for (size_t i = at; i < migration_part_end(all, at) && !m->rt->graph.rank; i++)
-            own.sums[i - at] = m->values[i];
+            own.number[i - at] = m->values[i];
         code = migration_exchange(m, &own, &words);
         if (!code && !at)
-            all = ANSWER_BLOCKS + (size_t)words[0].sums[ANSWER_MOVES];
+            all = ANSWER_BLOCKS + (size_t)words[0].number[ANSWER_MOVES];
         for (size_t i = at; i < migration_part_end(all, at) && !code; i++)
-            m->values[i] = words[0].sums[i - at];
+            m->values[i] = words[0].number[i - at];
     }
     return code;
 }

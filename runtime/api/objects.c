@@ -53,7 +53,7 @@ int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_
 
 static void mix_name(duite *rt, duite_object object)
 {
-    task_mix(&rt->graph, (uint64_t)object.slot << 32 | object.generation);
+    task_mix(&rt->graph, task_name_bits(object));
 }
 
 int duite_view(duite *rt, duite_object object, size_t n, const size_t *indices, duite_object *view)

@@ -275,6 +275,8 @@ int duite_wait(duite *rt)
 
 /* ---- Counters ---- */
 
+enum { COUNTER_SUMS = 13 }; /* over all ranks */
+
 int duite_count_all(duite *rt, duite_counters *counters)
 {
     int code = program_enter(rt, "duite_count_all");
@@ -285,21 +287,27 @@ int duite_count_all(duite *rt, duite_counters *counters)
     work_count(rt->pool, &own);
     if (rt->comm)
         comm_count(rt->comm, &own.messages, &own.bytes);
-    struct comm_word word = {
-        .sums = {(double)own.tasks, (double)own.placed, (double)own.stolen, (double)own.chained,
-                 (double)own.messages, (double)own.bytes, own.busy, own.idle,
-                 (double)atomic_load_explicit(&rt->graph.renamed, memory_order_relaxed),
-                 (double)own.delegated, own.awaited, own.exposed, (double)own.stolen_far}};
-    const double *sums = word.sums;
+    double sums[COUNTER_SUMS] = {
+        (double)own.tasks,
+        (double)own.placed,
+        (double)own.stolen,
+        (double)own.chained,
+        (double)own.messages,
+        (double)own.bytes,
+        own.busy,
+        own.idle,
+        (double)atomic_load_explicit(&rt->graph.renamed, memory_order_relaxed),
+        (double)own.delegated,
+        own.awaited,
+        own.exposed,
+        (double)own.stolen_far};
     code = enter_blocking(rt, "duite_count_all");
-    word.forks = rt->graph.root.forks;
-    word.fingerprint = rt->graph.fingerprint;
+    struct comm_word agreed = {.forks = rt->graph.root.forks, .fingerprint = rt->graph.fingerprint};
     work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
-    struct comm_word agreed = word;
     if (rt->comm && !code)
         code = comm_agree(rt->comm, &agreed, between, rt->pool);
     if (rt->comm && !code)
-        code = comm_sum(rt->comm, &word, 13, between, rt->pool);
+        code = comm_sum(rt->comm, sums, COUNTER_SUMS, between, rt->pool);
     work_waits(rt->pool, NULL);
     work_idle_ends(rt->pool);
     if (code)

@@ -1,7 +1,7 @@
-/* Collective calls of the main thread. There are two kinds: a small reduction, by which all ranks
- * find whether they forked the same, and a gathering of words, which only follows a reduction that
- * told all ranks alike to gather. So ranks that run different programs are in the same kind of call
- * nevertheless.
+/* Collective calls of the main thread. There are three kinds: a small reduction, by which all ranks
+ * find whether they forked the same; a gathering of words; and a sum. The last two only follow a
+ * reduction that told all ranks alike to go on. So ranks that run different programs are in the
+ * same kind of call nevertheless.
  *
  * A rank leaves a call before it is over when communication broke; MPI goes on using the buffers,
  * which therefore are the comm's own. No rank is more than one call ahead of another: at stop the
@@ -11,20 +11,26 @@
 #include "runtime/comm/internal.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* ---- Entering and waiting ---- */
 
 /* Under the lock. */
-static bool collective_enter(struct comm *comm, bool gathers)
+static bool collective_enter(struct comm *comm, enum comm_collective kind)
 {
     struct comm_word *own = &comm->words[comm->n_ranks];
     comm->entered++;
-    comm->gathers = gathers;
-    if (gathers)
+    comm->kind = kind;
+    if (kind == COMM_GATHERS)
         return comm_mpi_ok(comm,
                            MPI_Iallgather(own, sizeof *own, MPI_BYTE, comm->words, sizeof *own,
                                           MPI_BYTE, comm->mpi, &comm->request),
                            "MPI_Iallgather");
+    if (kind == COMM_SUMS)
+        return comm_mpi_ok(comm,
+                           MPI_Iallreduce(comm->addend, comm->sums, COMM_SUMMED, MPI_DOUBLE,
+                                          MPI_SUM, comm->mpi, &comm->request),
+                           "MPI_Iallreduce");
     return comm_mpi_ok(comm,
                        MPI_Iallreduce(&comm->own, &comm->max, COMM_REDUCED, MPI_UINT64_T, MPI_MAX,
                                       comm->mpi, &comm->request),
@@ -42,19 +48,19 @@ static bool collective_lock(struct comm *comm, void (*between)(void *), void *co
     return false;
 }
 
-/* Enters, and runs `between` until the call is over; then `settle`. The lock is held, and let go.
- */
-static int collective_run(struct comm *comm, bool gathers, void (*settle)(struct comm *),
-                          void (*between)(void *), void *context)
+/* Enters, and runs `between` until the call is over; then `settle`, unless it is NULL. The lock is
+ * held, and let go. */
+static int collective_run(struct comm *comm, enum comm_collective kind,
+                          void (*settle)(struct comm *), void (*between)(void *), void *context)
 {
     int done = 0;
-    bool fine = collective_enter(comm, gathers);
+    bool fine = collective_enter(comm, kind);
     comm_unlock(comm);
     while (fine && !done && !comm_is_broken(comm)) {
         if (comm_try_lock(comm)) {
             fine =
                 comm_mpi_ok(comm, MPI_Test(&comm->request, &done, MPI_STATUS_IGNORE), "MPI_Test");
-            if (fine && done)
+            if (fine && done && settle)
                 settle(comm);
             comm_unlock(comm);
         }
@@ -103,22 +109,19 @@ int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word
     if (!collective_lock(comm, between, context))
         return comm_broken(comm);
     words_put(comm, own);
-    return collective_run(comm, true, words_settle, between, context);
+    return collective_run(comm, COMM_GATHERS, words_settle, between, context);
 }
 
-int comm_sum(struct comm *comm, struct comm_word *word, int n, void (*between)(void *context),
+int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *context),
              void *context)
 {
-    struct comm_word *words;
-    int code = comm_gather(comm, word, &words, between, context);
-    if (code)
-        return code;
-    for (int i = 0; i < n; i++)
-        word->sums[i] = 0;
-    for (int rank = 0; rank < comm->n_ranks; rank++)
-        for (int i = 0; i < n; i++)
-            word->sums[i] += words[rank].sums[i];
-    return DUITE_OK;
+    if (!collective_lock(comm, between, context))
+        return comm_broken(comm);
+    memcpy(comm->addend, numbers, (size_t)n * sizeof *numbers);
+    int code = collective_run(comm, COMM_SUMS, NULL, between, context);
+    if (!code)
+        memcpy(numbers, comm->sums, (size_t)n * sizeof *numbers);
+    return code;
 }
 
 /* ---- Agreeing ---- */
@@ -149,7 +152,7 @@ int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *c
                                       .homes = homes,
                                       .not_homes = ~homes,
                                       .failed = 0 - own->failed};
-    int code = collective_run(comm, false, reduced_settle, between, context);
+    int code = collective_run(comm, COMM_AGREES, reduced_settle, between, context);
     if (code)
         return code;
     if (!reduced_are_same(comm))
@@ -161,6 +164,7 @@ int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *c
 void comm_catch_up(struct comm *comm)
 {
     MPI_Wait(&comm->request, MPI_STATUS_IGNORE);
-    while (comm->entered < comm->control.entered && collective_enter(comm, comm->control.gathers))
+    while (comm->entered < comm->control.entered &&
+           collective_enter(comm, (enum comm_collective)comm->control.kind))
         MPI_Wait(&comm->request, MPI_STATUS_IGNORE);
 }

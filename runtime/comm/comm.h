@@ -115,7 +115,7 @@ bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint);
  * communication breaks. Main thread. */
 void comm_waits(struct comm *comm, bool waits);
 
-enum { COMM_MAX_SUMS = sizeof(struct data_failure) / sizeof(double) };
+enum { COMM_SUMMED = 16, COMM_WORD_NUMBERS = sizeof(struct data_failure) / sizeof(double) };
 
 /* What a rank tells the others in a collective call. */
 struct comm_word {
@@ -123,7 +123,7 @@ struct comm_word {
     uint64_t failed; /* number + 1 of this rank's first failed task in fork order, or 0 */
     union {
         struct data_failure failure;
-        double sums[COMM_MAX_SUMS];
+        double number[COMM_WORD_NUMBERS];
     };
 };
 
@@ -139,9 +139,8 @@ int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *c
 int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word **all,
                 void (*between)(void *context), void *context);
 
-/* Sums the first n <= COMM_MAX_SUMS `sums` of the words over all ranks, in place. As comm_gather.
- */
-int comm_sum(struct comm *comm, struct comm_word *word, int n, void (*between)(void *context),
+/* Sums n <= COMM_SUMMED numbers over all ranks, in place: one reduction. As comm_gather. */
+int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *context),
              void *context);
 
 /* ---- When it breaks ----

@@ -129,7 +129,7 @@ static void abort_send(struct comm *comm)
     control->abort->kind = COMM_ABORT;
     control->abort->key.slot = (uint32_t)comm->rank;
     comm->reason.entered = comm->entered;
-    comm->reason.gathers = comm->gathers;
+    comm->reason.kind = comm->kind;
     memcpy(data_payload(control->abort), &comm->reason, sizeof comm->reason);
     for (int to = 0; to < comm->n_ranks; to++)
         if (to != comm->rank)
@@ -145,7 +145,7 @@ static void abort_hear(struct comm *comm, struct data_packet *packet)
     comm->control.heard++;
     if (abort->entered > comm->control.entered) {
         comm->control.entered = abort->entered;
-        comm->control.gathers = abort->gathers;
+        comm->control.kind = abort->kind;
     }
     comm_broke(comm, abort->code, message);
 }

@@ -25,7 +25,7 @@ enum comm_kind {
 struct comm_abort {
     uint64_t entered; /* collective calls so far */
     int32_t code;
-    int32_t gathers; /* the last of them gathers words */
+    int32_t kind; /* of the last of them: enum comm_collective */
     char message[1008];
 };
 
@@ -44,7 +44,7 @@ struct comm_control {
     bool aborts;               /* the abort messages are sent */
     int heard;                 /* abort messages */
     uint64_t entered;          /* the most collective calls that an abort message told of */
-    bool gathers;              /* the last of these gathers words */
+    int32_t kind;              /* of the last of these */
     int last_heard;
     struct comm_standing *standing; /* by rank */
     int turn;                       /* whose request is looked at next */

@@ -21,6 +21,9 @@ struct comm_reduced {
 };
 enum { COMM_REDUCED = sizeof(struct comm_reduced) / sizeof(uint64_t) };
 
+/* The kinds of collective calls. */
+enum comm_collective { COMM_AGREES, COMM_GATHERS, COMM_SUMS };
+
 struct comm {
     MPI_Comm mpi;
     MPI_Datatype line; /* 64 bytes: see data_packet_lines */
@@ -37,13 +40,14 @@ struct comm {
     struct comm_control control;
     struct comm_heartbeat heartbeat;
     struct comm_calls calls;
-    comm_told *tell;                        /* NULL: nobody */
-    struct worker *worker;                  /* under the lock: who passes */
-    bool open, may_request;                 /* comm_open was called; with requests */
-    double latency, per_byte;               /* seconds: of the slowest link measured */
-    uint64_t entered;                       /* collective calls */
-    bool gathers;                           /* the last of them gathers words */
-    struct comm_reduced own, max;           /* of the last reduction */
+    comm_told *tell;                               /* NULL: nobody */
+    struct worker *worker;                         /* under the lock: who passes */
+    bool open, may_request;                        /* comm_open was called; with requests */
+    double latency, per_byte;                      /* seconds: of the slowest link measured */
+    uint64_t entered;                              /* collective calls */
+    enum comm_collective kind;                     /* of the last of them */
+    struct comm_reduced own, max;                  /* of the last agreement */
+    double addend[COMM_SUMMED], sums[COMM_SUMMED]; /* of the last sum */
     MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words;                /* one a rank, and this rank's own */
     _Atomic uint64_t messages, bytes, came; /* the last one: received */

@@ -172,13 +172,12 @@ static struct plan_recorded_fork *record_append(struct plan_record *record, uint
                                         .first = record->n_accesses,
                                         .args = record->args_bytes};
     record->args_bytes += whole;
-    task_mix(record->graph, (uint64_t)kernel << 32 | (uint32_t)how->at);
+    task_mix(record->graph, task_fork_hash_all(kernel, how->at, n, objects));
     for (size_t i = 0; i < n; i++)
         record_use_view(record, objects[i]);
     const duite_kernel *body = kernel == PLAN_SETS ? NULL : record->graph->kernels[kernel];
     for (size_t i = 0; i < n; i++) {
         duite_mode mode = body ? task_immediate(data_mode_of(body, i)) : DUITE_W;
-        task_mix(record->graph, (uint64_t)objects[i].slot << 32 | objects[i].generation);
         record_use(record, objects[i], mode, mode == DUITE_CW ? data_law_of(body, i) : NULL);
     }
     uint32_t owner = body ? task_owner(body->access, body->variadic, n) : 0; /* parameter */
@@ -293,8 +292,8 @@ int plan_record_bind(struct plan_record *record, duite_object recorded, duite_ob
         if (code)
             return code;
     }
-    task_mix(record->graph, (uint64_t)recorded.slot << 32 | recorded.generation);
-    task_mix(record->graph, (uint64_t)name.slot << 32 | name.generation);
+    task_mix(record->graph, task_name_bits(recorded));
+    task_mix(record->graph, task_name_bits(name));
     object->bound = name;
     record->graph->table.object[name.slot].fixed |= object->fixed;
     record->rebound = true;

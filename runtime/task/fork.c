@@ -299,14 +299,6 @@ static int fork_checked(struct task_fork_call *call, const struct task_options *
     return task_depend(call);
 }
 
-static void fork_mix(const struct task_fork_call *call, int at)
-{
-    uint64_t hash = task_fork_hash(call->index, at);
-    for (size_t i = 0; i < call->n; i++)
-        hash = task_fork_hash_on(hash, call->objects[i]);
-    task_mix(call->scope->graph, hash);
-}
-
 int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *how,
               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
 {
@@ -317,6 +309,6 @@ int task_fork(struct task_scope *scope, struct worker *worker, const struct task
         return code;
     scope->forks++;
     if (!scope->depth && scope->graph->n_ranks > 1)
-        fork_mix(&call, how->at);
+        task_mix(scope->graph, task_fork_hash_all(call.index, how->at, n, objects));
     return fork_checked(&call, how, args);
 }

@@ -86,17 +86,6 @@ static inline uint32_t task_kernel_index(const struct task_graph *graph, const d
     }
 }
 
-/* What a fork adds to the fingerprint: begins with its kernel's index and the rank it names, and
- * goes on with each object. */
-static inline uint64_t task_fork_hash(uint32_t kernel, int at)
-{
-    return (uint64_t)kernel << 32 | (uint32_t)at;
-}
-static inline uint64_t task_fork_hash_on(uint64_t hash, duite_object name)
-{
-    return hash * 0x9e3779b97f4a7c15u + ((uint64_t)name.generation << 32 | name.slot);
-}
-
 /* ---- Nesting ---- */
 
 static inline bool task_postponed(duite_mode mode)

@@ -19,7 +19,7 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
         return base_error(DUITE_E_VIEW, "duite_free: object %u.%u has %u views that are not freed",
                           name.slot, name.generation, object->n_views);
     if (!scope->depth)
-        task_mix(graph, (uint64_t)name.slot << 32 | name.generation);
+        task_mix(graph, task_name_bits(name));
     int code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
     task_forget(graph, worker, object);
     if (scope->depth)
@@ -124,7 +124,7 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
     if (code)
         return code;
     if (!scope->depth) {
-        task_mix(graph, (uint64_t)name.slot << 32 | name.generation);
+        task_mix(graph, task_name_bits(name));
         task_mix(graph, OVERWRITTEN);
         task_mix(graph, count);
     }

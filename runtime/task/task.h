@@ -3,6 +3,7 @@
 
 #include "runtime/data/object.h"
 #include "runtime/task/above.h"
+#include "runtime/task/fingerprint.h"
 #include "runtime/task/owner.h"
 
 #include <duite_policy.h>

@@ -15,14 +15,14 @@
  * Calls marked "collective" are made by all ranks in the same order; "local" calls concern this
  * rank only. Forking and everything that changes objects is done by the main thread.
  *
- * Every call returns DUITE_OK or a code; duite_message() then has the sentence. A failed fork, new,
- * set, hint, follow, free or call on a recorded graph does nothing, and the first such error is
- * returned once more, with its sentence, by the next get, wait or stop, which otherwise does its
+ * Every call returns DUITE_OK or a code; duite_message() then has the error message. A failed fork,
+ * new, set, hint, colocate, free or call on a recorded graph does nothing. The first such error is
+ * returned once more, with its message, by the next get, wait or stop, which otherwise does its
  * work: a program may check only these. (Calls from a body or another thread, DUITE_E_STATE, are
  * not remembered.) On several ranks a call that runs out of memory on one of them, or a failure of
- * MPI, ends the work of all: every rank's next or present blocking call returns the code, and only
- * duite_stop is left (duite_abandon if MPI failed or a rank is lost). The library never exits or
- * aborts. */
+ * MPI, ends the work of all. Then every rank's present or next blocking call returns the code, and
+ * only duite_stop is left (duite_abandon if MPI failed or a rank is lost). The library never exits
+ * or aborts. */
 
 #include <mpi.h>
 #include <stddef.h>
@@ -59,7 +59,7 @@ enum {
     DUITE_E_LOST = -17  /* a rank is lost: killed, or its host cut off */
 };
 
-/* The sentence of the last call of this thread that failed; never NULL. Valid until the next
+/* The error message of the last call of this thread that failed; never NULL. Valid until the next
  * failure. Local. */
 const char *duite_message(void);
 
@@ -89,9 +89,9 @@ typedef enum duite_type {
     DUITE_F64
 } duite_type;
 
-/* How a task uses a parameter. The body uses it itself (the first four), or it only forks tasks
- * that do (the postponed modes): then the task starts without waiting for the object, finds no
- * data, and what it may hand on is its right:
+/* How a task uses a parameter. Under the first four modes the body uses it itself. Under the
+ * postponed modes it only forks tasks that do: it starts without waiting for the object, and finds
+ * no data. The mode is also a right, which says what the children may do:
  *
  *     holding     it may fork children with
  *     r rp        r rp
@@ -133,8 +133,8 @@ typedef struct duite_law {
 } duite_law;
 
 /* Built-in laws, for any type but bytes; they need no listing. Of equal elements (0 and -0 are
- * equal) min and max keep the first in fork order; one that is not a number wins against all that
- * are, the last of several. (A body that compares by < drops it itself.) */
+ * equal) min and max keep the first in fork order; NaN wins against all numbers, the last of
+ * several NaNs. (A body that compares by < drops NaN itself.) */
 extern const duite_law duite_sum, duite_min, duite_max;
 
 /* ---- Kernels ---- */
@@ -165,15 +165,15 @@ typedef struct duite_call {
 #define duite_out(call, i, type) ((type *)(call)->param[i].data)
 #define duite_count(call, i)     ((call)->param[i].count)
 
-/* A task's body. Returns 0, or a code of the program (not 0, better positive): then everything the
- * task writes is poisoned; tasks that read it do not run and poison what they write in turn, until
- * a w, which does not read, overwrites it. The next duite_wait, and every duite_get of something
- * poisoned, returns the code on all ranks. A contribution that failed poisons the object;
- * contributing to a poisoned object is possible and does not heal it. What a body may call: see
- * "Tasks that fork". */
+/* A task's body. Returns 0, or a code of the program (not 0, better positive). After a code
+ * everything the task writes is poisoned. Tasks that read it do not run and poison what they write
+ * in turn, until a w, which does not read, overwrites it. The next duite_wait, and every duite_get
+ * of something poisoned, returns the code on all ranks. A contribution that failed poisons the
+ * object; contributing to a poisoned object is possible and does not heal it. What a body may call:
+ * see "Tasks that fork". */
 typedef int duite_body(const duite_call *call);
 
-/* Gives the failure of a body its sentence (printf form, at most 200 bytes are kept). Returns code.
+/* Gives the failure of a body its message (printf form, at most 200 bytes are kept). Returns code.
  */
 int duite_fail(const duite_call *call, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -230,15 +230,15 @@ typedef struct duite_options {
     const struct duite_scheduler *scheduler; /* default: DUITE_SCHEDULER, else steal */
     const struct duite_mapping *mapping;     /* default: DUITE_MAPPING, else metis */
     const struct duite_balancer *balance;    /* default: DUITE_BALANCE, else none; see below */
-    uint64_t seed;       /* of everything random in policies. Default: DUITE_SEED, else 1 */
-    double spin_seconds; /* how long an idle worker spins before it sleeps. Default 100e-6 */
-    int bind;            /* bind workers to cores where the rank owns enough. Default 1 */
-    size_t window;       /* most tasks of this rank that are unfinished when a fork returns, see
-                            duite_fork. Default 0: any number */
-    size_t rename_bytes; /* how many bytes of this rank renaming may take, see below. Default 0 */
-    double
-        stuck_seconds; /* when nothing moves for so long, who waits for what is told, see below; 0:
-                          never. Default 60, or what DUITE_STUCK_SECONDS in the environment says */
+    uint64_t seed;         /* of everything random in policies. Default: DUITE_SEED, else 1 */
+    double spin_seconds;   /* how long an idle worker spins before it sleeps. Default 100e-6 */
+    int bind;              /* bind workers to cores where the rank owns enough. Default 1 */
+    size_t window;         /* most tasks of this rank that are unfinished when a fork returns, see
+                              duite_fork. Default 0: any number */
+    size_t rename_bytes;   /* how many bytes of this rank renaming may take, see below. Default 0 */
+    double stuck_seconds;  /* when nothing moves for so long, standard error tells who waits for
+                              what, see below; 0: never. Default 60, or what DUITE_STUCK_SECONDS in
+                              the environment says */
     double lost_seconds;   /* a rank that sends no heartbeat for so long is lost, see below; 0:
                               never. What rank 0 says counts for all. Default 8, or what
                               DUITE_LOST_SECONDS in the environment says */
@@ -255,14 +255,14 @@ typedef struct duite_options {
 
 /* The defaults, as the fields say. What the program sets afterwards counts first, then the
  * variables of the environment that the fields name, which are read here, then what is built in. A
- * variable without sense (a name of no policy, a number that is none) is an error of duite_start,
- * which names it, unless the program sets the field. Local. */
+ * variable that makes no sense (an unknown policy, text in place of a number) is an error of
+ * duite_start, which names it, unless the program sets the field. Local. */
 duite_options duite_options_default(void);
 
 /* The built-in policies by name, or from a shared library if the name has a / in it
- * (duite_policy.h); NULL, and a sentence for duite_message, if there is none. Names: of all
- * built-in ones, the default first, ended by NULL, but for the adversaries for tests (the scheduler
- * shuffle, the balancers scatter and wander), which are found by name only. Local. */
+ * (duite_policy.h); NULL, and a message for duite_message, if there is none. Names: of all built-in
+ * ones, the default first, ended by NULL, but for the adversaries for tests (the scheduler shuffle,
+ * the balancers scatter and wander), which are found by name only. Local. */
 const struct duite_scheduler *duite_scheduler_find(const char *name);
 const struct duite_mapping *duite_mapping_find(const char *name);
 const struct duite_balancer *duite_balancer_find(const char *name);
@@ -271,14 +271,13 @@ const char *const *duite_mapping_names(void);
 const char *const *duite_balancer_names(void);
 
 /* Delegation: with the balancer `delegate` a rank that has nothing to do asks others for ready
- * tasks, one at a time and ever less often, and is given some whose bodies are thought to take
- * longer than the way of their inputs there and of their outputs back. Tasks that may go are those
- * whose fork named no rank and whose kernel postpones nothing, has no side effects and does not say
- * `fixed`; in recorded graphs, those of rounds that are forked. Such a body runs wherever there is
- * time: what it finds by its context must serve there, too, and be there before the first such fork
- * of any rank (after a duite_wait that follows it on all of them). Results and failures are the
- * same; a failure names the rank on which the body ran. `scatter` sends leaves anywhere, for tests.
- */
+ * tasks, one rank at a time and ever less often. It is given tasks whose bodies are thought to take
+ * longer than to send their inputs there and their outputs back. Tasks that may go are those whose
+ * fork named no rank and whose kernel postpones nothing, has no side effects and does not say
+ * `fixed`; in recorded graphs, those of rounds that are forked. Such a body runs on whichever rank
+ * is idle. What it finds by its context must serve on each rank, and be there before the first such
+ * fork of any rank (set up on all of them, then a duite_wait). Results and failures are the same; a
+ * failure names the rank on which the body ran. `scatter` sends leaves anywhere, for tests. */
 
 /* Migration: with the balancer `migrate` objects get other homes when the bodies of one rank's
  * tasks take longer than those of the others. A leader moves with all that follow it, and with all
@@ -290,32 +289,32 @@ const char *const *duite_balancer_names(void);
  * fork named a rank run there whatever moves. Results are the same. `wander` moves objects, and
  * leaves, anywhere at any replay, for tests. */
 
-/* Renaming: a task that overwrites an object (w) which earlier tasks still read, write or send is
- * given fresh memory and does not wait for them, as long as all such memory of a rank, headers
- * included, stays within options.rename_bytes; at the limit a w waits. It counts from the fork
- * until the last of those tasks is over. Results are the same. This pays where a program overwrites
- * one object again and again for tasks that have nothing else in common (a temporary, a rim that is
- * being sent). It frees nothing where the writer needs the results of the readers anyway, as in
- * stencils over two buffers and most iterations, and there costs a task some allocations and leaves
- * the caches: so a program has to ask for it. */
+/* Renaming: a task may overwrite an object (w) which earlier tasks still read, write or send. With
+ * renaming it is given fresh memory and does not wait for them. All such memory of a rank, headers
+ * included, stays within options.rename_bytes; at the limit a w waits. The memory counts from the
+ * fork until the last of those tasks is over. Results are the same. This pays where a program
+ * overwrites one object again and again for tasks that have nothing else in common (a temporary, a
+ * rim that is being sent). It brings nothing where the writer needs the results of the readers
+ * anyway, as in stencils over two buffers and most iterations. There it costs a task some
+ * allocations and its data leave the caches: so a program has to ask for it. */
 
 /* Checking mode: each body works on private copies of its parameters, between guard pages that are
  * taken away afterwards, and runs twice if it has no side effects and forks nothing. The task fails
  * with DUITE_E_CHECK if it writes to an r parameter or to its arguments, goes beyond the ends of a
- * parameter, uses memory that an earlier task was given, leaves bytes of a w parameter unwritten,
- * or writes other bytes the second time; the sentence names the task, the parameter and the byte.
- * Results of correct programs are the same, at many times the cost. Other memory (globals, heap) is
- * not watched, and a body that faults is left by a jump: what it held stays held. The signals
- * SIGSEGV and SIGBUS are the runtime's meanwhile; faults that are none of these go on to the
- * handler there was. */
+ * parameter, or uses memory that an earlier task was given. It also fails if it leaves bytes of a w
+ * parameter unwritten, or writes other bytes the second time. The message names the task, the
+ * parameter and the byte. Results of correct programs are the same, at many times the cost. Other
+ * memory (globals, heap) is not watched, and a body that faults is left by a jump: what it held
+ * stays held. The signals SIGSEGV and SIGBUS are the runtime's meanwhile; faults that are none of
+ * these go on to the handler there was. */
 
 /* A standstill: the main program waits (in a get, a wait, a stop, or a fork, for the window) and
  * for options.stuck_seconds no task of this rank began or ended and no message came. Then this rank
  * writes to standard error, in at most 20 lines, what the main program waits for, which bodies run,
- * which tasks wait for them, which for objects from which rank. A long body looks the same; nothing
- * is changed or ended. A further one is told once it lasts twice as long. Tasks that wait for
- * nothing which can be found are told of, too: a body may have written beyond its objects, and
- * DUITE_CHECK=accesses names such a body. */
+ * which tasks wait for them, and which wait for objects from which rank. A long body looks the
+ * same; nothing is changed or ended. It is reported again once it lasts twice as long. Tasks that
+ * wait for nothing which can be found are told of, too: a body may have written beyond its objects,
+ * and DUITE_CHECK=accesses names such a body. */
 
 /* A lost rank: on several ranks a thread of each sends the next rank a heartbeat sixteen times in
  * options.lost_seconds, however busy its workers are. A rank that died, was cut off, or was
@@ -328,14 +327,14 @@ const char *const *duite_balancer_names(void);
 /* Starts a runtime. Initialises MPI (thread support SERIALIZED) if the caller has not. On several
  * ranks its workers call MPI at any time until duite_stop: a program that calls MPI meanwhile needs
  * MPI_THREAD_MULTIPLE. One runtime at a time in a process, unless it has MPI_THREAD_MULTIPLE.
- * Collective over comm. On failure *rt is NULL on all ranks; where another rank failed, the code is
- * DUITE_E_MEMORY if it had no memory, else DUITE_E_DIFFERENT, and the sentence is that of
- * the rank that failed, with its number. */
+ * Collective over comm. On failure *rt is NULL on all ranks. Where another rank failed, the code is
+ * DUITE_E_MEMORY if it had no memory, else DUITE_E_DIFFERENT; the message is that of the rank that
+ * failed, with its number. */
 int duite_start(duite **rt, const duite_options *options);
 
-/* Waits for all tasks, ends the workers and frees everything; start and stop may repeat (MPI, if
+/* Waits for all tasks, ends the workers and frees everything; start and stop may repeat. MPI, if
  * start initialised it, is finalised when the process ends; a process that ends without a stop
- * leaves it unfinalised, and mpirun ends the job). *rt becomes NULL whatever is returned. Returns
+ * leaves it unfinalised, and mpirun ends the job. *rt becomes NULL whatever is returned. Returns
  * the error that a wait would, else DUITE_E_NOT_FREED if objects or graphs are left. Collective. */
 int duite_stop(duite **rt);
 
@@ -346,13 +345,13 @@ int duite_stop(duite **rt);
  * returns the code. Local. */
 int duite_abandon(duite **rt);
 
-/* MPI of the program's own (a solver, parallel files) is called between these two as long as the
- * runtime is there, even when no task is left, since workers and heartbeats call MPI at any time
- * else; only under MPI_THREAD_MULTIPLE it needs no begin and end. Begin waits until nobody of this
- * rank is inside MPI. Until the end tasks run on, but nothing is sent or received, and all other
- * calls of the main program are refused and remembered (DUITE_E_STATE): a program waits first.
- * Ranks that do not do so at the same time take one that stays longer than lost_seconds for lost.
- * Errors: DUITE_E_STATE (begun twice, ended without begin). Local. */
+/* For calls of MPI by the program itself (a solver, parallel files). As long as the runtime is
+ * there, even when no task is left, they stand between these two, since workers and heartbeats call
+ * MPI at any other time. Only under MPI_THREAD_MULTIPLE they need no begin and end. Begin waits
+ * until nobody of this rank is inside MPI. Until the end tasks run on, but nothing is sent or
+ * received, and all other calls of the main program are refused and remembered (DUITE_E_STATE): a
+ * program waits first. A rank that stays longer than lost_seconds is taken for lost by ranks that
+ * are outside meanwhile. Errors: DUITE_E_STATE (begun twice, ended without begin). Local. */
 int duite_mpi_begin(duite *rt);
 int duite_mpi_end(duite *rt);
 
@@ -376,16 +375,16 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object);
  * no communication. */
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object);
 
-/* Makes a view of an object: a name for some of its elements, used like that of an object of its
- * own with n elements, in the order of `indices` (copied; each below the object's count; one may
- * come several times). A task that reads it (r, rp) finds what the object has there as the tasks
- * forked so far leave it, poison as well, and only these elements travel between ranks; so it is
- * with duite_get. A view has the home of its object. To the order of tasks, reading it is a read of
- * the whole object: it ends contributions. Where the object has changed since the view was read
- * last, its elements are gathered once, on the rank that holds the object, for all who read the
- * view until the next change. A task may read views of an object that it writes: they have the
- * elements from before. In replays a view is what it was when the graph was recorded, or what is
- * bound to it; a view can be bound to an object that the graph does not write (DUITE_E_VIEW).
+/* Makes a view of an object: a name for n of its elements, used like that of an object of its own.
+ * The elements stand in the order of `indices` (copied; each below the object's count; one may come
+ * several times). A task that reads the view (r, rp) finds the elements as the tasks forked so far
+ * leave them, poison as well, and only these elements travel between ranks. So does duite_get. A
+ * view has the home of its object. To the order of tasks, reading it is a read of the whole object:
+ * it ends contributions. Where the object has changed since the view was read last, its elements
+ * are gathered once, on the rank that holds the object, for all who read the view until the next
+ * change. A task may read views of an object that it writes: they have the elements from before. In
+ * replays a view is what it was when the graph was recorded, or what is bound to it; a view can be
+ * bound to an object that the graph does not write (DUITE_E_VIEW).
  *
  * DUITE_E_VIEW: an index is too large; the object is a view itself, or changes its size. Later: a
  * view is used otherwise than under r and rp, or set, hinted, or part of duite_colocate; an object
@@ -405,7 +404,7 @@ int duite_set(duite *rt, duite_object object, const void *values);
 int duite_set_sized(duite *rt, duite_object object, const void *values, size_t count);
 
 /* How many elements the object has, as the tasks forked so far leave it. Waits, and tells errors,
- * like duite_get, which then is at hand. Collective. */
+ * like duite_get; a duite_get afterwards need not wait. Collective. */
 int duite_get_count(duite *rt, duite_object object, size_t *count);
 
 /* Copies the object, as the tasks forked so far leave it, into `values` (count elements) on every
@@ -436,11 +435,11 @@ int duite_colocate(duite *rt, duite_object object, duite_object leader);
  * moves objects, else until the object is freed. Collective. */
 int duite_home(duite *rt, duite_object object);
 
-/* 1 if this rank keeps the object or has a copy of it as the tasks forked so far leave it; 0 if
- * not: then a fork does nothing on this rank but count, unless it touches another of the task's
- * objects, or names this rank. It is to be made all the same, but a program may spare itself what
- * the arguments take to compute, since the bytes at `args` are read on the rank that runs the task
- * only (in a build function they are copied on all). 1 of what is no object. Settles homes, like
+/* 1 if this rank keeps the object or has a copy of it as the tasks forked so far leave it; else 0.
+ * If all objects of a fork are 0 here, the fork is only counted here: it must still be called, but
+ * its `args` are not read and need not be computed. This does not hold for forks that name this
+ * rank or have a replicated kernel, for forks in a build function, or on rank 0 for tasks that read
+ * and write nothing (no objects, or cw alone). 1 of what is no object. Settles homes, like
  * duite_home. Collective as that is. */
 int duite_is_local(duite *rt, duite_object object);
 
@@ -449,15 +448,15 @@ int duite_is_local(duite *rt, duite_object object);
 /* Forks a task on n objects, in the order of the kernel's modes; a task names an object once.
  * `args` points to the kernel's args_size bytes (ignored if 0). It runs where its first w or rw
  * object lives, else its first r object, else on rank 0. Contributions (cw) between two other
- * accesses of an object (by tasks, set, get or free; waits do not count) combine in fork order by
- * a fixed tree: complete subtrees as in a binary counter, the rest folded from the right; then the
- * result is combined with the object: under a sum old + (A + (B + C)). Contributions of another law
- * are another access. Collective; returns at once, or, if options.window is set and more tasks of
- * this rank than that are unfinished (what the runtime adds to combine, send and copy counts; a
- * replay is one task, but the tasks of a round that is forked count each), when they are at most so
- * many: meanwhile the main thread works. Bounds the memory of a program that forks far ahead, and
- * changes no result. Such a fork may wait for other ranks, as a get does: they must not wait for
- * this one outside of duite. */
+ * accesses of an object (by tasks, set, get or free; waits do not count) combine in fork order by a
+ * fixed tree. Complete subtrees combine as in a binary counter, the rest folds from the right. Then
+ * the result is combined with the object: under a sum old + (A + (B + C)). Contributions of another
+ * law are another access. Collective; returns at once, unless options.window is set and more tasks
+ * of this rank than that are unfinished. Then the main thread works, and the fork returns when they
+ * are at most so many. Tasks that the runtime adds to combine, send and copy count. A replay is one
+ * task, but the tasks of a round that is forked count each. The window bounds the memory of a
+ * program that forks far ahead, and changes no result. Such a fork may wait for other ranks, as a
+ * get does: they must not wait for this one outside of duite. */
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects);
 
@@ -465,11 +464,11 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
                   const duite_object *objects);
 
-/* How a task is run; what is left out is 0. */
+/* What a program may say of a task at its fork; fields left out are 0. */
 typedef struct duite_task_options {
     const int *at;    /* the rank that runs it, as of duite_fork_at; NULL: as duite_fork chooses */
     int32_t priority; /* of ready tasks the scheduler `priority` takes the one with the largest */
-    double cost;      /* seconds that the body is thought to take; what is not > 0 says nothing */
+    double cost;      /* seconds that the body is thought to take; 0 or less: not known */
 } duite_task_options;
 
 /* duite_fork, with what the program knows of the task (how NULL: nothing): duite_fork_with(rt,
@@ -511,22 +510,21 @@ extern "C" {
  * the reference order (a task, then its children) among those that failed themselves since the last
  * wait, the same on all ranks. If the ranks did not make the same calls since the last wait it
  * returns DUITE_E_DIFFERENT on all of them, and only duite_stop is left. (A remembered error goes
- * first; a task's then waits for the next.) Collective. */
+ * first; a task's is then returned by the next wait.) Collective. */
 int duite_wait(duite *rt);
 
 /* ---- Tasks that fork ----
  *
- * A body may call, with call->rt and on its own thread, duite_new, duite_new_sized, duite_free,
- * duite_set, duite_set_sized, duite_fork, duite_fork_with (without a rank), duite_get,
- * duite_get_count, duite_wait, duite_resize, duite_fail, and what tells about the runtime
- * (duite_rank and the like); all others are DUITE_E_STATE, and so is any call from a thread of the
- * program's own. In a body they are local: children run on the rank of the task, and no other rank
- * knows of them.
+ * With call->rt, and on its own thread, a body may call: duite_new, duite_new_sized, duite_free;
+ * duite_set, duite_set_sized, duite_get, duite_get_count; duite_fork, duite_fork_with (without a
+ * rank), duite_wait, duite_resize, duite_fail; and what tells about the runtime (duite_rank and the
+ * like). All others are DUITE_E_STATE, and so is any call from a thread of the program's own. In a
+ * body the calls are local: children run on the rank of the task, and no other rank knows of them.
  *
- * Objects: a body names those it was given (param[i].object) and those it made. What it may fork
- * its children with is said at duite_mode; more is DUITE_E_RIGHT, and so is an object of the main
- * program that it was not given. duite_set needs the right to w, duite_get that to r. Objects that
- * a task made die, freed or not, when its last descendant is over.
+ * Objects: a body names those it was given (param[i].object) and those it made. The table at
+ * duite_mode says what it may fork its children with. More is DUITE_E_RIGHT, and so is an object of
+ * the main program that it was not given. A duite_set needs the right to w, a duite_get that to r.
+ * Objects that a task made die, freed or not, when its last descendant is over.
  *
  * Order: a body comes first, then its children in the order of their forks, each with all of its
  * descendants, then the next task of the one that forked it. What the children leave in a parameter
@@ -534,9 +532,9 @@ int duite_wait(duite *rt);
  *
  * duite_get waits for the value that the children forked so far leave, duite_wait for all of these
  * with their descendants; what the body does afterwards comes after them. Meanwhile its thread runs
- * other tasks that come earlier, on the same stack: a body must not wait with a lock held.
+ * other tasks that come earlier, on the same stack: a body must not wait with a lock held. A
  * duite_wait returns the error that is first in the reference order among the descendants since the
- * body's last wait; it stays to be told by the main program's, too. A failed child poisons what it
+ * body's last wait. The next wait of the main program tells it, too. A failed child poisons what it
  * writes, no more: its parent fails only if it says so.
  *
  * Errors of calls that return at once are remembered for the body's next get or wait; if there is
@@ -564,18 +562,18 @@ typedef int duite_build(duite *rt, void *context);
 int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *graph);
 
 /* Forks the graph's tasks `rounds` times, one round after the other: the results, the failures and
- * the numbers of tasks are those of forking them by hand. The rounds run from a
- * compiled form, in which a task costs no allocation, lock or search, and a round begins where
- * dependences allow before the last one is over. On several ranks a rank sends each other one in a
- * round at most one message for each phase of what moves between them: for what is made from
- * nothing of other ranks, for what is made from that, and so on; contributions ride along. What
- * the rounds only read is moved before the first one. The tasks forked before and after it that use
- * the same objects wait for the replay as a whole. (Forked are all rounds if the size of an object
+ * the numbers of tasks are those of forking them by hand. The rounds run from a compiled form, in
+ * which a task costs no allocation, lock or search, and a round begins where dependences allow
+ * before the last one is over. On several ranks a rank sends each other rank at most one message a
+ * phase and round. The first phase carries what is made without other ranks, the second what is
+ * made from that, and so on; contributions are part of these messages. What the rounds only read is
+ * moved before the first one. The tasks forked before and after it that use the same objects wait
+ * for the replay as a whole. Some rounds are forked instead: all of them if the size of an object
  * changes, if a mode is postponed, or if contributions of one round and the next are one sum; the
  * first or the last one if its contributions are one sum with those forked before or after the
- * replay.) If an object that the graph uses was freed, build is called again first, and bindings
- * and arguments are those it makes. Errors of that, and DUITE_E_BINDING. rounds times tasks is at
- * most 2^48. Collective; returns at once. */
+ * replay. If an object that the graph uses was freed, build is called again first, and bindings and
+ * arguments are those it makes. Errors of that, and DUITE_E_BINDING. rounds times tasks is at most
+ * 2^48. Collective; returns at once. */
 int duite_replay(duite *rt, duite_graph graph, uint64_t rounds);
 
 /* Replays while the first element of `flag`, an object that the graph uses or any other, is not
@@ -589,22 +587,22 @@ int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t
  * Collective. */
 int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds);
 
-/* From the next replay on: the arguments of the k-th fork of build (from 0; sets do not count) are
- * a copy of the args_size bytes at args; `object` is used wherever build named `recorded`, until
- * another one is bound to it. The object has the same type and count, else DUITE_E_BINDING; two
- * recorded objects bound to one are an error (DUITE_E_BINDING) of the replay, so that they may be
- * exchanged. Collective. */
+/* Changes a graph from its next replay on. duite_graph_args: the arguments of the k-th fork of
+ * build (from 0; sets do not count) are a copy of the args_size bytes at args. duite_graph_bind:
+ * `object` is used wherever build named `recorded`, until another one is bound to it. The object
+ * has the same type and count, else DUITE_E_BINDING; two recorded objects bound to one are an error
+ * (DUITE_E_BINDING) of the replay, so that they may be exchanged. Collective. */
 int duite_graph_args(duite *rt, duite_graph graph, size_t k, const void *args);
 int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_object object);
 
 /* Writes one round of the graph to `file` (open for writing, and left open) in the language of
- * Graphviz' dot: a box for each fork with the kernel's name, the rank if one was named, and a line
- * for each parameter: its mode and the slot and generation of the object that the next replay
- * takes, for cw the law; an ellipse for each set and wherever contributions are added to their
- * object (those still open at the end of the round are drawn as added there). Edges are the
- * dependences of a replay: solid within a round, dashed from one round to the next. Errors:
- * DUITE_E_OBJECT, DUITE_E_ARGUMENT, DUITE_E_MEMORY, and DUITE_E_SYSTEM if writing fails; none of
- * them is remembered. Local; the same text on every rank. */
+ * Graphviz' dot. A fork is a box with the kernel's name, the rank if one was named, and a line for
+ * each parameter: its mode, the slot and generation of the object that the next replay takes, for
+ * cw the law. Ellipses are sets, and places where contributions are added to their object (those
+ * still open at the end of the round are drawn as added there). Edges are the dependences of a
+ * replay: solid within a round, dashed from one round to the next. Errors: DUITE_E_OBJECT,
+ * DUITE_E_ARGUMENT, DUITE_E_MEMORY, and DUITE_E_SYSTEM if writing fails; none of them is
+ * remembered. Local; the same text on every rank. */
 int duite_graph_print(duite *rt, duite_graph graph, FILE *file);
 
 /* Frees a graph; replays that are on their way come to their end. Collective. */
@@ -618,21 +616,21 @@ int duite_graph_free(duite *rt, duite_graph graph);
  * elsewhere. If the file cannot be made, duite_start fails; if it cannot be written later on, or is
  * removed or replaced, the run goes on, what was written is kept, and duite_trace_end tells. */
 
-/* Step `step` of the program begins, counted from 0: what was written down is brought to the file,
- * and recording begins or ends if options.trace_first or trace_end say so; just then it waits, like
- * duite_wait, for all tasks forked so far (and leaves their errors to the next wait). Does nothing
- * without a trace. Collective. */
+/* Step `step` of the program begins, counted from 0. What was written down is brought to the file,
+ * and recording begins or ends if options.trace_first or trace_end say so. Only when it begins or
+ * ends the call waits, like duite_wait, for all tasks forked so far; it leaves their errors to the
+ * next wait. Does nothing without a trace. Collective. */
 int duite_trace_step(duite *rt, uint64_t step);
 
 /* The trace ends; duite_stop sees to that, too. Waits for all tasks forked so far, as
  * duite_trace_step. DUITE_E_SYSTEM: this rank's file is not whole, or is there no more, for the
- * reason that the sentence tells. Does nothing without a trace, and the second time. Collective. */
+ * reason that the message gives. Does nothing without a trace, and the second time. Collective. */
 int duite_trace_end(duite *rt);
 
-/* What no schedule could have done better in the run of a trace that is closed on all ranks:
- * *critical_path, seconds of the longest chain of tasks each of which needs what the one before it
- * wrote; and *lower_bound, the larger of that and the seconds in bodies over all workers. Of the
- * steps that were recorded. Reads the files of all ranks. DUITE_E_SYSTEM if one is missing,
+/* Bounds that no schedule could have beaten in the run of a trace, which is closed on all ranks.
+ * *critical_path: seconds of the longest chain of tasks each of which needs what the one before it
+ * wrote. *lower_bound: the larger of that and the seconds in bodies over all workers. Of the steps
+ * that were recorded. Reads the files of all ranks. DUITE_E_SYSTEM if one is missing,
  * DUITE_E_ARGUMENT if they are not whole. Local; needs no runtime. */
 int duite_trace_bounds(const char *trace, double *critical_path, double *lower_bound);
 
@@ -642,7 +640,7 @@ typedef struct duite_counters {
     uint64_t tasks;    /* bodies run; not those that poison kept from running */
     uint64_t placed;   /* tasks put in a queue by the scheduler */
     uint64_t stolen;   /* tasks taken from another worker's queue */
-    uint64_t chained;  /* tasks run directly after the one that made them ready */
+    uint64_t chained;  /* tasks run inline: directly after the one that made them ready */
     uint64_t messages; /* sent between ranks */
     uint64_t bytes;    /* sent between ranks, headers included */
     double busy;       /* seconds in bodies, over all workers */
@@ -652,9 +650,10 @@ typedef struct duite_counters {
     uint64_t delegated;       /* tasks that ran on another rank than duite_fork says */
     double awaited; /* seconds in which a rank awaited messages, times its workers, over all ranks:
                        from the fork of the task that needs one, or the get, until it is there */
-    double exposed; /* the part of it in which those workers had no task */
+    double exposed; /* the part of `awaited` in which those workers had no task */
     uint64_t migrated;   /* objects that got another home; the same on every rank, counted once */
-    uint64_t stolen_far; /* of the stolen: between workers that others are nearer to (duite_near) */
+    uint64_t stolen_far; /* those of `stolen` that came from a worker farther away than the nearest
+                            one (duite_near) */
 } duite_counters;
 
 /* Sums over all workers and ranks since start. After a duite_wait the counts are exact. Collective.

@@ -6,15 +6,14 @@
  * sleep, wake-up and messages. Functions of a table take no locks, read no clock, and draw random
  * numbers only from their own state.
  *
- * A function that does not return: the run waits for it. A watchdog names it on standard error,
- * with the policy, the function, rank and worker, once it has run for options.policy_seconds (10 s;
- * 0: never), and again after twice as long, four times as long, and so on. It is not broken off;
- * when it returns the run goes on. The time in which the process was stopped does not count.
- * Built-in policies are not watched.
+ * A function that does not return: the run waits for it. Once it has run for options.policy_seconds
+ * (10 s; 0: never) a watchdog names it on standard error, with the policy, the function, rank and
+ * worker. The watchdog names it again after twice as long, four times as long, and so on. The
+ * function is not broken off; when it returns the run goes on. The time in which the process was
+ * stopped does not count. Built-in policies are not watched.
  *
  * A function that is watched and calls exit ends the process with EXIT_FAILURE, whatever status it
- * asked for, and standard error names the policy and the function.
- */
+ * asked for, and standard error names the policy and the function. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -51,18 +50,19 @@ typedef struct duite_ready {
     int32_t priority;
     double cost; /* seconds; 0: not said */
     /* Of a task of the program in a replay, if the scheduler asks for it (`paths`): the longest
-     * path from its begin to the end of the round, in seconds of the costs that forks said; one
+     * path from its begin to the end of the round, in seconds of the costs that forks said. A fork
      * that said none counts as their mean, or as 1 if none did. Else 0. */
     double path;
-    /* Of a task of the program in a replay: 1 and the number of the worker that ran the last one of
-     * this graph that is placed by the same object, if that took 2 microseconds or more: its core's
-     * caches may have the data. 0: it took less, there was none, or no object places it. */
+    /* Affinity, of a task of the program in a replay: 1 plus the number of the worker whose core's
+     * caches may have the data. That is the worker that ran the graph's last task placed by the
+     * same object, if that task took 2 microseconds or more. 0: it took less, there was none, or no
+     * object places this task. */
     uint32_t affinity;
 } duite_ready;
 
 /* The other workers as one of them sees them. */
 typedef struct duite_near {
-    unsigned n;               /* there are so many others */
+    unsigned n;               /* how many others there are */
     const unsigned *worker;   /* n: nearest first, equally near ones from the next number on */
     const unsigned *distance; /* n: how many levels of the machine's topology (cores, caches,
                                  packages, as hwloc sees them) lie between the cores of the two and
@@ -79,14 +79,15 @@ typedef struct duite_scheduler {
     void (*start)(void *state, unsigned worker, unsigned n_workers, uint64_t seed);
     /* The queue a task goes to that became ready on this worker. */
     unsigned (*place)(void *state, const duite_ready *task);
-    /* In which order a worker serves its own queue and the shared one; it may change its mind. */
+    /* In which order a worker serves its own queue and the shared one; it may answer differently
+     * each time. */
     duite_end (*serve)(void *state);
-    /* The worker's queue that an idle worker steals the oldest task from (the highest, if that one
-     * serves its queue by priority) at its attempt-th try in a row (0, 1, ...); DUITE_NO_QUEUE ends
-     * the round, and the worker idles for a moment. Its own queue and the shared one were found
-     * empty before attempt 0; they are always served, so that a policy cannot lose a task. A round
-     * without an end is ended after 64 tries and 16 for each worker, and is an error that the next
-     * duite_wait tells. */
+    /* Whose queue an idle worker steals from at its attempt-th try in a row (0, 1, ...). It takes
+     * the oldest task there, or the highest if that queue's worker serves by priority.
+     * DUITE_NO_QUEUE ends the round, and the worker idles for a moment. Its own queue and the
+     * shared one were found empty before attempt 0; they are always served, so that a policy cannot
+     * lose a task. A round without an end is ended after 64 tries and 16 for each worker, and is an
+     * error that the next duite_wait tells. */
     unsigned (*victim)(void *state, unsigned attempt);
     /* Whether a task that just became ready may run inline: directly after the task that made it
      * ready, on the same worker. Such tasks form a chain, hence the name, and
@@ -143,18 +144,18 @@ typedef struct duite_mapping {
      * the next get, wait or stop of every rank returns it and names the mapping and, on the other
      * ranks, the rank; only duite_stop is left. */
     int (*map)(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
-    /* Maps blocks anew, knowing the tasks: home[n_blocks] has the present homes, and blocks whose
-     * home is changed move. Asked at the beginning of the first replay of each graph, and, unless
-     * all forks of its kernels said what they cost, once more at its second one, with measured
-     * costs. On rank 0 only, and need not be deterministic. Returns 0, or a duite code. Optional.
-     */
+    /* Maps blocks anew, now that the tasks are known. home[n_blocks] has the present homes; blocks
+     * whose home is changed move. Asked at the beginning of the first replay of each graph, and,
+     * unless all forks of its kernels said what they cost, once more at its second one, with
+     * measured costs. On rank 0 only, and need not be deterministic. Returns 0, or a duite code.
+     * Optional. */
     int (*map_tasks)(const duite_task_graph *graph, int *home);
 } duite_mapping;
 
 /* ---- Balancers: which ready tasks run on another rank, and which objects move there ---- */
 
-/* A ready task that may run on any rank: a leaf (no parameter of its kernel is postponed) of the
- * main program's or of a tree of tasks, whose fork named no rank and whose kernel is not fixed
+/* A ready task that may run on any rank. It is a leaf: no parameter of its kernel is postponed; the
+ * main program or a task forked it. Its fork named no rank, and its kernel is not fixed
  * (duite_kernel.fixed) and has no side effects. Its inputs travel there and its outputs back. */
 typedef struct duite_leaf {
     const char *kernel;
@@ -179,8 +180,8 @@ typedef struct duite_request {
  * was measured since the last time that the balancer was asked to move them. */
 typedef struct duite_blocks {
     /* n blocks, in the order in which they were made. weight: seconds in the bodies of tasks that
-     * ran for the block, with their children; edge_weight: bytes that recorded tasks which run for
-     * one block read of the other, in all rounds since then. */
+     * ran for the block, with their children. edge_weight: bytes that recorded tasks which run for
+     * one block read of the other, in all rounds since the last time. */
     duite_object_graph graph;
     const size_t *bytes;        /* n: of all its objects, which move with it */
     const unsigned char *fixed; /* n: 1: it must keep its home, see duite_kernel.fixed */
@@ -189,7 +190,8 @@ typedef struct duite_blocks {
     const unsigned *workers; /* a rank */
     double byte_seconds;     /* a byte to another rank, after a measurement at start */
     double seconds;          /* since the last time */
-    double migrate_seconds;  /* that deciding and moving took then, all ranks waiting; 0 at first */
+    double migrate_seconds;  /* that deciding and moving took the last time, all ranks waiting; 0 at
+                                first */
     uint64_t replays, since; /* since start; since the last time */
     const duite_mapping *mapping; /* the program's */
     uint64_t seed;
@@ -206,17 +208,17 @@ typedef struct duite_balancer {
     void (*start)(void *state, int rank, int n_ranks, unsigned worker, uint64_t seed);
     /* This rank has nothing to do, for the attempt-th time in a row (0, 1, ...): the rank to ask
      * for tasks, or DUITE_NO_RANK: none now. `granter` is the rank that granted a leaf last, or
-     * DUITE_NO_RANK. *seconds: for so long the request stands, and no other rank is asked. */
+     * DUITE_NO_RANK. *seconds: how long the request stands; until then no other rank is asked. */
     int (*victim)(void *state, unsigned attempt, int granter, double *seconds);
     /* Whether the leaf goes to the rank that requests tasks. Needed with victim. */
     int (*grant)(void *state, const duite_request *request, const duite_leaf *leaf);
     /* The rank on which a leaf that just became ready runs, asked for or not; the own one: here. */
     int (*place)(void *state, const duite_leaf *leaf);
     /* Moves blocks: home[n] has their homes, and those that are changed move, with all their
-     * objects, before the replay that is about to begin. Returns at the beginning of how manieth
-     * replay from this one on it is asked again (1: of the next); 0: never. It is asked for the
-     * first time at the second replay of the program, when all tasks forked before it are over on
-     * all ranks; on rank 0 only, with the state of worker 0, and need not be deterministic. */
+     * objects, before the replay that is about to begin. Returns after how many replays to ask
+     * again (1: at the next; 0: never). It is asked for the first time at the second replay of the
+     * program, when all tasks forked before are over on all ranks. It is asked on rank 0 only, with
+     * the state of worker 0, and need not be deterministic. */
     uint64_t (*migrate)(void *state, const duite_blocks *blocks, int *home);
 } duite_balancer;
 

@@ -28,7 +28,7 @@ void comm_arrivals_start(struct comm_arrivals *arrivals)
     arrivals->table = NULL;
 }
 
-static void free_packets(struct data_packet *packet)
+static void arrival_free_packets(struct data_packet *packet)
 {
     while (packet) {
         struct data_packet *next = packet->next;
@@ -43,27 +43,27 @@ void comm_arrivals_stop(struct comm_arrivals *arrivals)
     HASH_ITER(hh, arrivals->table, arrival, next)
     {
         HASH_DEL(arrivals->table, arrival);
-        free_packets(arrival->packets);
+        arrival_free_packets(arrival->packets);
         base_pool_give(arrival, sizeof *arrival);
     }
     pthread_mutex_destroy(&arrivals->lock);
 }
 
-static struct comm_arrival *find(struct comm_arrivals *arrivals, struct data_key key)
+static struct comm_arrival *arrival_find(struct comm_arrivals *arrivals, struct data_key key)
 {
     struct comm_arrival *arrival;
     HASH_FIND(hh, arrivals->table, &key, sizeof key, arrival);
     return arrival;
 }
 
-static void drop(struct comm_arrivals *arrivals, struct comm_arrival *arrival)
+static void arrival_drop(struct comm_arrivals *arrivals, struct comm_arrival *arrival)
 {
     HASH_DEL(arrivals->table, arrival);
     base_pool_give(arrival, sizeof *arrival);
 }
 
 /* A new entry in the table, or NULL. */
-static struct comm_arrival *add(struct comm_arrivals *arrivals, struct data_key key)
+static struct comm_arrival *arrival_add(struct comm_arrivals *arrivals, struct data_key key)
 {
     struct comm_arrival *arrival = base_pool_take(sizeof *arrival);
     if (!arrival)
@@ -81,16 +81,16 @@ bool comm_arrivals_expect(struct comm_arrivals *arrivals, struct data_key key,
 {
     *early = NULL;
     pthread_mutex_lock(&arrivals->lock);
-    struct comm_arrival *arrival = find(arrivals, key);
+    struct comm_arrival *arrival = arrival_find(arrivals, key);
     if (arrival) {
         *early = arrival->packets;
         arrival->packets = NULL;
         for (const struct data_packet *packet = *early; packet; packet = packet->next)
             packets--;
         if (!packets)
-            drop(arrivals, arrival);
+            arrival_drop(arrivals, arrival);
     } else {
-        arrival = add(arrivals, key);
+        arrival = arrival_add(arrivals, key);
     }
     bool kept = arrival != NULL;
     if (kept && packets) {
@@ -107,15 +107,15 @@ enum comm_take comm_arrivals_take(struct comm_arrivals *arrivals, struct data_pa
 {
     enum comm_take take = COMM_LOST;
     pthread_mutex_lock(&arrivals->lock);
-    struct comm_arrival *arrival = find(arrivals, packet->key);
+    struct comm_arrival *arrival = arrival_find(arrivals, packet->key);
     if (!arrival && !arrivals->closed)
-        arrival = add(arrivals, packet->key);
+        arrival = arrival_add(arrivals, packet->key);
     if (arrival && arrival->wanted) {
         take = COMM_WANTED;
         *target = arrival->target;
         comm_gauge_add(&arrivals->gauge, -1);
         if (--arrival->wanted == 0)
-            drop(arrivals, arrival);
+            arrival_drop(arrivals, arrival);
     } else if (arrival) {
         take = COMM_KEPT;
         packet->next = arrival->packets;
@@ -161,8 +161,8 @@ bool comm_arrivals_close(struct comm_arrivals *arrivals, struct comm_target *tar
             comm_gauge_add(&arrivals->gauge, -1);
         }
         if (!arrival->wanted) {
-            free_packets(arrival->packets);
-            drop(arrivals, arrival);
+            arrival_free_packets(arrival->packets);
+            arrival_drop(arrivals, arrival);
         }
         if (found)
             break;

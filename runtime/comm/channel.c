@@ -3,8 +3,6 @@
  * graphs it cannot come far without an answer; so that none comes too far, every sixteenth message
  * of a channel is sent so that MPI tells when it was received: a rank is at most so many rounds
  * ahead. */
-#include "runtime/comm/channel.h"
-
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/stack.h"
@@ -15,7 +13,7 @@
 
 enum { CHECKED_TURN = 16 };
 
-struct side {
+struct channel_side {
     const struct plan_channel *channel;
     struct comm_group *group;
     unsigned char *buffer[2];
@@ -28,7 +26,7 @@ struct comm_group {
     struct comm *comm;
     int first_tag, n_tags;
     size_t n;
-    struct side side[];
+    struct channel_side side[];
 };
 
 /* ---- Start and stop ---- */
@@ -43,7 +41,7 @@ bool comm_channels_start(struct comm *comm)
     return true;
 }
 
-static void free_group(struct comm_group *group)
+static void group_free(struct comm_group *group)
 {
     for (size_t i = 0; i < group->n; i++) {
         base_free(group->side[i].buffer[0]);
@@ -53,7 +51,7 @@ static void free_group(struct comm_group *group)
 }
 
 /* Whether MPI has done with the group's memory. */
-static bool is_quiet(struct comm_group *group)
+static bool group_is_quiet(struct comm_group *group)
 {
     for (size_t i = 0; i < group->n; i++) {
         int done = 0;
@@ -64,14 +62,14 @@ static bool is_quiet(struct comm_group *group)
 }
 
 /* Frees those that are closed and quiet. */
-static void sweep(struct comm *comm)
+static void channels_sweep(struct comm *comm)
 {
     struct comm_group **link = &comm->channels.closed;
     while (*link) {
         struct comm_group *group = *link;
-        if (is_quiet(group)) {
+        if (group_is_quiet(group)) {
             *link = group->next;
-            free_group(group);
+            group_free(group);
         } else {
             link = &group->next;
         }
@@ -80,10 +78,10 @@ static void sweep(struct comm *comm)
 
 bool comm_channels_stop(struct comm *comm)
 {
-    sweep(comm);
+    channels_sweep(comm);
     while (comm->channels.closed && !comm_is_broken(comm)) { /* the others have received it all */
         sched_yield();
-        sweep(comm);
+        channels_sweep(comm);
     }
     comm_requests_free(&comm->channels.awaited);
     return !comm->channels.closed;
@@ -93,7 +91,7 @@ bool comm_channels_stop(struct comm *comm)
 
 /* The first of n tags that no open plan has, from where the last ones were taken; the same on all
  * ranks, since plans are made and let go alike. 0 if there are none. */
-static int take_tags(struct comm_channels *channels, int n)
+static int tags_take(struct comm_channels *channels, int n)
 {
     int first = channels->next_tag;
     for (int wraps = 0; wraps < 2;) {
@@ -114,7 +112,7 @@ static int take_tags(struct comm_channels *channels, int n)
     return 0;
 }
 
-static bool post_receive(struct comm *comm, struct side *side, size_t turn)
+static bool channel_post_receive(struct comm *comm, struct channel_side *side, size_t turn)
 {
     const struct plan_channel *channel = side->channel;
     MPI_Request *request = &side->request[turn % 2];
@@ -125,7 +123,7 @@ static bool post_receive(struct comm *comm, struct side *side, size_t turn)
     return comm_mpi_ok(comm, mpi, "MPI_Irecv");
 }
 
-static struct comm_group *new_group(struct comm *comm, struct plan_channels *channels)
+static struct comm_group *group_new(struct comm *comm, struct plan_channels *channels)
 {
     struct comm_group *group = base_alloc_zero(sizeof *group + channels->n * sizeof group->side[0]);
     if (!group)
@@ -134,7 +132,7 @@ static struct comm_group *new_group(struct comm *comm, struct plan_channels *cha
     group->n = channels->n;
     bool fine = true;
     for (size_t i = 0; i < channels->n; i++) {
-        struct side *side = &group->side[i];
+        struct channel_side *side = &group->side[i];
         side->channel = &channels->channel[i];
         side->group = group;
         for (int k = 0; k < 2; k++) {
@@ -146,22 +144,16 @@ static struct comm_group *new_group(struct comm *comm, struct plan_channels *cha
     }
     if (fine)
         return group;
-    free_group(group);
+    group_free(group);
     return NULL;
 }
 
-static void lock(struct comm *comm)
-{
-    while (!comm_try_lock(comm))
-        sched_yield();
-}
-
 /* A plan is let go: what was posted for another round will not come. */
-static void close_channels(struct plan_channels *channels)
+static void group_close(struct plan_channels *channels)
 {
     struct comm_group *group = channels->own, **link;
     struct comm *comm = group->comm;
-    lock(comm);
+    comm_hold(comm);
     for (link = &comm->channels.open; *link != group; link = &(*link)->next)
         ;
     *link = group->next;
@@ -174,14 +166,14 @@ static void close_channels(struct plan_channels *channels)
     group->next = comm->channels.closed;
     comm->channels.closed = group;
     if (!comm_is_lost(comm))
-        sweep(comm);
+        channels_sweep(comm);
     comm_unlock(comm);
 }
 
 /* Under the lock. */
-static int open_group(struct comm *comm, struct comm_group *group, struct plan_channels *channels)
+static int group_open(struct comm *comm, struct comm_group *group, struct plan_channels *channels)
 {
-    int first = take_tags(&comm->channels, channels->phases + 1);
+    int first = tags_take(&comm->channels, channels->phases + 1);
     if (!first)
         return base_error(DUITE_E_MPI, "MPI has no tags for %d phases of a recorded graph: %d",
                           channels->phases, comm->channels.last_tag);
@@ -190,13 +182,14 @@ static int open_group(struct comm *comm, struct comm_group *group, struct plan_c
     group->next = comm->channels.open;
     comm->channels.open = group;
     channels->own = group;
-    channels->close = close_channels;
+    channels->close = group_close;
     for (size_t i = 0; i < channels->n; i++) {
         channels->channel[i].tag += first;
         if (channels->channel[i].sends)
             continue;
         comm->channels.room += 2;
-        if (!post_receive(comm, &group->side[i], 0) || !post_receive(comm, &group->side[i], 1))
+        if (!channel_post_receive(comm, &group->side[i], 0) ||
+            !channel_post_receive(comm, &group->side[i], 1))
             return DUITE_E_MPI;
     }
     return comm_requests_room(&comm->channels.awaited, comm->channels.room + 1)
@@ -206,15 +199,15 @@ static int open_group(struct comm *comm, struct comm_group *group, struct plan_c
 
 int comm_channels_open(struct comm *comm, struct plan_channels *channels)
 {
-    struct comm_group *group = new_group(comm, channels);
+    struct comm_group *group = group_new(comm, channels);
     if (!group)
         return base_no_memory("the messages of a recorded graph");
-    lock(comm);
-    sweep(comm);
-    int code = open_group(comm, group, channels);
+    comm_hold(comm);
+    channels_sweep(comm);
+    int code = group_open(comm, group, channels);
     comm_unlock(comm);
     if (!channels->close)
-        free_group(group);
+        group_free(group);
     return code;
 }
 
@@ -226,14 +219,15 @@ void comm_channel_post(struct comm *comm, struct task *node)
     atomic_thread_fence(memory_order_seq_cst); /* as in comm_send */
 }
 
-static void push(struct task **list, struct task *node)
+static void node_push(struct task **list, struct task *node)
 {
     node->next = *list;
     *list = node;
 }
 
 /* Once communication is broken messages end as if they had been sent. */
-static void start_send(struct comm *comm, struct task *node, struct side *side, struct task **over)
+static void channel_send(struct comm *comm, struct task *node, struct channel_side *side,
+                         struct task **over)
 {
     const struct plan_channel *channel = side->channel;
     MPI_Request *request = &side->request[side->turn % 2];
@@ -242,12 +236,12 @@ static void start_send(struct comm *comm, struct task *node, struct side *side, 
         !comm_mpi_ok(comm, MPI_Test(request, &free, MPI_STATUS_IGNORE), "MPI_Test"))
         free = 1;
     if (!free) {
-        push(&comm->channels.stalled, node);
+        node_push(&comm->channels.stalled, node);
         return;
     }
     if (comm_is_broken(comm)) {
         plan_channel_lost(node);
-        push(over, node);
+        node_push(over, node);
         return;
     }
     void *buffer = side->buffer[side->turn % 2];
@@ -263,14 +257,15 @@ static void start_send(struct comm *comm, struct task *node, struct side *side, 
         atomic_fetch_add_explicit(&comm->bytes, bytes, memory_order_relaxed);
         comm_note(comm, true, channel->peer, bytes);
     }
-    push(over, node);
+    node_push(over, node);
 }
 
-static void await(struct comm *comm, struct task *node, struct side *side, struct task **over)
+static void channel_await(struct comm *comm, struct task *node, struct channel_side *side,
+                          struct task **over)
 {
     if (comm->channels.lost) {
         plan_channel_lost(node);
-        push(over, node);
+        node_push(over, node);
         return;
     }
     *comm_requests_place(&comm->channels.awaited) = side->request[side->turn % 2];
@@ -278,21 +273,21 @@ static void await(struct comm *comm, struct task *node, struct side *side, struc
     side->request[side->turn % 2] = MPI_REQUEST_NULL;
 }
 
-static void start(struct comm *comm, struct task *nodes, struct task **over)
+static void nodes_start(struct comm *comm, struct task *nodes, struct task **over)
 {
     while (nodes) {
         struct task *node = nodes;
-        struct side *side = plan_channel_of(node)->own;
+        struct channel_side *side = plan_channel_of(node)->own;
         nodes = node->next;
         if (side->channel->sends)
-            start_send(comm, node, side, over);
+            channel_send(comm, node, side, over);
         else
-            await(comm, node, side, over);
+            channel_await(comm, node, side, over);
     }
 }
 
 /* What is too long for its buffer was sent by another graph. */
-static bool received(struct comm *comm, int mpi)
+static bool channel_fits(struct comm *comm, int mpi)
 {
     if (mpi == MPI_SUCCESS)
         return true;
@@ -302,19 +297,19 @@ static bool received(struct comm *comm, int mpi)
     return false;
 }
 
-static void receive(struct comm *comm, struct task **over)
+static void channels_receive(struct comm *comm, struct task **over)
 {
     struct comm_requests *awaited = &comm->channels.awaited;
     int done;
-    if (!received(comm, comm_requests_test(awaited, &done)))
+    if (!channel_fits(comm, comm_requests_test(awaited, &done)))
         return;
     for (int i = 0; i < done; i++) {
-        struct side *side = awaited->what[awaited->n + i];
+        struct channel_side *side = awaited->what[awaited->n + i];
         plan_channel_unpack(side->channel->node, side->buffer[side->turn % 2]);
         atomic_fetch_add_explicit(&comm->came, 1, memory_order_relaxed);
         comm_note(comm, false, side->channel->peer, side->channel->bytes);
-        post_receive(comm, side, side->turn++);
-        push(over, side->channel->node);
+        channel_post_receive(comm, side, side->turn++);
+        node_push(over, side->channel->node);
     }
 }
 
@@ -323,14 +318,14 @@ struct task *comm_channels_pass(struct comm *comm, struct task *over)
     struct comm_channels *channels = &comm->channels;
     int before = channels->awaited.n;
     if (!BASE_STACK_IS_EMPTY(&channels->ready))
-        start(comm, BASE_STACK_TAKE(&channels->ready), &over);
+        nodes_start(comm, BASE_STACK_TAKE(&channels->ready), &over);
     if (channels->stalled) {
         struct task *nodes = channels->stalled;
         channels->stalled = NULL;
-        start(comm, nodes, &over);
+        nodes_start(comm, nodes, &over);
     }
     if (channels->awaited.n)
-        receive(comm, &over);
+        channels_receive(comm, &over);
     comm_arrivals_also(&comm->arrivals, channels->awaited.n - before);
     atomic_store_explicit(&channels->awaits, channels->awaited.n > 0, memory_order_relaxed);
     return over;
@@ -340,7 +335,7 @@ void comm_channels_look(struct comm *comm, const struct comm_looker *looker)
 {
     const struct comm_requests *awaited = &comm->channels.awaited;
     for (int i = 0; i < awaited->n; i++) {
-        const struct side *side = awaited->what[i];
+        const struct channel_side *side = awaited->what[i];
         looker->channel(looker->context, side->channel);
     }
     for (const struct task *node = comm->channels.stalled; node; node = node->next)
@@ -353,7 +348,7 @@ void comm_channels_give_up(struct comm *comm)
     comm->channels.lost = true;
     comm_arrivals_also(&comm->arrivals, -awaited->n);
     while (awaited->n) {
-        struct side *side = awaited->what[--awaited->n];
+        struct channel_side *side = awaited->what[--awaited->n];
         side->request[side->turn % 2] = awaited->request[awaited->n];
         comm_channel_post(comm, side->channel->node);
     }

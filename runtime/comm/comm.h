@@ -2,7 +2,7 @@
 #define DUITE_COMM_COMM_H
 
 #include "runtime/base/monitor.h"
-#include "runtime/comm/arrivals.h"
+#include "runtime/data/sum.h"
 #include "runtime/plan/channel.h"
 #include "runtime/task/task.h"
 
@@ -15,6 +15,13 @@
  * MPI is called by one thread at a time, the one that holds `lock`; packets are delivered after it
  * is let go. */
 struct comm;
+
+/* To whom a packet goes: one of the two is set; and the rank it comes from, or -1: several. */
+struct comm_target {
+    struct data_version *version;
+    struct data_sum *sum;
+    int from;
+};
 
 /* On mpi, which stays the caller's and is for these messages only; the monitor gives heartbeats.
  * Local. Errors: DUITE_E_MPI, memory; comm_stop is due all the same. */
@@ -80,7 +87,19 @@ bool comm_look(struct comm *comm, const struct comm_looker *looker);
 /* A number that changes with each message that comes or goes. */
 uint64_t comm_movement(struct comm *comm);
 
-/* ---- Ranks that have nothing to do ---- */
+/* ---- The machine, at start ---- */
+
+/* Ranks of one host that share their cores. */
+struct comm_host {
+    unsigned ranks;  /* this one among them */
+    unsigned before; /* workers of the ranks below this one */
+    unsigned total;  /* workers of all of them */
+};
+
+/* hash: of the cores this rank may use; n_cores: how many; threads: workers this rank wants, or 0
+ * for its share, which is written back. Collective over mpi. Errors: DUITE_E_MPI. */
+int comm_host_find(struct comm_host *host, MPI_Comm mpi, uint64_t hash, unsigned n_cores,
+                   unsigned *threads);
 
 /* Measures what a message costs between ranks. Before comm_open; collective, blocks. A failure is
  * told by the next call. */
@@ -88,6 +107,8 @@ void comm_measure(struct comm *comm);
 
 /* Seconds for a message there and another one back, of so many bytes together. */
 double comm_transfer(const struct comm *comm, size_t bytes);
+
+/* ---- Ranks that have nothing to do ---- */
 
 /* Requests tasks of a rank, for so many idle workers; the request stands for so many seconds.
  * False: not now. */

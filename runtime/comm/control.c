@@ -1,8 +1,6 @@
 /* A control message is sent once and freed when MPI has sent it. Abort messages and last messages
  * are made at the start and sent at most once to each rank; the set of requests always has room for
  * them. */
-#include "runtime/comm/control.h"
-
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"

@@ -1,8 +1,6 @@
 /* An entry of the log is written before `made` counts it and stays until all ranks agreed on it. A
  * rank that has not heard of the last agreement yet may see entries of the log after it: there is
  * room for the entries of two logs. */
-#include "runtime/comm/divergence.h"
-
 #include "runtime/base/clock.h"
 #include "runtime/base/memory.h"
 #include "runtime/comm/internal.h"

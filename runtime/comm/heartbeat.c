@@ -1,7 +1,5 @@
 /* One heartbeat is on its way at a time: a rank whose neighbour does not take it sends no more. The
  * last one of all says so, and nothing follows it. */
-#include "runtime/comm/heartbeat.h"
-
 #include "runtime/base/clock.h"
 #include "runtime/comm/internal.h"
 

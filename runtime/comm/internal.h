@@ -1,18 +1,266 @@
 #ifndef DUITE_COMM_INTERNAL_H
 #define DUITE_COMM_INTERNAL_H
 
+#include "runtime/base/monitor.h"
 #include "runtime/comm/arrivals.h"
-#include "runtime/comm/channel.h"
 #include "runtime/comm/comm.h"
-#include "runtime/comm/control.h"
-#include "runtime/comm/divergence.h"
-#include "runtime/comm/heartbeat.h"
-#include "runtime/comm/requests.h"
 
-/* Shared by the files of this folder only. */
+/* Shared by the files of this folder only: what a comm consists of, part by part, and at the end
+ * the comm itself. Whatever says "under the lock" is for the holder of comm->lock. */
 
 /* Tags: of packets, of heartbeats, and from the last one on of channels. */
 enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_CHANNELS };
+
+/* ---- Requests (transport.c) ---- */
+
+/* MPI requests under way, and what each is about. */
+struct comm_requests {
+    MPI_Request *request;
+    void **what;
+    int *index; /* scratch for MPI_Testsome */
+    int n;
+    size_t capacity[3];
+};
+
+/* A place for one more request, which counts once its `what` is set by comm_requests_started. NULL
+ * without memory. */
+MPI_Request *comm_requests_place(struct comm_requests *requests);
+void comm_requests_started(struct comm_requests *requests, void *what);
+
+/* Memory for so many at once, so that places are always there. False without. */
+bool comm_requests_room(struct comm_requests *requests, size_t n);
+
+/* Tests all; moves what is done to the end of the arrays: what[n .. n + *done). Returns MPI's code.
+ */
+int comm_requests_test(struct comm_requests *requests, int *done);
+
+void comm_requests_free(struct comm_requests *requests);
+
+/* ---- Transport: packets between ranks (transport.c) ---- */
+
+/* What one poll found, delivered after the lock is let go. */
+struct comm_found {
+    struct data_packet *packets;
+    struct task *sent;
+    struct task *nodes; /* of channels, that are through */
+    bool any;
+};
+
+/* Under the lock: sends what was posted, and receives what came. */
+void comm_transport_send(struct comm *comm, struct comm_found *found);
+void comm_transport_receive(struct comm *comm, struct comm_found *found);
+
+/* Without the lock: gives all of it to whom it is for. */
+void comm_transport_deliver(struct comm *comm, struct worker *worker, struct comm_found *found);
+
+/* ---- Channels (channel.c) ---- */
+
+/* Channels: the messages of recorded graphs (plan_channel). Each has two buffers and, if it
+ * receives, a receive posted for each of them, so that a message finds its place when it comes a
+ * round early. Their tags are theirs alone. */
+
+struct comm_group; /* the channels of one plan */
+
+struct comm_channels {
+    _Atomic(struct task *) ready;     /* nodes to be run, linked by next */
+    struct comm_requests awaited;     /* under the lock: receives whose nodes are ready */
+    struct task *stalled;             /* under the lock: nodes whose buffers are still sent */
+    struct comm_group *open, *closed; /* under the lock; closed: some messages are still sent */
+    size_t room;                      /* of `awaited`: receives of the open ones */
+    unsigned looks;
+    int next_tag, last_tag;
+    _Atomic bool awaits; /* there are some */
+    bool lost;           /* nothing comes any more */
+};
+
+/* Whether MPI says how many tags there are. Under no lock yet. */
+bool comm_channels_start(struct comm *comm);
+/* Under the lock, at the end: false if MPI may still read or write memory, which then stays. */
+bool comm_channels_stop(struct comm *comm);
+
+/* Posts a node that is ready; the caller sees to it that somebody comes by. Any thread. */
+void comm_channel_post(struct comm *comm, struct task *node);
+
+/* Under the lock: sends and receives what can be; the nodes that are through are linked before
+ * `over`, which is returned. */
+struct task *comm_channels_pass(struct comm *comm, struct task *over);
+
+/* Under the lock: communication is broken, and nothing is awaited any more. */
+void comm_channels_give_up(struct comm *comm);
+
+/* Shows messages that have not come, and those that cannot be sent yet. Under the lock. */
+struct comm_looker;
+void comm_channels_look(struct comm *comm, const struct comm_looker *looker);
+
+/* ---- Control messages (control.c) ---- */
+
+/* Control messages: what the ranks tell one another beside values and tasks. Each is a packet of a
+ * kind of this folder's own and travels like a value, so that messages between two ranks keep their
+ * order. All of them share one set of MPI requests.
+ *
+ * Everything here is under the lock of the comm unless it says otherwise. */
+enum comm_kind {
+    COMM_ABORT = 64, /* communication is broken on the sender: struct comm_abort */
+    COMM_CHECK,      /* a blocking call of some rank: struct comm_called */
+    COMM_REQUEST,    /* a rank without work requests tasks: the header says how many */
+    COMM_LAST        /* the sender stops: after this only an abort message may follow */
+};
+
+/* The abort message. A rank on which communication is broken sends it once to each other rank and
+ * nothing after it. So whoever has the abort messages of all others knows that nothing is on its
+ * way any more. */
+struct comm_abort {
+    uint64_t entered; /* collective calls so far */
+    int32_t code;
+    int32_t kind; /* of the last of them: enum comm_collective */
+    char message[1008];
+};
+
+/* A request for tasks stands at the rank that got it until a task is granted or its time is over; a
+ * newer one of the same rank takes its place. Nobody waits for a grant, and requests are no
+ * movement of the program. */
+struct comm_standing {
+    double until; /* 0: none */
+    unsigned idle;
+};
+
+struct comm_control {
+    struct comm_requests sends; /* under way; what: the packet, freed then, or NULL: one of these */
+    struct data_packet *abort, *last;
+    struct data_packet *spare; /* for a control message that comes when there is no memory */
+    bool aborts;               /* the abort messages are sent */
+    int heard;                 /* abort messages */
+    uint64_t entered;          /* the most collective calls that an abort message told of */
+    int32_t kind;              /* of the last of these */
+    int last_heard;
+    struct comm_standing *standing; /* by rank */
+    int turn;                       /* whose request is looked at next */
+    _Atomic int standing_any;       /* there may be some; any thread */
+    _Atomic uint64_t requested;     /* requests sent; any thread */
+};
+
+/* Makes room, so that abort messages and last ones need no memory. False without memory. */
+bool comm_control_start(struct comm_control *control, int n_ranks);
+void comm_control_stop(struct comm_control *control);
+
+/* Sends the packet, which is the control's from now on. False: it is freed, and communication is
+ * broken. */
+bool comm_control_send(struct comm *comm, int to, struct data_packet *packet);
+
+/* A packet came. True: it was a control message, which is done with; the packet stays the caller's.
+ */
+bool comm_control_hear(struct comm *comm, struct data_packet *packet);
+
+/* What is due: the divergence check, and the abort messages if communication is broken. */
+void comm_control_pass(struct comm *comm);
+
+/* Tells those who may still send control messages that this rank stops. No other thread is left,
+ * no lock is needed. */
+void comm_control_end(struct comm *comm);
+
+/* No control message is on its way to or from this rank, nor will be; communication is whole. */
+bool comm_control_over(struct comm *comm);
+
+/* Takes the lock. Broken: nothing at all is on its way to or from this rank, nor will be. */
+bool comm_is_quiet(struct comm *comm);
+
+/* ---- The divergence check (divergence.c) ---- */
+
+/* The divergence check: ranks that make different calls are told so, even where one waits for data
+ * that no other one will ever send.
+ *
+ * Every rank logs its blocking calls: number, name, and the fingerprint of all that it forked
+ * before. A rank that waits long in a call sends its entry of the log along a binomial tree over
+ * all ranks, in which rank r has the parent r & (r - 1). Each rank passes on the first entry of a
+ * number that it sees, whether it made that call yet or not, and compares it with its own and with
+ * all further ones of that number. So a call costs a rank at most one message for each of its
+ * neighbours in the tree, at most log2 of the number of ranks; and since the tree joins all ranks,
+ * any difference is seen somewhere. Nothing is sent as long as nobody waits long. */
+
+/* So many calls are logged; then all ranks agree that they were the same, and a new log begins. */
+enum { COMM_LOGGED_CALLS = 1024 };
+
+/* A blocking call of a rank. */
+struct comm_called {
+    uint64_t number, fingerprint; /* number: from 1 on */
+    uint64_t homes;               /* data_table.homes */
+    int32_t rank;                 /* which made it */
+    char name[36];
+};
+_Static_assert(sizeof(struct comm_called) == 64, "an entry takes one cache line");
+
+struct comm_calls {
+    /* Written by the main thread; `made` last. */
+    _Atomic uint64_t made, agreed;
+    _Atomic uint64_t waits;  /* number of the call that it waits in, or 0 */
+    struct comm_called *log; /* of this rank */
+    /* Under the lock: */
+    struct comm_called *seen; /* the first entries that checks showed; by number */
+    uint64_t last_seen;       /* the largest number of them */
+    uint64_t compared;        /* own calls up to this one were compared with them */
+    uint64_t waited;          /* of the calls that it waited in, the last that was looked at ... */
+    double since;             /* ... and when first */
+};
+
+/* False without memory. */
+bool comm_calls_start(struct comm_calls *calls);
+void comm_calls_stop(struct comm_calls *calls);
+
+/* Whether two ranks are neighbours in the tree. */
+bool comm_check_joins(int a, int b);
+
+/* Under the lock: compares what this rank called meanwhile, and begins a check when one is due. */
+void comm_check_pass(struct comm *comm);
+
+/* Under the lock: a neighbour sent, or passed on, an entry. */
+void comm_check_hear(struct comm *comm, int from, const struct comm_called *theirs);
+
+/* Under the lock: all ranks agreed on all calls so far. */
+void comm_calls_agreed(struct comm *comm);
+
+/* Breaks, since the mapping is not the same on two ranks. */
+void comm_homes_differ(struct comm *comm, int a, int b);
+
+/* ---- Heartbeats (heartbeat.c) ---- */
+
+/* Ranks stand in a ring: each sends the next one a heartbeat sixteen times in `seconds`, and
+ * listens to the one before it. If that one is not heard at sixteen looks in a row it is lost: then
+ * communication breaks, and abort messages tell all others. So a rank sends and hears one message a
+ * look, however many there are; and wherever the ring is cut in two, both parts find out, since on
+ * each side somebody listens to the other.
+ *
+ * The monitor does it, not the poll of the workers: all of them may be inside long bodies, and such
+ * a rank is not lost. It touches MPI under the lock, like everybody, and the path of a task or a
+ * message not at all. Silence is counted in looks, not in seconds, so that the time in which this
+ * process itself was stopped, or got no core, is nobody's silence. */
+enum { COMM_SILENT_LOOKS = 16, COMM_HOST_NAME = 64 };
+
+struct comm_heartbeat {
+    struct base_monitor *monitor;
+    struct base_look look;
+    double seconds;            /* until a silent rank is lost; 0: nobody listens */
+    char host[COMM_HOST_NAME]; /* of the rank before this one */
+    /* Under the lock of the comm: */
+    bool last_sent, last_heard;
+    unsigned silent; /* looks in a row */
+    char out, in;    /* a heartbeat, or the last one */
+    MPI_Request sent, heard;
+};
+
+/* Registers with the monitor, which does nothing before comm_heartbeat_open. comm_heartbeat_stop is
+ * due all the same. Errors: DUITE_E_SYSTEM, memory. */
+int comm_heartbeat_start(struct comm *comm, struct base_monitor *monitor);
+
+/* Under the lock of the comm: heartbeats begin, if `seconds`, the same on all ranks, is > 0.
+ * `host`: of the rank before this one. */
+void comm_heartbeat_open(struct comm *comm, double seconds, const char *host);
+
+/* No other thread but the monitor is left, which looks no more. With all ranks at their end, and
+ * communication whole or broken but not lost, takes leave of both neighbours, so that no heartbeat
+ * is on its way afterwards. */
+void comm_heartbeat_stop(struct comm *comm);
+
+/* ---- Collective calls (collective.c) ---- */
 
 /* What a small reduction takes the largest of; complements make it the smallest as well. */
 struct comm_reduced {
@@ -23,6 +271,8 @@ enum { COMM_REDUCED = sizeof(struct comm_reduced) / sizeof(uint64_t) };
 
 /* The kinds of collective calls. */
 enum comm_collective { COMM_AGREES, COMM_GATHERS, COMM_SUMS };
+
+/* ---- The comm ---- */
 
 struct comm {
     MPI_Comm mpi;
@@ -50,7 +300,7 @@ struct comm {
     double addend[COMM_SUMMED], sums[COMM_SUMMED]; /* of the last sum */
     MPI_Request request;                    /* of the last one; MPI_REQUEST_NULL once it is over */
     struct comm_word *words;                /* one a rank, and this rank's own */
-    _Atomic uint64_t messages, bytes, came; /* the last one: received */
+    _Atomic uint64_t messages, bytes, came; /* sent, and of these the bytes; received */
 };
 
 /* Joins the collective calls that other ranks entered before communication broke. All ranks are at

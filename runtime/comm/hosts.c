@@ -1,8 +1,50 @@
-/* What a message costs: measured once, between ranks that are far apart. */
+/* What ranks find out about their machine at start: who shares cores with whom, and what a message
+ * costs between ranks that are far apart. Nothing here needs memory: a rank that had none would
+ * leave the others waiting. */
 #include "runtime/base/clock.h"
+#include "runtime/base/error.h"
 #include "runtime/comm/internal.h"
 
 #include <math.h>
+
+/* ---- Ranks that share cores ---- */
+
+/* The ranks that share this one's cores. */
+static int host_exchange(struct comm_host *host, MPI_Comm sharers, unsigned n_cores,
+                         unsigned *threads)
+{
+    int n, self;
+    if (MPI_Comm_size(sharers, &n) || MPI_Comm_rank(sharers, &self))
+        return base_error(DUITE_E_MPI, "MPI_Comm_size failed");
+    *host = (struct comm_host){.ranks = (unsigned)n};
+    if (!*threads)
+        *threads = n_cores > host->ranks ? n_cores / host->ranks : 1;
+    if (MPI_Exscan(threads, &host->before, 1, MPI_UNSIGNED, MPI_SUM, sharers) ||
+        MPI_Allreduce(threads, &host->total, 1, MPI_UNSIGNED, MPI_SUM, sharers))
+        return base_error(DUITE_E_MPI, "MPI_Allreduce failed");
+    if (!self)
+        host->before = 0; /* MPI_Exscan leaves it undefined there */
+    return DUITE_OK;
+}
+
+int comm_host_find(struct comm_host *host, MPI_Comm mpi, uint64_t hash, unsigned n_cores,
+                   unsigned *threads)
+{
+    MPI_Comm local, sharers;
+    if (MPI_Comm_split_type(mpi, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local))
+        return base_error(DUITE_E_MPI, "MPI_Comm_split_type failed");
+    int code = DUITE_OK;
+    if (MPI_Comm_split(local, (int)(hash & 0x7fffffff), 0, &sharers))
+        code = base_error(DUITE_E_MPI, "MPI_Comm_split failed");
+    MPI_Comm_free(&local);
+    if (code)
+        return code;
+    code = host_exchange(host, sharers, n_cores, threads);
+    MPI_Comm_free(&sharers);
+    return code;
+}
+
+/* ---- What a message costs ---- */
 
 #define LEAST_PER_BYTE 1e-12 /* s: what else goes on may hide it, but no way is free */
 

@@ -1,7 +1,5 @@
 /* Each of the balancer's states belongs to one worker. Any worker may write the numbers that say
- * when this rank asks next: a request too many or too few does no harm. */
-#include "runtime/workers/balance.h"
-
+ * when this rank requests tasks next: a request too many or too few does no harm. */
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
@@ -13,23 +11,23 @@
 #include <string.h>
 
 enum {
-    DEPTH = 64, /* tasks of a queue that are looked at for one who asks */
-    STOCK =
-        4, /* offloaded tasks a worker, the one that runs among them: with fewer it asks for more */
+    DEPTH = 64, /* tasks of a queue that are looked at for one request */
+    STOCK = 4,  /* offloaded tasks a worker, the one that runs among them: with fewer it requests
+                   more */
 };
 
-#define FIRST_ASK_SECONDS   2e-5 /* so long a worker idles before it asks */
-#define LONGEST_ASK_SECONDS 1e6
-#define SERVE_SECONDS       2e-5 /* between two looks for tasks to give */
+#define FIRST_REQUEST_SECONDS   2e-5 /* so long a worker idles before its rank requests tasks */
+#define LONGEST_REQUEST_SECONDS 1e6
+#define GRANT_SECONDS           2e-5 /* between two looks for tasks to grant */
 
 struct work_balance {
     const duite_balancer *balancer;
     unsigned char *states; /* one a worker, lines apart */
     size_t stride;
     double tick;
-    uint64_t first_ask, serve_ticks;
+    uint64_t first_request, grant_ticks;
     struct work_cost cost;
-    _Atomic uint64_t next, served; /* ticks: when to ask, when it was given last */
+    _Atomic uint64_t next, granted; /* ticks: when to request, when it was granted last */
     _Atomic unsigned attempt;
     _Atomic int giver;
 };
@@ -48,8 +46,8 @@ int work_balance_start(struct work_balance **out, struct work_pool *pool)
         return base_no_memory("the balancer");
     balance->balancer = balancer;
     balance->tick = pool->tick;
-    balance->first_ask = (uint64_t)(FIRST_ASK_SECONDS / pool->tick);
-    balance->serve_ticks = (uint64_t)(SERVE_SECONDS / pool->tick);
+    balance->first_request = (uint64_t)(FIRST_REQUEST_SECONDS / pool->tick);
+    balance->grant_ticks = (uint64_t)(GRANT_SECONDS / pool->tick);
     balance->giver = DUITE_NO_RANK;
     balance->stride = (balancer->state_size / BASE_LINE + 2) * BASE_LINE;
     balance->states = base_alloc_zero(n * balance->stride);
@@ -75,7 +73,7 @@ void work_balance_stop(struct work_pool *pool)
     base_free(balance);
 }
 
-static void *state_of(const struct worker *worker)
+static void *balance_state(const struct worker *worker)
 {
     const struct work_balance *balance = worker->pool->balance;
     return balance->states + worker->index * balance->stride;
@@ -83,7 +81,7 @@ static void *state_of(const struct worker *worker)
 
 /* ---- The balancer's functions, with the worker's mark around them ---- */
 
-static struct base_mark *mark_of(const struct worker *worker)
+static struct base_mark *balance_mark(const struct worker *worker)
 {
     return base_watchdog_mark(worker->pool->setup.watchdog, BASE_BALANCER, worker->index);
 }
@@ -91,34 +89,34 @@ static struct base_mark *mark_of(const struct worker *worker)
 static int balancer_victim(const struct worker *worker, unsigned attempt, int giver,
                            double *seconds)
 {
-    base_mark_begin(mark_of(worker), BASE_BALANCER_VICTIM);
+    base_mark_begin(balance_mark(worker), BASE_BALANCER_VICTIM);
     const int rank =
-        worker->pool->balance->balancer->victim(state_of(worker), attempt, giver, seconds);
-    base_mark_end(mark_of(worker));
+        worker->pool->balance->balancer->victim(balance_state(worker), attempt, giver, seconds);
+    base_mark_end(balance_mark(worker));
     return rank;
 }
 
-static bool balancer_gives(const struct worker *worker, const duite_request *asked,
-                           const duite_leaf *leaf)
+static bool balancer_grants(const struct worker *worker, const duite_request *asked,
+                            const duite_leaf *leaf)
 {
-    base_mark_begin(mark_of(worker), BASE_BALANCER_GRANT);
-    const int given = worker->pool->balance->balancer->grant(state_of(worker), asked, leaf);
-    base_mark_end(mark_of(worker));
+    base_mark_begin(balance_mark(worker), BASE_BALANCER_GRANT);
+    const int given = worker->pool->balance->balancer->grant(balance_state(worker), asked, leaf);
+    base_mark_end(balance_mark(worker));
     return given;
 }
 
 static int balancer_place(const struct worker *worker, const duite_leaf *leaf)
 {
-    base_mark_begin(mark_of(worker), BASE_BALANCER_PLACE);
-    const int rank = worker->pool->balance->balancer->place(state_of(worker), leaf);
-    base_mark_end(mark_of(worker));
+    base_mark_begin(balance_mark(worker), BASE_BALANCER_PLACE);
+    const int rank = worker->pool->balance->balancer->place(balance_state(worker), leaf);
+    base_mark_end(balance_mark(worker));
     return rank;
 }
 
 uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home)
 {
     const struct work_balance *balance = pool->balance;
-    struct base_mark *mark = mark_of(&pool->worker[0]);
+    struct base_mark *mark = balance_mark(&pool->worker[0]);
     base_mark_begin(mark, BASE_BALANCER_MIGRATE);
     const uint64_t next = balance->balancer->migrate(balance->states, blocks, home);
     base_mark_end(mark);
@@ -143,7 +141,7 @@ double work_other_seconds(struct work_pool *pool)
 /* ---- Tasks that may go ---- */
 
 /* False: it may not go. */
-static bool describe(const struct work_pool *pool, const struct task *task, duite_leaf *leaf)
+static bool leaf_describe(const struct work_pool *pool, const struct task *task, duite_leaf *leaf)
 {
     const struct task_graph *graph = pool->setup.graph;
     size_t bytes;
@@ -159,7 +157,7 @@ static bool describe(const struct work_pool *pool, const struct task *task, duit
     return true;
 }
 
-static bool send(struct worker *worker, struct task *task, int to)
+static bool leaf_send(struct worker *worker, struct task *task, int to)
 {
     bool nested;
     const uint64_t number = task_main_number(task, &nested);
@@ -170,9 +168,9 @@ static bool send(struct worker *worker, struct task *task, int to)
     return true;
 }
 
-/* It goes to who asks before its own worker can take it: of a tree whose tasks become ready a few
- * at a time hardly a leaf would be left between two tasks. */
-static bool given_at_once(struct worker *worker, struct task *task, const duite_leaf *leaf)
+/* It goes to the rank that requests one before its own worker can take it: of a tree whose tasks
+ * become ready a few at a time hardly a leaf would be left between two tasks. */
+static bool leaf_grant_at_once(struct worker *worker, struct task *task, const duite_leaf *leaf)
 {
     const struct work_pool *pool = worker->pool;
     size_t others = work_queue_size(&worker->queue) + work_queue_size(&pool->shared);
@@ -181,7 +179,7 @@ static bool given_at_once(struct worker *worker, struct task *task, const duite_
         return false;
     const duite_request asked = {
         .rank = requester.rank, .idle = requester.idle, .ready = 1 + (unsigned)others};
-    bool given = balancer_gives(worker, &asked, leaf) && send(worker, task, requester.rank);
+    bool given = balancer_grants(worker, &asked, leaf) && leaf_send(worker, task, requester.rank);
     if (!given)
         comm_return_request(pool->setup.comm, &requester);
     return given;
@@ -194,89 +192,91 @@ bool work_placed_away(struct worker *worker, struct task *task)
     int own = pool->setup.graph->rank, to = own;
     duite_leaf leaf;
     bool asked = balancer->grant && comm_has_requests(pool->setup.comm);
-    if ((!balancer->place && !asked) || !describe(pool, task, &leaf))
+    if ((!balancer->place && !asked) || !leaf_describe(pool, task, &leaf))
         return false;
     if (balancer->place)
         to = balancer_place(worker, &leaf);
     if (to >= 0 && to < pool->setup.graph->n_ranks && to != own)
-        return send(worker, task, to);
-    return asked && given_at_once(worker, task, &leaf);
+        return leaf_send(worker, task, to);
+    return asked && leaf_grant_at_once(worker, task, &leaf);
 }
 
-/* ---- Giving ---- */
+/* ---- Granting ---- */
 
-struct gift {
+struct grant {
     struct worker *worker;
     duite_request asked;
 };
 
-/* Oldest first: the owner works on the newest. What is not given goes back in its old order. */
-static void give_or_keep(struct gift *gift, struct work_queue *queue, struct task *task)
+/* Oldest first: the owner works on the newest. What is not granted goes back in its old order. */
+static void grant_or_keep(struct grant *grant, struct work_queue *queue, struct task *task)
 {
-    const struct work_pool *pool = gift->worker->pool;
+    const struct work_pool *pool = grant->worker->pool;
     while (task) {
         struct task *next = task->next;
         duite_leaf leaf;
-        if (describe(pool, task, &leaf) && balancer_gives(gift->worker, &gift->asked, &leaf) &&
-            send(gift->worker, task, gift->asked.rank))
-            gift->asked.granted++;
+        if (leaf_describe(pool, task, &leaf) &&
+            balancer_grants(grant->worker, &grant->asked, &leaf) &&
+            leaf_send(grant->worker, task, grant->asked.rank))
+            grant->asked.granted++;
         else
             work_queue_push(queue, task);
         task = next;
     }
 }
 
-static void give_from(struct gift *gift, struct work_queue *queue)
+static void grant_from(struct grant *grant, struct work_queue *queue)
 {
     struct task *taken = NULL, *task;
     for (unsigned i = 0; i < DEPTH && (task = work_queue_take(queue, DUITE_NEWEST)); i++) {
         task->next = taken;
         taken = task;
-        gift->asked.ready++;
+        grant->asked.ready++;
     }
-    give_or_keep(gift, queue, taken);
+    grant_or_keep(grant, queue, taken);
 }
 
-static void give(struct worker *worker, const struct comm_requester *requester, unsigned *given)
+static void grant_queues(struct worker *worker, const struct comm_requester *requester,
+                         unsigned *given)
 {
     struct work_pool *pool = worker->pool;
-    struct gift gift = {.worker = worker,
-                        .asked = {.rank = requester->rank, .idle = requester->idle}};
-    give_from(&gift, &worker->queue);
+    struct grant grant = {.worker = worker,
+                          .asked = {.rank = requester->rank, .idle = requester->idle}};
+    grant_from(&grant, &worker->queue);
     if (!atomic_flag_test_and_set_explicit(&pool->shared.token, memory_order_acquire)) {
-        give_from(&gift, &pool->shared);
+        grant_from(&grant, &pool->shared);
         atomic_flag_clear_explicit(&pool->shared.token, memory_order_seq_cst);
     }
     /* Those who did not find them meanwhile look again. */
     atomic_thread_fence(memory_order_seq_cst);
-    if (gift.asked.ready > gift.asked.granted)
+    if (grant.asked.ready > grant.asked.granted)
         work_wake_one(pool, DUITE_NO_QUEUE);
-    *given = gift.asked.granted;
+    *given = grant.asked.granted;
 }
 
-void work_serve(struct worker *worker)
+void work_grant(struct worker *worker)
 {
     struct work_balance *balance = worker->pool->balance;
     struct comm *comm = worker->pool->setup.comm;
     struct comm_requester requester;
     uint64_t now = base_ticks();
     if (!comm_has_requests(comm) ||
-        now - atomic_load_explicit(&balance->served, memory_order_relaxed) < balance->serve_ticks)
+        now - atomic_load_explicit(&balance->granted, memory_order_relaxed) < balance->grant_ticks)
         return;
-    atomic_store_explicit(&balance->served, now, memory_order_relaxed);
+    atomic_store_explicit(&balance->granted, now, memory_order_relaxed);
     unsigned given = 1;
     while (given && comm_take_request(comm, &requester)) {
-        give(worker, &requester, &given);
+        grant_queues(worker, &requester, &given);
         if (!given)
             comm_return_request(comm, &requester);
     }
     work_poll(worker);
 }
 
-/* ---- Asking ---- */
+/* ---- Requesting ---- */
 
-/* Unless the last question still stands. */
-static void ask(struct worker *worker)
+/* Unless the last request still stands. */
+static void request_send(struct worker *worker)
 {
     struct work_pool *pool = worker->pool;
     struct work_balance *balance = pool->balance;
@@ -288,7 +288,7 @@ static void ask(struct worker *worker)
     unsigned attempt = atomic_load_explicit(&balance->attempt, memory_order_relaxed);
     int giver = atomic_load_explicit(&balance->giver, memory_order_relaxed);
     int rank = balancer_victim(worker, attempt, giver, &seconds);
-    seconds = fmin(fmax(seconds, 0), LONGEST_ASK_SECONDS); /* whatever it says */
+    seconds = fmin(fmax(seconds, 0), LONGEST_REQUEST_SECONDS); /* whatever it says */
     unsigned idle = 1 + (unsigned)atomic_load_explicit(&pool->parked, memory_order_relaxed);
     bool other = rank >= 0 && rank < pool->setup.graph->n_ranks && rank != pool->setup.graph->rank;
     if (other && !comm_request(pool->setup.comm, rank, idle, seconds))
@@ -303,10 +303,10 @@ static void ask(struct worker *worker)
         work_stir(worker);
 }
 
-void work_beg(struct worker *worker, uint64_t idle)
+void work_request(struct worker *worker, uint64_t idle)
 {
-    if (idle >= worker->pool->balance->first_ask)
-        ask(worker);
+    if (idle >= worker->pool->balance->first_request)
+        request_send(worker);
 }
 
 void work_offloaded_came(struct work_balance *balance, const struct task *task)
@@ -325,6 +325,6 @@ bool work_begins(struct worker *worker, const struct task *task)
     size_t ready = work_queue_size(&worker->queue) + work_queue_size(&pool->shared);
     bool last = offloaded <= STOCK * pool->setup.threads && ready < offloaded;
     if (last)
-        ask(worker);
+        request_send(worker);
     return last;
 }

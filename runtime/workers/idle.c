@@ -13,8 +13,9 @@
 #include "runtime/base/clock.h"
 #include "runtime/workers/internal.h"
 
-#include <sched.h>
+#include <errno.h>
 #include <sys/resource.h>
+#include <time.h>
 
 enum { LOST_FACTOR = 100 };
 
@@ -25,6 +26,77 @@ enum { LOST_FACTOR = 100 };
  * its neighbour has a core, too, messages come within that. */
 #define LOST_SECONDS    2e-4
 #define CROWDED_SECONDS 5e-4
+
+/* ---- A place to sleep: `asleep` goes from 0 to 1 by the worker, and back by whoever gets there
+ * first: a waker, or the worker itself ---- */
+
+bool work_park_start(struct work_park *park)
+{
+    pthread_condattr_t monotonic;
+    atomic_init(&park->asleep, 0);
+    pthread_mutex_init(&park->lock, NULL);
+    if (pthread_condattr_init(&monotonic))
+        return false;
+    bool fine = !pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC) &&
+                !pthread_cond_init(&park->wake, &monotonic);
+    pthread_condattr_destroy(&monotonic);
+    return fine;
+}
+
+void work_park_stop(struct work_park *park)
+{
+    pthread_cond_destroy(&park->wake);
+    pthread_mutex_destroy(&park->lock);
+}
+
+void work_park_announce(struct work_park *park)
+{
+    atomic_store_explicit(&park->asleep, 1, memory_order_seq_cst);
+    atomic_thread_fence(memory_order_seq_cst);
+}
+
+void work_park_cancel(struct work_park *park)
+{
+    atomic_store_explicit(&park->asleep, 0, memory_order_relaxed);
+}
+
+static struct timespec park_until(double seconds)
+{
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    long nanoseconds = until.tv_nsec + (long)(1e9 * seconds);
+    until.tv_sec += nanoseconds / 1000000000;
+    until.tv_nsec = nanoseconds % 1000000000;
+    return until;
+}
+
+void work_park_sleep(struct work_park *park, double seconds)
+{
+    struct timespec until = park_until(seconds);
+    int code = 0;
+    pthread_mutex_lock(&park->lock);
+    while (code != ETIMEDOUT && atomic_load_explicit(&park->asleep, memory_order_acquire)) {
+        if (seconds > 0)
+            code = pthread_cond_timedwait(&park->wake, &park->lock, &until);
+        else
+            code = pthread_cond_wait(&park->wake, &park->lock);
+    }
+    pthread_mutex_unlock(&park->lock);
+    work_park_cancel(park);
+}
+
+bool work_park_wake(struct work_park *park)
+{
+    int asleep = 1;
+    if (!atomic_load_explicit(&park->asleep, memory_order_relaxed) ||
+        !atomic_compare_exchange_strong_explicit(&park->asleep, &asleep, 0, memory_order_acq_rel,
+                                                 memory_order_relaxed))
+        return false;
+    pthread_mutex_lock(&park->lock);
+    pthread_cond_signal(&park->wake);
+    pthread_mutex_unlock(&park->lock);
+    return true;
+}
 
 /* ---- Waking ---- */
 
@@ -177,7 +249,7 @@ void work_idle(struct worker *worker, const struct work_wish *wish)
     struct work_pool *pool = worker->pool;
     bool polls = poller_take(worker);
     if (polls && pool->balance && worker->idle_since)
-        work_beg(worker, base_ticks() - worker->idle_since);
+        work_request(worker, base_ticks() - worker->idle_since);
     if (idle_spin(worker))
         return;
     struct task *task = idle_sleep(worker, polls || wish->unheard ? worker->pause : 0, wish);

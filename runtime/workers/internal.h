@@ -1,20 +1,53 @@
 #ifndef DUITE_WORKERS_INTERNAL_H
 #define DUITE_WORKERS_INTERNAL_H
 
+#include "runtime/base/monitor.h"
+#include "runtime/data/packet.h"
 #include "runtime/plan/plan.h"
-#include "runtime/workers/balance.h"
-#include "runtime/workers/park.h"
 #include "runtime/workers/queue.h"
-#include "runtime/workers/standstill.h"
 #include "runtime/workers/topology.h"
 #include "runtime/workers/workers.h"
 
+#include <duite_policy.h>
+#include <pthread.h>
 #include <sched.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
 
 /* Shared by the files of this folder only. */
 
 /* A worker that sleeps for short pauses begins with this one; each is twice as long as the last. */
 #define WORK_FIRST_PAUSE_SECONDS 2e-5
+
+/* A place where one worker sleeps. To sleep without missing a wake-up: announce, look once more for
+ * what to wait for, then sleep or cancel. Whoever makes something available looks at `asleep`
+ * afterwards; both sides are sequentially consistent, so at least one sees the other. */
+struct work_park {
+    _Atomic int asleep;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+};
+
+/* What the main program waits for; atomic, so that nobody has to stop for the look at it. */
+struct work_waits {
+    _Atomic(const char *) call; /* NULL: it does not wait; written last */
+    _Atomic(const char *) what; /* NULL: an object's version, the next three */
+    _Atomic uint32_t slot, generation;
+    _Atomic uint64_t number;
+    _Atomic uint64_t tasks; /* of this rank then, with those that are over */
+    _Atomic uint64_t turn;  /* how often it began or ended to wait */
+};
+
+struct work_standstill {
+    struct base_look look;
+    double patience; /* seconds of a standstill until it is reported */
+    double since;    /* when something moved last, as far as was seen; */
+    uint64_t before; /* what was read then */
+    bool reported;
+    pthread_mutex_t lock; /* held while it reports, see work_leaves */
+    struct work_waits waits;
+};
 
 struct work_counts {
     _Atomic uint64_t over, more; /* tasks of all kinds; what is waited for beside the forked ones */
@@ -72,7 +105,7 @@ struct work_pool {
     _Atomic int watched;             /* somebody reads the tasks that run: they must not go on */
     _Alignas(64) _Atomic int parked; /* workers that sleep or are about to */
     _Alignas(64) _Atomic int poller; /* 1: an idle worker polls */
-    /* Of the throttled main thread, see main.c. */
+    /* Of the throttled main thread, see wait.c. */
     uint64_t look;                        /* how many tasks it forks before it counts again */
     _Alignas(64) _Atomic uint64_t wanted; /* fewer unfinished tasks than that, or 0 */
     _Atomic uint64_t awaited;             /* by the main thread that waits: all these, or 0 */
@@ -83,6 +116,9 @@ static inline void work_bump(_Atomic uint64_t *count, uint64_t by)
     uint64_t now = atomic_load_explicit(count, memory_order_relaxed);
     atomic_store_explicit(count, now + by, memory_order_relaxed);
 }
+
+/* A worker whose task is over waits here for the end of a report. */
+void work_standstill_passes(struct work_pool *pool);
 
 /* Whose body runs, from now on; returns whose did: a body that waits has others on top of it. */
 static inline const struct task *work_enters(struct worker *worker, const struct task *task)
@@ -140,6 +176,17 @@ bool work_poll(struct worker *worker);
 
 /* ---- idle.c ---- */
 
+bool work_park_start(struct work_park *park);
+void work_park_stop(struct work_park *park);
+
+void work_park_announce(struct work_park *park);
+void work_park_cancel(struct work_park *park);
+/* Sleeps until woken, or for so many seconds if they are > 0. */
+void work_park_sleep(struct work_park *park, double seconds);
+
+/* Wakes the worker if it sleeps or is about to. Returns whether it did. */
+bool work_park_wake(struct work_park *park);
+
 /* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal
  * it. What it is woken for was made known by a sequentially consistent read-modify-write, or before
  * a fence, against the announcement of a sleeper. */
@@ -156,12 +203,12 @@ void work_busy_again(struct worker *worker);
  * sleep. */
 bool work_is_crowded(struct worker *worker, uint64_t now);
 
-/* ---- main.c ---- */
+/* ---- wait.c ---- */
 
 /* The worker finds no task: does the main thread wait for just that? */
 void work_ran_out(struct worker *worker);
 
-/* ---- report.c: for the trace, if there is one ---- */
+/* ---- pool.c: for the trace, if there is one ---- */
 
 /* A task that ran and is not finished yet. */
 void work_note_task(struct worker *worker, const struct task *task, const struct work_ran *ran);
@@ -174,6 +221,46 @@ void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed);
 bool work_note_messages_begin(struct worker *worker);
 void work_note_messages_end(struct worker *worker, bool begun);
 void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes);
+
+/* ---- balance.c: what workers do for a balancer. They measure what bodies cost, request tasks of
+ * other ranks when there are none, and grant some to those that request them. A pool without a
+ * balancer, or with one that moves nothing, or on one rank, has none of this (NULL) ---- */
+
+/* The pool has its setup and its workers. *balance NULL: nothing moves. Errors: memory. */
+int work_balance_start(struct work_balance **balance, struct work_pool *pool);
+void work_balance_stop(struct work_pool *pool); /* it may have none */
+
+/* A task became ready: true if it was sent to another rank. */
+bool work_placed_away(struct worker *worker, struct task *task);
+
+/* A task of another rank came. */
+void work_offloaded_came(struct work_balance *balance, const struct task *task);
+
+/* A task is about to run: one of the last of other ranks', with nothing else here, is the moment to
+ * request more. Whether that took time. */
+bool work_begins(struct worker *worker, const struct task *task);
+
+/* The body of a task took so many ticks. */
+void work_learn(struct worker *worker, const struct task *task, uint64_t ticks);
+
+/* Between tasks: grants tasks to the ranks that request some. */
+void work_grant(struct worker *worker);
+
+/* The worker, which polls for all that idle, has had nothing to do for so many ticks: requests
+ * tasks. */
+void work_request(struct worker *worker, uint64_t idle);
+
+/* ---- standstill.c: the monitor looks, eight times in so many seconds, whether the main program
+ * waits and nothing of this rank moves. Then it reports on standard error, once, who waits for
+ * what. Another standstill is reported if it lasts twice as long, and so on, so that slow tasks do
+ * not fill the screen ---- */
+
+/* Begins and ends the looks; 0 seconds: there are none; else the workers are there. Errors: memory,
+ * DUITE_E_SYSTEM. */
+int work_standstill_start(struct work_pool *pool, double seconds);
+void work_standstill_stop(struct work_pool *pool);
+
+/* ---- Between a worker and its policies ---- */
 
 /* The scheduler's victim for this attempt. */
 static inline unsigned work_victim(struct worker *worker, unsigned attempt)

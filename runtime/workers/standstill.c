@@ -7,8 +7,6 @@
  * then loads what the worker runs. One of the two must see the other: the fence for that is
  * membarrier(2) on the monitor's side alone, which runs one on all threads of the process, so that
  * it costs a task no more than a store and a load. */
-#include "runtime/workers/standstill.h"
-
 #include "runtime/base/clock.h"
 #include "runtime/offload/offload.h"
 #include "runtime/workers/internal.h"

@@ -206,7 +206,7 @@ static void run_poll(struct worker *worker, struct comm *comm, uint64_t now)
     worker->polled = now;
     work_poll(worker);
     if (worker->pool->balance)
-        work_serve(worker);
+        work_grant(worker);
 }
 
 void work_run(struct worker *worker, struct task *task)

@@ -71,6 +71,11 @@ struct task *work_queue_take(struct work_queue *queue, duite_end end)
     return plain_take(queue);
 }
 
+int64_t work_queue_mark(struct work_queue *queue)
+{
+    return (int64_t)(uintptr_t)queue;
+}
+
 struct task *work_queue_take_shared(struct work_queue *queue, duite_end end)
 {
     (void)end;

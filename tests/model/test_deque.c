@@ -1,4 +1,4 @@
-/* The deque (runtime/workers/deque.c): whatever its owner and thieves do at the same time, each
+/* The deque (runtime/workers/queue.c): whatever its owner and thieves do at the same time, each
  * task that was pushed is taken exactly once. Rings of one or two slots: slots are used again and
  * rings outgrown at once. */
 #include "tests/model/runtime.h"
@@ -7,13 +7,9 @@ static unsigned allocations; /* that still succeed */
 
 #define base_alloc(size) (allocations-- ? explore_alloc(size) : NULL)
 
-#include "runtime/workers/deque.c"
+#include "runtime/workers/queue.c"
 
 enum { TASKS = 12 };
-
-struct task {
-    int taken;
-};
 
 /* A small program: what the owner and up to three thieves do, one letter each: P push, T take the
  * newest, O take the oldest. */
@@ -28,14 +24,15 @@ struct play {
 static const struct play *play;
 static struct {
     struct work_deque deque;
-    struct task task[TASKS];
-    int pushed;
+    struct task *task[TASKS];
+    int taken[TASKS], pushed;
 } its;
 
-static void got(struct task *task)
+static void got(const struct task *task)
 {
-    if (task)
-        explore_check(++task->taken == 1);
+    for (int i = 0; task && i < TASKS; i++)
+        if (its.task[i] == task)
+            explore_check(++its.taken[i] == 1);
 }
 
 static void run(void)
@@ -43,7 +40,7 @@ static void run(void)
     bool again;
     for (const char *letter = play->script[explore_self()]; *letter; letter++) {
         if (*letter == 'P')
-            its.pushed += work_deque_push(&its.deque, &its.task[its.pushed]);
+            its.pushed += work_deque_push(&its.deque, its.task[its.pushed]);
         else if (*letter == 'T')
             got(work_deque_take_newest(&its.deque));
         else
@@ -55,9 +52,11 @@ static void start(void)
 {
     memset(&its, 0, sizeof its);
     allocations = play->rings ? play->rings : TASKS;
+    for (int i = 0; i < TASKS; i++)
+        its.task[i] = explore_alloc(sizeof *its.task[i]);
     work_deque_start(&its.deque, play->slots);
     for (int i = 0; i < play->there; i++)
-        work_deque_push(&its.deque, &its.task[its.pushed++]);
+        work_deque_push(&its.deque, its.task[its.pushed++]);
 }
 
 /* What nobody took is still there, and nothing else. */
@@ -67,7 +66,7 @@ static void end(void)
     while ((task = work_deque_take_newest(&its.deque)))
         got(task);
     for (int i = 0; i < TASKS; i++)
-        explore_check(its.task[i].taken == (i < its.pushed));
+        explore_check(its.taken[i] == (i < its.pushed));
     work_deque_stop(&its.deque);
 }
 
@@ -117,7 +116,7 @@ static const struct {
      {"thieves do not look at one another", 2, 1, {"", "O", "O"}, 0}},
     {{"work_deque_show", "&deque->newest", EXPLORE_RELAX},
      {"a task is announced before it is there", 2, 0, {"P", "O"}, 0}},
-    {{"grow", "&deque->ring", EXPLORE_RELAX},
+    {{"ring_grow", "&deque->ring", EXPLORE_RELAX},
      {"a ring is shown before it is filled", 1, 1, {"P", "O"}, 0}},
 };
 

@@ -9,8 +9,6 @@ static unsigned allocations; /* that still succeed */
 
 #define base_alloc(size) (allocations-- ? explore_alloc(size) : NULL)
 
-#include "runtime/workers/deque.c"
-#include "runtime/workers/heap.c"
 #include "runtime/workers/queue.c"
 
 enum { THREADS = 3, EACH = 3, TASKS = THREADS * EACH }; /* EACH: tasks that a thread makes */
@@ -138,7 +136,7 @@ static const struct {
 } plants[] = {
     {{"work_queue_put", "&queue->inbox", EXPLORE_RELAX},
      {"those who put do not look at one another", {"", "p", "p"}, false}},
-    {{"empty_inbox", "&queue->inbox", EXPLORE_DROP},
+    {{"inbox_take_all", "&queue->inbox", EXPLORE_DROP},
      {"the inbox is not looked at", {"T", "pp"}, false}},
     {{"work_queue_take_shared", "&queue->token", EXPLORE_DROP},
      {"all hold the token", {"pt", "", "pt"}, false}},

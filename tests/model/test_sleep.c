@@ -1,4 +1,4 @@
-/* Sleeping and waking (runtime/workers/park.c, worker.c, idle.c, main.c and pool.c): no task waits
+/* Sleeping and waking (runtime/workers/idle.c, worker.c, wait.c and pool.c): no task waits
  * while all who could run it sleep for ever, no message while nobody polls, each task runs once,
  * and a stop ends. The workers are the real ones: thread 0 is the main thread, the others are those
  * that work_start makes. Queues are plain_queue.h's, or with REAL_QUEUES the real ones. */
@@ -181,27 +181,10 @@ int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
 #define work_cores_bind(unit)                 nothing()
 
 #ifdef REAL_QUEUES
-#include "runtime/workers/deque.c"
-#include "runtime/workers/heap.c"
 #include "runtime/workers/queue.c"
 #else
 #include "tests/model/plain_queue.h"
 #endif
-#include "runtime/workers/park.c"
-
-/* A plant that is no operation of its own: the announcement comes after the last look. */
-static void announce(struct work_park *park)
-{
-    if (!explore_planted("idle_sleep", "the announcement"))
-        work_park_announce(park);
-}
-
-static void fall_asleep(struct work_park *park, double seconds)
-{
-    if (explore_planted("idle_sleep", "the announcement"))
-        work_park_announce(park);
-    work_park_sleep(park, seconds);
-}
 
 /* Nobody watches for a standstill here, and nothing moves between ranks. */
 #include "runtime/workers/internal.h"
@@ -211,8 +194,8 @@ static void fall_asleep(struct work_park *park, double seconds)
 #define work_placed_away(worker, task)       ((void)(worker), false)
 #define work_begins(worker, task)            ((void)(task), false)
 #define work_learn(worker, task, ticks)      ((void)(task))
-#define work_serve(worker)                   ((void)(worker))
-#define work_beg(worker, idle)               ((void)(idle))
+#define work_grant(worker)                   ((void)(worker))
+#define work_request(worker, idle)           ((void)(idle))
 #define work_standstill_start(pool, seconds) nothing()
 #define work_standstill_stop(pool)           nothing()
 #define work_waits(pool, why)                ((void)(why))
@@ -227,12 +210,22 @@ static void fall_asleep(struct work_park *park, double seconds)
 #define base_thread_start(thread, what, run, context)                                              \
     ((void)(what), pthread_create(thread, NULL, run, context))
 
-#define work_park_announce announce
-#define work_park_sleep    fall_asleep
+/* A plant that is no operation of its own: the announcement comes after the last look. */
+static struct task *look_last(struct worker *worker)
+{
+    if (!explore_planted("idle_sleep", "the announcement"))
+        return work_find(worker);
+    work_park_cancel(&worker->park);
+    struct task *task = work_find(worker);
+    work_park_announce(&worker->park);
+    return task;
+}
+
+#define work_find look_last
 #include "runtime/workers/idle.c"
-#include "runtime/workers/main.c"
+#undef work_find
 #include "runtime/workers/pool.c"
-#include "runtime/workers/report.c"
+#include "runtime/workers/wait.c"
 #include "runtime/workers/worker.c"
 
 #ifndef REAL_QUEUES

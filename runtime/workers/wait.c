@@ -1,0 +1,328 @@
+/* Waiting: who waits works meanwhile.
+ *
+ * The main thread is worker 0. It works while the main program waits, is throttled, or forks, and
+ * it waits for tasks to be over. Each worker counts its own tasks on its own cache lines, and who
+ * wants to know adds them up: so a task costs no line that workers share. While the main thread
+ * sleeps, it has said how many tasks it forked (`awaited`), and, while it is throttled, how many
+ * may be left
+ * (`wanted`). A worker that runs out of work and finds one of these reached wakes it; if the main
+ * thread is throttled, a worker does so at the end of a task, too.
+ *
+ * A body that waits has only such tasks run on top of it as come before what it does next: see
+ * below. */
+#include "runtime/base/clock.h"
+#include "runtime/workers/internal.h"
+
+#include <sched.h>
+#include <stdlib.h>
+#include <time.h>
+
+/* ---- Tasks that are over ---- */
+
+/* Never more than there are: what is waited for beside the forked tasks is counted in `more` before
+ * it can be over, and here it is the ends that are looked at first. */
+static uint64_t tasks_over(const struct work_pool *pool)
+{
+    uint64_t sum = 0;
+    for (unsigned i = 0; i < pool->setup.threads; i++)
+        sum += atomic_load_explicit(&pool->worker[i].counts.over, memory_order_acquire);
+    for (unsigned i = 0; i < pool->setup.threads; i++)
+        sum -= atomic_load_explicit(&pool->worker[i].counts.more, memory_order_acquire);
+    return sum;
+}
+
+uint64_t work_unfinished(const struct work_pool *pool)
+{
+    return pool->setup.graph->tasks - tasks_over(pool);
+}
+
+/* Whether the main thread waits, and for no more than is over. */
+static bool main_has_enough(const struct work_pool *pool)
+{
+    uint64_t awaited = atomic_load_explicit(&pool->awaited, memory_order_relaxed);
+    uint64_t wanted = atomic_load_explicit(&pool->wanted, memory_order_relaxed);
+    return awaited && awaited - tasks_over(pool) < (wanted ? wanted : 1);
+}
+
+void work_over(struct work_pool *pool, struct worker *worker, int tasks)
+{
+    _Atomic uint64_t *count = tasks < 0 ? &worker->counts.more : &worker->counts.over;
+    uint64_t before = atomic_load_explicit(count, memory_order_relaxed);
+    atomic_store_explicit(count, before + (uint64_t)abs(tasks), memory_order_release);
+    if (atomic_load_explicit(&pool->wanted, memory_order_relaxed) && main_has_enough(pool))
+        work_notify(pool);
+}
+
+void work_ran_out(struct worker *worker)
+{
+    struct work_pool *pool = worker->pool;
+    if (!worker->index)
+        return;
+    /* Against the main thread, which says what it waits for and then adds up. */
+    atomic_thread_fence(memory_order_seq_cst);
+    if (main_has_enough(pool) || task_has_given_up(pool->setup.graph))
+        work_notify(pool);
+}
+
+/* ---- Waiting ---- */
+
+void work_drain(struct work_pool *pool, bool (*done)(void *), void *context)
+{
+    const struct work_wish wish = {.done = done, .context = context};
+    atomic_store(&pool->awaited, pool->setup.graph->tasks);
+    while (!done(context))
+        work_look(&pool->worker[0], &wish);
+    atomic_store_explicit(&pool->awaited, 0, memory_order_relaxed);
+    work_busy_again(&pool->worker[0]);
+}
+
+struct main_until {
+    bool (*done)(void *context);
+    void *context;
+    struct comm *comm;
+};
+
+static bool main_is_done(void *context)
+{
+    const struct main_until *until = context;
+    return until->done(until->context) || (until->comm && comm_broken(until->comm));
+}
+
+void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)(void *),
+                void *context)
+{
+    struct main_until until = {done, context, pool->setup.comm};
+    if (until.comm && comm_posted(until.comm))
+        work_poll(&pool->worker[0]);
+    work_waits(pool, why);
+    work_drain(pool, main_is_done, &until);
+    work_waits(pool, NULL);
+}
+
+static bool window_has_room(void *context)
+{
+    const struct work_pool *pool = context;
+    return work_unfinished(pool) < atomic_load_explicit(&pool->wanted, memory_order_relaxed);
+}
+
+void work_throttle(struct work_pool *pool, uint64_t max)
+{
+    const struct task_graph *graph = pool->setup.graph;
+    if (graph->tasks < pool->look)
+        return;
+    uint64_t left = work_unfinished(pool);
+    if (left > max) {
+        atomic_store(&pool->wanted, max - max / 4 + 1);
+        work_until(pool, &(struct work_why){"duite_fork", "room in its window", NULL},
+                   window_has_room, pool);
+        atomic_store(&pool->wanted, 0);
+        left = work_unfinished(pool);
+    }
+    /* There cannot be more than `max` before so many are added. */
+    pool->look = graph->tasks + (left < max ? max - left : 0) + 1;
+}
+
+/* ---- Calls that do not wait ---- */
+
+void work_once(struct work_pool *pool)
+{
+    work_look(&pool->worker[0], &(struct work_wish){.unheard = true});
+}
+
+void work_idle_ends(struct work_pool *pool)
+{
+    work_busy_again(&pool->worker[0]);
+}
+
+void work_tick(struct work_pool *pool)
+{
+    struct worker *worker = &pool->worker[0];
+    struct comm *comm = pool->setup.comm;
+    if (!comm)
+        return;
+    uint64_t now = base_ticks();
+    if (!comm_posted(comm) && now - worker->polled < pool->poll_ticks)
+        return;
+    worker->polled = now;
+    work_poll(worker);
+    if (pool->balance)
+        work_grant(worker);
+}
+
+struct worker *work_main(struct work_pool *pool)
+{
+    return &pool->worker[0];
+}
+
+bool work_may_fork(struct work_pool *pool)
+{
+    return pthread_equal(pthread_self(), pool->main) && !task_running(pool->setup.graph);
+}
+
+/* ---- A body that waits ---- */
+
+/* A body that waits: its worker runs, on top of it, tasks that come before what the body does next,
+ * and no others, so that nothing can wait for a body that is buried on a stack. (Of all that is not
+ * over, take what comes first in the reference order: it waits for nothing. If it is a task, every
+ * waiting worker may run it, or waits for its own descendants alone, which will be over without it.
+ * If it is a body that waits, all above it on its stack would come even earlier: so it is on top,
+ * and its descendants are over.) What a worker finds and may not run goes where others look. */
+enum {
+    NOT_BARREN = -1,
+    SHARED_DEPTH = 16, /* of the shared queue's new end, that are looked at */
+    MOST_REFUSED = 4   /* tasks taken from others in vain between two pauses */
+};
+#define LONGEST_INSIDE_SECONDS 2e-4
+
+/* What a waiting worker knows. */
+struct inside_wait {
+    const struct task_scope *scope;
+    unsigned refused; /* tasks taken from others in vain since the last pause */
+    bool paused;      /* just now */
+    int64_t barren;   /* the mark of its own queue when nothing in it might run, or NOT_BARREN */
+};
+
+/* The newest of a queue of this worker that may run; the others keep their places, and those who
+ * did not find them meanwhile look again. */
+static struct task *inside_dig(struct work_pool *pool, struct work_queue *queue,
+                               const struct task_scope *scope, unsigned depth)
+{
+    struct task *aside = NULL, *task = NULL;
+    bool hidden = false;
+    while (depth-- && (task = work_queue_take(queue, DUITE_NEWEST)) && !task_may_run(scope, task)) {
+        task->next = aside;
+        aside = task;
+        task = NULL;
+        hidden = true;
+    }
+    while (aside) {
+        struct task *next = aside->next;
+        work_queue_push(queue, aside);
+        aside = next;
+    }
+    if (hidden)
+        work_wake_one(pool, DUITE_NO_QUEUE);
+    return task;
+}
+
+/* The same of the shared queue, a few at its new end; and one at the old end, which goes to the
+ * new one, so that all come by. */
+static struct task *inside_dig_shared(struct work_pool *pool, const struct task_scope *scope)
+{
+    struct work_queue *queue = &pool->shared;
+    struct task *task = NULL;
+    if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_acquire))
+        return NULL;
+    task = inside_dig(pool, queue, scope, SHARED_DEPTH);
+    if (!task) {
+        task = work_queue_take(queue, DUITE_OLDEST);
+        if (task && !task_may_run(scope, task)) {
+            work_queue_push(queue, task);
+            task = NULL;
+        }
+    }
+    atomic_flag_clear_explicit(&queue->token, memory_order_release);
+    return task;
+}
+
+/* Takes from another; what may not run here is left where everybody looks. */
+static struct task *inside_steal_from(struct worker *worker, unsigned victim,
+                                      struct inside_wait *wait)
+{
+    struct work_pool *pool = worker->pool;
+    if (victim == worker->index)
+        return NULL;
+    struct task *task = work_queue_steal(&pool->worker[victim].queue, &worker->queue);
+    if (!task)
+        return NULL;
+    work_bump(&worker->counts.stolen, 1);
+    trace_mark(worker->ring, TRACE_STEAL, victim, 0);
+    if (task_may_run(wait->scope, task))
+        return task;
+    wait->refused++;
+    work_queue_put(&pool->shared, task);
+    work_wake_one(pool, DUITE_NO_QUEUE);
+    return NULL;
+}
+
+/* Of the scheduler's victims; of all, when it has waited for long: what it waits for may lie with
+ * one that waits for what lies here. */
+static struct task *inside_steal(struct worker *worker, struct inside_wait *wait)
+{
+    struct work_pool *pool = worker->pool;
+    struct task *task = NULL;
+    for (unsigned attempt = 0; !task && wait->refused < MOST_REFUSED; attempt++) {
+        unsigned victim = work_victim(worker, attempt);
+        if (victim >= pool->setup.threads || work_is_endless(pool, attempt))
+            break;
+        task = inside_steal_from(worker, victim, wait);
+    }
+    for (unsigned i = 0; !task && wait->paused && i < pool->setup.threads; i++)
+        task = inside_steal_from(worker, i, wait);
+    wait->paused = false;
+    return task;
+}
+
+/* Nothing to do for a moment. Nobody wakes a worker that waits in a body: it sleeps briefly. */
+static void inside_idle(struct worker *worker, struct inside_wait *wait)
+{
+    const struct work_pool *pool = worker->pool;
+    uint64_t now = base_ticks();
+    if (!worker->idle_since)
+        work_idles(worker, now);
+    const bool crowded = work_is_crowded(worker, now);
+    uint64_t since = now - worker->idle_since;
+    if (since < pool->spin_ticks) {
+        work_pause_core();
+    } else if (since < pool->spin_ticks + pool->yield_ticks && !crowded) {
+        sched_yield();
+    } else {
+        struct timespec pause = {.tv_nsec = (long)(1e9 * worker->pause)};
+        nanosleep(&pause, NULL);
+        worker->looked = base_ticks();
+        if (worker->pause < LONGEST_INSIDE_SECONDS)
+            worker->pause *= 2;
+        wait->refused = 0;
+        wait->paused = true;
+    }
+}
+
+static struct task *inside_find(struct worker *worker, struct inside_wait *wait)
+{
+    struct work_pool *pool = worker->pool;
+    struct task *task = NULL;
+    if (wait->barren < 0 || wait->barren != work_queue_mark(&worker->queue)) {
+        task = inside_dig(pool, &worker->queue, wait->scope, UINT32_MAX);
+        wait->barren = task ? NOT_BARREN : work_queue_mark(&worker->queue);
+    }
+    if (!task)
+        task = inside_dig_shared(pool, wait->scope);
+    if (!task)
+        task = inside_steal(worker, wait);
+    worker->left_some =
+        task && (work_queue_ranks(&worker->queue) || work_queue_ranks(&pool->shared));
+    return task;
+}
+
+void work_inside(struct worker *worker, const struct task_scope *scope, bool (*done)(void *context),
+                 void *context)
+{
+    const struct task_scope *outer = worker->waits;
+    struct comm *comm = worker->pool->setup.comm;
+    struct inside_wait wait = {.scope = scope, .barren = NOT_BARREN};
+    worker->waits = scope;
+    while (!done(context) && !(comm && comm_broken(comm))) {
+        struct task *task = inside_find(worker, &wait);
+        if (task) {
+            work_busy_again(worker);
+            work_run(worker, task);
+            wait = (struct inside_wait){.scope = scope, .barren = NOT_BARREN};
+        } else if (work_poll(worker)) {
+            work_busy_again(worker);
+        } else {
+            inside_idle(worker, &wait);
+        }
+    }
+    work_busy_again(worker);
+    worker->waits = outer;
+}

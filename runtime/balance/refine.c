@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GOAL    1.01  /* even enough: the most that a rank has, over the mean */
+#define GOAL    1.01  /* balanced enough: the largest load over the mean */
 #define WORTH   0.002 /* of the mean: moves that relieve a rank by less are not made */
-#define MAX_OPS 1e8   /* looks at blocks and ranks: then it is good enough */
+#define MAX_OPS 1e8   /* pairs of a block and a rank that are looked at, about */
 
 struct parts {
     const duite_blocks *blocks;
@@ -80,7 +80,7 @@ static double move_relief(const struct parts *parts, size_t block, int from, int
     return parts->load[from] - (left > there ? left : there);
 }
 
-/* Whether it is worth the way. */
+/* Whether a move saves more time than sending the block takes. */
 static bool move_pays(const struct parts *parts, size_t block, double relief)
 {
     bool moved = parts->home[block] != parts->present[block];
@@ -215,7 +215,7 @@ static void parts_name(struct overlap *overlap, int n_ranks, int *rank_of)
     size_t n = (size_t)n_ranks, pairs = n * n;
     qsort(overlap, pairs, sizeof *overlap, overlap_compare);
     for (size_t i = 0; i < 2 * n; i++)
-        rank_of[i] = -1; /* then, who has the rank's name */
+        rank_of[i] = -1; /* from n on: by rank, the part that has its name */
     for (size_t i = 0; i < pairs; i++) {
         int part = overlap[i].part, rank = overlap[i].rank;
         if (rank_of[part] >= 0 || rank_of[n + (size_t)rank] >= 0)

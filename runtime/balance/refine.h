@@ -4,12 +4,12 @@
 #include <duite_policy.h>
 #include <stdbool.h>
 
-/* Homes for blocks, from those they have. Pure functions of their arguments. */
+/* New homes for blocks, starting from the present ones. Pure functions of their arguments. */
 
 /* What some homes cost in the time that was measured. */
 struct balance_bill {
     double max;  /* seconds a worker of the rank that has most to do */
-    double even; /* the same if all had alike */
+    double even; /* the mean: `max` if all ranks had equal work */
     double cut;  /* seconds of messages between ranks, a rank */
     double move; /* seconds that the move from the present homes takes */
 };

@@ -1,6 +1,6 @@
 /* A frame is one call of a body on one thread: its regions, and where to jump when it faults.
- * Frames of a thread nest. Regions of finished calls go through a ring that the handler searches,
- * too. */
+ * Frames of a thread nest. Regions of finished calls stay in a ring for a while, and the fault
+ * handler searches the ring, too. */
 #include "runtime/check/check.h"
 
 #include "runtime/base/error.h"
@@ -87,7 +87,7 @@ static void fault_handle(int signal, siginfo_t *info, void *context)
     const struct sigaction *before = check && signal == SIGBUS ? &check->bus : &check->segv;
     if (check && before->sa_flags & SA_SIGINFO && before->sa_sigaction)
         before->sa_sigaction(signal, info, context);
-    else /* it faults again, and ends as it would have without us */
+    else /* the instruction faults again, and the process ends as it would have without us */
         sigaction(signal, check ? before : &(struct sigaction){.sa_handler = SIG_DFL}, NULL);
 }
 
@@ -196,7 +196,8 @@ static void region_retire(struct check *check, struct check_region *region)
 
 /* ---- One run ---- */
 
-/* Runs the body on copies; frame->param gets what it leaves. Its code, or the fault's. */
+/* Runs the body on copies; frame->param gets what it leaves. Returns its code, or that of the
+ * fault. */
 static int frame_run(struct frame *frame, unsigned char fill)
 {
     const duite_call *original = frame->call;

@@ -3,15 +3,15 @@
 
 #include <duite.h>
 
-/* Checking mode: bodies work on private copies between guards, which are taken away
- * afterwards, so that what a body does beyond its declaration is found where it happens:
+/* Checking mode: bodies work on private copies between guards, which are taken away afterwards. So
+ * what a body does beyond its declaration is found where it happens:
  *
- *   - a write to an r parameter or to the arguments, an access beyond either end of a parameter,
- * and an access to what an earlier task was given (a stale or undeclared pointer) fault, and the
- *     fault becomes the failure of the task;
- *   - a body runs twice, with different fills under w: a byte that keeps its fill was not written;
- * a byte that differs otherwise makes the kernel not deterministic. Kernels with side effects or
- *     postponed modes, and bodies that fork, run once.
+ * - These accesses fault, and the fault becomes the failure of the task: a write to an r parameter
+ *   or to the arguments; an access beyond either end of a parameter; an access to what an earlier
+ *   task was given (a stale or undeclared pointer).
+ * - A body runs twice, with different fills under w. A byte that keeps its fill was not written; a
+ *   byte that differs otherwise shows that the kernel is not deterministic. Kernels with side
+ *   effects or postponed modes, and bodies that fork, run once.
  *
  * Memory that is none of duite's (globals, heap, stack) is not watched. A body that faults is left
  * by a jump: what it held (memory, locks) stays held. */
@@ -30,7 +30,7 @@ int check_start(struct check **check);
 void check_stop(struct check *check);
 
 /* Calls the body on copies; what it wrote is copied back if it kept to its declaration. Returns its
- * code, or DUITE_E_CHECK or DUITE_E_MEMORY with the sentence set (duite_fail). Any thread; bodies
+ * code, or DUITE_E_CHECK or DUITE_E_MEMORY with the message set (duite_fail). Any thread; bodies
  * may nest. */
 int check_call(struct check *check, const struct check_task *task, duite_call *call);
 

@@ -5,9 +5,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Bytes on pages of their own, with a guard on either side. The bytes end as near to the
- * second guard as their alignment (64) allows; what is left of the pages is filled, and looked at
- * later. */
+/* Bytes on pages of their own, with a guard on either side. The bytes end as near to the second
+ * guard as their alignment (64) allows; the rest of the pages is filled with a known byte, and
+ * compared later. */
 struct check_region {
     char *base; /* of the mapping: guard, pages, guard; NULL: none */
     size_t mapped;
@@ -21,14 +21,15 @@ struct check_region {
 
 #define CHECK_ARGS SIZE_MAX
 
-/* Maps it, all of it filled with `fill`, readable and writable. False without memory. */
+/* Maps the region, all of it filled with `fill`, readable and writable. False without memory. */
 bool check_region_map(struct check_region *region, size_t bytes, unsigned char fill);
-/* From now on reads only; no access at all. */
+/* protect: from now on the region can only be read. retire: no access at all. unmap: its addresses
+ * are free. */
 bool check_region_protect(const struct check_region *region);
 void check_region_retire(const struct check_region *region);
 void check_region_unmap(struct check_region *region);
 
-/* Is every byte around the data still what it was filled with? */
+/* Whether every byte around the data is still `fill`. */
 bool check_region_whole(const struct check_region *region, unsigned char fill);
 
 static inline bool check_region_has(const struct check_region *region, const void *address)

@@ -3,9 +3,10 @@
 
 #include "runtime/plan/record.h"
 
-/* Blocks: objects that live together, a leader with all that follow it (their home and their number
- * there are the same), as long as one of them is alive; and what recorded tasks carry from one to
- * another. Made anew from the table when it is asked for, since it seldom is. */
+/* Blocks, and what recorded tasks carry from one to another. A block is a leader with all objects
+ * that follow it: they live together, with the same home and the same number there. It exists as
+ * long as one of them is alive. The list of blocks is made from the table whenever it is asked for,
+ * which is seldom. */
 struct map_block {
     int home;
     uint32_t number; /* data_object.block */
@@ -38,13 +39,13 @@ struct map_traffic {
     double *bytes;
 };
 
-/* Adds what a record's forks carry in so many rounds. Errors: memory. */
+/* Adds what a record's forks read from other blocks in so many rounds. Errors: memory. */
 int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks,
                     const struct plan_record *record, double rounds);
 /* Adds that a task which runs for one block reads so many bytes of another. False without memory.
  */
 bool map_traffic_read(struct map_traffic *traffic, uint32_t own, uint32_t other, double bytes);
-/* Nothing more is added: makes the rows of it, each neighbour once. Errors: memory. */
+/* Makes the rows, each neighbour once. Nothing is added afterwards. Errors: memory. */
 int map_traffic_end(struct map_traffic *traffic, const struct map_blocks *blocks);
 void map_traffic_free(struct map_traffic *traffic);
 

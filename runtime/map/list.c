@@ -1,7 +1,7 @@
-/* list: earliest finish time. The tasks of a recorded graph are gone through by their upward rank,
- * the longest path of costs and transfers to the end, and the first task of each block takes the
- * block to the rank where it would be over first, after the free time of that rank's workers and
- * the arrival of what it reads; the block's other tasks follow. After Topcuoglu, Hariri & Wu,
+/* list: earliest finish time. The tasks of a recorded graph are visited by their upward rank: the
+ * longest path of costs and transfers to the end. The first task of each block takes the block to
+ * the rank where that task would end first. This counts when a worker of the rank is idle and when
+ * what the task reads arrives. The block's other tasks follow. After Topcuoglu, Hariri & Wu,
  * Performance-effective and low-complexity task scheduling for heterogeneous computing (HEFT), IEEE
  * TPDS 13(3), 2002, without insertion into gaps. Only what a round reads of itself counts. Until a
  * graph is replayed, homes are those of `metis`. */
@@ -18,8 +18,8 @@ struct list_plan {
     bool *placed;    /* by block */
     double *upward;  /* by task */
     uint32_t *order; /* tasks by upward rank */
-    double *end;     /* by task: when it is over; */
-    int *rank;       /* and where; DUITE_NO_RANK: everywhere */
+    double *end;     /* by task: when it ends */
+    int *rank;       /* by task: where it runs; DUITE_NO_RANK: everywhere */
     double *free;    /* by worker, rank after rank: when it is idle */
     size_t *first;   /* n_ranks + 1: of each rank's workers */
 };
@@ -29,7 +29,8 @@ static double edge_seconds(const duite_task_graph *graph, size_t edge)
     return graph->message_seconds + graph->bytes[edge] * graph->byte_seconds;
 }
 
-/* Rows lead to earlier tasks: from the last one back, all who read a task's result are known. */
+/* Rows name earlier tasks. So in a pass from the last task back, all readers of a task's result
+ * come before the task. */
 static void list_rank_upward(struct list_plan *plan)
 {
     const duite_task_graph *graph = plan->graph;
@@ -51,7 +52,7 @@ static int list_compare(const void *a, const void *b, void *context)
     return left != right ? (left > right ? -1 : 1) : (x < y ? -1 : x > y);
 }
 
-/* When all that it reads is there. */
+/* When all that the task reads has arrived on the rank. */
 static double list_arrival(const struct list_plan *plan, size_t task, int rank)
 {
     const duite_task_graph *graph = plan->graph;

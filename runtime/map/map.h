@@ -19,7 +19,8 @@
 #define MAP_DECLARE(name) extern const duite_mapping map_##name;
 MAP_ROWS(MAP_DECLARE)
 
-/* That of `metis`: equal weights, few bytes between ranks. */
+/* The function `map` of `metis`: equal weights, few bytes between ranks. Other mappings begin with
+ * it. */
 int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
 
 /* Whether it is none of the built-in ones. */
@@ -36,14 +37,14 @@ int map_ask(const struct map_policy *mapping, const duite_object_graph *graph, i
             uint64_t seed, int *home);
 int map_ask_tasks(const struct map_policy *mapping, const duite_task_graph *graph, int *home);
 
-/* Notes a hint: the weight, and edges to n neighbours; or a leader to live with. Settled homes
- * stay. Main thread, collective. Errors: objects, arguments, memory. */
+/* Note a hint: the weight, and edges to n neighbours; or a leader to live with. Homes that are
+ * settled do not change. Main thread, collective. Errors: objects, arguments, memory. */
 int map_hint(struct data_table *table, duite_object object, double weight, size_t n,
              const duite_object *neighbours, const double *edge_weights);
 int map_colocate(struct data_table *table, duite_object object, duite_object leader);
 
-/* Gives a home to all objects without one: leaders by the mapping, the objects that are colocated
- * with them likewise. Main thread, collective. Errors: those of the mapping; memory;
+/* Gives a home to all objects without one: leaders get theirs from the mapping, colocated objects
+ * get that of their leader. Main thread, collective. Errors: those of the mapping; memory;
  * DUITE_E_ARGUMENT for a home that is no rank. */
 int map_settle(struct data_table *table, const struct map_policy *mapping, uint64_t seed);
 

@@ -1,6 +1,6 @@
 /* metis: equal weights, few bytes between ranks: METIS' recursive bisection of the hinted graph
- * (Karypis & Kumar, SIAM J. Sci. Comput. 20(1), 1998), with the seed of the run. Objects without
- * edges are dealt out by `block`. */
+ * (Karypis & Kumar, SIAM J. Sci. Comput. 20(1), 1998), with the seed of the run. A graph without
+ * edges, or with no more objects than ranks, goes to `block`. */
 #include "runtime/map/map.h"
 
 #include "runtime/base/error.h"

@@ -150,9 +150,9 @@ static size_t node_of(const struct data_table *table, const struct nodes *nodes,
     return hint ? nodes->node[hint - table->unsettled] : NO_NODE;
 }
 
-/* Everybody follows the end of the chain of leaders at once: one without home that follows nobody,
- * or one with a home. Each link is walked a few times only, since all that were walked are cut
- * short. */
+/* Lets each object follow the end of its chain of leaders directly. The end is an object without a
+ * home that follows none, or one with a home. Each link is walked a few times only, since every
+ * chain that was walked is cut short. */
 static void leaders_shorten(struct data_table *table)
 {
     for (size_t i = 0; i < table->n_unsettled; i++) {

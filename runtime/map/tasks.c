@@ -1,5 +1,5 @@
-/* From the tasks of a record to those of blocks: who runs for which, and what they cost as far as
- * it is said, measured, or to be guessed. */
+/* What task mappings see: the tasks of a record, the block that each runs for, and its cost. The
+ * cost is what the fork said, else what was measured, else a guess. */
 #include "runtime/map/tasks.h"
 
 #include "runtime/base/error.h"
@@ -12,7 +12,8 @@ static bool is_asked(const struct plan_tasks *tasks, size_t i)
     return tasks->program[i] && !(tasks->cost[i] > 0);
 }
 
-/* The seconds of a block are those of its tasks that do not say them, each the same. */
+/* Splits the measured seconds of each block evenly over those of its tasks whose forks said no
+ * cost. */
 static bool share_out(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
 {
     struct plan_tasks *all = &tasks->tasks;

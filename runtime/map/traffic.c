@@ -1,6 +1,6 @@
 /* What recorded tasks read from other blocks than their own: what would travel if these lived on
- * another rank. A value that two tasks of a block read counts twice, though it travels once: who
- * moves blocks compares, and both stand for the same bonds. */
+ * another rank. A value that two tasks of a block read counts twice, though it travels once. That
+ * is accepted: the sums are compared with one another, and both reads tie the two blocks. */
 #include "runtime/map/blocks.h"
 
 #include "runtime/base/error.h"

@@ -1,5 +1,5 @@
-/* What several schedulers decide alike. Those that look into their state have a sched_state, or one
- * as its first member. */
+/* Decisions that several schedulers share. A function that reads its state expects a sched_state
+ * there, or a structure that begins with one. */
 #include "runtime/sched/sched.h"
 
 void sched_start(void *state, unsigned worker, unsigned n_workers, uint64_t seed)

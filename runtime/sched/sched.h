@@ -35,8 +35,8 @@ struct sched_state {
 
 void sched_start(void *state, unsigned worker, unsigned n_workers, uint64_t seed);
 
-/* Where a ready task goes. Shared: all to one queue. Affinity: each worker keeps its own, but in a
- * replay a task goes to the worker that ran the last one on the same data. Owner: to the worker of
+/* Where a ready task goes. Shared: all to one queue. Affinity: to the worker that made it ready,
+ * but in a replay to the worker that ran the last task on the same data. Owner: to the worker of
  * the task's block. */
 unsigned sched_place_shared(void *state, const duite_ready *task);
 unsigned sched_place_affinity(void *state, const duite_ready *task);
@@ -46,7 +46,7 @@ duite_end sched_serve_newest(void *state);
 duite_end sched_serve_oldest(void *state);
 duite_end sched_serve_highest(void *state);
 
-/* Nobody; or once around all others, from a random one on. */
+/* Whom to steal from: no worker; or each other worker once a round, beginning with a random one. */
 unsigned sched_no_victim(void *state, unsigned attempt);
 unsigned sched_any_victim(void *state, unsigned attempt);
 

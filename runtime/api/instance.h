@@ -9,7 +9,7 @@
 #include "runtime/trace/trace.h"
 #include "runtime/workers/workers.h"
 
-/* A running runtime: the parts, and the errors that the next get, wait or stop still has to tell.
+/* A running runtime: its parts, and the error that the next get, wait or stop still has to return.
  * Main thread only. */
 struct duite {
     MPI_Comm mpi;
@@ -27,17 +27,17 @@ struct duite {
     size_t window;
     unsigned threads;
     int oversubscribed;
-    bool mpi_held;                   /* by the program: between duite_mpi_begin and duite_mpi_end */
-    int remembered;                  /* code of a failed fork, new, ... */
-    char sentence[1024];             /* of `remembered` */
+    bool mpi_held;       /* the program holds MPI: between duite_mpi_begin and duite_mpi_end */
+    int remembered;      /* code of a failed fork, new, ... */
+    char sentence[1024]; /* of `remembered` */
     struct recorded_graph *recorded; /* by slot, from 1 on */
     size_t n_recorded, recorded_capacity;
     struct plan_record *building; /* the one that build forks into, or NULL */
     uint64_t graphs_recorded;
     struct instance_migration {
-        uint64_t replays, due; /* so far; the number of those before the next look at the homes */
+        uint64_t replays, due; /* so far; at how many the homes are looked at next */
         uint64_t looked;       /* replays before the last look; */
-        double since;          /* when it was over, on the clock of this rank; */
+        double since;          /* when the last look was over, on the clock of this rank; */
         double took;           /* seconds */
         uint64_t objects;      /* that moved so far; the same on all ranks */
     } migration;
@@ -47,23 +47,26 @@ struct duite {
  * lost. */
 bool instance_is_broken(const duite *rt);
 
-/* It is broken: tells the other ranks, awaits nothing any more, and returns when no task is left.
- * Does nothing the second time. */
+/* For a broken runtime: tells the other ranks, awaits nothing any more, and returns when no task is
+ * left. Does nothing the second time. */
 void instance_give_up(duite *rt);
 
 /* ---- agree.c: collective ---- */
 
-/* Whether all ranks came so far: else the code of this rank, or DUITE_E_DIFFERENT (memory:
- * DUITE_E_MEMORY) with the message of the first rank that failed worst. */
+/* DUITE_OK if no rank failed so far. Else the code of this rank; on a rank that did not fail itself
+ * DUITE_E_DIFFERENT (of memory: DUITE_E_MEMORY), with the message of the first rank whose failure
+ * is the worst. */
 int start_agree_on_code(MPI_Comm mpi, int code);
-/* This rank's parts have started, or failed with `code`: the same on all ranks, which start alike?
- * All succeed, or all fail. Errors: DUITE_E_DIFFERENT, names what differs and on which ranks. */
+/* This rank's parts have started, or failed with `code`. Compares codes and options of all ranks:
+ * all succeed, or all fail. Errors: those of the ranks; DUITE_E_DIFFERENT, which names what differs
+ * and on which ranks. */
 int start_agree(duite *rt, const duite_options *options, int code);
 
 /* ---- options.c ---- */
 
-/* May a start try these? The rest of them may be wrong on one rank alone: all ranks agree
- * nevertheless. Errors: arguments. */
+/* Check the options: the first function those without which the ranks cannot even be asked, the
+ * second the rest. The rest may be wrong on one rank alone; all ranks agree on that later. Errors:
+ * arguments. */
 int options_check(const duite_options *options);
 int options_check_rest(const duite_options *options);
 
@@ -73,7 +76,7 @@ int policies_watch(duite *rt, const duite_options *options);
 
 /* ---- program.c, wait.c ---- */
 
-/* May this call be made now? */
+/* Whether this call may be made now: DUITE_OK, or the error to return. */
 int program_enter(duite *rt, const char *call);
 /* The same, even while a graph is recorded. */
 int program_enter_any(duite *rt, const char *call);
@@ -117,9 +120,8 @@ int program_get(duite *rt, duite_object object, int rank, void *values, size_t *
 
 /* ---- graphs.c ---- */
 
-/* Adds what all graphs carried since the last time between blocks, each as often as its rounds ran:
- * visit is called with the record and the number of rounds. No replay is on its way. Errors: its
- * own. */
+/* Visits all graphs that were replayed since the last time, with the record and the number of
+ * rounds that ran. No replay is on its way. Errors: those of `visit`. */
 int recorded_each(duite *rt, int (*visit)(void *context, const struct plan_record *, double),
                   void *context);
 

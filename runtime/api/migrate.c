@@ -11,8 +11,8 @@
 #include "runtime/map/blocks.h"
 #include "runtime/map/tasks.h"
 
-/* What a rank reports of itself before its blocks; what rank 0 answers before the blocks that move.
- */
+/* Places in `values`. Before its blocks a rank reports about itself; before the blocks that move
+ * rank 0 answers for all. */
 enum { REPORT_WORKERS, REPORT_OTHER, REPORT_BLOCKS };
 enum { ANSWER_CODE, ANSWER_REFUSED, ANSWER_NEXT, ANSWER_AGAIN, ANSWER_MOVES, ANSWER_BLOCKS };
 
@@ -26,7 +26,7 @@ struct migration {
     size_t *first;  /* n_ranks + 1: of each rank's blocks in `row` */
     uint32_t *row;  /* blocks by home */
     double *values; /* what this rank says, then what rank 0 answers */
-    int *home;      /* n: to be */
+    int *home;      /* n: the new homes */
     /* Rank 0. */
     struct map_traffic traffic;
     double *seconds, *other; /* n; n_ranks */
@@ -92,7 +92,7 @@ static int migration_begin(struct migration *m)
 
 /* ---- What was measured comes to rank 0 ---- */
 
-/* A block that is fixed is reported by a negative number. */
+/* Seconds s of a fixed block are reported as -1 - s. */
 static void migration_fill_own(struct migration *m)
 {
     struct work_pool *pool = m->rt->pool;
@@ -192,8 +192,8 @@ static uint64_t migration_ask(struct migration *m)
     return work_migrate(rt->pool, &blocks, m->home);
 }
 
-/* The mapping sees the tasks of the graph; *again: with measured costs it is to see them once more.
- */
+/* Shows the mapping the tasks of the graph. *again: some costs were guessed, so the mapping is to
+ * see them once more, with measured ones. */
 static int migration_ask_mapping(struct migration *m, bool *again)
 {
     duite *rt = m->rt;
@@ -212,7 +212,7 @@ static int migration_ask_mapping(struct migration *m, bool *again)
     return code;
 }
 
-/* Whether the policy leaves fixed blocks alone and names ranks that there are. */
+/* Whether the policy leaves a fixed block where it is, and names a rank that exists. */
 static bool migration_is_allowed(const struct migration *m, size_t block)
 {
     int from = m->blocks.block[block].home, to = m->home[block];
@@ -276,7 +276,7 @@ static int migration_announce(struct migration *m)
     return code;
 }
 
-/* A block that moves gets a number that nobody had before at its new home. */
+/* A block that moves gets a number that no block had before at its new home. */
 static int migration_move(struct migration *m)
 {
     struct task_graph *graph = &m->rt->graph;
@@ -305,7 +305,7 @@ static int migration_move(struct migration *m)
     return code;
 }
 
-/* When this is asked again. */
+/* Notes when the mapping, or the balancer, is asked again. */
 static void migration_schedule(const struct migration *m, uint64_t replay, uint64_t *map_at)
 {
     struct instance_migration *last = &m->rt->migration;
@@ -319,7 +319,7 @@ static void migration_schedule(const struct migration *m, uint64_t replay, uint6
     last->looked = last->replays;
 }
 
-/* The policy did not do its work: the same error on all ranks. */
+/* The error of a policy that failed or gave a wrong answer: the same on all ranks. */
 static int migration_refused(const struct migration *m)
 {
     int code = (int)m->values[ANSWER_CODE];
@@ -342,7 +342,8 @@ static int migration_run(struct migration *m, uint64_t replay, uint64_t *map_at)
         code = migration_begin(m);
     if (!code)
         code = migration_gather(m);
-    const double begun = base_seconds(); /* until now it waited for tasks, too */
+    const double begun =
+        base_seconds(); /* measured from here on: before, this rank also waited for tasks */
     const uint64_t ticks = base_ticks(), moved = rt->migration.objects;
     if (!code && !rt->graph.rank)
         code = migration_decide(m);

@@ -1,6 +1,6 @@
 /* The calls of the main program that block: gets, waits and sums over all ranks. All ranks make the
- * same ones; each enters a log of them, so that differences are found even where one rank waits for
- * data that no other one thinks of sending. */
+ * same calls. Each rank logs its own, so that a difference is found even where one rank waits for
+ * data that no other rank will send. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/clock.h"
@@ -8,7 +8,7 @@
 
 #include <stdio.h>
 
-/* The remembered error, which is told once. */
+/* The remembered error, which is returned once. */
 static int recall(duite *rt)
 {
     int code = rt->remembered;

@@ -1,4 +1,5 @@
-/* The rate of the cheap counter is measured once in a process, against the clock. */
+/* The rate of the processor's counter (base_ticks) is measured once in a process, against the
+ * system clock. */
 #include "runtime/base/clock.h"
 
 #include <pthread.h>

@@ -11,7 +11,8 @@
  * monitor that is all zero has none. It takes no signals. One look is made at a time, so a look
  * that takes long delays the others: it may wait for milliseconds, not for a task or a message. */
 
-/* The caller's, from base_monitor_add to base_monitor_remove. */
+/* A look. Its memory is the caller's, and stays in place from base_monitor_add to
+ * base_monitor_remove. */
 struct base_look {
     /* Looks once; false: it could not now, and wants to be asked again in a moment (0.1 ms). By the
      * monitor's thread. It adds and removes no look. */
@@ -36,15 +37,15 @@ struct base_monitor {
 
 /* The functions below are for one thread, the one that starts and stops the runtime. */
 
-/* Looks from now on. The first one starts the thread; where that fails nothing was added. Errors:
- * memory, DUITE_E_SYSTEM. */
+/* Adds a look, which is made from now on. The first one starts the thread; where that fails nothing
+ * was added. Errors: memory, DUITE_E_SYSTEM. */
 int base_monitor_add(struct base_monitor *monitor, struct base_look *look);
 
-/* From now on it is due every so many seconds. */
+/* Changes the period of a look, in seconds. */
 void base_monitor_set_period(struct base_monitor *monitor, struct base_look *look, double seconds);
 
-/* Looks no more; one that is under way is over. The last one ends the thread. Nothing is done with
- * a look that was not added. */
+/* Removes a look; when this returns it is not being made. Removing the last one ends the thread.
+ * Does nothing with a look that was not added. */
 void base_monitor_remove(struct base_monitor *monitor, struct base_look *look);
 
 #endif

@@ -1,7 +1,7 @@
 /* A free block is in one place: a magazine, which one thread or the common store holds. Blocks are
  * named by pointers in magazines, not linked, so that taking and giving never touch a block's own
  * memory: it may still lie in another core's cache. After Bonwick & Adams, Magazines and vmem,
- * USENIX 2001. What is under `lock` is held for a few instructions, once per MAGAZINE blocks.
+ * USENIX 2001. `lock` is held for a few instructions, once per MAGAZINE blocks.
  *
  * New blocks are cut one after another from a thread's region, so that what is taken together lies
  * together. */
@@ -34,7 +34,7 @@ enum {
     MAGAZINE = 30 /* blocks: a magazine takes four cache lines */
 };
 
-/* A new chunk is as large as all before it together, between these. */
+/* A new chunk is as large as all chunks before it together, within these limits. */
 #define SMALLEST_CHUNK ((size_t)1 << 16)
 #define LARGEST_CHUNK  ((size_t)1 << 22)
 
@@ -48,7 +48,7 @@ struct chunk {
     struct chunk *next;
 };
 
-/* What a thread that ended left of a chunk. */
+/* The rest of a chunk that a thread left when it ended. */
 struct region {
     struct region *next;
     char *end;
@@ -62,7 +62,8 @@ static struct region *regions;
 static size_t chunk_bytes; /* of all chunks */
 static unsigned runtimes;
 
-/* What a thread has at hand of one size. `loaded` serves; `spare` is full or empty. */
+/* The magazines of one size that a thread holds. Blocks are taken from and given to `loaded`;
+ * `spare` is full or empty. */
 struct shelf {
     struct magazine *loaded, *spare;
 };
@@ -231,7 +232,7 @@ void *base_pool_take(size_t bytes)
     struct magazine *loaded = shelves[size].loaded;
     if (!loaded || !loaded->n)
         return magazine_take(size);
-    /* What is taken soon may lie in another core's cache: have it brought. */
+    /* A block that will be taken soon may lie in another core's cache: fetch it. */
     if (loaded->n > AHEAD)
         for (size_t line = 0; line < bytes; line += BASE_LINE)
             base_prefetch((char *)loaded->block[loaded->n - 1 - AHEAD] + line);

@@ -9,11 +9,11 @@
 
 /* The watchdog names policies that do not return: a scheduler, mapping or balancer that is not
  * built in may loop or sleep for ever. Every worker has a mark, which says which function of such a
- * policy it is in. The monitor looks at the marks sixteen times in `seconds`; a call that stood
- * through sixteen looks is told on standard error, with policy, function, rank and worker, and
- * again after twice as many, four times as many, and so on. Nothing else happens: the call goes on,
- * since whoever broke it off would leave the policy's locks and memory, and the heap, as they are.
- * Time is counted in looks, so that the time in which the process itself was stopped is nobody's.
+ * policy it is in. The monitor looks at the marks sixteen times in `seconds`. A call that stood
+ * through sixteen looks is named on standard error, with policy, function, rank and worker, and
+ * again after twice as many, four times as many, and so on. Nothing else happens: the call goes on.
+ * To break it off would leave the policy's locks and memory, and the heap, in any state. Time is
+ * counted in looks, so that the time in which the process itself was stopped does not count.
  *
  * A policy that calls exit is named, too, and the process then ends with EXIT_FAILURE, whatever it
  * asked for: it must not pass for a program that ended. */
@@ -51,7 +51,7 @@ struct base_mark {
 struct base_watchdog;
 
 /* policy: the names of those that are not built in, by kind; NULL: it is built in, or there is
- * none. seconds > 0; n workers, of which the calling thread is all so far; rank: for the sentence,
+ * none. seconds > 0; n workers, of which the calling thread is all so far; rank: for the message;
  * -1: there are no ranks. base_watchdog_stop is due all the same. Errors: memory, DUITE_E_SYSTEM.
  */
 int base_watchdog_start(struct base_watchdog **watchdog, struct base_monitor *monitor,
@@ -60,15 +60,15 @@ int base_watchdog_start(struct base_watchdog **watchdog, struct base_monitor *mo
 /* Nobody makes a mark any more. By the thread that started it. NULL is fine. */
 void base_watchdog_stop(struct base_watchdog *watchdog);
 
-/* The mark to be made by this worker around calls of policies of this kind; NULL: none, since they
- * are built in, or the watchdog is NULL. */
+/* The mark that this worker sets around calls of its policy of this kind. NULL: the policy is built
+ * in, or the watchdog is NULL. */
 struct base_mark *base_watchdog_mark(struct base_watchdog *watchdog, enum base_policy_kind kind,
                                      unsigned worker);
 
 /* The calling thread is this worker from now on. NULL is fine. */
 void base_watchdog_here(struct base_watchdog *watchdog, unsigned worker);
 
-/* A call begins, and is over. Of NULL nothing is marked. */
+/* A call begins; a call is over. Of a NULL mark they do nothing. */
 static inline void base_mark_begin(struct base_mark *mark, enum base_policy_call call)
 {
     if (__builtin_expect(!mark, 1))

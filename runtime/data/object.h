@@ -3,18 +3,18 @@
 
 #include "runtime/data/sum.h"
 
-/* Shared objects as every rank knows them. The main thread alone reads and writes this table; what
- * it says about other ranks follows from the forks, which are the same everywhere, and is never
- * asked for. */
+/* Shared objects as every rank knows them. The main thread alone reads and writes this table. What
+ * the table says about other ranks follows from the forks, which are the same everywhere: no rank
+ * is ever asked. */
 struct data_object {
     /* What a fork of other ranks' tasks reads and writes (task/prune.c) comes first. */
-    uint32_t generation;          /* even: the slot is free */
-    int home;                     /* -1: not decided yet */
-    int holder;                   /* the rank that has the current version for certain */
-    bool copied;                  /* some rank beside the holder has a copy: `copies` says which */
-    bool sized;                   /* its versions differ in size */
-    bool fixed;                   /* tasks that must stay run for it: its home does not change */
-    uint64_t number;              /* of the current version: writes so far */
+    uint32_t generation; /* even: the slot is free */
+    int home;            /* -1: not decided yet */
+    int holder;          /* the rank that has the current version for certain */
+    bool copied;         /* some rank beside the holder has a copy: `copies` says which */
+    bool sized;          /* its versions differ in size */
+    bool fixed;          /* a task of a fixed kernel ran for it: its home does not change */
+    uint64_t number;     /* of the current version: writes so far */
     struct data_version *current; /* this rank's copy of the current version, or NULL */
     uint64_t leaves;              /* contributions forked since the last other access */
     struct data_view *view;       /* it is a view (view.h); NULL: it is none */
@@ -23,14 +23,14 @@ struct data_object {
     struct data_sum *sum;         /* those that concern this rank, or NULL */
     duite_type type;
     uint32_t n_views;    /* views of it that are alive */
-    size_t count, bytes; /* of the zeros that it begins with */
+    size_t count, bytes; /* at first, when all elements are zero */
     size_t max, room;    /* elements and bytes of the largest version */
     uint32_t block;      /* its place among the leaders with its home, in the order they were made;
                             followers share their leader's */
     uint32_t hint;       /* while home is -1: its place in `unsettled` */
 };
 
-/* What mappings are told; empty once the homes are settled. */
+/* What the program hinted about an object, until its home is settled. */
 struct data_hint {
     uint32_t slot, leader;
     double weight;
@@ -49,7 +49,7 @@ struct data_table {
     size_t n_vacant, vacant_capacity;
     struct data_hint *unsettled; /* objects without a home, in the order they were made */
     size_t n_unsettled, unsettled_capacity;
-    uint32_t *blocks; /* a rank: leaders that got their home there so far */
+    uint32_t *blocks; /* by rank: how many leaders got their home there so far */
     uint64_t settled; /* objects that got a home by the mapping so far */
     uint64_t homes;   /* a hash of these homes: the same on every rank */
 };
@@ -57,7 +57,7 @@ struct data_table {
 int data_table_start(struct data_table *table, int n_ranks);
 void data_table_stop(struct data_table *table);
 
-/* Whether there can be such an object. Errors: type, count. */
+/* Whether an object may have this type and these counts. Errors: type, count. */
 int data_object_check(duite_type type, size_t count, size_t max);
 
 /* Makes an object without home. Errors: type, count, memory. */
@@ -67,10 +67,10 @@ int data_object_new(struct data_table *table, duite_type type, size_t count, dui
 int data_object_new_sized(struct data_table *table, duite_type type, size_t count, size_t max,
                           duite_object *name);
 
-/* Sets the sentence of the error that no object has this name. Returns NULL. */
+/* Sets the message of the error that no object has this name. Returns NULL. */
 struct data_object *data_object_missing(const struct data_table *table, duite_object name);
 
-/* The object of that name, or NULL with the error's sentence set. */
+/* The object of that name, or NULL with the error's message set. */
 static inline struct data_object *data_object_find(struct data_table *table, duite_object name)
 {
     struct data_object *object = &table->object[name.slot];
@@ -82,8 +82,8 @@ static inline struct data_object *data_object_find(struct data_table *table, dui
 /* Takes the name out of use. The caller has released `current`. */
 void data_object_drop(struct data_table *table, duite_object name);
 
-/* Whether a rank has a copy of the current version; notes that it has one; only the new holder has
- * one. */
+/* Copies of the current version: whether a rank has one; notes that a rank has one; notes that only
+ * the new holder has one. */
 bool data_object_has_copy(const struct data_table *table, const struct data_object *object,
                           int rank);
 void data_object_add_copy(struct data_table *table, struct data_object *object, int rank);
@@ -105,8 +105,8 @@ static inline struct data_version *data_object_version(const struct data_object 
 /* The hint of the object in a slot, or NULL if its home is settled. The slot is not free. */
 struct data_hint *data_hint_find(const struct data_table *table, uint32_t slot);
 
-/* An object without home gets one, or that of its leader, which has one. Its hint no longer counts.
- */
+/* An object without a home gets one: settle gives it `home`, join that of its leader, which has
+ * one. Its hint no longer counts. */
 void data_object_settle(struct data_table *table, uint32_t slot, int home);
 void data_object_join(struct data_table *table, uint32_t slot, uint32_t leader);
 

@@ -13,7 +13,7 @@ struct data_piece {
     uint64_t first;
     uint32_t level;
     struct data_packet *packet; /* owns the bytes of value, unless it is shared with other pieces */
-    void *value; /* NULL until the task ran, if poisoned, or if it is absent: then it is skipped */
+    void *value; /* NULL: its task did not run yet; it is poisoned; or it is absent, and skipped */
     const struct data_failure *failure; /* poison, or NULL */
 };
 
@@ -25,7 +25,8 @@ struct data_sum {
     _Atomic(struct data_piece *) arrived;      /* pieces from other ranks */
     _Atomic(const struct data_failure *) lost; /* why some will never arrive; poisons the whole */
     _Atomic uint32_t pending; /* leaves not run, messages not arrived, and 1 while it is open */
-    uint32_t senders;         /* other ranks with leaves, counted where the object's value is */
+    uint32_t senders; /* how many other ranks have leaves; counted on the rank that holds the
+                         object's value */
     struct data_waiter
         *closer; /* the task that combines or sends; set before the open hold is released */
     struct data_sum *next;   /* for whoever keeps it */
@@ -53,7 +54,7 @@ struct data_piece *data_piece_new(void);
 /* Adds a piece from another rank; from any thread. */
 void data_sum_arrive(struct data_sum *sum, struct data_piece *piece);
 
-/* One of `pending` is done. Returns the closer if it was the last. */
+/* Takes one from `pending`. Returns the closer if that was the last one. */
 struct data_waiter *data_sum_release(struct data_sum *sum);
 
 /* Combines the pieces (pending is 0) as far as complete subtrees go, in place. Writes them into

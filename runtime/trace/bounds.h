@@ -3,7 +3,7 @@
 
 #include "runtime/trace/read.h"
 
-/* What no schedule could have done better with the bodies of a run, in seconds. */
+/* Lower bounds of the time that any schedule of a run's bodies takes, in seconds. */
 struct trace_bounds {
     double path; /* the longest chain of tasks, each of which needs what the one before it wrote */
     double work; /* in bodies, all workers together */

@@ -1,5 +1,5 @@
-/* Reading: every section is checked before anything points to it, so that whoever has a run need
- * not. Files stay mapped as long as the run is there. */
+/* Reading a trace: every section is checked before anything points to it, so that users of a run
+ * need not check. Files stay mapped until the run is freed. */
 #include "runtime/trace/read.h"
 
 #include "runtime/base/error.h"
@@ -304,7 +304,7 @@ static int source_peek(const char *path, struct trace_header *header)
     return code;
 }
 
-/* So many ranks are there if the last one has a file: before room is made for all of them. */
+/* Checks the number of ranks before memory is taken for them: the last rank must have a file. */
 static int run_check_last(const char *file, uint32_t n_ranks)
 {
     char *path = NULL;

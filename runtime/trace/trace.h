@@ -9,8 +9,8 @@
 
 /* What a running rank writes down. Workers put events into rings of their own; the main thread
  * writes them to the file between steps, and a worker its own between two tasks when its ring gets
- * full. What does not fit is counted as lost. A failure of the file ends the writing, not the run:
- * it is told by trace_close. */
+ * full. Events that do not fit are counted as lost. A failure of the file ends the writing, not the
+ * run; trace_close returns it. */
 struct trace;
 
 struct trace_setup {
@@ -31,13 +31,15 @@ int trace_open(struct trace **trace, const struct trace_setup *setup);
  * main thread. */
 void trace_align(struct trace *trace, MPI_Comm mpi);
 
-/* Ends it: writes what is left. `counters`: one a worker, or NULL for want of memory. Returns 0, or
- * DUITE_E_SYSTEM with the sentence if not everything was written. Main thread; no task runs. */
+/* Ends the trace: writes what is left. `counters`: one a worker, or NULL for want of memory.
+ * Returns 0, or DUITE_E_SYSTEM with a message if not everything was written. Main thread; no task
+ * runs. */
 int trace_close(struct trace *trace, const struct trace_counters *counters);
-/* Frees it, whatever became of it; `mpi`: MPI can be asked. Collective then. NULL is fine. */
+/* Frees the trace, closed or not. `mpi`: MPI may be called; then this is collective. NULL is fine.
+ */
 void trace_free(struct trace *trace, bool mpi);
 
-/* NULL on a rank without a trace. */
+/* The ring of a worker; NULL on a rank without a trace. */
 struct trace_ring *trace_ring(struct trace *trace, unsigned worker);
 
 /* Writes the worker's ring if it is nearly full and nobody else is writing. By that worker, between
@@ -46,8 +48,8 @@ void trace_relieve(struct trace *trace, struct trace_ring *ring);
 /* Writes all rings. Main thread. */
 void trace_flush(struct trace *trace);
 
-/* Whether this step is recorded; all, and what comes before them; whether events are at the moment.
- */
+/* Whether this step is to be recorded; whether all steps are, and what comes before them; whether
+ * events are recorded at the moment. */
 bool trace_wants(const struct trace *trace, uint64_t step);
 bool trace_wants_all(const struct trace *trace);
 bool trace_is_on(const struct trace *trace);
@@ -62,7 +64,8 @@ void trace_freed(struct trace *trace, duite_object name);
 void trace_hint(struct trace *trace, duite_object name, double weight, size_t n,
                 const duite_object *neighbours, const double *edge_weights);
 void trace_follow(struct trace *trace, duite_object name, duite_object leader);
-/* Objects without homes, before they are settled; and afterwards the homes of these. */
+/* settles: notes the objects without a home, before they get one. settled: afterwards, the homes
+ * that they got. */
 void trace_settles(struct trace *trace, const struct data_table *table);
 void trace_settled(struct trace *trace, const struct data_table *table);
 /* Homes of objects that moved. */
@@ -74,7 +77,7 @@ void trace_set(struct trace *trace, duite_object name);
 void trace_get(struct trace *trace, duite_object name, int rank, uint64_t from);
 void trace_wait(struct trace *trace, uint64_t from);
 void trace_graph(struct trace *trace, uint32_t name, const struct plan_record *record);
-/* Before it begins; rounds: at most. */
+/* A replay, before it begins. rounds: how many at most. */
 void trace_replay(struct trace *trace, uint32_t name, const struct plan_record *record,
                   const duite_object *flag, uint64_t rounds);
 

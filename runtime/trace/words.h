@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* The main program of a trace, read word by word: see runtime/trace/format.h for its entries.
- * Beyond the last word there are zeros, and `short_of` says so. */
+ * Beyond the last word zeros are read, and `short_of` says so. */
 struct trace_words {
     const uint32_t *word;
     size_t n, at; /* at: the next one */
@@ -52,7 +52,7 @@ static inline float trace_words_float(struct trace_words *words)
     return value;
 }
 
-/* The access mode of a parameter; a postponed right counts as the right itself. */
+/* The access mode of a parameter; a postponed mode counts as the mode itself. */
 static inline duite_mode trace_mode(const struct trace_kernel *kernel, size_t i)
 {
     static const duite_mode same[] = {DUITE_NONE, DUITE_R, DUITE_W,  DUITE_RW, DUITE_CW,

@@ -197,8 +197,8 @@ typedef struct duite_kernel {
     int side_effects; /* 1: does more than write its parameters (files): checking mode runs it once
                        */
     int fixed; /* 1: its tasks run where duite_fork says, on no other rank, and an object that one
-                  of them ran for keeps its home: for bodies that need what only that rank's
-                  context has */
+                  of the main program's ran for keeps its home: for bodies that need what only that
+                  rank's context has. If a body forks such tasks, its own kernel says so, too */
     const duite_law
         *law[DUITE_MAX_ACCESS];    /* of the parameters with DUITE_CW or CWP; NULL: duite_sum */
     const duite_law *variadic_law; /* if variadic is DUITE_CW or CWP; NULL: duite_sum */
@@ -285,9 +285,9 @@ const char *const *duite_balancer_names(void);
  * and only there: of the second one (duite_replay and duite_replay_while, of any graph), and then
  * ever less often while nothing moves. Such a replay waits, like duite_wait, for all tasks forked
  * so far, on all ranks. Recorded graphs stay as they are; what a rank has of objects that leave is
- * freed. Objects keep their home if a task of a kernel that says `fixed` ran for them; tasks whose
- * fork named a rank run there whatever moves. Results are the same. `wander` moves objects, and
- * leaves, anywhere at any replay, for tests. */
+ * freed. Objects keep their home if a task of the main program ran for them whose kernel says
+ * `fixed`; tasks whose fork named a rank run there whatever moves. Results are the same. `wander`
+ * moves objects, and leaves, anywhere at any replay, for tests. */
 
 /* Renaming: a task may overwrite an object (w) which earlier tasks still read, write or send. With
  * renaming it is given fresh memory and does not wait for them. All such memory of a rank, headers
@@ -334,8 +334,10 @@ int duite_start(duite **rt, const duite_options *options);
 
 /* Waits for all tasks, ends the workers and frees everything; start and stop may repeat. MPI, if
  * start initialised it, is finalised when the process ends; a process that ends without a stop
- * leaves it unfinalised, and mpirun ends the job. *rt becomes NULL whatever is returned. Returns
- * the error that a wait would, else DUITE_E_NOT_FREED if objects or graphs are left. Collective. */
+ * leaves it unfinalised, and mpirun ends the job. Returns the error that a wait would, else
+ * DUITE_E_NOT_FREED if objects or graphs are left; *rt becomes NULL whatever is returned. Where it
+ * may not be called (in a body or a build function, between duite_mpi_begin and duite_mpi_end) it
+ * does nothing and returns DUITE_E_STATE. Collective. */
 int duite_stop(duite **rt);
 
 /* Frees the runtime without the other ranks, after DUITE_E_LOST or DUITE_E_MPI (else:

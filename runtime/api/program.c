@@ -1,6 +1,6 @@
 /* The calls of the main program (a body's go to inside.c): each checks that it may be made, settles
- * the homes of new objects where they matter, and leaves the work to task/ and plan/. An error of a call
- * that returns at once is remembered for the next get, wait or stop. */
+ * the homes of new objects where they matter, and leaves the work to task/ and plan/. An error of a
+ * call that returns at once is remembered for the next get, wait or stop. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
@@ -122,14 +122,15 @@ static int fork_task(duite *rt, const struct task_options *how, const duite_kern
     return program_remember(rt, code);
 }
 
-/* Whether the task is none of this rank's business: then it is forked. Messages are looked after
- * now and then all the same. */
+/* Whether the task may be forked, and is none of this rank's business: then it is forked. Messages
+ * are looked after now and then all the same. */
 static bool pruned(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                    const duite_object *objects)
 {
     enum { FORKS_A_TICK = 32 };
     if (!rt || !rt->comm || rt->building || rt->graph.table.n_unsettled || rt->graph.broken ||
-        !work_may_fork(rt->pool) || !task_prune(&rt->graph, kernel, args, n, objects))
+        rt->mpi_held || comm_broken(rt->comm) || !work_may_fork(rt->pool) ||
+        !task_prune(&rt->graph, kernel, args, n, objects))
         return false;
     trace_fork(rt->trace, kernel, &(struct task_options){.at = TASK_ANYWHERE}, n, objects);
     if (rt->graph.root.forks % FORKS_A_TICK == 0)

@@ -124,11 +124,20 @@ bool instance_is_broken(const duite *rt)
     return rt->graph.broken || (rt->comm && comm_broken(rt->comm));
 }
 
+struct instance_end {
+    duite *rt;
+    struct work_stillness still;
+};
+
+/* What MPI does not finish any more once a rank is lost, and all that waits behind it, is left: it
+ * stays where it is. */
 static bool instance_has_nothing_left(void *context)
 {
-    duite *rt = context;
-    uint64_t left = work_unfinished(rt->pool) + offload_count(&rt->graph);
-    return !left || (rt->comm && left == comm_stuck(rt->comm));
+    struct instance_end *end = context;
+    const duite *rt = end->rt;
+    if (!work_unfinished(rt->pool) && !offload_count(&rt->graph))
+        return true;
+    return rt->comm && comm_is_cut(rt->comm) && work_stands_still(rt->pool, &end->still);
 }
 
 void instance_give_up(duite *rt)
@@ -139,7 +148,7 @@ void instance_give_up(duite *rt)
         comm_broke(rt->comm, rt->graph.broken, duite_message());
     if (rt->comm)
         comm_give_up(rt->comm, work_main(rt->pool));
-    work_drain(rt->pool, instance_has_nothing_left, rt);
+    work_drain(rt->pool, instance_has_nothing_left, &(struct instance_end){.rt = rt});
     if (rt->comm && comm_is_cut(rt->comm))
         comm_part(rt->comm, work_main(rt->pool));
 }
@@ -230,7 +239,9 @@ int duite_stop(duite **out)
     if (!work_may_fork(rt->pool))
         return base_error(DUITE_E_STATE, "duite_stop is for the main thread, outside of bodies");
     if (rt->building || rt->mpi_held)
-        return program_enter(rt, "duite_stop");
+        return base_error(DUITE_E_STATE, "duite_stop: not %s",
+                          rt->building ? "while a graph is recorded"
+                                       : "between duite_mpi_begin and duite_mpi_end");
     const uint64_t from = rt->trace ? base_ticks() : 0;
     int code = program_wait(rt, "duite_stop");
     trace_wait(rt->trace, from);

@@ -193,9 +193,6 @@ void comm_let_go(struct comm *comm);
 /* It is broken: whatever is expected is taken for lost. Main thread. */
 void comm_give_up(struct comm *comm, struct worker *worker);
 
-/* SENDs that MPI itself will not finish any more, since it failed. */
-uint64_t comm_stuck(struct comm *comm);
-
 /* Ticks so far in which this rank awaited messages. Any thread. */
 uint64_t comm_awaited_ticks(const struct comm *comm);
 

@@ -149,7 +149,7 @@ int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *la
         bool known = law_is_listed(built_in, law) || law_is_listed(laws, law);
         if (!law || ((mode == DUITE_CW || mode == DUITE_CWP) && known))
             continue;
-        char where[24] = "`rest`";
+        char where[24] = "`variadic`";
         if (!rest)
             snprintf(where, sizeof where, "parameter %u", i);
         return base_error(DUITE_E_LAW, "kernel %s, %s: law %s %s", kernel->name, where,

@@ -48,8 +48,8 @@ static int check_kernel(const duite_kernel *kernel, uint32_t index, struct task_
         fixed->postponed += task_postponed(mode);
     }
     if ((int)kernel->variadic < DUITE_NONE || kernel->variadic > DUITE_CWP)
-        return base_error(DUITE_E_KERNEL, "kernel %s: `rest` has no such mode: %d", kernel->name,
-                          (int)kernel->variadic);
+        return base_error(DUITE_E_KERNEL, "kernel %s: `variadic` has no such mode: %d",
+                          kernel->name, (int)kernel->variadic);
     fixed->owner[0] = task_owner(kernel->access, kernel->variadic, fixed->n);
     fixed->owner[1] = task_owner(kernel->access, kernel->variadic, (size_t)fixed->n + 1);
     return check_replicated(kernel);

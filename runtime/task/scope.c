@@ -45,7 +45,7 @@ uint32_t task_new_stamp(void)
     static _Thread_local uint32_t next;
     if (next % BATCH == 0)
         next = BATCH * atomic_fetch_add_explicit(&batches, 1, memory_order_relaxed);
-    return ++next;
+    return ++next ? next : ++next; /* 0 is no name's */
 }
 
 bool task_known(struct task_scope *scope, duite_object name, duite_mode *right,

@@ -54,6 +54,23 @@ static uint64_t pool_movement(struct work_pool *pool)
     return pool->setup.comm ? sum * odd + comm_movement(pool->setup.comm) : sum;
 }
 
+static bool pool_runs_a_body(struct work_pool *pool)
+{
+    for (unsigned i = 0; i < pool->setup.threads; i++)
+        if (atomic_load_explicit(&pool->worker[i].runs, memory_order_relaxed))
+            return true;
+    return false;
+}
+
+bool work_stands_still(struct work_pool *pool, struct work_stillness *still)
+{
+    const double seconds = 0.1;
+    const uint64_t now = base_ticks(), movement = pool_movement(pool);
+    if (!still->since || still->movement != movement || pool_runs_a_body(pool))
+        *still = (struct work_stillness){movement, now};
+    return (double)(now - still->since) * pool->tick > seconds;
+}
+
 /* ---- The report ---- */
 
 enum { MOST_LINES = 20, MOST_BODIES = 8 };

@@ -60,6 +60,16 @@ void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)
 /* The same, whether communication broke or not. */
 void work_drain(struct work_pool *pool, bool (*done)(void *context), void *context);
 
+/* When a rank was last seen to move; zero at first. */
+struct work_stillness {
+    uint64_t movement, since;
+};
+
+/* Whether no worker has run a body, and nothing of this rank has moved, for a moment: what is
+ * unfinished waits for something that never comes. Asked again and again by the main thread, which
+ * works meanwhile. */
+bool work_stands_still(struct work_pool *pool, struct work_stillness *still);
+
 /* Works until done(context) in the middle of a body, with whose scope it waits: runs tasks that
  * task_may_run on top of it, on its stack. Returns early if communication broke. The worker whose
  * body it is. */

@@ -11,6 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
+enum { LONG = 1 << 22 }; /* elements of the last object: sent when its reader asks for it */
+
 static int rank, ranks;
 
 static void nap(double seconds)
@@ -42,7 +44,7 @@ static const duite_kernel ASK = {.name = "ask", .body = ask_body, .access = {DUI
 
 static duite *start(const char *how)
 {
-    static const duite_kernel *const LIST[] = {&NAP, &ASK, &SET, &COPY, &ADD, NULL};
+    static const duite_kernel *const LIST[] = {&NAP, &ASK, &SET, &COPY, &ADD, &MANY, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = NULL;
     options.kernels = LIST;
@@ -62,6 +64,18 @@ static int fork_all(duite *rt, const duite_object *object)
     for (int i = 0; i < 20 && !code; i++)
         code = duite_fork_at(rt, (i % 2) * (ranks - 1), &COPY, NULL, 2, object);
     return code;
+}
+
+/* Rank 1 does not take what it is sent, which is too long to be sent without it; a task of this
+ * rank waits until the object is sent. */
+static int wait_behind_a_send(duite *rt, const duite_object *object)
+{
+    int code = duite_fork_at(rt, 0, &SET, &(int32_t){7}, 1, object);
+    if (!code)
+        code = duite_fork_at(rt, 1, &MANY, NULL, 1, object);
+    if (!code)
+        code = duite_fork_at(rt, 0, &SET, &(int32_t){8}, 1, object);
+    return code ? code : duite_wait(rt);
 }
 
 static int build_nothing(duite *rt, void *context)
@@ -86,6 +100,8 @@ static int wait_for_it(duite **rt, const char *how, const duite_object *object)
 {
     int32_t value;
     duite_counters counters;
+    if (!strcmp(how, "send"))
+        return wait_behind_a_send(*rt, &object[2]);
     int code = fork_all(*rt, object);
     if (code || !strcmp(how, "window"))
         return code ? code : duite_fork(*rt, &ADD, NULL, 1, &object[0]);
@@ -161,7 +177,7 @@ static int none_lost(duite *rt, const char *how, const duite_object *object, con
     return duite_stop(&rt) || code || early;
 }
 
-/* ranks_lost get|wait|replay|count|stop|window|body|bodies|stopped, on 3 ranks */
+/* ranks_lost get|send|wait|replay|count|stop|window|body|bodies|stopped, on 3 ranks */
 int main(int argc, char **argv)
 {
     const char *how = argc > 1 ? argv[1] : "";
@@ -177,7 +193,7 @@ int main(int argc, char **argv)
     if (!rt)
         return 2;
     for (int i = 0; i < 3; i++)
-        object[i] = misuse_new(rt, 1);
+        object[i] = misuse_new(rt, i < 2 ? 1 : LONG);
     if (duite_wait(rt))
         return 2;
     if (!strcmp(how, "bodies") || !strcmp(how, "stopped"))

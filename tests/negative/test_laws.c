@@ -62,7 +62,7 @@ START_TEST(not_listed)
     refuses(BY_DOUBLES, NULL, "kernel by doubles, parameter 1: law doubles was not listed");
     refuses(BY_DOUBLES, (const duite_law *[]){&BYTES, &copy, NULL}, "not listed at start");
     refuses(BY_BYTES, (const duite_law *[]){&DOUBLES, NULL},
-            "kernel by bytes, `rest`: law of bytes was not listed");
+            "kernel by bytes, `variadic`: law of bytes was not listed");
 }
 END_TEST
 
@@ -78,7 +78,7 @@ START_TEST(no_cw)
     refuses(kernel, NULL, "parameter 1: law min for a parameter that is not cw");
     kernel = BY_SUM;
     kernel.variadic_law = &duite_sum;
-    refuses(kernel, NULL, "`rest`: law sum for a parameter that is not cw");
+    refuses(kernel, NULL, "`variadic`: law sum for a parameter that is not cw");
 }
 END_TEST
 

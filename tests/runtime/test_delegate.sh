@@ -4,8 +4,8 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-programs=240
-if quick; then programs=60; fi
+programs=120
+if quick; then programs=40; fi
 for n in 1 2 3; do
     ok "delegation on $n ranks" ranks $n tests/runtime/ranks_delegate
 done

@@ -4,8 +4,8 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-programs=120
-if quick; then programs=60; fi
+programs=60
+if quick; then programs=30; fi
 for n in 1 2 3; do
     ok "what moves on $n ranks" ranks $n tests/runtime/ranks_migrate
     ok "what it takes along" ranks $n tests/runtime/ranks_migrate_values

@@ -4,8 +4,8 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-programs=800
-if quick; then programs=200; fi
+programs=400
+if quick; then programs=100; fi
 ok "$programs random trees of tasks" limited tests/runtime/nested_programs --programs $programs
 ok "random trees of tasks on 2 ranks" ranks 2 tests/runtime/nested_programs --seed 100000 --programs $((programs / 4))
 ok "random trees of tasks on 3 ranks" ranks 3 tests/runtime/nested_programs --seed 200000 --programs $((programs / 8))

@@ -5,8 +5,8 @@
 . "${srcdir:-.}/tests/support/tap.sh"
 plan_later
 
-programs=3000
-if quick; then programs=500; fi
+programs=1500
+if quick; then programs=300; fi
 ok "$programs random programs" ranks 4 tests/runtime/random_programs --base 1 --programs $programs
 for n in 5 8; do
     ok "$((programs / 100)) on $n ranks" ranks $n tests/runtime/random_programs --base 80${n}000 --programs $((programs / 100))

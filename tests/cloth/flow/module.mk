@@ -63,7 +63,8 @@ tests_cloth_flow_test_checked_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_checked_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=check_call
 TESTS += tests/cloth/flow/test_checked
 endif
-dist_check_SCRIPTS += tests/cloth/flow/test_ranks.sh
+dist_check_SCRIPTS += tests/cloth/flow/test_ranks.sh tests/cloth/flow/test_ranks_long.sh
 TESTS += tests/cloth/flow/test_ranks.sh
+LONG_TESTS += tests/cloth/flow/test_ranks_long.sh
 dist_check_SCRIPTS += tests/cloth/flow/test_checked_long.sh
 LONG_TESTS += tests/cloth/flow/test_checked_long.sh

@@ -1,8 +1,10 @@
 #!/bin/sh
-# The tests of motion, runs and their failures once more, with the cloth spread over two ranks: what one rank finds wrong, or has no
-# memory for, all say. Of test_checked what sees each kernel once: two ranks differ from one in what they send.
+# The tests of runs and their failures once more, with the cloth spread over two ranks: what one rank finds wrong, or has no memory
+# for, all say. Of test_checked what sees each kernel once: two ranks differ from one in what they send. With DUITE_LONG=1 the tests of
+# motion, too: that two ranks move a cloth like one, to the bit, is what test_same_hash.sh says.
 . "${srcdir:-.}/tests/support/tap.sh"
-programs="test_run test_failures test_halving test_contact test_guides test_memory test_solvers"
+programs="test_run test_failures test_memory"
+if test "${DUITE_LONG:-}" = 1; then programs="test_halving test_contact test_guides test_solvers"; fi
 for program in $programs test_motion test_integrators test_checked test_late; do
     skip_unless "tests/cloth/flow/$program"
 done
@@ -11,10 +13,13 @@ plan_later
 for program in $programs; do
     ok "$program on 2 ranks" ranks 2 "tests/cloth/flow/$program"
 done
-for cases in motion integrators; do # their other cases are of one block, which is no work for two ranks
-    ok "test_$cases on 2 ranks" ranks 2 env CK_RUN_CASE=$cases "tests/cloth/flow/test_$cases"
-done
-# As in run.sh.
-ok "test_checked on 2 ranks" ranks 2 env ASAN_OPTIONS="${ASAN_OPTIONS:-}:fast_unwind_on_malloc=1:detect_leaks=0" \
-    tests/cloth/flow/test_checked quick
-ok "test_late on 3 ranks" ranks 3 tests/cloth/flow/test_late
+if test "${DUITE_LONG:-}" = 1; then
+    for cases in motion integrators; do # their other cases are of one block, which is no work for two ranks
+        ok "test_$cases on 2 ranks" ranks 2 env CK_RUN_CASE=$cases "tests/cloth/flow/test_$cases"
+    done
+else
+    # As in run.sh.
+    ok "test_checked on 2 ranks" ranks 2 env ASAN_OPTIONS="${ASAN_OPTIONS:-}:fast_unwind_on_malloc=1:detect_leaks=0" \
+        tests/cloth/flow/test_checked quick
+    ok "test_late on 3 ranks" ranks 3 tests/cloth/flow/test_late
+fi

@@ -56,15 +56,20 @@ static void finalise(void)
     MPI_Finalize();
 }
 
-void misuse_mpi(void)
+void misuse_mpi_at(int level)
 {
     int is, given;
 
     MPI_Initialized(&is);
     if (is)
         return;
-    MPI_Init_thread(NULL, NULL, MPI_THREAD_SERIALIZED, &given);
+    MPI_Init_thread(NULL, NULL, level, &given);
     atexit(finalise);
+}
+
+void misuse_mpi(void)
+{
+    misuse_mpi_at(MPI_THREAD_MULTIPLE);
 }
 
 duite_options misuse_options(MPI_Comm comm)

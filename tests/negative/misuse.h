@@ -11,8 +11,10 @@
  * EVERYWHERE is COPY, replicated; UNLISTED is not listed. */
 extern const duite_kernel SET, COPY, ADD, FAIL, MANY, EMPTY, EVERYWHERE, UNLISTED;
 
-/* Initialises MPI unless it is, to be finalised at exit. */
+/* Initialises MPI unless it is, to be finalised at exit; with MPI_THREAD_MULTIPLE, since tap_case
+ * calls MPI while workers do, or with another level of thread support. */
 void misuse_mpi(void);
+void misuse_mpi_at(int level);
 /* Options with all kernels listed on a communicator. */
 duite_options misuse_options(MPI_Comm comm);
 /* Initialises MPI and starts a runtime with them and this many threads; NULL if it does not start.

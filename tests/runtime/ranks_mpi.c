@@ -54,13 +54,29 @@ static int run(double lost_seconds, int waits)
     return !duite_stop(&rt) && right;
 }
 
+/* A fork between begin and end is refused on each rank, also where it touches nothing; and told
+ * once more by the wait. */
+static int fork_refused(void)
+{
+    duite *rt = misuse_start(MPI_COMM_WORLD, 1);
+    if (!rt)
+        return 0;
+    const duite_object object = misuse_new(rt, COUNT);
+    int right = duite_home(rt, object) >= 0 && !duite_mpi_begin(rt);
+    right &= duite_fork(rt, &SET, &(int32_t){1}, 1, &object) == DUITE_E_STATE;
+    right &= !duite_mpi_end(rt) && duite_wait(rt) == DUITE_E_STATE && !duite_wait(rt);
+    duite_free(rt, object);
+    return !duite_stop(&rt) && right;
+}
+
 int main(void)
 {
-    misuse_mpi();
+    misuse_mpi_at(MPI_THREAD_SERIALIZED);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     tap_case(run(8, 1), "when no task is left");
     tap_case(run(8, 0), "while tasks and messages are on their way");
-    tap_case(run(0.5, 1), "between many heartbeats");
+    tap_case(run(2, 1), "between many heartbeats");
+    tap_case(fork_refused(), "a fork is refused on each rank");
     return tap_done();
 }

@@ -71,7 +71,7 @@ static bool comm_is_over(struct comm *comm)
 {
     if (comm_is_broken(comm))
         return comm_is_lost(comm) || comm_is_quiet(comm);
-    return !comm->open || (!comm->sends.n && comm_control_over(comm));
+    return !comm->open || comm_control_over(comm);
 }
 
 bool comm_stop(struct comm *comm)
@@ -125,6 +125,15 @@ void comm_hold(struct comm *comm)
 void comm_let_go(struct comm *comm)
 {
     comm_unlock(comm); /* what was posted meanwhile is sent by the next poll */
+}
+
+void comm_workers_end(struct comm *comm)
+{
+    if (comm->open)
+        comm_hold(comm); /* the monitor wakes a worker under it */
+    comm->graph->pool = NULL;
+    if (comm->open)
+        comm_let_go(comm);
 }
 
 /* ---- Progress ---- */

@@ -190,6 +190,9 @@ void comm_part(struct comm *comm, struct worker *worker);
 void comm_hold(struct comm *comm);
 void comm_let_go(struct comm *comm);
 
+/* The workers end: nobody wakes them any more if communication breaks. Main thread. */
+void comm_workers_end(struct comm *comm);
+
 /* It is broken: whatever is expected is taken for lost. Main thread. */
 void comm_give_up(struct comm *comm, struct worker *worker);
 

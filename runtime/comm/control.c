@@ -11,27 +11,29 @@
 
 /* ---- Start and stop ---- */
 
-/* Requests for what must be sent without memory, an abort message and a last one to each rank, and
- * for one message more. */
+/* Requests for what must be sent without memory, an abort message, one of a loss and a last one to
+ * each rank, and for one message more. */
 static size_t control_reserve(int n_ranks)
 {
-    return 2 * (size_t)n_ranks + 1;
+    return 3 * (size_t)n_ranks + 1;
 }
 
 bool comm_control_start(struct comm_control *control, int n_ranks)
 {
     control->abort = data_packet_new(sizeof(struct comm_abort), true);
+    control->loss = data_packet_new(sizeof(struct comm_abort), true);
     control->last = data_packet_new(0, true);
     control->spare = data_packet_new(sizeof(struct comm_abort), true);
     control->standing = base_alloc_zero((size_t)n_ranks * sizeof *control->standing);
-    return control->abort && control->last && control->spare && control->standing &&
-           comm_requests_room(&control->sends, control_reserve(n_ranks));
+    return control->abort && control->loss && control->last && control->spare &&
+           control->standing && comm_requests_room(&control->sends, control_reserve(n_ranks));
 }
 
 void comm_control_stop(struct comm_control *control)
 {
     comm_requests_free(&control->sends);
     data_packet_free(control->abort);
+    data_packet_free(control->loss);
     data_packet_free(control->last);
     data_packet_free(control->spare);
     base_free(control->standing);
@@ -77,8 +79,15 @@ static bool control_sent(struct comm *comm)
 
 /* ---- Abort ---- */
 
+static bool code_is_loss(int code)
+{
+    return code == DUITE_E_LOST || code == DUITE_E_MPI;
+}
+
 void comm_broke(struct comm *comm, int code, const char *message)
 {
+    if (code_is_loss(code))
+        atomic_store(&comm->lost, true);
     if (atomic_flag_test_and_set(&comm->breaking))
         return;
     comm->reason.code = code;
@@ -118,20 +127,31 @@ bool comm_is_cut(struct comm *comm)
 }
 
 /* A send that fails here is a failure of MPI: there is nobody left to tell. */
+static void abort_send_all(struct comm *comm, struct data_packet *packet, enum comm_kind kind)
+{
+    packet->kind = kind;
+    packet->key.slot = (uint32_t)comm->rank;
+    memcpy(data_payload(packet), &comm->reason, sizeof comm->reason);
+    for (int to = 0; to < comm->n_ranks; to++)
+        if (to != comm->rank)
+            control_isend(comm, to, packet, true);
+}
+
+/* Once each: that communication broke; and that a rank is lost, if it broke for another reason. */
 static void abort_send(struct comm *comm)
 {
     struct comm_control *control = &comm->control;
-    if (control->aborts || !comm_is_broken(comm))
-        return;
-    control->aborts = true;
-    control->abort->kind = COMM_ABORT;
-    control->abort->key.slot = (uint32_t)comm->rank;
-    comm->reason.entered = comm->entered;
-    comm->reason.kind = comm->kind;
-    memcpy(data_payload(control->abort), &comm->reason, sizeof comm->reason);
-    for (int to = 0; to < comm->n_ranks; to++)
-        if (to != comm->rank)
-            control_isend(comm, to, control->abort, true);
+    if (!control->aborts && comm_is_broken(comm)) {
+        control->aborts = true;
+        comm->reason.entered = comm->entered;
+        comm->reason.kind = comm->kind;
+        abort_send_all(comm, control->abort, COMM_ABORT);
+    }
+    if (control->aborts && !control->tells_loss && comm_is_lost(comm)) {
+        control->tells_loss = true;
+        if (!code_is_loss(comm->reason.code))
+            abort_send_all(comm, control->loss, COMM_LOSS);
+    }
 }
 
 static void abort_hear(struct comm *comm, struct data_packet *packet)
@@ -146,6 +166,12 @@ static void abort_hear(struct comm *comm, struct data_packet *packet)
         comm->control.kind = abort->kind;
     }
     comm_broke(comm, abort->code, message);
+}
+
+static void loss_hear(struct comm *comm, struct data_packet *packet)
+{
+    (void)packet; /* it follows an abort message, whose reason stands */
+    atomic_store(&comm->lost, true);
 }
 
 bool comm_is_quiet(struct comm *comm)
@@ -164,16 +190,20 @@ bool comm_request(struct comm *comm, int rank, unsigned idle, double seconds)
 {
     struct data_packet *packet = comm_is_broken(comm) ? NULL : data_packet_new(0, true);
     bool sent = false;
-    if (packet && comm_try_lock(comm)) {
+    if (!packet || !comm_try_lock(comm)) {
+        data_packet_free(packet);
+        return false;
+    }
+    if (comm_is_broken(comm)) { /* meanwhile: nothing follows the abort message */
+        data_packet_free(packet);
+    } else {
         packet->kind = COMM_REQUEST;
         packet->pieces = idle;
         packet->key.number = (uint64_t)(1e9 * seconds);
         sent = comm_control_send(comm, rank, packet);
-        comm_unlock(comm); /* what was posted meanwhile is sent by the caller's next poll */
-        atomic_fetch_add_explicit(&comm->control.requested, sent, memory_order_relaxed);
-    } else {
-        data_packet_free(packet);
     }
+    comm_unlock(comm); /* what was posted meanwhile is sent by the caller's next poll */
+    atomic_fetch_add_explicit(&comm->control.requested, sent, memory_order_relaxed);
     return sent;
 }
 
@@ -235,9 +265,11 @@ void comm_control_end(struct comm *comm)
     struct comm_control *control = &comm->control;
     control->last->kind = COMM_LAST;
     control->last->key.slot = (uint32_t)comm->rank;
+    comm_hold(comm);
     for (int to = 0; to < comm->n_ranks && !comm_is_broken(comm); to++)
         if (last_is_for(comm, to))
             comm_mpi_ok(comm, control_isend(comm, to, control->last, true), "MPI_Isend");
+    comm_unlock(comm);
 }
 
 static void last_hear(struct comm *comm, struct data_packet *packet)
@@ -251,7 +283,12 @@ bool comm_control_over(struct comm *comm)
     int expected = 0;
     for (int from = 0; from < comm->n_ranks; from++)
         expected += last_is_for(comm, from);
-    return comm->control.last_heard == expected && !comm->receives.n && control_sent(comm);
+    if (!comm_try_lock(comm))
+        return false;
+    bool over = comm->control.last_heard == expected && !comm->sends.n && !comm->receives.n &&
+                control_sent(comm);
+    comm_unlock(comm);
+    return over;
 }
 
 /* ---- All kinds ---- */
@@ -265,10 +302,8 @@ static const struct control_kind {
     uint32_t kind;
     void (*hear)(struct comm *comm, struct data_packet *packet);
 } CONTROL_KINDS[] = {
-    {COMM_ABORT, abort_hear},
-    {COMM_CHECK, check_hear},
-    {COMM_REQUEST, request_hear},
-    {COMM_LAST, last_hear},
+    {COMM_ABORT, abort_hear},     {COMM_LOSS, loss_hear}, {COMM_CHECK, check_hear},
+    {COMM_REQUEST, request_hear}, {COMM_LAST, last_hear},
 };
 
 bool comm_control_hear(struct comm *comm, struct data_packet *packet)

@@ -75,10 +75,8 @@ bool comm_check_joins(int a, int b)
 static void check_send(struct comm *comm, int to, const struct comm_called *call)
 {
     struct data_packet *packet = data_packet_new(sizeof *call, true);
-    if (!packet) {
-        comm_broke_memory(comm, "a control message");
-        return;
-    }
+    if (!packet)
+        return; /* the run goes on: a wait finds what a check would have found earlier */
     packet->kind = COMM_CHECK;
     memcpy(data_payload(packet), call, sizeof *call);
     comm_control_send(comm, to, packet);

@@ -101,14 +101,16 @@ void comm_channels_look(struct comm *comm, const struct comm_looker *looker);
  * Everything here is under the lock of the comm unless it says otherwise. */
 enum comm_kind {
     COMM_ABORT = 64, /* communication is broken on the sender: struct comm_abort */
-    COMM_CHECK,      /* a blocking call of some rank: struct comm_called */
-    COMM_REQUEST,    /* a rank without work requests tasks: the header says how many */
-    COMM_LAST        /* the sender stops: after this only an abort message may follow */
+    COMM_LOSS,    /* a rank is lost, which was found after the sender's abort message: the same */
+    COMM_CHECK,   /* a blocking call of some rank: struct comm_called */
+    COMM_REQUEST, /* a rank without work requests tasks: the header says how many */
+    COMM_LAST     /* the sender stops: after this only the first two may follow */
 };
 
 /* The abort message. A rank on which communication is broken sends it once to each other rank and
  * nothing after it. So whoever has the abort messages of all others knows that nothing is on its
- * way any more. */
+ * way any more. One thing may follow: the news that a rank is lost, which would never send its
+ * own. */
 struct comm_abort {
     uint64_t entered; /* collective calls so far */
     int32_t code;
@@ -126,9 +128,9 @@ struct comm_standing {
 
 struct comm_control {
     struct comm_requests sends; /* under way; what: the packet, freed then, or NULL: one of these */
-    struct data_packet *abort, *last;
+    struct data_packet *abort, *loss, *last;
     struct data_packet *spare; /* for a control message that comes when there is no memory */
-    bool aborts;               /* the abort messages are sent */
+    bool aborts, tells_loss;   /* the abort messages are sent; and those of a loss */
     int heard;                 /* abort messages */
     uint64_t entered;          /* the most collective calls that an abort message told of */
     int32_t kind;              /* of the last of these */
@@ -154,11 +156,12 @@ bool comm_control_hear(struct comm *comm, struct data_packet *packet);
 /* What is due: the divergence check, and the abort messages if communication is broken. */
 void comm_control_pass(struct comm *comm);
 
-/* Tells those who may still send control messages that this rank stops. No other thread is left,
- * no lock is needed. */
+/* Tells those who may still send control messages that this rank stops. Takes the lock, since
+ * heartbeats go on. */
 void comm_control_end(struct comm *comm);
 
-/* No control message is on its way to or from this rank, nor will be; communication is whole. */
+/* Takes the lock. Communication is whole: no message is on its way to or from this rank, nor will
+ * be. */
 bool comm_control_over(struct comm *comm);
 
 /* Takes the lock. Broken: nothing at all is on its way to or from this rank, nor will be. */
@@ -285,7 +288,8 @@ struct comm {
     struct comm_arrivals arrivals;
     struct comm_channels channels;
     _Atomic int broken;
-    atomic_flag breaking;     /* taken by the one who breaks */
+    _Atomic bool lost;    /* MPI failed or a rank is lost, for whatever reason it broke before */
+    atomic_flag breaking; /* taken by the one who breaks */
     struct comm_abort reason; /* of `broken`, written before it is set */
     struct comm_control control;
     struct comm_heartbeat heartbeat;
@@ -325,8 +329,7 @@ static inline bool comm_is_broken(struct comm *comm)
 /* MPI itself failed, or a rank is lost: what is on its way may stay there. */
 static inline bool comm_is_lost(struct comm *comm)
 {
-    int code = atomic_load_explicit(&comm->broken, memory_order_acquire);
-    return code == DUITE_E_MPI || code == DUITE_E_LOST;
+    return atomic_load_explicit(&comm->lost, memory_order_acquire);
 }
 
 static inline bool comm_try_lock(struct comm *comm)

@@ -270,13 +270,3 @@ void comm_give_up(struct comm *comm, struct worker *worker)
     }
     offload_lost(comm->graph, worker);
 }
-
-uint64_t comm_stuck(struct comm *comm)
-{
-    uint64_t stuck = 0;
-    if (comm_is_lost(comm) && comm_try_lock(comm)) {
-        stuck = (uint64_t)comm->sends.n;
-        comm_unlock(comm);
-    }
-    return stuck;
-}

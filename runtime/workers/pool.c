@@ -111,7 +111,9 @@ void work_stop(struct work_pool *pool)
 {
     if (!pool)
         return;
-    pool->setup.graph->pool = NULL; /* communication may break later still */
+    if (pool->setup.comm)
+        comm_workers_end(pool->setup.comm);
+    pool->setup.graph->pool = NULL;
     atomic_store(&pool->stop, 1);
     work_standstill_stop(pool);
     for (unsigned i = 1; i < pool->started; i++) {

@@ -48,7 +48,9 @@ static duite *start(const char *how)
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = NULL;
     options.kernels = LIST;
-    options.lost_seconds = rank ? 1e9 : 0.5; /* what rank 0 says counts */
+    options.lost_seconds = rank                     ? 1e9
+                           : strcmp(how, "stopped") ? 0.5
+                                                    : 2; /* what rank 0 says counts */
     options.window = strcmp(how, "window") ? 0 : 2;
     if (!strcmp(how, "replay")) /* which waits for all ranks, to move objects */
         options.balance = duite_balancer_find("migrate");
@@ -153,6 +155,25 @@ static void one_lost(duite *rt, const char *how, const duite_object *object, con
     nap(30); /* until mpirun ends the job */
 }
 
+/* Communication broke for another reason before rank 1 is lost; stop returns all the same. */
+static void one_lost_later(duite *rt, const duite_object *object, const int *process)
+{
+    duite_fork(rt, &SET, &(int32_t){1}, 1, &object[rank == 0]);
+    const int code = duite_wait(rt);
+    if (rank == 1) {
+        raise(SIGSTOP);
+        return;
+    }
+    const int right = code == DUITE_E_DIFFERENT && duite_stop(&rt) == DUITE_E_DIFFERENT && !rt;
+    printf("rank %d %s: later: code %d, %s\n", rank, right ? "is right" : "is wrong", code,
+           duite_message());
+    fflush(stdout);
+    nap(0.3);
+    if (rank == 0)
+        kill(process[1], SIGKILL);
+    nap(30);
+}
+
 /* Signs of life come from a rank whose workers all nap, and from one that is continued after a
  * while. */
 static int none_lost(duite *rt, const char *how, const duite_object *object, const int *process)
@@ -177,7 +198,7 @@ static int none_lost(duite *rt, const char *how, const duite_object *object, con
     return duite_stop(&rt) || code || early;
 }
 
-/* ranks_lost get|send|wait|replay|count|stop|window|body|bodies|stopped, on 3 ranks */
+/* ranks_lost get|send|later|wait|replay|count|stop|window|body|bodies|stopped, on 3 ranks */
 int main(int argc, char **argv)
 {
     const char *how = argc > 1 ? argv[1] : "";
@@ -198,6 +219,9 @@ int main(int argc, char **argv)
         return 2;
     if (!strcmp(how, "bodies") || !strcmp(how, "stopped"))
         return none_lost(rt, how, object, process);
-    one_lost(rt, how, object, process);
+    if (!strcmp(how, "later"))
+        one_lost_later(rt, object, process);
+    else
+        one_lost(rt, how, object, process);
     return 1;
 }

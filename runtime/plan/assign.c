@@ -9,6 +9,7 @@
 #include "runtime/base/memory.h"
 #include "runtime/task/owner.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { SMALL_SUM_BYTES = 1024 };
@@ -29,6 +30,88 @@ void plan_assignment_free(struct plan_assignment *a)
     base_free(a->version);
     base_free(a->need);
     base_free(a->last);
+    base_free(a->sets.few);
+    free(a->sets.word);
+}
+
+/* ---- Sets of ranks ---- */
+
+/* A new row, all zeros. 0 and sets->failed without memory: then it is the row of the empty set, and
+ * the caller leaves it alone. */
+static uint32_t sets_add_row(struct plan_rank_sets *sets)
+{
+    void *moved = base_grow(sets->word, &sets->words_capacity, (sets->n_rows + 1) * sets->words,
+                            sizeof *sets->word);
+    sets->failed |= !moved;
+    if (!moved)
+        return 0;
+    sets->word = moved;
+    base_ranks_clear(sets->word + sets->n_rows * sets->words, sets->words);
+    return (uint32_t)sets->n_rows++;
+}
+
+static bool sets_begin(struct plan_rank_sets *sets, int n_ranks)
+{
+    const size_t few = (size_t)n_ranks + 1;
+    *sets = (struct plan_rank_sets){.n_ranks = n_ranks, .words = base_ranks_words(n_ranks)};
+    sets->few = base_alloc(few * sizeof *sets->few);
+    for (size_t i = 0; i < few && sets->few; i++)
+        sets->few[i] = PLAN_NONE;
+    if (sets->few)
+        sets->few[0] = sets_add_row(sets);
+    return sets->few && !sets->failed;
+}
+
+/* The set of one rank. */
+static uint32_t sets_alone(struct plan_rank_sets *sets, int rank)
+{
+    const uint32_t set = (uint32_t)rank + 1;
+    if (sets->few[set] == PLAN_NONE) {
+        const uint32_t row = sets_add_row(sets);
+        if (sets->failed)
+            return 0;
+        base_ranks_add(sets->word + row * sets->words, rank);
+        sets->few[set] = row;
+    }
+    return set;
+}
+
+/* A set that may grow, with the ranks of another; that one if there is no memory. */
+static uint32_t sets_copy(struct plan_rank_sets *sets, uint32_t from)
+{
+    const uint32_t row = sets_add_row(sets);
+    if (sets->failed)
+        return from;
+    memcpy(sets->word + row * sets->words, plan_ranks(sets, from),
+           sets->words * sizeof *sets->word);
+    return (uint32_t)sets->n_ranks + 1 + row;
+}
+
+/* Adds the ranks of `from`. Returns whether *to grew. */
+static bool sets_join(struct plan_rank_sets *sets, uint32_t *to, uint32_t from)
+{
+    const uint32_t few = (uint32_t)sets->n_ranks + 1;
+    if (*to == from || !from ||
+        base_ranks_within(plan_ranks(sets, from), plan_ranks(sets, *to), sets->words))
+        return false;
+    if (!*to && from < few) {
+        *to = from;
+        return true;
+    }
+    if (*to < few)
+        *to = sets_copy(sets, *to);
+    if (sets->failed)
+        return false;
+    return base_ranks_join(sets->word + (*to - few) * sets->words, plan_ranks(sets, from),
+                           sets->words);
+}
+
+static uint32_t sets_all(struct plan_rank_sets *sets)
+{
+    const uint32_t all = sets_copy(sets, 0);
+    for (int rank = 0; rank < sets->n_ranks && !sets->failed; rank++)
+        base_ranks_add(sets->word + (all - (uint32_t)sets->n_ranks - 1) * sets->words, rank);
+    return all;
 }
 
 static bool assign_room(struct plan_assignment *a)
@@ -38,13 +121,14 @@ static bool assign_room(struct plan_assignment *a)
     size_t versions = uses + objects;
     a->home = base_alloc(objects * sizeof *a->home);
     a->at = base_alloc(nodes * sizeof *a->at);
-    a->set = base_alloc_zero(nodes * a->words * sizeof *a->set);
+    a->set = base_alloc_zero(nodes * sizeof *a->set);
     a->reads = base_alloc(uses * sizeof *a->reads);
     a->makes = base_alloc(uses * sizeof *a->makes);
     a->version = base_alloc(versions * sizeof *a->version);
-    a->need = base_alloc_zero(versions * a->words * sizeof *a->need);
+    a->need = base_alloc_zero(versions * sizeof *a->need);
     a->last = base_alloc(objects * sizeof *a->last);
-    return a->home && a->at && a->set && a->reads && a->makes && a->version && a->need && a->last;
+    return a->home && a->at && a->set && a->reads && a->makes && a->version && a->need && a->last &&
+           sets_begin(&a->sets, a->n_ranks);
 }
 
 /* ---- Versions ---- */
@@ -135,9 +219,9 @@ static void assign_nodes(struct assigning *s)
             if (at == PLAN_MANY)
                 s->many[s->n_many++] = (uint32_t)n;
             else
-                base_ranks_add(a->set + n * a->words, at);
-            for (int rank = 0; node->kind == PLAN_FLAG && rank < a->n_ranks; rank++)
-                base_ranks_add(a->set + n * a->words, rank);
+                a->set[n] = sets_alone(&a->sets, at);
+            if (node->kind == PLAN_FLAG)
+                a->set[n] = sets_all(&a->sets);
         }
 }
 
@@ -148,24 +232,17 @@ static bool assign_inputs(struct plan_assignment *a, size_t n)
     bool changed = false;
     for (size_t i = node->first_use; i < node->first_use + node->n_uses; i++)
         if (a->reads[i] != PLAN_NONE)
-            changed |=
-                base_ranks_join(a->need + a->reads[i] * a->words, plan_runs_set(a, n), a->words);
+            changed |= sets_join(&a->sets, &a->need[a->reads[i]], a->set[n]);
     return changed;
-}
-
-bool plan_is_dead(const struct plan_assignment *a, size_t n)
-{
-    return base_ranks_is_empty(plan_runs_set(a, n), a->words);
 }
 
 /* The node makes the version; the last one of a round is what the next round begins with. */
 static bool assign_where_needed(struct plan_assignment *a, size_t n, uint32_t version)
 {
-    uint64_t *set = a->set + n * a->words;
     uint32_t object = a->version[version].object;
-    bool changed = base_ranks_join(set, plan_needs_set(a, version), a->words);
+    bool changed = sets_join(&a->sets, &a->set[n], a->need[version]);
     if (a->last[object] == version)
-        changed |= base_ranks_join(set, plan_needs_set(a, object), a->words);
+        changed |= sets_join(&a->sets, &a->set[n], a->need[object]);
     return changed;
 }
 
@@ -205,7 +282,7 @@ static void assign_all(struct assigning *s)
     for (size_t k = 0; k < s->n_many; k++) { /* what no task needs is kept somewhere */
         size_t n = s->many[k];
         if (plan_is_dead(a, n) && assign_keeps(a, n))
-            base_ranks_add(a->set + n * a->words, assign_home(a, &a->round->node[n]));
+            a->set[n] = sets_alone(&a->sets, assign_home(a, &a->round->node[n]));
     }
     assign_settle(s);
 }
@@ -217,12 +294,12 @@ bool plan_assign(struct plan_assignment *a, const struct plan_round *round, cons
     *a = (struct plan_assignment){
         .round = round, .n_ranks = n_ranks, .words = base_ranks_words(n_ranks)};
     s.many = base_alloc((round->n_nodes + 1) * sizeof *s.many);
-    bool fine = s.many && assign_room(a);
+    const bool fine = s.many && assign_room(a);
     if (fine) {
         memcpy(a->home, home, round->n_objects * sizeof *home);
         assign_versions(a);
         assign_all(&s);
     }
     base_free(s.many);
-    return fine;
+    return fine && !a->sets.failed;
 }

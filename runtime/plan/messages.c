@@ -29,7 +29,7 @@ static uint32_t message_leaf(const struct plan_messages *m, const struct plan_no
 static bool message_is_outside(const struct plan_assignment *a, const uint64_t *set,
                                const uint64_t *has)
 {
-    return !base_ranks_within(set, has, a->words);
+    return set != has && !base_ranks_within(set, has, a->words);
 }
 
 /* ---- Phases ---- */
@@ -344,15 +344,15 @@ static void message_find_leaves(struct plan_messages *m)
 bool plan_messages_find(struct plan_messages *m, const struct plan_assignment *a, int rank)
 {
     struct finding f = {.m = m};
-    size_t ranks = (size_t)a->n_ranks;
+    const size_t ranks = (size_t)a->n_ranks, pairs = rank == PLAN_ALL ? ranks * ranks : 2 * ranks;
     *m = (struct plan_messages){.assignment = a, .rank = rank};
-    f.heads = base_alloc_zero((rank == PLAN_ALL ? ranks * ranks : 2 * ranks) * sizeof *f.heads);
+    f.heads = base_alloc_zero((rank == PLAN_NO_RANK ? 1 : pairs) * sizeof *f.heads);
     bool fine = f.heads && message_room(m);
     if (fine) {
         message_find_leaves(m);
         fine = message_find_phases(m) && message_find_pieces(m);
     }
-    if (fine)
+    if (fine && rank != PLAN_NO_RANK)
         message_find_all(&f);
     base_free(f.heads);
     return fine && !f.failed;

@@ -41,7 +41,8 @@
 enum {
     PLAN_BY_OWNER = -1, /* in place of the rank that a fork runs on: the home of its owner says */
     PLAN_MANY = -1,     /* in place of the rank that runs a node: a set of ranks */
-    PLAN_ALL = -1       /* in place of the rank whose messages are asked for */
+    PLAN_ALL = -1,      /* in place of the rank whose messages are asked for */
+    PLAN_NO_RANK = -2   /* the same: phases and pieces alone, no messages */
 };
 
 /* ---- A round as plain data: what lowering takes ---- */
@@ -183,21 +184,34 @@ struct plan_version {
     uint32_t maker; /* node, plus 1; 0: it enters the round */
 };
 
+/* Sets of ranks, named by numbers: 0 is empty, 1 + r has rank r alone, and larger ones are of one
+ * node or one version. Only the last kind takes a row of words for each, so a round on thousands of
+ * ranks needs few rows: most nodes run on one rank. */
+struct plan_rank_sets {
+    int n_ranks;
+    size_t words; /* of a row */
+    uint64_t *word;
+    size_t n_rows, words_capacity;
+    uint32_t *few; /* n_ranks + 1: the row of an empty set or one of one rank; PLAN_NONE: not yet */
+    bool failed;   /* no memory */
+};
+
 struct plan_assignment {
     const struct plan_round *round;
     int n_ranks;
     size_t words; /* of a set of ranks */
     int *home;    /* by object */
-    /* By node: the rank that runs it, or PLAN_MANY; and all that do. */
+    /* By node: the rank that runs it, or PLAN_MANY; and all that do, a set of `sets`. */
     int *at;
-    uint64_t *set;
+    uint32_t *set;
     /* By use: the version that it reads, and the one that it makes, or PLAN_NONE. */
     uint32_t *reads, *makes;
     /* Version i < n_objects is the one of object i that enters the round. */
     struct plan_version *version;
-    uint64_t *need; /* by version: the ranks that read it */
+    uint32_t *need; /* by version: the ranks that read it, a set of `sets` */
     size_t n_versions;
     uint32_t *last; /* by object: the version that leaves the round */
+    struct plan_rank_sets sets;
 };
 
 /* Takes a lowered round and the home of each object; leaves:
@@ -213,21 +227,30 @@ bool plan_assign(struct plan_assignment *assignment, const struct plan_round *ro
                  const int *home, int n_ranks);
 void plan_assignment_free(struct plan_assignment *assignment);
 
+/* The words of a set. They move when another set grows. */
+static inline const uint64_t *plan_ranks(const struct plan_rank_sets *sets, uint32_t set)
+{
+    const uint32_t few = (uint32_t)sets->n_ranks + 1;
+    return sets->word + (set < few ? sets->few[set] : set - few) * sets->words;
+}
 /* The ranks that run a node; that need a version. */
 static inline const uint64_t *plan_runs_set(const struct plan_assignment *a, size_t node)
 {
-    return a->set + node * a->words;
+    return plan_ranks(&a->sets, a->set[node]);
 }
 static inline const uint64_t *plan_needs_set(const struct plan_assignment *a, size_t version)
 {
-    return a->need + version * a->words;
+    return plan_ranks(&a->sets, a->need[version]);
 }
 static inline bool plan_runs(const struct plan_assignment *a, size_t node, int rank)
 {
     return base_ranks_has(plan_runs_set(a, node), rank);
 }
 /* Nobody runs the node: what it makes is overwritten unread. */
-bool plan_is_dead(const struct plan_assignment *assignment, size_t node);
+static inline bool plan_is_dead(const struct plan_assignment *assignment, size_t node)
+{
+    return !assignment->set[node];
+}
 /* The node that makes the version; of one that enters the round, the one that made it in the round
  * before. PLAN_NONE: the graph does not write the object. */
 uint32_t plan_maker(const struct plan_assignment *assignment, uint32_t version);
@@ -291,8 +314,8 @@ struct plan_messages {
  * - a version that one rank makes is an item for each other rank that needs it; so is a piece for
  *   each other rank that runs its sum;
  * - items are in order of `made`, the same from the sender's and the receiver's side.
- * Messages and items are those from and to `rank`, or all. False without memory; plan_messages_free
- * is due all the same. */
+ * Messages and items are those from and to `rank`, or all, or none (PLAN_NO_RANK). False without
+ * memory; plan_messages_free is due all the same. */
 bool plan_messages_find(struct plan_messages *messages, const struct plan_assignment *assignment,
                         int rank);
 void plan_messages_free(struct plan_messages *messages);

@@ -7,10 +7,11 @@
 #include "runtime/task/task.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-enum { SMALL_SUM = 1024 };     /* bytes: in replays such sums are made on every host */
 #define MOST_NODE  0x7fffffffu /* as many bits as there are for them */
 #define MOST_PHASE 0x1fffffffu
+enum { MOST_PAIRS = 64 }; /* hosts: among more, what goes to several at once rides with nothing */
 
 static bool graph_room(struct predict_graph *graph, void *array, size_t *capacity, size_t n,
                        size_t size)
@@ -106,39 +107,56 @@ static uint32_t node_own(struct predict_graph *graph, enum predict_kind kind, ui
 
 /* ---- Reading ---- */
 
-static uint32_t message_add(struct predict_graph *graph, uint32_t object, int host)
+/* A message with the object's value, to a host. */
+static uint32_t message_add(struct predict_graph *graph, uint32_t object, uint32_t host)
 {
     struct predict_object *o = &graph->object[object];
-    bool all = host == PREDICT_ALL;
-    uint32_t message =
-        node_own(graph, all ? PREDICT_EXCHANGE : PREDICT_MESSAGE, (uint32_t)o->holder, 0, o->bytes);
+    uint32_t message = node_own(graph, PREDICT_MESSAGE, (uint32_t)o->holder, 0, o->bytes);
     if (graph->failed)
         return PREDICT_NONE;
-    graph->node[message].block = all ? 0 : (uint32_t)host;
+    graph->node[message].block = host;
     graph->linked = false;
     predict_edge(graph, o->writer, message);
     predict_hold(graph, message);
-    graph->node[message].priority = predict_packets(graph, message);
+    graph->node[message].priority =
+        predict_packet(graph, graph->node[message].phase, (uint32_t)o->holder, host);
     link_push(graph, &o->readers, message, (uint32_t)o->holder);
     return message;
 }
 
-/* The node after which the object's value is on the host, or everywhere; NONE: it always was. */
-static uint32_t value_fetch(struct predict_graph *graph, uint32_t object, int host)
+/* All hosts have the object's value after this. */
+static uint32_t exchange_value(struct predict_graph *graph, uint32_t object)
+{
+    struct predict_object *o = &graph->object[object];
+    uint32_t exchange = node_own(graph, PREDICT_EXCHANGE, (uint32_t)o->holder, 0, o->bytes);
+    if (graph->failed)
+        return PREDICT_NONE;
+    struct predict_node *node = &graph->node[exchange];
+    node->block = 0; /* one sends */
+    node->copies = node->placed = graph->cluster->hosts - 1;
+    graph->linked = false;
+    predict_edge(graph, o->writer, exchange);
+    predict_hold(graph, exchange);
+    node->priority = predict_packets(graph, node->phase, node->host);
+    link_push(graph, &o->readers, exchange, (uint32_t)o->holder);
+    return exchange;
+}
+
+uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host)
 {
     struct predict_object *o = &graph->object[object];
     if (o->holder == PREDICT_ALL || o->holder == host ||
         (graph->cluster->hosts == 1 && host == PREDICT_ALL))
         return o->writer;
     if (host == PREDICT_ALL) {
-        o->writer = message_add(graph, object, host);
+        o->writer = exchange_value(graph, object);
         o->holder = PREDICT_ALL;
         return o->writer;
     }
     for (uint32_t i = o->copies; i != PREDICT_NONE; i = graph->link[i].next)
         if (graph->link[i].host == (uint32_t)host)
             return graph->link[i].node;
-    uint32_t message = message_add(graph, object, host);
+    uint32_t message = message_add(graph, object, (uint32_t)host);
     link_push(graph, &o->copies, message, (uint32_t)host);
     return message;
 }
@@ -164,10 +182,9 @@ static void value_overwrite(struct predict_graph *graph, uint32_t node, uint32_t
 /* ---- Sums ---- */
 
 /* A piece for each other host that contributes, and its message: in graph->piece by host. */
-static void pieces_make(struct predict_graph *graph, uint32_t object)
+static void pieces_make(struct predict_graph *graph, uint32_t object, uint32_t home)
 {
     const struct predict_object *o = &graph->object[object];
-    uint32_t home = (uint32_t)o->home;
     for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
         graph->piece[graph->link[i].host] = PREDICT_NONE;
     for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
@@ -190,10 +207,9 @@ static void edge_contribution(struct predict_graph *graph, uint32_t from, uint32
 }
 
 /* The nodes that the sum waits for where it is made: pieces of other hosts come by message. */
-static void pieces_gather(struct predict_graph *graph, uint32_t object, uint32_t sum)
+static void pieces_gather(struct predict_graph *graph, uint32_t object, uint32_t home, uint32_t sum)
 {
     const struct predict_object *o = &graph->object[object];
-    uint32_t home = (uint32_t)o->home;
     for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
         uint32_t host = graph->link[i].host;
         if (host == home)
@@ -206,22 +222,23 @@ static void pieces_gather(struct predict_graph *graph, uint32_t object, uint32_t
 }
 
 /* The pieces' messages take their places. */
-static void pieces_send(struct predict_graph *graph, uint32_t object)
+static void pieces_send(struct predict_graph *graph, uint32_t object, uint32_t home)
 {
     const struct predict_object *o = &graph->object[object];
     for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
         uint32_t host = graph->link[i].host, piece = graph->piece[host];
-        if (host == (uint32_t)o->home || graph->node[piece].kind == PREDICT_MESSAGE)
+        if (host == home || graph->node[piece].kind == PREDICT_MESSAGE)
             continue;
         uint32_t message = node_own(graph, PREDICT_MESSAGE, host, 0, o->bytes);
-        graph->node[message].block = (uint32_t)o->home;
+        graph->node[message].block = home;
         predict_edge(graph, piece, message);
-        graph->node[message].priority = predict_packets(graph, message);
+        graph->node[message].priority =
+            predict_packet(graph, graph->node[message].phase, host, home);
         graph->piece[host] = message;
     }
 }
 
-/* In a replay: each host sends what it has to all others, and all add it up. */
+/* Each host sends what it has to all others that add up. */
 static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object)
 {
     const struct predict_object *o = &graph->object[object];
@@ -229,69 +246,95 @@ static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object)
     if (graph->failed)
         return PREDICT_NONE;
     graph->node[exchange].block = 1; /* all send */
+    graph->node[exchange].priority = 0;
     for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
         predict_edge(graph, graph->link[i].node, exchange);
-    graph->node[exchange].priority = predict_packets(graph, exchange);
+    struct predict_node *node = &graph->node[exchange];
+    const uint32_t hosts = graph->cluster->hosts;
+    node->copies = (uint64_t)hosts * (hosts - 1);
+    node->placed = hosts - 1;
+    for (uint32_t host = 0; host < hosts; host++)
+        node->priority += predict_packets(graph, node->phase, host);
     return exchange;
 }
 
-static void pieces_reduce(struct predict_graph *graph, uint32_t object)
+void predict_reduce(struct predict_graph *graph, uint32_t object, int host)
 {
-    bool all =
-        graph->replays && graph->cluster->hosts > 1 && graph->object[object].bytes <= SMALL_SUM;
-    int home = all ? PREDICT_ALL : graph->object[object].home;
-    uint32_t fetched = value_fetch(graph, object, home), exchange = PREDICT_NONE;
-    if (all)
+    const bool all = host == PREDICT_ALL;
+    const uint32_t home = all ? 0 : (uint32_t)host;
+    uint32_t fetched = predict_fetch(graph, object, host), exchange = PREDICT_NONE;
+    if (all) {
         exchange = pieces_exchange(graph, object);
-    else
-        pieces_make(graph, object);
-    if (!all)
-        pieces_send(graph, object);
-    uint32_t sum =
-        node_own(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, all ? 0 : (uint32_t)home,
-                 graph->replays ? TASK_NODE_SUM : TASK_COMBINE, 0);
+    } else {
+        pieces_make(graph, object, home);
+        pieces_send(graph, object, home);
+    }
+    uint32_t sum = node_own(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, home,
+                            graph->replays ? TASK_NODE_SUM : TASK_COMBINE, 0);
     if (graph->failed)
         return;
     edge_value(graph, fetched, sum, object);
     predict_edge(graph, exchange, sum);
     if (!all)
-        pieces_gather(graph, object, sum);
-    value_overwrite(graph, sum, object, home);
+        pieces_gather(graph, object, home, sum);
+    value_overwrite(graph, sum, object, host);
     graph->object[object].leaves = PREDICT_NONE;
 }
 
-/* ---- Uses ---- */
+/* ---- Views and sets ---- */
 
-/* A view is gathered where its object is, as a task that reads it. */
-static void value_gather(struct predict_graph *graph, uint32_t view)
+void predict_gather(struct predict_graph *graph, uint32_t view, int host)
 {
-    uint32_t parent = graph->object[view].parent;
-    if (graph->object[parent].leaves != PREDICT_NONE)
-        pieces_reduce(graph, parent);
-    if (graph->failed || graph->object[view].gathered == graph->object[parent].writer)
-        return;
-    const struct predict_object *o = &graph->object[parent];
-    int host = o->holder == PREDICT_ALL ? o->home : o->holder;
-    uint32_t task = node_own(graph, PREDICT_TASK, (uint32_t)host,
-                             graph->replays ? TASK_NODE_VIEW : TASK_VIEW, 0);
+    const bool all = host == PREDICT_ALL;
+    const uint32_t parent = graph->object[view].parent;
+    const uint32_t value = predict_fetch(graph, parent, host);
+    uint32_t task =
+        node_own(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, all ? 0 : (uint32_t)host,
+                 graph->replays ? TASK_NODE_VIEW : TASK_VIEW, 0);
     if (graph->failed)
         return;
     graph->linked = false;
-    predict_use(graph, task, parent, DUITE_R, o->writer);
+    predict_use(graph, task, parent, DUITE_R, value);
     value_overwrite(graph, task, view, host);
     predict_hold(graph, task);
     graph->object[view].gathered = graph->object[parent].writer;
 }
+
+/* Outside of rounds a view is gathered where its object is, as a task that reads it. */
+static void view_refresh(struct predict_graph *graph, uint32_t view)
+{
+    const uint32_t parent = graph->object[view].parent;
+    if (graph->object[parent].leaves != PREDICT_NONE)
+        predict_reduce(graph, parent, graph->object[parent].home);
+    const struct predict_object *o = &graph->object[parent];
+    if (!graph->failed && graph->object[view].gathered != o->writer)
+        predict_gather(graph, view, o->holder == PREDICT_ALL ? o->home : o->holder);
+}
+
+void predict_set(struct predict_graph *graph, uint32_t object, int host)
+{
+    predict_prepare(graph, object, DUITE_W, host);
+    uint32_t node =
+        predict_add(graph, &(struct predict_node){.host = host == PREDICT_ALL ? 0 : (uint32_t)host,
+                                                  .kind = PREDICT_INSTANT});
+    if (graph->failed)
+        return;
+    graph->linked = false;
+    value_overwrite(graph, node, object, host);
+    predict_hold(graph, node);
+}
+
+/* ---- Uses ---- */
 
 uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mode mode, int host)
 {
     if (mode == DUITE_CW)
         return PREDICT_NONE;
     if (graph->object[object].leaves != PREDICT_NONE)
-        pieces_reduce(graph, object);
+        predict_reduce(graph, object, graph->object[object].home);
     if (graph->object[object].parent != PREDICT_NONE && !graph->failed)
-        value_gather(graph, object);
-    return mode == DUITE_W || graph->failed ? PREDICT_NONE : value_fetch(graph, object, host);
+        view_refresh(graph, object);
+    return mode == DUITE_W || graph->failed ? PREDICT_NONE : predict_fetch(graph, object, host);
 }
 
 void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
@@ -316,7 +359,7 @@ void predict_rehome(struct predict_graph *graph, uint32_t object, int host)
     o->home = host;
     if (o->holder == PREDICT_ALL || o->holder == host)
         return;
-    o->writer = value_fetch(graph, object, host);
+    o->writer = predict_fetch(graph, object, host);
     o->holder = host;
     link_push(graph, &o->copies, writer, before);
 }
@@ -325,6 +368,72 @@ void predict_hold(struct predict_graph *graph, uint32_t node)
 {
     if (!graph->linked)
         edge_add_kind(graph, graph->flag, node, true);
+}
+
+/* ---- Packets ---- */
+
+void predict_packets_clear(struct predict_graph *graph)
+{
+    if (graph->n_packets)
+        memset(graph->packet, 0, graph->packets_capacity * sizeof *graph->packet);
+    graph->n_packets = 0;
+}
+
+/* Where it is, or goes. */
+static uint64_t *packet_place(uint64_t *table, size_t capacity, uint64_t key)
+{
+    uint64_t state = key;
+    size_t at = (size_t)duite_random(&state) & (capacity - 1);
+    while (table[at] && table[at] != key)
+        at = (at + 1) & (capacity - 1);
+    return &table[at];
+}
+
+static bool packet_room(struct predict_graph *graph)
+{
+    const size_t more = graph->packets_capacity ? 2 * graph->packets_capacity : 64;
+    uint64_t *table = calloc(more, sizeof *table);
+    if (!table)
+        return false;
+    for (size_t i = 0; i < graph->packets_capacity; i++)
+        if (graph->packet[i])
+            *packet_place(table, more, graph->packet[i]) = graph->packet[i];
+    free(graph->packet);
+    graph->packet = table;
+    graph->packets_capacity = more;
+    return true;
+}
+
+/* Whether it is the first of its packet. */
+static bool packet_leads(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to)
+{
+    const uint64_t hosts = graph->cluster->hosts;
+    const uint64_t key = 1 + (uint64_t)to + hosts * (from + hosts * phase);
+    if (2 * graph->n_packets >= graph->packets_capacity && !packet_room(graph)) {
+        graph->failed = true;
+        return true;
+    }
+    uint64_t *place = packet_place(graph->packet, graph->packets_capacity, key);
+    const bool first = !*place;
+    *place = key;
+    graph->n_packets += first;
+    return first;
+}
+
+int32_t predict_packet(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to)
+{
+    return !graph->replays || packet_leads(graph, phase, from, to);
+}
+
+int32_t predict_packets(struct predict_graph *graph, uint32_t phase, uint32_t from)
+{
+    const uint32_t hosts = graph->cluster->hosts;
+    int32_t packets = 0;
+    if (!graph->replays || hosts > MOST_PAIRS)
+        return (int32_t)(hosts - 1);
+    for (uint32_t host = 0; host < hosts; host++)
+        packets += host != from && packet_leads(graph, phase, from, host);
+    return packets;
 }
 
 void predict_graph_free(struct predict_graph *graph)

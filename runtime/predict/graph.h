@@ -15,7 +15,7 @@ enum predict_kind {
     PREDICT_TASK,       /* runs on a worker of its host */
     PREDICT_EVERYWHERE, /* a replicated task: on all hosts at once, as a worker's time goes */
     PREDICT_MESSAGE,    /* from `host` to `block`; number: bytes */
-    PREDICT_EXCHANGE,   /* number bytes from each of those that have them to all others */
+    PREDICT_EXCHANGE,   /* number bytes from those that have them to those that need them */
     PREDICT_INSTANT     /* takes no time */
 };
 
@@ -24,10 +24,18 @@ struct predict_node {
     uint32_t kernel; /* of kernels; beyond them: the runtime's own, by task_type */
     uint32_t host, block;
     int32_t priority; /* of messages: packets that it adds */
-    float seconds, cost, path;
+    float seconds;
+    union {
+        struct {
+            float cost, path;
+        };
+        uint64_t copies; /* of exchanges: of the bytes that each sends, all together */
+    };
     uint32_t pending; /* edges that end here, and 1 for the main program */
     uint32_t edge;    /* the first of those that begin here, or NONE */
-    uint32_t placed;  /* in a replay, of a task of the program: 1 and the object; 0: by none */
+    /* In a replay, of a task of the program: 1 and the object; 0: by none. Of exchanges: the copies
+     * that go through the busiest card. */
+    uint32_t placed;
     uint32_t kind : 3;
     uint32_t phase : 29; /* of a replay's round: messages on the longest path to it, at most */
 };
@@ -55,6 +63,7 @@ struct predict_object {
     uint64_t bytes;
     uint32_t parent;   /* of a view: object; else NONE */
     uint32_t gathered; /* a view: the writer of its object then */
+    uint32_t place;    /* in the record that is replayed, plus 1, while its round is looked at */
     bool shown;        /* counted among what its writer shows */
 };
 
@@ -99,6 +108,8 @@ struct predict_graph {
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node);
 /* `to` waits for `from`; NONE is fine. */
 void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to);
+/* The node after which the object's value is on the host, or everywhere; NONE: it always was. */
+uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host);
 /* Before a node on `host` (PREDICT_ALL: everywhere) is made that uses the object: makes what comes
  * before it, and returns the node after which the value is there; NONE: it always was, or is not
  * needed. */
@@ -106,6 +117,12 @@ uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mod
 /* The node uses the object, with what predict_prepare returned. */
 void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
                  uint32_t prepared);
+/* What a round adds to its forks; a host, or PREDICT_ALL: those that the round says. The
+ * contributions to the object that are open combine; there are some. The view is gathered. The
+ * object is set. */
+void predict_reduce(struct predict_graph *graph, uint32_t object, int host);
+void predict_gather(struct predict_graph *graph, uint32_t view, int host);
+void predict_set(struct predict_graph *graph, uint32_t object, int host);
 /* The object has another home from now on: its value goes there. */
 void predict_rehome(struct predict_graph *graph, uint32_t object, int host);
 /* All edges to the node are there since `linked` was cleared: if nothing of its round of a replay
@@ -114,8 +131,10 @@ void predict_hold(struct predict_graph *graph, uint32_t node);
 
 /* A round of a replay begins: no packet of it is on its way. */
 void predict_packets_clear(struct predict_graph *graph);
-/* Of a message whose edges to it are there: how many packets it adds to those of the round. */
-int32_t predict_packets(struct predict_graph *graph, uint32_t message);
+/* How many packets of this round something adds that goes from a host to another in a phase; to all
+ * others. Outside of replays each message is one. */
+int32_t predict_packet(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to);
+int32_t predict_packets(struct predict_graph *graph, uint32_t phase, uint32_t from);
 
 /* Whether both are valid: DUITE_OK or DUITE_E_ARGUMENT. */
 int predict_check(const struct trace_run *run, const struct predict_cluster *cluster);

@@ -124,15 +124,14 @@ double predict_exchange(struct predict_network *network, double now,
                         const struct predict_node *message, double *flight)
 {
     const struct predict_cluster *cluster = network->cluster;
-    const uint64_t others = cluster->hosts - 1, bytes = message->number;
-    const uint64_t all = others * (message->block ? cluster->hosts : 1);
+    const uint64_t bytes = message->number;
     *flight = 0;
-    if (!others)
+    if (!message->copies)
         return now;
-    double takes = (double)(others * bytes) / cluster->bandwidth;
-    double fabric = (double)(all * bytes) / cluster->capacity;
+    double takes = (double)(message->placed * bytes) / cluster->bandwidth;
+    double fabric = (double)(message->copies * bytes) / cluster->capacity;
     network->messages += (uint64_t)message->priority;
-    network->bytes += all * bytes;
+    network->bytes += message->copies * bytes;
     *flight = cluster->latency;
     return now + cluster->latency + fmax(takes, fabric);
 }

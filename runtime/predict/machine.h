@@ -46,7 +46,7 @@ struct predict_network {
 /* When a message that is ready now has arrived; *flight: how much of that is latency. */
 double predict_message(struct predict_network *network, double now,
                        const struct predict_node *message, double *flight);
-/* When all have what one host (or, all: each of them) sends to all others. */
+/* When all that need it have what one host, or several, send. */
 double predict_exchange(struct predict_network *network, double now,
                         const struct predict_node *message, double *flight);
 

@@ -216,7 +216,7 @@ static int move_ask_mapping(struct move *m, struct predict_recorded *recorded)
     struct map_tasks tasks = {0};
     for (size_t i = 0; i < recorded->n_objects && block; i++)
         block[i] = move_block_seen(m, recorded->bound[i]);
-    int code = block && predict_round(m->p, recorded, block, &tasks)
+    int code = block && predict_round_tasks(m->p, recorded, block, &tasks)
                    ? map_tasks_complete(&tasks, m->blocks.n, m->seconds)
                    : base_no_memory("the tasks of a recorded graph");
     tasks.graph.fixed = m->fixed;

@@ -41,29 +41,24 @@ static void fork_stays(struct predict_program *p, uint32_t own)
         p->table.object[slot].fixed = true;
 }
 
-void predict_fork(struct predict_program *p, const struct predict_fork *fork)
+/* A task that takes so long; `prepared` is by object. */
+static void fork_add(struct predict_program *p, const struct predict_fork *fork,
+                     const struct predict_where *where, double seconds)
 {
     struct predict_graph *graph = p->graph;
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    const uint32_t own = predict_owner(graph, fork, fork->object);
-    const int host = fork_host(graph, fork, own);
-    const bool all = host == PREDICT_ALL, follows = !all && fork->at < 0;
-    double seconds;
-    if (!predict_times_find(p->times, fork->number, &seconds) || graph->cluster->steady)
-        seconds = predict_times_kernel(p->times, fork->kernel);
-    seconds /= graph->cluster->core_speed;
-    for (size_t i = 0; i < fork->n; i++)
-        p->prepared[i] = predict_prepare(graph, fork->object[i], trace_mode(kernel, i), host);
+    const bool all = where->host == PREDICT_ALL, owned = where->own != PREDICT_NONE;
     uint32_t node = predict_add(
         graph, &(struct predict_node){
                    .number = fork->number,
                    .kernel = fork->kernel,
-                   .host = all ? 0 : (uint32_t)host,
-                   .block = own == PREDICT_NONE ? (uint32_t)fork->number : graph->object[own].block,
+                   .host = all ? 0 : (uint32_t)where->host,
+                   .block = owned ? graph->object[where->own].block : (uint32_t)fork->number,
                    .priority = fork->priority,
                    .cost = fork->cost,
+                   .path = where->path,
                    .seconds = (float)seconds,
-                   .placed = graph->replays && own != PREDICT_NONE ? own + 1 : 0,
+                   .placed = graph->replays && owned ? where->own + 1 : 0,
                    .kind = all && graph->cluster->hosts > 1 ? PREDICT_EVERYWHERE : PREDICT_TASK});
     if (graph->failed)
         return;
@@ -71,24 +66,37 @@ void predict_fork(struct predict_program *p, const struct predict_fork *fork)
     for (size_t i = 0; i < fork->n; i++)
         predict_use(graph, node, fork->object[i], trace_mode(kernel, i), p->prepared[i]);
     predict_hold(graph, node);
+}
+
+void predict_task(struct predict_program *p, const struct predict_fork *fork,
+                  const struct predict_where *where)
+{
+    struct predict_graph *graph = p->graph;
+    const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
+    const bool follows =
+        task_owner_decides(fork->at < 0 ? TASK_ANYWHERE : fork->at, kernel->replicated);
+    double seconds;
+    if (!predict_times_find(p->times, fork->number, &seconds) || graph->cluster->steady)
+        seconds = predict_times_kernel(p->times, fork->kernel);
+    seconds /= graph->cluster->core_speed;
+    for (size_t i = 0; i < fork->n; i++)
+        p->prepared[i] = where->round ? predict_round_fetch(p, fork, where, i)
+                                      : predict_prepare(graph, fork->object[i],
+                                                        trace_mode(kernel, i), where->host);
+    fork_add(p, fork, where, seconds);
+    if (graph->failed)
+        return;
     if (kernel->fixed && follows)
-        fork_stays(p, own);
-    predict_spend(p, follows ? own : PREDICT_NONE, host, seconds);
+        fork_stays(p, where->own);
+    predict_spend(p, follows ? where->own : PREDICT_NONE, where->host, seconds);
     p->tasks++;
 }
 
-void predict_set(struct predict_program *p, uint32_t own)
+void predict_fork(struct predict_program *p, const struct predict_fork *fork)
 {
-    struct predict_graph *graph = p->graph;
-    predict_prepare(graph, own, DUITE_W, graph->object[own].home);
-    uint32_t node =
-        predict_add(graph, &(struct predict_node){.host = (uint32_t)graph->object[own].home,
-                                                  .kind = PREDICT_INSTANT});
-    if (graph->failed)
-        return;
-    graph->linked = false;
-    predict_use(graph, node, own, DUITE_W, PREDICT_NONE);
-    predict_hold(graph, node);
+    const uint32_t own = predict_owner(p->graph, fork, fork->object);
+    predict_task(p, fork,
+                 &(struct predict_where){.own = own, .host = fork_host(p->graph, fork, own)});
 }
 
 bool predict_room(struct predict_program *p, size_t n)
@@ -235,7 +243,7 @@ static void entry_read(struct predict_program *p)
     case TRACE_SET: {
         uint32_t own = predict_object_at(p, trace_words_next(&p->words));
         if (!p->damaged)
-            predict_set(p, own);
+            predict_set(p->graph, own, p->graph->object[own].home);
         break;
     }
     case TRACE_GET:

@@ -5,7 +5,7 @@
 #include "runtime/predict/graph.h"
 #include "runtime/trace/words.h"
 
-/* The main program while it is read; shared by program.c and replay.c. */
+/* The main program while it is read; shared by program.c, objects.c, move.c and replay.c. */
 
 /* A fork, or (kernel NONE) a set; `object` are places in graph->object, or of a recorded graph in
  * its list of objects. */
@@ -22,9 +22,19 @@ struct predict_recorded {
     struct predict_fork *fork;
     uint32_t *use;
     size_t n_forks, n_objects, n_calls;
-    uint64_t replays, map_at; /* so far; the number of those before the mapping is asked again */
-    uint64_t rounds;          /* since the balancer looked last */
-    uint32_t *bound;          /* n_objects: of the last replay, this one among them; or NULL */
+    uint64_t replays, map_at;    /* so far; the number of those before the mapping is asked again */
+    uint64_t rounds;             /* since the balancer looked last */
+    uint32_t *bound;             /* n_objects: of the last replay, this one among them; or NULL */
+    struct predict_round *round; /* of the last replay, or NULL */
+};
+
+/* Where a task runs: for which object or NONE, and on which host or PREDICT_ALL. */
+struct predict_where {
+    uint32_t own;
+    int host;
+    float path;                        /* see duite_ready.path */
+    const struct predict_round *round; /* that it is a node of; NULL: of none */
+    size_t node;
 };
 
 /* Homes that change: what a balancer is told, see runtime/migrate.c. Seconds since it looked. */
@@ -74,7 +84,12 @@ void predict_homes(struct predict_program *p, size_t n);
 /* Room for the objects of a fork. */
 bool predict_room(struct predict_program *p, size_t n);
 void predict_fork(struct predict_program *p, const struct predict_fork *fork);
-void predict_set(struct predict_program *p, uint32_t own);
+/* The same where it is known already where the task runs. */
+void predict_task(struct predict_program *p, const struct predict_fork *fork,
+                  const struct predict_where *where);
+/* In a round: the node after which the k-th value that the task reads is where it runs, or NONE. */
+uint32_t predict_round_fetch(struct predict_program *p, const struct predict_fork *fork,
+                             const struct predict_where *where, size_t k);
 
 /* The object that a task runs for, by the owner rule (task/owner.h), or NONE. */
 uint32_t predict_owner(const struct predict_graph *graph, const struct predict_fork *fork,
@@ -91,8 +106,10 @@ void predict_replay(struct predict_program *p, size_t n_objects);
  * DUITE_NO_BLOCK. All but the costs is there; map_tasks_free is due, also without memory (false).
  */
 struct map_tasks;
-bool predict_round(const struct predict_program *p, const struct predict_recorded *recorded,
-                   const uint32_t *block, struct map_tasks *tasks);
+bool predict_round_tasks(const struct predict_program *p, const struct predict_recorded *recorded,
+                         const uint32_t *block, struct map_tasks *tasks);
+/* NULL is fine. */
+void predict_round_free(struct predict_round *round);
 
 /* A task took so long for the object (NONE: for none) on a host (ALL: on each). */
 void predict_spend(struct predict_program *p, uint32_t object, int host, double seconds);

@@ -1,17 +1,246 @@
 /* Replays: to what comes before and after, a replay on a host is one task that reads or writes each
- * object there; inside, a round begins where dependences allow, or when a flag was read. */
+ * object there; inside, a round begins where dependences allow, or when a flag was read. The passes
+ * of plan/passes.h that compile a round for a run compile it here, from the words of a trace: they
+ * say which nodes it has, which hosts run them, which hosts need what they make, and in which phase
+ * it moves. Mappings see the same rows as in a run, too. */
 #include "runtime/predict/program.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/map/tasks.h"
 
-#include <math.h>
 #include <stdlib.h>
+
+struct round_source {
+    struct plan_source plain;
+    struct plan_access *access; /* of plain */
+};
+
+/* A round that was compiled, and what it was compiled for. */
+struct predict_round {
+    struct round_source source;
+    struct plan_round nodes;
+    struct plan_assignment assignment;
+    float *path;   /* by fork; NULL: the scheduler does not ask */
+    int *home;     /* by object of the source */
+    uint32_t flag; /* an object of the program, or NONE */
+    bool forked;   /* it has no plan: nothing behind `home` is there */
+};
+
+enum { ROUND_NOWHERE = -2 }; /* in place of a host: what it makes is overwritten unread */
+
+/* ---- A round as plain data ---- */
+
+static duite_mode round_mode(const struct predict_program *p, const struct predict_fork *fork,
+                             size_t k)
+{
+    return fork->kernel == PREDICT_NONE ? DUITE_W
+                                        : trace_mode(&p->graph->run->kernel[fork->kernel], k);
+}
+
+static void round_fork(const struct predict_program *p, struct plan_source *source,
+                       struct plan_access *access, const struct predict_fork *fork)
+{
+    const bool set = fork->kernel == PREDICT_NONE;
+    source->fork[source->n_forks++] = (struct plan_source_fork){
+        .first = source->n_accesses,
+        .n = (uint32_t)fork->n,
+        .owner = set ? fork->object[0] : predict_owner(p->graph, fork, fork->object),
+        .rank = set || fork->at < 0 ? PLAN_BY_OWNER : fork->at % (int)p->graph->cluster->hosts,
+        .sets = set,
+        .replicated = !set && p->graph->run->kernel[fork->kernel].replicated,
+        .cost = set ? 0 : (double)fork->cost};
+    for (size_t k = 0; k < fork->n; k++)
+        access[source->n_accesses++] =
+            (struct plan_access){.object = fork->object[k], .mode = round_mode(p, fork, k)};
+}
+
+/* The objects of a record, and a flag that is none of them. The object of a view is among them if
+ * the graph names it. NULL without memory. */
+static struct plan_source_object *round_objects(const struct predict_program *p,
+                                                const struct predict_recorded *recorded,
+                                                uint32_t flag, size_t *n, uint32_t *place)
+{
+    struct predict_object *all = p->graph->object;
+    struct plan_source_object *objects =
+        base_alloc_zero((recorded->n_objects + 2) * sizeof *objects);
+    *n = recorded->n_objects;
+    for (uint32_t i = 0; i < *n && objects; i++)
+        all[recorded->bound[i]].place = i + 1;
+    for (uint32_t i = 0; i < *n && objects; i++) {
+        const struct predict_object *bound = &all[recorded->bound[i]];
+        objects[i].bytes = bound->bytes;
+        if (bound->parent != PREDICT_NONE)
+            objects[i].parent = all[bound->parent].place;
+    }
+    *place = PLAN_NONE;
+    if (flag != PREDICT_NONE && objects) {
+        *place = all[flag].place ? all[flag].place - 1 : (uint32_t)(*n)++;
+        objects[*place].bytes = all[flag].bytes;
+    }
+    for (uint32_t i = 0; i < recorded->n_objects; i++)
+        all[recorded->bound[i]].place = 0;
+    return objects;
+}
+
+/* Takes the objects. False without memory; round_source_free is due all the same. */
+static bool round_source_make(const struct predict_program *p,
+                              const struct predict_recorded *recorded, struct round_source *source)
+{
+    size_t uses = 0;
+    for (size_t i = 0; i < recorded->n_forks; i++)
+        uses += recorded->fork[i].n;
+    struct plan_source *plain = &source->plain;
+    plain->access = source->access = base_alloc((uses + 1) * sizeof *source->access);
+    plain->fork = base_alloc((recorded->n_forks + 1) * sizeof *plain->fork);
+    if (!plain->access || !plain->fork || !plain->object)
+        return false;
+    for (size_t i = 0; i < recorded->n_forks; i++)
+        round_fork(p, plain, source->access, &recorded->fork[i]);
+    return true;
+}
+
+static void round_source_free(struct round_source *source)
+{
+    base_free(source->plain.fork);
+    base_free(source->plain.object);
+    base_free(source->access);
+}
+
+bool predict_round_tasks(const struct predict_program *p, const struct predict_recorded *recorded,
+                         const uint32_t *block, struct map_tasks *tasks)
+{
+    struct round_source source = {0};
+    struct plan_round round = {0};
+    struct plan_tasks *all = &tasks->tasks;
+    *tasks = (struct map_tasks){0};
+    source.plain.object =
+        round_objects(p, recorded, PREDICT_NONE, &source.plain.n_objects, &source.plain.flag);
+    bool fine = round_source_make(p, recorded, &source) && plan_lower(&round, &source.plain) &&
+                plan_tasks_find(all, &round);
+    if (fine)
+        fine = (tasks->block = base_alloc((all->n + 1) * sizeof *tasks->block)) != NULL;
+    for (size_t i = 0; i < all->n && fine; i++)
+        tasks->block[i] = all->owner[i] == PLAN_NONE ? DUITE_NO_BLOCK : block[all->owner[i]];
+    plan_round_free(&round);
+    round_source_free(&source);
+    return fine;
+}
+
+/* ---- A round for hosts ---- */
+
+/* How a round begins and ends with an object. */
+struct round_ends {
+    bool touched, leads, trails; /* leads, trails: with contributions */
+};
+
+static void ends_note(struct round_ends *ends, bool contributes)
+{
+    ends->leads |= contributes && !ends->touched;
+    ends->trails = contributes;
+    ends->touched = true;
+}
+
+/* Whether contributions of one round and of the next make one sum, or a flag waits for
+ * contributions to be continued: such rounds are forked, as plan_replay_split has it. */
+static bool source_is_forked(const struct plan_source *source, struct round_ends *ends)
+{
+    bool forked = false;
+    for (size_t i = 0; i < source->n_forks; i++) {
+        const struct plan_source_fork *fork = &source->fork[i];
+        const struct plan_access *access = source->access + fork->first;
+        for (uint32_t k = 0; k < fork->n; k++)
+            if (source->object[access[k].object].parent)
+                ends_note(&ends[source->object[access[k].object].parent - 1], false);
+        for (uint32_t k = 0; k < fork->n; k++)
+            ends_note(&ends[access[k].object], access[k].mode == DUITE_CW);
+    }
+    for (uint32_t i = 0; i < source->n_objects; i++) {
+        const bool flagged = source->flag != PLAN_NONE;
+        forked |= ends[i].leads && (ends[i].trails || flagged);
+        forked |= ends[i].trails && flagged && source->flag != i;
+    }
+    return forked;
+}
+
+void predict_round_free(struct predict_round *round)
+{
+    if (!round)
+        return;
+    plan_assignment_free(&round->assignment);
+    plan_round_free(&round->nodes);
+    round_source_free(&round->source);
+    base_free(round->path);
+    base_free(round->home);
+    base_free(round);
+}
+
+/* Is the round that is there the one that is wanted? */
+static bool round_fits(const struct predict_round *there, const struct predict_round *wanted)
+{
+    const struct plan_source *a = &there->source.plain, *b = &wanted->source.plain;
+    bool fits = a->n_objects == b->n_objects && a->flag == b->flag;
+    for (size_t i = 0; i < b->n_objects && fits; i++)
+        fits = a->object[i].parent == b->object[i].parent &&
+               a->object[i].bytes == b->object[i].bytes && there->home[i] == wanted->home[i];
+    return fits;
+}
+
+/* All passes but those of one rank; edges are for paths alone. */
+static bool round_compile(const struct predict_program *p, const struct predict_recorded *recorded,
+                          struct predict_round *round)
+{
+    const struct predict_cluster *cluster = p->graph->cluster;
+    if (!round_source_make(p, recorded, &round->source))
+        return false;
+    const struct plan_source *source = &round->source.plain;
+    struct round_ends *ends = base_alloc_zero((source->n_objects + 1) * sizeof *ends);
+    round->forked = ends && source_is_forked(source, ends);
+    base_free(ends);
+    if (!ends || round->forked)
+        return ends;
+    bool fine = plan_lower(&round->nodes, source) &&
+                plan_assign(&round->assignment, &round->nodes, round->home, (int)cluster->hosts);
+    if (fine && cluster->scheduler->paths)
+        fine = plan_edges(&round->nodes) && (round->path = plan_paths_find(&round->nodes));
+    return fine;
+}
+
+/* The record's round is there, for these homes, sizes and this flag. False without memory. */
+static bool round_prepare(struct predict_program *p, struct predict_recorded *recorded,
+                          uint32_t flag)
+{
+    struct predict_round *round = base_alloc_zero(sizeof *round);
+    bool fine = round;
+    if (fine) {
+        struct plan_source *source = &round->source.plain;
+        source->object = round_objects(p, recorded, flag, &source->n_objects, &source->flag);
+        round->home = base_alloc((recorded->n_objects + 2) * sizeof *round->home);
+        round->flag = flag;
+        fine = source->object && round->home;
+        for (size_t i = 0; i < source->n_objects && fine; i++)
+            round->home[i] =
+                p->graph->object[i < recorded->n_objects ? recorded->bound[i] : flag].home;
+    }
+    if (fine && recorded->round && round_fits(recorded->round, round)) {
+        recorded->round->flag = flag;
+        predict_round_free(round);
+        return true;
+    }
+    fine = fine && round_compile(p, recorded, round);
+    p->graph->failed |= !fine;
+    predict_round_free(recorded->round);
+    recorded->round = round;
+    return fine;
+}
+
+/* ---- Recorded graphs ---- */
 
 static void recorded_forget(struct predict_recorded *recorded)
 {
     free(recorded->fork);
     free(recorded->use);
     free(recorded->bound);
+    predict_round_free(recorded->round);
     *recorded = (struct predict_recorded){0};
 }
 
@@ -50,6 +279,9 @@ static bool recorded_fork(struct predict_program *p, struct predict_recorded *gr
     for (size_t k = 0; k < fork->n && !p->damaged; k++) {
         fork->object[k] = trace_words_next(&p->words);
         p->damaged |= fork->object[k] >= graph->n_objects;
+        p->damaged |= fork->kernel != PREDICT_NONE &&
+                      p->graph->run->kernel[fork->kernel].replicated &&
+                      trace_mode(&p->graph->run->kernel[fork->kernel], k) == DUITE_CW;
     }
     p->damaged |= fork->kernel == PREDICT_NONE && fork->n != 1;
     *used += fork->n;
@@ -82,6 +314,8 @@ void predict_graphs_free(struct predict_program *p)
         recorded_forget(&p->recorded[i]);
     free(p->recorded);
 }
+
+/* ---- Rounds ---- */
 
 /* Whether the round counts: one of its tasks ran. If none did, no later one counts either: the flag
  * ended the replay, or what poisoned all of the round poisons all that follow. */
@@ -133,51 +367,125 @@ static void replay_decide(struct predict_graph *graph, uint32_t flag)
     graph->flag = node;
 }
 
-/* The longest path from each task of the round to its end, in the seconds that forks said. */
-static void round_paths(struct predict_graph *graph)
+/* The next fork of a round, with its objects; false without memory. */
+static bool round_bind(struct predict_program *p, const struct predict_recorded *recorded, size_t i,
+                       struct predict_fork *fork)
 {
-    double said = 0;
-    size_t n = 0;
-    for (size_t i = graph->round; i < graph->n_nodes; i++) {
-        said += (double)graph->node[i].cost;
-        n += graph->node[i].cost > 0;
-    }
-    const double mean = n ? said / (double)n : 1;
-    for (size_t i = graph->n_nodes; i-- > graph->round;) {
-        struct predict_node *node = &graph->node[i];
-        double longest = 0;
-        for (uint32_t e = node->edge; e != PREDICT_NONE; e = graph->edge[e].next)
-            longest = fmax(longest, (double)graph->node[graph->edge[e].to].path);
-        bool program = node->kernel < graph->run->n_kernels && node->number &&
-                       (node->kind == PREDICT_TASK || node->kind == PREDICT_EVERYWHERE);
-        double own = node->cost > 0 ? (double)node->cost : mean;
-        node->path = (float)(longest + (program ? own : 0));
-    }
+    *fork = recorded->fork[i];
+    if (!predict_room(p, fork->n))
+        return false;
+    for (size_t k = 0; k < fork->n; k++)
+        p->objects[k] = recorded->bound[fork->object[k]];
+    fork->object = p->objects;
+    return true;
 }
 
-static void round_nodes(struct predict_program *p, const struct predict_recorded *recorded,
-                        const uint32_t *bound, uint64_t first)
+/* A round that is forked: by the rules of forks, not of rounds. */
+static void round_forks(struct predict_program *p, const struct predict_recorded *recorded,
+                        uint64_t first)
 {
     struct predict_graph *graph = p->graph;
-    graph->round = (uint32_t)graph->n_nodes;
-    predict_packets_clear(graph);
+    struct predict_fork fork;
     for (size_t i = 0; i < recorded->n_forks && !graph->failed; i++) {
-        struct predict_fork fork = recorded->fork[i];
-        if (!predict_room(p, fork.n))
+        if (!round_bind(p, recorded, i, &fork))
             return;
-        for (size_t k = 0; k < fork.n; k++)
-            p->objects[k] = bound[fork.object[k]];
-        fork.object = p->objects;
         fork.number = first + 1;
         if (fork.kernel == PREDICT_NONE) {
-            predict_set(p, fork.object[0]);
+            predict_set(graph, fork.object[0], graph->object[fork.object[0]].home);
         } else {
             predict_fork(p, &fork);
             first++;
         }
     }
-    if (graph->cluster->scheduler->paths && !graph->failed)
-        round_paths(graph);
+}
+
+/* The round gathers a view of what it writes; any other is gathered before, if it is stale. */
+uint32_t predict_round_fetch(struct predict_program *p, const struct predict_fork *fork,
+                             const struct predict_where *where, size_t k)
+{
+    struct predict_graph *graph = p->graph;
+    const struct predict_round *round = where->round;
+    const size_t use = round->nodes.node[where->node].first_use + k;
+    const uint32_t object = fork->object[k], place = round->nodes.use[use].place;
+    const duite_mode mode = trace_mode(&graph->run->kernel[fork->kernel], k);
+    if (mode == DUITE_CW)
+        return PREDICT_NONE;
+    const uint32_t parent = round->source.plain.object[place].parent;
+    if (parent && plan_maker(&round->assignment, parent - 1) != PLAN_NONE)
+        return mode == DUITE_W ? PREDICT_NONE : predict_fetch(graph, object, where->host);
+    return predict_prepare(graph, object, mode, where->host);
+}
+
+/* A set with a row of its own has several ranks, if there are several. */
+static int round_host(const struct predict_round *round, size_t n)
+{
+    const struct plan_assignment *a = &round->assignment;
+    const uint32_t set = a->set[n];
+    if (!set)
+        return ROUND_NOWHERE;
+    if (a->n_ranks == 1)
+        return 0;
+    return set <= (uint32_t)a->n_ranks ? (int)set - 1 : PREDICT_ALL;
+}
+
+/* What the runtime adds to a round, or a set. */
+static void round_own(struct predict_program *p, const uint32_t *bound,
+                      const struct predict_round *round, size_t n)
+{
+    struct predict_graph *graph = p->graph;
+    const struct plan_round_node *node = &round->nodes.node[n];
+    const struct plan_node_use *use = &round->nodes.use[node->first_use];
+    const int host = round_host(round, n);
+    if (node->kind == PLAN_SUM && host != ROUND_NOWHERE)
+        predict_reduce(graph, bound[use->place], host);
+    else if (node->kind == PLAN_SUM)
+        graph->object[bound[use->place]].leaves = PREDICT_NONE;
+    else if (node->kind == PLAN_FLAG)
+        replay_decide(graph, round->flag);
+    else if (node->kind == PLAN_SET)
+        predict_set(graph, bound[use->place], graph->object[bound[use->place]].home);
+    else if (host != ROUND_NOWHERE)
+        predict_gather(graph, bound[use[1].place], host);
+}
+
+static void round_nodes(struct predict_program *p, const struct predict_recorded *recorded,
+                        uint64_t first)
+{
+    struct predict_graph *graph = p->graph;
+    const struct predict_round *round = recorded->round;
+    struct predict_fork fork;
+    for (size_t n = 0; n < round->nodes.n_nodes && !graph->failed; n++) {
+        const struct plan_round_node *node = &round->nodes.node[n];
+        if (node->kind != PLAN_TASK) {
+            round_own(p, recorded->bound, round, n);
+            continue;
+        }
+        if (!round_bind(p, recorded, node->fork, &fork))
+            return;
+        fork.number = ++first;
+        predict_task(p, &fork,
+                     &(struct predict_where){.own = node->owner == PLAN_NONE
+                                                        ? PREDICT_NONE
+                                                        : recorded->bound[node->owner],
+                                             .host = round_host(round, n),
+                                             .path = round->path ? round->path[node->fork] : 0,
+                                             .round = round,
+                                             .node = n});
+    }
+}
+
+static void round_add(struct predict_program *p, const struct predict_recorded *recorded,
+                      uint64_t first)
+{
+    p->graph->round = (uint32_t)p->graph->n_nodes;
+    predict_packets_clear(p->graph);
+    if (!recorded->round->forked) {
+        round_nodes(p, recorded, first);
+        return;
+    }
+    round_forks(p, recorded, first);
+    if (recorded->round->flag != PREDICT_NONE && !p->graph->failed)
+        replay_decide(p->graph, recorded->round->flag);
 }
 
 /* More rounds than the file can have seen are damage. One without tasks counts as a task. */
@@ -189,11 +497,10 @@ static bool round_is_seen(struct predict_program *p, const struct predict_record
 }
 
 static void replay_rounds(struct predict_program *p, struct predict_recorded *recorded,
-                          uint32_t flag, uint64_t max)
+                          uint64_t max)
 {
     struct predict_graph *graph = p->graph;
     const uint32_t *bound = recorded->bound;
-    bool flagged = flag != PREDICT_NONE;
     predict_op_replays(p, true);
     replay_gate(p, bound, recorded->n_objects);
     graph->replays = true;
@@ -201,10 +508,8 @@ static void replay_rounds(struct predict_program *p, struct predict_recorded *re
         uint64_t first = p->forks + i * recorded->n_calls;
         if (!round_ran(p, recorded, first) || !round_is_seen(p, recorded))
             break;
-        round_nodes(p, recorded, bound, first);
+        round_add(p, recorded, first);
         recorded->rounds++;
-        if (flagged && !graph->failed)
-            replay_decide(graph, flag);
     }
     graph->round = graph->flag = PREDICT_NONE;
     replay_gate(p, bound, recorded->n_objects);
@@ -231,7 +536,8 @@ void predict_replay(struct predict_program *p, size_t n_objects)
     recorded->bound = bound;
     if (bound && !p->damaged && !p->words.short_of) {
         predict_move(p, recorded);
-        replay_rounds(p, recorded, flag, max);
+        if (!p->graph->failed && round_prepare(p, recorded, flag))
+            replay_rounds(p, recorded, max);
     }
     p->forks += max * recorded->n_calls;
 }

@@ -29,6 +29,41 @@ START_TEST(packets)
 }
 END_TEST
 
+/* What so many rounds of a graph on four objects send, the first two of which live on host 0. */
+static struct predict_result sent(uint64_t bytes, uint32_t n, const struct trace_file_node *nodes,
+                                  uint32_t rounds)
+{
+    struct trace_file file = predicted_trace(4, bytes);
+    trace_file_graph(&file, 4, n, nodes);
+    trace_file_replay(&file, 4, n, nodes, rounds);
+    const struct predict_cluster two = predicted_machine(2, 1);
+    return predicted(&file, &two);
+}
+
+/* A replicated task runs where its result is read: here on the host that has what it reads. */
+START_TEST(replicated)
+{
+    static const struct trace_file_node nodes[] = {{FILE_SAME, 1 * MS, 0, 2, {0, 1}},
+                                                   {FILE_R_W, 1 * MS, 0, 2, {1, 0}}};
+    const struct predict_result r = sent(8, 2, nodes, 5);
+    ck_assert_uint_eq(r.messages, 0);
+    ck_assert(fabs(r.makespan - 10 * MS) < 1e-6);
+}
+END_TEST
+
+/* Contributions of one round and of the next make one sum: its piece goes to the other host once.
+ */
+START_TEST(sums_over_rounds)
+{
+    static const struct trace_file_node nodes[] = {{FILE_R_CW, 1 * MS, 0, 2, {0, 3}}};
+    for (uint64_t bytes = 8; bytes <= 8000; bytes *= 1000) {
+        const struct predict_result r = sent(bytes, 1, nodes, 5);
+        ck_assert_uint_eq(r.messages, 1);
+        ck_assert_uint_eq(r.bytes, bytes);
+    }
+}
+END_TEST
+
 /* Costs of 3, 1, 1 and 1: block gives 4 and 2 ms a round, the mappings that see them 3 and 3, if
  * forks say them at once, else from the second replay on, since in the first all are thought alike.
  * The values of what moves go along. */
@@ -173,6 +208,8 @@ int main(void)
     Suite *suite = suite_create("predict");
     TCase *cases = tcase_create("replays");
     tcase_add_test(cases, packets);
+    tcase_add_test(cases, replicated);
+    tcase_add_test(cases, sums_over_rounds);
     tcase_add_test(cases, mappings);
     tcase_add_test(cases, paths);
     tcase_add_test(cases, warmth);

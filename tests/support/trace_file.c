@@ -82,7 +82,7 @@ void trace_file_graph(struct trace_file *file, uint32_t n_objects, uint32_t n,
     for (uint32_t i = 0; i < n; i++) {
         uint32_t cost;
         memcpy(&cost, &nodes[i].cost, sizeof cost);
-        trace_file_word(file, nodes[i].kernel);
+        trace_file_word(file, nodes[i].kernel == FILE_SET ? UINT32_MAX : nodes[i].kernel);
         trace_file_word(file, nodes[i].n);
         trace_file_word(file, UINT32_MAX); /* no rank is named */
         trace_file_word(file, 0);
@@ -104,7 +104,8 @@ void trace_file_replay(struct trace_file *file, uint32_t n_objects, uint32_t n,
         trace_file_word(file, slot);
     for (uint32_t round = 0; round < rounds; round++)
         for (uint32_t i = 0; i < n; i++)
-            put_event(file, nodes[i].kernel, nodes[i].seconds);
+            if (nodes[i].kernel != FILE_SET)
+                put_event(file, nodes[i].kernel, nodes[i].seconds);
 }
 
 void trace_file_wait(struct trace_file *file)

@@ -26,7 +26,8 @@ enum trace_file_kernel {
     FILE_R_CW,
     FILE_SAME,
     FILE_RR_RW,
-    FILE_KERNELS
+    FILE_KERNELS,
+    FILE_SET /* of a recorded graph: no kernel, a duite_set */
 };
 
 /* An object of `slot` (from 1 on), at home where the mapping wants it. */

@@ -442,8 +442,8 @@ static void round_own(struct predict_program *p, const uint32_t *bound,
         graph->object[bound[use->place]].leaves = PREDICT_NONE;
     else if (node->kind == PLAN_FLAG)
         replay_decide(graph, round->flag);
-    else if (node->kind == PLAN_SET)
-        predict_set(graph, bound[use->place], graph->object[bound[use->place]].home);
+    else if (host != ROUND_NOWHERE && node->kind == PLAN_SET)
+        predict_set(graph, bound[use->place], host);
     else if (host != ROUND_NOWHERE)
         predict_gather(graph, bound[use[1].place], host);
 }

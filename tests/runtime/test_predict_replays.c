@@ -51,6 +51,16 @@ START_TEST(replicated)
 }
 END_TEST
 
+/* A set runs wherever what it sets is read, and nothing moves. */
+START_TEST(sets)
+{
+    static const struct trace_file_node nodes[] = {{FILE_SET, 0, 0, 1, {0}},
+                                                   {FILE_R_W, 1 * MS, 0, 2, {0, 1}},
+                                                   {FILE_R_W, 1 * MS, 0, 2, {0, 2}}};
+    ck_assert_uint_eq(sent(8, 3, nodes, 5).messages, 0);
+}
+END_TEST
+
 /* Contributions of one round and of the next make one sum: its piece goes to the other host once.
  */
 START_TEST(sums_over_rounds)
@@ -209,6 +219,7 @@ int main(void)
     TCase *cases = tcase_create("replays");
     tcase_add_test(cases, packets);
     tcase_add_test(cases, replicated);
+    tcase_add_test(cases, sets);
     tcase_add_test(cases, sums_over_rounds);
     tcase_add_test(cases, mappings);
     tcase_add_test(cases, paths);

@@ -43,6 +43,15 @@ static inline bool base_ranks_is_empty(const uint64_t *set, size_t words)
     return !any;
 }
 
+static inline uint32_t base_ranks_count(const uint64_t *set, size_t words)
+{
+    uint32_t n = 0;
+    for (size_t i = 0; i < words; i++)
+        for (uint64_t word = set[i]; word; word &= word - 1)
+            n++;
+    return n;
+}
+
 /* Whether each rank of `set` is one of `other`. */
 static inline bool base_ranks_within(const uint64_t *set, const uint64_t *other, size_t words)
 {

@@ -4,6 +4,7 @@
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/memory.h"
+#include "runtime/base/rank_set.h"
 #include "runtime/task/task.h"
 
 #include <stdlib.h>
@@ -124,7 +125,18 @@ static uint32_t message_add(struct predict_graph *graph, uint32_t object, uint32
     return message;
 }
 
-/* All hosts have the object's value after this. */
+/* The hosts that still need the object's value, in graph->among. Returns how many. */
+static uint32_t exchange_receivers(struct predict_graph *graph, const struct predict_object *o)
+{
+    const size_t words = base_ranks_words((int)graph->cluster->hosts);
+    memcpy(graph->among, graph->travel.need, words * sizeof *graph->among);
+    base_ranks_remove(graph->among, o->holder);
+    for (uint32_t i = o->copies; i != PREDICT_NONE; i = graph->link[i].next)
+        base_ranks_remove(graph->among, (int)graph->link[i].host);
+    return base_ranks_count(graph->among, words);
+}
+
+/* All that need the object's value have it after this. */
 static uint32_t exchange_value(struct predict_graph *graph, uint32_t object)
 {
     struct predict_object *o = &graph->object[object];
@@ -133,11 +145,14 @@ static uint32_t exchange_value(struct predict_graph *graph, uint32_t object)
         return PREDICT_NONE;
     struct predict_node *node = &graph->node[exchange];
     node->block = 0; /* one sends */
-    node->copies = node->placed = graph->cluster->hosts - 1;
+    node->copies = node->placed =
+        graph->travel.need ? exchange_receivers(graph, o) : graph->cluster->hosts - 1;
     graph->linked = false;
     predict_edge(graph, o->writer, exchange);
+    for (uint32_t i = o->copies; i != PREDICT_NONE && graph->travel.need; i = graph->link[i].next)
+        predict_edge(graph, graph->link[i].node, exchange);
     predict_hold(graph, exchange);
-    node->priority = predict_packets(graph, node->phase, node->host);
+    node->priority = predict_packets(graph, node->phase, node->host, graph->among, node->placed);
     link_push(graph, &o->readers, exchange, (uint32_t)o->holder);
     return exchange;
 }
@@ -238,6 +253,31 @@ static void pieces_send(struct predict_graph *graph, uint32_t object, uint32_t h
     }
 }
 
+/* What each host that contributes sends to those that add up. */
+static void exchange_count(struct predict_graph *graph, uint32_t object, struct predict_node *node)
+{
+    const struct predict_object *o = &graph->object[object];
+    const size_t words = base_ranks_words((int)graph->cluster->hosts);
+    const uint64_t *to = graph->travel.runs;
+    const uint32_t receivers = base_ranks_count(to, words);
+    uint32_t senders = 0, within = 0, packets = 0;
+    base_ranks_clear(graph->among, words);
+    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next) {
+        const uint32_t host = graph->link[i].host;
+        if (base_ranks_has(graph->among, (int)host))
+            continue;
+        base_ranks_add(graph->among, (int)host);
+        const bool adds = base_ranks_has(to, (int)host);
+        senders++;
+        within += adds;
+        packets += (uint32_t)predict_packets(graph, node->phase, host, to, receivers - adds);
+    }
+    const uint32_t out = receivers - (within == senders), in = senders - (within == receivers);
+    node->copies = (uint64_t)senders * receivers - within;
+    node->placed = out > in ? out : in;
+    node->priority = (int32_t)packets;
+}
+
 /* Each host sends what it has to all others that add up. */
 static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object)
 {
@@ -246,15 +286,9 @@ static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object)
     if (graph->failed)
         return PREDICT_NONE;
     graph->node[exchange].block = 1; /* all send */
-    graph->node[exchange].priority = 0;
     for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
         predict_edge(graph, graph->link[i].node, exchange);
-    struct predict_node *node = &graph->node[exchange];
-    const uint32_t hosts = graph->cluster->hosts;
-    node->copies = (uint64_t)hosts * (hosts - 1);
-    node->placed = hosts - 1;
-    for (uint32_t host = 0; host < hosts; host++)
-        node->priority += predict_packets(graph, node->phase, host);
+    exchange_count(graph, object, &graph->node[exchange]);
     return exchange;
 }
 
@@ -425,14 +459,16 @@ int32_t predict_packet(struct predict_graph *graph, uint32_t phase, uint32_t fro
     return !graph->replays || packet_leads(graph, phase, from, to);
 }
 
-int32_t predict_packets(struct predict_graph *graph, uint32_t phase, uint32_t from)
+int32_t predict_packets(struct predict_graph *graph, uint32_t phase, uint32_t from,
+                        const uint64_t *to, uint32_t n)
 {
     const uint32_t hosts = graph->cluster->hosts;
     int32_t packets = 0;
     if (!graph->replays || hosts > MOST_PAIRS)
-        return (int32_t)(hosts - 1);
+        return (int32_t)n;
     for (uint32_t host = 0; host < hosts; host++)
-        packets += host != from && packet_leads(graph, phase, from, host);
+        packets +=
+            host != from && base_ranks_has(to, (int)host) && packet_leads(graph, phase, from, host);
     return packets;
 }
 
@@ -446,5 +482,6 @@ void predict_graph_free(struct predict_graph *graph)
     free(graph->link);
     base_free(graph->piece);
     base_free(graph->began);
+    base_free(graph->among);
     free(graph->packet);
 }

@@ -73,6 +73,12 @@ struct predict_link {
     uint32_t node, host, next;
 };
 
+/* What a round of a replay says of the value, or of the sum, that comes next. */
+struct predict_travel {
+    const uint64_t *need; /* the hosts that read it; NULL: outside of rounds, all */
+    const uint64_t *runs; /* of a sum: the hosts that make it */
+};
+
 struct predict_graph {
     const struct trace_run *run;
     const struct predict_cluster *cluster;
@@ -94,6 +100,8 @@ struct predict_graph {
     uint32_t *piece; /* by host: this rank's part of a sum that is being closed */
     uint32_t *began; /* by host: the node that begins or ends a replay there */
     double own[64];  /* by task_type: s of the runtime's own tasks */
+    uint64_t *among; /* a set of hosts, for a moment */
+    struct predict_travel travel;
     uint32_t round;  /* the first node of this round of a replay, or NONE */
     uint32_t flag;   /* the node that decided on this round, or NONE */
     double overhead; /* s between two tasks, */
@@ -131,10 +139,11 @@ void predict_hold(struct predict_graph *graph, uint32_t node);
 
 /* A round of a replay begins: no packet of it is on its way. */
 void predict_packets_clear(struct predict_graph *graph);
-/* How many packets of this round something adds that goes from a host to another in a phase; to all
- * others. Outside of replays each message is one. */
+/* How many packets of this round something adds that goes from a host to another in a phase; to n
+ * of a set of hosts, without `from`. Outside of replays each message is one. */
 int32_t predict_packet(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to);
-int32_t predict_packets(struct predict_graph *graph, uint32_t phase, uint32_t from);
+int32_t predict_packets(struct predict_graph *graph, uint32_t phase, uint32_t from,
+                        const uint64_t *to, uint32_t n);
 
 /* Whether both are valid: DUITE_OK or DUITE_E_ARGUMENT. */
 int predict_check(const struct trace_run *run, const struct predict_cluster *cluster);

@@ -399,6 +399,17 @@ static void round_forks(struct predict_program *p, const struct predict_recorded
     }
 }
 
+/* What the round says of the value that a node reads. */
+static void round_travel(struct predict_graph *graph, const struct predict_round *round,
+                         size_t node, size_t use)
+{
+    const struct plan_assignment *a = &round->assignment;
+    const uint32_t version = a->reads[use];
+    graph->travel = (struct predict_travel){.runs = plan_runs_set(a, node)};
+    if (version != PLAN_NONE)
+        graph->travel.need = plan_needs_set(a, version);
+}
+
 /* The round gathers a view of what it writes; any other is gathered before, if it is stale. */
 uint32_t predict_round_fetch(struct predict_program *p, const struct predict_fork *fork,
                              const struct predict_where *where, size_t k)
@@ -410,6 +421,7 @@ uint32_t predict_round_fetch(struct predict_program *p, const struct predict_for
     const duite_mode mode = trace_mode(&graph->run->kernel[fork->kernel], k);
     if (mode == DUITE_CW)
         return PREDICT_NONE;
+    round_travel(graph, round, where->node, use);
     const uint32_t parent = round->source.plain.object[place].parent;
     if (parent && plan_maker(&round->assignment, parent - 1) != PLAN_NONE)
         return mode == DUITE_W ? PREDICT_NONE : predict_fetch(graph, object, where->host);
@@ -436,6 +448,7 @@ static void round_own(struct predict_program *p, const uint32_t *bound,
     const struct plan_round_node *node = &round->nodes.node[n];
     const struct plan_node_use *use = &round->nodes.use[node->first_use];
     const int host = round_host(round, n);
+    round_travel(graph, round, n, node->first_use);
     if (node->kind == PLAN_SUM && host != ROUND_NOWHERE)
         predict_reduce(graph, bound[use->place], host);
     else if (node->kind == PLAN_SUM)
@@ -472,6 +485,7 @@ static void round_nodes(struct predict_program *p, const struct predict_recorded
                                              .round = round,
                                              .node = n});
     }
+    graph->travel = (struct predict_travel){0};
 }
 
 static void round_add(struct predict_program *p, const struct predict_recorded *recorded,

@@ -61,6 +61,25 @@ START_TEST(sets)
 }
 END_TEST
 
+/* A value goes once to each host that reads it, for a task there or for a replicated one; a sum is
+ * made where it is read, of what hosts that contribute send. */
+START_TEST(exchanges)
+{
+    static const struct trace_file_node values[] = {{FILE_W, 1 * MS, 0, 1, {0}},
+                                                    {FILE_R_W, 1 * MS, 0, 2, {0, 2}},
+                                                    {FILE_SAME, 1 * MS, 0, 2, {0, 1}},
+                                                    {FILE_R_W, 1 * MS, 0, 2, {1, 3}},
+                                                    {FILE_R_W, 1 * MS, 0, 2, {1, 0}}};
+    static const struct trace_file_node sums[] = {{FILE_SET, 0, 0, 1, {1}},
+                                                  {FILE_R_CW, 1 * MS, 0, 2, {0, 1}},
+                                                  {FILE_R_CW, 1 * MS, 0, 2, {0, 1}},
+                                                  {FILE_R_W, 1 * MS, 0, 2, {1, 0}},
+                                                  {FILE_R_W, 1 * MS, 0, 2, {1, 2}}};
+    ck_assert_uint_eq(sent(8, 5, values, 5).bytes, 5 * 8);
+    ck_assert_uint_eq(sent(8, 5, sums, 5).bytes, 5 * 8);
+}
+END_TEST
+
 /* Contributions of one round and of the next make one sum: its piece goes to the other host once.
  */
 START_TEST(sums_over_rounds)
@@ -220,6 +239,7 @@ int main(void)
     tcase_add_test(cases, packets);
     tcase_add_test(cases, replicated);
     tcase_add_test(cases, sets);
+    tcase_add_test(cases, exchanges);
     tcase_add_test(cases, sums_over_rounds);
     tcase_add_test(cases, mappings);
     tcase_add_test(cases, paths);

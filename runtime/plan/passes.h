@@ -20,14 +20,11 @@
  * compiled: the plan and the printer from a record, the mappings (tasks.c), and the predictor from
  * the words of a trace.
  *
- * How the predictor uses it: it fills a plan_source with the forks of a recorded graph (modes of
- * the kernels in the trace; NULL for all laws, since a trace has none; parent from
- * predict_object.parent, as the place of that object in the list plus 1, or 0 if it is not in the
- * list; the owner by task_owner),
- * calls plan_lower, and has either plan_tasks_find make the rows that mappings see, or
- * plan_assign place the nodes on hosts (home: by object, a host) and plan_messages_find list all
- * that moves between any two of them (rank: PLAN_ALL). A plan_source is owned by who made it and
- * must stay as long as its round. */
+ * How the predictor uses it: it fills a plan_source with the forks of a recorded graph. Modes are
+ * those of the kernels in the trace, laws are NULL, since a trace has none, and the owner is that
+ * of task_owner. After plan_lower either plan_tasks_find makes the rows that mappings see, or
+ * plan_assign places the nodes on hosts and plan_messages_find (PLAN_NO_RANK) finds phases and
+ * pieces. Who makes a plan_source owns it and keeps it as long as its round. */
 
 #include "runtime/base/rank_set.h"
 #include "runtime/data/reduce.h"

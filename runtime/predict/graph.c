@@ -1,6 +1,7 @@
-/* Dependences as the runtime derives them, from the accesses in fork order: readers wait for the
- * last writer, a writer for the readers where it overwrites. A value that is read on another host
- * is one message there, whoever reads it. */
+/* Nodes of a predicted run, and what each waits for. Dependences are those that the runtime derives
+ * from the accesses in fork order: readers wait for the last writer, and a writer waits for the
+ * readers where it overwrites. A value that is read on another host is one message there, whoever
+ * reads it. In a replay the compiled round says who runs what and who needs a value (replay.c). */
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/memory.h"
@@ -10,8 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_NODE  0x7fffffffu /* as many bits as there are for them */
-#define MOST_PHASE 0x1fffffffu
+#define MOST_NODE 0x7fffffffu /* as many bits as there are for them */
 enum { MOST_PAIRS = 64 }; /* hosts: among more, what goes to several at once rides with nothing */
 
 static bool graph_room(struct predict_graph *graph, void *array, size_t *capacity, size_t n,
@@ -51,15 +51,7 @@ static void edge_add_kind(struct predict_graph *graph, uint32_t from, uint32_t t
         !graph_room(graph, &graph->edge, &graph->edges_capacity, graph->n_edges,
                     sizeof *graph->edge))
         return;
-    if (from >= graph->round) {
-        struct predict_node *after = &graph->node[to];
-        const struct predict_node *before = &graph->node[from];
-        const bool travels = before->kind == PREDICT_MESSAGE || before->kind == PREDICT_EXCHANGE;
-        const uint32_t phase = (uint32_t)before->phase + travels;
-        if ((uint32_t)after->phase < phase)
-            after->phase = phase & MOST_PHASE;
-        graph->linked = true;
-    }
+    graph->linked |= from >= graph->round;
     graph->edge[graph->n_edges] =
         (struct predict_edge){to & MOST_NODE, reads, graph->node[from].edge};
     graph->node[from].edge = (uint32_t)graph->n_edges++;
@@ -120,7 +112,7 @@ static uint32_t message_add(struct predict_graph *graph, uint32_t object, uint32
     predict_edge(graph, o->writer, message);
     predict_hold(graph, message);
     graph->node[message].priority =
-        predict_packet(graph, graph->node[message].phase, (uint32_t)o->holder, host);
+        predict_packet(graph, graph->travel.phase, (uint32_t)o->holder, host);
     link_push(graph, &o->readers, message, (uint32_t)o->holder);
     return message;
 }
@@ -152,7 +144,8 @@ static uint32_t exchange_value(struct predict_graph *graph, uint32_t object)
     for (uint32_t i = o->copies; i != PREDICT_NONE && graph->travel.need; i = graph->link[i].next)
         predict_edge(graph, graph->link[i].node, exchange);
     predict_hold(graph, exchange);
-    node->priority = predict_packets(graph, node->phase, node->host, graph->among, node->placed);
+    node->priority =
+        predict_packets(graph, graph->travel.phase, node->host, graph->among, node->placed);
     link_push(graph, &o->readers, exchange, (uint32_t)o->holder);
     return exchange;
 }
@@ -247,8 +240,7 @@ static void pieces_send(struct predict_graph *graph, uint32_t object, uint32_t h
         uint32_t message = node_own(graph, PREDICT_MESSAGE, host, 0, o->bytes);
         graph->node[message].block = home;
         predict_edge(graph, piece, message);
-        graph->node[message].priority =
-            predict_packet(graph, graph->node[message].phase, host, home);
+        graph->node[message].priority = predict_packet(graph, graph->phase[host], host, home);
         graph->piece[host] = message;
     }
 }
@@ -270,7 +262,7 @@ static void exchange_count(struct predict_graph *graph, uint32_t object, struct 
         const bool adds = base_ranks_has(to, (int)host);
         senders++;
         within += adds;
-        packets += (uint32_t)predict_packets(graph, node->phase, host, to, receivers - adds);
+        packets += (uint32_t)predict_packets(graph, graph->phase[host], host, to, receivers - adds);
     }
     const uint32_t out = receivers - (within == senders), in = senders - (within == receivers);
     node->copies = (uint64_t)senders * receivers - within;
@@ -406,6 +398,9 @@ void predict_hold(struct predict_graph *graph, uint32_t node)
 
 /* ---- Packets ---- */
 
+/* In a round all that goes from one host to another in a phase is one message, as plan/messages.c
+ * has it. The set of a round's packets is an open table. Outside of replays each message is one. */
+
 void predict_packets_clear(struct predict_graph *graph)
 {
     if (graph->n_packets)
@@ -483,5 +478,6 @@ void predict_graph_free(struct predict_graph *graph)
     base_free(graph->piece);
     base_free(graph->began);
     base_free(graph->among);
+    base_free(graph->phase);
     free(graph->packet);
 }

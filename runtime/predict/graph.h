@@ -36,8 +36,7 @@ struct predict_node {
     /* In a replay, of a task of the program: 1 and the object; 0: by none. Of exchanges: the copies
      * that go through the busiest card. */
     uint32_t placed;
-    uint32_t kind : 3;
-    uint32_t phase : 29; /* of a replay's round: messages on the longest path to it, at most */
+    enum predict_kind kind;
 };
 
 struct predict_edge {
@@ -77,6 +76,7 @@ struct predict_link {
 struct predict_travel {
     const uint64_t *need; /* the hosts that read it; NULL: outside of rounds, all */
     const uint64_t *runs; /* of a sum: the hosts that make it */
+    uint32_t phase;       /* it moves in */
 };
 
 struct predict_graph {
@@ -101,6 +101,7 @@ struct predict_graph {
     uint32_t *began; /* by host: the node that begins or ends a replay there */
     double own[64];  /* by task_type: s of the runtime's own tasks */
     uint64_t *among; /* a set of hosts, for a moment */
+    uint32_t *phase; /* by host: that its pieces of a sum move in */
     struct predict_travel travel;
     uint32_t round;  /* the first node of this round of a replay, or NONE */
     uint32_t flag;   /* the node that decided on this round, or NONE */

@@ -301,12 +301,13 @@ static bool program_prepare(struct predict_program *p)
     p->times = predict_times_new(graph->run);
     graph->piece = base_alloc(hosts * sizeof *graph->piece);
     graph->began = base_alloc(hosts * sizeof *graph->began);
+    graph->phase = base_alloc_zero(hosts * sizeof *graph->phase);
     graph->among = base_alloc(base_ranks_words((int)hosts) * sizeof *graph->among);
     graph->round = PREDICT_NONE;
     graph->flag = PREDICT_NONE;
     if (p->times && graph->cluster->steady && !predict_times_steady(p->times, graph->run))
         return false;
-    if (!p->times || !graph->piece || !graph->began || !graph->among ||
+    if (!p->times || !graph->piece || !graph->began || !graph->phase || !graph->among ||
         !(p->blocks_on = base_alloc_zero(hosts * sizeof *p->blocks_on)) ||
         data_table_start(&p->table, graph->cluster->mapping ? (int)hosts : 1) ||
         !predict_moves_start(p))

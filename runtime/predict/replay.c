@@ -20,6 +20,7 @@ struct predict_round {
     struct round_source source;
     struct plan_round nodes;
     struct plan_assignment assignment;
+    struct plan_messages messages;
     float *path;   /* by fork; NULL: the scheduler does not ask */
     int *home;     /* by object of the source */
     uint32_t flag; /* an object of the program, or NONE */
@@ -166,6 +167,7 @@ void predict_round_free(struct predict_round *round)
 {
     if (!round)
         return;
+    plan_messages_free(&round->messages);
     plan_assignment_free(&round->assignment);
     plan_round_free(&round->nodes);
     round_source_free(&round->source);
@@ -199,7 +201,8 @@ static bool round_compile(const struct predict_program *p, const struct predict_
     if (!ends || round->forked)
         return ends;
     bool fine = plan_lower(&round->nodes, source) &&
-                plan_assign(&round->assignment, &round->nodes, round->home, (int)cluster->hosts);
+                plan_assign(&round->assignment, &round->nodes, round->home, (int)cluster->hosts) &&
+                plan_messages_find(&round->messages, &round->assignment, PLAN_NO_RANK);
     if (fine && cluster->scheduler->paths)
         fine = plan_edges(&round->nodes) && (round->path = plan_paths_find(&round->nodes));
     return fine;
@@ -406,8 +409,11 @@ static void round_travel(struct predict_graph *graph, const struct predict_round
     const struct plan_assignment *a = &round->assignment;
     const uint32_t version = a->reads[use];
     graph->travel = (struct predict_travel){.runs = plan_runs_set(a, node)};
-    if (version != PLAN_NONE)
-        graph->travel.need = plan_needs_set(a, version);
+    if (version == PLAN_NONE)
+        return;
+    const uint32_t maker = a->version[version].maker; /* plus 1 */
+    graph->travel.need = plan_needs_set(a, version);
+    graph->travel.phase = maker ? round->messages.phase[maker - 1] : 0;
 }
 
 /* The round gathers a view of what it writes; any other is gathered before, if it is stale. */
@@ -426,6 +432,19 @@ uint32_t predict_round_fetch(struct predict_program *p, const struct predict_for
     if (parent && plan_maker(&round->assignment, parent - 1) != PLAN_NONE)
         return mode == DUITE_W ? PREDICT_NONE : predict_fetch(graph, object, where->host);
     return predict_prepare(graph, object, mode, where->host);
+}
+
+/* Contributions end: on the hosts that the round says, if any. */
+static void round_reduce(struct predict_graph *graph, const struct predict_round *round, size_t n,
+                         uint32_t object, int host)
+{
+    const struct plan_messages *m = &round->messages;
+    for (size_t i = m->first_piece[n]; i < m->first_piece[n + 1]; i++)
+        graph->phase[m->piece[i].rank] = m->piece[i].phase;
+    if (host == ROUND_NOWHERE)
+        graph->object[object].leaves = PREDICT_NONE;
+    else
+        predict_reduce(graph, object, host);
 }
 
 /* A set with a row of its own has several ranks, if there are several. */
@@ -449,10 +468,8 @@ static void round_own(struct predict_program *p, const uint32_t *bound,
     const struct plan_node_use *use = &round->nodes.use[node->first_use];
     const int host = round_host(round, n);
     round_travel(graph, round, n, node->first_use);
-    if (node->kind == PLAN_SUM && host != ROUND_NOWHERE)
-        predict_reduce(graph, bound[use->place], host);
-    else if (node->kind == PLAN_SUM)
-        graph->object[bound[use->place]].leaves = PREDICT_NONE;
+    if (node->kind == PLAN_SUM)
+        round_reduce(graph, round, n, bound[use->place], host);
     else if (node->kind == PLAN_FLAG)
         replay_decide(graph, round->flag);
     else if (host != ROUND_NOWHERE && node->kind == PLAN_SET)

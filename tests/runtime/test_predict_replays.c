@@ -80,6 +80,20 @@ START_TEST(exchanges)
 }
 END_TEST
 
+/* Two values of one object, the second of which overwrites the first: a phase counts messages that
+ * come, not those that go, so both go in one packet a round. */
+START_TEST(phases)
+{
+    static const struct trace_file_node nodes[] = {{FILE_W, 1 * MS, 0, 1, {0}},
+                                                   {FILE_R_W, 1 * MS, 0, 2, {0, 2}},
+                                                   {FILE_W, 1 * MS, 0, 1, {0}},
+                                                   {FILE_R_W, 1 * MS, 0, 2, {0, 3}}};
+    const struct predict_result r = sent(1000, 4, nodes, 5);
+    ck_assert_uint_eq(r.messages, 5);
+    ck_assert_uint_eq(r.bytes, 10 * 1000);
+}
+END_TEST
+
 /* Contributions of one round and of the next make one sum: its piece goes to the other host once.
  */
 START_TEST(sums_over_rounds)
@@ -240,6 +254,7 @@ int main(void)
     tcase_add_test(cases, replicated);
     tcase_add_test(cases, sets);
     tcase_add_test(cases, exchanges);
+    tcase_add_test(cases, phases);
     tcase_add_test(cases, sums_over_rounds);
     tcase_add_test(cases, mappings);
     tcase_add_test(cases, paths);

@@ -236,6 +236,7 @@ static int replay_by_plan(duite *rt, struct plan_record *record, const duite_obj
                           uint64_t rounds)
 {
     int code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
+    record->by_plan = !code;
     if (!code)
         program_throttle(rt);
     return code;
@@ -246,9 +247,9 @@ static int replay_rounds(duite *rt, struct plan_record *record, uint64_t rounds)
     uint64_t before, after;
     plan_replay_split(record, NULL, rounds, &before, &after);
     record->rounds = 0;
-    record->by_plan = rounds > before + after;
+    record->by_plan = false;
     int code = replay_fork_rounds(rt, record, before);
-    if (!code && record->by_plan)
+    if (!code && rounds > before + after)
         code = replay_by_plan(rt, record, NULL, rounds - before - after);
     return code ? code : replay_fork_rounds(rt, record, after);
 }
@@ -300,8 +301,8 @@ static int replay_rounds_while(duite *rt, struct plan_record *record, duite_obje
         return DUITE_E_OBJECT;
     plan_replay_split(record, &flag, max, &before, &after);
     record->rounds = 0;
-    record->by_plan = max > before;
-    if (!record->by_plan)
+    record->by_plan = false;
+    if (max <= before)
         return replay_fork_while(rt, record, flag, max);
     return replay_by_plan(rt, record, &flag, max);
 }

@@ -4,6 +4,7 @@
 #include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
+#include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/data/view.h"
 
@@ -284,8 +285,8 @@ bool plan_fits(const struct plan *plan, const struct plan_record *record, const 
 }
 
 /* All passes in order; of several ranks those between lowering and edges leave this rank's part. */
-static bool plan_compile(struct plan *plan, const struct plan_record *record,
-                         const duite_object *flag, const struct plan_source *source)
+static int plan_compile(struct plan *plan, const struct plan_record *record,
+                        const duite_object *flag, const struct plan_source *source)
 {
     struct plan_round round = {0}, part = {0};
     struct emit emit = {.record = record, .flag = flag, .round = &round};
@@ -300,32 +301,37 @@ static bool plan_compile(struct plan *plan, const struct plan_record *record,
         fine = (!several || plan_edges(&round)) &&
                (emit.path = path = plan_paths_find(&round)) != NULL;
     fine = fine && emit_all(plan, &emit);
+    int code = fine ? DUITE_OK : base_no_memory("a recorded graph");
     if (fine && several)
-        fine = !plan_open(plan, &part);
+        code = plan_open(plan, &part);
     base_free(path);
     plan_round_free(&round);
     plan_round_free(&part);
-    return fine;
+    return code;
 }
 
-struct plan *plan_new(const struct plan_record *record, const duite_object *flag)
+int plan_new(struct plan **out, const struct plan_record *record, const duite_object *flag)
 {
     struct plan *plan = base_alloc_zero(sizeof *plan);
     struct plan_source source;
+    *out = NULL;
     if (!plan)
-        return NULL;
+        return base_no_memory("a recorded graph");
     atomic_init(&plan->refs, 1);
     plan->graph = record->graph;
-    bool fine = plan_record_source(record, flag, &source);
+    int code =
+        plan_record_source(record, flag, &source) ? DUITE_OK : base_no_memory("a recorded graph");
     plan->decides = flag != NULL;
     plan->flag_place = flag ? source.flag : 0;
     plan->n_objects = source.n_objects;
-    fine = fine && plan_compile(plan, record, flag, &source);
+    if (!code)
+        code = plan_compile(plan, record, flag, &source);
     plan_source_free(&source);
-    if (fine)
-        return plan;
-    plan_release(plan);
-    return NULL;
+    if (code)
+        plan_release(plan);
+    else
+        *out = plan;
+    return code;
 }
 
 void plan_release(struct plan *plan)

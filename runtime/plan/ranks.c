@@ -5,6 +5,7 @@
 #include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 
+#include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 
 #include <string.h>
@@ -77,7 +78,7 @@ int plan_open(struct plan *plan, const struct plan_round *part)
     struct plan_channels *channels = &plan->channels;
     channels->channel = base_alloc((part->n_channels + 1) * sizeof *channels->channel);
     if (!channels->channel)
-        return DUITE_E_MEMORY;
+        return base_no_memory("the messages of a recorded graph");
     channels->n = part->n_channels;
     for (size_t i = 0; i < part->n_nodes; i++) {
         struct task *task = plan_task(plan, i);

@@ -70,13 +70,14 @@ int plan_replay_fork(struct plan_record *record, struct worker *worker)
 
 /* The record's plan, made anew if it does not fit. */
 static struct plan *replay_plan_for(struct plan_record *record, struct worker *worker,
-                                    const duite_object *flag)
+                                    const duite_object *flag, int *code)
 {
     if (record->plan && plan_fits(record->plan, record, flag))
         return record->plan;
     plan_drop(record->plan, worker);
     plan_record_forget_changes(record);
-    return record->plan = plan_new(record, flag);
+    *code = plan_new(&record->plan, record, flag);
+    return record->plan;
 }
 
 /* The object that place i of the plan stands for, or the turn. */
@@ -172,10 +173,10 @@ int plan_replay_plan(struct plan_record *record, struct worker *worker, const du
                      uint64_t rounds)
 {
     struct task_graph *graph = record->graph;
-    struct plan *plan = replay_plan_for(record, worker, flag);
-    if (!plan)
-        return base_no_memory("a recorded graph");
-    int code = replay_gather_views(record, worker);
+    int code = DUITE_OK;
+    struct plan *plan = replay_plan_for(record, worker, flag, &code);
+    if (!code)
+        code = replay_gather_views(record, worker);
     if (code)
         return code;
     struct task *task =

@@ -151,7 +151,7 @@ static bool event_is_valid(const struct trace_run *run, const struct trace_event
     bool peer =
         event->kind == TRACE_SEND || event->kind == TRACE_RECEIVE || event->kind == TRACE_DELEGATE;
     return event->kind && event->kind < TRACE_KINDS &&
-           (event->kind != TRACE_TASK || event->kernel < run->n_kernels) &&
+           (event->kind != TRACE_TASK || (event->number && event->kernel < run->n_kernels)) &&
            (!peer || event->kernel < run->n_ranks) && event->within <= event->took;
 }
 

@@ -113,7 +113,8 @@ START_TEST(nodes)
                           owner[] = {0, 0, 0, 1, 1};
     struct made made;
     make(&made);
-    struct plan *plan = plan_new(&made.record, NULL);
+    struct plan *plan;
+    ck_assert_int_eq(plan_new(&plan, &made.record, NULL), DUITE_OK);
     ck_assert_ptr_nonnull(plan);
     ck_assert(plan->n_nodes == 5 && plan->n_roots == 1 && plan->n_sinks == 1);
     ck_assert_ptr_eq(plan->root[0], plan_task(plan, 0));
@@ -138,7 +139,8 @@ START_TEST(calls)
 {
     struct made made;
     make(&made);
-    struct plan *plan = plan_new(&made.record, NULL);
+    struct plan *plan;
+    ck_assert_int_eq(plan_new(&plan, &made.record, NULL), DUITE_OK);
     ck_assert_ptr_nonnull(plan);
     const struct task *fill = plan_task(plan, 0), *read = plan_task(plan, 4);
     ck_assert(fill->priority == 3 && fill->kernel == 0 && fill->placed && !read->placed);
@@ -155,7 +157,8 @@ START_TEST(places)
 {
     struct made made;
     make(&made);
-    struct plan *plan = plan_new(&made.record, NULL);
+    struct plan *plan;
+    ck_assert_int_eq(plan_new(&plan, &made.record, NULL), DUITE_OK);
     ck_assert_ptr_nonnull(plan);
     ck_assert(plan->n_places == 4 && plan->n_objects == 2 && plan->n_trees == 1);
     for (size_t i = 2; i < 4; i++) {

@@ -117,9 +117,8 @@ static int copy_await(struct task_graph *graph, struct worker *worker, struct da
 
 int task_fetch(struct task_graph *graph, struct worker *worker, struct data_object *object, int to)
 {
-    if (data_object_has_copy(&graph->table, object, to))
+    if (!task_note_copy(graph, object, to))
         return DUITE_OK;
-    data_object_add_copy(&graph->table, object, to);
     if (graph->rank == to)
         return copy_await(graph, worker, object);
     if (graph->rank == object->holder)
@@ -188,10 +187,9 @@ static int access_write(struct task_fork_call *call, size_t i, struct data_objec
                         struct data_version *version, duite_mode declared, bool everywhere)
 {
     struct task_graph *graph = call->scope->graph;
-    object->number++;
-    data_object_moved(object, everywhere ? object->home : call->at);
+    task_note_version(object, everywhere ? object->home : call->at);
     for (int rank = 0; everywhere && rank < graph->n_ranks; rank++)
-        data_object_add_copy(&graph->table, object, rank);
+        task_note_copy(graph, object, rank);
     if (!call->task) {
         task_forget(graph, call->worker, object);
         return DUITE_OK;

@@ -14,7 +14,7 @@ struct task_failure {
 };
 
 /* What runs on several ranks leaves the same everywhere, and nothing else. */
-static int check_replicated(const duite_kernel *kernel)
+static int kernel_check_replicated(const duite_kernel *kernel)
 {
     const char *why = kernel->side_effects ? "has side effects" : NULL;
     for (uint32_t i = 0; i <= DUITE_MAX_ACCESS && !why; i++) {
@@ -29,7 +29,7 @@ static int check_replicated(const duite_kernel *kernel)
                : DUITE_OK;
 }
 
-static int check_kernel(const duite_kernel *kernel, uint32_t index, struct task_fixed *fixed)
+static int kernel_check(const duite_kernel *kernel, uint32_t index, struct task_fixed *fixed)
 {
     if (!kernel->name || !kernel->name[0])
         return base_error(DUITE_E_KERNEL, "kernel %u of the list has no name", index);
@@ -52,10 +52,10 @@ static int check_kernel(const duite_kernel *kernel, uint32_t index, struct task_
                           kernel->name, (int)kernel->variadic);
     fixed->owner[0] = task_owner(kernel->access, kernel->variadic, fixed->n);
     fixed->owner[1] = task_owner(kernel->access, kernel->variadic, (size_t)fixed->n + 1);
-    return check_replicated(kernel);
+    return kernel_check_replicated(kernel);
 }
 
-static int check_unique(const duite_kernel *const kernels[], uint32_t index)
+static int kernel_check_unique(const duite_kernel *const kernels[], uint32_t index)
 {
     for (uint32_t i = 0; i < index; i++)
         if (!strcmp(kernels[i]->name, kernels[index]->name))
@@ -65,7 +65,7 @@ static int check_unique(const duite_kernel *const kernels[], uint32_t index)
 }
 
 /* The places of all kernels by their addresses; at most half of them are taken. */
-static int index_kernels(struct task_graph *graph)
+static int kernels_index(struct task_graph *graph)
 {
     graph->kernel_mask = 3;
     while (graph->kernel_mask < 2 * (uint64_t)graph->n_kernels)
@@ -83,7 +83,7 @@ static int index_kernels(struct task_graph *graph)
     return DUITE_OK;
 }
 
-static int take_kernels(struct task_graph *graph, const duite_kernel *const *kernels,
+static int kernels_take(struct task_graph *graph, const duite_kernel *const *kernels,
                         const duite_law *const *laws)
 {
     size_t n = 0;
@@ -96,15 +96,15 @@ static int take_kernels(struct task_graph *graph, const duite_kernel *const *ker
     memcpy(graph->kernels, kernels, n * sizeof graph->kernels[0]);
     graph->n_kernels = (uint32_t)n;
     for (uint32_t i = 0; i < n; i++) {
-        int code = check_kernel(graph->kernels[i], i, &graph->fixed[i]);
+        int code = kernel_check(graph->kernels[i], i, &graph->fixed[i]);
         if (!code)
-            code = check_unique(graph->kernels, i);
+            code = kernel_check_unique(graph->kernels, i);
         if (!code)
             code = data_law_check_kernel(graph->kernels[i], laws);
         if (code)
             return code;
     }
-    return index_kernels(graph);
+    return kernels_index(graph);
 }
 
 int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
@@ -123,7 +123,7 @@ int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
     int code = data_table_start(&graph->table, n_ranks);
     if (!code)
         code = data_laws_check(laws);
-    return code ? code : take_kernels(graph, kernels, laws);
+    return code ? code : kernels_take(graph, kernels, laws);
 }
 
 void task_graph_stop(struct task_graph *graph)
@@ -150,8 +150,8 @@ void task_graph_stop(struct task_graph *graph)
 }
 
 /* Keeps a failure and tells it to the scope, unless that is NULL, and to all above. */
-static const struct data_failure *keep(struct task_graph *graph, const struct data_failure *failure,
-                                       struct task_scope *scope)
+static const struct data_failure *
+failure_keep(struct task_graph *graph, const struct data_failure *failure, struct task_scope *scope)
 {
     static const struct data_failure unrecorded = {
         .code = DUITE_E_MEMORY, .text = "and there was no memory to record which task failed"};
@@ -174,18 +174,18 @@ const struct data_failure *task_fail_below(struct task_graph *graph,
                                            const struct data_failure *failure,
                                            struct task_scope *scope)
 {
-    return keep(graph, failure, scope);
+    return failure_keep(graph, failure, scope);
 }
 
 const struct data_failure *task_fail(struct task_graph *graph, const struct data_failure *failure,
                                      bool report)
 {
-    return keep(graph, failure, report ? &graph->root : NULL);
+    return failure_keep(graph, failure, report ? &graph->root : NULL);
 }
 
 /* Where the task that an offloaded one is or descends from stands at home; NULL: it is at home. The
  * main program's scope is not read: the main thread writes its cache line with every fork. */
-static const struct data_failure *place_at_home(const struct task_scope *scope)
+static const struct data_failure *failure_home(const struct task_scope *scope)
 {
     return scope->top == &scope->graph->root ? NULL : scope->top->place;
 }
@@ -198,7 +198,7 @@ void task_failure_place(struct data_failure *failure, const struct task *task,
 {
     uint64_t index[sizeof failure->path];
     uint32_t depth = task->scope->depth, max = sizeof index / sizeof index[0];
-    const struct data_failure *home = place_at_home(task->scope);
+    const struct data_failure *home = failure_home(task->scope);
     if (depth && depth <= max)
         index[depth - 1] = task->number;
     failure->number = task->number;
@@ -225,7 +225,7 @@ const struct data_failure *task_fail_task(const struct task *task, const struct 
     failure->rank = graph->rank;
     failure->kernel = task->kernel;
     task_failure_place(failure, task, inner);
-    return keep(graph, failure, task->scope);
+    return failure_keep(graph, failure, task->scope);
 }
 
 const struct data_failure *task_fail_memory(const struct task *task)
@@ -264,7 +264,7 @@ int task_failure_error(const struct task_graph *graph, const struct data_failure
 uint64_t task_main_number(const struct task *task, bool *nested)
 {
     const struct task_scope *scope = task->scope;
-    const struct data_failure *place = place_at_home(scope);
+    const struct data_failure *place = failure_home(scope);
     *nested = scope->depth || (place && place->path_length);
     if (place)
         return place->number;

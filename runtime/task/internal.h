@@ -42,6 +42,22 @@ struct data_version *task_rename(struct task_graph *graph, struct worker *worker
  * if it was never written. NULL: out of memory, broken. */
 struct data_version *task_local(struct task_graph *graph, struct data_object *object);
 
+/* What every rank notes of every task, whether it has part in it or not. Rank `rank` reads the
+ * current version: whether it gets a copy only now. Rank `holder` makes a new version, of which it
+ * alone has a copy. */
+static inline bool task_note_copy(struct task_graph *graph, struct data_object *object, int rank)
+{
+    if (object->holder == rank || data_object_has_copy(&graph->table, object, rank))
+        return false;
+    data_object_add_copy(&graph->table, object, rank);
+    return true;
+}
+static inline void task_note_version(struct data_object *object, int holder)
+{
+    object->number++;
+    data_object_moved(object, holder);
+}
+
 /* Sees to it that rank `to` gets the current version: sends, awaits, or notes that others do. */
 int task_fetch(struct task_graph *graph, struct worker *worker, struct data_object *object, int to);
 /* The same for all ranks. */

@@ -134,8 +134,7 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
         return task_break(graph);
     }
     code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
-    object->number++;
-    data_object_moved(object, object->home);
+    task_note_version(object, object->home);
     task_forget(graph, worker, object);
     object->current = version;
     return code;
@@ -179,8 +178,7 @@ int task_view_gather(struct task_graph *graph, struct worker *worker, struct dat
     if (code || view->seen == parent->number + 1)
         return code;
     view->seen = parent->number + 1;
-    object->number++;
-    data_object_moved(object, parent->holder);
+    task_note_version(object, parent->holder);
     if (parent->holder == graph->rank)
         return view_gather_here(graph, worker, object, parent);
     task_forget(graph, worker, object);

@@ -4,19 +4,19 @@
  * to task_fork. */
 #include "runtime/task/internal.h"
 
-enum { MOST = 16 }; /* objects */
+enum { MAX_PRUNED = 16 }; /* objects */
 
-static inline bool is_write(duite_mode mode)
+static inline bool prune_writes(duite_mode mode)
 {
     mode = task_immediate(mode);
     return mode == DUITE_W || mode == DUITE_RW;
 }
 
 /* Makes it the kernel of graph->prune, if its tasks are plain. */
-static bool find_kernel(struct task_graph *graph, const duite_kernel *kernel)
+static bool prune_find_kernel(struct task_graph *graph, const duite_kernel *kernel)
 {
     uint32_t i = task_kernel_index(graph, kernel), n = 0;
-    if (i == graph->n_kernels || kernel->replicated || graph->fixed[i].n > MOST)
+    if (i == graph->n_kernels || kernel->replicated || graph->fixed[i].n > MAX_PRUNED)
         return false;
     struct task_prune prune = {
         .kernel = kernel, .index = i, .n = graph->fixed[i].n, .owner = graph->fixed[i].owner[0]};
@@ -25,7 +25,7 @@ static bool find_kernel(struct task_graph *graph, const duite_kernel *kernel)
         if (task_immediate(mode) == DUITE_CW)
             return false;
         prune.reads |= (unsigned)(task_immediate(mode) != DUITE_W) << n;
-        prune.writes |= (unsigned)is_write(mode) << n;
+        prune.writes |= (unsigned)prune_writes(mode) << n;
     }
     graph->prune = prune;
     return true;
@@ -33,8 +33,9 @@ static bool find_kernel(struct task_graph *graph, const duite_kernel *kernel)
 
 /* Whether the objects exist, are different ones, and nothing of them is here. One look decides
  * about all: which of them is to blame does not matter. Marks are not those of task_fork. */
-static inline bool look(const struct task_graph *graph, size_t n, const duite_object *objects,
-                        struct data_object **found, uint64_t *hash)
+static inline bool prune_look_up(const struct task_graph *graph, size_t n,
+                                 const duite_object *objects, struct data_object **found,
+                                 uint64_t *hash)
 {
     const uint32_t n_slots = graph->table.n_slots;
     const int rank = graph->rank;
@@ -58,26 +59,22 @@ static inline bool look(const struct task_graph *graph, size_t n, const duite_ob
 bool task_prune(struct task_graph *graph, const duite_kernel *kernel, const void *args, size_t n,
                 const duite_object *objects)
 {
-    struct data_object *found[MOST];
-    if (!kernel || (kernel != graph->prune.kernel && !find_kernel(graph, kernel)))
+    struct data_object *found[MAX_PRUNED];
+    if (!kernel || (kernel != graph->prune.kernel && !prune_find_kernel(graph, kernel)))
         return false;
     const struct task_prune prune = graph->prune;
     uint64_t hash = task_fork_hash(prune.index, TASK_ANYWHERE);
     if (n != prune.n || !n || !objects || (kernel->args_size && !args) ||
-        !look(graph, n, objects, found, &hash))
+        !prune_look_up(graph, n, objects, found, &hash))
         return false;
     int at = task_owner_rank(TASK_ANYWHERE, false, found[prune.owner]->home);
     if (at == graph->rank)
         return false;
     for (size_t i = 0; i < n; i++) {
-        struct data_object *object = found[i];
-        if (prune.reads >> i & 1 && object->holder != at &&
-            !data_object_has_copy(&graph->table, object, at))
-            data_object_add_copy(&graph->table, object, at);
-        if (prune.writes >> i & 1) {
-            object->number++;
-            data_object_moved(object, at);
-        }
+        if (prune.reads >> i & 1)
+            task_note_copy(graph, found[i], at);
+        if (prune.writes >> i & 1)
+            task_note_version(found[i], at);
     }
     graph->root.forks++;
     task_mix(graph, hash);

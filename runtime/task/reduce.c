@@ -111,7 +111,8 @@ static int sum_combine_here(struct task_scope *scope, struct worker *worker,
     return code;
 }
 
-static int pieces_send(struct task_scope *scope, struct worker *worker, struct data_object *object)
+static int sum_send_pieces(struct task_scope *scope, struct worker *worker,
+                           struct data_object *object)
 {
     struct task_graph *graph = scope->graph;
     struct data_sum *sum = object->sum;
@@ -161,18 +162,17 @@ int task_reduce(struct task_scope *scope, struct worker *worker, struct data_obj
 {
     struct task_graph *graph = scope->graph;
     int code = DUITE_OK;
-    object->number++;
+    task_note_version(object, object->holder);
     if (object->holder == graph->rank) {
         code = sum_combine_here(scope, worker, object);
     } else {
         if (object->sum)
-            code = pieces_send(scope, worker, object);
+            code = sum_send_pieces(scope, worker, object);
         task_forget(graph, worker, object);
     }
     if (code && scope->depth)
         sum_keep_unclosed(graph, object);
     object->leaves = 0;
-    data_object_moved(object, object->holder);
     return code;
 }
 

@@ -42,7 +42,7 @@ uint32_t task_new_stamp(void)
 {
     enum { BATCH = 1 << 20 };
     static _Atomic uint32_t batches;
-    static _Thread_local uint32_t next;
+    static _Thread_local uint32_t next __attribute__((tls_model("initial-exec")));
     if (next % BATCH == 0)
         next = BATCH * atomic_fetch_add_explicit(&batches, 1, memory_order_relaxed);
     return ++next ? next : ++next; /* 0 is no name's */

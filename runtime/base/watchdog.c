@@ -131,6 +131,20 @@ static void watchdog_on_exit(void)
     _exit(EXIT_FAILURE);
 }
 
+struct base_mark *base_watchdog_mark_here(enum base_policy_kind kind)
+{
+    struct base_mark *mark = NULL;
+    pthread_mutex_lock(&listing);
+    for (const struct base_watchdog *watchdog = watchdogs; watchdog && !mark;
+         watchdog = watchdog->next)
+        for (unsigned i = 0; i < watchdog->n && watchdog->policy[kind] && !mark; i++)
+            if (pthread_equal(atomic_load_explicit(&watchdog->mark[i].thread, memory_order_relaxed),
+                              pthread_self()))
+                mark = &watchdog->mark[i];
+    pthread_mutex_unlock(&listing);
+    return mark;
+}
+
 static void watchdog_watch_exits(void)
 {
     atexit(watchdog_on_exit); /* if it cannot, an exit passes as before */

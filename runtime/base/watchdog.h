@@ -65,6 +65,10 @@ void base_watchdog_stop(struct base_watchdog *watchdog);
 struct base_mark *base_watchdog_mark(struct base_watchdog *watchdog, enum base_policy_kind kind,
                                      unsigned worker);
 
+/* The same for the worker that the calling thread is, for those who do not know it: a search. NULL
+ * also if the thread is none. */
+struct base_mark *base_watchdog_mark_here(enum base_policy_kind kind);
+
 /* The calling thread is this worker from now on. NULL is fine. */
 void base_watchdog_here(struct base_watchdog *watchdog, unsigned worker);
 

@@ -43,13 +43,13 @@ static inline size_t message_value(uint32_t mode, size_t bytes)
 }
 
 /* Where the arguments begin. */
-static inline size_t message_head(size_t n)
+static inline size_t message_args_at(size_t n)
 {
     return message_lines(sizeof(struct offload_message) + n * sizeof(struct offload_param));
 }
 
 /* Where the values of a result begin. */
-static inline size_t message_counts(size_t n)
+static inline size_t message_values_at(size_t n)
 {
     return message_lines(n * sizeof(uint64_t));
 }

@@ -28,8 +28,10 @@ struct offload_away *offload_name_take(struct offload_names *names, uint64_t nam
 {
     uint32_t i = (uint32_t)name;
     struct offload_name *slot = i < names->n ? &names->slot[i] : NULL;
-    if (!slot || !slot->away || slot->generation != name >> 32)
+    if (!slot || !slot->away || slot->generation != name >> 32) {
+        names->refused++;
         return NULL;
+    }
     struct offload_away *away = slot->away;
     slot->away = NULL;
     slot->generation += slot->generation == UINT32_MAX ? 2 : 1; /* never 0 */

@@ -20,14 +20,15 @@ struct offload_name {
 struct offload_names {
     struct offload_name *slot;
     size_t capacity;
-    uint32_t n;    /* slots that were ever used */
-    uint32_t free; /* index + 1 of the first free one, or 0 */
+    uint32_t n;       /* slots that were ever used */
+    uint64_t refused; /* names that came and named nothing */
+    uint32_t free;    /* index + 1 of the first free one, or 0 */
 };
 
 /* Gives the task a name, which is never 0. 0: no memory. */
 uint64_t offload_name_give(struct offload_names *names, struct offload_away *away);
 
-/* Whose name it is, which is given up; NULL: nobody's. */
+/* Whose name it is, which is given up; NULL: nobody's, which is counted in `refused`. */
 struct offload_away *offload_name_take(struct offload_names *names, uint64_t name);
 
 void offload_names_free(struct offload_names *names);

@@ -18,8 +18,10 @@ bool offload_may_go(const struct task_graph *graph, const struct task *task, siz
  * if everything is being given up: it stays as it was. */
 bool offload_send(struct task_graph *graph, struct worker *worker, struct task *task, int to);
 
-/* What a task that is away left came; the callee owns it. A result whose name is none of a task
- * that is away is dropped. */
+/* What a task that is away left came; the callee owns it. A result that names no task that is away
+ * is dropped. After offload_lost that is what was given up. Before, each task that goes away comes
+ * back once, so such a result is a wrong one of its rank: it is counted (offload_refused), and what
+ * waits for the right one is what a standstill's report names. */
 void offload_result_arrived(struct task_graph *graph, struct worker *worker,
                             struct data_packet *packet);
 
@@ -32,6 +34,9 @@ void offload_stop(struct task_graph *graph);
 /* Calls back with each task that is away, which stays so during the call. */
 void offload_look(struct task_graph *graph,
                   void (*away)(void *context, const struct task *task, int rank), void *context);
+
+/* How many results came that named no task that is away. */
+uint64_t offload_refused(struct task_graph *graph);
 
 /* A task of another rank came; the packet becomes its. False without memory: it is the caller's. */
 bool offload_arrived(struct task_graph *graph, struct worker *worker, struct data_packet *packet);

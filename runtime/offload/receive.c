@@ -68,7 +68,7 @@ bool offload_arrived(struct task_graph *graph, struct worker *worker, struct dat
 
 /* ---- Running ---- */
 
-static size_t param_room(const struct task *task, size_t i)
+static size_t result_room(const struct task *task, size_t i)
 {
     const struct offload_param *param = &param_of(task->offloaded)[i];
     return task->access[i].waiter.mode == DUITE_R
@@ -78,7 +78,7 @@ static size_t param_room(const struct task *task, size_t i)
 
 /* What the body finds under w is unspecified; under rw it is what came, under cw the law's neutral
  * element. */
-static void param_fill(const struct task *task, size_t i, const void *came, void *data)
+static void result_fill(const struct task *task, size_t i, const void *came, void *data)
 {
     const struct offload_param *param = &param_of(task->offloaded)[i];
     const duite_kernel *kernel = task->scope->graph->kernels[task->kernel];
@@ -93,14 +93,14 @@ static bool params_lay_out(const struct task *task, duite_param *param, const vo
 {
     struct offload_task *own = task->offloaded;
     uint32_t stamp = task->n ? task_new_stamp() : 0;
-    size_t bytes = message_counts(task->n) + sizeof(struct data_failure);
+    size_t bytes = message_values_at(task->n) + sizeof(struct data_failure);
     for (size_t i = 0; i < task->n; i++)
-        bytes += message_lines(param_room(task, i));
+        bytes += message_lines(result_room(task, i));
     own->result = data_packet_new(bytes, false);
     if (!own->result)
         return false;
-    char *in = (char *)data_payload(own->message) + message_head(task->n);
-    char *out = (char *)data_payload(own->result) + message_counts(task->n);
+    char *in = (char *)data_payload(own->message) + message_args_at(task->n);
+    char *out = (char *)data_payload(own->result) + message_values_at(task->n);
     *args = in;
     in += message_lines(task->scope->graph->kernels[task->kernel]->args_size);
     for (uint32_t i = 0; i < task->n; i++) {
@@ -113,9 +113,9 @@ static bool params_lay_out(const struct task *task, duite_param *param, const vo
                                  .type = type,
                                  .max = came->max,
                                  .object = {TASK_LOCAL_NAME | i, stamp}};
-        param_fill(task, i, in, out);
+        result_fill(task, i, in, out);
         in += message_value(mode, came->bytes);
-        out += message_lines(param_room(task, i));
+        out += message_lines(result_room(task, i));
     }
     return true;
 }
@@ -126,7 +126,7 @@ static void result_close_up(const struct task *task, const duite_param *param)
 {
     struct data_packet *result = task->offloaded->result;
     uint64_t *bytes = data_payload(result);
-    size_t at = message_counts(task->n);
+    size_t at = message_values_at(task->n);
     memset(bytes, 0, at);
     for (uint32_t i = 0; i < task->n; i++) {
         if (task->access[i].waiter.mode == DUITE_R)
@@ -137,8 +137,8 @@ static void result_close_up(const struct task *task, const duite_param *param)
     data_packet_resize(result, at);
 }
 
-static bool body_run(struct task_graph *graph, struct worker *worker, struct task *task,
-                     duite_param *param, const duite_call *call)
+static bool offloaded_run_body(struct task_graph *graph, struct worker *worker, struct task *task,
+                               duite_param *param, const duite_call *call)
 {
     struct offload_task *own = task->offloaded;
     const void *args = NULL;
@@ -166,7 +166,7 @@ bool offload_run(struct task_graph *graph, struct worker *worker, struct task *t
         task->offloaded->failure = task_fail_memory(task);
         return false;
     }
-    bool ran = body_run(graph, worker, task, param, call);
+    bool ran = offloaded_run_body(graph, worker, task, param, call);
     if (param != few)
         base_pool_give(param, bytes);
     return ran;

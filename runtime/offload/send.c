@@ -48,7 +48,7 @@ bool offload_may_go(const struct task_graph *graph, const struct task *task, siz
     const duite_kernel *kernel = graph->kernels[task->kernel];
     if (kernel->side_effects || kernel->fixed || kernel->replicated)
         return false;
-    size_t there = message_head(task->n) + kernel->args_size, back = message_counts(task->n);
+    size_t there = message_args_at(task->n) + kernel->args_size, back = message_values_at(task->n);
     for (uint32_t i = 0; i < task->n; i++) {
         const struct data_version *in = access_value(&task->access[i]);
         if (in && !data_version_packet(in))
@@ -93,16 +93,16 @@ static struct data_packet *message_pack(const struct task_graph *graph, struct t
 {
     const struct offload_message message = message_of_task(task);
     size_t args = graph->kernels[task->kernel]->args_size, n = task->n;
-    size_t bytes = message_head(n) + message_lines(args);
+    size_t bytes = message_args_at(n) + message_lines(args);
     for (size_t i = 0; i < n; i++)
         bytes += message_value(task->access[i].waiter.mode, access_param(&task->access[i]).bytes);
     struct data_packet *packet = data_packet_new(bytes, false);
     if (!packet)
         return NULL;
     struct offload_param *param = (void *)((char *)data_payload(packet) + sizeof message);
-    memset(data_payload(packet), 0, message_head(n));
+    memset(data_payload(packet), 0, message_args_at(n));
     memcpy(data_payload(packet), &message, sizeof message);
-    size_t at = offload_message_put(packet, message_head(n), task_rest(task, n), args);
+    size_t at = offload_message_put(packet, message_args_at(n), task_rest(task, n), args);
     for (size_t i = 0; i < n; i++) {
         const struct data_version *in = access_value(&task->access[i]);
         param[i] = access_param(&task->access[i]);
@@ -160,7 +160,7 @@ static const struct data_failure *result_unpack(const struct task *task, duite_p
     struct task_graph *graph = task->scope->graph;
     char *payload = data_payload(packet);
     const uint64_t *bytes = (const void *)payload;
-    size_t at = message_counts(task->n);
+    size_t at = message_values_at(task->n);
     if (packet->pieces & MESSAGE_FAILED) {
         const struct data_failure *both = (const void *)payload;
         if (packet->pieces & MESSAGE_TOLD)
@@ -215,7 +215,7 @@ void offload_result_arrived(struct task_graph *graph, struct worker *worker,
     if (graph->away)
         away = offload_name_take(graph->away, packet->key.number);
     pthread_mutex_unlock(&graph->lock);
-    if (!away) { /* it was given up, or the name is none of ours */
+    if (!away) { /* it was given up; or the name is none of ours, which was counted */
         data_packet_free(packet);
         return;
     }
@@ -248,6 +248,14 @@ void offload_look(struct task_graph *graph,
             look(context, away->task, away->send.to);
     }
     pthread_mutex_unlock(&graph->lock);
+}
+
+uint64_t offload_refused(struct task_graph *graph)
+{
+    pthread_mutex_lock(&graph->lock);
+    uint64_t refused = graph->away ? graph->away->refused : 0;
+    pthread_mutex_unlock(&graph->lock);
+    return refused;
 }
 
 void offload_stop(struct task_graph *graph)

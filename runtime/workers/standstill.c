@@ -241,6 +241,13 @@ static void report_away(void *context, const struct task *task, int rank)
         report_waiters(report, task, i);
 }
 
+static void report_refused(struct report *report, uint64_t refused)
+{
+    if (refused)
+        report_line(report, "%llu results of tasks on other ranks named no task that is away",
+                    (unsigned long long)refused);
+}
+
 /* ---- All of it ---- */
 
 static void report_main(struct report *report, double seconds)
@@ -282,6 +289,7 @@ static void standstill_report(struct work_pool *pool, double seconds)
                    before = report.lines;
     const bool looked = !pool->setup.comm || comm_look(pool->setup.comm, &looker);
     offload_look(pool->setup.graph, report_away, &report);
+    report_refused(&report, offload_refused(pool->setup.graph));
     const uint64_t left = report_unfinished(pool);
     report_line(&report, "unfinished tasks of this rank: %llu", (unsigned long long)left);
     if (looked && left && !bodies && report.lines == before + 1 && !report.left_out)

@@ -52,6 +52,20 @@ static int map(const duite_object_graph *graph, int n_ranks, uint64_t seed, int 
     return 0;
 }
 
+/* As map, but it may hang only when a balancer asks it: the objects have their homes by then. */
+static int map_later(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home)
+{
+    static int asked;
+
+    (void)n_ranks;
+    (void)seed;
+    if (asked++)
+        may_hang("map");
+    for (size_t i = 0; i < graph->n; i++)
+        home[i] = 0;
+    return 0;
+}
+
 static int map_tasks(const duite_task_graph *graph, int *home)
 {
     (void)graph;
@@ -132,6 +146,8 @@ static int never(void *state, const duite_ready *task)
 
 static const duite_mapping MAPPING = {
     .name = "hanging", .summary = "for tests", .map = map, .map_tasks = map_tasks};
+static const duite_mapping MAPPING_LATER = {
+    .name = "hanging", .summary = "for tests", .map = map_later};
 static const duite_balancer ASKING = {.name = "hanging",
                                       .summary = "for tests",
                                       .state_size = sizeof(int),
@@ -154,12 +170,24 @@ static const duite_scheduler SCHEDULER = {.name = "hanging",
 
 /* ---- Programs ---- */
 
+/* Long enough for a balancer to move blocks. */
+static int slow_body(const duite_call *call)
+{
+    (void)call;
+    nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    return 0;
+}
+
+static const duite_kernel SLOW = {.name = "slow", .body = slow_body, .access = {DUITE_RW}};
+
 static int build(duite *rt, void *context)
 {
     duite_object *object = context;
 
     for (int i = 1; i < TASKS; i++)
         duite_fork(rt, &COPY, NULL, 2, object + i - 1);
+    for (int i = 1; i < TASKS; i++)
+        duite_fork(rt, &SLOW, NULL, 1, object + i);
     return 0;
 }
 
@@ -206,7 +234,7 @@ static int works(duite *rt, int where)
 static void one_hangs(const char *what, const char *function, int where,
                       const duite_options *policies)
 {
-    static const duite_kernel *const KERNELS[] = {&SET, &COPY, &ADD, &NAMED, NULL};
+    static const duite_kernel *const KERNELS[] = {&SET, &COPY, &ADD, &SLOW, &NAMED, NULL};
     duite_options options = misuse_options(MPI_COMM_WORLD);
     duite *rt = NULL;
     char name[100];
@@ -239,6 +267,9 @@ int main(void)
         one_hangs("scheduler", "place", where, &(duite_options){.scheduler = &SCHEDULER});
     }
     one_hangs("mapping", "map_tasks", 0, &(duite_options){.mapping = &MAPPING});
+    one_hangs(
+        "mapping", "map", 0,
+        &(duite_options){.mapping = &MAPPING_LATER, .balance = duite_balancer_find("migrate")});
     one_hangs("balancer", "victim", 1, &(duite_options){.balance = &ASKING});
     one_hangs("balancer", "grant", 0, &(duite_options){.balance = &ASKING});
     one_hangs("balancer", "place", 0, &(duite_options){.balance = &SENDING});

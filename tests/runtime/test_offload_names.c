@@ -1,4 +1,5 @@
-/* Names of tasks on other ranks: what comes back is looked up, and refused if it names nothing. */
+/* Names of tasks on other ranks: what comes back is looked up, and refused and counted if it
+ * names nothing. */
 #include "runtime/offload/names.h"
 #include "tests/support/unit.h"
 
@@ -37,6 +38,7 @@ START_TEST(a_stale_name_is_refused)
     ck_assert_uint_ne(second, first);
     ck_assert_ptr_null(offload_name_take(&names, first));
     ck_assert_ptr_eq(offload_name_take(&names, second), task_at(1));
+    ck_assert_uint_eq(names.refused, 2);
     offload_names_free(&names);
 }
 END_TEST
@@ -49,7 +51,9 @@ START_TEST(what_was_never_given_is_refused)
     ck_assert_ptr_null(offload_name_take(&names, 0));
     ck_assert_ptr_null(offload_name_take(&names, name + 1));
     ck_assert_ptr_null(offload_name_take(&names, (uintptr_t)&names));
+    ck_assert_uint_eq(names.refused, 4);
     ck_assert_ptr_eq(offload_name_take(&names, name), task_at(0));
+    ck_assert_uint_eq(names.refused, 4);
     offload_names_free(&names);
 }
 END_TEST

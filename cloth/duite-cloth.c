@@ -186,7 +186,7 @@ static error_t parse_number(struct command *command, struct argp_state *state, i
     uint64_t number = 0;
     bool threads = key == THREADS;
     int code = whole_number(state, threads ? "threads" : "seed", value, threads ? 1 : 0,
-                            threads ? 1024 : UINT64_MAX, &number);
+                            threads ? DUITE_MAX_THREADS : UINT64_MAX, &number);
     if (code)
         return code;
     if (threads)
@@ -358,8 +358,11 @@ static int check_environment(const struct simulate_options *run, struct cloth_er
         return wrong_variable(error, "DUITE_MAPPING", duite_message());
     if (!run->balance && !duite_balancer_find(run->balance_name))
         return wrong_variable(error, "DUITE_BALANCE", duite_message());
-    if (run->threads == UINT_MAX)
-        return wrong_variable(error, "DUITE_THREADS", "a whole number from 0 to 4096 is expected");
+    if (run->threads == UINT_MAX) {
+        char why[60];
+        snprintf(why, sizeof why, "a whole number from 0 to %d is expected", DUITE_MAX_THREADS);
+        return wrong_variable(error, "DUITE_THREADS", why);
+    }
     if (run->seed == UINT64_MAX && defaults.seed == UINT64_MAX)
         return wrong_variable(error, "DUITE_SEED",
                               "a whole number from 0 to 18446744073709551614 is expected");

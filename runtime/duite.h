@@ -220,13 +220,16 @@ struct duite_scheduler; /* duite_policy.h */
 struct duite_mapping;
 struct duite_balancer;
 
+enum { DUITE_MAX_THREADS = 4096 }; /* workers of a rank, at most */
+
 typedef struct duite_options {
     MPI_Comm comm;                      /* who takes part; duplicated. Default MPI_COMM_WORLD */
     const duite_kernel *const *kernels; /* ended by NULL; the list is copied, the kernels are not */
     const duite_law *const *laws;       /* of the program, ended by NULL; default NULL: none */
     void *context;                      /* given to every body; may differ between ranks */
     unsigned threads; /* workers of this rank, the main thread among them; 0: its share of the
-                         cores. Default: DUITE_THREADS, else 0. May differ between ranks */
+                         cores. Default: DUITE_THREADS, else 0. At most DUITE_MAX_THREADS.
+                         May differ between ranks */
     const struct duite_scheduler *scheduler; /* default: DUITE_SCHEDULER, else steal */
     const struct duite_mapping *mapping;     /* default: DUITE_MAPPING, else metis */
     const struct duite_balancer *balance;    /* default: DUITE_BALANCE, else none; see below */

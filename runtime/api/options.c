@@ -14,8 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_THREADS = 4096 };
-
 /* What no program means: the environment's number makes no sense. */
 static const unsigned NO_THREADS = UINT_MAX;
 static const uint64_t NO_SEED = UINT64_MAX;
@@ -46,7 +44,7 @@ static uint64_t environment_number(const char *text, uint64_t otherwise, uint64_
 
 static unsigned environment_threads(void)
 {
-    return (unsigned)environment_number(getenv("DUITE_THREADS"), 0, MAX_THREADS, NO_THREADS);
+    return (unsigned)environment_number(getenv("DUITE_THREADS"), 0, DUITE_MAX_THREADS, NO_THREADS);
 }
 
 static uint64_t environment_seed(void)
@@ -123,7 +121,7 @@ static int options_check_environment(const duite_options *options)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: DUITE_THREADS=%s in the environment: a whole number from 0 "
                           "to %d is expected; 0: the rank's share of the cores",
-                          getenv("DUITE_THREADS"), MAX_THREADS);
+                          getenv("DUITE_THREADS"), DUITE_MAX_THREADS);
     if (options->seed == NO_SEED && environment_seed() == NO_SEED)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: DUITE_SEED=%s in the environment: a whole number from 0 to "
@@ -179,9 +177,9 @@ int options_check_rest(const duite_options *options)
         code = options_check_seconds(options);
     if (code)
         return code;
-    if (options->threads > MAX_THREADS)
+    if (options->threads > DUITE_MAX_THREADS)
         return base_error(DUITE_E_ARGUMENT, "duite_start: %u threads are more than %d",
-                          options->threads, MAX_THREADS);
+                          options->threads, DUITE_MAX_THREADS);
     if (options->check < 0)
         return base_error(DUITE_E_ARGUMENT,
                           "duite_start: DUITE_CHECK has no such mode; there is \"accesses\"");

@@ -17,7 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MAX_RANKS = 1 << 24, MOST_WORKERS = 4096 };
+enum { MAX_RANKS = 1 << 24, MOST_WORKERS = DUITE_MAX_THREADS };
 
 /* One file while it is read. */
 struct source {

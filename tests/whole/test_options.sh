@@ -66,8 +66,8 @@ ok "an unknown option" wrong "unrecognized option '--frames'" scene.yaml --frame
 ok "an option without its value" wrong "option '--end' requires an argument" scene.yaml --end
 ok "a report of no name" wrong "duite-cloth: --report: an empty name" scene.yaml --report ''
 ok "a folder of no name" wrong "duite-cloth: --output: an empty name" scene.yaml --output ''
-ok "no threads" wrong "duite-cloth: --threads 0: a whole number from 1 to 1024 is expected" scene.yaml --threads 0
-ok "half a number" wrong "duite-cloth: --threads 2x: a whole number from 1 to 1024 is expected" scene.yaml --threads 2x
+ok "no threads" wrong "duite-cloth: --threads 0: a whole number from 1 to 4096 is expected" scene.yaml --threads 0
+ok "half a number" wrong "duite-cloth: --threads 2x: a whole number from 1 to 4096 is expected" scene.yaml --threads 2x
 ok "a negative seed" wrong "duite-cloth: --seed -1: a whole number from 0 to 18446744073709551615 is expected" scene.yaml \
     --seed -1
 ok "a scheduler of no name" wrong "duite-cloth: --scheduler lazy: there is no scheduler of this name; known are " scene.yaml \

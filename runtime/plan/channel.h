@@ -4,23 +4,23 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Channels: what a plan says to the communication about its messages. The plan owns them. */
+/* Channels: what the communication knows of a plan's messages. The plan owns them. */
 
 struct task;
 
-/* A recorded graph's message of one round to or from another rank: fixed in size and order, so that
- * it needs no name but its tag and its turn. */
+/* A message of each round to or from another rank. Size and order are fixed, so tag and turn name
+ * it. */
 struct plan_channel {
     struct task *node; /* SEND or RECEIVE */
     int peer;
-    int tag; /* to begin with the phase; who opens the channels adds a number of their own */
+    int tag; /* at first the phase; whoever opens the channels adds a number of its own */
     bool sends;
-    size_t bytes; /* room for a message; without failures to tell it is shorter */
+    size_t bytes; /* room for a message; one without failures is shorter */
     void *own;    /* of who opens */
 };
 
-/* All of one plan, with messages of so many phases on all ranks. Closed by whoever lets go of the
- * plan last, from any thread. */
+/* All channels of one plan, with messages of so many phases on all ranks. Whoever drops the plan
+ * last closes them, from any thread. */
 struct plan_channels {
     struct plan_channel *channel;
     size_t n;
@@ -29,15 +29,15 @@ struct plan_channels {
     void *own;
 };
 
-/* A SEND writes its message, which has so many bytes; a RECEIVE reads it, or poisons all that it
- * would have brought. Afterwards the node is to be finished. Any worker. */
+/* A SEND writes its message; returns its bytes. A RECEIVE reads its message, or (lost) poisons what
+ * the message would have brought. Afterwards the caller finishes the node. Any worker. */
 size_t plan_channel_pack(struct task *node, void *message);
 void plan_channel_unpack(struct task *node, const void *message);
 void plan_channel_lost(struct task *node);
-/* Of a SEND or RECEIVE. */
+/* The channel of a SEND or RECEIVE. */
 struct plan_channel *plan_channel_of(const struct task *node);
-/* One of the program's tasks that wait in this round for a RECEIVE, or NULL, and how many more do.
- * The replay must not go on meanwhile. */
+/* Of the program's tasks that wait in this round for a RECEIVE: one, or NULL, and the number of
+ * others. The replay must not go on meanwhile. */
 const struct task *plan_channel_waits(const struct task *node, unsigned *more);
 
 #endif

@@ -1,11 +1,11 @@
-/* Edges: what a node waits for. Two rounds in a row are gone through with the last writer of each
- * place and the readers since: what waits for a node of its own round gives the edges within a
- * round, what waits for one of the round before gives those from round to round. Every edge but one
- * to or from the deciding node joins two uses of one place of which one writes: conflicts are
- * symmetric. So a node that comes after T in a round and releases T of the next one runs after T,
- * and one that comes before T runs, in the next round, after T. A node thus never hears of the next
- * round before it has begun this one. The roots of a round and the deciding node are joined both
- * ways for the same reason. */
+/* Edges: what a node waits for. The pass goes through two rounds in a row with the last writer of
+ * each place and the readers since. A node that waits for one of its own round gives an edge within
+ * a round; a node that waits for one of the round before gives an edge from round to round. Each
+ * edge joins two uses of one place, one of which writes, but for edges of the deciding node: so
+ * conflicts are symmetric. A node that comes after T in a round and releases T of the next one runs
+ * after T; one that comes before T runs, in the next round, after T. So nothing counts a node down
+ * for the next round before the node has begun this one. The roots of a round and the deciding node
+ * are joined both ways for the same reason. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"

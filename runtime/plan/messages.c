@@ -1,8 +1,8 @@
 /* Messages: when nodes run at the earliest, counted in messages, and what moves between ranks. What
- * is made on one rank goes to those that need it: versions, and of sums the pieces that a rank can
- * combine alone. Everything that goes from one rank to another in one phase is one message. All
- * ranks go through the round in the same order, so both sides list the same items; each item names
- * its version or its piece, and nothing is found by counting. */
+ * one rank makes goes to those that need it: versions, and of sums the pieces that a rank can
+ * combine alone. All that goes from one rank to another in one phase is one message. All ranks go
+ * through the round in the same order, so both sides list the same items. Each item names its
+ * version or its piece, so no pass pairs them by counting. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"
@@ -223,7 +223,7 @@ static uint32_t message_find(struct finding *f, int from, int to, uint32_t phase
     return *head - 1;
 }
 
-/* Appends an item to the message from one rank to another in a phase, if that is asked for. */
+/* Appends an item to the message from one rank to another in a phase, if the caller wants it. */
 static void message_add(struct finding *f, int from, int to, uint32_t phase, struct plan_item item)
 {
     struct plan_messages *m = f->m;
@@ -246,10 +246,10 @@ static void message_add(struct finding *f, int from, int to, uint32_t phase, str
     message->last = m->n_items;
 }
 
-/* To each rank of a set but the one that has it. A rank asks for its own messages only: then there
- * is one receiver, unless it sends. */
-static void message_spread(struct finding *f, int from, const uint64_t *set, uint32_t phase,
-                           struct plan_item item)
+/* Adds the item for each rank of a set but the one that has it. If the messages are those of one
+ * rank that does not send, that rank is the one receiver. */
+static void message_add_to_set(struct finding *f, int from, const uint64_t *set, uint32_t phase,
+                               struct plan_item item)
 {
     int rank = f->m->rank, first = 0, end = f->m->assignment->n_ranks;
     if (rank != PLAN_ALL && rank != from) {
@@ -273,8 +273,8 @@ static void message_version(struct finding *f, uint32_t version)
                              .version = version,
                              .piece = PLAN_NONE,
                              .made = found->maker ? 2 * (plan_moment)maker + 2 : 0};
-    message_spread(f, a->at[maker], plan_needs_set(a, version),
-                   found->maker ? f->m->phase[maker] : 0, item);
+    message_add_to_set(f, a->at[maker], plan_needs_set(a, version),
+                       found->maker ? f->m->phase[maker] : 0, item);
 }
 
 /* The pieces of each rank go to those that add them all up. */
@@ -288,7 +288,7 @@ static void message_pieces(struct finding *f, size_t n)
                                  .version = PLAN_NONE,
                                  .piece = (uint32_t)i,
                                  .made = 2 * (plan_moment)n + 1};
-        message_spread(f, m->piece[i].rank, plan_runs_set(a, n), m->piece[i].phase, item);
+        message_add_to_set(f, m->piece[i].rank, plan_runs_set(a, n), m->piece[i].phase, item);
     }
 }
 

@@ -1,8 +1,9 @@
-/* The part of one rank: its nodes in the order of the round, first of all those that receive, and
- * each one that sends as soon as the last thing that its message carries is made. What a rank
- * writes lies in its objects' own places; what it receives, in a buffer for each version and piece,
- * which nobody else writes to; who would write on from there gets a copy first. What is overwritten
- * before its message can go is copied aside. The edges follow from these places as on one rank. */
+/* The part of one rank: its nodes in the order of the round. Nodes that receive come first. A node
+ * that sends comes as soon as the last thing that its message carries is made. What a rank writes
+ * lies in its objects' own places. What it receives lies in a buffer for each version and piece,
+ * which no other node writes; a node that would write on from there gets a copy first. What is
+ * overwritten before its message can go is copied aside. Edges follow from these places as on one
+ * rank. */
 #include "runtime/plan/passes.h"
 
 #include "runtime/base/memory.h"

@@ -4,8 +4,8 @@
 #include "runtime/plan/channel.h"
 #include "runtime/plan/record.h"
 
-/* A plan: a record compiled to flat arrays, of several ranks for this one's part. The workers and
- * the predictor see of it whose caches have what a node runs for; all else is this folder's. */
+/* A plan: a record compiled to flat arrays; of several ranks, this one's part of it. Workers and
+ * the predictor use the affinity of its nodes. All else is this folder's. */
 
 /* All steps of a node that adds. */
 struct plan_tree {
@@ -91,7 +91,7 @@ struct plan {
 /* A replay on its way: what its task carries. */
 struct plan_replay {
     struct plan *plan;
-    uint64_t rounds;             /* or the most of them */
+    uint64_t rounds;             /* with a flag: the maximum of them */
     uint64_t number;             /* of the first task */
     struct plan_change *changes; /* oldest last; owned */
     uint32_t block[];            /* by place */
@@ -116,7 +116,7 @@ static inline struct plan_place *plan_node_place(const struct task *task)
 /* What takes less is over before another core has its data: it leaves no affinity. */
 #define PLAN_AFFINITY_SECONDS 2e-6
 
-/* Tells whose caches may have what the node runs for: 1 and the worker, or 0. All workers read what
+/* Notes whose caches may have what the node runs for: 1 and the worker, or 0. All workers read what
  * this writes: it is written only where it changes. */
 static inline void plan_task_set_affinity(const struct task *task, uint32_t affinity)
 {
@@ -143,14 +143,14 @@ static inline uint32_t plan_task_affinity(const struct task *task)
 int plan_new(struct plan **plan, const struct plan_record *record, const duite_object *flag);
 /* Could plan_new have made this plan? */
 bool plan_fits(const struct plan *plan, const struct plan_record *record, const duite_object *flag);
-/* Of several ranks: makes this rank's part of a round, without edges; later, with all nodes there,
- * opens the channels. */
+/* Of several ranks. The first makes this rank's part of a round, without edges. The second opens
+ * the channels, when all nodes are there. Errors: memory. */
 bool plan_of_ranks(struct plan *plan, const struct plan_round *round, struct plan_round *part,
                    const struct plan_record *record, const duite_object *flag);
 int plan_open(struct plan *plan, const struct plan_round *part);
 /* The mode of a whole replay on this rank. */
 duite_mode plan_mode(const struct plan *plan, size_t i);
-/* Sees to it that all ranks whose rounds begin with an object's value get it. */
+/* Sends an object's value to all ranks whose rounds begin with it, or receives it. */
 int plan_fetch(const struct plan *plan, struct worker *worker, size_t i,
                struct data_object *object);
 /* The object has a new version where the plan leaves it. False: the plan does not write it. */
@@ -160,14 +160,14 @@ size_t plan_channel_room(const struct plan *plan, const struct task *task);
 /* Whether the homes are those that the plan was made for. */
 bool plan_at_home(const struct plan *plan, const struct plan_record *record);
 
-/* The record lets go of its plan; a replay is over. NULL is fine. */
+/* The record drops its plan (NULL is fine); a replay is over. The last of them frees the plan. */
 void plan_drop(struct plan *plan, struct worker *worker);
 void plan_release(struct plan *plan);
 
 /* A replay: binds the objects; starts the first round. */
 void plan_replay_run(struct task *task);
 void plan_replay_start(struct task_graph *graph, struct worker *worker, struct task *task);
-/* A node of a replay: runs it, returns whether a body ran; tells its successors. */
+/* A node of a replay: runs it, and returns whether a body ran; counts its successors down. */
 bool plan_node_run(struct task_graph *graph, struct worker *worker, struct task *task,
                    const duite_call *call);
 void plan_node_finish(struct task_graph *graph, struct worker *worker, struct task *task);

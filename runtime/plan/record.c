@@ -1,6 +1,6 @@
 /* A record is whole or not begun: a call of build that fails leaves nothing behind. What build
  * named stays as it was (`recorded`); replays use what is bound to it. Arguments lie in one block,
- * which plans copy; what changes later is told to a plan as a list of changes. */
+ * which plans copy. A plan gets what changes later as a list of changes. */
 #include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
 

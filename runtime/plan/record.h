@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-/* Recorded graphs: what a build function forked, kept to be replayed.
+/* Recorded graphs: what a build function forked, kept for replays.
  *
  * The record is the program's view: forks in order, with the objects and arguments that the next
  * replay uses. From it comes a plan (plan.h), which one rank replays by itself; any number of

@@ -1,12 +1,12 @@
-/* Running a plan. A node belongs to nobody but the worker that runs it, from the moment its counter
- * came to nothing until it told its last successor; by then it counts for its next round already.
- * The counter goes back to `steady` before that: none of those that count for the next round has
- * run (see edges.c). A replay is over when all sinks of its last round are: each other node
- * of any round comes before one of these, and a node that still has successors to tell keeps one of
+/* Running a plan. From the moment its counter is 0 until its last successor is counted down, a node
+ * belongs to the worker that runs it. Before the first of these decrements its own counter goes
+ * back to `steady`, so that it counts for its next round: no node that it waits for there has run
+ * yet (see edges.c). A replay is over when all sinks of its last round are. Each other node of any
+ * round comes before one of these, and a node that still has successors to count down keeps one of
  * them waiting. So after its last decrement, of a successor or of the sinks, a worker must not
  * touch the plan: it may be freed.
  *
- * Poison is kept by place, under the same dependences as the bytes. It is looked at only once
+ * Poison is kept by place, under the same dependences as the bytes. Workers look at it only once
  * something failed: what sees the effects of a failure sees `tainted`. */
 #include "runtime/plan/plan.h"
 #include "runtime/task/internal.h"
@@ -17,8 +17,8 @@
 
 #include <string.h>
 
-/* With a flag the number of rounds is not known beforehand: each sink of each round takes one, and
- * the node that decides to stop takes the rest. */
+/* With a flag the number of rounds is not known beforehand. Each sink of each round takes one from
+ * this, and the node that decides to stop takes the remainder. */
 static const int64_t UNKNOWN = INT64_C(1) << 62;
 
 /* ---- Beginning and end ---- */

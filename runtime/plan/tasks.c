@@ -1,4 +1,4 @@
-/* What mappings and schedulers ask of a round: who reads whose results, and the paths to its end.
+/* What mappings and schedulers see of a round: who reads whose results, and the paths to its end.
  * Rows say who reads whose result; paths count every dependence, those that carry nothing too. */
 #include "runtime/plan/record.h"
 
@@ -105,7 +105,7 @@ int plan_record_tasks(const struct plan_record *record, struct plan_tasks *tasks
 
 /* ---- Paths ---- */
 
-/* What a fork counts that did not say its cost: the mean of those that did, or 1. */
+/* The cost of a fork that did not say one: the mean of those that did, or 1. */
 static double path_usual_cost(const struct plan_source *source)
 {
     double sum = 0, said = 0;
@@ -116,9 +116,9 @@ static double path_usual_cost(const struct plan_source *source)
     return said > 0 ? sum / said : 1;
 }
 
-/* Edges within a round lead to later nodes, and are found in their order: from the last one back,
- * what follows an edge is known when it is come to. `longest` is by node, without its own cost
- * until that is added. */
+/* Edges within a round lead to later nodes, and stand in their order. So the pass goes back from
+ * the last edge, and the path behind an edge is known when the edge's turn comes. `longest` is by
+ * node, without the node's own cost until that is added. */
 static void path_find(const struct plan_round *round, double *longest)
 {
     double usual = path_usual_cost(round->source);

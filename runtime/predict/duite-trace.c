@@ -51,7 +51,7 @@ static void options_fill(void)
         "partial", PARTIAL, NULL, 0, "take what there is of a run that did not come to its end", 2};
 }
 
-static error_t parse(int key, char *value, struct argp_state *state)
+static error_t form_option_read(int key, char *value, struct argp_state *state)
 {
     struct command *command = state->input;
     if (key >= FORM && key < FORM + N_FORMS) {
@@ -72,7 +72,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 
 static const struct argp ARGP = {
     .options = options,
-    .parser = parse,
+    .parser = form_option_read,
     .args_doc = "TRACE",
     .doc = "Says what a trace has (duite-cloth --trace), or turns it into forms that viewers open. "
            "OUT may be - for standard output. The files TRACE.1, TRACE.2, ... of the other ranks "
@@ -104,7 +104,7 @@ static int write_form(const struct trace_run *run, size_t form, const char *out)
     return code ? FAILED : 0;
 }
 
-static int work(const struct command *command, const struct trace_run *run)
+static int forms_write(const struct command *command, const struct trace_run *run)
 {
     bool asked = command->check;
     int code = 0;
@@ -137,7 +137,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "duite-trace: %s\n", duite_message());
         return BAD_INPUT;
     }
-    int code = work(&command, run);
+    int code = forms_write(&command, run);
     trace_run_free(run);
     return code;
 }

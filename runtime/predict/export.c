@@ -77,8 +77,8 @@ int predict_write_dot(const struct trace_run *run, FILE *file)
     return code;
 }
 
-/* ---- Graph files: what a task shows to others is its bytes, and its block stays together, as what
- * it keeps for itself does ---- */
+/* ---- Graph files: the bytes of a task are those that other tasks read; tasks of one block share a
+ * place ---- */
 
 struct rows {
     uint32_t *line;  /* by node: of its task in the file, or NONE */

@@ -11,8 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_NODE 0x7fffffffu /* as many bits as there are for them */
-enum { MOST_PAIRS = 64 }; /* hosts: among more, what goes to several at once rides with nothing */
+#define MAX_NODE 0x7fffffffu /* as many bits as there are for them */
 
 static bool graph_room(struct predict_graph *graph, void *array, size_t *capacity, size_t n,
                        size_t size)
@@ -29,7 +28,7 @@ static bool graph_room(struct predict_graph *graph, void *array, size_t *capacit
 
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node)
 {
-    graph->failed |= graph->n_nodes >= MOST_NODE;
+    graph->failed |= graph->n_nodes >= MAX_NODE;
     if (!graph_room(graph, &graph->node, &graph->nodes_capacity, graph->n_nodes,
                     sizeof *graph->node))
         return 0;
@@ -53,7 +52,7 @@ static void edge_add_kind(struct predict_graph *graph, uint32_t from, uint32_t t
         return;
     graph->linked |= from >= graph->round;
     graph->edge[graph->n_edges] =
-        (struct predict_edge){to & MOST_NODE, reads, graph->node[from].edge};
+        (struct predict_edge){to & MAX_NODE, reads, graph->node[from].edge};
     graph->node[from].edge = (uint32_t)graph->n_edges++;
     graph->node[to].pending++;
 }
@@ -394,77 +393,6 @@ void predict_hold(struct predict_graph *graph, uint32_t node)
 {
     if (!graph->linked)
         edge_add_kind(graph, graph->flag, node, true);
-}
-
-/* ---- Packets ---- */
-
-/* In a round all that goes from one host to another in a phase is one message, as plan/messages.c
- * has it. The set of a round's packets is an open table. Outside of replays each message is one. */
-
-void predict_packets_clear(struct predict_graph *graph)
-{
-    if (graph->n_packets)
-        memset(graph->packet, 0, graph->packets_capacity * sizeof *graph->packet);
-    graph->n_packets = 0;
-}
-
-/* Where it is, or goes. */
-static uint64_t *packet_place(uint64_t *table, size_t capacity, uint64_t key)
-{
-    uint64_t state = key;
-    size_t at = (size_t)duite_random(&state) & (capacity - 1);
-    while (table[at] && table[at] != key)
-        at = (at + 1) & (capacity - 1);
-    return &table[at];
-}
-
-static bool packet_room(struct predict_graph *graph)
-{
-    const size_t more = graph->packets_capacity ? 2 * graph->packets_capacity : 64;
-    uint64_t *table = calloc(more, sizeof *table);
-    if (!table)
-        return false;
-    for (size_t i = 0; i < graph->packets_capacity; i++)
-        if (graph->packet[i])
-            *packet_place(table, more, graph->packet[i]) = graph->packet[i];
-    free(graph->packet);
-    graph->packet = table;
-    graph->packets_capacity = more;
-    return true;
-}
-
-/* Whether it is the first of its packet. */
-static bool packet_leads(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to)
-{
-    const uint64_t hosts = graph->cluster->hosts;
-    const uint64_t key = 1 + (uint64_t)to + hosts * (from + hosts * phase);
-    if (2 * graph->n_packets >= graph->packets_capacity && !packet_room(graph)) {
-        graph->failed = true;
-        return true;
-    }
-    uint64_t *place = packet_place(graph->packet, graph->packets_capacity, key);
-    const bool first = !*place;
-    *place = key;
-    graph->n_packets += first;
-    return first;
-}
-
-int32_t predict_packet(struct predict_graph *graph, uint32_t phase, uint32_t from, uint32_t to)
-{
-    return !graph->replays || packet_leads(graph, phase, from, to);
-}
-
-int32_t predict_packets(struct predict_graph *graph, uint32_t phase, uint32_t from,
-                        const uint64_t *to, uint32_t n)
-{
-    const uint32_t hosts = graph->cluster->hosts;
-    int32_t packets = 0;
-    if (!graph->replays || hosts > MOST_PAIRS)
-        return (int32_t)n;
-    for (uint32_t host = 0; host < hosts; host++)
-        packets +=
-            host != from && base_ranks_has(to, (int)host) && packet_leads(graph, phase, from, host);
-    return packets;
 }
 
 void predict_graph_free(struct predict_graph *graph)

@@ -7,13 +7,15 @@
 #include <duite.h>
 
 /* The run as a graph: nodes in an order in which no edge points back, and what the main program
- * does with them. */
+ * does with them. Plain data of one thread; whoever declares a graph frees it by
+ * predict_graph_free. */
 
 #define PREDICT_NONE UINT32_MAX
 
 enum predict_kind {
     PREDICT_TASK,       /* runs on a worker of its host */
-    PREDICT_EVERYWHERE, /* a replicated task: on all hosts at once, as a worker's time goes */
+    PREDICT_EVERYWHERE, /* on several hosts at once, with the time of a worker, but on none of them
+                         */
     PREDICT_MESSAGE,    /* from `host` to `block`; number: bytes */
     PREDICT_EXCHANGE,   /* number bytes from those that have them to those that need them */
     PREDICT_INSTANT     /* takes no time */
@@ -45,7 +47,7 @@ struct predict_edge {
     uint32_t next;
 };
 
-/* What the main program does: brings nodes up to `end` into being, `each` seconds apart; then waits
+/* What the main program does: it forks the nodes up to `end`, `each` seconds apart. Then it waits
  * for `node`, or for all nodes so far (NONE), or not at all. */
 struct predict_op {
     uint32_t end, node;
@@ -62,7 +64,7 @@ struct predict_object {
     uint64_t bytes;
     uint32_t parent;   /* of a view: object; else NONE */
     uint32_t gathered; /* a view: the writer of its object then */
-    uint32_t place;    /* in the record that is replayed, plus 1, while its round is looked at */
+    uint32_t place;    /* in the record that is replayed, plus 1, while its round is compiled */
     bool shown;        /* counted among what its writer shows */
 };
 
@@ -106,7 +108,7 @@ struct predict_graph {
     uint32_t round;  /* the first node of this round of a replay, or NONE */
     uint32_t flag;   /* the node that decided on this round, or NONE */
     double overhead; /* s between two tasks, */
-    double look;     /* and of that a look for messages, now and then */
+    double look;     /* of a look for messages, which workers make now and then */
     uint64_t n_tasks, migrated;
     bool plain;           /* tasks and what they read alone: replays have no gates */
     bool replays, failed; /* failed: no memory */
@@ -119,9 +121,9 @@ uint32_t predict_add(struct predict_graph *graph, const struct predict_node *nod
 void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to);
 /* The node after which the object's value is on the host, or everywhere; NONE: it always was. */
 uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host);
-/* Before a node on `host` (PREDICT_ALL: everywhere) is made that uses the object: makes what comes
- * before it, and returns the node after which the value is there; NONE: it always was, or is not
- * needed. */
+/* Called before a node on `host` (PREDICT_ALL: everywhere) that uses the object is made. Makes what
+ * comes before that node. Returns the node after which the value is there; NONE: the value always
+ * was, or is not read. */
 uint32_t predict_prepare(struct predict_graph *graph, uint32_t object, duite_mode mode, int host);
 /* The node uses the object, with what predict_prepare returned. */
 void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, duite_mode mode,
@@ -134,8 +136,8 @@ void predict_gather(struct predict_graph *graph, uint32_t view, int host);
 void predict_set(struct predict_graph *graph, uint32_t object, int host);
 /* The object has another home from now on: its value goes there. */
 void predict_rehome(struct predict_graph *graph, uint32_t object, int host);
-/* All edges to the node are there since `linked` was cleared: if nothing of its round of a replay
- * comes before it, it waits for what decided on the round. */
+/* Called when all edges to the node are there, which began with `linked` false. A node waits for
+ * what decided on its round, if nothing of the round comes before it. */
 void predict_hold(struct predict_graph *graph, uint32_t node);
 
 /* A round of a replay begins: no packet of it is on its way. */

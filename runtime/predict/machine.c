@@ -1,8 +1,10 @@
-/* The parts of the machine: queues, the events to come, and the network; and how it is made. */
+/* The parts of the machine: queues, the events to come, the network, what a scheduler sees of a
+ * task; and how a machine starts and stops. */
 #include "runtime/predict/machine.h"
 
 #include "runtime/base/heap.h"
 #include "runtime/base/memory.h"
+#include "runtime/task/task.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +12,7 @@
 
 /* ---- Queues ---- */
 
-static bool room(struct predict_queue *queue)
+static bool queue_room(struct predict_queue *queue)
 {
     if (queue->n < queue->capacity)
         return true;
@@ -28,7 +30,7 @@ static bool room(struct predict_queue *queue)
 }
 
 /* The larger priority; of equals the longer path; of these the one that was forked first. */
-static bool predict_node_before(const void *left, const void *right, const void *all)
+static bool queue_before(const void *left, const void *right, const void *all)
 {
     const struct predict_node *nodes = all;
     const uint32_t a = *(const uint32_t *)left, b = *(const uint32_t *)right;
@@ -41,20 +43,20 @@ static bool predict_node_before(const void *left, const void *right, const void 
 
 bool predict_queue_put(struct predict_queue *queue, const struct predict_node *nodes, uint32_t node)
 {
-    if (!room(queue))
+    if (!queue_room(queue))
         return false;
     if (queue->heap)
-        base_heap_push(queue->node, queue->n, &node, sizeof node, predict_node_before, nodes);
+        base_heap_push(queue->node, queue->n, &node, sizeof node, queue_before, nodes);
     else
         queue->node[(queue->first + queue->n) & (queue->capacity - 1)] = node;
     queue->n++;
     return true;
 }
 
-static uint32_t take_highest(struct predict_queue *queue, const struct predict_node *nodes)
+static uint32_t queue_take_highest(struct predict_queue *queue, const struct predict_node *nodes)
 {
     uint32_t top;
-    base_heap_pop(queue->node, queue->n--, &top, sizeof top, predict_node_before, nodes);
+    base_heap_pop(queue->node, queue->n--, &top, sizeof top, queue_before, nodes);
     return top;
 }
 
@@ -64,7 +66,7 @@ uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_no
     if (!queue->n)
         return PREDICT_NONE;
     if (queue->heap)
-        return take_highest(queue, nodes);
+        return queue_take_highest(queue, nodes);
     size_t at = end == DUITE_NEWEST ? queue->first + queue->n - 1 : queue->first;
     queue->first += end != DUITE_NEWEST;
     queue->n--;
@@ -73,7 +75,7 @@ uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_no
 
 /* ---- Events ---- */
 
-static bool predict_event_before(const void *left, const void *right, const void *unused)
+static bool event_before(const void *left, const void *right, const void *unused)
 {
     const struct predict_event *a = left, *b = right;
     (void)unused;
@@ -87,7 +89,7 @@ bool predict_event_put(struct predict_events *events, double time, uint32_t node
         return false;
     events->event = moved;
     struct predict_event new = {time, events->order++, node, worker};
-    base_heap_push(events->event, events->n++, &new, sizeof new, predict_event_before, NULL);
+    base_heap_push(events->event, events->n++, &new, sizeof new, event_before, NULL);
     return true;
 }
 
@@ -95,7 +97,7 @@ bool predict_event_take(struct predict_events *events, struct predict_event *fir
 {
     if (!events->n)
         return false;
-    base_heap_pop(events->event, events->n--, first, sizeof *first, predict_event_before, NULL);
+    base_heap_pop(events->event, events->n--, first, sizeof *first, event_before, NULL);
     return true;
 }
 
@@ -134,6 +136,25 @@ double predict_exchange(struct predict_network *network, double now,
     network->bytes += message->copies * bytes;
     *flight = cluster->latency;
     return now + cluster->latency + fmax(takes, fabric);
+}
+
+/* ---- Tasks as schedulers see them ---- */
+
+duite_ready predict_describe(const struct predict_machine *m, uint32_t node)
+{
+    const struct predict_node *n = &m->graph->node[node];
+    const struct trace_run *run = m->graph->run;
+    const uint32_t ran = n->placed ? m->affinity[n->placed - 1] : PREDICT_NONE;
+    const bool has_affinity = ran != PREDICT_NONE && ran / m->cluster->cores == n->host;
+    return (duite_ready){.kernel = n->kernel < run->n_kernels
+                                       ? run->kernel_name[n->kernel]
+                                       : task_own_name(n->kernel - run->n_kernels),
+                         .number = n->number,
+                         .block = n->block,
+                         .priority = n->priority,
+                         .cost = (double)n->cost,
+                         .path = (double)n->path,
+                         .affinity = has_affinity ? 1 + ran % m->cluster->cores : 0};
 }
 
 /* ---- Start and stop ---- */

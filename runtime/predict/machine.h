@@ -3,8 +3,8 @@
 
 #include "runtime/predict/graph.h"
 
-/* The machine in virtual time: what waits where, and what happens next. Shared by simulate.c,
- * conclude.c and machine.c. */
+/* The machine in virtual time: what waits where, and what happens next. The files machine.c,
+ * simulate.c and predict.c share it. One thread. */
 
 /* Ready tasks of a worker, or that a host shares: a ring, or a heap if they are served by priority.
  */
@@ -21,8 +21,8 @@ bool predict_queue_put(struct predict_queue *queue, const struct predict_node *n
 uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_node *nodes,
                             duite_end end);
 
-/* What happens at a time: a node is over; `worker` NONE: not on one. Of those at one time the one
- * that was announced first comes first. */
+/* At a time a node is over, on a worker or (NONE) on none. Of the events of one time the one that
+ * was put first comes first. */
 struct predict_event {
     double time;
     uint64_t order;
@@ -52,8 +52,8 @@ double predict_exchange(struct predict_network *network, double now,
 
 enum { IDLE, BUSY, RESERVED }; /* of a worker; the last: it is the main program's */
 
-/* Why a node began, or was ready, when it did: another one was over, and made it ready, or left it
- * its worker, or let the main program go on, which then brought it into being. */
+/* Why a node began, or was ready, when it did. Another node was over: it made this one ready, or
+ * left its worker to it, or let the main program go on, which then forked it. */
 struct predict_cause {
     uint32_t by; /* NONE: the beginning */
     enum { MADE_READY, LEFT_WORKER, FORKED } how;
@@ -72,7 +72,7 @@ struct predict_machine {
     unsigned *other, *level;
     struct predict_queue *queue, *shared; /* by worker; by host */
     unsigned char *state;                 /* by worker */
-    uint32_t *next;                       /* by worker: chained, or NONE */
+    uint32_t *next;                       /* by worker: to be run inline, or NONE */
     uint32_t *ran;                        /* by worker: the node it ran last */
     uint32_t *affinity;                   /* by object: who ran a replayed task of it, or NONE */
     uint32_t *last;                       /* by host: the worker that ended last */

@@ -1,9 +1,9 @@
 # Predictions of traced runs: no part of libduite. Programs that predict link it before libduite_core.
 noinst_LTLIBRARIES += libduite_predict.la
-libduite_predict_la_SOURCES = runtime/predict/conclude.c runtime/predict/export.c runtime/predict/graph.c runtime/predict/graph.h \
-	runtime/predict/machine.c runtime/predict/machine.h runtime/predict/move.c runtime/predict/objects.c \
-	runtime/predict/predict.c runtime/predict/predict.h runtime/predict/program.c runtime/predict/program.h runtime/predict/replay.c \
-	runtime/predict/simulate.c runtime/predict/times.c
+libduite_predict_la_SOURCES = runtime/predict/export.c runtime/predict/graph.c runtime/predict/graph.h runtime/predict/machine.c \
+	runtime/predict/machine.h runtime/predict/move.c runtime/predict/objects.c runtime/predict/predict.c runtime/predict/predict.h \
+	runtime/predict/program.c runtime/predict/program.h runtime/predict/replay.c runtime/predict/round.c runtime/predict/simulate.c \
+	runtime/predict/times.c
 
 bin_PROGRAMS += duite-trace
 dist_man_MANS += runtime/predict/duite-trace.1

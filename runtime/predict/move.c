@@ -1,7 +1,7 @@
 /* Homes that change at the beginning of a replay: by a mapping that sees the tasks of the graph, or
- * by a balancer that sees what tasks took for each block, asked when and how runtime/migrate.c asks
- * them. What a run measures is here what the trace says; the time since the last look is that of
- * the host with most to do a core. */
+ * by a balancer that sees what tasks took for each block. They are called when and how
+ * api/migrate.c calls them. In place of what a run measures they get what the trace says. The time
+ * since the last call is that of the host with the largest load per core. */
 #include "runtime/predict/program.h"
 
 #include "runtime/base/error.h"
@@ -71,7 +71,7 @@ void predict_spend(struct predict_program *p, uint32_t object, int host, double 
     spent[slot] += seconds;
 }
 
-/* ---- What is told ---- */
+/* ---- What policies see ---- */
 
 static bool move_begin(struct move *m)
 {
@@ -113,7 +113,7 @@ static uint32_t move_block(const struct move *m, uint32_t object)
     return slot ? m->blocks.of[slot] : MAP_NO_BLOCK;
 }
 
-/* The block that policies see behind an object: of a view that of its object, which it follows. */
+/* The block that policies see behind an object. A view is in the block of its object. */
 static uint32_t move_block_seen(const struct move *m, uint32_t object)
 {
     const uint32_t parent = m->p->graph->object[object].parent;
@@ -133,7 +133,7 @@ static void move_weigh(struct move *m)
     }
 }
 
-/* On the host where most is to be done a core. */
+/* Of the host with the largest load per core. */
 static double move_seconds(const struct move *m)
 {
     const uint32_t hosts = m->p->graph->cluster->hosts;
@@ -171,9 +171,9 @@ static bool move_traffic(struct move *m, const struct predict_recorded *recorded
     return fine;
 }
 
-/* ---- Asking ---- */
+/* ---- Calling ---- */
 
-static int move_ask_balancer(struct move *m)
+static int move_call_balancer(struct move *m)
 {
     struct predict_program *p = m->p;
     const struct predict_cluster *cluster = p->graph->cluster;
@@ -209,7 +209,7 @@ static int move_ask_balancer(struct move *m)
     return DUITE_OK;
 }
 
-static int move_ask_mapping(struct move *m, struct predict_recorded *recorded)
+static int move_call_mapping(struct move *m, struct predict_recorded *recorded)
 {
     const struct predict_cluster *cluster = m->p->graph->cluster;
     uint32_t *block = base_alloc((recorded->n_objects + 1) * sizeof *block);
@@ -253,7 +253,7 @@ static int move_check(const struct move *m)
     return DUITE_OK;
 }
 
-/* A block that moves gets a number that nobody had before at its new home. */
+/* A block that moves gets a new number at its new home. */
 static void move_homes(struct move *m)
 {
     struct predict_program *p = m->p;
@@ -277,7 +277,7 @@ static void move_homes(struct move *m)
             graph->object[p->slot[i]].home = graph->object[graph->object[p->slot[i]].parent].home;
 }
 
-/* Nothing that was measured counts again. */
+/* The next call counts from here. */
 static void move_forget(struct predict_program *p)
 {
     for (size_t i = 0; i < p->moves.spent_capacity; i++)
@@ -302,7 +302,7 @@ void predict_move(struct predict_program *p, struct predict_recorded *recorded)
         p->graph->failed |= !move_begin(&m);
         if (!p->graph->failed) {
             move_weigh(&m);
-            p->code = maps ? move_ask_mapping(&m, recorded) : move_ask_balancer(&m);
+            p->code = maps ? move_call_mapping(&m, recorded) : move_call_balancer(&m);
         }
         if (!p->graph->failed && !p->code)
             p->code = move_check(&m);

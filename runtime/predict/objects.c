@@ -1,5 +1,5 @@
-/* Objects of the main program, and their homes: those that were traced, or those that the mapping
- * gives by the same code as in a run, to objects of a table that has nothing else. */
+/* Objects of the main program, and their homes. Homes are those of the trace, or the mapping gives
+ * them by the same code as in a run, on a table that has nothing but these objects. */
 #include "runtime/predict/program.h"
 
 #include "runtime/base/memory.h"
@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Slots are used one after the other, and an object has several words of the trace: a slot beyond
- * their number is damage, not a reason to make room. */
+/* Slots are used one after the other, and an object has several words in the trace. So a slot
+ * beyond the number of words is damage, and gets no room. */
 static uint32_t *slot_object(struct predict_program *p, uint32_t slot)
 {
     static uint32_t none;

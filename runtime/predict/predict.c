@@ -1,11 +1,16 @@
-/* A prediction: the graph is made once, and then run. */
-#include "runtime/predict/graph.h"
+/* A prediction: what is asked for is checked, the graph is made once and then run, and what the run
+ * says is added up. */
+#include "runtime/predict/machine.h"
 
 #include "runtime/balance/balance.h"
 #include "runtime/base/error.h"
+#include "runtime/base/memory.h"
 #include "runtime/base/policy.h"
 #include "runtime/map/map.h"
 #include "runtime/sched/sched.h"
+#include "runtime/trace/export.h"
+
+#include <math.h>
 
 const char *predict_limit_name(enum predict_limit limit)
 {
@@ -16,13 +21,13 @@ const char *predict_limit_name(enum predict_limit limit)
 
 int predict_check(const struct trace_run *run, const struct predict_cluster *c)
 {
-    enum { MOST_WORKERS = 1 << 24 };
+    enum { MAX_WORKERS = 1 << 24 };
     if (run->lost || !run->whole)
         return base_error(DUITE_E_ARGUMENT,
                           "the trace is not whole (%llu events or words are missing): nothing can "
                           "be predicted from it",
                           (unsigned long long)run->lost);
-    if (!c->hosts || !c->cores || c->hosts > MOST_WORKERS / c->cores)
+    if (!c->hosts || !c->cores || c->hosts > MAX_WORKERS / c->cores)
         return base_error(DUITE_E_ARGUMENT, "%u hosts with %u cores are invalid", c->hosts,
                           c->cores);
     if (!(c->latency >= 0) || !(c->bandwidth > 0) || !(c->capacity > 0) || !(c->core_speed > 0))
@@ -56,6 +61,99 @@ int predict_check(const struct trace_run *run, const struct predict_cluster *c)
                           c->balance->name);
     return DUITE_OK;
 }
+
+/* ---- What a run says when it is over: nothing of it changes any more ---- */
+
+static double conclude_path(const struct predict_graph *graph, double *path)
+{
+    double longest = 0;
+    for (size_t i = 0; i < graph->n_nodes; i++)
+        path[i] = 0;
+    for (size_t i = 0; i < graph->n_nodes; i++) { /* no edge points back */
+        const struct predict_node *node = &graph->node[i];
+        double end = path[i] + (double)node->seconds;
+        longest = fmax(longest, end);
+        for (uint32_t e = node->edge; e != PREDICT_NONE; e = graph->edge[e].next)
+            path[graph->edge[e].to] = fmax(path[graph->edge[e].to], end);
+    }
+    return longest;
+}
+
+/* From the last node back along what each waited for. */
+static void conclude_chain(const struct predict_machine *m, double *chain)
+{
+    const struct predict_graph *graph = m->graph;
+    uint32_t at = m->latest;
+    while (at != PREDICT_NONE) {
+        const struct predict_node *node = &graph->node[at];
+        const struct predict_cause *cause = &m->cause[at];
+        double since = cause->by == PREDICT_NONE ? 0 : m->end[cause->by];
+        bool travels = node->kind == PREDICT_MESSAGE || node->kind == PREDICT_EXCHANGE;
+        double all = m->end[at] - since;
+        if (travels) {
+            chain[PREDICT_LATENCY] += (double)cause->flight;
+            chain[PREDICT_BANDWIDTH] += all - (double)cause->flight;
+        } else {
+            double own = fmin(all, (double)node->seconds);
+            chain[cause->how == LEFT_WORKER ? PREDICT_WORK : PREDICT_PATH] += own;
+            chain[cause->how == FORKED ? PREDICT_MAIN : PREDICT_OVERHEAD] += all - own;
+        }
+        at = cause->by;
+    }
+}
+
+static enum predict_limit conclude_limit(const struct predict_result *result)
+{
+    enum predict_limit limit = PREDICT_WORK;
+    for (int i = 1; i < PREDICT_LIMITS; i++)
+        if (result->chain[i] > result->chain[limit])
+            limit = (enum predict_limit)i;
+    return limit;
+}
+
+int predict_write_paje(const struct predict_machine *m, FILE *file)
+{
+    const struct predict_graph *graph = m->graph;
+    struct trace_span *span = base_alloc(graph->n_nodes * sizeof *span + 1);
+    uint32_t *host_of = base_alloc((m->n_workers + 1) * sizeof *host_of);
+    int code = span && host_of ? DUITE_OK : base_no_memory("the predicted run");
+    size_t n = 0;
+    for (uint32_t w = 0; w < m->n_workers && !code; w++)
+        host_of[w] = w / m->cluster->cores;
+    for (uint32_t i = 0; i < graph->n_nodes && !code; i++)
+        if (graph->node[i].kind == PREDICT_TASK)
+            span[n++] = (struct trace_span){m->begin[i], m->end[i], predict_describe(m, i).kernel,
+                                            m->runs_on[i]};
+    if (!code)
+        code = trace_write_paje_spans(file, span, n, host_of, m->n_workers, m->now);
+    base_free(span);
+    base_free(host_of);
+    return code;
+}
+
+void predict_conclude(struct predict_machine *m, struct predict_result *result)
+{
+    const struct predict_graph *graph = m->graph;
+    double makespan = 0;
+    for (size_t i = 0; i < graph->n_nodes; i++)
+        makespan = fmax(makespan, m->end[i]);
+    const double all = makespan * m->n_workers;
+    *result = (struct predict_result){.tasks = graph->n_tasks,
+                                      .messages = m->network.messages,
+                                      .bytes = m->network.bytes,
+                                      .stolen = m->stolen,
+                                      .migrated = graph->migrated,
+                                      .makespan = fmax(makespan, m->main_time),
+                                      .overhead = graph->overhead,
+                                      .idle = all > 0 ? 1 - m->busy / all : 0};
+    for (size_t i = 0; i < graph->n_nodes; i++)
+        result->work += (double)graph->node[i].seconds;
+    conclude_chain(m, result->chain);
+    result->critical_path = conclude_path(graph, m->begin);
+    result->limit = conclude_limit(result);
+}
+
+/* ---- All of it ---- */
 
 /* Policies that are not built in are watched: one that does not return is named. */
 static int watch_policies(struct predict_graph *graph, struct base_monitor *monitor)

@@ -6,9 +6,9 @@
 #include <duite_policy.h>
 #include <stdio.h>
 
-/* What a traced run would take on a described cluster: its main program is run again in virtual
- * time, with the same mapping and the same scheduler's functions, and bodies that take as long as
- * they were seen to take. */
+/* How long a traced run would take on a described cluster. The predictor runs the main program
+ * again in virtual time, with the functions of the mapping and of the scheduler. Bodies take as
+ * long as in the trace. */
 
 struct predict_cluster {
     uint32_t hosts, cores; /* cores of each host: a rank with so many workers */

@@ -1,5 +1,5 @@
-/* The main program once more: its words are read in order, and homes given by the same code that
- * gives them in a run. Slots of the trace stand for what was made in them last. */
+/* The main program once more: the predictor reads its words in order, and the code that gives homes
+ * in a run gives them here. A slot of the trace stands for the last object that was made in it. */
 #include "runtime/predict/program.h"
 
 #include "runtime/base/error.h"
@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_LOOK 5e-7 /* s: to find no message, however dear one is */
+#define MAX_LOOK                                                                                   \
+    5e-7 /* s: a look that finds no message takes no longer, however long messages take */
 
 /* ---- Tasks ---- */
 
@@ -35,7 +36,7 @@ static int fork_host(const struct predict_graph *graph, const struct predict_for
     return rank == TASK_EVERYWHERE ? PREDICT_ALL : rank;
 }
 
-static void fork_stays(struct predict_program *p, uint32_t own)
+static void fork_fix_owner(struct predict_program *p, uint32_t own)
 {
     uint32_t slot = own == PREDICT_NONE ? 0 : p->name[own].slot;
     if (slot)
@@ -88,7 +89,7 @@ void predict_task(struct predict_program *p, const struct predict_fork *fork,
     if (graph->failed)
         return;
     if (kernel->fixed && follows)
-        fork_stays(p, where->own);
+        fork_fix_owner(p, where->own);
     predict_spend(p, follows ? where->own : PREDICT_NONE, where->host, seconds);
     p->tasks++;
 }
@@ -112,10 +113,10 @@ bool predict_room(struct predict_program *p, size_t n)
     return prepared && objects;
 }
 
-static void entry_fork(struct predict_program *p, size_t n, bool told)
+static void entry_fork(struct predict_program *p, size_t n, bool has_options)
 {
     struct predict_fork fork = {.kernel = trace_words_next(&p->words), .n = n, .at = -1};
-    if (told) {
+    if (has_options) {
         fork.at = (int32_t)trace_words_next(&p->words);
         fork.priority = (int32_t)trace_words_next(&p->words);
         fork.cost = trace_words_float(&p->words);
@@ -133,7 +134,7 @@ static void entry_fork(struct predict_program *p, size_t n, bool told)
 
 /* ---- The main program ---- */
 
-/* What was brought into being since the last op. */
+/* An op for all nodes since the last one. */
 static struct predict_op *op_add(struct predict_program *p, bool forked)
 {
     struct predict_graph *graph = p->graph;
@@ -162,7 +163,8 @@ void predict_op_wait(struct predict_program *p)
         last->waits = true;
 }
 
-/* It forked until `from`, and waits until `to`: each fork takes its share of the time. */
+/* The main program forked until `from`, and waits until `to`: each fork takes its share of the
+ * time. */
 static void op_end(struct predict_program *p, uint64_t from, uint64_t to, uint32_t node, bool waits)
 {
     struct predict_graph *graph = p->graph;
@@ -284,8 +286,8 @@ static int program_walk(struct predict_program *p)
     return graph->failed ? base_no_memory("the graph of a trace") : DUITE_OK;
 }
 
-/* Tasks that ran left an event each. Of the rounds that count, one task in 16 ran at least: others
- * were poisoned. Some more: for rounds without tasks. */
+/* Each task that ran left an event. At least one task in 16 ran of the rounds that count; the
+ * others were poisoned. The constant is for rounds without tasks. */
 static uint64_t program_max_replayed(const struct trace_run *run)
 {
     uint64_t n = 0;
@@ -319,7 +321,7 @@ static bool program_prepare(struct predict_program *p)
                           : graph->cluster->overhead;
     /* What ranks did between tasks has it already. */
     const bool seen = graph->cluster->overhead < 0 && graph->run->n_ranks > 1;
-    graph->look = hosts > 1 && !seen ? fmin(graph->cluster->message, MOST_LOOK) : 0;
+    graph->look = hosts > 1 && !seen ? fmin(graph->cluster->message, MAX_LOOK) : 0;
     return true;
 }
 

@@ -2,10 +2,12 @@
 #define DUITE_PREDICT_PROGRAM_H
 
 #include "runtime/data/object.h"
+#include "runtime/plan/passes.h"
 #include "runtime/predict/graph.h"
 #include "runtime/trace/words.h"
 
-/* The main program while it is read; shared by program.c, objects.c, move.c and replay.c. */
+/* The main program while the predictor reads it. The files program.c, objects.c, move.c, round.c
+ * and replay.c share it. */
 
 /* A fork, or (kernel NONE) a set; `object` are places in graph->object, or of a recorded graph in
  * its list of objects. */
@@ -22,10 +24,27 @@ struct predict_recorded {
     struct predict_fork *fork;
     uint32_t *use;
     size_t n_forks, n_objects, n_calls;
-    uint64_t replays, map_at;    /* so far; the number of those before the mapping is asked again */
-    uint64_t rounds;             /* since the balancer looked last */
+    uint64_t replays, map_at;    /* so far; at this many the mapping is called again */
+    uint64_t rounds;             /* since the last call of the balancer */
     uint32_t *bound;             /* n_objects: of the last replay, this one among them; or NULL */
     struct predict_round *round; /* of the last replay, or NULL */
+};
+
+struct predict_source {
+    struct plan_source plain;
+    struct plan_access *access; /* of plain */
+};
+
+/* A round that was compiled, and what it was compiled for. */
+struct predict_round {
+    struct predict_source source;
+    struct plan_round nodes;
+    struct plan_assignment assignment;
+    struct plan_messages messages;
+    float *path;   /* by fork; NULL: the scheduler does not ask */
+    int *home;     /* by object of the source */
+    uint32_t flag; /* an object of the program, or NONE */
+    bool forked;   /* it has no plan: nothing behind `home` is there */
 };
 
 /* Where a task runs: for which object or NONE, and on which host or PREDICT_ALL. */
@@ -37,7 +56,8 @@ struct predict_where {
     size_t node;
 };
 
-/* Homes that change: what a balancer is told, see runtime/migrate.c. Seconds since it looked. */
+/* Homes that change: what a balancer sees, as in api/migrate.c. Seconds are those since its last
+ * call. */
 struct predict_moves {
     double *spent; /* by slot of `table`: in bodies of tasks that ran for it */
     size_t spent_capacity;
@@ -66,10 +86,11 @@ struct predict_program {
     size_t n_recorded, recorded_capacity;
     struct predict_moves moves;
     uint64_t forks, tasks;
-    uint64_t replayed, max_replayed; /* tasks by replays; at most, for each left an event */
-    uint64_t since;                  /* ticks: when the main program last went on */
-    size_t first_op;                 /* since then */
-    uint64_t forked;                 /* nodes since then, those of replays left out */
+    uint64_t replayed,
+        max_replayed; /* tasks of replays; the most that can be, since each left an event */
+    uint64_t since;   /* ticks: when the main program last went on */
+    size_t first_op;  /* since then */
+    uint64_t forked;  /* nodes since then, those of replays left out */
 };
 
 /* The object that a slot names. */
@@ -97,7 +118,7 @@ uint32_t predict_owner(const struct predict_graph *graph, const struct predict_f
 
 /* The main program waits for all. */
 void predict_op_wait(struct predict_program *p);
-/* A replay begins, or was brought into being: its nodes take the main program no time. */
+/* A replay begins, or all of its nodes are there. They take the main program no time. */
 void predict_op_replays(struct predict_program *p, bool begins);
 
 void predict_take_graph(struct predict_program *p, size_t n_objects);
@@ -108,14 +129,18 @@ void predict_replay(struct predict_program *p, size_t n_objects);
 struct map_tasks;
 bool predict_round_tasks(const struct predict_program *p, const struct predict_recorded *recorded,
                          const uint32_t *block, struct map_tasks *tasks);
+/* The record has a compiled round for the homes and sizes of its objects, and for this flag or
+ * NONE. False without memory. The record owns the round. */
+bool predict_round_prepare(struct predict_program *p, struct predict_recorded *recorded,
+                           uint32_t flag);
 /* NULL is fine. */
 void predict_round_free(struct predict_round *round);
 
-/* A task took so long for the object (NONE: for none) on a host (ALL: on each). */
+/* A body took so many seconds for the object (NONE: for none) on a host (ALL: on each). */
 void predict_spend(struct predict_program *p, uint32_t object, int host, double seconds);
 bool predict_moves_start(struct predict_program *p);
 void predict_moves_stop(struct predict_program *p);
-/* At the beginning of a replay: homes change, if it is time. */
+/* At the beginning of a replay: homes change, if the mapping or the balancer is due. */
 void predict_move(struct predict_program *p, struct predict_recorded *recorded);
 
 void predict_graphs_free(struct predict_program *p);

@@ -1,240 +1,14 @@
 /* Replays: to what comes before and after, a replay on a host is one task that reads or writes each
- * object there; inside, a round begins where dependences allow, or when a flag was read. The passes
- * of plan/passes.h that compile a round for a run compile it here, from the words of a trace: they
- * say which nodes it has, which hosts run them, which hosts need what they make, and in which phase
- * it moves. Mappings see the same rows as in a run, too. */
+ * object there; inside, a round begins where dependences allow, or when a flag was read. The
+ * compiled round (round.c) says which nodes it has, where they run, and who needs what they make.
+ */
 #include "runtime/predict/program.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/map/tasks.h"
 
 #include <stdlib.h>
 
-struct round_source {
-    struct plan_source plain;
-    struct plan_access *access; /* of plain */
-};
-
-/* A round that was compiled, and what it was compiled for. */
-struct predict_round {
-    struct round_source source;
-    struct plan_round nodes;
-    struct plan_assignment assignment;
-    struct plan_messages messages;
-    float *path;   /* by fork; NULL: the scheduler does not ask */
-    int *home;     /* by object of the source */
-    uint32_t flag; /* an object of the program, or NONE */
-    bool forked;   /* it has no plan: nothing behind `home` is there */
-};
-
 enum { ROUND_NOWHERE = -2 }; /* in place of a host: what it makes is overwritten unread */
-
-/* ---- A round as plain data ---- */
-
-static duite_mode round_mode(const struct predict_program *p, const struct predict_fork *fork,
-                             size_t k)
-{
-    return fork->kernel == PREDICT_NONE ? DUITE_W
-                                        : trace_mode(&p->graph->run->kernel[fork->kernel], k);
-}
-
-static void round_fork(const struct predict_program *p, struct plan_source *source,
-                       struct plan_access *access, const struct predict_fork *fork)
-{
-    const bool set = fork->kernel == PREDICT_NONE;
-    source->fork[source->n_forks++] = (struct plan_source_fork){
-        .first = source->n_accesses,
-        .n = (uint32_t)fork->n,
-        .owner = set ? fork->object[0] : predict_owner(p->graph, fork, fork->object),
-        .rank = set || fork->at < 0 ? PLAN_BY_OWNER : fork->at % (int)p->graph->cluster->hosts,
-        .sets = set,
-        .replicated = !set && p->graph->run->kernel[fork->kernel].replicated,
-        .cost = set ? 0 : (double)fork->cost};
-    for (size_t k = 0; k < fork->n; k++)
-        access[source->n_accesses++] =
-            (struct plan_access){.object = fork->object[k], .mode = round_mode(p, fork, k)};
-}
-
-/* The objects of a record, and a flag that is none of them. The object of a view is among them if
- * the graph names it. NULL without memory. */
-static struct plan_source_object *round_objects(const struct predict_program *p,
-                                                const struct predict_recorded *recorded,
-                                                uint32_t flag, size_t *n, uint32_t *place)
-{
-    struct predict_object *all = p->graph->object;
-    struct plan_source_object *objects =
-        base_alloc_zero((recorded->n_objects + 2) * sizeof *objects);
-    *n = recorded->n_objects;
-    for (uint32_t i = 0; i < *n && objects; i++)
-        all[recorded->bound[i]].place = i + 1;
-    for (uint32_t i = 0; i < *n && objects; i++) {
-        const struct predict_object *bound = &all[recorded->bound[i]];
-        objects[i].bytes = bound->bytes;
-        if (bound->parent != PREDICT_NONE)
-            objects[i].parent = all[bound->parent].place;
-    }
-    *place = PLAN_NONE;
-    if (flag != PREDICT_NONE && objects) {
-        *place = all[flag].place ? all[flag].place - 1 : (uint32_t)(*n)++;
-        objects[*place].bytes = all[flag].bytes;
-    }
-    for (uint32_t i = 0; i < recorded->n_objects; i++)
-        all[recorded->bound[i]].place = 0;
-    return objects;
-}
-
-/* Takes the objects. False without memory; round_source_free is due all the same. */
-static bool round_source_make(const struct predict_program *p,
-                              const struct predict_recorded *recorded, struct round_source *source)
-{
-    size_t uses = 0;
-    for (size_t i = 0; i < recorded->n_forks; i++)
-        uses += recorded->fork[i].n;
-    struct plan_source *plain = &source->plain;
-    plain->access = source->access = base_alloc((uses + 1) * sizeof *source->access);
-    plain->fork = base_alloc((recorded->n_forks + 1) * sizeof *plain->fork);
-    if (!plain->access || !plain->fork || !plain->object)
-        return false;
-    for (size_t i = 0; i < recorded->n_forks; i++)
-        round_fork(p, plain, source->access, &recorded->fork[i]);
-    return true;
-}
-
-static void round_source_free(struct round_source *source)
-{
-    base_free(source->plain.fork);
-    base_free(source->plain.object);
-    base_free(source->access);
-}
-
-bool predict_round_tasks(const struct predict_program *p, const struct predict_recorded *recorded,
-                         const uint32_t *block, struct map_tasks *tasks)
-{
-    struct round_source source = {0};
-    struct plan_round round = {0};
-    struct plan_tasks *all = &tasks->tasks;
-    *tasks = (struct map_tasks){0};
-    source.plain.object =
-        round_objects(p, recorded, PREDICT_NONE, &source.plain.n_objects, &source.plain.flag);
-    bool fine = round_source_make(p, recorded, &source) && plan_lower(&round, &source.plain) &&
-                plan_tasks_find(all, &round);
-    if (fine)
-        fine = (tasks->block = base_alloc((all->n + 1) * sizeof *tasks->block)) != NULL;
-    for (size_t i = 0; i < all->n && fine; i++)
-        tasks->block[i] = all->owner[i] == PLAN_NONE ? DUITE_NO_BLOCK : block[all->owner[i]];
-    plan_round_free(&round);
-    round_source_free(&source);
-    return fine;
-}
-
-/* ---- A round for hosts ---- */
-
-/* How a round begins and ends with an object. */
-struct round_ends {
-    bool touched, leads, trails; /* leads, trails: with contributions */
-};
-
-static void ends_note(struct round_ends *ends, bool contributes)
-{
-    ends->leads |= contributes && !ends->touched;
-    ends->trails = contributes;
-    ends->touched = true;
-}
-
-/* Whether contributions of one round and of the next make one sum, or a flag waits for
- * contributions to be continued: such rounds are forked, as plan_replay_split has it. */
-static bool source_is_forked(const struct plan_source *source, struct round_ends *ends)
-{
-    bool forked = false;
-    for (size_t i = 0; i < source->n_forks; i++) {
-        const struct plan_source_fork *fork = &source->fork[i];
-        const struct plan_access *access = source->access + fork->first;
-        for (uint32_t k = 0; k < fork->n; k++)
-            if (source->object[access[k].object].parent)
-                ends_note(&ends[source->object[access[k].object].parent - 1], false);
-        for (uint32_t k = 0; k < fork->n; k++)
-            ends_note(&ends[access[k].object], access[k].mode == DUITE_CW);
-    }
-    for (uint32_t i = 0; i < source->n_objects; i++) {
-        const bool flagged = source->flag != PLAN_NONE;
-        forked |= ends[i].leads && (ends[i].trails || flagged);
-        forked |= ends[i].trails && flagged && source->flag != i;
-    }
-    return forked;
-}
-
-void predict_round_free(struct predict_round *round)
-{
-    if (!round)
-        return;
-    plan_messages_free(&round->messages);
-    plan_assignment_free(&round->assignment);
-    plan_round_free(&round->nodes);
-    round_source_free(&round->source);
-    base_free(round->path);
-    base_free(round->home);
-    base_free(round);
-}
-
-/* Is the round that is there the one that is wanted? */
-static bool round_fits(const struct predict_round *there, const struct predict_round *wanted)
-{
-    const struct plan_source *a = &there->source.plain, *b = &wanted->source.plain;
-    bool fits = a->n_objects == b->n_objects && a->flag == b->flag;
-    for (size_t i = 0; i < b->n_objects && fits; i++)
-        fits = a->object[i].parent == b->object[i].parent &&
-               a->object[i].bytes == b->object[i].bytes && there->home[i] == wanted->home[i];
-    return fits;
-}
-
-/* All passes but those of one rank; edges are for paths alone. */
-static bool round_compile(const struct predict_program *p, const struct predict_recorded *recorded,
-                          struct predict_round *round)
-{
-    const struct predict_cluster *cluster = p->graph->cluster;
-    if (!round_source_make(p, recorded, &round->source))
-        return false;
-    const struct plan_source *source = &round->source.plain;
-    struct round_ends *ends = base_alloc_zero((source->n_objects + 1) * sizeof *ends);
-    round->forked = ends && source_is_forked(source, ends);
-    base_free(ends);
-    if (!ends || round->forked)
-        return ends;
-    bool fine = plan_lower(&round->nodes, source) &&
-                plan_assign(&round->assignment, &round->nodes, round->home, (int)cluster->hosts) &&
-                plan_messages_find(&round->messages, &round->assignment, PLAN_NO_RANK);
-    if (fine && cluster->scheduler->paths)
-        fine = plan_edges(&round->nodes) && (round->path = plan_paths_find(&round->nodes));
-    return fine;
-}
-
-/* The record's round is there, for these homes, sizes and this flag. False without memory. */
-static bool round_prepare(struct predict_program *p, struct predict_recorded *recorded,
-                          uint32_t flag)
-{
-    struct predict_round *round = base_alloc_zero(sizeof *round);
-    bool fine = round;
-    if (fine) {
-        struct plan_source *source = &round->source.plain;
-        source->object = round_objects(p, recorded, flag, &source->n_objects, &source->flag);
-        round->home = base_alloc((recorded->n_objects + 2) * sizeof *round->home);
-        round->flag = flag;
-        fine = source->object && round->home;
-        for (size_t i = 0; i < source->n_objects && fine; i++)
-            round->home[i] =
-                p->graph->object[i < recorded->n_objects ? recorded->bound[i] : flag].home;
-    }
-    if (fine && recorded->round && round_fits(recorded->round, round)) {
-        recorded->round->flag = flag;
-        predict_round_free(round);
-        return true;
-    }
-    fine = fine && round_compile(p, recorded, round);
-    p->graph->failed |= !fine;
-    predict_round_free(recorded->round);
-    recorded->round = round;
-    return fine;
-}
 
 /* ---- Recorded graphs ---- */
 
@@ -519,7 +293,7 @@ static void round_add(struct predict_program *p, const struct predict_recorded *
         replay_decide(p->graph, recorded->round->flag);
 }
 
-/* More rounds than the file can have seen are damage. One without tasks counts as a task. */
+/* More rounds than the file can have are damage. A round without tasks counts as one task. */
 static bool round_is_seen(struct predict_program *p, const struct predict_recorded *recorded)
 {
     p->replayed += recorded->n_calls ? recorded->n_calls : 1;
@@ -567,7 +341,7 @@ void predict_replay(struct predict_program *p, size_t n_objects)
     recorded->bound = bound;
     if (bound && !p->damaged && !p->words.short_of) {
         predict_move(p, recorded);
-        if (!p->graph->failed && round_prepare(p, recorded, flag))
+        if (!p->graph->failed && predict_round_prepare(p, recorded, flag))
             replay_rounds(p, recorded, max);
     }
     p->forks += max * recorded->n_calls;

@@ -1,7 +1,7 @@
-/* Virtual time: the next thing that happens is a node that is over, or the main program that brings
- * the next one into being. A worker that ends a task runs the one that the scheduler lets it chain,
- * or what it finds: its queue, the shared one, those of the victims. What becomes ready while no
- * worker makes it so (a message came) goes through the worker of that host that ended last. */
+/* Virtual time: next a node is over, or the main program forks one more. A worker that ends a task
+ * runs the one that the scheduler lets it run inline. Else it searches its own queue, the shared
+ * one and those of its victims. A task that no worker made ready (a message came) goes through the
+ * worker of its host that ended last. */
 #include "runtime/predict/machine.h"
 
 #include "runtime/base/error.h"
@@ -13,7 +13,7 @@
 
 #define LOOK_SECONDS 5e-6 /* between two looks for messages of a worker that has tasks */
 
-/* ---- What messages take of the cores: the next task of the host is later by that ---- */
+/* ---- What messages take of the cores: it delays the next task of the host ---- */
 
 static void message_charge(struct predict_machine *m, const struct predict_node *message)
 {
@@ -29,7 +29,8 @@ static void message_charge(struct predict_machine *m, const struct predict_node 
     }
 }
 
-/* A worker begins something: what is left to do of messages, and a look for more now and then. */
+/* A worker begins a task. Before that it does what is left to do for messages, and now and then it
+ * looks for more. */
 static double worker_pay(struct predict_machine *m, uint32_t worker, uint32_t host)
 {
     double seconds = m->handled[host] + m->handled_by_all - m->paid[host];
@@ -50,7 +51,7 @@ static void worker_begin(struct predict_machine *m, uint32_t node, uint32_t work
     uint32_t before = m->ran[worker];
     double begin = m->now + (before == PREDICT_NONE ? 0 : m->graph->overhead);
     begin += worker_pay(m, worker, n->host);
-    /* Its worker held it up, if it was ready before that was free. */
+    /* The worker held the task up, if the task was ready before the worker was free. */
     if (before != PREDICT_NONE && m->end[before] >= m->now && m->begin[node] < m->now)
         m->cause[node] = (struct predict_cause){before, LEFT_WORKER, 0};
     m->begin[node] = begin;
@@ -103,7 +104,7 @@ static void worker_look(struct predict_machine *m, uint32_t worker)
     }
 }
 
-/* Somebody is to find what lies in `queue`: its owner, or anybody who may. */
+/* Wakes a worker for what lies in `queue`: its owner, or one that may take it. */
 static void host_wake(struct predict_machine *m, uint32_t host, unsigned queue)
 {
     const uint32_t cores = m->cluster->cores, first = host * cores;
@@ -118,7 +119,7 @@ static void host_wake(struct predict_machine *m, uint32_t host, unsigned queue)
     }
 }
 
-/* A task may run; worker NONE: no worker of its host made it so. */
+/* A task is ready. worker: the one that made it ready, or NONE. */
 static void node_task_ready(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
     const uint32_t cores = m->cluster->cores, host = m->graph->node[node].host;
@@ -194,7 +195,8 @@ static bool main_may_go_on(const struct predict_machine *m)
     return op->node == PREDICT_NONE ? m->over == op->end : m->end[op->node] >= 0;
 }
 
-/* It goes on: its workers are not to be had. On other hosts they end their tasks first. */
+/* The main program goes on and takes a worker of each host. On other hosts a busy one ends its task
+ * first. */
 static void main_go_on(struct predict_machine *m)
 {
     m->blocked = m->wanted = false;
@@ -222,7 +224,7 @@ static void main_try(struct predict_machine *m)
     main_go_on(m);
 }
 
-/* It waits, and its workers work. */
+/* The main program waits, and its workers run tasks. */
 static void main_block(struct predict_machine *m)
 {
     m->blocked = true;
@@ -234,7 +236,7 @@ static void main_block(struct predict_machine *m)
         main_go_on(m); /* it does not wait */
 }
 
-/* Brings one more node into being, or comes to the end of an op. */
+/* Forks one more node, or comes to the end of an op. */
 static void main_step(struct predict_machine *m)
 {
     const struct predict_op *op = &m->graph->op[m->op];

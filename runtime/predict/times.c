@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-enum { OWN_KINDS = 64, MOST_GAPS = 1 << 16 };
+enum { OWN_KINDS = 64, MAX_GAPS = 1 << 16 };
 
 struct times_mean {
     double seconds;
@@ -48,12 +48,12 @@ static void times_gap(struct predict_times *times, const struct trace_event *eve
     const struct trace_event *next = event + 1;
     uint64_t end = event->begin + event->took;
     if (event->kind > TRACE_OWN || next->kind > TRACE_OWN || next->within || next->begin < end ||
-        times->n_gaps == MOST_GAPS)
+        times->n_gaps == MAX_GAPS)
         return;
     times->gap[times->n_gaps++] = (float)(tick * (double)(next->begin - end));
 }
 
-static int compare_seconds(const void *a, const void *b)
+static int times_compare_seconds(const void *a, const void *b)
 {
     const float x = *(const float *)a, y = *(const float *)b;
     return (x > y) - (x < y);
@@ -66,7 +66,7 @@ struct times_body {
     float seconds;
 };
 
-static int compare_bodies(const void *a, const void *b)
+static int times_compare_bodies(const void *a, const void *b)
 {
     const struct times_body *x = a, *y = b;
     if (x->kernel != y->kernel)
@@ -101,7 +101,7 @@ bool predict_times_steady(struct predict_times *times, const struct trace_run *r
     if (body && times->median) {
         n = times_bodies(times, run, body);
         if (n)
-            qsort(body, n, sizeof *body, compare_bodies);
+            qsort(body, n, sizeof *body, times_compare_bodies);
     }
     for (size_t first = 0, end; body && times->median && first < n; first = end) {
         for (end = first; end < n && body[end].kernel == body[first].kernel;)
@@ -120,7 +120,7 @@ struct predict_times *predict_times_new(const struct trace_run *run)
     struct predict_times *times = base_alloc_zero(sizeof *times);
     if (!times || !(times->bodies = trace_bodies_new(run)) ||
         !(times->kernel = base_alloc_zero((run->n_kernels + 1) * sizeof *times->kernel)) ||
-        !(times->gap = base_alloc(MOST_GAPS * sizeof *times->gap))) {
+        !(times->gap = base_alloc(MAX_GAPS * sizeof *times->gap))) {
         predict_times_free(times);
         return NULL;
     }
@@ -133,7 +133,7 @@ struct predict_times *predict_times_new(const struct trace_run *run)
                     times_gap(times, &piece->event[i], run->rank[r].header->tick);
             }
         }
-    qsort(times->gap, times->n_gaps, sizeof *times->gap, compare_seconds);
+    qsort(times->gap, times->n_gaps, sizeof *times->gap, times_compare_seconds);
     return times;
 }
 

@@ -288,7 +288,9 @@ static void round_add(struct predict_program *p, const struct predict_recorded *
         round_nodes(p, recorded, first);
         return;
     }
+    p->graph->replays = false; /* the rules of forks, for its messages, too */
     round_forks(p, recorded, first);
+    p->graph->replays = true;
     if (recorded->round->flag != PREDICT_NONE && !p->graph->failed)
         replay_decide(p->graph, recorded->round->flag);
 }

@@ -107,6 +107,17 @@ START_TEST(sums_over_rounds)
 }
 END_TEST
 
+/* Such rounds are forked: two values from one host to another are two messages, not one packet. */
+START_TEST(forked_rounds)
+{
+    static const struct trace_file_node nodes[] = {{FILE_R_CW, 1 * MS, 0, 2, {0, 3}},
+                                                   {FILE_W, 1 * MS, 0, 1, {0}},
+                                                   {FILE_W, 1 * MS, 0, 1, {1}},
+                                                   {FILE_RR_RW, 1 * MS, 0, 3, {0, 1, 2}}};
+    ck_assert_uint_eq(sent(1000, 4, nodes, 5).messages, 2 * 5 + 1);
+}
+END_TEST
+
 /* Costs of 3, 1, 1 and 1: block gives 4 and 2 ms a round, the mappings that see them 3 and 3, if
  * forks say them at once, else from the second replay on, since in the first all are thought alike.
  * The values of what moves go along. */
@@ -256,6 +267,7 @@ int main(void)
     tcase_add_test(cases, exchanges);
     tcase_add_test(cases, phases);
     tcase_add_test(cases, sums_over_rounds);
+    tcase_add_test(cases, forked_rounds);
     tcase_add_test(cases, mappings);
     tcase_add_test(cases, paths);
     tcase_add_test(cases, warmth);

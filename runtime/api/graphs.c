@@ -140,6 +140,7 @@ int duite_graph_free(duite *rt, duite_graph graph)
     if (!found)
         return program_remember(rt, DUITE_E_OBJECT);
     task_mix(&rt->graph, graph.slot);
+    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_GRAPH_FREE);
     graph_free_slot(rt, found);
     return DUITE_OK;
 }
@@ -264,6 +265,7 @@ int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
         return program_remember(rt, DUITE_E_OBJECT);
     task_mix(&rt->graph, graph.slot);
     task_mix(&rt->graph, rounds);
+    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_REPLAY);
     code = graph_prepare(rt, found, rounds);
     if (!code)
         trace_replay(rt->trace, graph.slot - 1, found->record, NULL, rounds);
@@ -318,6 +320,7 @@ int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t
     task_mix(&rt->graph, graph.slot);
     task_mix(&rt->graph, max);
     task_mix(&rt->graph, task_name_bits(flag));
+    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_REPLAY_WHILE);
     code = graph_prepare(rt, found, max);
     if (!code && !max)
         code = base_error(DUITE_E_ARGUMENT, "duite_replay_while: at most 0 rounds");

@@ -23,6 +23,7 @@ int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
             rt, base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
     task_mix(&rt->graph, count);
     task_mix(&rt->graph, (uint64_t)type);
+    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_NEW);
     code = data_object_new(&rt->graph.table, type, count, object);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *object);
@@ -45,6 +46,7 @@ int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_
     task_mix(&rt->graph, count);
     task_mix(&rt->graph, max);
     task_mix(&rt->graph, (uint64_t)type);
+    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_NEW_SIZED);
     code = data_object_new_sized(&rt->graph.table, type, count, max, object);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *object);
@@ -70,6 +72,7 @@ int duite_view(duite *rt, duite_object object, size_t n, const size_t *indices, 
     task_mix(&rt->graph, n);
     for (size_t i = 0; indices && i < n; i++)
         task_mix(&rt->graph, indices[i]);
+    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_VIEW);
     code = data_view_new(&rt->graph.table, object, n, indices, view);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *view);
@@ -102,6 +105,7 @@ int duite_hint(duite *rt, duite_object object, double weight, size_t n,
     if (code)
         return code;
     mix_hint(rt, object, weight, n, neighbours, edge_weights);
+    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_HINT);
     code = map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights);
     if (!code)
         trace_hint(rt->trace, object, weight, n, neighbours, edge_weights);
@@ -115,6 +119,7 @@ int duite_colocate(duite *rt, duite_object object, duite_object leader)
         return code;
     mix_name(rt, object);
     mix_name(rt, leader);
+    task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_COLOCATE);
     code = map_colocate(&rt->graph.table, object, leader);
     if (!code)
         trace_follow(rt->trace, object, leader);

@@ -29,7 +29,7 @@ static void between(void *context)
 /* What this rank tells the others: what it forked, and what failed. */
 static struct comm_word own_word(const struct task_graph *graph)
 {
-    struct comm_word own = {.forks = graph->root.forks, .fingerprint = graph->fingerprint};
+    struct comm_word own = {.fingerprint = graph->fingerprint};
     const struct data_failure *first = graph->root.failure;
     if (first) {
         own.failed = first->number + 1;
@@ -41,7 +41,6 @@ static struct comm_word own_word(const struct task_graph *graph)
 /* A collective call begins; other ranks may not come to it, which the divergence check finds. */
 static void collective_begin(duite *rt, const struct work_why *why, struct comm_word *own)
 {
-    own->forks = rt->graph.root.forks;
     own->fingerprint = rt->graph.fingerprint;
     work_waits(rt->pool, why);
     comm_waits(rt->comm, true);
@@ -71,14 +70,15 @@ int program_gather(duite *rt, const struct work_why *why, struct comm_word *own,
     return collective_end(rt, comm_gather(rt->comm, own, words, between, rt->pool));
 }
 
-/* This rank makes a call that blocks, as all do. */
-static int enter_blocking(duite *rt, const char *call)
+/* This rank makes a call that blocks, as all do; `kind` is what must be the same on all. */
+static int enter_blocking(duite *rt, const char *kind, const char *call)
 {
     struct comm_word own = {0};
     if (!rt->comm)
         return DUITE_OK;
-    for (const char *c = call; *c; c++)
+    for (const char *c = kind; *c; c++)
         task_mix(&rt->graph, (unsigned char)*c);
+    task_mixed(&rt->graph, TASK_CALLED, task_called_find(call));
     const struct work_why why = {call, "the other ranks to come to it", NULL};
     return comm_call(rt->comm, call, rt->graph.fingerprint) ? program_agree(rt, &why, &own)
                                                             : DUITE_OK;
@@ -109,7 +109,7 @@ int program_get(duite *rt, duite_object object, int rank, void *values, size_t *
     if (code == DUITE_E_MEMORY)
         return program_remember(rt, code);
     if (!code)
-        code = enter_blocking(rt, call);
+        code = enter_blocking(rt, call, call);
     if (code || !here)
         return code;
     const struct data_key key = task_version_of(&rt->graph, object);
@@ -199,7 +199,7 @@ static struct comm_word last_word(const duite *rt)
 static int await_own_tasks(duite *rt, const char *call)
 {
     work_tick(rt->pool);
-    int code = enter_blocking(rt, "duite_wait");
+    int code = enter_blocking(rt, "duite_wait", call);
     if (code)
         return code;
     if (rt->comm)
@@ -301,8 +301,8 @@ int duite_count_all(duite *rt, duite_counters *counters)
         own.awaited,
         own.exposed,
         (double)own.stolen_far};
-    code = enter_blocking(rt, "duite_count_all");
-    struct comm_word agreed = {.forks = rt->graph.root.forks, .fingerprint = rt->graph.fingerprint};
+    code = enter_blocking(rt, "duite_count_all", "duite_count_all");
+    struct comm_word agreed = {.fingerprint = rt->graph.fingerprint};
     work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
     if (rt->comm && !code)
         code = comm_agree(rt->comm, &agreed, between, rt->pool);

@@ -10,7 +10,6 @@
 #include "runtime/base/error.h"
 #include "runtime/comm/internal.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* ---- Entering and waiting ---- */
@@ -70,37 +69,7 @@ static int collective_run(struct comm *comm, enum comm_collective kind,
     return comm_broken(comm);
 }
 
-/* ---- Words ---- */
-
-static void words_put(struct comm *comm, const struct comm_word *own)
-{
-    struct comm_word *word = &comm->words[comm->n_ranks];
-    *word = *own;
-    word->homes = comm->graph->table.homes;
-}
-
-static void words_differ(struct comm *comm, int rank)
-{
-    const struct comm_word *words = comm->words;
-    char message[200];
-    snprintf(
-        message, sizeof message,
-        "ranks 0 and %d forked different tasks, or made different objects, since the last wait "
-        "(%llu and %llu tasks since start)",
-        rank, (unsigned long long)words[0].forks, (unsigned long long)words[rank].forks);
-    comm_broke(comm, DUITE_E_DIFFERENT, message);
-}
-
-/* Under the lock, all words are there: did all ranks fork the same? */
-static void words_settle(struct comm *comm)
-{
-    const struct comm_word *words = comm->words;
-    for (int i = 0; i < comm->n_ranks; i++)
-        if (words[i].fingerprint != words[0].fingerprint)
-            words_differ(comm, i);
-        else if (words[i].homes != words[0].homes)
-            comm_homes_differ(comm, 0, i);
-}
+/* ---- Words and sums ---- */
 
 int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word **all,
                 void (*between)(void *context), void *context)
@@ -108,8 +77,8 @@ int comm_gather(struct comm *comm, const struct comm_word *own, struct comm_word
     *all = comm->words;
     if (!collective_lock(comm, between, context))
         return comm_broken(comm);
-    words_put(comm, own);
-    return collective_run(comm, COMM_GATHERS, words_settle, between, context);
+    comm->words[comm->n_ranks] = *own;
+    return collective_run(comm, COMM_GATHERS, NULL, between, context);
 }
 
 int comm_sum(struct comm *comm, double *numbers, int n, void (*between)(void *context),
@@ -138,12 +107,15 @@ static void reduced_settle(struct comm *comm)
 {
     if (reduced_are_same(comm))
         comm_calls_agreed(comm);
+    else if (!comm->rank)
+        comm_difference_found(comm, atomic_load_explicit(&comm->calls.made, memory_order_relaxed),
+                              "ranks forked different tasks, made different objects or other "
+                              "calls, or have different homes");
 }
 
 int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
                void *context)
 {
-    struct comm_word *words;
     const uint64_t homes = comm->graph->table.homes;
     if (!collective_lock(comm, between, context))
         return comm_broken(comm);
@@ -155,8 +127,11 @@ int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *c
     int code = collective_run(comm, COMM_AGREES, reduced_settle, between, context);
     if (code)
         return code;
-    if (!reduced_are_same(comm))
-        return comm_gather(comm, own, &words, between, context); /* breaks: words differ */
+    if (!reduced_are_same(comm)) { /* rank 0 asks, and breaks */
+        while (!comm_is_broken(comm))
+            between(context);
+        return comm_broken(comm);
+    }
     own->failed = 0 - comm->max.failed;
     return DUITE_OK;
 }

@@ -96,6 +96,7 @@ bool comm_stop(struct comm *comm)
     comm_requests_free(&comm->receives);
     comm_control_stop(&comm->control);
     comm_calls_stop(&comm->calls);
+    comm_difference_stop(&comm->difference);
     comm_arrivals_stop(&comm->arrivals);
     base_free(comm->words);
     base_free(comm);

@@ -140,8 +140,8 @@ enum { COMM_SUMMED = 16, COMM_WORD_NUMBERS = sizeof(struct data_failure) / sizeo
 
 /* What a rank tells the others in a collective call. */
 struct comm_word {
-    uint64_t forks, fingerprint, homes; /* to be the same on all; homes is set by the comm */
-    uint64_t failed; /* number + 1 of this rank's first failed task in fork order, or 0 */
+    uint64_t fingerprint; /* to be the same on all */
+    uint64_t failed;      /* number + 1 of this rank's first failed task in fork order, or 0 */
     union {
         struct data_failure failure;
         double number[COMM_WORD_NUMBERS];
@@ -150,8 +150,9 @@ struct comm_word {
 
 /* One small reduction: have all ranks forked what own->fingerprint says, and do they have the same
  * homes? own->failed becomes that of the first failed task of all ranks, or 0. Calls
- * between(context) while it waits, so that others get on. DUITE_E_DIFFERENT if ranks differ: then
- * words were gathered to find which, and communication is broken. Collective, main thread. */
+ * between(context) while it waits, so that others get on; it has to poll. DUITE_E_DIFFERENT if
+ * ranks differ: then communication is broken, and the message names the first difference.
+ * Collective, main thread. */
 int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
                void *context);
 

@@ -159,7 +159,10 @@ static void abort_hear(struct comm *comm, struct data_packet *packet)
     struct comm_abort *abort = data_payload(packet);
     char message[sizeof abort->message + 32];
     abort->message[sizeof abort->message - 1] = '\0';
-    snprintf(message, sizeof message, "rank %u: %s", packet->key.slot, abort->message);
+    if (abort->code == DUITE_E_DIFFERENT) /* about all ranks: the same sentence on each */
+        snprintf(message, sizeof message, "%s", abort->message);
+    else
+        snprintf(message, sizeof message, "rank %u: %s", packet->key.slot, abort->message);
     comm->control.heard++;
     if (abort->entered > comm->control.entered) {
         comm->control.entered = abort->entered;
@@ -302,8 +305,10 @@ static const struct control_kind {
     uint32_t kind;
     void (*hear)(struct comm *comm, struct data_packet *packet);
 } CONTROL_KINDS[] = {
-    {COMM_ABORT, abort_hear},     {COMM_LOSS, loss_hear}, {COMM_CHECK, check_hear},
-    {COMM_REQUEST, request_hear}, {COMM_LAST, last_hear},
+    {COMM_ABORT, abort_hear},         {COMM_LOSS, loss_hear},
+    {COMM_CHECK, check_hear},         {COMM_DIFFERS, comm_difference_hear},
+    {COMM_ASK, comm_difference_hear}, {COMM_ANSWER, comm_difference_hear},
+    {COMM_REQUEST, request_hear},     {COMM_LAST, last_hear},
 };
 
 bool comm_control_hear(struct comm *comm, struct data_packet *packet)
@@ -321,5 +326,7 @@ void comm_control_pass(struct comm *comm)
     control_sent(comm);
     if (!comm_is_broken(comm))
         comm_check_pass(comm);
+    if (!comm_is_broken(comm))
+        comm_difference_pass(comm);
     abort_send(comm);
 }

@@ -32,6 +32,13 @@ static struct comm_called *call_logged(struct comm_calls *calls, uint64_t number
     return &calls->log[number % COMM_LOGGED_CALLS];
 }
 
+const struct comm_called *comm_calls_logged(struct comm_calls *calls, uint64_t number)
+{
+    const struct comm_called *call = call_logged(calls, number);
+    const uint64_t made = atomic_load_explicit(&calls->made, memory_order_acquire);
+    return number && number <= made && call->number == number ? call : NULL;
+}
+
 bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint)
 {
     struct comm_calls *calls = &comm->calls;
@@ -95,32 +102,19 @@ static void check_pass_on(struct comm *comm, int from, const struct comm_called 
 
 /* ---- Comparing ---- */
 
-void comm_homes_differ(struct comm *comm, int a, int b)
-{
-    char message[300];
-    snprintf(message, sizeof message,
-             "the mapping gave objects other homes on rank %d than on rank %d: its function `map` "
-             "must write the same homes on every rank, and may not look at the rank, the time or "
-             "the machine",
-             a, b);
-    comm_broke(comm, DUITE_E_DIFFERENT, message);
-}
-
-/* Breaks if two ranks' calls of one number are different. */
+/* Two ranks' calls of one number. */
 static void call_compare(struct comm *comm, const struct comm_called *a,
                          const struct comm_called *b)
 {
-    char message[300];
-    if (a->fingerprint == b->fingerprint && !strcmp(a->name, b->name)) {
-        if (a->homes != b->homes)
-            comm_homes_differ(comm, a->rank, b->rank);
+    char sentence[300];
+    if (a->fingerprint == b->fingerprint && a->homes == b->homes)
         return;
-    }
-    snprintf(message, sizeof message,
-             "ranks %d and %d forked different tasks, made different objects, or made different "
-             "calls: the blocking call of number %llu is %s on rank %d and %s on rank %d",
+    snprintf(sentence, sizeof sentence,
+             "ranks %d and %d forked different tasks, made different objects or other calls, or "
+             "have different homes: the blocking call of number %llu is %s on rank %d and %s on "
+             "rank %d",
              a->rank, b->rank, (unsigned long long)a->number, a->name, a->rank, b->name, b->rank);
-    comm_broke(comm, DUITE_E_DIFFERENT, message);
+    comm_difference_found(comm, a->number, sentence);
 }
 
 /* An entry of this rank itself, or one that `from` sent. */

@@ -103,6 +103,9 @@ enum comm_kind {
     COMM_ABORT = 64, /* communication is broken on the sender: struct comm_abort */
     COMM_LOSS,    /* a rank is lost, which was found after the sender's abort message: the same */
     COMM_CHECK,   /* a blocking call of some rank: struct comm_called */
+    COMM_DIFFERS, /* to rank 0: the sender found that ranks differ */
+    COMM_ASK,     /* of rank 0: the history of the receiver */
+    COMM_ANSWER,  /* to rank 0: this history */
     COMM_REQUEST, /* a rank without work requests tasks: the header says how many */
     COMM_LAST     /* the sender stops: after this only the first two may follow */
 };
@@ -221,8 +224,31 @@ void comm_check_hear(struct comm *comm, int from, const struct comm_called *thei
 /* Under the lock: all ranks agreed on all calls so far. */
 void comm_calls_agreed(struct comm *comm);
 
-/* Breaks, since the mapping is not the same on two ranks. */
-void comm_homes_differ(struct comm *comm, int a, int b);
+/* Under the lock: this rank's call of that number, or NULL: it is not in the log. */
+const struct comm_called *comm_calls_logged(struct comm_calls *calls, uint64_t number);
+
+/* ---- The first difference between ranks (difference.c) ---- */
+
+struct comm_difference {
+    bool found;      /* that ranks differ; the rest is about this */
+    uint64_t number; /* of the blocking call where it was found */
+    double until;    /* then communication breaks with `sentence`; 0: no longer, or not yet */
+    char sentence[300];
+    struct difference_inquiry *inquiry; /* rank 0's */
+};
+
+/* Under the lock: ranks differ, as was found at the blocking call of that number; which breaks
+ * communication soon, with a sentence that names the first difference, the same on all ranks. The
+ * sentence given is for the case that it stays unknown. */
+void comm_difference_found(struct comm *comm, uint64_t number, const char *sentence);
+
+/* Under the lock: a control message about it came. */
+void comm_difference_hear(struct comm *comm, struct data_packet *packet);
+
+/* Under the lock: breaks if the time is over. */
+void comm_difference_pass(struct comm *comm);
+
+void comm_difference_stop(struct comm_difference *difference);
 
 /* ---- Heartbeats (heartbeat.c) ---- */
 
@@ -294,6 +320,7 @@ struct comm {
     struct comm_control control;
     struct comm_heartbeat heartbeat;
     struct comm_calls calls;
+    struct comm_difference difference;
     comm_told *tell;                               /* NULL: nobody */
     struct worker *worker;                         /* under the lock: who passes */
     bool open, may_request;                        /* comm_open was called; with requests */

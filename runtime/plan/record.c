@@ -173,6 +173,8 @@ static struct plan_recorded_fork *record_append(struct plan_record *record, uint
                                         .args = record->args_bytes};
     record->args_bytes += whole;
     task_mix(record->graph, task_fork_hash_all(kernel, how->at, n, objects));
+    if (kernel != PLAN_SETS)
+        task_mixed(record->graph, TASK_RECORDED, kernel);
     for (size_t i = 0; i < n; i++)
         record_use_view(record, objects[i]);
     const duite_kernel *body = kernel == PLAN_SETS ? NULL : record->graph->kernels[kernel];
@@ -224,6 +226,7 @@ int plan_record_set(struct plan_record *record, duite_object name, const void *v
     if (!fork)
         return DUITE_E_MEMORY;
     task_mix(record->graph, count);
+    task_mixed(record->graph, TASK_CALLED, TASK_CALLED_SET);
     fork->zeros = !values;
     fork->count = count;
     if (bytes)
@@ -294,6 +297,7 @@ int plan_record_bind(struct plan_record *record, duite_object recorded, duite_ob
     }
     task_mix(record->graph, task_name_bits(recorded));
     task_mix(record->graph, task_name_bits(name));
+    task_mixed(record->graph, TASK_CALLED, TASK_CALLED_GRAPH_BIND);
     object->bound = name;
     record->graph->table.object[name.slot].fixed |= object->fixed;
     record->rebound = true;

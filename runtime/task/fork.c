@@ -309,6 +309,7 @@ int task_fork(struct task_scope *scope, struct worker *worker, const struct task
         return code;
     scope->forks++;
     if (!scope->depth && scope->graph->n_ranks > 1)
-        task_mix(scope->graph, task_fork_hash_all(call.index, how->at, n, objects));
+        task_mix_fork(scope->graph, task_fork_hash_all(call.index, how->at, n, objects),
+                      call.index);
     return fork_checked(&call, how, args);
 }

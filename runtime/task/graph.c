@@ -121,6 +121,8 @@ int task_graph_start(struct task_graph *graph, int rank, int n_ranks,
     atomic_init(&graph->offloaded, 0);
     pthread_mutex_init(&graph->lock, NULL); /* cannot fail with default attributes */
     int code = data_table_start(&graph->table, n_ranks);
+    if (!code && n_ranks > 1 && !(graph->history = base_alloc_zero(sizeof *graph->history)))
+        code = base_no_memory("the history of calls");
     if (!code)
         code = data_laws_check(laws);
     return code ? code : kernels_take(graph, kernels, laws);
@@ -142,6 +144,7 @@ void task_graph_stop(struct task_graph *graph)
         next = node->next;
         base_free(node);
     }
+    base_free(graph->history);
     base_free(graph->fixed);
     base_free(graph->kernels);
     base_free(graph->kernel_place);

@@ -18,8 +18,10 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
     if (object->n_views)
         return base_error(DUITE_E_VIEW, "duite_free: object %u.%u has %u views that are not freed",
                           name.slot, name.generation, object->n_views);
-    if (!scope->depth)
+    if (!scope->depth) {
         task_mix(graph, task_name_bits(name));
+        task_mixed(graph, TASK_CALLED, TASK_CALLED_FREE);
+    }
     int code = object->leaves ? task_reduce(scope, worker, object) : DUITE_OK;
     task_forget(graph, worker, object);
     if (scope->depth)
@@ -127,6 +129,7 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
         task_mix(graph, task_name_bits(name));
         task_mix(graph, OVERWRITTEN);
         task_mix(graph, count);
+        task_mixed(graph, TASK_CALLED, TASK_CALLED_SET);
     }
     struct data_version *version = NULL;
     if (object->home == graph->rank && !(version = set_version(object, values, count))) {

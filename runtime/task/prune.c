@@ -77,6 +77,6 @@ bool task_prune(struct task_graph *graph, const duite_kernel *kernel, const void
             task_note_version(found[i], at);
     }
     graph->root.forks++;
-    task_mix(graph, hash);
+    task_mix_fork(graph, hash, graph->prune.index);
     return true;
 }

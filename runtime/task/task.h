@@ -198,7 +198,8 @@ struct task_graph {
     /* The main thread's, written with every fork: on cache lines of its own. */
     _Alignas(
         64) struct task_scope root; /* the main program; its `forks` are the same on all ranks */
-    uint64_t fingerprint;           /* of the main program's forks since the last wait */
+    uint64_t fingerprint;           /* of the main program's calls */
+    struct task_history *history;   /* of them; NULL on one rank */
     uint64_t tasks;                 /* of this rank that it forked, or that serve it */
     struct task_prune { /* the kernel of the last task that may be none of this rank's */
         const duite_kernel *kernel;
@@ -230,13 +231,29 @@ void task_graph_stop(struct task_graph *graph);
 /* ---- Main thread, collective; the homes of all objects are settled ---- */
 
 /* Makes something that all ranks do alike part of the fingerprint, if there are others. Forks,
- * sets, frees and copies do so themselves. */
+ * sets, frees and copies do so themselves. Once all of a call is mixed in, task_mixed enters the
+ * call into the history. */
 static inline void task_mix(struct task_graph *graph, uint64_t value)
 {
     if (graph->n_ranks == 1)
         return;
     uint64_t state = graph->fingerprint ^ value;
     graph->fingerprint = duite_random(&state);
+}
+static inline void task_mixed(struct task_graph *graph, enum task_call_kind kind, uint32_t which)
+{
+    if (graph->n_ranks == 1)
+        return;
+    task_history_add(graph->history, graph->fingerprint,
+                     task_call_bits(kind, which, graph->root.forks));
+}
+/* Both, of a fork on several ranks. */
+static inline void task_mix_fork(struct task_graph *graph, uint64_t hash, uint32_t kernel)
+{
+    uint64_t state = graph->fingerprint ^ hash;
+    const uint64_t fingerprint = graph->fingerprint = duite_random(&state);
+    task_history_add(graph->history, fingerprint,
+                     task_call_bits(TASK_FORKED, kernel, graph->root.forks));
 }
 
 /* ---- Main thread with the graph's root as scope: collective, the homes of all objects are

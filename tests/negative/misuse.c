@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static int set_body(const duite_call *call)
 {
@@ -106,6 +107,34 @@ duite_object misuse_new(duite *rt, size_t count)
 }
 
 static int n_cases, n_wrong;
+
+const char *misuse_first_ranks(int n)
+{
+    static char text[60];
+
+    snprintf(text, sizeof text, n > 2 ? "ranks 0-%d" : n > 1 ? "ranks 0 and %d" : "rank %d", n - 1);
+    return text;
+}
+
+static char kept[1024];
+
+void misuse_keep_message(void)
+{
+    snprintf(kept, sizeof kept, "%s", duite_message());
+}
+
+int misuse_all_told(const char *text)
+{
+    char first[sizeof kept];
+
+    memcpy(first, kept, sizeof first);
+    MPI_Bcast(first, sizeof first, MPI_CHAR, 0, MPI_COMM_WORLD);
+    const int right = !strcmp(first, kept) && strstr(kept, text);
+
+    if (!right)
+        fprintf(stderr, "# '%s' is not '%s' of rank 0, or lacks '%s'\n", kept, first, text);
+    return right;
+}
 
 void tap_case(int right, const char *name)
 {

@@ -26,6 +26,14 @@ duite_object misuse_new(duite *rt, size_t count);
 /* Prints one TAP line on rank 0 of the world, ok if `right` on every rank; the others say on stderr
  * that they are wrong. Collective over MPI_COMM_WORLD. */
 void tap_case(int right, const char *name);
+/* "rank 2", "ranks 0 and 1", "ranks 0-2": ranks 0 to n - 1. The text is the function's. */
+const char *misuse_first_ranks(int n);
+/* Keeps duite_message() for misuse_all_told, which calls MPI: when the runtime is stopped. */
+void misuse_keep_message(void);
+/* Whether the kept message contains the text on this rank, and is the same on all; else this rank
+ * says on stderr what it is. Collective over MPI_COMM_WORLD. */
+int misuse_all_told(const char *text);
+
 /* Prints the plan; returns the exit status, the same on every rank. */
 int tap_done(void);
 

@@ -195,9 +195,56 @@ static void differ(duite *rt, enum difference what, duite_object a, duite_object
         differ_by_graphs(rt, what, a, b);
 }
 
+/* What the message names: where the ranks differ, and the calls of the others and of the last rank
+ * there; NULL: a wait, or the stop. */
+static const struct {
+    const char *name, *where, *others, *last;
+} DIFFERENCES[] = {
+    {"a fork more", "at fork 21", NULL, "forked \"add\""},
+    {"another kernel", "at fork 21", "forked \"many\"", "forked \"add\""},
+    {"another object", "at fork 21", "forked \"add\"",
+     "forked \"add\" with other objects or on another rank"},
+    {"another rank", "at fork 21", "forked \"add\"",
+     "forked \"add\" with other objects or on another rank"},
+    {"an object more", "after fork 20", NULL, "called duite_new"},
+    {"another size", "after fork 20", "called duite_new", "called duite_new with other arguments"},
+    {"another maximum", "after fork 20", "called duite_new_sized",
+     "called duite_new_sized with other arguments"},
+    {"another count of values", "after fork 20", "called duite_set",
+     "called duite_set with other arguments"},
+    {"another view", "after fork 20", "called duite_view",
+     "called duite_view with other arguments"},
+    {"a set more", "after fork 20", NULL, "called duite_set"},
+    {"a free more", "after fork 20", NULL, "called duite_free"},
+    {"another hint", "after fork 20", "called duite_hint",
+     "called duite_hint with other arguments"},
+    {"another leader", "after fork 20", "called duite_colocate",
+     "called duite_colocate with other arguments"},
+    {"another build", "after fork 20", "recorded \"add\"",
+     "recorded \"add\" with other objects or on another rank"},
+    {"another binding", "after fork 20", "called duite_graph_bind",
+     "called duite_graph_bind with other arguments"},
+    {"a replay more", "after fork 20", NULL, "called duite_replay"},
+    {"another round", "after fork 20", "called duite_replay",
+     "called duite_replay with other arguments"},
+    {"a graph less", "after fork 20", NULL, "called duite_graph_free"},
+};
+
+static int names_difference(enum difference what, int at_stop)
+{
+    const char *others = DIFFERENCES[what].others;
+    char text[300];
+
+    if (!others)
+        others = at_stop ? "called duite_stop" : "called duite_wait";
+    snprintf(text, sizeof text, "ranks differ %s: %s %s, rank %d %s", DIFFERENCES[what].where,
+             misuse_first_ranks(ranks - 1), others, ranks - 1, DIFFERENCES[what].last);
+    return misuse_all_told(text);
+}
+
 /* Some tasks that agree, one thing that does not: the wait says so everywhere, and the runtime can
  * be stopped. */
-static void different_forks(enum difference what, const char *name, int at_stop)
+static void different_forks(enum difference what, int at_stop)
 {
     duite *rt = misuse_start(MPI_COMM_WORLD, 2);
     const duite_object a = misuse_new(rt, 4), b = misuse_new(rt, 4);
@@ -209,25 +256,34 @@ static void different_forks(enum difference what, const char *name, int at_stop)
     if (!at_stop)
         duite_wait(rt);
     differ(rt, what, a, b);
-    snprintf(line, sizeof line, "%s, found by %s", name, at_stop ? "stop" : "wait");
-    if (at_stop) {
-        tap_case(duite_stop(&rt) == DUITE_E_DIFFERENT && !rt, line);
-        return;
-    }
-    tap_case(duite_wait(rt) == DUITE_E_DIFFERENT && strlen(duite_message()) > 0, line);
+    snprintf(line, sizeof line, "%s, found by %s", DIFFERENCES[what].name,
+             at_stop ? "stop" : "wait");
+    const int code = at_stop ? duite_stop(&rt) : duite_wait(rt);
+
+    misuse_keep_message();
+    if (!at_stop)
+        duite_stop(&rt);
+    tap_case(names_difference(what, at_stop) && code == DUITE_E_DIFFERENT && !rt, line);
+}
+
+/* A difference of long ago: so many calls are not remembered. */
+static void long_ago(int calls, const char *text, const char *name)
+{
+    duite *rt = misuse_start(MPI_COMM_WORLD, 2);
+    const duite_object a = misuse_new(rt, 4), b = misuse_new(rt, 4);
+
+    duite_fork(rt, &ADD, NULL, 1, rank == ranks - 1 ? &a : &b);
+    for (int i = 0; i < calls; i++)
+        duite_fork(rt, &ADD, NULL, 1, &a);
+    const int code = duite_wait(rt);
+
+    misuse_keep_message();
     duite_stop(&rt);
-    tap_case(rt == NULL, "stops afterwards");
+    tap_case(misuse_all_told(text) && code == DUITE_E_DIFFERENT, name);
 }
 
 int main(void)
 {
-    static const char *const NAMES[] = {
-        "a fork more",    "another kernel", "another object",  "another rank",
-        "an object more", "another size",   "another maximum", "another count of values",
-        "another view",   "a set more",     "a free more",     "another hint",
-        "another leader", "another build",  "another binding", "a replay more",
-        "another round",  "a graph less"};
-
     misuse_mpi();
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
@@ -236,6 +292,8 @@ int main(void)
     different_options();
     for (int what = ONE_MORE; what < N_DIFFERENCES; what++)
         for (int at_stop = 0; at_stop < 2; at_stop++)
-            different_forks((enum difference)what, NAMES[what], at_stop);
+            different_forks((enum difference)what, at_stop);
+    long_ago(1000, "ranks differ at fork 1: ", "a difference 1,000 forks ago");
+    long_ago(5000, "; the first difference lies before call 3983", "a difference 5,000 forks ago");
     return tap_done();
 }

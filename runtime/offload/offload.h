@@ -20,8 +20,8 @@ bool offload_send(struct task_graph *graph, struct worker *worker, struct task *
 
 /* What a task that is away left came; the callee owns it. A result that names no task that is away
  * is dropped. After offload_lost that is what was given up. Before, each task that goes away comes
- * back once, so such a result is a wrong one of its rank: it is counted (offload_refused), and what
- * waits for the right one is what a standstill's report names. */
+ * back once, so such a result is an error of the rank that sent it. It is counted
+ * (offload_refused), and a standstill's report names the count. */
 void offload_result_arrived(struct task_graph *graph, struct worker *worker,
                             struct data_packet *packet);
 

@@ -1,7 +1,7 @@
 /* Dependences, the second stage of a task: what it reads and what it makes, as versions on this
- * rank. Each access of a task becomes a hold on the version it reads, the place of an heir of the
- * one it overwrites, a leaf of a sum, or a lent object of its scope; on other ranks the same call
- * forgets what got stale and sends or awaits copies. What is not there yet wakes the task later:
+ * rank. Each access of a task becomes one of four: a hold on the version it reads, the place of an
+ * heir of the one it overwrites, a leaf of a sum, a lent object. On other ranks the same call
+ * forgets what got stale, and sends or awaits copies. What is not there yet wakes the task later:
  * ready.c. */
 #include "runtime/task/internal.h"
 

@@ -1,9 +1,9 @@
 /* Forking, the first stage of a task. Every rank comes through here for every task of the main
- * program, in the same order, and draws the same conclusions about where it runs and which versions
- * move; it keeps only what it runs, sends or receives itself. A task forks by the same rules in its
- * own scope, whose objects are here and nowhere else. What is wrong is refused before anything is
- * changed; afterwards nothing but memory can be missing. The next stage is depend.c; prune.c is the
- * short way for tasks that touch nothing of this rank. */
+ * program, in the same order. Each draws the same conclusions about where the task runs and which
+ * versions move. A rank keeps only what it runs, sends or receives itself. A task forks by the same
+ * rules in its own scope, whose objects are here and nowhere else. What is wrong is refused before
+ * anything is changed; afterwards nothing but memory can be missing. The next stage is depend.c;
+ * prune.c is the short way for tasks of which nothing is here. */
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"

@@ -152,7 +152,7 @@ void task_graph_stop(struct task_graph *graph)
     pthread_mutex_destroy(&graph->lock);
 }
 
-/* Keeps a failure and tells it to the scope, unless that is NULL, and to all above. */
+/* Keeps a failure and reports it to the scope, unless that is NULL, and to all above. */
 static const struct data_failure *
 failure_keep(struct task_graph *graph, const struct data_failure *failure, struct task_scope *scope)
 {

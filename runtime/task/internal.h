@@ -130,7 +130,7 @@ void task_scope_fail(struct task_scope *scope, const struct data_failure *failur
 void task_scope_end(struct task_scope *scope, struct worker *worker);
 /* A task of the scope is over with its descendants, or a value was passed on. */
 void task_left(struct task_graph *graph, struct task_scope *scope, struct worker *worker);
-/* The object of that name, with the right held on it; NULL with the error's sentence set. */
+/* The object of that name, with the right held on it; NULL with the error's message set. */
 struct data_object *task_find_object(struct task_scope *scope, duite_object name,
                                      duite_mode *right);
 /* A fork under way. fork.c checks it, and says where its task runs; depend.c goes through its
@@ -192,18 +192,18 @@ static inline struct data_version *task_written(const struct task_access *access
     return access->waiter.mode == DUITE_W || access->waiter.mode == DUITE_RW ? access->out : NULL;
 }
 
-/* Keeps a failure until stop; `report`: the next wait tells it. Never NULL. */
+/* Keeps a failure until stop; `report`: the next wait returns it. Never NULL. */
 const struct data_failure *task_fail(struct task_graph *graph, const struct data_failure *failure,
                                      bool report);
 /* The same of a task, with its scope or NULL: its place is filled in; the waits of all scopes above
- * tell it, too. */
+ * return it, too. */
 const struct data_failure *task_fail_task(const struct task *task, const struct task_scope *inner,
                                           struct data_failure *failure);
 /* Its place: number and path. */
 void task_failure_place(struct data_failure *failure, const struct task *task,
                         const struct task_scope *inner);
 /* The failure of a descendant of this scope, whose place it has: the waits of the scope and of all
- * above tell it. */
+ * above return it. */
 const struct data_failure *task_fail_below(struct task_graph *graph,
                                            const struct data_failure *failure,
                                            struct task_scope *scope);

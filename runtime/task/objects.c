@@ -143,10 +143,10 @@ int task_set_object(struct task_scope *scope, struct worker *worker, duite_objec
     return code;
 }
 
-/* ---- Views are gathered when they are asked for: a view whose elements were taken from an older
- * version of its parent than the forks so far leave gets a new version, written where the parent's
- * value is by a task that reads the parent. From then on the view is an object like any other, and
- * what travels between ranks is the view ---- */
+/* ---- Views are gathered when they are asked for. The forks so far may leave a newer version of
+ * the parent than the one that the view was taken from. Then the view gets a new version: a task
+ * that reads the parent writes it, where the parent's value is. From then on the view is an object
+ * like any other, and what travels between ranks is the view ---- */
 
 static int view_gather_here(struct task_graph *graph, struct worker *worker,
                             struct data_object *object, struct data_object *parent)
@@ -245,8 +245,8 @@ int task_move_object(struct task_graph *graph, struct worker *worker, struct dat
     return DUITE_OK;
 }
 
-/* ---- Objects whose size changes: the body works in room for the maximum and says how many
- * elements there are; the packet it leaves has just these, and so have its readers and messages
+/* ---- Objects whose size changes. The body works in room for the maximum and says how many
+ * elements there are. The packet it leaves has just these, and so have its readers and messages
  * ---- */
 
 /* Of parameter i; false in a plan, whose objects have fixed sizes. */

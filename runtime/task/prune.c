@@ -1,4 +1,4 @@
-/* Forks that touch nothing of this rank: most of them, where there are many ranks. What task_fork
+/* Forks of which nothing is on this rank: most of them, where there are many ranks. What task_fork
  * would conclude about them is that other ranks have new versions and copies; it is noted in one
  * go. Whatever is not plain (accumulation, views, more than a few objects, anything wrong) is left
  * to task_fork. */

@@ -1,5 +1,5 @@
-/* Contributions: leaves run wherever their tasks do, without waiting for one another or for the
- * object; the first other access closes the run, and then the leaves are combined where the
+/* Contributions. Leaves run wherever their tasks do, without waiting for one another or for the
+ * object. The first access of another kind ends the run of them. Then they are reduced where the
  * object's value is (its holder). */
 #include "runtime/task/internal.h"
 

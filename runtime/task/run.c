@@ -1,4 +1,4 @@
-/* Running, the fourth stage of a task: a ready one alone touches the bytes of what it writes.
+/* Running, the fourth stage of a task: a ready task alone accesses the bytes of what it writes.
  * Poison among what it reads goes on to what it writes, and its body does not run. Nothing is
  * published here: finish.c. */
 #include "runtime/task/internal.h"
@@ -106,8 +106,7 @@ int duite_fail(const duite_call *call, int code, const char *format, ...)
     return code;
 }
 
-/* What the body says of its failure: its own sentence, or that of the call whose code it returns.
- */
+/* What the body says of its failure: its own message, or that of the call whose code it returns. */
 static const struct data_failure *body_failure(const struct duite_call_private *body, int code)
 {
     struct data_failure failure = {.code = code};
@@ -214,16 +213,14 @@ static bool body_run_params(struct task_graph *graph, struct worker *worker, str
                             const duite_call *call, const struct body_elsewhere *elsewhere)
 {
     enum { FEW = 8 };
-    duite_param few[FEW];
-    if (task->n <= FEW)
-        return body_run(graph, worker, task, few, call, elsewhere);
-    duite_param *param = base_pool_take(task->n * sizeof *param);
-    if (!param) {
+    duite_param few[FEW], *param = few;
+    if (task->n > FEW && !(param = base_pool_take(task->n * sizeof *param))) {
         outputs_poison(task, task_fail_memory(task));
         return false;
     }
     bool ran = body_run(graph, worker, task, param, call, elsewhere);
-    base_pool_give(param, task->n * sizeof *param);
+    if (param != few)
+        base_pool_give(param, task->n * sizeof *param);
     return ran;
 }
 

@@ -1,10 +1,10 @@
 /* Tasks that fork: the scope of a task, while its body runs. It has an object of its own for each
  * that the children may use. What the task was lent is a stretch of the chain of versions of the
- * scope above: the local object begins with the version that the task would have taken over, and
- * when the body is over, scope_end.c gives back what the children leave. So nobody waits for a task
- * with postponed parameters but for the values alone. A contribution is lent as a sum of its own,
- * whose result becomes the leaf. What a task may give to a child is what its kernel's modes say,
- * and all of what it made.
+ * scope above. The local object begins with the version that the task would have taken over. When
+ * the body is over, scope_end.c gives back what the children leave. So nobody waits for a task with
+ * postponed parameters but for the values alone. A contribution is lent as a sum of its own, whose
+ * result becomes the leaf. What a task may give to a child is what its kernel's modes say, and all
+ * of what it made.
  *
  * While the body runs its worker alone uses the objects. */
 #include "runtime/task/scope.h"

@@ -1,7 +1,7 @@
 /* The end of a task that forked, and waiting for those it forked. When the body is over, the last
- * version that the children make of what the task was lent has an `exit` for its heir, which passes
- * the bytes on to the version that the scope above has waited for since the fork. The exits belong
- * to whoever releases the last hold on a version. The scope is freed with the last count of
+ * version that the children make of a lent object gets an `exit` as its heir. The exit passes the
+ * bytes on to the version that the scope above has waited for since the fork. The exits belong to
+ * whoever releases the last hold on a version. The scope is freed with the last count of
  * `unfinished`. */
 #include "runtime/task/scope.h"
 

@@ -267,9 +267,9 @@ struct task_options {
     double cost; /* seconds; 0: not said */
 };
 
-/* Forks a task of the main program if it touches nothing of this rank, neither the task nor what it
- * names: then there is only something to note. False: nothing was done, task_fork is due. Main
- * thread; collective with task_fork on other ranks; the homes of all objects are settled. */
+/* Forks a task of the main program if neither the task nor anything it names is on this rank: then
+ * there is only something to note. False: nothing was done, task_fork is due. Main thread;
+ * collective with task_fork on other ranks; the homes of all objects are settled. */
 bool task_prune(struct task_graph *graph, const duite_kernel *kernel, const void *args, size_t n,
                 const duite_object *objects);
 
@@ -286,8 +286,8 @@ int task_free_object(struct task_scope *scope, struct worker *worker, duite_obje
  * waits for copy->done on the ranks it goes to. Main thread only. */
 int task_copy(struct task_graph *graph, struct worker *worker, duite_object object, int to,
               struct task_copy *copy);
-/* The version of the object that the forks so far leave, which is or will be here and stays the
- * object's until the body's next call; and the size of an element in bytes. Body only. */
+/* The version of the object that the forks so far leave, and the size of an element in bytes. The
+ * version is or will be here, and stays the object's until the body's next call. Body only. */
 int task_see(struct task_scope *scope, struct worker *worker, duite_object object,
              struct data_version **version, size_t *size);
 /* Releases a hold and wakes the heir. */
@@ -342,9 +342,9 @@ int task_check_call(struct duite_call_private *body, const char *call, duite_obj
 /* Whether the object, whose name was checked, is a parameter of the body. */
 bool task_lent(const struct duite_call_private *body, duite_object object);
 
-/* Whether a body that waits in `scope` may have this task run on top of it: a descendant; or, if
- * its descendants may wait for tasks outside, one that comes earlier in the reference order; or any
- * of an offloaded task's, if it is none itself. */
+/* Whether a body that waits in `scope` may have this task run on top of it. It may if the task is a
+ * descendant. If its descendants may wait for tasks outside, it also may if the task comes earlier
+ * in the reference order. And a body that is not an offloaded task's may have any task of these. */
 bool task_may_run(const struct task_scope *scope, const struct task *task);
 
 /* ---- Any worker ---- */
@@ -435,17 +435,16 @@ void task_pieces_lost(struct task_graph *graph, struct worker *worker, struct da
  * frees once it is sent. NULL without memory. */
 struct data_packet *task_send_packet(struct task *send);
 
-/* The object gets another home, and the value that the forks so far leave goes there, if it is
- * where it was made or last written by a task of its old home, which frees it: nobody else would.
- * What is being contributed to stays until it is overwritten. No task is left on any rank. Main
- * thread, collective. Errors: memory. */
+/* The object gets another home. The value that the forks so far leave goes there if the old home
+ * holds it; that rank then frees it, since nobody else would. What is being contributed to stays
+ * until it is overwritten. No task is left on any rank. Main thread, collective. Errors: memory. */
 int task_move_object(struct task_graph *graph, struct worker *worker, struct data_object *object,
                      int home);
 
 /* The version that the forks so far leave. Main thread; the object exists. */
 struct data_key task_version_of(const struct task_graph *graph, duite_object object);
 
-/* Sets the sentence of a failure; returns its code. */
+/* Sets the message of a failure; returns its code. */
 int task_failure_error(const struct task_graph *graph, const struct data_failure *failure);
 
 #endif

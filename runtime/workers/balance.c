@@ -168,8 +168,8 @@ static bool leaf_send(struct worker *worker, struct task *task, int to)
     return true;
 }
 
-/* It goes to the rank that requests one before its own worker can take it: of a tree whose tasks
- * become ready a few at a time hardly a leaf would be left between two tasks. */
+/* The leaf goes to a rank that requests one before a worker of this rank can take it. In a tree
+ * whose tasks become ready a few at a time, hardly a leaf would be left between two tasks. */
 static bool leaf_grant_at_once(struct worker *worker, struct task *task, const duite_leaf *leaf)
 {
     const struct work_pool *pool = worker->pool;

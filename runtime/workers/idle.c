@@ -3,13 +3,13 @@
  * so no message waits while a worker idles. A worker that gets busy leaves that to another one.
  *
  * On a core of its own a worker gives way by sched_yield. On a core that busy programs use as well
- * it does not: sched_yield gives the core away for a slice of each of the others (15 to 60 ms
+ * it does not. There sched_yield gives the core away for a slice of each of the others (15 to 60 ms
  * beside four), and the message comes meanwhile. It spins for a moment, since a neighbour that has
  * a core at the same time answers at once, and then sleeps.
  *
  * A worker notices such a core by a gap between two idle looks in which the kernel took the core
- * away. For LOST_FACTOR times as long it does not give way: so waiting this way costs at most one
- * part in LOST_FACTOR of the time, and a worker whose core is free again soon waits as before. */
+ * away. For LOST_FACTOR times as long it does not give way. So giving way costs at most one part in
+ * LOST_FACTOR of the time, and a worker whose core is free again soon waits as before. */
 #include "runtime/base/clock.h"
 #include "runtime/workers/internal.h"
 

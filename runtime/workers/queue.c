@@ -288,8 +288,8 @@ static struct task *queue_take_highest(struct work_queue *queue)
     return task;
 }
 
-/* A scheduler may serve by priority now and otherwise later: what lies in the heap is found by all
- * ways, and who goes round the queue from its old end to the new one comes by all of it. */
+/* A scheduler may serve by priority now and otherwise later. So every way of taking finds what lies
+ * in the heap. Whoever goes round the queue from its old end to the new one comes by all of it. */
 static struct task *queue_take(struct work_queue *queue, duite_end end)
 {
     queue_push_all(queue, inbox_take_all(queue));

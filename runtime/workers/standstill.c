@@ -4,9 +4,9 @@
  *
  * A report reads tasks that run: their workers are kept from going on when the body is over. Each
  * of them stores that it left the task and then loads `watched`; the monitor sets `watched` and
- * then loads what the worker runs. One of the two must see the other: the fence for that is
- * membarrier(2) on the monitor's side alone, which runs one on all threads of the process, so that
- * it costs a task no more than a store and a load. */
+ * then loads what the worker runs. One of the two must see the other. The fence for that is
+ * membarrier(2) on the monitor's side alone, which runs one on all threads of the process. So it
+ * costs a task no more than a store and a load. */
 #include "runtime/base/clock.h"
 #include "runtime/offload/offload.h"
 #include "runtime/workers/internal.h"

@@ -1,8 +1,8 @@
-/* Cores of the machine, and how far the workers on them are from each other: all of it is asked at
- * start. hwloc takes most of a millisecond for the machine's topology, twenty times all else that a
+/* Cores of the machine, and how far the workers on them are from each other. All of it is read at
+ * start. hwloc takes most of a millisecond for the machine's topology: twenty times all else that a
  * start does. So a process loads it once and keeps it.
  *
- * Every worker's row of others has all of them, nearest first; equally near ones begin with the
+ * Every worker's row of others has all of them, nearest first. Equally near ones begin with the
  * next number, so that workers which go by the row alone do not all try the same one first. */
 #include "runtime/workers/topology.h"
 

@@ -3,10 +3,9 @@
  * The main thread is worker 0. It works while the main program waits, is throttled, or forks, and
  * it waits for tasks to be over. Each worker counts its own tasks on its own cache lines, and who
  * wants to know adds them up: so a task costs no line that workers share. While the main thread
- * sleeps, it has said how many tasks it forked (`awaited`), and, while it is throttled, how many
- * may be left
- * (`wanted`). A worker that runs out of work and finds one of these reached wakes it; if the main
- * thread is throttled, a worker does so at the end of a task, too.
+ * sleeps, it has said how many tasks it forked (`awaited`). While it is throttled, it has also said
+ * how many may be left (`wanted`). A worker that runs out of work and finds one of these reached
+ * wakes it; if the main thread is throttled, a worker does so at the end of a task, too.
  *
  * A body that waits has only such tasks run on top of it as come before what it does next: see
  * below. */
@@ -161,12 +160,13 @@ bool work_may_fork(struct work_pool *pool)
 
 /* ---- A body that waits ---- */
 
-/* A body that waits: its worker runs, on top of it, tasks that come before what the body does next,
- * and no others, so that nothing can wait for a body that is buried on a stack. (Of all that is not
- * over, take what comes first in the reference order: it waits for nothing. If it is a task, every
- * waiting worker may run it, or waits for its own descendants alone, which will be over without it.
- * If it is a body that waits, all above it on its stack would come even earlier: so it is on top,
- * and its descendants are over.) What a worker finds and may not run goes where others look. */
+/* A body that waits has its worker run, on top of it, tasks that come before what the body does
+ * next, and no others. So nothing can wait for a body that is buried on a stack. Proof: of all that
+ * is not over, take what comes first in the reference order. It waits for nothing. If it is a task,
+ * every waiting worker may run it, or waits for its own descendants alone, which will be over
+ * without it. If it is a body that waits, all above it on its stack would come even earlier. So it
+ * is on top, and its descendants are over. What a worker finds and may not run goes where others
+ * look. */
 enum {
     NOT_BARREN = -1,
     SHARED_DEPTH = 16, /* of the shared queue's new end, that are looked at */

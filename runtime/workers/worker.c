@@ -1,7 +1,7 @@
 /* A worker owns its queue, its scheduler's state and its counters; others reach it through its
- * inbox and its park only. One turn of its loop: it finds a task (in its own queue, the shared one,
- * or with a victim that the scheduler names), runs it and what runs inline after it, and looks for
- * messages in between; without a task it idles (idle.c). */
+ * inbox and its park only. One turn of its loop: it finds a task, in its own queue, the shared one,
+ * or with a victim that the scheduler names. It runs the task and what runs inline after it, and
+ * looks for messages in between. Without a task it idles (idle.c). */
 #include "runtime/base/clock.h"
 #include "runtime/base/pool.h"
 #include "runtime/workers/internal.h"
@@ -149,8 +149,8 @@ static bool inline_goes_on(struct worker *worker, unsigned length)
             work_queue_is_empty(&worker->pool->shared));
 }
 
-/* When the inline task after this one begins: reading the clock costs as much as all else that lies
- * between two short tasks, so mostly that time is taken to be what it was before. */
+/* When the inline task after this one begins. Reading the clock costs as much as all else that lies
+ * between two short tasks. So mostly that time is taken to be what it was before. */
 static uint64_t inline_start(struct worker *worker, unsigned length, uint64_t end)
 {
     if (!worker->pool->setup.comm && length % CLOCKED)

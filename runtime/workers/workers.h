@@ -10,9 +10,9 @@
 #include <duite_policy.h>
 
 /* The workers of a rank: worker 0 is the main thread, which works while the main program waits; the
- * others are threads of ours. A worker runs what it finds (its own queue, the shared one, then
- * those of the victims the scheduler names), polls for messages between tasks, and when it finds
- * nothing spins for a while and then sleeps; one of the idle ones keeps polling. */
+ * others are threads of ours. A worker runs what it finds in its own queue, the shared one, or
+ * those of the victims that the scheduler names. Between tasks it polls for messages. When it finds
+ * nothing it spins for a while and then sleeps. One of the idle workers keeps polling. */
 struct work_pool;
 struct worker;
 
@@ -98,9 +98,9 @@ void work_throttle(struct work_pool *pool, uint64_t max);
 /* Counts of all workers of this rank. Exact when no task is left. */
 void work_count(struct work_pool *pool, duite_counters *counters);
 
-/* Of a balancer that moves homes, on several ranks: seconds since the last time in bodies of tasks
- * that run for a block of this rank, and in all others; and the balancer's answer, see
- * duite_balancer.migrate. Main thread. */
+/* Of a balancer that moves homes, on several ranks. The first two: seconds since the last time in
+ * bodies of tasks that run for a block of this rank, and in all others. The third is the balancer's
+ * answer, see duite_balancer.migrate. Main thread. */
 double work_block_seconds(struct work_pool *pool, uint32_t block);
 double work_other_seconds(struct work_pool *pool);
 uint64_t work_migrate(struct work_pool *pool, const duite_blocks *blocks, int *home);

@@ -112,6 +112,27 @@ static void check_assignment(const struct plan_assignment *a)
     }
 }
 
+/* On more ranks, where sets take several words, the first ones run and need the same. The others
+ * are all alike, and have nothing but what a flag needs. */
+static void check_more_ranks(const struct plan_assignment *a, const int *home)
+{
+    enum { MORE = 150 };
+    struct plan_assignment more;
+    const bool flagged = a->round->source->flag != PLAN_NONE;
+    ck_assert(plan_assign(&more, a->round, home, a->n_ranks + MORE));
+    for (int rank = 0; rank < more.n_ranks; rank++) {
+        const struct plan_assignment *like = rank < a->n_ranks ? a : &more;
+        const int as = rank < a->n_ranks ? rank : a->n_ranks;
+        const bool some = rank < a->n_ranks || flagged;
+        for (size_t n = 0; n < a->round->n_nodes; n++)
+            ck_assert_int_eq(plan_runs(&more, n, rank), some && plan_runs(like, n, as));
+        for (size_t v = 0; v < a->n_versions; v++)
+            ck_assert_int_eq(base_ranks_has(plan_needs_set(&more, v), rank),
+                             some && base_ranks_has(plan_needs_set(like, v), as));
+    }
+    plan_assignment_free(&more);
+}
+
 /* One message at most from a rank to another in a phase, and items in order. */
 static void check_messages(const struct plan_messages *m)
 {
@@ -150,6 +171,8 @@ static void run_parts(struct run *run, const struct plan_round *round, const int
     ck_assert(plan_assign(&a, round, home, run->n_ranks));
     ck_assert(plan_messages_find(&all, &a, PLAN_ALL));
     check_assignment(&a);
+    if (!(run->random % 32))
+        check_more_ranks(&a, home);
     check_messages(&all);
     size_t items = 0, expected = ROUNDS * tasks_of(&a);
     for (int r = 0; r < run->n_ranks; r++) {

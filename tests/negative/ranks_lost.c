@@ -149,7 +149,7 @@ static void one_lost(duite *rt, const char *how, const duite_object *object, con
     printf("rank %d %s: %s: code %d, %s\n", rank, right ? "is right" : "is wrong", how, code,
            message);
     fflush(stdout);
-    nap(0.3); /* the others end, too */
+    nap(2); /* the others end, too */
     if (rank == 0)
         kill(process[1], SIGKILL);
     nap(30); /* until mpirun ends the job */
@@ -168,7 +168,7 @@ static void one_lost_later(duite *rt, const duite_object *object, const int *pro
     printf("rank %d %s: later: code %d, %s\n", rank, right ? "is right" : "is wrong", code,
            duite_message());
     fflush(stdout);
-    nap(0.3);
+    nap(2);
     if (rank == 0)
         kill(process[1], SIGKILL);
     nap(30);

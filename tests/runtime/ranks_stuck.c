@@ -8,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-static double held_until;
+static _Atomic double held_until;
 
 static double seconds(void)
 {

@@ -37,7 +37,7 @@ static void may_hang(const char *function)
         return;
     for (int i = 0; i < MOST_WAITS && !told(function, 2 * SECONDS); i++)
         nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
-    atomic_store(&named, told(function, SECONDS) == 1 && told(function, 2 * SECONDS) == 1 ? 1 : -1);
+    atomic_store(&named, told(function, SECONDS) <= 1 && told(function, 2 * SECONDS) == 1 ? 1 : -1);
 }
 
 /* ---- Policies that otherwise work ---- */

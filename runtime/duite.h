@@ -578,7 +578,9 @@ int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *g
  * first or the last one if its contributions are one sum with those forked before or after the
  * replay. If an object that the graph uses was freed, build is called again first, and bindings and
  * arguments are those it makes. Errors of that, and DUITE_E_BINDING. rounds times tasks is at most
- * 2^48. Collective; returns at once. */
+ * 2^48. Collective; returns at once, but for two cases: a balancer may move objects, and the tags
+ * of MPI may be used up (after some 10,000 graphs where MPI has 32,767, the least it may have).
+ * Then a replay waits for all tasks, like duite_wait. */
 int duite_replay(duite *rt, duite_graph graph, uint64_t rounds);
 
 /* Replays while the first element of `flag`, an object that the graph uses or any other, is not

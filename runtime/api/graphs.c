@@ -233,10 +233,32 @@ static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t ro
     return code;
 }
 
+/* Tags were handed out to so many plans that they must be used again: of plans that are over on all
+ * ranks. */
+static int replay_make_tags(duite *rt)
+{
+    int code = program_meet(rt, "duite_replay");
+    if (!code)
+        code = comm_channels_settle(rt->comm);
+    if (!code)
+        code = program_meet(rt, "duite_replay");
+    if (!code)
+        comm_channels_met(rt->comm);
+    return code;
+}
+
 static int replay_by_plan(duite *rt, struct plan_record *record, const duite_object *flag,
                           uint64_t rounds)
 {
     int code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
+    if (code == PLAN_NEEDS_TAGS) {
+        code = replay_make_tags(rt);
+        if (!code)
+            code = plan_replay_plan(record, work_main(rt->pool), flag, rounds);
+        if (code == PLAN_NEEDS_TAGS)
+            code = base_error(DUITE_E_MPI, "MPI has too few tags for the messages of all recorded "
+                                           "graphs: free some, or fork their tasks");
+    }
     record->by_plan = !code;
     if (!code)
         program_throttle(rt);

@@ -24,7 +24,7 @@ struct channel_side {
 struct comm_group {
     struct comm_group *next;
     struct comm *comm;
-    int first_tag, n_tags;
+    int first_tag;
     size_t n;
     struct channel_side side[];
 };
@@ -34,10 +34,9 @@ struct comm_group {
 bool comm_channels_start(struct comm *comm)
 {
     int *max = NULL, known = 0;
-    comm->channels.next_tag = COMM_CHANNELS;
     if (MPI_Comm_get_attr(comm->mpi, MPI_TAG_UB, &max, &known))
         return false;
-    comm->channels.last_tag = known ? *max : 32767; /* what MPI guarantees */
+    comm_tags_start(&comm->channels.tags, known ? *max : 32767); /* what MPI guarantees */
     return true;
 }
 
@@ -84,33 +83,11 @@ bool comm_channels_stop(struct comm *comm)
         channels_sweep(comm);
     }
     comm_requests_free(&comm->channels.awaited);
+    comm_tags_stop(&comm->channels.tags);
     return !comm->channels.closed;
 }
 
 /* ---- Opening and closing: all ranks in the same order ---- */
-
-/* The first of n tags that no open plan has, from where the last ones were taken; the same on all
- * ranks, since plans are made and let go alike. 0 if there are none. */
-static int tags_take(struct comm_channels *channels, int n)
-{
-    int first = channels->next_tag;
-    for (int wraps = 0; wraps < 2;) {
-        const struct comm_group *taken = channels->open;
-        if (first > channels->last_tag - n) {
-            first = COMM_CHANNELS;
-            wraps++;
-        }
-        while (taken &&
-               (taken->first_tag >= first + n || taken->first_tag + taken->n_tags <= first))
-            taken = taken->next;
-        if (!taken) {
-            channels->next_tag = first + n;
-            return first;
-        }
-        first = taken->first_tag + taken->n_tags;
-    }
-    return 0;
-}
 
 static bool channel_post_receive(struct comm *comm, struct channel_side *side, size_t turn)
 {
@@ -170,21 +147,25 @@ static void group_close(struct plan_channels *channels)
     comm_unlock(comm);
 }
 
+static void group_drop(struct plan_channels *channels)
+{
+    const struct comm_group *group = channels->own;
+    comm_tags_drop(&group->comm->channels.tags, group->first_tag);
+}
+
 /* Under the lock. */
 static int group_open(struct comm *comm, struct comm_group *group, struct plan_channels *channels)
 {
-    int first = tags_take(&comm->channels, channels->phases + 1);
-    if (!first)
-        return base_error(DUITE_E_MPI, "MPI has no tags for %d phases of a recorded graph: %d",
-                          channels->phases, comm->channels.last_tag);
-    group->first_tag = first;
-    group->n_tags = channels->phases + 1;
+    int code = comm_tags_take(&comm->channels.tags, channels->phases + 1, &group->first_tag);
+    if (code)
+        return code;
     group->next = comm->channels.open;
     comm->channels.open = group;
     channels->own = group;
     channels->close = group_close;
+    channels->drop = group_drop;
     for (size_t i = 0; i < channels->n; i++) {
-        channels->channel[i].tag += first;
+        channels->channel[i].tag += group->first_tag;
         if (channels->channel[i].sends)
             continue;
         comm->channels.room += 2;
@@ -209,6 +190,34 @@ int comm_channels_open(struct comm *comm, struct plan_channels *channels)
     if (!channels->close)
         group_free(group);
     return code;
+}
+
+/* Under the lock: of the plans that the program does not hold some are open, or some of their
+ * messages are still sent. */
+static bool channels_linger(struct comm *comm)
+{
+    size_t open = 0;
+    channels_sweep(comm);
+    for (const struct comm_group *group = comm->channels.open; group; group = group->next)
+        open++;
+    return comm->channels.closed || open > comm_tags_held(&comm->channels.tags);
+}
+
+int comm_channels_settle(struct comm *comm)
+{
+    bool lingers = true;
+    while (lingers && !comm_is_broken(comm)) {
+        comm_hold(comm);
+        lingers = channels_linger(comm);
+        comm_unlock(comm);
+        sched_yield();
+    }
+    return comm_broken(comm);
+}
+
+void comm_channels_met(struct comm *comm)
+{
+    comm_tags_met(&comm->channels.tags);
 }
 
 /* ---- Messages ---- */

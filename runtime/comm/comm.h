@@ -52,8 +52,12 @@ void comm_send(struct comm *comm, struct task *task);
 bool comm_posted(struct comm *comm);
 
 /* Opens the channels of a recorded graph (work_open). Main thread, all ranks alike. Errors:
- * DUITE_E_MPI, memory. */
+ * DUITE_E_MPI, memory; or PLAN_NEEDS_TAGS on all ranks: then the ranks meet, settle, meet again,
+ * have met, and try once more. Settle: waits until the channels that the program dropped on this
+ * rank are closed. */
 int comm_channels_open(struct comm *comm, struct plan_channels *channels);
+int comm_channels_settle(struct comm *comm);
+void comm_channels_met(struct comm *comm);
 
 /* A node of a channel is ready: sends what it sends right now, or awaits its message; it is
  * finished when that is through. Any thread. */

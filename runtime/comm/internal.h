@@ -53,6 +53,37 @@ void comm_transport_receive(struct comm *comm, struct comm_found *found);
 /* Without the lock: gives all of it to whom it is for. */
 void comm_transport_deliver(struct comm *comm, struct worker *worker, struct comm_found *found);
 
+/* ---- Tags of channels (tags.c) ---- */
+
+struct comm_tag_range {
+    int first, n;
+    bool dropped; /* by the program, since the ranks met */
+};
+
+/* Main thread. */
+struct comm_tags {
+    struct comm_tag_range *range; /* of the plans that the program holds, and of those above `next`
+                                     that it dropped; in no order */
+    size_t n, capacity;
+    int next, last; /* last: the largest that MPI has */
+};
+
+void comm_tags_start(struct comm_tags *tags, int last);
+void comm_tags_stop(struct comm_tags *tags);
+
+/* n tags for a plan, the same on all ranks. PLAN_NEEDS_TAGS: there are none before the ranks meet.
+ * Errors: memory. */
+int comm_tags_take(struct comm_tags *tags, int n, int *first);
+
+/* The program drops the plan whose tags begin here. */
+void comm_tags_drop(struct comm_tags *tags, int first);
+
+/* All ranks met, and have closed the channels of the plans that the program dropped. */
+void comm_tags_met(struct comm_tags *tags);
+
+/* Plans that the program holds. */
+size_t comm_tags_held(const struct comm_tags *tags);
+
 /* ---- Channels (channel.c) ---- */
 
 /* Channels: the messages of recorded graphs (plan_channel). Each has two buffers and, if it
@@ -68,7 +99,7 @@ struct comm_channels {
     struct comm_group *open, *closed; /* under the lock; closed: some messages are still sent */
     size_t room;                      /* of `awaited`: receives of the open ones */
     unsigned looks;
-    int next_tag, last_tag;
+    struct comm_tags tags;
     _Atomic bool awaits; /* there are some */
     bool lost;           /* nothing comes any more */
 };

@@ -25,9 +25,16 @@ struct plan_channels {
     struct plan_channel *channel;
     size_t n;
     int phases;
-    void (*close)(struct plan_channels *channels); /* set when they are opened */
+    /* Set when they are opened; drop: the main program has the plan no more, which may run still.
+     */
+    void (*close)(struct plan_channels *channels);
+    void (*drop)(struct plan_channels *channels);
     void *own;
 };
+
+/* No error, from who opens channels: there are no tags for their messages before all ranks have
+ * met, without any task. */
+enum { PLAN_NEEDS_TAGS = 1 };
 
 /* A SEND writes its message; returns its bytes. A RECEIVE reads its message, or (lost) poisons what
  * the message would have brought. Afterwards the caller finishes the node. Any worker. */

@@ -328,7 +328,7 @@ int plan_new(struct plan **out, const struct plan_record *record, const duite_ob
         code = plan_compile(plan, record, flag, &source);
     plan_source_free(&source);
     if (code)
-        plan_release(plan);
+        plan_drop(plan, NULL);
     else
         *out = plan;
     return code;
@@ -371,5 +371,7 @@ void plan_drop(struct plan *plan, struct worker *worker)
     if (plan->turn.current)
         task_release(plan->graph, worker, plan->turn.current);
     plan->turn.current = NULL;
+    if (plan->channels.drop)
+        plan->channels.drop(&plan->channels);
     plan_release(plan);
 }

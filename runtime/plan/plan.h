@@ -138,8 +138,8 @@ static inline uint32_t plan_task_affinity(const struct task *task)
 }
 
 /* Compiles a record for a fixed number of rounds, or with a flag: an object of the record that is
- * bound to it, or one more if there is none. Time and memory are linear in the record. Errors, with
- * *plan NULL: memory; DUITE_E_MPI if MPI has no tags for its messages. */
+ * bound to it, or one more if there is none. Time and memory are linear in the record. With *plan
+ * NULL: PLAN_NEEDS_TAGS, or an error: memory, MPI. */
 int plan_new(struct plan **plan, const struct plan_record *record, const duite_object *flag);
 /* Could plan_new have made this plan? */
 bool plan_fits(const struct plan *plan, const struct plan_record *record, const duite_object *flag);

@@ -153,7 +153,7 @@ void plan_replay_split(const struct plan_record *record, const duite_object *fla
 int plan_replay_fork(struct plan_record *record, struct worker *worker);
 
 /* Replays the plan: so many rounds, or while the first element of the flag is not zero, at most so
- * many. One rank. */
+ * many. PLAN_NEEDS_TAGS: nothing is done yet. */
 int plan_replay_plan(struct plan_record *record, struct worker *worker, const duite_object *flag,
                      uint64_t rounds);
 

@@ -80,6 +80,9 @@ tests_runtime_ranks_exit_LDADD = libduite_core.la
 dist_check_SCRIPTS += tests/runtime/test_exit.sh
 TESTS += tests/runtime/test_exit.sh
 
+check_PROGRAMS += tests/runtime/ranks_tags
+tests_runtime_ranks_tags_SOURCES = tests/runtime/ranks_tags.c tests/negative/misuse.c tests/negative/misuse.h
+tests_runtime_ranks_tags_LDADD = libduite_core.la
 check_PROGRAMS += tests/runtime/ranks_prune
 tests_runtime_ranks_prune_SOURCES = tests/runtime/ranks_prune.c tests/negative/misuse.c tests/negative/misuse.h
 tests_runtime_ranks_prune_LDADD = libduite_core.la

@@ -6,4 +6,5 @@ plan_later
 for n in 1 2 3; do
     ok "replicated kernels on $n ranks" ranks $n tests/runtime/ranks_replicated
     ok "plans of $n ranks" ranks $n tests/runtime/ranks_plans
+    ok "few tags on $n ranks" ranks $n tests/runtime/ranks_tags
 done

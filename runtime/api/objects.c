@@ -1,4 +1,4 @@
-/* The main program's calls that make, place and free objects (a body's go to inside.c). What they
+/* The main program's calls that make, place and free objects (a body's go to bodies.c). What they
  * say is part of the fingerprint, since every rank must say the same. */
 #include "runtime/api/instance.h"
 

@@ -1,4 +1,4 @@
-/* The calls of the main program (a body's go to inside.c): each checks that it may be made, settles
+/* The calls of the main program (a body's go to bodies.c): each checks that it may be made, settles
  * the homes of new objects where they matter, and leaves the work to task/ and plan/. An error of a
  * call that returns at once is remembered for the next get, wait or stop. */
 #include "runtime/api/instance.h"

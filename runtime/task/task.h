@@ -161,11 +161,10 @@ struct task_copy {
  * nobody forks here, and only `unfinished` and `failure` change. */
 struct task_scope {
     struct task_graph *graph;
-    struct task_scope *parent; /* where its task was forked; NULL: the main program, or an offloaded
-task's
-                                   `above` */
-    struct task_scope *top;    /* the last of the parents: the main program's, or an offloaded
-task's */
+    struct task_scope *parent;   /* where its task was forked; NULL: the main program, or the
+                                    `above` of an offloaded task */
+    struct task_scope *top;      /* the last of the parents: the main program's, or an offloaded
+                                    task's */
     _Atomic uint64_t unfinished; /* tasks forked here, each with its descendants; values to be
                                     passed to the scope above; 1 while the body runs. Of the main
                                     program: see work_over */
@@ -177,8 +176,8 @@ task's */
     uint64_t segment;                 /* `forks` at the last wait of the body */
     uint32_t depth;                   /* 0: the main program */
     bool outward;                     /* its children may wait for tasks outside of it */
-    const struct data_failure *place; /* of an offloaded task's top: where it stands at
- home */
+    const struct data_failure *place; /* of an offloaded task's top: where it stands
+                                         at home */
 };
 
 struct task_graph {

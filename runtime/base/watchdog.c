@@ -5,6 +5,7 @@
 #include "runtime/base/watchdog.h"
 
 #include "runtime/base/error.h"
+#include "runtime/base/report.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,12 +62,13 @@ static void watchdog_tell(const struct base_watchdog *watchdog, unsigned worker)
 {
     const struct base_mark *mark = &watchdog->mark[worker];
     const enum base_policy_call call = (enum base_policy_call)(mark->seen % 256);
-    char text[WHERE];
-    fprintf(stderr,
-            "duite: %s %.200s: its %s has not returned for %g s%s; the run goes on when it does\n",
-            kinds[functions[call].kind], watchdog->policy[functions[call].kind],
-            functions[call].name, watchdog->seconds * (double)mark->looks / LOOKS,
-            watchdog_where(watchdog, worker, text));
+    char text[WHERE], report[WHERE + 400];
+    snprintf(report, sizeof report,
+             "duite: %s %.200s: its %s has not returned for %g s%s; the run goes on when it does\n",
+             kinds[functions[call].kind], watchdog->policy[functions[call].kind],
+             functions[call].name, watchdog->seconds * (double)mark->looks / LOOKS,
+             watchdog_where(watchdog, worker, text));
+    base_report(report);
 }
 
 static void watchdog_look_at(const struct base_watchdog *watchdog, unsigned worker)

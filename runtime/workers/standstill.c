@@ -8,6 +8,7 @@
  * membarrier(2) on the monitor's side alone, which runs one on all threads of the process. So it
  * costs a task no more than a store and a load. */
 #include "runtime/base/clock.h"
+#include "runtime/base/report.h"
 #include "runtime/offload/offload.h"
 #include "runtime/workers/internal.h"
 
@@ -303,7 +304,7 @@ static void standstill_report(struct work_pool *pool, double seconds)
         snprintf(report.text + report.length, sizeof report.text - report.length,
                  "duite: rank %d: and %u more lines like these\n", pool->setup.graph->rank,
                  report.left_out);
-    fputs(report.text, stderr);
+    base_report(report.text);
 }
 
 /* ---- Looks ---- */

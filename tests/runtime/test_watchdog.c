@@ -1,17 +1,21 @@
 /* Schedulers of which a function does not return until it was named: the watchdog names it at
  * doubling times, the function goes on, and the run ends as if nothing had been. */
 #include "runtime/base/monitor.h"
+#include "runtime/base/report.h"
 #include "tests/negative/misuse.h"
 #include "tests/support/said.h"
 #include "tests/support/unit.h"
 
 #include <dirent.h>
 #include <duite_policy.h>
+#include <fcntl.h>
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <time.h>
+#include <unistd.h>
 
 enum { TASKS = 40, TIMES = 3, MOST_WAITS = 120000 };
 
@@ -332,6 +336,30 @@ START_TEST(looks)
 }
 END_TEST
 
+/* A report returns although nobody reads standard error, a pipe or a socket; and comes whole where
+ * somebody does. */
+START_TEST(blocked_report)
+{
+    char text[200] = "";
+    int end[2], before = dup(STDERR_FILENO);
+    ck_assert(!(_i ? socketpair(AF_UNIX, SOCK_STREAM, 0, end) : pipe(end)));
+    dup2(end[1], STDERR_FILENO);
+    base_report("all of it");
+    ck_assert_int_eq(read(end[0], text, sizeof text), 9);
+    fcntl(end[1], F_SETFL, O_NONBLOCK);
+    while (write(end[1], text, sizeof text) > 0)
+        ;
+    while (write(end[1], text, 1) > 0)
+        ;
+    fcntl(end[1], F_SETFL, 0);
+    base_report("nobody reads this");
+    const int flags = fcntl(end[1], F_GETFL);
+    dup2(before, STDERR_FILENO);
+    ck_assert(!(flags & O_NONBLOCK));
+    ck_assert_str_eq(text, "all of it");
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("the watchdog of policies");
@@ -342,6 +370,7 @@ int main(void)
     tcase_add_test(test, many_calls);
     tcase_add_test(test, no_watchdog);
     tcase_add_test(test, looks);
+    tcase_add_loop_test(test, blocked_report, 0, 2);
     suite_add_tcase(suite, test);
     return unit_run(suite);
 }

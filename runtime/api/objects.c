@@ -122,7 +122,7 @@ int duite_colocate(duite *rt, duite_object object, duite_object leader)
     task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_COLOCATE);
     code = map_colocate(&rt->graph.table, object, leader);
     if (!code)
-        trace_follow(rt->trace, object, leader);
+        trace_colocate(rt->trace, object, leader);
     return program_remember(rt, code);
 }
 

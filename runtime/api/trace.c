@@ -4,7 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/trace/bounds.h"
+#include "runtime/trace/sums.h"
 
 #include <math.h>
 

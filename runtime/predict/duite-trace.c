@@ -15,20 +15,17 @@
 enum { FAILED = 1, BAD_INPUT = 2 };
 const char *argp_program_version = "duite-trace (" PACKAGE_STRING ")";
 
-/* The forms. A new one is a file with its function and a row here. */
-static const struct {
-    const char *option, *help;
-    int (*write)(const struct trace_run *run, FILE *file);
-} FORMS[] = {
-    {"paje", "write a Paje trace, which ViTE opens", trace_write_paje},
-    {"chrome", "write Chrome's JSON, which Perfetto opens", trace_write_chrome},
-    {"csv", "write a line an event", trace_write_csv},
-    {"dot", "write the tasks and what each waited for, for Graphviz", predict_write_dot},
-    {"graph",
-     "write the tasks and what each read as a graph, which bench/graph-run and bench/compare "
-     "schedule without the program",
-     predict_write_graph},
-};
+/* The forms: the rows of export.h, and two of the predictor's graph of tasks. */
+static const struct trace_export FORM_DOT = {
+    "dot", "write the tasks and what each waited for, for Graphviz", predict_write_dot};
+static const struct trace_export FORM_GRAPH = {
+    "graph",
+    "write the tasks and what each read as a graph, which bench/graph-run and bench/compare "
+    "schedule without the program",
+    predict_write_graph};
+#define FORM_OF(name) &trace_export_##name,
+static const struct trace_export *const FORMS[] = {&FORM_DOT, &FORM_GRAPH,
+                                                   TRACE_EXPORT_ROWS(FORM_OF)};
 enum { N_FORMS = sizeof FORMS / sizeof FORMS[0], CHECK = 256, PARTIAL, FORM };
 
 struct command {
@@ -44,7 +41,7 @@ static void options_fill(void)
 {
     struct argp_option *next = options;
     for (int i = 0; i < N_FORMS; i++)
-        *next++ = (struct argp_option){FORMS[i].option, FORM + i, "OUT", 0, FORMS[i].help, 1};
+        *next++ = (struct argp_option){FORMS[i]->option, FORM + i, "OUT", 0, FORMS[i]->help, 1};
     *next++ = (struct argp_option){
         "check", CHECK, NULL, 0, "whether the events add up to what the workers counted", 2};
     *next = (struct argp_option){
@@ -92,7 +89,7 @@ static int write_form(const struct trace_run *run, size_t form, const char *out)
     FILE *file = standard ? stdout : fopen(out, "w");
     if (!file)
         return write_failed(out);
-    int code = FORMS[form].write(run, file);
+    int code = FORMS[form]->write(run, file);
     errno = 0;
     bool fine = !ferror(file) && !fflush(file);
     if (!standard)

@@ -229,7 +229,7 @@ static void entry_read(struct predict_program *p)
     case TRACE_HINT:
         predict_hint(p, n);
         break;
-    case TRACE_FOLLOW:
+    case TRACE_COLOCATE:
         predict_follow(p);
         break;
     case TRACE_HOMES:

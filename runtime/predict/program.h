@@ -4,7 +4,6 @@
 #include "runtime/data/object.h"
 #include "runtime/plan/passes.h"
 #include "runtime/predict/graph.h"
-#include "runtime/trace/words.h"
 
 /* The main program while the predictor reads it. The files program.c, objects.c, move.c, round.c
  * and replay.c share it. */

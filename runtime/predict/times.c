@@ -3,7 +3,7 @@
 #include "runtime/predict/graph.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/trace/bodies.h"
+#include "runtime/trace/sums.h"
 
 #include <stdlib.h>
 

@@ -2,13 +2,10 @@
  * when the values that it reads are there, and each object keeps the time of its last value. That a
  * writer waits for the readers of the value before is left out: this depends on ranks and memory,
  * and more memory mends it. So no schedule on any number of workers is shorter than the chain. */
-#include "runtime/trace/bounds.h"
+#include "runtime/trace/sums.h"
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/trace/bodies.h"
-#include "runtime/trace/sums.h"
-#include "runtime/trace/words.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -251,7 +248,7 @@ static void chain_entry(struct chain *c)
     case TRACE_HINT:
         chain_skip(c, 3 + 3 * n);
         break;
-    case TRACE_FOLLOW:
+    case TRACE_COLOCATE:
         chain_skip(c, 2);
         break;
     case TRACE_HOMES:

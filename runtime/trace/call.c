@@ -36,15 +36,15 @@ static void word_put_float(struct trace *trace, double value)
     word_put(trace, bits);
 }
 
-enum { MOST = 1 << 24 }; /* of anything in an entry */
+enum { MAX_ENTRY = 1 << 24 }; /* of anything in an entry */
 
 /* False: it is too large for an entry, and lost. */
 static bool entry_begin(struct trace *trace, enum trace_call call, size_t n)
 {
-    trace->words_lost += n >= MOST;
-    if (n < MOST)
+    trace->words_lost += n >= MAX_ENTRY;
+    if (n < MAX_ENTRY)
         word_put(trace, (uint32_t)call | (uint32_t)n << 8);
-    return n < MOST;
+    return n < MAX_ENTRY;
 }
 
 /* Whether entries are kept here: such as are always there, and such as depend on the step. */
@@ -93,11 +93,11 @@ void trace_hint(struct trace *trace, duite_object name, double weight, size_t n,
     }
 }
 
-void trace_follow(struct trace *trace, duite_object name, duite_object leader)
+void trace_colocate(struct trace *trace, duite_object name, duite_object leader)
 {
     if (!trace_keeps_words(trace))
         return;
-    entry_begin(trace, TRACE_FOLLOW, 0);
+    entry_begin(trace, TRACE_COLOCATE, 0);
     word_put(trace, name.slot);
     word_put(trace, leader.slot);
 }
@@ -126,7 +126,7 @@ void trace_settled(struct trace *trace, const struct data_table *table)
 void trace_moved(struct trace *trace, const struct data_table *table, const uint32_t *slots,
                  size_t n)
 {
-    enum { MANY = MOST / 2 };
+    enum { MANY = MAX_ENTRY / 2 };
     for (size_t at = 0; trace_keeps_words(trace) && at < n; at += MANY) {
         size_t many = n - at < MANY ? n - at : MANY;
         entry_begin(trace, TRACE_HOMES, many);

@@ -1,7 +1,8 @@
-/* Events in the Trace Event Format: times in microseconds, a process a rank, a thread a worker. As
- * Perfetto takes them: no process or thread is 0 (that is its idle thread, which swallows others),
- * no time is below 0 (such events are dropped), and what lies in or after something in the trace
- * does so in whole nanoseconds, too (spans that overlap are dropped). */
+/* The JSON of Chrome's trace viewer (the Trace Event Format), which Perfetto opens: times in
+ * microseconds, a process a rank, a thread a worker. As Perfetto takes them: no process or thread
+ * is 0 (that is its idle thread, which swallows others), no time is below 0 (such events are
+ * dropped), and what lies in or after something in the trace does so in whole nanoseconds, too
+ * (spans that overlap are dropped). */
 #include "runtime/trace/export.h"
 
 #include <inttypes.h>
@@ -104,7 +105,7 @@ static void chrome_put_name(FILE *file, const struct trace_run *run, uint32_t ra
     fprintf(file, ",\"args\":{\"sort_index\":%" PRIu32 "}}", process ? rank : worker);
 }
 
-int trace_write_chrome(const struct trace_run *run, FILE *file)
+static int chrome_write(const struct trace_run *run, FILE *file)
 {
     fputs("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n", file);
     for (uint32_t r = 0; r < run->n_ranks; r++) {
@@ -116,3 +117,9 @@ int trace_write_chrome(const struct trace_run *run, FILE *file)
     fputs("\n]}\n", file);
     return 0;
 }
+
+const struct trace_export trace_export_chrome = {
+    .option = "chrome",
+    .help = "write Chrome's JSON, which Perfetto opens",
+    .write = chrome_write,
+};

@@ -1,4 +1,4 @@
-/* A line an event; columns that an event has nothing for are empty. */
+/* A head line, then a line an event; columns that an event has nothing for are empty. */
 #include "runtime/trace/export.h"
 
 #include <inttypes.h>
@@ -32,13 +32,20 @@ static void csv_put_event(void *context, const struct trace_seen *seen)
     if (peer)
         fprintf(file, "%" PRIu32, event->kernel);
     fprintf(file, ",%d,%d,%d\n", task && event->flags & TRACE_NESTED,
-            task && event->flags & TRACE_GUEST ? 1 : 0,
+            task && event->flags & TRACE_OFFLOADED ? 1 : 0,
             task && event->flags & TRACE_CHAINED ? 1 : 0);
 }
 
-int trace_write_csv(const struct trace_run *run, FILE *file)
+static int csv_write(const struct trace_run *run, FILE *file)
 {
-    fputs("rank,worker,kind,name,begin,seconds,within,number,peer,nested,guest,chained\n", file);
+    fputs("rank,worker,kind,name,begin,seconds,within,number,peer,nested,offloaded,chained\n",
+          file);
     trace_each(run, csv_put_event, &(struct csv_writer){run, file});
     return 0;
 }
+
+const struct trace_export trace_export_csv = {
+    .option = "csv",
+    .help = "write a line an event",
+    .write = csv_write,
+};

@@ -5,9 +5,24 @@
 
 #include <stdio.h>
 
-/* A run in the forms of others: a file of this folder each, and a row in the table FORMS of
- * duite-trace.c, which has the option, its help and the function. Written to `file`, which stays
- * open; 0, or DUITE_E_MEMORY. What the file could not take is told by ferror. */
+/* The forms in which others read a run. A form is one file, which defines its table, and one row
+ * here; duite-trace has an option for each row. */
+#define TRACE_EXPORT_ROWS(ROW)                                                                     \
+    ROW(paje)                                                                                      \
+    ROW(chrome)                                                                                    \
+    ROW(csv)
+
+struct trace_export {
+    const char *option, *help; /* of duite-trace */
+    /* Writes the run to `file`, which stays open. Errors: memory. Whether the file took all of it
+     * is for the caller to see (ferror). */
+    int (*write)(const struct trace_run *run, FILE *file);
+};
+
+#define TRACE_EXPORT_DECLARE(name) extern const struct trace_export trace_export_##name;
+TRACE_EXPORT_ROWS(TRACE_EXPORT_DECLARE)
+
+/* ---- Paje ---- */
 
 /* What lasted, of one kind: on workers of all ranks, numbered through. */
 struct trace_span {
@@ -16,16 +31,10 @@ struct trace_span {
     uint32_t worker;
 };
 
-/* Paje (Schnorr, de Oliveira Stein & Chassin de Kergommeaux, 2013), which ViTE opens: ranks hold
- * workers, whose states are pushed and popped; steals and messages are events. */
-int trace_write_paje(const struct trace_run *run, FILE *file);
-/* The same form for spans of one's own: `host_of[worker]`; `limit`: the whole time, at least. A
- * span that ends before it begins is an event. */
+/* Writes spans of the caller's own in the form of Paje. `host_of[worker]`: its rank; `limit`: the
+ * whole time, at least. A span that ends before it begins is an event. `file` stays open. Errors:
+ * memory. */
 int trace_write_paje_spans(FILE *file, struct trace_span *span, size_t n, const uint32_t *host_of,
                            uint32_t n_workers, double limit);
-/* The JSON of Chrome's trace viewer, which Perfetto opens. */
-int trace_write_chrome(const struct trace_run *run, FILE *file);
-/* A line an event, with a head line. */
-int trace_write_csv(const struct trace_run *run, FILE *file);
 
 #endif

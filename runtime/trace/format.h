@@ -72,9 +72,9 @@ enum trace_kind {
 
 /* Of a TASK. */
 enum {
-    TRACE_NESTED = 1,  /* a descendant of the main program's task with this number */
-    TRACE_GUEST = 2,   /* of another rank's program, delegated to this one */
-    TRACE_CHAINED = 4, /* ran directly after the one that made it ready */
+    TRACE_NESTED = 1,    /* a descendant of the main program's task with this number */
+    TRACE_OFFLOADED = 2, /* of another rank's program, delegated to this one */
+    TRACE_CHAINED = 4,   /* ran directly after the one that made it ready */
 };
 
 struct trace_event {
@@ -105,23 +105,23 @@ struct trace_counters {
  * what was made in it last. 64-bit numbers are two words, the low one first. Objects, homes and
  * graphs are always there; all others only while steps are recorded. */
 enum trace_call {
-    TRACE_FILLS,  /* no entry: the last word of a section that fills its 64 bits */
-    TRACE_OBJECT, /* slot; bytes (64 bits) */
-    TRACE_VIEW,   /* slot; of slot; bytes (64 bits) */
-    TRACE_FREE,   /* slot */
-    TRACE_HINT,   /* slot; weight (double); n neighbours: slot; weight (double) */
-    TRACE_FOLLOW, /* slot; its leader's */
-    TRACE_HOMES,  /* n: slot; home: by the mapping, of all that had none, or by migration */
-    TRACE_ON,     /* number of the last fork (64 bits); step (64); ticks (64) */
-    TRACE_OFF,    /* the same */
-    TRACE_FORK,   /* n slots; kernel before them */
-    TRACE_FORKED, /* the same, between both: rank or -1; priority; cost (float) */
-    TRACE_SET,    /* slot */
-    TRACE_GET,    /* slot; rank or -1: all; ticks from .. to (64 bits each) */
-    TRACE_WAIT,   /* ticks from .. to (64 bits each) */
-    TRACE_GRAPH,  /* name; n objects: slot; see below */
-    TRACE_REPLAY, /* name; flag's slot or 0; rounds at most (64); number of the last fork before
-                     (64); n objects of the graph: slot bound to it */
+    TRACE_FILLS,    /* no entry: the last word of a section that fills its 64 bits */
+    TRACE_OBJECT,   /* slot; bytes (64 bits) */
+    TRACE_VIEW,     /* slot; of slot; bytes (64 bits) */
+    TRACE_FREE,     /* slot */
+    TRACE_HINT,     /* slot; weight (double); n neighbours: slot; weight (double) */
+    TRACE_COLOCATE, /* slot; its leader's */
+    TRACE_HOMES,    /* n: slot; home: by the mapping, of all that had none, or by migration */
+    TRACE_ON,       /* number of the last fork (64 bits); step (64); ticks (64) */
+    TRACE_OFF,      /* the same */
+    TRACE_FORK,     /* n slots; kernel before them */
+    TRACE_FORKED,   /* the same, between both: rank or -1; priority; cost (float) */
+    TRACE_SET,      /* slot */
+    TRACE_GET,      /* slot; rank or -1: all; ticks from .. to (64 bits each) */
+    TRACE_WAIT,     /* ticks from .. to (64 bits each) */
+    TRACE_GRAPH,    /* name; n objects: slot; see below */
+    TRACE_REPLAY,   /* name; flag's slot or 0; rounds at most (64); number of the last fork before
+                       (64); n objects of the graph: slot bound to it */
     TRACE_CALLS
 };
 

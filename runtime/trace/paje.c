@@ -1,4 +1,7 @@
-/* Paje wants its lines in the order of time: spans become two moments each. Of those at one time
+/* Paje (Schnorr, de Oliveira Stein & Chassin de Kergommeaux, 2013), which ViTE opens: ranks hold
+ * workers, whose states are pushed and popped; steals and messages are events.
+ *
+ * Paje wants its lines in the order of time: spans become two moments each. Of those at one time
  * ends come first, the inner ones before the outer; spans without a duration are left out. */
 #include "runtime/trace/export.h"
 
@@ -161,7 +164,7 @@ static void paje_add_span(void *context, const struct trace_seen *seen)
                             .worker = trace_first_worker(spans->run, seen->rank) + seen->worker};
 }
 
-int trace_write_paje(const struct trace_run *run, FILE *file)
+static int paje_write(const struct trace_run *run, FILE *file)
 {
     uint32_t n_workers = trace_first_worker(run, run->n_ranks);
     size_t n = 0;
@@ -181,3 +184,9 @@ int trace_write_paje(const struct trace_run *run, FILE *file)
     base_free(host_of);
     return code;
 }
+
+const struct trace_export trace_export_paje = {
+    .option = "paje",
+    .help = "write a Paje trace, which ViTE opens",
+    .write = paje_write,
+};

@@ -4,7 +4,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/task/task.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -17,7 +16,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MAX_RANKS = 1 << 24, MOST_WORKERS = DUITE_MAX_THREADS };
+enum { MAX_RANKS = 1 << 24 };
 
 /* One file while it is read. */
 struct source {
@@ -85,7 +84,7 @@ static size_t source_max_workers(const struct source *source)
     const size_t each = sizeof(struct trace_section) + sizeof(struct trace_counters);
     const struct trace_header *header = source->rank->header;
     const size_t max = source->size / each + 1;
-    return header->whole && !header->lost && max < MOST_WORKERS ? max : MOST_WORKERS;
+    return header->whole && !header->lost && max < DUITE_MAX_THREADS ? max : DUITE_MAX_THREADS;
 }
 
 static int source_check_header(struct source *source, uint32_t rank)
@@ -165,7 +164,7 @@ static int source_take_events(struct source *source, const struct trace_section 
     for (size_t i = 0; i < n; i++)
         if (!event_is_valid(source->run, &event[i]))
             return source_damaged(source, at + sizeof *section + i * sizeof *event,
-                                  "an event that cannot be");
+                                  "an invalid event");
     void *moved =
         base_grow(rank->piece, &rank->pieces_capacity, rank->n_pieces + 1, sizeof *rank->piece);
     if (!moved)
@@ -199,13 +198,13 @@ static int source_take_other(struct source *source, const struct trace_section *
     struct trace_rank *rank = source->rank;
     if (section->kind == TRACE_CLOCK) {
         if (section->bytes != sizeof rank->clock[0] || rank->n_clocks == 2)
-            return source_damaged(source, at, "a clock that cannot be");
+            return source_damaged(source, at, "an invalid clock");
         memcpy(&rank->clock[rank->n_clocks++], section + 1, sizeof rank->clock[0]);
         return DUITE_OK;
     }
     if (section->kind != TRACE_COUNTERS || section->worker >= rank->header->workers ||
         section->bytes != sizeof(struct trace_counters))
-        return source_damaged(source, at, "a section that cannot be");
+        return source_damaged(source, at, "an invalid section");
     rank->counters[section->worker] = (const void *)(section + 1);
     return DUITE_OK;
 }
@@ -366,74 +365,4 @@ void trace_run_free(struct trace_run *run)
     base_free(run->kernel_name);
     free(run->word);
     base_free(run);
-}
-
-/* ---- What is asked of it ---- */
-
-/* How far the clock is ahead of rank 0's: in a straight line between what was measured. */
-static double clock_ahead(const struct trace_rank *rank, double at)
-{
-    const struct trace_clock *c = rank->clock;
-    if (rank->n_clocks < 2 || !(c[1].at > c[0].at))
-        return c[0].ahead;
-    return c[0].ahead + (c[1].ahead - c[0].ahead) * (at - c[0].at) / (c[1].at - c[0].at);
-}
-
-double trace_lasts(const struct trace_run *run, uint32_t rank, uint64_t ticks)
-{
-    return run->rank[rank].header->tick * (double)ticks;
-}
-
-double trace_when(const struct trace_run *run, uint32_t rank, uint64_t ticks)
-{
-    const struct trace_header *header = run->rank[rank].header;
-    double at = header->tick * (double)(int64_t)(ticks - header->epoch);
-    return at - clock_ahead(&run->rank[rank], at) - run->zero;
-}
-
-bool trace_event_lasts(const struct trace_event *event)
-{
-    return event->kind <= TRACE_IDLE || event->kind == TRACE_MIGRATE ||
-           event->kind == TRACE_FLUSH || event->kind == TRACE_MESSAGES;
-}
-
-const char *trace_kind_name(unsigned kind)
-{
-    static const char *const names[] = {"",        "task", "runtime", "idle",
-                                        "steal",   "send", "receive", "delegate",
-                                        "migrate", "step", "flush",   "messages"};
-    return kind < TRACE_KINDS ? names[kind] : "";
-}
-
-const char *trace_event_name(const struct trace_run *run, const struct trace_event *event)
-{
-    if (event->kind == TRACE_TASK)
-        return run->kernel_name[event->kernel];
-    if (event->kind == TRACE_OWN)
-        return task_own_name(event->kernel);
-    return trace_kind_name(event->kind);
-}
-
-uint32_t trace_first_worker(const struct trace_run *run, uint32_t rank)
-{
-    uint32_t before = 0;
-    for (uint32_t r = 0; r < rank; r++)
-        before += run->rank[r].header->workers;
-    return before;
-}
-
-void trace_each(const struct trace_run *run, void (*visit)(void *, const struct trace_seen *),
-                void *context)
-{
-    for (uint32_t r = 0; r < run->n_ranks; r++)
-        for (size_t p = 0; p < run->rank[r].n_pieces; p++) {
-            const struct trace_piece *piece = &run->rank[r].piece[p];
-            for (size_t i = 0; i < piece->n; i++) {
-                const struct trace_event *event = &piece->event[i];
-                visit(context, &(struct trace_seen){event, r, piece->worker,
-                                                    trace_when(run, r, event->begin),
-                                                    trace_when(run, r, event->begin + event->took),
-                                                    trace_lasts(run, r, event->took)});
-            }
-        }
 }

@@ -30,4 +30,29 @@ bool trace_sums_agree(const struct trace_run *run, FILE *file);
 /* Prints the table of duite-trace, for people. */
 int trace_print(const struct trace_run *run, FILE *file);
 
+/* ---- Bodies ---- */
+
+/* Seconds of bodies by the numbers of their tasks. Read-only once it is made, so any thread may
+ * ask. */
+struct trace_bodies;
+
+/* NULL without memory. The caller frees it; NULL is fine there. */
+struct trace_bodies *trace_bodies_new(const struct trace_run *run);
+void trace_bodies_free(struct trace_bodies *bodies);
+
+/* Whether the task of this number ran; and for how long, 0 if it did not. */
+bool trace_bodies_find(const struct trace_bodies *bodies, uint64_t number, double *seconds);
+
+/* ---- Bounds ---- */
+
+/* Lower bounds of the time that any schedule of a run's bodies takes, in seconds. */
+struct trace_bounds {
+    double path; /* the longest chain of tasks, each of which needs what the one before it wrote */
+    double work; /* in bodies, all workers together */
+};
+
+/* Errors: memory; DUITE_E_ARGUMENT for a trace with losses, without a whole program, damaged or
+ * without tasks. */
+int trace_bounds_find(const struct trace_run *run, struct trace_bounds *bounds);
+
 #endif

@@ -1,11 +1,15 @@
 #ifndef DUITE_TRACE_TRACE_H
 #define DUITE_TRACE_TRACE_H
 
+#include "runtime/base/clock.h"
 #include "runtime/data/object.h"
 #include "runtime/plan/record.h"
-#include "runtime/trace/ring.h"
+#include "runtime/trace/format.h"
 
 #include <mpi.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
 
 /* What a running rank writes down. Workers put events into rings of their own; the main thread
  * writes them to the file between steps, and a worker its own between two tasks when its ring gets
@@ -39,6 +43,74 @@ int trace_close(struct trace *trace, const struct trace_counters *counters);
  */
 void trace_free(struct trace *trace, bool mpi);
 
+/* Whether this step is to be recorded; whether all steps are, and what comes before them; whether
+ * events are recorded at the moment. */
+bool trace_wants(const struct trace *trace, uint64_t step);
+bool trace_wants_all(const struct trace *trace);
+bool trace_is_on(const struct trace *trace);
+/* Recording begins or ends with a step, when no task runs; forks: so far. Main thread. */
+void trace_switch(struct trace *trace, bool on, uint64_t step, uint64_t forks);
+
+/* ---- Events of the workers ---- */
+
+enum { TRACE_RING = 1 << 15 }; /* events */
+
+/* One writer, the worker; one reader at a time, under the lock of the file. The writer moves `head`
+ * when an event is whole, the reader `tail` when it has copied it. */
+struct trace_ring {
+    struct trace_event *event; /* TRACE_RING of them */
+    const _Atomic int *on;
+    unsigned worker;
+    uint64_t known; /* tail, as the writer saw it last */
+    _Alignas(64) _Atomic uint64_t head;
+    _Atomic uint64_t lost;
+    _Alignas(64) _Atomic uint64_t tail;
+};
+
+/* Room for one more event, to be filled and then put; NULL: it is lost. */
+static inline struct trace_event *trace_next(struct trace_ring *ring)
+{
+    uint64_t head = atomic_load_explicit(&ring->head, memory_order_relaxed);
+    if (head - ring->known == TRACE_RING)
+        ring->known = atomic_load_explicit(&ring->tail, memory_order_acquire);
+    if (head - ring->known < TRACE_RING)
+        return &ring->event[head % TRACE_RING];
+    uint64_t lost = atomic_load_explicit(&ring->lost, memory_order_relaxed);
+    atomic_store_explicit(&ring->lost, lost + 1, memory_order_relaxed);
+    return NULL;
+}
+
+/* Puts an event, unless steps are not recorded now. `ring` NULL is fine. By the worker. */
+static inline void trace_put(struct trace_ring *ring, const struct trace_event *event)
+{
+    if (!ring || !atomic_load_explicit(ring->on, memory_order_relaxed))
+        return;
+    struct trace_event *room = trace_next(ring);
+    if (!room)
+        return;
+    *room = *event;
+    atomic_store_explicit(&ring->head, atomic_load_explicit(&ring->head, memory_order_relaxed) + 1,
+                          memory_order_release);
+}
+
+/* Something without a duration, now. */
+static inline void trace_mark(struct trace_ring *ring, enum trace_kind kind, uint32_t kernel,
+                              uint64_t number)
+{
+    if (ring)
+        trace_put(ring, &(struct trace_event){.begin = base_ticks(),
+                                              .kernel = kernel,
+                                              .number = number,
+                                              .kind = (uint8_t)kind});
+}
+
+/* Whether it is to be written soon. By the worker. */
+static inline bool trace_is_full(const struct trace_ring *ring)
+{
+    uint64_t head = atomic_load_explicit(&ring->head, memory_order_relaxed);
+    return head - atomic_load_explicit(&ring->tail, memory_order_relaxed) > TRACE_RING / 4 * 3;
+}
+
 /* The ring of a worker; NULL on a rank without a trace. */
 struct trace_ring *trace_ring(struct trace *trace, unsigned worker);
 
@@ -48,14 +120,6 @@ void trace_relieve(struct trace *trace, struct trace_ring *ring);
 /* Writes all rings. Main thread. */
 void trace_flush(struct trace *trace);
 
-/* Whether this step is to be recorded; whether all steps are, and what comes before them; whether
- * events are recorded at the moment. */
-bool trace_wants(const struct trace *trace, uint64_t step);
-bool trace_wants_all(const struct trace *trace);
-bool trace_is_on(const struct trace *trace);
-/* Recording begins or ends with a step, when no task runs; forks: so far. Main thread. */
-void trace_switch(struct trace *trace, bool on, uint64_t step, uint64_t forks);
-
 /* ---- What the main program calls. Main thread; nothing on other ranks than 0. NULL is fine. ----
  */
 
@@ -63,7 +127,7 @@ void trace_object(struct trace *trace, const struct data_table *table, duite_obj
 void trace_freed(struct trace *trace, duite_object name);
 void trace_hint(struct trace *trace, duite_object name, double weight, size_t n,
                 const duite_object *neighbours, const double *edge_weights);
-void trace_follow(struct trace *trace, duite_object name, duite_object leader);
+void trace_colocate(struct trace *trace, duite_object name, duite_object leader);
 /* settles: notes the objects without a home, before they get one. settled: afterwards, the homes
  * that they got. */
 void trace_settles(struct trace *trace, const struct data_table *table);

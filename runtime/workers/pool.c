@@ -207,7 +207,7 @@ void work_note_task(struct worker *worker, const struct task *task, const struct
     if (nested)
         event.flags |= TRACE_NESTED;
     if (task->type == TASK_OFFLOADED)
-        event.flags |= TRACE_GUEST;
+        event.flags |= TRACE_OFFLOADED;
     if (ran->inlined)
         event.flags |= TRACE_CHAINED;
     trace_put(worker->ring, &event);

@@ -3,7 +3,7 @@
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
-#include "runtime/data/view.h"
+#include "runtime/data/object.h"
 #include "runtime/map/map.h"
 
 #include <string.h>

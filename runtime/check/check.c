@@ -5,7 +5,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/data/mode.h"
+#include "runtime/data/law.h"
 #include "runtime/data/sum.h"
 #include "runtime/task/task.h"
 

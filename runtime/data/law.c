@@ -143,14 +143,14 @@ int data_laws_check(const duite_law *const *laws)
 int data_law_check_kernel(const duite_kernel *kernel, const duite_law *const *laws)
 {
     for (unsigned i = 0; i <= DUITE_MAX_ACCESS; i++) {
-        bool rest = i == DUITE_MAX_ACCESS;
-        const duite_law *law = rest ? kernel->variadic_law : kernel->law[i];
-        duite_mode mode = rest ? kernel->variadic : kernel->access[i];
+        bool variadic = i == DUITE_MAX_ACCESS;
+        const duite_law *law = variadic ? kernel->variadic_law : kernel->law[i];
+        duite_mode mode = variadic ? kernel->variadic : kernel->access[i];
         bool known = law_is_listed(built_in, law) || law_is_listed(laws, law);
         if (!law || ((mode == DUITE_CW || mode == DUITE_CWP) && known))
             continue;
         char where[24] = "`variadic`";
-        if (!rest)
+        if (!variadic)
             snprintf(where, sizeof where, "parameter %u", i);
         return base_error(DUITE_E_LAW, "kernel %s, %s: law %s %s", kernel->name, where,
                           law->name ? law->name : "without a name",

@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* What a kernel says of its parameters: element types, modes and laws. */
+
 /* Element types: bytes of an element, 0 for no type; their name in a sentence. */
 static inline size_t data_type_size(duite_type type)
 {
@@ -15,6 +17,17 @@ static inline size_t data_type_size(duite_type type)
     return (size_t)type < sizeof size ? size[type] : 0;
 }
 const char *data_type_name(duite_type type);
+
+/* ---- Modes ---- */
+
+/* The mode of parameter i of a kernel; DUITE_NONE: it has none. */
+static inline duite_mode data_mode_of(const duite_kernel *kernel, size_t i)
+{
+    duite_mode mode = i < DUITE_MAX_ACCESS ? kernel->access[i] : DUITE_NONE;
+    return mode != DUITE_NONE ? mode : kernel->variadic;
+}
+
+/* ---- Laws ---- */
 
 /* Laws by which contributions combine. A kernel points at the laws of its cw parameters; all of
  * them were found in the list given at start, or are built in. */

@@ -1,3 +1,2 @@
-libduite_la_SOURCES += runtime/data/failure.c runtime/data/failure.h runtime/data/law.c runtime/data/law.h runtime/data/object.c runtime/data/object.h \
-	runtime/data/packet.h runtime/data/reduce.c runtime/data/reduce.h runtime/data/sum.c runtime/data/sum.h \
-	runtime/data/version.c runtime/data/version.h runtime/data/view.c runtime/data/view.h runtime/data/mode.h
+libduite_la_SOURCES += runtime/data/law.c runtime/data/law.h runtime/data/object.c runtime/data/object.h runtime/data/packet.h \
+	runtime/data/reduce.h runtime/data/sum.c runtime/data/sum.h runtime/data/version.c runtime/data/version.h

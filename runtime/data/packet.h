@@ -34,7 +34,7 @@ _Static_assert(sizeof(struct data_packet) == 64, "a header takes one cache line"
 
 /* Packets are allocated and sent in whole cache lines: the int counts of MPI then reach far beyond
  * 2 GiB. */
-#define DATA_MOST_BYTES ((size_t)1 << 36)
+#define DATA_MAX_BYTES ((size_t)1 << 36)
 static inline size_t data_packet_lines(size_t bytes)
 {
     return 1 + (bytes + 63) / 64;

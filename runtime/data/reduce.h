@@ -27,14 +27,32 @@ struct data_subtree {
 typedef void data_combine(void *context, uint32_t left, uint32_t right);
 
 /* Whether both are the halves of one complete subtree. */
-bool data_subtree_are_halves(const struct data_subtree *left, const struct data_subtree *right);
+static inline bool data_subtree_are_halves(const struct data_subtree *left,
+                                           const struct data_subtree *right)
+{
+    uint64_t half = UINT64_C(1) << left->level;
+    return left->level == right->level && left->first + half == right->first &&
+           left->first % (2 * half) == 0;
+}
 
 /* A subtree, right of the others, was put behind n of them in a row: combines what are halves then.
  * Returns how many are left in the row; of leaves without a gap never more than 64. */
-size_t data_reduce_push(struct data_subtree *row, size_t n, data_combine *combine, void *context);
+static inline size_t data_reduce_push(struct data_subtree *row, size_t n, data_combine *combine,
+                                      void *context)
+{
+    for (n++; n > 1 && data_subtree_are_halves(&row[n - 2], &row[n - 1]); n--) {
+        combine(context, row[n - 2].where, row[n - 1].where);
+        row[n - 2].level++;
+    }
+    return n;
+}
 
 /* All leaves are in: folds the subtrees that are left, from the right, into the first one. */
-void data_reduce_fold(const struct data_subtree *row, size_t n, data_combine *combine,
-                      void *context);
+static inline void data_reduce_fold(const struct data_subtree *row, size_t n, data_combine *combine,
+                                    void *context)
+{
+    for (size_t i = n; i-- > 1;)
+        combine(context, row[i - 1].where, row[i].where);
+}
 
 #endif

@@ -26,7 +26,7 @@ struct data_sum *data_sum_new(int n_ranks, const duite_law *law, duite_type type
 }
 
 /* Combines two neighbours into the left one; what is absent is skipped. */
-static void combine_pieces(const struct data_sum *sum, struct data_piece *left,
+static void pieces_combine(const struct data_sum *sum, struct data_piece *left,
                            struct data_piece *right)
 {
     if (left->value && right->value) {
@@ -46,10 +46,10 @@ struct reduced {
     struct data_piece **piece;
 };
 
-static void combine_numbered(void *context, uint32_t left, uint32_t right)
+static void pieces_combine_numbered(void *context, uint32_t left, uint32_t right)
 {
     const struct reduced *reduced = context;
-    combine_pieces(reduced->sum, reduced->piece[left], reduced->piece[right]);
+    pieces_combine(reduced->sum, reduced->piece[left], reduced->piece[right]);
 }
 
 struct data_piece *data_piece_new(void)
@@ -162,13 +162,13 @@ static const struct data_failure *sum_reduce(struct data_sum *sum, bool fold,
     *n = 0;
     *code = all && tree ? DUITE_OK : DUITE_E_MEMORY;
     for (size_t i = 0; i < total && !*code; i++)
-        failure = data_first(failure, all[i]->failure);
+        failure = data_failure_first(failure, all[i]->failure);
     for (uint32_t i = 0; i < total && !*code && !failure; i++) {
         tree[left] = (struct data_subtree){all[i]->first, all[i]->level, i};
-        left = data_reduce_push(tree, left, combine_numbered, &reduced);
+        left = data_reduce_push(tree, left, pieces_combine_numbered, &reduced);
     }
     if (fold)
-        data_reduce_fold(tree, left, combine_numbered, &reduced);
+        data_reduce_fold(tree, left, pieces_combine_numbered, &reduced);
     for (size_t i = 0; i < left; i++) { /* from where it stands, or behind that */
         all[i] = all[tree[i].where];
         all[i]->level = tree[i].level;

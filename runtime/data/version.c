@@ -4,13 +4,14 @@
 
 #include "runtime/base/pool.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* ---- Packets ---- */
 
 struct data_packet *data_packet_new(size_t bytes, bool zero)
 {
-    if (bytes > DATA_MOST_BYTES)
+    if (bytes > DATA_MAX_BYTES)
         return NULL;
     size_t lines = data_packet_lines(bytes);
     struct data_packet *packet = base_pool_take(lines * sizeof *packet);
@@ -77,4 +78,46 @@ struct data_waiter *data_version_end(struct data_version *version)
     data_packet_free(data_version_packet(version));
     data_version_free(version);
     return NULL;
+}
+
+/* ---- Places of failures ---- */
+
+/* The code of a path: an index below 0x80 is one byte; a larger one is its bytes, highest first,
+ * behind 0x80 plus their number. No byte of an index is a zero at its beginning, so that a path is
+ * smaller than all that continue it. */
+static unsigned path_index_bytes(uint64_t index)
+{
+    unsigned n = 1;
+    while (n < 8 && index >> (8 * n))
+        n++;
+    return n;
+}
+
+void data_path_add(struct data_failure *failure, uint64_t index)
+{
+    unsigned n = index < 0x80 ? 0 : path_index_bytes(index);
+    uint32_t at = failure->path_length;
+    if (at + 1 + n > sizeof failure->path) {
+        failure->path_length = sizeof failure->path; /* nothing may follow what was left out */
+        return;
+    }
+    failure->path[at++] = (uint8_t)(n ? 0x80 + n : index);
+    for (unsigned i = n; i-- > 0;)
+        failure->path[at++] = (uint8_t)(index >> (8 * i));
+    failure->path_length = at;
+}
+
+void data_path_print(const struct data_failure *failure, char *text, size_t size)
+{
+    size_t used = (size_t)snprintf(text, size, "%llu", (unsigned long long)failure->number);
+    const uint8_t *at = failure->path, *end = at + sizeof failure->path;
+    while (at < end && *at && used + 24 < size) {
+        unsigned n = *at >= 0x80 ? *at - 0x80u : 0;
+        uint64_t index = n ? 0 : *at;
+        for (at++; n && at < end; n--)
+            index = index << 8 | *at++;
+        used += (size_t)snprintf(text + used, size - used, ".%llu", (unsigned long long)index);
+    }
+    if (at < end && *at)
+        snprintf(text + used, size - used, "...");
 }

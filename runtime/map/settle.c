@@ -8,7 +8,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/data/view.h"
+#include "runtime/data/object.h"
 
 #include <stdlib.h>
 #include <string.h>

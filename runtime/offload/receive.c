@@ -5,7 +5,7 @@
 #include "runtime/offload/message.h"
 
 #include "runtime/base/pool.h"
-#include "runtime/data/mode.h"
+#include "runtime/data/law.h"
 
 #include <string.h>
 

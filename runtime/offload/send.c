@@ -5,7 +5,7 @@
 
 #include "runtime/base/memory.h"
 #include "runtime/base/pool.h"
-#include "runtime/data/mode.h"
+#include "runtime/data/law.h"
 #include "runtime/offload/names.h"
 
 #include <string.h>
@@ -57,7 +57,7 @@ bool offload_may_go(const struct task_graph *graph, const struct task *task, siz
         back += message_lines(access_room(&task->access[i]));
     }
     *bytes = there + back + 2 * sizeof(struct data_packet);
-    return there < DATA_MOST_BYTES && back < DATA_MOST_BYTES;
+    return there < DATA_MAX_BYTES && back < DATA_MAX_BYTES;
 }
 
 static struct offload_param access_param(const struct task_access *access)

@@ -6,7 +6,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/data/view.h"
+#include "runtime/data/object.h"
 
 #include <string.h>
 

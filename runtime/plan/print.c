@@ -4,7 +4,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/data/law.h"
-#include "runtime/data/mode.h"
 #include "runtime/task/internal.h"
 
 static void print_name(FILE *file, const char *name)

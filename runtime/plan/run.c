@@ -13,7 +13,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/data/view.h"
+#include "runtime/data/object.h"
 
 #include <string.h>
 
@@ -163,7 +163,7 @@ static const struct data_failure *node_find_poison(const struct plan *plan, cons
     const struct data_failure *failure = NULL;
     for (uint32_t i = 0; i < task->n; i++)
         if (use[i].reads)
-            failure = data_first(failure, plan->place[use[i].place].failure);
+            failure = data_failure_first(failure, plan->place[use[i].place].failure);
     return failure;
 }
 

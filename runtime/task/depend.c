@@ -6,7 +6,7 @@
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
-#include "runtime/data/mode.h"
+#include "runtime/data/law.h"
 
 /* ---- One task and one version ---- */
 

@@ -8,8 +8,8 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/pool.h"
-#include "runtime/data/mode.h"
-#include "runtime/data/view.h"
+#include "runtime/data/law.h"
+#include "runtime/data/object.h"
 
 #include <string.h>
 

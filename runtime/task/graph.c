@@ -168,7 +168,7 @@ failure_keep(struct task_graph *graph, const struct data_failure *failure, struc
         graph->failures = node;
     }
     for (; scope; scope = scope->parent)
-        scope->failure = data_first(scope->failure, kept);
+        scope->failure = data_failure_first(scope->failure, kept);
     pthread_mutex_unlock(&graph->lock);
     return kept;
 }

@@ -4,7 +4,7 @@
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
-#include "runtime/data/view.h"
+#include "runtime/data/object.h"
 
 #include <string.h>
 

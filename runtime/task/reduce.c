@@ -190,7 +190,7 @@ void task_run_combine(struct task *task)
     int code;
     const struct data_failure *failure = data_sum_fold(sum->sum, &whole, &code);
     out->packet = data_version_packet(in);
-    failure = code ? task_fail_memory(task) : data_first(data_version_failure(in), failure);
+    failure = code ? task_fail_memory(task) : data_failure_first(data_version_failure(in), failure);
     data_version_free(in);
     data_version_poison(out, failure);
     if (!failure && whole)
@@ -207,7 +207,7 @@ void task_run_gather(struct task *task)
     const struct data_failure *failure = data_sum_fold(sum, &whole, &code);
     if (code)
         failure = task_fail_memory(task);
-    leaf->failure = data_first(leaf->failure, failure);
+    leaf->failure = data_failure_first(leaf->failure, failure);
     if (!leaf->failure)
         data_piece_take(leaf, whole);
     data_sum_free(sum);

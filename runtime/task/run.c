@@ -4,7 +4,7 @@
 #include "runtime/task/internal.h"
 
 #include "runtime/base/pool.h"
-#include "runtime/data/view.h"
+#include "runtime/data/object.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -89,7 +89,7 @@ static const struct data_failure *params_prepare(struct task *task, duite_param 
             param_describe_lent(&param[i], task_lent_object(task->inner, access->lent));
         }
         if (new)
-            failure = data_first(failure, new);
+            failure = data_failure_first(failure, new);
         param[i].object = (duite_object){TASK_LOCAL_NAME | i, stamp};
     }
     return failure;
@@ -236,7 +236,7 @@ static void view_run(struct task *task)
 {
     struct data_version *in = task->access[0].in, *out = task->access[1].out;
     const struct data_failure *failure =
-        data_first(data_version_failure(in), version_take_over(task, &task->access[1]));
+        data_failure_first(data_version_failure(in), version_take_over(task, &task->access[1]));
     if (!failure)
         data_view_gather(task->view, data_type_size((duite_type)in->type), data_payload(in->packet),
                          data_payload(out->packet));

@@ -11,7 +11,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/pool.h"
-#include "runtime/data/mode.h"
+#include "runtime/data/law.h"
 
 #include <string.h>
 

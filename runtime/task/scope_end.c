@@ -48,7 +48,7 @@ struct data_waiter *task_pass(struct worker *worker, struct data_waiter *waiter)
     struct task_scope *scope = exit->scope;
     struct data_version *out = exit->out;
     const struct data_failure *failure =
-        data_first(exit->untouched ? NULL : data_version_failure(exit->in), exit->failure);
+        data_failure_first(exit->untouched ? NULL : data_version_failure(exit->in), exit->failure);
     out->packet = data_version_packet(exit->in);
     data_version_free(exit->in);
     data_version_poison(out, failure);

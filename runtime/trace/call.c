@@ -3,7 +3,7 @@
 #include "runtime/trace/internal.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/data/view.h"
+#include "runtime/data/object.h"
 #include "runtime/task/internal.h"
 
 #include <string.h>

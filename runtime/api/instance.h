@@ -1,7 +1,7 @@
 #ifndef DUITE_INSTANCE_H
 #define DUITE_INSTANCE_H
 
-#include "runtime/base/watchdog.h"
+#include "runtime/base/policy.h"
 #include "runtime/comm/comm.h"
 #include "runtime/map/map.h"
 #include "runtime/plan/record.h"

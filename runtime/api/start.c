@@ -6,7 +6,6 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
-#include "runtime/base/pool.h"
 #include "runtime/map/map.h"
 #include "runtime/offload/offload.h"
 #include "runtime/sched/sched.h"

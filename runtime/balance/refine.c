@@ -4,7 +4,7 @@
 #include "runtime/balance/refine.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/base/watchdog.h"
+#include "runtime/base/policy.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,6 +3,8 @@
 
 #include <stddef.h>
 
+/* All memory of the runtime: large blocks, growing arrays, and a pool of small blocks. */
+
 enum { BASE_LINE = 64 }; /* bytes of a cache line: the alignment of everything allocated here */
 
 /* size bytes, aligned to a cache line; NULL if there are none. Freed by base_free from any thread.
@@ -27,5 +29,24 @@ static inline void base_prefetch(const void *line)
     __builtin_prefetch(line, 1);
 #endif
 }
+
+/* ---- Small blocks ---- */
+
+/* Small blocks that live briefly and die on another thread than they were born on: tasks, versions,
+ * messages. Each thread keeps some of each size at hand; whole batches move between threads. The
+ * general allocator locks here, and a futex costs more than a task. */
+
+/* size bytes, not cleared, aligned to a cache line if they are whole lines, to 16 bytes if they are
+ * a multiple of that, else to 8. NULL without memory. */
+void *base_pool_take(size_t size);
+/* Gives back what was taken with the same size, on any thread. NULL is fine. */
+void base_pool_give(void *memory, size_t size);
+
+/* A runtime begins, and ends; with the last one all memory goes back. */
+void base_pool_enter(void);
+void base_pool_leave(void);
+
+/* The calling thread ends: what it has at hand goes to the others. */
+void base_pool_thread_end(void);
 
 #endif

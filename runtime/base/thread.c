@@ -21,7 +21,7 @@ static size_t thread_stack_bytes(void)
     return bytes;
 }
 
-static bool stack_has_room(size_t bytes)
+static bool thread_stack_fits(size_t bytes)
 {
     void *room =
         bytes ? mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK, -1, 0) : NULL;
@@ -38,7 +38,7 @@ int base_thread_start(pthread_t *thread, const char *what, void *(*body)(void *)
     if (!reason)
         return DUITE_OK;
     const size_t bytes = thread_stack_bytes();
-    if (reason == ENOMEM || (reason == EAGAIN && !stack_has_room(bytes)))
+    if (reason == ENOMEM || (reason == EAGAIN && !thread_stack_fits(bytes)))
         return base_error(DUITE_E_MEMORY,
                           "out of memory for %s: pthread_create cannot map its stack of %zu bytes "
                           "(ulimit -v limits the memory of a process, ulimit -s sets the stack)",

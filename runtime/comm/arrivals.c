@@ -2,7 +2,7 @@
  */
 #include "runtime/comm/arrivals.h"
 
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,6 @@
 #include "runtime/data/sum.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/base/pool.h"
 #include "runtime/base/rank_set.h"
 #include "runtime/base/stack.h"
 #include "runtime/data/reduce.h"

@@ -2,7 +2,7 @@
  * holds its only pointer may write them. */
 #include "runtime/data/version.h"
 
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 
 #include <stdio.h>
 #include <string.h>

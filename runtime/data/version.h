@@ -1,7 +1,7 @@
 #ifndef DUITE_DATA_VERSION_H
 #define DUITE_DATA_VERSION_H
 
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 #include "runtime/data/law.h"
 #include "runtime/data/packet.h"
 

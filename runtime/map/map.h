@@ -1,7 +1,7 @@
 #ifndef DUITE_MAP_MAP_H
 #define DUITE_MAP_MAP_H
 
-#include "runtime/base/watchdog.h"
+#include "runtime/base/policy.h"
 #include "runtime/data/object.h"
 
 #include <duite_policy.h>

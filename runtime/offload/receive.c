@@ -4,7 +4,7 @@
  * result is sent. */
 #include "runtime/offload/message.h"
 
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 #include "runtime/data/law.h"
 
 #include <string.h>

@@ -4,7 +4,6 @@
 #include "runtime/offload/message.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/base/pool.h"
 #include "runtime/data/law.h"
 #include "runtime/offload/names.h"
 

@@ -1,7 +1,7 @@
 #ifndef DUITE_PREDICT_GRAPH_H
 #define DUITE_PREDICT_GRAPH_H
 
-#include "runtime/base/watchdog.h"
+#include "runtime/base/policy.h"
 #include "runtime/predict/predict.h"
 
 #include <duite.h>

@@ -1,4 +1,4 @@
-/* What the events say about seconds: of each body (trace/bodies.h), of a kernel's bodies in the
+/* What the events say about seconds: of each body (trace/sums.h), of a kernel's bodies in the
  * mean or the median, of the runtime's own tasks, and between two tasks. */
 #include "runtime/predict/graph.h"
 

@@ -3,7 +3,7 @@
  */
 #include "runtime/task/internal.h"
 
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 
 static void access_release(struct task_graph *graph, struct worker *worker,
                            const struct task_access *access)

@@ -7,7 +7,7 @@
 #include "runtime/task/internal.h"
 
 #include "runtime/base/error.h"
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 #include "runtime/data/law.h"
 #include "runtime/data/object.h"
 

@@ -3,7 +3,7 @@
  * published here: finish.c. */
 #include "runtime/task/internal.h"
 
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 #include "runtime/data/object.h"
 
 #include <stdarg.h>

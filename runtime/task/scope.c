@@ -10,7 +10,7 @@
 #include "runtime/task/scope.h"
 
 #include "runtime/base/error.h"
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 #include "runtime/data/law.h"
 
 #include <string.h>

@@ -5,7 +5,7 @@
  * `unfinished`. */
 #include "runtime/task/scope.h"
 
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 
 /* ---- The end ---- */
 

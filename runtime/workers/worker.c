@@ -3,7 +3,7 @@
  * or with a victim that the scheduler names. It runs the task and what runs inline after it, and
  * looks for messages in between. Without a task it idles (idle.c). */
 #include "runtime/base/clock.h"
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 #include "runtime/workers/internal.h"
 
 /* Tasks run inline, one after another without a look at the queues, while something lies there; and

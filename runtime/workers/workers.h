@@ -1,7 +1,7 @@
 #ifndef DUITE_WORKERS_WORKERS_H
 #define DUITE_WORKERS_WORKERS_H
 
-#include "runtime/base/watchdog.h"
+#include "runtime/base/policy.h"
 #include "runtime/check/check.h"
 #include "runtime/comm/comm.h"
 #include "runtime/task/task.h"

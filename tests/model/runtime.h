@@ -14,7 +14,6 @@
 #include "tests/model/atomics.h"
 
 #include "runtime/base/memory.h"
-#include "runtime/base/pool.h"
 
 void *base_alloc(size_t size)
 {

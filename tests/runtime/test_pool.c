@@ -1,6 +1,6 @@
 /* The pool: blocks are disjoint and aligned, survive a journey between threads, and come back to be
  * used again. */
-#include "runtime/base/pool.h"
+#include "runtime/base/memory.h"
 #include "tests/support/unit.h"
 
 #include <pthread.h>

@@ -67,7 +67,7 @@ static int start_compare(const struct start_word *all, int n, int rank)
     return DUITE_OK;
 }
 
-int start_agree_on_code(MPI_Comm mpi, int code)
+int api_agree_on_code(MPI_Comm mpi, int code)
 {
     struct {
         int code, rank;
@@ -106,13 +106,13 @@ static struct start_word start_own(const duite *rt, const duite_options *options
     return own;
 }
 
-int start_agree(duite *rt, const duite_options *options, int code)
+int api_agree_at_start(duite *rt, const duite_options *options, int code)
 {
     size_t n = (size_t)rt->graph.n_ranks;
     struct start_word *all = code ? NULL : base_alloc(n * sizeof *all);
     if (!code && !all)
         code = base_no_memory("the ranks");
-    code = start_agree_on_code(rt->mpi, code);
+    code = api_agree_on_code(rt->mpi, code);
     if (!code) {
         const struct start_word own = start_own(rt, options);
         code = MPI_Allgather(&own, sizeof own, MPI_BYTE, all, sizeof own, MPI_BYTE, rt->mpi)

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-struct duite_call_private *inside_body(const duite *rt)
+struct duite_call_private *api_body(const duite *rt)
 {
     return rt ? task_running(&rt->graph) : NULL;
 }
@@ -39,8 +39,8 @@ static int body_recall(struct duite_call_private *body)
     return code ? base_error(code, "%s", body->sentence) : DUITE_OK;
 }
 
-int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,
-               bool sized, duite_object *object)
+int api_body_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,
+                 bool sized, duite_object *object)
 {
     if (!object)
         return body_remember(body, base_error(DUITE_E_ARGUMENT, "%s: nowhere to put the object",
@@ -51,7 +51,7 @@ int inside_new(struct duite_call_private *body, duite_type type, size_t count, s
     return body_remember(body, code);
 }
 
-int inside_free(struct duite_call_private *body, duite_object object)
+int api_body_free(struct duite_call_private *body, duite_object object)
 {
     int code = body_enter(body, "duite_free");
     if (!code)
@@ -63,8 +63,9 @@ int inside_free(struct duite_call_private *body, duite_object object)
     return body_remember(body, code);
 }
 
-int inside_fork(struct duite_call_private *body, const duite_task_options *how,
-                const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
+int api_body_fork(struct duite_call_private *body, const duite_task_options *how,
+                  const duite_kernel *kernel, const void *args, size_t n,
+                  const duite_object *objects)
 {
     struct task_options own = {.at = TASK_ANYWHERE};
     int code = body_enter(body, "duite_fork");
@@ -84,8 +85,8 @@ int inside_fork(struct duite_call_private *body, const duite_task_options *how,
     return body_remember(body, code);
 }
 
-int inside_set(struct duite_call_private *body, duite_object object, const void *values,
-               const size_t *count, const char *call)
+int api_body_set(struct duite_call_private *body, duite_object object, const void *values,
+                 const size_t *count, const char *call)
 {
     int code = body_enter(body, call);
     if (!code)
@@ -146,8 +147,8 @@ static int body_get(struct duite_call_private *body, duite_object object, void *
     return code;
 }
 
-int inside_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
-               const char *call)
+int api_body_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
+                 const char *call)
 {
     int code = body_get(body, object, values, count, call);
     int before = body_recall(body);
@@ -159,7 +160,7 @@ static bool body_is_alone(void *context)
     return task_alone(context);
 }
 
-int inside_wait(struct duite_call_private *body)
+int api_body_wait(struct duite_call_private *body)
 {
     struct task_scope *scope = body->scope;
     if (!scope)

@@ -15,12 +15,12 @@ struct recorded_graph {
     void *context;
     struct plan_record *record; /* NULL: the slot is free */
     uint32_t generation;
-    uint64_t replays; /* since recorded_each was called last */
+    uint64_t replays; /* since api_graphs_each was called last */
     uint64_t begun;   /* all of them */
-    uint64_t map_at;  /* of these: see program_migrate */
+    uint64_t map_at;  /* of these: see api_migrate */
 };
 
-int recorded_failed(duite *rt, int code)
+int api_graphs_failed(duite *rt, int code)
 {
     struct plan_record *record = rt->building;
     if (record->failed)
@@ -30,7 +30,7 @@ int recorded_failed(duite *rt, int code)
     return code;
 }
 
-int recorded_left(const duite *rt)
+int api_graphs_left(const duite *rt)
 {
     for (size_t i = 0; i < rt->n_recorded; i++)
         if (rt->recorded[i].record)
@@ -38,7 +38,7 @@ int recorded_left(const duite *rt)
     return DUITE_OK;
 }
 
-void recorded_stop(duite *rt)
+void api_graphs_stop(duite *rt)
 {
     for (size_t i = 0; i < rt->n_recorded; i++)
         if (rt->recorded[i].record)
@@ -55,6 +55,16 @@ static struct recorded_graph *graph_find(duite *rt, duite_graph name)
     base_error(DUITE_E_OBJECT, "recorded graph %u.%u %s", name.slot, name.generation,
                found && name.generation < found->generation ? "was freed" : "was never made");
     return NULL;
+}
+
+/* A call on a graph begins: *found is the graph. That there is none is remembered. */
+static int graph_enter(duite *rt, const char *call, duite_graph name, struct recorded_graph **found)
+{
+    const int code = api_enter(rt, call);
+    if (code)
+        return code;
+    *found = graph_find(rt, name);
+    return *found ? DUITE_OK : api_remember(rt, DUITE_E_OBJECT);
 }
 
 /* A slot with an empty record; 0 without memory. */
@@ -110,16 +120,16 @@ int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *g
 {
     if (graph)
         *graph = DUITE_NO_GRAPH;
-    int code = program_enter(rt, "duite_graph_new");
+    int code = api_enter(rt, "duite_graph_new");
     if (code)
         return code;
     if (!build || !graph)
-        return program_remember(rt, base_error(DUITE_E_ARGUMENT, "duite_graph_new: no %s",
-                                               build ? "place for the graph" : "build function"));
-    code = program_settle(rt);
+        return api_remember(rt, base_error(DUITE_E_ARGUMENT, "duite_graph_new: no %s",
+                                           build ? "place for the graph" : "build function"));
+    code = api_settle(rt);
     uint32_t slot = code ? 0 : graph_take_slot(rt);
     if (!slot)
-        return program_remember(rt, code ? code : base_no_memory("a recorded graph"));
+        return api_remember(rt, code ? code : base_no_memory("a recorded graph"));
     struct recorded_graph *made = &rt->recorded[slot - 1];
     made->build = build;
     made->context = context;
@@ -128,17 +138,15 @@ int duite_graph_new(duite *rt, duite_build *build, void *context, duite_graph *g
         graph_free_slot(rt, made);
     else
         *graph = (duite_graph){slot, made->generation};
-    return program_remember(rt, code);
+    return api_remember(rt, code);
 }
 
 int duite_graph_free(duite *rt, duite_graph graph)
 {
-    int code = program_enter(rt, "duite_graph_free");
+    struct recorded_graph *found;
+    const int code = graph_enter(rt, "duite_graph_free", graph, &found);
     if (code)
         return code;
-    struct recorded_graph *found = graph_find(rt, graph);
-    if (!found)
-        return program_remember(rt, DUITE_E_OBJECT);
     task_mix(&rt->graph, graph.slot);
     task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_GRAPH_FREE);
     graph_free_slot(rt, found);
@@ -147,26 +155,21 @@ int duite_graph_free(duite *rt, duite_graph graph)
 
 int duite_graph_args(duite *rt, duite_graph graph, size_t k, const void *args)
 {
-    int code = program_enter(rt, "duite_graph_args");
-    if (code)
-        return code;
-    const struct recorded_graph *found = graph_find(rt, graph);
-    return program_remember(rt, found ? plan_record_args(found->record, k, args) : DUITE_E_OBJECT);
+    struct recorded_graph *found;
+    const int code = graph_enter(rt, "duite_graph_args", graph, &found);
+    return code ? code : api_remember(rt, plan_record_args(found->record, k, args));
 }
 
 int duite_graph_bind(duite *rt, duite_graph graph, duite_object recorded, duite_object object)
 {
-    int code = program_enter(rt, "duite_graph_bind");
-    if (code)
-        return code;
-    const struct recorded_graph *found = graph_find(rt, graph);
-    return program_remember(rt, found ? plan_record_bind(found->record, recorded, object)
-                                      : DUITE_E_OBJECT);
+    struct recorded_graph *found;
+    const int code = graph_enter(rt, "duite_graph_bind", graph, &found);
+    return code ? code : api_remember(rt, plan_record_bind(found->record, recorded, object));
 }
 
 int duite_graph_print(duite *rt, duite_graph graph, FILE *file)
 {
-    int code = program_enter(rt, "duite_graph_print");
+    int code = api_enter(rt, "duite_graph_print");
     if (code)
         return code;
     const struct recorded_graph *found = graph_find(rt, graph);
@@ -188,8 +191,8 @@ static int graph_check_rounds(const struct plan_record *record, uint64_t rounds)
                       (unsigned long long)rounds, record->n_forks, PLAN_MAX_TASKS_BITS);
 }
 
-int recorded_each(duite *rt, int (*visit)(void *context, const struct plan_record *, double),
-                  void *context)
+int api_graphs_each(duite *rt, int (*visit)(void *context, const struct plan_record *, double),
+                    void *context)
 {
     int code = DUITE_OK;
     for (size_t i = 0; i < rt->n_recorded && !code; i++) {
@@ -206,7 +209,7 @@ int recorded_each(duite *rt, int (*visit)(void *context, const struct plan_recor
 /* The graph fits what it is bound to, and its objects live where they are to. */
 static int graph_prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds)
 {
-    int code = program_settle(rt);
+    int code = api_settle(rt);
     if (!code && !plan_record_fits(slot->record))
         code = graph_record(rt, slot);
     if (!code)
@@ -214,7 +217,7 @@ static int graph_prepare(duite *rt, struct recorded_graph *slot, uint64_t rounds
     if (!code)
         code = graph_check_rounds(slot->record, rounds);
     if (!code)
-        code = program_migrate(rt, slot->record, slot->begun, &slot->map_at);
+        code = api_migrate(rt, slot->record, slot->begun, &slot->map_at);
     slot->replays += !code;
     slot->begun += !code;
     return code;
@@ -228,7 +231,7 @@ static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t ro
         record->rounds += !code;
         work_tick(rt->pool);
         if (!code)
-            program_throttle(rt);
+            api_throttle(rt);
     }
     return code;
 }
@@ -261,7 +264,7 @@ static int replay_by_plan(duite *rt, struct plan_record *record, const duite_obj
     }
     record->by_plan = !code;
     if (!code)
-        program_throttle(rt);
+        api_throttle(rt);
     return code;
 }
 
@@ -279,19 +282,17 @@ static int replay_rounds(duite *rt, struct plan_record *record, uint64_t rounds)
 
 int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
 {
-    int code = program_enter(rt, "duite_replay");
+    struct recorded_graph *found;
+    int code = graph_enter(rt, "duite_replay", graph, &found);
     if (code)
         return code;
-    struct recorded_graph *found = graph_find(rt, graph);
-    if (!found)
-        return program_remember(rt, DUITE_E_OBJECT);
     task_mix(&rt->graph, graph.slot);
     task_mix(&rt->graph, rounds);
     task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_REPLAY);
     code = graph_prepare(rt, found, rounds);
     if (!code)
         trace_replay(rt->trace, graph.slot - 1, found->record, NULL, rounds);
-    return program_remember(rt, code ? code : replay_rounds(rt, found->record, rounds));
+    return api_remember(rt, code ? code : replay_rounds(rt, found->record, rounds));
 }
 
 /* Rounds of the dynamic path, the flag read after each. */
@@ -307,9 +308,9 @@ static int replay_fork_while(duite *rt, struct plan_record *record, duite_object
     while (!code && holds && record->rounds < max) {
         code = replay_fork_rounds(rt, record, 1);
         if (!code) /* a failure is told by the next wait */
-            holds = !program_get(rt, flag, TASK_ANYWHERE, values, &count, "duite_replay_while") &&
+            holds = !api_get(rt, flag, TASK_ANYWHERE, values, &count, "duite_replay_while") &&
                     count && plan_flag_holds(type, values);
-        if (!code && instance_is_broken(rt))
+        if (!code && api_is_broken(rt))
             code = rt->comm ? comm_broken(rt->comm) : rt->graph.broken;
     }
     rt->graph.root.forks = forks + max * record->n_calls;
@@ -333,12 +334,10 @@ static int replay_rounds_while(duite *rt, struct plan_record *record, duite_obje
 
 int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t max)
 {
-    int code = program_enter(rt, "duite_replay_while");
+    struct recorded_graph *found;
+    int code = graph_enter(rt, "duite_replay_while", graph, &found);
     if (code)
         return code;
-    struct recorded_graph *found = graph_find(rt, graph);
-    if (!found)
-        return program_remember(rt, DUITE_E_OBJECT);
     task_mix(&rt->graph, graph.slot);
     task_mix(&rt->graph, max);
     task_mix(&rt->graph, task_name_bits(flag));
@@ -348,7 +347,7 @@ int duite_replay_while(duite *rt, duite_graph graph, duite_object flag, uint64_t
         code = base_error(DUITE_E_ARGUMENT, "duite_replay_while: at most 0 rounds");
     if (!code)
         trace_replay(rt->trace, graph.slot - 1, found->record, &flag, max);
-    return program_remember(rt, code ? code : replay_rounds_while(rt, found->record, flag, max));
+    return api_remember(rt, code ? code : replay_rounds_while(rt, found->record, flag, max));
 }
 
 static bool replay_is_over(void *context)
@@ -358,7 +357,7 @@ static bool replay_is_over(void *context)
 
 int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
 {
-    int code = program_enter(rt, "duite_graph_rounds");
+    int code = api_enter(rt, "duite_graph_rounds");
     if (code)
         return code;
     const struct recorded_graph *found = graph_find(rt, graph);
@@ -371,7 +370,7 @@ int duite_graph_rounds(duite *rt, duite_graph graph, uint64_t *rounds)
                replay_is_over, found->record);
     trace_wait(rt->trace, from);
     if (!plan_replay_over(found->record)) {
-        instance_give_up(rt);
+        api_give_up(rt);
         return comm_broken(rt->comm);
     }
     *rounds = plan_replay_rounds(found->record);

@@ -45,107 +45,107 @@ struct duite {
 
 /* True once nothing but stop is left: memory ran out in a fork, the ranks differ, a message was
  * lost. */
-bool instance_is_broken(const duite *rt);
+bool api_is_broken(const duite *rt);
 
 /* For a broken runtime: tells the other ranks, awaits nothing any more, and returns when no task is
  * left. Does nothing the second time. */
-void instance_give_up(duite *rt);
+void api_give_up(duite *rt);
 
 /* ---- agree.c: collective ---- */
 
 /* DUITE_OK if no rank failed so far. Else the code of this rank; on a rank that did not fail itself
  * DUITE_E_DIFFERENT (of memory: DUITE_E_MEMORY), with the message of the first rank whose failure
  * is the worst. */
-int start_agree_on_code(MPI_Comm mpi, int code);
+int api_agree_on_code(MPI_Comm mpi, int code);
 /* This rank's parts have started, or failed with `code`. Compares codes and options of all ranks:
  * all succeed, or all fail. Errors: those of the ranks; DUITE_E_DIFFERENT, which names what differs
  * and on which ranks. */
-int start_agree(duite *rt, const duite_options *options, int code);
+int api_agree_at_start(duite *rt, const duite_options *options, int code);
 
 /* ---- options.c ---- */
 
 /* Check the options: the first function those without which the ranks cannot even be asked, the
  * second the rest. The rest may be wrong on one rank alone; all ranks agree on that later. Errors:
  * arguments. */
-int options_check(const duite_options *options);
-int options_check_rest(const duite_options *options);
+int api_check_options(const duite_options *options);
+int api_check_options_rest(const duite_options *options);
 
 /* Policies that are not built in are watched from now on: one that does not return is named. The
  * runtime knows its ranks and threads. Local. Errors: memory, DUITE_E_SYSTEM. */
-int policies_watch(duite *rt, const duite_options *options);
+int api_watch_policies(duite *rt, const duite_options *options);
 
 /* ---- program.c, wait.c ---- */
 
 /* Whether this call may be made now: DUITE_OK, or the error to return. */
-int program_enter(duite *rt, const char *call);
+int api_enter(duite *rt, const char *call);
 /* The same, even while a graph is recorded. */
-int program_enter_any(duite *rt, const char *call);
+int api_enter_any(duite *rt, const char *call);
 /* Keeps an error for the next get, wait or stop, or, inside build, for who called it. Returns code.
  */
-int program_remember(duite *rt, int code);
+int api_remember(duite *rt, int code);
 /* Settles the homes of all objects. */
-int program_settle(duite *rt);
+int api_settle(duite *rt);
 /* Works while more tasks than the window allows are unfinished. Called after forks. */
-void program_throttle(duite *rt);
+void api_throttle(duite *rt);
 /* Waits until all ranks made this call, found that they forked the same, and have no task left that
  * was forked before it. */
-int program_meet(duite *rt, const char *call);
+int api_meet(duite *rt, const char *call);
 /* One reduction over all ranks: own, whose head is filled in here, gets the first failure's number.
  * There are several ranks. Errors: as comm_agree. */
-int program_agree(duite *rt, const struct work_why *why, struct comm_word *own);
+int api_agree(duite *rt, const struct work_why *why, struct comm_word *own);
 /* Gathers words: own, whose head is filled in; *words, one a rank. All ranks have agreed on the
  * call that this is a part of. */
-int program_gather(duite *rt, const struct work_why *why, struct comm_word *own,
-                   struct comm_word **words);
+int api_gather(duite *rt, const struct work_why *why, struct comm_word *own,
+               struct comm_word **words);
 /* ---- migrate.c ---- */
 
 /* The `replay`-th replay of a recorded graph begins, from 0: if it is time, blocks of objects move
  * where the mapping, or the balancer, wants them. `*map_at`: the replay before which the mapping is
  * to see its tasks (again); it begins with 0. */
-int program_migrate(duite *rt, const struct plan_record *record, uint64_t replay, uint64_t *map_at);
+int api_migrate(duite *rt, const struct plan_record *record, uint64_t replay, uint64_t *map_at);
 /* ---- wait.c, trace.c ---- */
 
 /* duite_wait, under the name of who calls it. */
-int program_wait(duite *rt, const char *call);
+int api_wait(duite *rt, const char *call);
 /* The trace ends, if there is one that did not: as duite_trace_end, under the name of who calls. */
-int traced_end(duite *rt, const char *call);
+int api_trace_end(duite *rt, const char *call);
 /* Recording begins. All ranks have started. */
-void traced_begin(duite *rt);
+void api_trace_begin(duite *rt);
 /* Opens the trace that the options want. Local. */
-int traced_open(duite *rt, const duite_options *options);
+int api_trace_open(duite *rt, const duite_options *options);
 
 /* Copies to the values, or tells the count, whichever is wanted here. */
-int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
-                const char *call);
+int api_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
+            const char *call);
 
 /* ---- graphs.c ---- */
 
 /* Visits all graphs that were replayed since the last time, with the record and the number of
  * rounds that ran. No replay is on its way. Errors: those of `visit`. */
-int recorded_each(duite *rt, int (*visit)(void *context, const struct plan_record *, double),
-                  void *context);
+int api_graphs_each(duite *rt, int (*visit)(void *context, const struct plan_record *, double),
+                    void *context);
 
 /* Keeps the first error of a call inside build. Returns code. */
-int recorded_failed(duite *rt, int code);
+int api_graphs_failed(duite *rt, int code);
 /* DUITE_E_NOT_FREED if graphs are left. */
-int recorded_left(const duite *rt);
+int api_graphs_left(const duite *rt);
 /* Frees all graphs; no task is left. */
-void recorded_stop(duite *rt);
+void api_graphs_stop(duite *rt);
 /* ---- bodies.c ---- */
 
 /* The body that runs on this thread, or NULL; and its calls. */
-struct duite_call_private *inside_body(const duite *rt);
-int inside_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,
-               bool sized, duite_object *object);
-int inside_free(struct duite_call_private *body, duite_object object);
-int inside_fork(struct duite_call_private *body, const duite_task_options *how,
-                const duite_kernel *kernel, const void *args, size_t n,
-                const duite_object *objects);
-int inside_set(struct duite_call_private *body, duite_object object, const void *values,
-               const size_t *count, const char *call);
+struct duite_call_private *api_body(const duite *rt);
+int api_body_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,
+                 bool sized, duite_object *object);
+int api_body_free(struct duite_call_private *body, duite_object object);
+int api_body_fork(struct duite_call_private *body, const duite_task_options *how,
+                  const duite_kernel *kernel, const void *args, size_t n,
+                  const duite_object *objects);
+int api_body_set(struct duite_call_private *body, duite_object object, const void *values,
+                 const size_t *count, const char *call);
 /* Copies to the values, or tells the count. */
-int inside_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
-               const char *call);
-int inside_wait(struct duite_call_private *body);
+int api_body_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
+                 const char *call);
+int api_body_wait(struct duite_call_private *body);
 
 #endif

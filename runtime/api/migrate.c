@@ -132,7 +132,7 @@ static size_t migration_part_end(size_t all, size_t at)
 static int migration_exchange(struct migration *m, struct comm_word *own, struct comm_word **words)
 {
     static const struct work_why why = {"duite_replay", "the other ranks to move blocks", NULL};
-    return program_gather(m->rt, &why, own, words);
+    return api_gather(m->rt, &why, own, words);
 }
 
 static int migration_gather(struct migration *m)
@@ -221,7 +221,7 @@ static bool migration_is_allowed(const struct migration *m, size_t block)
 
 static int migration_ask_balancer(struct migration *m, uint64_t *next)
 {
-    int code = recorded_each(m->rt, migration_add_traffic, m);
+    int code = api_graphs_each(m->rt, migration_add_traffic, m);
     if (!code)
         code = map_traffic_end(&m->traffic, &m->blocks);
     if (!code)
@@ -337,7 +337,7 @@ static int migration_refused(const struct migration *m)
 static int migration_run(struct migration *m, uint64_t replay, uint64_t *map_at)
 {
     duite *rt = m->rt;
-    int code = program_meet(rt, "duite_replay");
+    int code = api_meet(rt, "duite_replay");
     if (!code)
         code = migration_begin(m);
     if (!code)
@@ -366,7 +366,7 @@ static int migration_run(struct migration *m, uint64_t replay, uint64_t *map_at)
     return code;
 }
 
-int program_migrate(duite *rt, const struct plan_record *record, uint64_t replay, uint64_t *map_at)
+int api_migrate(duite *rt, const struct plan_record *record, uint64_t replay, uint64_t *map_at)
 {
     struct instance_migration *own = &rt->migration;
     bool maps = rt->mapping.own->map_tasks && replay == *map_at;

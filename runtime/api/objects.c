@@ -10,38 +10,38 @@
 
 int duite_new(duite *rt, duite_type type, size_t count, duite_object *object)
 {
-    struct duite_call_private *body = inside_body(rt);
+    struct duite_call_private *body = api_body(rt);
     if (object)
         *object = DUITE_NO_OBJECT;
     if (body)
-        return inside_new(body, type, count, count, false, object);
-    int code = program_enter(rt, "duite_new");
+        return api_body_new(body, type, count, count, false, object);
+    int code = api_enter(rt, "duite_new");
     if (code)
         return code;
     if (!object)
-        return program_remember(
-            rt, base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
+        return api_remember(rt,
+                            base_error(DUITE_E_ARGUMENT, "duite_new: nowhere to put the object"));
     task_mix(&rt->graph, count);
     task_mix(&rt->graph, (uint64_t)type);
     task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_NEW);
     code = data_object_new(&rt->graph.table, type, count, object);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *object);
-    return program_remember(rt, code);
+    return api_remember(rt, code);
 }
 
 int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_object *object)
 {
-    struct duite_call_private *body = inside_body(rt);
+    struct duite_call_private *body = api_body(rt);
     if (object)
         *object = DUITE_NO_OBJECT;
     if (body)
-        return inside_new(body, type, count, max, true, object);
-    int code = program_enter(rt, "duite_new_sized");
+        return api_body_new(body, type, count, max, true, object);
+    int code = api_enter(rt, "duite_new_sized");
     if (code)
         return code;
     if (!object)
-        return program_remember(
+        return api_remember(
             rt, base_error(DUITE_E_ARGUMENT, "duite_new_sized: nowhere to put the object"));
     task_mix(&rt->graph, count);
     task_mix(&rt->graph, max);
@@ -50,10 +50,10 @@ int duite_new_sized(duite *rt, duite_type type, size_t count, size_t max, duite_
     code = data_object_new_sized(&rt->graph.table, type, count, max, object);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *object);
-    return program_remember(rt, code);
+    return api_remember(rt, code);
 }
 
-static void mix_name(duite *rt, duite_object object)
+static void object_mix_name(duite *rt, duite_object object)
 {
     task_mix(&rt->graph, task_name_bits(object));
 }
@@ -62,13 +62,13 @@ int duite_view(duite *rt, duite_object object, size_t n, const size_t *indices, 
 {
     if (view)
         *view = DUITE_NO_OBJECT;
-    int code = program_enter(rt, "duite_view");
+    int code = api_enter(rt, "duite_view");
     if (code)
         return code;
     if (!view)
-        return program_remember(
-            rt, base_error(DUITE_E_ARGUMENT, "duite_view: nowhere to put the view"));
-    mix_name(rt, object);
+        return api_remember(rt,
+                            base_error(DUITE_E_ARGUMENT, "duite_view: nowhere to put the view"));
+    object_mix_name(rt, object);
     task_mix(&rt->graph, n);
     for (size_t i = 0; indices && i < n; i++)
         task_mix(&rt->graph, indices[i]);
@@ -76,59 +76,59 @@ int duite_view(duite *rt, duite_object object, size_t n, const size_t *indices, 
     code = data_view_new(&rt->graph.table, object, n, indices, view);
     if (!code)
         trace_object(rt->trace, &rt->graph.table, *view);
-    return program_remember(rt, code);
+    return api_remember(rt, code);
 }
 
-static void mix_double(duite *rt, double value)
+static void object_mix_double(duite *rt, double value)
 {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     task_mix(&rt->graph, bits);
 }
 
-static void mix_hint(duite *rt, duite_object object, double weight, size_t n,
-                     const duite_object *neighbours, const double *edge_weights)
+static void object_mix_hint(duite *rt, duite_object object, double weight, size_t n,
+                            const duite_object *neighbours, const double *edge_weights)
 {
-    mix_name(rt, object);
-    mix_double(rt, weight);
+    object_mix_name(rt, object);
+    object_mix_double(rt, weight);
     task_mix(&rt->graph, n);
     for (size_t i = 0; i < n && neighbours; i++)
-        mix_name(rt, neighbours[i]);
+        object_mix_name(rt, neighbours[i]);
     for (size_t i = 0; i < n && edge_weights; i++)
-        mix_double(rt, edge_weights[i]);
+        object_mix_double(rt, edge_weights[i]);
 }
 
 int duite_hint(duite *rt, duite_object object, double weight, size_t n,
                const duite_object *neighbours, const double *edge_weights)
 {
-    int code = program_enter(rt, "duite_hint");
+    int code = api_enter(rt, "duite_hint");
     if (code)
         return code;
-    mix_hint(rt, object, weight, n, neighbours, edge_weights);
+    object_mix_hint(rt, object, weight, n, neighbours, edge_weights);
     task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_HINT);
     code = map_hint(&rt->graph.table, object, weight, n, neighbours, edge_weights);
     if (!code)
         trace_hint(rt->trace, object, weight, n, neighbours, edge_weights);
-    return program_remember(rt, code);
+    return api_remember(rt, code);
 }
 
 int duite_colocate(duite *rt, duite_object object, duite_object leader)
 {
-    int code = program_enter(rt, "duite_colocate");
+    int code = api_enter(rt, "duite_colocate");
     if (code)
         return code;
-    mix_name(rt, object);
-    mix_name(rt, leader);
+    object_mix_name(rt, object);
+    object_mix_name(rt, leader);
     task_mixed(&rt->graph, TASK_CALLED, TASK_CALLED_COLOCATE);
     code = map_colocate(&rt->graph.table, object, leader);
     if (!code)
         trace_colocate(rt->trace, object, leader);
-    return program_remember(rt, code);
+    return api_remember(rt, code);
 }
 
 int duite_home(duite *rt, duite_object object)
 {
-    if (program_enter_any(rt, "duite_home") || program_settle(rt))
+    if (api_enter_any(rt, "duite_home") || api_settle(rt))
         return -1;
     const struct data_object *found = data_object_find(&rt->graph.table, object);
     return found ? found->home : -1;
@@ -143,7 +143,7 @@ static bool object_is_here(const duite *rt, const struct data_object *object)
 
 int duite_is_local(duite *rt, duite_object object)
 {
-    if (program_enter_any(rt, "duite_is_local") || program_settle(rt))
+    if (api_enter_any(rt, "duite_is_local") || api_settle(rt))
         return 1;
     struct data_table *table = &rt->graph.table;
     const struct data_object *found = data_object_find(table, object);
@@ -154,14 +154,14 @@ int duite_is_local(duite *rt, duite_object object)
 
 int duite_free(duite *rt, duite_object object)
 {
-    struct duite_call_private *body = inside_body(rt);
+    struct duite_call_private *body = api_body(rt);
     if (body)
-        return inside_free(body, object);
-    int code = program_enter(rt, "duite_free");
+        return api_body_free(body, object);
+    int code = api_enter(rt, "duite_free");
     if (!code)
-        code = program_remember(rt, program_settle(rt));
+        code = api_remember(rt, api_settle(rt));
     if (!code)
-        code = program_remember(rt, task_free_object(&rt->graph.root, work_main(rt->pool), object));
+        code = api_remember(rt, task_free_object(&rt->graph.root, work_main(rt->pool), object));
     if (!code)
         trace_freed(rt->trace, object);
     return code;

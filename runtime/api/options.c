@@ -87,7 +87,7 @@ static int options_state_too_large(const duite_scheduler *scheduler, const duite
                       schedules ? scheduler->state_size : balance->state_size, BASE_MAX_STATE);
 }
 
-int options_check(const duite_options *options)
+int api_check_options(const duite_options *options)
 {
     if (!options)
         return base_error(DUITE_E_ARGUMENT,
@@ -166,7 +166,7 @@ static int options_check_seconds(const duite_options *options)
     return DUITE_OK;
 }
 
-int options_check_rest(const duite_options *options)
+int api_check_options_rest(const duite_options *options)
 {
     if (!options->kernels)
         return base_error(DUITE_E_ARGUMENT, "duite_start: no list of kernels");

@@ -4,7 +4,7 @@
 #include "runtime/balance/balance.h"
 #include "runtime/sched/sched.h"
 
-int policies_watch(duite *rt, const duite_options *options)
+int api_watch_policies(duite *rt, const duite_options *options)
 {
     const char *policy[BASE_POLICY_KINDS] = {
         [BASE_SCHEDULER] = sched_is_foreign(options->scheduler) ? options->scheduler->name : NULL,

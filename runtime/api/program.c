@@ -8,7 +8,7 @@
 
 #include <stdio.h>
 
-int program_enter_any(duite *rt, const char *call)
+int api_enter_any(duite *rt, const char *call)
 {
     if (!rt)
         return base_error(DUITE_E_ARGUMENT, "%s: no runtime", call);
@@ -19,32 +19,31 @@ int program_enter_any(duite *rt, const char *call)
                           "%s: an earlier call failed beyond repair (%s); only duite_stop is left",
                           call, duite_code_text(rt->graph.broken));
     if (rt->mpi_held)
-        return program_remember(
+        return api_remember(
             rt,
             base_error(DUITE_E_STATE, "%s: not between duite_mpi_begin and duite_mpi_end", call));
     if (!rt->comm || !comm_broken(rt->comm))
         return DUITE_OK;
-    instance_give_up(rt); /* once the program knows of it no body finds its context gone */
+    api_give_up(rt); /* once the program knows of it no body finds its context gone */
     return comm_broken(rt->comm);
 }
 
-int program_enter(duite *rt, const char *call)
+int api_enter(duite *rt, const char *call)
 {
-    int code = program_enter_any(rt, call);
+    int code = api_enter_any(rt, call);
     if (code || !rt->building)
         return code;
-    return program_remember(rt,
-                            base_error(DUITE_E_STATE, "%s: not while a graph is recorded", call));
+    return api_remember(rt, base_error(DUITE_E_STATE, "%s: not while a graph is recorded", call));
 }
 
-int program_remember(duite *rt, int code)
+int api_remember(duite *rt, int code)
 {
     if (code && rt->building)
-        return recorded_failed(rt, code);
+        return api_graphs_failed(rt, code);
     if (code == DUITE_E_MEMORY && rt->comm)
         rt->graph.broken = code; /* the other ranks did what this one could not */
     if (rt->graph.broken)
-        instance_give_up(rt);
+        api_give_up(rt);
     if (!code || rt->remembered)
         return code;
     rt->remembered = code;
@@ -52,7 +51,7 @@ int program_remember(duite *rt, int code)
     return code;
 }
 
-int program_settle(duite *rt)
+int api_settle(duite *rt)
 {
     const struct data_table *table = &rt->graph.table;
     if (!table->n_unsettled)
@@ -61,7 +60,7 @@ int program_settle(duite *rt)
     int code = map_settle(&rt->graph.table, &rt->mapping, rt->seed);
     if (!code)
         trace_settled(rt->trace, table);
-    else if (rt->comm && code != DUITE_E_MEMORY)     /* of which program_remember makes more */
+    else if (rt->comm && code != DUITE_E_MEMORY)     /* of which api_remember makes more */
         comm_broke(rt->comm, code, duite_message()); /* other ranks may have homes now */
     return code;
 }
@@ -70,7 +69,7 @@ int program_settle(duite *rt)
 
 int duite_mpi_begin(duite *rt)
 {
-    const int code = program_enter(rt, "duite_mpi_begin");
+    const int code = api_enter(rt, "duite_mpi_begin");
     if (code)
         return code;
     if (rt->comm)
@@ -100,7 +99,7 @@ int duite_mpi_end(duite *rt)
  * not send what it needs, is not throttled: all tasks it has are even earlier, so they are over.
  * Contributions do not wait for the access that combines them, and what combines waits for
  * earlier tasks only. Messages go on, since a throttled rank sends and receives as it works. */
-void program_throttle(duite *rt)
+void api_throttle(duite *rt)
 {
     if (rt->window)
         work_throttle(rt->pool, rt->window);
@@ -110,22 +109,22 @@ static int fork_task(duite *rt, const struct task_options *how, const duite_kern
                      const void *args, size_t n, const duite_object *objects)
 {
     if (rt->building)
-        return program_remember(rt, plan_record_fork(rt->building, how, kernel, args, n, objects));
-    int code = program_settle(rt);
+        return api_remember(rt, plan_record_fork(rt->building, how, kernel, args, n, objects));
+    int code = api_settle(rt);
     if (!code)
         code = task_fork(&rt->graph.root, work_main(rt->pool), how, kernel, args, n, objects);
     if (!code)
         trace_fork(rt->trace, kernel, how, n, objects);
     work_tick(rt->pool);
     if (!code)
-        program_throttle(rt);
-    return program_remember(rt, code);
+        api_throttle(rt);
+    return api_remember(rt, code);
 }
 
 /* Whether the task may be forked, and is none of this rank's business: then it is forked. Messages
  * are looked after now and then all the same. */
-static bool pruned(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
-                   const duite_object *objects)
+static bool fork_is_pruned(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
+                           const duite_object *objects)
 {
     enum { FORKS_A_TICK = 32 };
     if (!rt || !rt->comm || rt->building || rt->graph.table.n_unsettled || rt->graph.broken ||
@@ -141,12 +140,12 @@ static bool pruned(duite *rt, const duite_kernel *kernel, const void *args, size
 int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                const duite_object *objects)
 {
-    if (pruned(rt, kernel, args, n, objects))
+    if (fork_is_pruned(rt, kernel, args, n, objects))
         return DUITE_OK;
-    struct duite_call_private *body = inside_body(rt);
+    struct duite_call_private *body = api_body(rt);
     if (body)
-        return inside_fork(body, NULL, kernel, args, n, objects);
-    int code = program_enter_any(rt, "duite_fork");
+        return api_body_fork(body, NULL, kernel, args, n, objects);
+    int code = api_enter_any(rt, "duite_fork");
     return code ? code
                 : fork_task(rt, &(struct task_options){.at = TASK_ANYWHERE}, kernel, args, n,
                             objects);
@@ -155,11 +154,11 @@ int duite_fork(duite *rt, const duite_kernel *kernel, const void *args, size_t n
 int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *args, size_t n,
                   const duite_object *objects)
 {
-    int code = program_enter_any(rt, "duite_fork_at");
+    int code = api_enter_any(rt, "duite_fork_at");
     if (code)
         return code;
     if (rank < 0)
-        return program_remember(
+        return api_remember(
             rt, base_error(DUITE_E_ARGUMENT, "duite_fork_at: there is no rank %d", rank));
     return fork_task(rt, &(struct task_options){.at = rank}, kernel, args, n, objects);
 }
@@ -167,10 +166,10 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
 int duite_fork_with(duite *rt, const duite_task_options *how, const duite_kernel *kernel,
                     const void *args, size_t n, const duite_object *objects)
 {
-    struct duite_call_private *body = inside_body(rt);
+    struct duite_call_private *body = api_body(rt);
     if (body)
-        return inside_fork(body, how, kernel, args, n, objects);
-    int code = program_enter_any(rt, "duite_fork_with");
+        return api_body_fork(body, how, kernel, args, n, objects);
+    int code = api_enter_any(rt, "duite_fork_with");
     if (code)
         return code;
     struct task_options own = {.at = TASK_ANYWHERE};
@@ -179,24 +178,24 @@ int duite_fork_with(duite *rt, const duite_task_options *how, const duite_kernel
                                     .priority = how->priority,
                                     .cost = how->cost > 0 ? how->cost : 0};
     if (how && how->at && own.at < 0)
-        return program_remember(
+        return api_remember(
             rt, base_error(DUITE_E_ARGUMENT, "duite_fork_with: there is no rank %d", own.at));
     return fork_task(rt, &own, kernel, args, n, objects);
 }
 
-static int set(duite *rt, duite_object object, const void *values, const size_t *count,
-               const char *call)
+static int object_set(duite *rt, duite_object object, const void *values, const size_t *count,
+                      const char *call)
 {
-    struct duite_call_private *body = inside_body(rt);
+    struct duite_call_private *body = api_body(rt);
     if (body)
-        return inside_set(body, object, values, count, call);
-    int code = program_enter_any(rt, call);
+        return api_body_set(body, object, values, count, call);
+    int code = api_enter_any(rt, call);
     if (!code && rt->building)
-        return program_remember(rt, plan_record_set(rt->building, object, values, count));
+        return api_remember(rt, plan_record_set(rt->building, object, values, count));
     if (!code)
-        code = program_remember(rt, program_settle(rt));
+        code = api_remember(rt, api_settle(rt));
     if (!code)
-        code = program_remember(
+        code = api_remember(
             rt, task_set_object(&rt->graph.root, work_main(rt->pool), object, values, count));
     if (!code)
         trace_set(rt->trace, object);
@@ -205,12 +204,12 @@ static int set(duite *rt, duite_object object, const void *values, const size_t 
 
 int duite_set(duite *rt, duite_object object, const void *values)
 {
-    return set(rt, object, values, NULL, "duite_set");
+    return object_set(rt, object, values, NULL, "duite_set");
 }
 
 int duite_set_sized(duite *rt, duite_object object, const void *values, size_t count)
 {
-    return set(rt, object, values, &count, "duite_set_sized");
+    return object_set(rt, object, values, &count, "duite_set_sized");
 }
 
 /* ---- Who am I ---- */

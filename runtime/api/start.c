@@ -62,7 +62,7 @@ static int instance_start_graph(duite *rt, const duite_options *options)
     rt->seed = options->seed;
     rt->window = options->window;
     static const duite_kernel *const none[] = {NULL};
-    int code = options_check_rest(options);
+    int code = api_check_options_rest(options);
     int started = task_graph_start(&rt->graph, rank, n, code ? none : options->kernels,
                                    code ? NULL : options->laws);
     if (!code)
@@ -90,9 +90,9 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
     rt->oversubscribed = host.total > cores.n;
     bool bind = options->bind && !rt->oversubscribed;
     if (!code)
-        code = policies_watch(rt, options);
+        code = api_watch_policies(rt, options);
     if (!code && options->trace)
-        code = traced_open(rt, options);
+        code = api_trace_open(rt, options);
     if (!code)
         code = work_start(
             &rt->pool,
@@ -118,7 +118,7 @@ static int instance_start_workers(duite *rt, const duite_options *options, int c
 
 /* ---- The end ---- */
 
-bool instance_is_broken(const duite *rt)
+bool api_is_broken(const duite *rt)
 {
     return rt->graph.broken || (rt->comm && comm_broken(rt->comm));
 }
@@ -139,7 +139,7 @@ static bool instance_has_nothing_left(void *context)
     return rt->comm && comm_is_cut(rt->comm) && work_stands_still(rt->pool, &end->still);
 }
 
-void instance_give_up(duite *rt)
+void api_give_up(duite *rt)
 {
     if (atomic_exchange(&rt->graph.given_up, 1))
         return;
@@ -154,11 +154,11 @@ void instance_give_up(duite *rt)
 
 static void instance_end(duite *rt)
 {
-    if (instance_is_broken(rt))
-        instance_give_up(rt);
+    if (api_is_broken(rt))
+        api_give_up(rt);
     work_stop(rt->pool);
     base_watchdog_stop(rt->watchdog);
-    recorded_stop(rt); /* closes their channels */
+    api_graphs_stop(rt); /* closes their channels */
     bool whole = comm_stop(rt->comm);
     trace_free(rt->trace, whole);
     if (whole)
@@ -184,7 +184,7 @@ int duite_start(duite **out, const duite_options *options)
     if (!out)
         return base_error(DUITE_E_ARGUMENT, "duite_start: nowhere to put the runtime");
     *out = NULL;
-    int code = options_check(options);
+    int code = api_check_options(options);
     if (!code)
         code = instance_start_mpi();
     if (code)
@@ -194,7 +194,7 @@ int duite_start(duite **out, const duite_options *options)
         return base_error(DUITE_E_MPI, "MPI_Comm_dup failed");
     MPI_Comm_set_errhandler(mpi, MPI_ERRORS_RETURN);
     duite *rt = base_alloc_zero(sizeof *rt);
-    code = start_agree_on_code(mpi, rt ? DUITE_OK : base_no_memory("the runtime"));
+    code = api_agree_on_code(mpi, rt ? DUITE_OK : base_no_memory("the runtime"));
     if (code) {
         MPI_Comm_free(&mpi);
         base_free(rt);
@@ -202,7 +202,7 @@ int duite_start(duite **out, const duite_options *options)
     }
     atomic_fetch_add(&alive, 1);
     /* From here on every rank comes to start_agree(), whatever fails. */
-    code = start_agree(rt, options, instance_start_parts(rt, mpi, options));
+    code = api_agree_at_start(rt, options, instance_start_parts(rt, mpi, options));
     if (code) {
         instance_end(rt);
     } else {
@@ -210,7 +210,7 @@ int duite_start(duite **out, const duite_options *options)
                      options->balance->migrate || options->mapping->map_tasks;
         if (rt->comm && moves)
             comm_measure(rt->comm);
-        traced_begin(rt);
+        api_trace_begin(rt);
         comm_open(rt->comm, options->balance->victim != NULL);
         *out = rt;
     }
@@ -227,7 +227,7 @@ static int instance_not_freed(const duite *rt)
             return base_error(
                 DUITE_E_NOT_FREED, "%u objects were not freed; the first is %u.%u, %zu bytes",
                 table->n_alive, slot, table->object[slot].generation, table->object[slot].bytes);
-    return recorded_left(rt);
+    return api_graphs_left(rt);
 }
 
 int duite_stop(duite **out)
@@ -242,11 +242,11 @@ int duite_stop(duite **out)
                           rt->building ? "while a graph is recorded"
                                        : "between duite_mpi_begin and duite_mpi_end");
     const uint64_t from = rt->trace ? base_ticks() : 0;
-    int code = program_wait(rt, "duite_stop");
+    int code = api_wait(rt, "duite_stop");
     trace_wait(rt->trace, from);
     if (!code)
         code = instance_not_freed(rt);
-    const int traced = instance_is_broken(rt) ? DUITE_OK : traced_end(rt, "duite_stop");
+    const int traced = api_is_broken(rt) ? DUITE_OK : api_trace_end(rt, "duite_stop");
     if (!code)
         code = traced;
     instance_end(rt);

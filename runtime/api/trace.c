@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-int traced_open(duite *rt, const duite_options *options)
+int api_trace_open(duite *rt, const duite_options *options)
 {
     return trace_open(&rt->trace, &(struct trace_setup){.file = options->trace,
                                                         .first = options->trace_first,
@@ -19,7 +19,7 @@ int traced_open(duite *rt, const duite_options *options)
                                                         .graph = &rt->graph});
 }
 
-void traced_begin(duite *rt)
+void api_trace_begin(duite *rt)
 {
     if (!rt->trace)
         return;
@@ -30,22 +30,22 @@ void traced_begin(duite *rt)
 
 /* Waits for all as duite_wait does, and the trace says so: else what came before would seem to have
  * taken the main program so long to fork. */
-static int meet(duite *rt, const char *call)
+static int step_meet(duite *rt, const char *call)
 {
     const uint64_t from = base_ticks();
-    const int code = program_meet(rt, call);
+    const int code = api_meet(rt, call);
     trace_wait(rt->trace, from);
     return code;
 }
 
 int duite_trace_step(duite *rt, uint64_t step)
 {
-    int code = program_enter(rt, "duite_trace_step");
+    int code = api_enter(rt, "duite_trace_step");
     if (code || !rt->trace || rt->traced)
         return code;
     bool wants = trace_wants(rt->trace, step);
     if (wants != trace_is_on(rt->trace)) {
-        code = meet(rt, "duite_trace_step");
+        code = step_meet(rt, "duite_trace_step");
         trace_flush(rt->trace);
         trace_switch(rt->trace, wants, step, rt->graph.root.forks);
     }
@@ -55,7 +55,7 @@ int duite_trace_step(duite *rt, uint64_t step)
     return code;
 }
 
-static int close_file(duite *rt)
+static int trace_close_file(duite *rt)
 {
     struct trace_counters *counters = base_alloc_zero(rt->threads * sizeof *counters);
     if (counters)
@@ -67,25 +67,25 @@ static int close_file(duite *rt)
     return code;
 }
 
-int traced_end(duite *rt, const char *call)
+int api_trace_end(duite *rt, const char *call)
 {
     if (!rt->trace || rt->traced)
         return DUITE_OK;
-    int code = meet(rt, call);
+    int code = step_meet(rt, call);
     if (rt->comm && !code) {
         comm_hold(rt->comm);
         trace_align(rt->trace, rt->mpi);
         comm_let_go(rt->comm);
     }
     rt->traced = true;
-    const int closed = close_file(rt);
+    const int closed = trace_close_file(rt);
     return code ? code : closed;
 }
 
 int duite_trace_end(duite *rt)
 {
-    int code = program_enter(rt, "duite_trace_end");
-    return code ? code : traced_end(rt, "duite_trace_end");
+    int code = api_enter(rt, "duite_trace_end");
+    return code ? code : api_trace_end(rt, "duite_trace_end");
 }
 
 int duite_trace_bounds(const char *trace, double *critical_path, double *lower_bound)

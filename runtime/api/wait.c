@@ -9,25 +9,25 @@
 #include <stdio.h>
 
 /* The remembered error, which is returned once. */
-static int recall(duite *rt)
+static int wait_recall(duite *rt)
 {
     int code = rt->remembered;
     rt->remembered = DUITE_OK;
     return code ? base_error(code, "%s", rt->sentence) : DUITE_OK;
 }
 
-static bool copy_done(void *context)
+static bool copy_is_done(void *context)
 {
     return atomic_load_explicit(&((struct task_copy *)context)->done, memory_order_acquire);
 }
 
-static void between(void *context)
+static void wait_work_once(void *context)
 {
     work_once(context);
 }
 
 /* What this rank tells the others: what it forked, and what failed. */
-static struct comm_word own_word(const struct task_graph *graph)
+static struct comm_word wait_own_word(const struct task_graph *graph)
 {
     struct comm_word own = {.fingerprint = graph->fingerprint};
     const struct data_failure *first = graph->root.failure;
@@ -53,25 +53,25 @@ static int collective_end(duite *rt, int code)
     work_waits(rt->pool, NULL);
     work_idle_ends(rt->pool);
     if (code)
-        instance_give_up(rt);
+        api_give_up(rt);
     return code;
 }
 
-int program_agree(duite *rt, const struct work_why *why, struct comm_word *own)
+int api_agree(duite *rt, const struct work_why *why, struct comm_word *own)
 {
     collective_begin(rt, why, own);
-    return collective_end(rt, comm_agree(rt->comm, own, between, rt->pool));
+    return collective_end(rt, comm_agree(rt->comm, own, wait_work_once, rt->pool));
 }
 
-int program_gather(duite *rt, const struct work_why *why, struct comm_word *own,
-                   struct comm_word **words)
+int api_gather(duite *rt, const struct work_why *why, struct comm_word *own,
+               struct comm_word **words)
 {
     collective_begin(rt, why, own);
-    return collective_end(rt, comm_gather(rt->comm, own, words, between, rt->pool));
+    return collective_end(rt, comm_gather(rt->comm, own, words, wait_work_once, rt->pool));
 }
 
 /* This rank makes a call that blocks, as all do; `kind` is what must be the same on all. */
-static int enter_blocking(duite *rt, const char *kind, const char *call)
+static int wait_enter(duite *rt, const char *kind, const char *call)
 {
     struct comm_word own = {0};
     if (!rt->comm)
@@ -80,40 +80,38 @@ static int enter_blocking(duite *rt, const char *kind, const char *call)
         task_mix(&rt->graph, (unsigned char)*c);
     task_mixed(&rt->graph, TASK_CALLED, task_called_find(call));
     const struct work_why why = {call, "the other ranks to come to it", NULL};
-    return comm_call(rt->comm, call, rt->graph.fingerprint) ? program_agree(rt, &why, &own)
-                                                            : DUITE_OK;
+    return comm_call(rt->comm, call, rt->graph.fingerprint) ? api_agree(rt, &why, &own) : DUITE_OK;
 }
 
 /* Works until the copy is there. */
-static void await(duite *rt, const struct work_why *why, struct task_copy *copy)
+static void wait_for_copy(duite *rt, const struct work_why *why, struct task_copy *copy)
 {
     if (rt->comm)
         comm_waits(rt->comm, true);
-    work_until(rt->pool, why, copy_done, copy);
+    work_until(rt->pool, why, copy_is_done, copy);
     if (rt->comm)
         comm_waits(rt->comm, false);
-    if (!copy_done(copy))
-        instance_give_up(rt); /* the task that would have copied is over, then */
+    if (!copy_is_done(copy))
+        api_give_up(rt); /* the task that would have copied is over, then */
 }
 
 /* Copies to the values, or tells the count, whichever is wanted here. */
-int program_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
-                const char *call)
+int api_get(duite *rt, duite_object object, int rank, void *values, size_t *count, const char *call)
 {
     bool here = rank == TASK_ANYWHERE || rank == rt->graph.rank;
     struct task_copy copy = {.values = values};
-    int code = program_settle(rt);
+    int code = api_settle(rt);
     if (!code)
         code = task_copy(&rt->graph, work_main(rt->pool), object, rank, &copy);
     work_tick(rt->pool);
     if (code == DUITE_E_MEMORY)
-        return program_remember(rt, code);
+        return api_remember(rt, code);
     if (!code)
-        code = enter_blocking(rt, call, call);
+        code = wait_enter(rt, call, call);
     if (code || !here)
         return code;
     const struct data_key key = task_version_of(&rt->graph, object);
-    await(rt, &(struct work_why){call, NULL, &key}, &copy);
+    wait_for_copy(rt, &(struct work_why){call, NULL, &key}, &copy);
     if (rt->comm && comm_broken(rt->comm))
         return comm_broken(rt->comm);
     if (!values && !count) /* found out only now: the other ranks count on this one */
@@ -129,29 +127,29 @@ int program_get(duite *rt, duite_object object, int rank, void *values, size_t *
 static int get_and_recall(duite *rt, duite_object object, int rank, void *values, size_t *count,
                           const char *call)
 {
-    int code = program_enter(rt, call);
+    int code = api_enter(rt, call);
     if (code)
         return code;
     const uint64_t from = rt->trace ? base_ticks() : 0;
-    code = program_get(rt, object, rank, values, count, call);
+    code = api_get(rt, object, rank, values, count, call);
     trace_get(rt->trace, object, rank, from);
-    int before = recall(rt);
+    int before = wait_recall(rt);
     return before ? before : code;
 }
 
 int duite_get(duite *rt, duite_object object, void *values)
 {
-    struct duite_call_private *body = inside_body(rt);
+    struct duite_call_private *body = api_body(rt);
     if (body)
-        return inside_get(body, object, values, NULL, "duite_get");
+        return api_body_get(body, object, values, NULL, "duite_get");
     return get_and_recall(rt, object, TASK_ANYWHERE, values, NULL, "duite_get");
 }
 
 int duite_get_count(duite *rt, duite_object object, size_t *count)
 {
-    struct duite_call_private *body = inside_body(rt);
+    struct duite_call_private *body = api_body(rt);
     if (body)
-        return inside_get(body, object, NULL, count, "duite_get_count");
+        return api_body_get(body, object, NULL, count, "duite_get_count");
     return get_and_recall(rt, object, TASK_ANYWHERE, NULL, count, "duite_get_count");
 }
 
@@ -162,13 +160,13 @@ int duite_get_at(duite *rt, duite_object object, int rank, void *values)
     return get_and_recall(rt, object, rank, values, NULL, "duite_get_at");
 }
 
-static bool drained(void *context)
+static bool wait_is_drained(void *context)
 {
     return !work_unfinished(context);
 }
 
 /* The failure that is first in fork order among those of n ranks, or NULL. */
-static const struct data_failure *first_failure(const struct comm_word *words, int n)
+static const struct data_failure *wait_first_failure(const struct comm_word *words, int n)
 {
     const struct comm_word *first = NULL;
     for (int i = 0; i < n; i++)
@@ -181,9 +179,9 @@ static const struct data_failure *first_failure(const struct comm_word *words, i
 #define POLICY_FAILED UINT64_MAX
 
 /* What this rank tells when all its tasks are over: a scheduler that never ended a round, too. */
-static struct comm_word last_word(const duite *rt)
+static struct comm_word wait_last_word(const duite *rt)
 {
-    struct comm_word own = own_word(&rt->graph);
+    struct comm_word own = wait_own_word(&rt->graph);
     const char *endless = work_endless(rt->pool);
     if (own.failed || !endless)
         return own;
@@ -196,63 +194,62 @@ static struct comm_word last_word(const duite *rt)
 
 /* Ranks that forked different tasks may wait here for what nobody sends: the divergence check finds
  * it. */
-static int await_own_tasks(duite *rt, const char *call)
+static int wait_for_own_tasks(duite *rt, const char *call)
 {
     work_tick(rt->pool);
-    int code = enter_blocking(rt, "duite_wait", call);
+    int code = wait_enter(rt, "duite_wait", call);
     if (code)
         return code;
     if (rt->comm)
         comm_waits(rt->comm, true);
-    work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, drained,
+    work_until(rt->pool, &(struct work_why){call, "all tasks of this rank", NULL}, wait_is_drained,
                rt->pool);
     if (rt->comm)
         comm_waits(rt->comm, false);
     return DUITE_OK;
 }
 
-int program_meet(duite *rt, const char *call)
+int api_meet(duite *rt, const char *call)
 {
     struct comm_word own = {0};
     const struct work_why why = {call, "the tasks of other ranks", NULL};
-    const int code = await_own_tasks(rt, call);
-    return code || !rt->comm ? code : program_agree(rt, &why, &own);
+    const int code = wait_for_own_tasks(rt, call);
+    return code || !rt->comm ? code : api_agree(rt, &why, &own);
 }
 
 /* All ranks have ended their tasks; *words, one a rank, are gathered only if something failed. */
-static int meet_and_tell(duite *rt, const char *call, struct comm_word *own,
-                         struct comm_word **words)
+static int wait_meet(duite *rt, const char *call, struct comm_word *own, struct comm_word **words)
 {
     const struct work_why why = {call, "the tasks of other ranks", NULL};
-    int code = await_own_tasks(rt, call);
+    int code = wait_for_own_tasks(rt, call);
     if (code)
         return code;
-    *own = last_word(rt);
+    *own = wait_last_word(rt);
     if (!rt->comm)
         return DUITE_OK;
     struct comm_word first = *own;
-    code = program_agree(rt, &why, &first);
+    code = api_agree(rt, &why, &first);
     if (code || !first.failed)
         return code;
-    return program_gather(rt, &why, own, words);
+    return api_gather(rt, &why, own, words);
 }
 
-int program_wait(duite *rt, const char *call)
+int api_wait(duite *rt, const char *call)
 {
-    struct duite_call_private *body = inside_body(rt);
+    struct duite_call_private *body = api_body(rt);
     if (body)
-        return inside_wait(body);
-    int code = program_enter(rt, call);
+        return api_body_wait(body);
+    int code = api_enter(rt, call);
     if (code)
         return code;
     struct comm_word own, *words = NULL;
-    code = meet_and_tell(rt, call, &own, &words);
+    code = wait_meet(rt, call, &own, &words);
     if (code)
         return code;
     work_idle_ends(rt->pool);
-    code = recall(rt);
+    code = wait_recall(rt);
     const struct data_failure *failure =
-        words ? first_failure(words, rt->graph.n_ranks) : first_failure(&own, 1);
+        words ? wait_first_failure(words, rt->graph.n_ranks) : wait_first_failure(&own, 1);
     if (code || !failure)
         return code;
     if (failure->number == POLICY_FAILED)
@@ -267,8 +264,8 @@ int program_wait(duite *rt, const char *call)
 int duite_wait(duite *rt)
 {
     const uint64_t from = rt && rt->trace ? base_ticks() : 0;
-    const int code = program_wait(rt, "duite_wait");
-    if (rt && !inside_body(rt))
+    const int code = api_wait(rt, "duite_wait");
+    if (rt && !api_body(rt))
         trace_wait(rt->trace, from);
     return code;
 }
@@ -279,7 +276,7 @@ enum { COUNTER_SUMS = 13 }; /* over all ranks */
 
 int duite_count_all(duite *rt, duite_counters *counters)
 {
-    int code = program_enter(rt, "duite_count_all");
+    int code = api_enter(rt, "duite_count_all");
     if (code || !counters)
         return code ? code
                     : base_error(DUITE_E_ARGUMENT, "duite_count_all: nowhere to put the counters");
@@ -301,17 +298,17 @@ int duite_count_all(duite *rt, duite_counters *counters)
         own.awaited,
         own.exposed,
         (double)own.stolen_far};
-    code = enter_blocking(rt, "duite_count_all", "duite_count_all");
+    code = wait_enter(rt, "duite_count_all", "duite_count_all");
     struct comm_word agreed = {.fingerprint = rt->graph.fingerprint};
     work_waits(rt->pool, &(struct work_why){"duite_count_all", "the other ranks", NULL});
     if (rt->comm && !code)
-        code = comm_agree(rt->comm, &agreed, between, rt->pool);
+        code = comm_agree(rt->comm, &agreed, wait_work_once, rt->pool);
     if (rt->comm && !code)
-        code = comm_sum(rt->comm, sums, COUNTER_SUMS, between, rt->pool);
+        code = comm_sum(rt->comm, sums, COUNTER_SUMS, wait_work_once, rt->pool);
     work_waits(rt->pool, NULL);
     work_idle_ends(rt->pool);
     if (code)
-        instance_give_up(rt);
+        api_give_up(rt);
     *counters = (duite_counters){.tasks = (uint64_t)sums[0],
                                  .placed = (uint64_t)sums[1],
                                  .stolen = (uint64_t)sums[2],

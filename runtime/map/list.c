@@ -24,7 +24,7 @@ struct list_plan {
     size_t *first;   /* n_ranks + 1: of each rank's workers */
 };
 
-static double edge_seconds(const duite_task_graph *graph, size_t edge)
+static double list_edge_seconds(const duite_task_graph *graph, size_t edge)
 {
     return graph->message_seconds + graph->bytes[edge] * graph->byte_seconds;
 }
@@ -38,8 +38,8 @@ static void list_rank_upward(struct list_plan *plan)
         plan->upward[i] += graph->cost[i];
         for (size_t e = graph->start[i]; e < graph->start[i + 1]; e++) {
             double *before = &plan->upward[graph->from[e]];
-            if (graph->from[e] < i && *before < plan->upward[i] + edge_seconds(graph, e))
-                *before = plan->upward[i] + edge_seconds(graph, e);
+            if (graph->from[e] < i && *before < plan->upward[i] + list_edge_seconds(graph, e))
+                *before = plan->upward[i] + list_edge_seconds(graph, e);
         }
     }
 }
@@ -62,7 +62,7 @@ static double list_arrival(const struct list_plan *plan, size_t task, int rank)
         if (from >= task)
             continue;
         bool here = plan->rank[from] == rank || plan->rank[from] == DUITE_NO_RANK;
-        double there = plan->end[from] + (here ? 0 : edge_seconds(graph, e));
+        double there = plan->end[from] + (here ? 0 : list_edge_seconds(graph, e));
         all = there > all ? there : all;
     }
     return all;

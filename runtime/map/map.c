@@ -28,7 +28,7 @@ bool map_is_foreign(const duite_mapping *mapping)
 }
 
 /* What is not built in says nothing itself. */
-static int mapping_failed(const duite_mapping *own, int code)
+static int map_failed(const duite_mapping *own, int code)
 {
     return code && map_is_foreign(own) ? base_error(code, "mapping %s failed with code %d (%s)",
                                                     own->name, code, duite_code_text(code))
@@ -41,7 +41,7 @@ int map_ask(const struct map_policy *mapping, const duite_object_graph *graph, i
     base_mark_begin(mapping->mark, BASE_MAPPING_MAP);
     const int code = mapping->own->map(graph, n_ranks, seed, home);
     base_mark_end(mapping->mark);
-    return mapping_failed(mapping->own, code);
+    return map_failed(mapping->own, code);
 }
 
 int map_ask_tasks(const struct map_policy *mapping, const duite_task_graph *graph, int *home)

@@ -15,7 +15,7 @@ struct tie {
     double bytes;
 };
 
-struct work {
+struct taskgraph {
     uint32_t *node;  /* by block: its vertex, or DUITE_NO_BLOCK: no task runs for it */
     uint32_t *block; /* by vertex */
     double *weight, *tied;
@@ -34,7 +34,7 @@ static int tie_compare(const void *a, const void *b)
     return x->to < y->to ? -1 : x->to > y->to;
 }
 
-static bool taskgraph_allocate(struct work *work, const duite_task_graph *graph)
+static bool taskgraph_allocate(struct taskgraph *work, const duite_task_graph *graph)
 {
     size_t blocks = graph->n_blocks + 1, ties = 2 * graph->start[graph->n] + 1;
     work->node = base_alloc(blocks * sizeof *work->node);
@@ -49,7 +49,7 @@ static bool taskgraph_allocate(struct work *work, const duite_task_graph *graph)
            work->neighbour && work->tied;
 }
 
-static void taskgraph_release(struct work *work)
+static void taskgraph_release(struct taskgraph *work)
 {
     base_free(work->node);
     base_free(work->block);
@@ -62,7 +62,7 @@ static void taskgraph_release(struct work *work)
 }
 
 /* Blocks that no task runs for stay where they are. */
-static void taskgraph_weigh(struct work *work, const duite_task_graph *graph)
+static void taskgraph_weigh(struct taskgraph *work, const duite_task_graph *graph)
 {
     for (size_t b = 0; b < graph->n_blocks; b++)
         work->node[b] = DUITE_NO_BLOCK;
@@ -78,7 +78,7 @@ static void taskgraph_weigh(struct work *work, const duite_task_graph *graph)
     }
 }
 
-static void taskgraph_tie(struct work *work, const duite_task_graph *graph)
+static void taskgraph_tie(struct taskgraph *work, const duite_task_graph *graph)
 {
     for (size_t i = 0; i < graph->n; i++)
         for (size_t e = graph->start[i]; e < graph->start[i + 1]; e++) {
@@ -108,7 +108,7 @@ static void taskgraph_tie(struct work *work, const duite_task_graph *graph)
 
 static int taskgraph_map_tasks(const duite_task_graph *graph, int *home)
 {
-    struct work work = {0};
+    struct taskgraph work = {0};
     int code =
         taskgraph_allocate(&work, graph) ? DUITE_OK : base_no_memory("the mapping taskgraph");
     if (!code) {

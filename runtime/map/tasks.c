@@ -7,33 +7,33 @@
 
 #define GUESSED_SECONDS 1e-6
 
-static bool is_asked(const struct plan_tasks *tasks, size_t i)
+static bool task_is_asked(const struct plan_tasks *tasks, size_t i)
 {
     return tasks->program[i] && !(tasks->cost[i] > 0);
 }
 
 /* Splits the measured seconds of each block evenly over those of its tasks whose forks said no
  * cost. */
-static bool share_out(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
+static bool tasks_share_out(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
 {
     struct plan_tasks *all = &tasks->tasks;
     double *asked = base_alloc_zero((n_blocks + 1) * sizeof *asked);
     if (!asked)
         return false;
     for (size_t i = 0; i < all->n; i++) {
-        bool is = is_asked(all, i);
+        bool is = task_is_asked(all, i);
         tasks->guessed |= is;
         if (is && tasks->block[i] != DUITE_NO_BLOCK)
             asked[tasks->block[i]]++;
     }
     for (size_t i = 0; i < all->n; i++)
-        if (is_asked(all, i) && tasks->block[i] != DUITE_NO_BLOCK)
+        if (task_is_asked(all, i) && tasks->block[i] != DUITE_NO_BLOCK)
             all->cost[i] = seconds[tasks->block[i]] / asked[tasks->block[i]];
     base_free(asked);
     return true;
 }
 
-static void guess(struct plan_tasks *tasks)
+static void tasks_guess(struct plan_tasks *tasks)
 {
     double sum = 0, known = 0;
     for (size_t i = 0; i < tasks->n; i++) {
@@ -41,16 +41,16 @@ static void guess(struct plan_tasks *tasks)
         known += tasks->cost[i] > 0;
     }
     for (size_t i = 0; i < tasks->n; i++)
-        if (is_asked(tasks, i))
+        if (task_is_asked(tasks, i))
             tasks->cost[i] = known > 0 ? sum / known : GUESSED_SECONDS;
 }
 
 int map_tasks_complete(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
 {
     struct plan_tasks *all = &tasks->tasks;
-    if (!share_out(tasks, n_blocks, seconds))
+    if (!tasks_share_out(tasks, n_blocks, seconds))
         return base_no_memory("the tasks of a recorded graph");
-    guess(all);
+    tasks_guess(all);
     tasks->graph = (duite_task_graph){.n = all->n,
                                       .cost = all->cost,
                                       .block = tasks->block,

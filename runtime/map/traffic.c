@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-static bool add_edge(struct map_traffic *traffic, uint32_t from, uint32_t to, double bytes)
+static bool traffic_add_edge(struct map_traffic *traffic, uint32_t from, uint32_t to, double bytes)
 {
     void *moved =
         base_grow(traffic->edge, &traffic->capacity, traffic->n + 1, sizeof *traffic->edge);
@@ -22,7 +22,8 @@ static bool add_edge(struct map_traffic *traffic, uint32_t from, uint32_t to, do
 bool map_traffic_read(struct map_traffic *traffic, uint32_t own, uint32_t other, double bytes)
 {
     return other == own || own == MAP_NO_BLOCK || other == MAP_NO_BLOCK ||
-           (add_edge(traffic, own, other, bytes) && add_edge(traffic, other, own, bytes));
+           (traffic_add_edge(traffic, own, other, bytes) &&
+            traffic_add_edge(traffic, other, own, bytes));
 }
 
 int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks,
@@ -47,7 +48,7 @@ int map_traffic_add(struct map_traffic *traffic, const struct map_blocks *blocks
     return fine ? DUITE_OK : base_no_memory("the blocks of objects");
 }
 
-static int compare(const void *a, const void *b)
+static int edge_compare(const void *a, const void *b)
 {
     const struct map_edge *x = a, *y = b;
     if (x->from != y->from)
@@ -63,11 +64,11 @@ int map_traffic_end(struct map_traffic *traffic, const struct map_blocks *blocks
     if (!traffic->start || !traffic->neighbour || !traffic->bytes)
         return base_no_memory("the blocks of objects");
     if (traffic->n)
-        qsort(traffic->edge, traffic->n, sizeof *traffic->edge, compare);
+        qsort(traffic->edge, traffic->n, sizeof *traffic->edge, edge_compare);
     size_t n = 0;
     for (size_t i = 0; i < traffic->n; i++) {
         const struct map_edge *edge = &traffic->edge[i];
-        if (!i || compare(edge, edge - 1)) {
+        if (!i || edge_compare(edge, edge - 1)) {
             traffic->start[edge->from + 1]++;
             traffic->neighbour[n] = edge->to;
             traffic->bytes[n++] = 0;

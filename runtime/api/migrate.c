@@ -21,45 +21,33 @@ enum { ANSWER_CODE, ANSWER_REFUSED, ANSWER_NEXT, ANSWER_AGAIN, ANSWER_MOVES, ANS
 struct migration {
     duite *rt;
     const struct plan_record
-        *record; /* whose tasks the mapping is to see; NULL: the balancer's turn */
-    struct map_blocks blocks;
-    size_t *first;  /* n_ranks + 1: of each rank's blocks in `row` */
-    uint32_t *row;  /* blocks by home */
-    double *values; /* what this rank says, then what rank 0 answers */
-    int *home;      /* n: the new homes */
-    /* Rank 0. */
-    struct map_traffic traffic;
-    double *seconds, *other; /* n; n_ranks */
-    unsigned char *fixed;
-    size_t *bytes;
-    unsigned *workers; /* n_ranks */
+        *record;            /* whose tasks the mapping is to see; NULL: the balancer's turn */
+    struct map_moves moves; /* measured values: on rank 0 */
+    size_t *first;          /* n_ranks + 1: of each rank's blocks in `row` */
+    uint32_t *row;          /* blocks by home */
+    double *values;         /* what this rank says, then what rank 0 answers */
+    double *other;          /* n_ranks; rank 0 */
 };
 
 static void migration_free(struct migration *m)
 {
-    map_blocks_free(&m->blocks);
-    map_traffic_free(&m->traffic);
+    map_moves_free(&m->moves);
     base_free(m->first);
     base_free(m->row);
     base_free(m->values);
-    base_free(m->home);
-    base_free(m->seconds);
     base_free(m->other);
-    base_free(m->fixed);
-    base_free(m->bytes);
-    base_free(m->workers);
 }
 
 /* Blocks by home, in their order. */
 static void migration_sort(struct migration *m)
 {
-    size_t n = m->blocks.n, ranks = (size_t)m->rt->graph.n_ranks;
+    size_t n = m->moves.blocks.n, ranks = (size_t)m->rt->graph.n_ranks;
     for (size_t i = 0; i < n; i++)
-        m->first[m->blocks.block[i].home + 1]++;
+        m->first[m->moves.blocks.block[i].home + 1]++;
     for (size_t r = 0; r < ranks; r++)
         m->first[r + 1] += m->first[r];
     for (size_t i = 0; i < n; i++)
-        m->row[m->first[m->blocks.block[i].home]++] = (uint32_t)i;
+        m->row[m->first[m->moves.blocks.block[i].home]++] = (uint32_t)i;
     for (size_t r = ranks; r-- > 0;)
         m->first[r + 1] = m->first[r];
     m->first[0] = 0;
@@ -68,26 +56,18 @@ static void migration_sort(struct migration *m)
 static int migration_begin(struct migration *m)
 {
     size_t ranks = (size_t)m->rt->graph.n_ranks;
-    int code = map_blocks_find(&m->rt->graph.table, &m->blocks);
+    int code = map_moves_new(&m->rt->graph.table, &m->moves);
     if (code)
         return code;
-    size_t n = m->blocks.n, said = (n + REPORT_BLOCKS + ANSWER_BLOCKS) * sizeof *m->values;
+    size_t n = m->moves.blocks.n, said = (n + REPORT_BLOCKS + ANSWER_BLOCKS) * sizeof *m->values;
     m->first = base_alloc_zero((ranks + 1) * sizeof *m->first);
     m->row = base_alloc(n * sizeof *m->row + 1);
     m->values = base_alloc(said);
-    m->home = base_alloc(n * sizeof *m->home + 1);
-    bool fine = m->first && m->row && m->values && m->home;
-    if (fine && !m->rt->graph.rank) {
-        m->seconds = base_alloc(n * sizeof *m->seconds + 1);
-        m->fixed = base_alloc(n + 1);
-        m->bytes = base_alloc(n * sizeof *m->bytes + 1);
-        m->other = base_alloc(ranks * sizeof *m->other);
-        m->workers = base_alloc(ranks * sizeof *m->workers);
-        fine = m->seconds && m->fixed && m->bytes && m->other && m->workers;
-    }
-    if (fine)
-        migration_sort(m);
-    return fine ? DUITE_OK : base_no_memory("blocks that move");
+    m->other = base_alloc(ranks * sizeof *m->other);
+    if (!m->first || !m->row || !m->values || !m->other)
+        return base_no_memory("blocks that move");
+    migration_sort(m);
+    return DUITE_OK;
 }
 
 /* ---- What was measured comes to rank 0 ---- */
@@ -100,7 +80,7 @@ static void migration_fill_own(struct migration *m)
     m->values[REPORT_WORKERS] = m->rt->threads;
     m->values[REPORT_OTHER] = work_other_seconds(pool);
     for (size_t i = first[0]; i < first[1]; i++) {
-        const struct map_block *block = &m->blocks.block[m->row[i]];
+        const struct map_block *block = &m->moves.blocks.block[m->row[i]];
         double seconds = work_block_seconds(pool, block->number);
         m->values[REPORT_BLOCKS + i - first[0]] = block->fixed ? -1 - seconds : seconds;
     }
@@ -109,14 +89,14 @@ static void migration_fill_own(struct migration *m)
 static void migration_take(struct migration *m, int rank, size_t i, double value)
 {
     if (i == REPORT_WORKERS)
-        m->workers[rank] = (unsigned)value;
+        m->moves.workers[rank] = (unsigned)value;
     if (i == REPORT_OTHER)
         m->other[rank] = value;
     if (i < REPORT_BLOCKS)
         return;
     uint32_t block = m->row[m->first[rank] + i - REPORT_BLOCKS];
-    m->fixed[block] = value < 0;
-    m->seconds[block] = value < 0 ? -1 - value : value;
+    m->moves.fixed[block] = value < 0;
+    m->moves.seconds[block] = value < 0 ? -1 - value : value;
 }
 
 static size_t migration_length(const struct migration *m, int rank)
@@ -160,7 +140,7 @@ static int migration_gather(struct migration *m)
 static int migration_add_traffic(void *context, const struct plan_record *record, double rounds)
 {
     struct migration *m = context;
-    return map_traffic_add(&m->traffic, &m->blocks, record, rounds);
+    return map_traffic_add(&m->moves.traffic, &m->moves.blocks, record, rounds);
 }
 
 static double migration_byte_seconds(const duite *rt)
@@ -172,24 +152,17 @@ static uint64_t migration_ask(struct migration *m)
 {
     duite *rt = m->rt;
     const struct instance_migration *last = &rt->migration;
-    const duite_blocks blocks = {.graph = {.n = m->blocks.n,
-                                           .weight = m->seconds,
-                                           .start = m->traffic.start,
-                                           .neighbour = m->traffic.neighbour,
-                                           .edge_weight = m->traffic.bytes},
-                                 .bytes = m->bytes,
-                                 .fixed = m->fixed,
-                                 .n_ranks = rt->graph.n_ranks,
-                                 .other = m->other,
-                                 .workers = m->workers,
-                                 .byte_seconds = migration_byte_seconds(rt),
-                                 .seconds = base_seconds() - last->since,
-                                 .migrate_seconds = last->took,
-                                 .replays = last->replays,
-                                 .since = last->replays - last->looked,
-                                 .mapping = rt->mapping.own,
-                                 .seed = rt->seed};
-    return work_migrate(rt->pool, &blocks, m->home);
+    duite_blocks blocks = map_moves_shown(&m->moves);
+    blocks.n_ranks = rt->graph.n_ranks;
+    blocks.other = m->other;
+    blocks.byte_seconds = migration_byte_seconds(rt);
+    blocks.seconds = base_seconds() - last->since;
+    blocks.migrate_seconds = last->took;
+    blocks.replays = last->replays;
+    blocks.since = last->replays - last->looked;
+    blocks.mapping = rt->mapping.own;
+    blocks.seed = rt->seed;
+    return work_migrate(rt->pool, &blocks, m->moves.home);
 }
 
 /* Shows the mapping the tasks of the graph. *again: some costs were guessed, so the mapping is to
@@ -198,32 +171,25 @@ static int migration_ask_mapping(struct migration *m, bool *again)
 {
     duite *rt = m->rt;
     struct map_tasks tasks;
-    int code = map_tasks_find(&tasks, m->record, &m->blocks, m->seconds);
+    int code = map_tasks_find(&tasks, m->record, &m->moves.blocks, m->moves.seconds);
     *again = tasks.guessed;
-    tasks.graph.fixed = m->fixed;
+    tasks.graph.fixed = m->moves.fixed;
     tasks.graph.n_ranks = rt->graph.n_ranks;
-    tasks.graph.workers = m->workers;
+    tasks.graph.workers = m->moves.workers;
     tasks.graph.byte_seconds = migration_byte_seconds(rt);
     tasks.graph.message_seconds = comm_transfer(rt->comm, 0);
     tasks.graph.seed = rt->seed;
     if (!code)
-        code = map_ask_tasks(&rt->mapping, &tasks.graph, m->home);
+        code = map_ask_tasks(&rt->mapping, &tasks.graph, m->moves.home);
     map_tasks_free(&tasks);
     return code;
-}
-
-/* Whether the policy leaves a fixed block where it is, and names a rank that exists. */
-static bool migration_is_allowed(const struct migration *m, size_t block)
-{
-    int from = m->blocks.block[block].home, to = m->home[block];
-    return to == from || (to >= 0 && to < m->rt->graph.n_ranks && !m->fixed[block]);
 }
 
 static int migration_ask_balancer(struct migration *m, uint64_t *next)
 {
     int code = api_graphs_each(m->rt, migration_add_traffic, m);
     if (!code)
-        code = map_traffic_end(&m->traffic, &m->blocks);
+        code = map_traffic_end(&m->moves.traffic, &m->moves.blocks);
     if (!code)
         *next = migration_ask(m);
     return code;
@@ -234,10 +200,8 @@ static int migration_decide(struct migration *m)
     size_t n_moves = 0;
     uint64_t next = 0;
     bool again = false;
-    for (size_t i = 0; i < m->blocks.n; i++) {
-        m->bytes[i] = m->blocks.block[i].bytes;
-        m->home[i] = m->blocks.block[i].home;
-    }
+    for (size_t i = 0; i < m->moves.blocks.n; i++)
+        m->moves.bytes[i] = m->moves.blocks.block[i].bytes;
     int code = m->record ? migration_ask_mapping(m, &again) : migration_ask_balancer(m, &next);
     if (code && (code == DUITE_E_MEMORY || !m->record))
         return code;
@@ -245,11 +209,12 @@ static int migration_decide(struct migration *m)
     m->values[ANSWER_AGAIN] = again;
     m->values[ANSWER_CODE] = code;
     m->values[ANSWER_REFUSED] = 0;
-    for (size_t i = 0; i < m->blocks.n && !code; i++) {
-        if (!migration_is_allowed(m, i))
+    for (size_t i = 0; i < m->moves.blocks.n && !code; i++) {
+        if (!map_moves_is_allowed(&m->moves, i, m->rt->graph.n_ranks))
             m->values[ANSWER_REFUSED] = 1;
-        else if (m->home[i] != m->blocks.block[i].home)
-            m->values[ANSWER_BLOCKS + n_moves++] = (double)i * m->rt->graph.n_ranks + m->home[i];
+        else if (m->moves.home[i] != m->moves.blocks.block[i].home)
+            m->values[ANSWER_BLOCKS + n_moves++] =
+                (double)i * m->rt->graph.n_ranks + m->moves.home[i];
     }
     m->values[ANSWER_MOVES] = (double)n_moves;
     return DUITE_OK;
@@ -276,28 +241,28 @@ static int migration_announce(struct migration *m)
     return code;
 }
 
-/* A block that moves gets a number that no block had before at its new home. */
+/* All ranks got the same answer: they move the same blocks, in the same order. */
 static int migration_move(struct migration *m)
 {
     struct task_graph *graph = &m->rt->graph;
     struct data_table *table = &graph->table;
     size_t n_moves = (size_t)m->values[ANSWER_MOVES];
     int code = DUITE_OK;
-    for (size_t i = 0; i < m->blocks.n; i++)
-        m->home[i] = m->blocks.block[i].home;
+    for (size_t i = 0; i < m->moves.blocks.n; i++)
+        m->moves.home[i] = m->moves.blocks.block[i].home;
     for (size_t i = 0; i < n_moves; i++) {
-        uint64_t told = (uint64_t)m->values[ANSWER_BLOCKS + i];
-        size_t block = (size_t)(told / (uint64_t)graph->n_ranks);
-        m->home[block] = (int)(told % (uint64_t)graph->n_ranks);
-        m->blocks.block[block].number = table->blocks[m->home[block]]++;
+        const uint64_t answer = (uint64_t)m->values[ANSWER_BLOCKS + i];
+        const size_t block = (size_t)(answer / (uint64_t)graph->n_ranks);
+        m->moves.home[block] = (int)(answer % (uint64_t)graph->n_ranks);
     }
+    map_moves_number(&m->moves, table);
     for (uint32_t slot = 0; slot < table->n_slots && n_moves && !code; slot++) {
-        uint32_t block = m->blocks.of[slot];
+        uint32_t block = m->moves.blocks.of[slot];
         struct data_object *object = &table->object[slot];
-        if (block == MAP_NO_BLOCK || m->home[block] == object->home)
+        if (block == MAP_NO_BLOCK || m->moves.home[block] == object->home)
             continue;
-        object->block = m->blocks.block[block].number;
-        code = task_move_object(graph, work_main(m->rt->pool), object, m->home[block]);
+        object->block = m->moves.blocks.block[block].number;
+        code = task_move_object(graph, work_main(m->rt->pool), object, m->moves.home[block]);
         trace_moved(m->rt->trace, table, &slot, 1);
         m->rt->migration.objects++;
     }

@@ -66,3 +66,62 @@ void map_blocks_free(struct map_blocks *blocks)
     base_free(blocks->of);
     *blocks = (struct map_blocks){0};
 }
+
+/* ---- Moves ---- */
+
+int map_moves_new(const struct data_table *table, struct map_moves *moves)
+{
+    *moves = (struct map_moves){0};
+    int code = map_blocks_find(table, &moves->blocks);
+    if (code)
+        return code;
+    const size_t n = moves->blocks.n + 1;
+    moves->seconds = base_alloc_zero(n * sizeof *moves->seconds);
+    moves->bytes = base_alloc_zero(n * sizeof *moves->bytes);
+    moves->fixed = base_alloc_zero(n);
+    moves->home = base_alloc(n * sizeof *moves->home);
+    moves->workers = base_alloc_zero((size_t)table->n_ranks * sizeof *moves->workers);
+    if (!moves->seconds || !moves->bytes || !moves->fixed || !moves->home || !moves->workers)
+        return base_no_memory("blocks that move");
+    for (size_t i = 0; i < moves->blocks.n; i++) {
+        moves->home[i] = moves->blocks.block[i].home;
+        moves->fixed[i] = moves->blocks.block[i].fixed;
+    }
+    return DUITE_OK;
+}
+
+void map_moves_free(struct map_moves *moves)
+{
+    map_blocks_free(&moves->blocks);
+    map_traffic_free(&moves->traffic);
+    base_free(moves->seconds);
+    base_free(moves->bytes);
+    base_free(moves->fixed);
+    base_free(moves->home);
+    base_free(moves->workers);
+}
+
+bool map_moves_is_allowed(const struct map_moves *moves, size_t block, int n_ranks)
+{
+    const int from = moves->blocks.block[block].home, to = moves->home[block];
+    return to == from || (to >= 0 && to < n_ranks && !moves->fixed[block]);
+}
+
+duite_blocks map_moves_shown(const struct map_moves *moves)
+{
+    return (duite_blocks){.graph = {.n = moves->blocks.n,
+                                    .weight = moves->seconds,
+                                    .start = moves->traffic.start,
+                                    .neighbour = moves->traffic.neighbour,
+                                    .edge_weight = moves->traffic.bytes},
+                          .bytes = moves->bytes,
+                          .fixed = moves->fixed,
+                          .workers = moves->workers};
+}
+
+void map_moves_number(struct map_moves *moves, struct data_table *table)
+{
+    for (size_t i = 0; i < moves->blocks.n; i++)
+        if (moves->home[i] != moves->blocks.block[i].home)
+            moves->blocks.block[i].number = table->blocks[moves->home[i]]++;
+}

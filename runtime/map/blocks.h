@@ -3,6 +3,8 @@
 
 #include "runtime/plan/record.h"
 
+#include <duite_policy.h>
+
 /* Blocks, and what recorded tasks carry from one to another. A block is a leader with all objects
  * that follow it: they live together, with the same home and the same number there. It exists as
  * long as one of them is alive. The list of blocks is made from the table whenever it is asked for,
@@ -48,5 +50,31 @@ bool map_traffic_read(struct map_traffic *traffic, uint32_t own, uint32_t other,
 /* Makes the rows, each neighbour once. Nothing is added afterwards. Errors: memory. */
 int map_traffic_end(struct map_traffic *traffic, const struct map_blocks *blocks);
 void map_traffic_free(struct map_traffic *traffic);
+
+/* Blocks that may move: what a policy is to see of them, and the homes that it wants. The runtime
+ * fills it with what it measured, the predictor with what a trace says. */
+struct map_moves {
+    struct map_blocks blocks;
+    struct map_traffic traffic;
+    double *seconds;      /* n: in bodies; zeros to begin with */
+    size_t *bytes;        /* n: of all objects; zeros to begin with */
+    unsigned char *fixed; /* n */
+    int *home;            /* n: the present homes, then those to be */
+    unsigned *workers;    /* a rank; zeros to begin with */
+};
+
+/* Finds the blocks. All objects have homes. Errors: memory; map_moves_free is due all the same. */
+int map_moves_new(const struct data_table *table, struct map_moves *moves);
+void map_moves_free(struct map_moves *moves);
+
+/* Whether the policy left a fixed block where it is, and named a rank that exists. */
+bool map_moves_is_allowed(const struct map_moves *moves, size_t block, int n_ranks);
+
+/* What a balancer sees, but for what is no block's: the caller adds that. Points into the moves,
+ * whose traffic was ended. */
+duite_blocks map_moves_shown(const struct map_moves *moves);
+
+/* A block that moves gets a number that no other block ever had at its new home. */
+void map_moves_number(struct map_moves *moves, struct data_table *table);
 
 #endif

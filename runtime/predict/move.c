@@ -16,13 +16,7 @@
 
 struct move {
     struct predict_program *p;
-    struct map_blocks blocks;
-    struct map_traffic traffic;
-    double *seconds; /* by block */
-    size_t *bytes;
-    unsigned char *fixed;
-    int *home;
-    unsigned *workers; /* by host */
+    struct map_moves moves;
 };
 
 bool predict_moves_start(struct predict_program *p)
@@ -75,42 +69,19 @@ void predict_spend(struct predict_program *p, uint32_t object, int host, double 
 
 static bool move_begin(struct move *m)
 {
-    struct predict_program *p = m->p;
-    if (map_blocks_find(&p->table, &m->blocks))
+    const struct predict_cluster *cluster = m->p->graph->cluster;
+    if (map_moves_new(&m->p->table, &m->moves))
         return false;
-    const size_t n = m->blocks.n + 1, hosts = p->graph->cluster->hosts;
-    m->seconds = base_alloc_zero(n * sizeof *m->seconds);
-    m->bytes = base_alloc_zero(n * sizeof *m->bytes);
-    m->fixed = base_alloc_zero(n);
-    m->home = base_alloc(n * sizeof *m->home);
-    m->workers = base_alloc(hosts * sizeof *m->workers);
-    if (!m->seconds || !m->bytes || !m->fixed || !m->home || !m->workers)
-        return false;
-    for (size_t h = 0; h < hosts; h++)
-        m->workers[h] = p->graph->cluster->cores;
-    for (size_t b = 0; b < m->blocks.n; b++) {
-        m->home[b] = m->blocks.block[b].home;
-        m->fixed[b] = m->blocks.block[b].fixed;
-    }
+    for (size_t h = 0; h < cluster->hosts; h++)
+        m->moves.workers[h] = cluster->cores;
     return true;
-}
-
-static void move_end(struct move *m)
-{
-    map_blocks_free(&m->blocks);
-    map_traffic_free(&m->traffic);
-    base_free(m->seconds);
-    base_free(m->bytes);
-    base_free(m->fixed);
-    base_free(m->home);
-    base_free(m->workers);
 }
 
 /* The block of an object of the main program; a view has none of its own. */
 static uint32_t move_block(const struct move *m, uint32_t object)
 {
     uint32_t slot = m->p->name[object].slot;
-    return slot ? m->blocks.of[slot] : MAP_NO_BLOCK;
+    return slot ? m->moves.blocks.of[slot] : MAP_NO_BLOCK;
 }
 
 /* The block that policies see behind an object. A view is in the block of its object. */
@@ -124,12 +95,12 @@ static void move_weigh(struct move *m)
 {
     const struct predict_moves *moves = &m->p->moves;
     for (uint32_t slot = 0; slot < m->p->table.n_slots && slot < moves->spent_capacity; slot++)
-        if (m->blocks.of[slot] != MAP_NO_BLOCK)
-            m->seconds[m->blocks.of[slot]] += moves->spent[slot];
+        if (m->moves.blocks.of[slot] != MAP_NO_BLOCK)
+            m->moves.seconds[m->moves.blocks.of[slot]] += moves->spent[slot];
     for (size_t i = 0; i < m->p->slots_capacity; i++) {
         uint32_t object = m->p->slot[i];
         if (object < m->p->graph->n_objects && move_block(m, object) != MAP_NO_BLOCK)
-            m->bytes[move_block(m, object)] += m->p->graph->object[object].bytes;
+            m->moves.bytes[move_block(m, object)] += m->p->graph->object[object].bytes;
     }
 }
 
@@ -140,9 +111,9 @@ static double move_seconds(const struct move *m)
     double max = 0;
     for (uint32_t h = 0; h < hosts; h++) {
         double sum = m->p->moves.other[h];
-        for (size_t b = 0; b < m->blocks.n; b++)
-            sum += m->blocks.block[b].home == (int)h ? m->seconds[b] : 0;
-        max = fmax(max, sum / m->workers[h]);
+        for (size_t b = 0; b < m->moves.blocks.n; b++)
+            sum += m->moves.blocks.block[b].home == (int)h ? m->moves.seconds[b] : 0;
+        max = fmax(max, sum / m->moves.workers[h]);
     }
     return max;
 }
@@ -162,7 +133,7 @@ static bool move_traffic(struct move *m, const struct predict_recorded *recorded
         for (size_t k = 0; k < fork->n && fine && own != PREDICT_NONE; k++) {
             uint32_t object = recorded->bound[fork->object[k]];
             if (trace_mode(kernel, k) != DUITE_W)
-                fine = map_traffic_read(&m->traffic, move_block_seen(m, recorded->bound[own]),
+                fine = map_traffic_read(&m->moves.traffic, move_block_seen(m, recorded->bound[own]),
                                         move_block_seen(m, object),
                                         (double)recorded->rounds *
                                             (double)graph->object[object].bytes);
@@ -181,29 +152,22 @@ static int move_call_balancer(struct move *m)
     bool fine = true;
     for (size_t i = 0; i < p->n_recorded && fine; i++)
         fine = move_traffic(m, &p->recorded[i]);
-    int code =
-        fine ? map_traffic_end(&m->traffic, &m->blocks) : base_no_memory("the blocks of objects");
+    int code = fine ? map_traffic_end(&m->moves.traffic, &m->moves.blocks)
+                    : base_no_memory("the blocks of objects");
     if (code)
         return code;
-    const duite_blocks blocks = {.graph = {.n = m->blocks.n,
-                                           .weight = m->seconds,
-                                           .start = m->traffic.start,
-                                           .neighbour = m->traffic.neighbour,
-                                           .edge_weight = m->traffic.bytes},
-                                 .bytes = m->bytes,
-                                 .fixed = m->fixed,
-                                 .n_ranks = (int)cluster->hosts,
-                                 .other = moves->other,
-                                 .workers = m->workers,
-                                 .byte_seconds = 1 / cluster->bandwidth,
-                                 .seconds = move_seconds(m),
-                                 .replays = moves->replays,
-                                 .since = moves->replays - moves->looked,
-                                 .mapping = cluster->mapping,
-                                 .seed = cluster->seed};
+    duite_blocks blocks = map_moves_shown(&m->moves);
+    blocks.n_ranks = (int)cluster->hosts;
+    blocks.other = moves->other;
+    blocks.byte_seconds = 1 / cluster->bandwidth;
+    blocks.seconds = move_seconds(m);
+    blocks.replays = moves->replays;
+    blocks.since = moves->replays - moves->looked;
+    blocks.mapping = cluster->mapping;
+    blocks.seed = cluster->seed;
     struct base_mark *mark = base_watchdog_mark(m->p->graph->watchdog, BASE_BALANCER, 0);
     base_mark_begin(mark, BASE_BALANCER_MIGRATE);
-    uint64_t next = cluster->balance->migrate(moves->state, &blocks, m->home);
+    uint64_t next = cluster->balance->migrate(moves->state, &blocks, m->moves.home);
     base_mark_end(mark);
     moves->due = next ? moves->replays + next : UINT64_MAX;
     return DUITE_OK;
@@ -217,11 +181,11 @@ static int move_call_mapping(struct move *m, struct predict_recorded *recorded)
     for (size_t i = 0; i < recorded->n_objects && block; i++)
         block[i] = move_block_seen(m, recorded->bound[i]);
     int code = block && predict_round_tasks(m->p, recorded, block, &tasks)
-                   ? map_tasks_complete(&tasks, m->blocks.n, m->seconds)
+                   ? map_tasks_complete(&tasks, m->moves.blocks.n, m->moves.seconds)
                    : base_no_memory("the tasks of a recorded graph");
-    tasks.graph.fixed = m->fixed;
+    tasks.graph.fixed = m->moves.fixed;
     tasks.graph.n_ranks = (int)cluster->hosts;
-    tasks.graph.workers = m->workers;
+    tasks.graph.workers = m->moves.workers;
     tasks.graph.byte_seconds = 1 / cluster->bandwidth;
     tasks.graph.message_seconds = cluster->latency;
     tasks.graph.seed = cluster->seed;
@@ -229,7 +193,7 @@ static int move_call_mapping(struct move *m, struct predict_recorded *recorded)
         code = map_ask_tasks(
             &(struct map_policy){cluster->mapping,
                                  base_watchdog_mark(m->p->graph->watchdog, BASE_MAPPING, 0)},
-            &tasks.graph, m->home);
+            &tasks.graph, m->moves.home);
     recorded->map_at = tasks.guessed && !recorded->replays ? 1 : UINT64_MAX;
     m->p->moves.due += m->p->moves.due == m->p->moves.replays;
     map_tasks_free(&tasks);
@@ -242,9 +206,8 @@ static int move_call_mapping(struct move *m, struct predict_recorded *recorded)
 static int move_check(const struct move *m)
 {
     const struct predict_cluster *cluster = m->p->graph->cluster;
-    for (size_t b = 0; b < m->blocks.n; b++) {
-        int from = m->blocks.block[b].home, to = m->home[b];
-        if (to != from && (to < 0 || to >= (int)cluster->hosts || m->fixed[b]))
+    for (size_t b = 0; b < m->moves.blocks.n; b++) {
+        if (!map_moves_is_allowed(&m->moves, b, (int)cluster->hosts))
             return base_error(
                 DUITE_E_ARGUMENT, "%s moves a block to a rank that there is not, or one that stays",
                 cluster->balance && cluster->balance->migrate ? cluster->balance->name
@@ -258,17 +221,15 @@ static void move_homes(struct move *m)
 {
     struct predict_program *p = m->p;
     struct predict_graph *graph = p->graph;
-    for (size_t b = 0; b < m->blocks.n; b++)
-        if (m->home[b] != m->blocks.block[b].home)
-            m->blocks.block[b].number = p->table.blocks[m->home[b]]++;
+    map_moves_number(&m->moves, &p->table);
     for (size_t i = 0; i < p->slots_capacity && !graph->failed; i++) {
         uint32_t object = p->slot[i];
         uint32_t block = object < graph->n_objects ? move_block(m, object) : MAP_NO_BLOCK;
-        if (block == MAP_NO_BLOCK || m->home[block] == m->blocks.block[block].home)
+        if (block == MAP_NO_BLOCK || m->moves.home[block] == m->moves.blocks.block[block].home)
             continue;
         struct data_object *own = &p->table.object[p->name[object].slot];
-        own->home = m->home[block];
-        own->block = graph->object[object].block = m->blocks.block[block].number;
+        own->home = m->moves.home[block];
+        own->block = graph->object[object].block = m->moves.blocks.block[block].number;
         predict_rehome(graph, object, own->home);
         graph->migrated++;
     }
@@ -309,7 +270,7 @@ void predict_move(struct predict_program *p, struct predict_recorded *recorded)
         if (!p->graph->failed && !p->code)
             move_homes(&m);
         move_forget(p);
-        move_end(&m);
+        map_moves_free(&m.moves);
     }
     recorded->replays++;
     moves->replays++;

@@ -28,7 +28,7 @@ static uint64_t start_hash_kernels(const struct task_graph *graph)
     return hash;
 }
 
-/* What must be the same on all ranks, and what they tell one another besides. */
+/* What must be the same on all ranks, and what they report to one another besides. */
 struct start_word {
     uint64_t kernels, laws, seed, scheduler, mapping, balance;
     uint64_t traced, first, end; /* the name of the trace, 0: there is none; and of which steps */

@@ -1,6 +1,6 @@
 /* The calls of a running body: the same as the main program's, on its own scope. None is
  * collective. A call that returns at once remembers its error for the body's next get or wait; an
- * error that nobody asked for fails the body. */
+ * error that no call returned fails the body. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
@@ -18,11 +18,11 @@ static int body_remember(struct duite_call_private *body, int code)
     if (!code || body->remembered)
         return code;
     body->remembered = code;
-    snprintf(body->sentence, sizeof body->sentence, "%s", duite_message());
+    snprintf(body->message, sizeof body->message, "%s", duite_message());
     return code;
 }
 
-/* May it call anything? Not once memory ran out in a fork, in whatever task. */
+/* Whether the body may make a call. It may not after memory ran out in a fork of any task. */
 static int body_enter(const struct duite_call_private *body, const char *call)
 {
     int broken = atomic_load_explicit(&body->graph->broken, memory_order_relaxed);
@@ -36,7 +36,7 @@ static int body_recall(struct duite_call_private *body)
 {
     int code = body->remembered;
     body->remembered = DUITE_OK;
-    return code ? base_error(code, "%s", body->sentence) : DUITE_OK;
+    return code ? base_error(code, "%s", body->message) : DUITE_OK;
 }
 
 int api_body_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,

@@ -26,7 +26,7 @@ int api_graphs_failed(duite *rt, int code)
     if (record->failed)
         return code;
     record->failed = code;
-    snprintf(record->sentence, sizeof record->sentence, "%s", duite_message());
+    snprintf(record->message, sizeof record->message, "%s", duite_message());
     return code;
 }
 
@@ -94,7 +94,7 @@ static void graph_free_slot(duite *rt, struct recorded_graph *slot)
     slot->generation++;
 }
 
-/* Calls build. */
+/* Calls build, whose forks become the record. */
 static int graph_record(duite *rt, struct recorded_graph *slot)
 {
     struct plan_record *record = slot->record;
@@ -104,7 +104,7 @@ static int graph_record(duite *rt, struct recorded_graph *slot)
     int code = slot->build(rt, slot->context);
     rt->building = NULL;
     if (record->failed)
-        code = base_error(record->failed, "%s", record->sentence);
+        code = base_error(record->failed, "%s", record->message);
     else if (code)
         base_error(code, "the build function of a graph returned %d", code);
     if (code)
@@ -268,7 +268,7 @@ static int replay_by_plan(duite *rt, struct plan_record *record, const duite_obj
     return code;
 }
 
-static int replay_rounds(duite *rt, struct plan_record *record, uint64_t rounds)
+static int replay_all_rounds(duite *rt, struct plan_record *record, uint64_t rounds)
 {
     uint64_t before, after;
     plan_replay_split(record, NULL, rounds, &before, &after);
@@ -292,7 +292,7 @@ int duite_replay(duite *rt, duite_graph graph, uint64_t rounds)
     code = graph_prepare(rt, found, rounds);
     if (!code)
         trace_replay(rt->trace, graph.slot - 1, found->record, NULL, rounds);
-    return api_remember(rt, code ? code : replay_rounds(rt, found->record, rounds));
+    return api_remember(rt, code ? code : replay_all_rounds(rt, found->record, rounds));
 }
 
 /* Rounds of the dynamic path, the flag read after each. */
@@ -307,7 +307,7 @@ static int replay_fork_while(duite *rt, struct plan_record *record, duite_object
     int code = values ? DUITE_OK : base_no_memory("a flag");
     while (!code && holds && record->rounds < max) {
         code = replay_fork_rounds(rt, record, 1);
-        if (!code) /* a failure is told by the next wait */
+        if (!code) /* the next wait returns a failure */
             holds = !api_get(rt, flag, TASK_ANYWHERE, values, &count, "duite_replay_while") &&
                     count && plan_flag_holds(type, values);
         if (!code && api_is_broken(rt))

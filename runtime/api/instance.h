@@ -27,9 +27,9 @@ struct duite {
     size_t window;
     unsigned threads;
     int oversubscribed;
-    bool mpi_held;       /* the program holds MPI: between duite_mpi_begin and duite_mpi_end */
-    int remembered;      /* code of a failed fork, new, ... */
-    char sentence[1024]; /* of `remembered` */
+    bool mpi_held;      /* the program holds MPI: between duite_mpi_begin and duite_mpi_end */
+    int remembered;     /* code of a failed fork, new, ... */
+    char message[1024]; /* of `remembered` */
     struct recorded_graph *recorded; /* by slot, from 1 on */
     size_t n_recorded, recorded_capacity;
     struct plan_record *building; /* the one that build forks into, or NULL */
@@ -80,12 +80,12 @@ int api_watch_policies(duite *rt, const duite_options *options);
 int api_enter(duite *rt, const char *call);
 /* The same, even while a graph is recorded. */
 int api_enter_any(duite *rt, const char *call);
-/* Keeps an error for the next get, wait or stop, or, inside build, for who called it. Returns code.
- */
+/* Keeps an error for the next get, wait or stop; inside a build function for the call that builds.
+ * Returns code. */
 int api_remember(duite *rt, int code);
 /* Settles the homes of all objects. */
 int api_settle(duite *rt);
-/* Works while more tasks than the window allows are unfinished. Called after forks. */
+/* Works while more tasks are unfinished than the window allows. Called after forks. */
 void api_throttle(duite *rt);
 /* Waits until all ranks made this call, found that they forked the same, and have no task left that
  * was forked before it. */
@@ -97,12 +97,14 @@ int api_agree(duite *rt, const struct work_why *why, struct comm_word *own);
  * call that this is a part of. */
 int api_gather(duite *rt, const struct work_why *why, struct comm_word *own,
                struct comm_word **words);
+
 /* ---- migrate.c ---- */
 
 /* The `replay`-th replay of a recorded graph begins, from 0: if it is time, blocks of objects move
  * where the mapping, or the balancer, wants them. `*map_at`: the replay before which the mapping is
  * to see its tasks (again); it begins with 0. */
 int api_migrate(duite *rt, const struct plan_record *record, uint64_t replay, uint64_t *map_at);
+
 /* ---- wait.c, trace.c ---- */
 
 /* duite_wait, under the name of who calls it. */
@@ -114,7 +116,8 @@ void api_trace_begin(duite *rt);
 /* Opens the trace that the options want. Local. */
 int api_trace_open(duite *rt, const duite_options *options);
 
-/* Copies to the values, or tells the count, whichever is wanted here. */
+/* Copies the bytes to `values`, or the number of elements to `count`: whichever is not NULL, and on
+ * the ranks that want it. */
 int api_get(duite *rt, duite_object object, int rank, void *values, size_t *count,
             const char *call);
 
@@ -131,6 +134,7 @@ int api_graphs_failed(duite *rt, int code);
 int api_graphs_left(const duite *rt);
 /* Frees all graphs; no task is left. */
 void api_graphs_stop(duite *rt);
+
 /* ---- bodies.c ---- */
 
 /* The body that runs on this thread, or NULL; and its calls. */
@@ -143,7 +147,7 @@ int api_body_fork(struct duite_call_private *body, const duite_task_options *how
                   const duite_object *objects);
 int api_body_set(struct duite_call_private *body, duite_object object, const void *values,
                  const size_t *count, const char *call);
-/* Copies to the values, or tells the count. */
+/* Copies the bytes to `values`, or the number of elements to `count`. */
 int api_body_get(struct duite_call_private *body, duite_object object, void *values, size_t *count,
                  const char *call);
 int api_body_wait(struct duite_call_private *body);

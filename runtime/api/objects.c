@@ -1,5 +1,5 @@
-/* The main program's calls that make, place and free objects (a body's go to bodies.c). What they
- * say is part of the fingerprint, since every rank must say the same. */
+/* The main program's calls that make, place and free objects; those of a body go on to bodies.c.
+ * Their arguments are part of the fingerprint, since every rank must make the same calls. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"

@@ -1,10 +1,12 @@
 /* What a runtime is started with: the defaults, and what is refused. The environment is read with
- * the defaults, so that what the program sets goes before it; a value of it that makes no sense
- * leaves a default that is refused unless the program replaces it. */
+ * the defaults, so that what the program sets goes before it. A wrong value there leaves a default
+ * that is refused unless the program replaces it. */
 #include "runtime/api/instance.h"
 
+#include "runtime/balance/balance.h"
 #include "runtime/base/error.h"
 #include "runtime/base/policy.h"
+#include "runtime/sched/sched.h"
 
 #include <duite_policy.h>
 
@@ -81,7 +83,7 @@ static int options_state_too_large(const duite_scheduler *scheduler, const duite
     const bool schedules = scheduler->state_size > BASE_MAX_STATE;
     return base_error(DUITE_E_ARGUMENT,
                       "duite_start: the %s %s wants a state of %zu bytes for each worker "
-                      "(state_size); at most %zu are given",
+                      "(state_size); at most %zu are granted",
                       schedules ? "scheduler" : "balancer",
                       schedules ? scheduler->name : balance->name,
                       schedules ? scheduler->state_size : balance->state_size, BASE_MAX_STATE);
@@ -97,7 +99,7 @@ int api_check_options(const duite_options *options)
     return DUITE_OK;
 }
 
-/* The environment names a policy that cannot be found; its sentence is that of the search. */
+/* The environment names a policy that cannot be found; its message is that of the search. */
 static int options_no_policy(const char *variable)
 {
     char why[1024];
@@ -190,4 +192,23 @@ int api_check_options_rest(const duite_options *options)
     if (options->trace && options->trace_first > options->trace_end)
         return base_error(DUITE_E_ARGUMENT, "duite_start: trace_first is after trace_end");
     return DUITE_OK;
+}
+
+/* ---- Policies that are not built in ---- */
+
+/* Such a policy may never return: the watchdog names it then. */
+int api_watch_policies(duite *rt, const duite_options *options)
+{
+    const char *policy[BASE_POLICY_KINDS] = {
+        [BASE_SCHEDULER] = sched_is_foreign(options->scheduler) ? options->scheduler->name : NULL,
+        [BASE_MAPPING] = map_is_foreign(options->mapping) ? options->mapping->name : NULL,
+        [BASE_BALANCER] = balance_is_foreign(options->balance) ? options->balance->name : NULL};
+    if (!(options->policy_seconds > 0) ||
+        !(policy[BASE_SCHEDULER] || policy[BASE_MAPPING] || policy[BASE_BALANCER]))
+        return DUITE_OK;
+    const int code = base_watchdog_start(&rt->watchdog, &rt->monitor, policy,
+                                         options->policy_seconds, rt->threads, rt->graph.rank);
+    if (!code)
+        rt->mapping.mark = base_watchdog_mark(rt->watchdog, BASE_MAPPING, 0);
+    return code;
 }

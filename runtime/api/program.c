@@ -1,6 +1,6 @@
-/* The calls of the main program (a body's go to bodies.c): each checks that it may be made, settles
- * the homes of new objects where they matter, and leaves the work to task/ and plan/. An error of a
- * call that returns at once is remembered for the next get, wait or stop. */
+/* The calls of the main program; those of a body go on to bodies.c. Each checks that it may be
+ * made, settles the homes of new objects where they matter, and leaves the work to task/ and plan/.
+ * An error of a call that returns at once is remembered for the next get, wait or stop. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/error.h"
@@ -47,7 +47,7 @@ int api_remember(duite *rt, int code)
     if (!code || rt->remembered)
         return code;
     rt->remembered = code;
-    snprintf(rt->sentence, sizeof rt->sentence, "%s", duite_message());
+    snprintf(rt->message, sizeof rt->message, "%s", duite_message());
     return code;
 }
 
@@ -94,10 +94,10 @@ int duite_mpi_end(duite *rt)
 
 /* ---- Tasks ---- */
 
-/* This ends: of all unfinished tasks of all ranks, take the first in fork order. What it waits for
- * was forked before it, runs, and is over. A rank that has not come to its fork yet, and so does
- * not send what it needs, is not throttled: all tasks it has are even earlier, so they are over.
- * Contributions do not wait for the access that combines them, and what combines waits for
+/* This ends: consider, of all unfinished tasks of all ranks, the first in fork order. What it waits
+ * for was forked before it, and is over. A rank that has not come to its fork yet does not send
+ * what it needs; but such a rank is not throttled: all its tasks are even earlier, so they are
+ * over. Contributions do not wait for the access that combines them, and what combines waits for
  * earlier tasks only. Messages go on, since a throttled rank sends and receives as it works. */
 void api_throttle(duite *rt)
 {
@@ -121,8 +121,8 @@ static int fork_task(duite *rt, const struct task_options *how, const duite_kern
     return api_remember(rt, code);
 }
 
-/* Whether the task may be forked, and is none of this rank's business: then it is forked. Messages
- * are looked after now and then all the same. */
+/* Whether the task may be forked and touches nothing of this rank: then no more is to be done for
+ * the fork. Every so many such forks messages are polled all the same. */
 static bool fork_is_pruned(duite *rt, const duite_kernel *kernel, const void *args, size_t n,
                            const duite_object *objects)
 {

@@ -28,8 +28,8 @@ void api_trace_begin(duite *rt)
         trace_switch(rt->trace, true, 0, 0);
 }
 
-/* Waits for all as duite_wait does, and the trace says so: else what came before would seem to have
- * taken the main program so long to fork. */
+/* Waits for all tasks as duite_wait does, and writes the wait down: without it the time would count
+ * as the main program's own. */
 static int step_meet(duite *rt, const char *call)
 {
     const uint64_t from = base_ticks();

@@ -13,7 +13,7 @@ static int wait_recall(duite *rt)
 {
     int code = rt->remembered;
     rt->remembered = DUITE_OK;
-    return code ? base_error(code, "%s", rt->sentence) : DUITE_OK;
+    return code ? base_error(code, "%s", rt->message) : DUITE_OK;
 }
 
 static bool copy_is_done(void *context)
@@ -26,7 +26,7 @@ static void wait_work_once(void *context)
     work_once(context);
 }
 
-/* What this rank tells the others: what it forked, and what failed. */
+/* What this rank reports to the others: what it forked, and what failed. */
 static struct comm_word wait_own_word(const struct task_graph *graph)
 {
     struct comm_word own = {.fingerprint = graph->fingerprint};
@@ -92,10 +92,11 @@ static void wait_for_copy(duite *rt, const struct work_why *why, struct task_cop
     if (rt->comm)
         comm_waits(rt->comm, false);
     if (!copy_is_done(copy))
-        api_give_up(rt); /* the task that would have copied is over, then */
+        api_give_up(rt); /* then the task that would have copied is over */
 }
 
-/* Copies to the values, or tells the count, whichever is wanted here. */
+/* Copies the bytes to `values`, or the number of elements to `count`: whichever is not NULL, and on
+ * the ranks that want it. */
 int api_get(duite *rt, duite_object object, int rank, void *values, size_t *count, const char *call)
 {
     bool here = rank == TASK_ANYWHERE || rank == rt->graph.rank;
@@ -178,7 +179,8 @@ static const struct data_failure *wait_first_failure(const struct comm_word *wor
 /* No task's: after all that are. */
 #define POLICY_FAILED UINT64_MAX
 
-/* What this rank tells when all its tasks are over: a scheduler that never ended a round, too. */
+/* What this rank reports when all its tasks are over; a scheduler that never ended a round is part
+ * of it. */
 static struct comm_word wait_last_word(const duite *rt)
 {
     struct comm_word own = wait_own_word(&rt->graph);
@@ -257,7 +259,7 @@ int api_wait(duite *rt, const char *call)
                           "scheduler %s names victims without an end (seen on rank %d): its victim "
                           "has to return DUITE_NO_QUEUE at last",
                           failure->text, failure->rank);
-    task_first_failure(&rt->graph.root); /* told */
+    task_first_failure(&rt->graph.root); /* returned: it does not count again */
     return task_failure_error(&rt->graph, failure);
 }
 

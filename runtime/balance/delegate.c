@@ -1,12 +1,12 @@
-/* delegate: an idle rank asks one other for tasks, the one that gave last or a random one, and
- * waits ever longer before it asks again; who is asked gives half of what is ready, of it what
- * costs more than its way. Half, because the granter works on meanwhile; and the last ready task
- * stays, since the granter's own worker takes it next. After Blumofe & Leiserson (1999), with half
+/* delegate: an idle rank requests tasks of one other, the one that granted last or a random one,
+ * and waits ever longer before its next request. The granter grants up to half of its ready tasks,
+ * and only such as cost more than their transfer. Half, because it works on meanwhile; and the last
+ * ready task stays, since its own worker takes it next. After Blumofe & Leiserson (1999), with half
  * of a queue instead of one task: Hendler & Shavit, Non-blocking steal-half work queues, PODC 2002.
  */
 #include "runtime/balance/balance.h"
 
-/* How long a question stands: the first, and the longest. */
+/* How long a request stands: the first, and the longest. */
 #define FIRST_SECONDS   5e-4
 #define LONGEST_SECONDS 5e-2
 
@@ -38,15 +38,15 @@ static int delegate_victim(void *state, unsigned attempt, int granter, double *s
     return (own->rank + 1 + (int)(duite_random(&own->random) % (uint64_t)others)) % own->n_ranks;
 }
 
-static int delegate_grant(void *state, const duite_request *asked, const duite_leaf *leaf)
+static int delegate_grant(void *state, const duite_request *request, const duite_leaf *leaf)
 {
     (void)state;
-    return leaf->cost > leaf->transfer && asked->granted < asked->ready / 2;
+    return leaf->cost > leaf->transfer && request->granted < request->ready / 2;
 }
 
 const duite_balancer balance_delegate = {
     .name = "delegate",
-    .summary = "idle ranks get ready leaf tasks that cost more than their way",
+    .summary = "idle ranks get ready leaf tasks that cost more than their transfer",
     .state_size = sizeof(struct delegate_state),
     .start = delegate_start,
     .victim = delegate_victim,

@@ -1,6 +1,6 @@
-/* migrate: blocks get other homes when a rank's tasks take longer than those of the others. What is
- * measured is never quite even, so small differences move nothing, and differences that come back
- * after a move, so that they were none of the blocks', move ever less. */
+/* migrate: blocks get other homes when a rank's tasks take longer than those of the others.
+ * Measured loads are never quite even: small differences move nothing. A difference that comes back
+ * after a move was not due to the blocks: such differences move ever less. */
 #include "runtime/balance/balance.h"
 #include "runtime/balance/refine.h"
 #include "runtime/base/memory.h"
@@ -11,7 +11,7 @@
     0.05 /* a rank may have so much more than the mean; it grows if moves are in vain */
 #define MAX_SLACK  0.4
 #define LEAST_LOAD 1e-3 /* seconds a worker: what is less says nothing yet */
-#define LOOK_SHARE 0.01 /* of the time may go into looking */
+#define LOOK_SHARE 0.01 /* of the time may go into deciding and moving */
 #define ANEW       0.95 /* of what a few moves come to: then a new map, which moves many, is better */
 
 enum { LONGEST = 32, MAX_REPLAYS = 1 << 20 };
@@ -74,7 +74,7 @@ static void slack_learn(struct migrate_state *own, double excess)
     own->before = 0;
 }
 
-/* Not more often than the looks are worth. */
+/* Not so often that the decisions take more time than they are worth. */
 static uint64_t migrate_next_look(const struct migrate_state *own, const duite_blocks *blocks)
 {
     double replay = blocks->seconds / (double)blocks->since;

@@ -1,4 +1,4 @@
-/* none: every task runs where the owner rule says, and no rank asks another for work. */
+/* none: every task runs where the owner rule says, and no rank requests tasks of another. */
 #include "runtime/balance/balance.h"
 
 const duite_balancer balance_none = {

@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <time.h>
 
-/* Seconds since some fixed moment of this host; never goes back. */
+/* Seconds since a fixed moment of this host; never goes back. Any thread. */
 static inline double base_seconds(void)
 {
     struct timespec now;

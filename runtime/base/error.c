@@ -1,4 +1,4 @@
-/* The sentence of the last failed call, one a thread: written by the failing call, read by
+/* The message of the last failed call, one a thread: written by the failing call, read by
  * duite_message(). */
 #include "runtime/base/error.h"
 
@@ -7,26 +7,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-static _Thread_local char sentence[1024];
+static _Thread_local char message[1024];
 
-/* What is too long, because of a path say, loses its middle: why stands at the end. */
+/* A message that is too long, because of a path say, loses its middle; the reason is at its end. */
 static void message_cut_middle(const char *whole)
 {
-    enum { HEAD = sizeof sentence / 4, GAP = 6, TAIL = sizeof sentence - HEAD - GAP };
-    snprintf(sentence, sizeof sentence, "%.*s ... %s", (int)HEAD, whole,
+    enum { HEAD = sizeof message / 4, GAP = 6, TAIL = sizeof message - HEAD - GAP };
+    snprintf(message, sizeof message, "%.*s ... %s", (int)HEAD, whole,
              whole + strlen(whole) - TAIL);
 }
 
-/* Sentences are made of earlier ones, so they are not written where those are read. */
+/* The arguments may point into the message before: so the new one is written elsewhere first. */
 int base_error(int code, const char *format, ...)
 {
     char *whole = NULL;
     va_list list;
     va_start(list, format);
     if (vasprintf(&whole, format, list) < 0)
-        snprintf(sentence, sizeof sentence, "out of memory for what went wrong");
-    else if (strlen(whole) < sizeof sentence)
-        memcpy(sentence, whole, strlen(whole) + 1);
+        snprintf(message, sizeof message, "out of memory for the message of an error");
+    else if (strlen(whole) < sizeof message)
+        memcpy(message, whole, strlen(whole) + 1);
     else
         message_cut_middle(whole);
     free(whole);
@@ -41,7 +41,7 @@ int base_no_memory(const char *what)
 
 const char *duite_message(void)
 {
-    return sentence;
+    return message;
 }
 
 const char *duite_code_text(int code)

@@ -3,10 +3,11 @@
 
 #include <duite.h>
 
-/* Sets the sentence of this thread (printf form) and returns code. */
+/* Sets this thread's message, which duite_message returns (printf form; of a long one the middle is
+ * left out). Returns code. Any thread. */
 int base_error(int code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* The usual sentence of a failed allocation; returns DUITE_E_MEMORY. */
+/* The message of a failed allocation: "out of memory for " and `what`. Returns DUITE_E_MEMORY. */
 int base_no_memory(const char *what);
 
 #endif

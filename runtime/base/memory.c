@@ -20,7 +20,7 @@ void *base_alloc(size_t size)
     const size_t steps = (size + step - 1) / step;
     void *memory = aligned_alloc(step, (steps ? steps : 1) * step);
     if (memory &&
-        size >= PAGE) /* advice: without it the pages are small, as those of the end are */
+        size >= PAGE) /* only advice; the rest behind the last whole page has small ones */
         madvise(memory, size / PAGE * PAGE, MADV_HUGEPAGE);
     return memory;
 }
@@ -61,7 +61,7 @@ void *base_grow(void *array, size_t *capacity, size_t needed, size_t element)
  * New blocks are cut one after another from a thread's region, so that what is taken together lies
  * together. */
 
-/* The sanitizers must see each block's birth and death. */
+/* Sanitizers must see when each block is taken and given back. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define DIRECT 1
 #elif defined(__has_feature)
@@ -133,7 +133,7 @@ static void pool_unlock(void)
 
 /* ---- New memory ---- */
 
-static bool region_map(void)
+static bool region_next(void)
 {
     pool_lock();
     struct region *left = regions;
@@ -172,7 +172,7 @@ static void *region_cut(size_t bytes)
             region = block + bytes;
             return block;
         }
-        if (!region_map())
+        if (!region_next())
             return NULL;
     }
 }

@@ -14,16 +14,16 @@ void *base_alloc(size_t size);
 void *base_alloc_zero(size_t size);
 void base_free(void *memory);
 
-/* Makes room for `needed` elements in a growing array: doubles *capacity. Returns the array, maybe
- * moved, or NULL and leaves everything as it was. */
+/* Makes room for `needed` elements in a growing array: doubles *capacity. Returns the array, which
+ * may have moved; NULL without memory, and then nothing has changed. Freed by free. */
 void *base_grow(void *array, size_t *capacity, size_t needed, size_t element);
 
-/* Has the line brought to be written soon: taken from another core's cache, where only a read line
- * would be left to it, and the first write, or an atomic operation behind it, would wait. */
+/* Prefetches a line that is written soon: it comes here as this core's own, so that the first
+ * write, or an atomic operation behind it, need not wait. */
 static inline void base_prefetch(const void *line)
 {
 #if defined(__x86_64__)
-    /* What __builtin_prefetch makes of it only for the newest processors; others skip it. */
+    /* __builtin_prefetch emits this for the newest processors only; older ones skip it. */
     __asm__ volatile("prefetchw %0" : : "m"(*(const char *)line));
 #else
     __builtin_prefetch(line, 1);
@@ -32,9 +32,9 @@ static inline void base_prefetch(const void *line)
 
 /* ---- Small blocks ---- */
 
-/* Small blocks that live briefly and die on another thread than they were born on: tasks, versions,
- * messages. Each thread keeps some of each size at hand; whole batches move between threads. The
- * general allocator locks here, and a futex costs more than a task. */
+/* Small blocks that live briefly and are often freed on another thread than the one that took them:
+ * tasks, versions, messages. Each thread keeps some of each size at hand, and whole batches move
+ * between threads. (The general allocator would lock, and a futex costs more than a task.) */
 
 /* size bytes, not cleared, aligned to a cache line if they are whole lines, to 16 bytes if they are
  * a multiple of that, else to 8. NULL without memory. */

@@ -14,7 +14,7 @@
 /* A look. Its memory is the caller's, and stays in place from base_monitor_add to
  * base_monitor_remove. */
 struct base_look {
-    /* Looks once; false: it could not now, and wants to be asked again in a moment (0.1 ms). By the
+    /* Looks once. False: it could not look now, and is called again in a moment (0.1 ms). By the
      * monitor's thread. It adds and removes no look. */
     bool (*look)(void *context);
     void *context;

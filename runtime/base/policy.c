@@ -93,7 +93,7 @@ bool base_policy_is_ours(const struct base_policies *policies, const void *table
  * taken for one call that stands. The watchdogs of a process stand in a list, for the function that
  * runs when it exits. */
 
-enum { LOOKS = 16, WHERE = 64 }; /* in `seconds`, until a call is told */
+enum { LOOKS = 16, WHERE = 64 }; /* LOOKS: in `seconds`, until a call is reported */
 
 struct base_watchdog {
     struct base_monitor *monitor;
@@ -140,7 +140,7 @@ static const char *watchdog_where(const struct base_watchdog *watchdog, unsigned
 
 /* ---- The looks of the watchdog ---- */
 
-static void watchdog_tell(const struct base_watchdog *watchdog, unsigned worker)
+static void watchdog_report(const struct base_watchdog *watchdog, unsigned worker)
 {
     const struct base_mark *mark = &watchdog->mark[worker];
     const enum base_policy_call call = (enum base_policy_call)(mark->seen % 256);
@@ -163,7 +163,7 @@ static void watchdog_look_at(const struct base_watchdog *watchdog, unsigned work
         mark->next = LOOKS;
     } else if (++mark->looks == mark->next) {
         mark->next *= 2;
-        watchdog_tell(watchdog, worker);
+        watchdog_report(watchdog, worker);
     }
 }
 

@@ -30,7 +30,7 @@ struct base_policies {
 #define BASE_POLICY_NAME(name) #name,
 
 /* The built-in policy of that name; or, if there is a / in it, that of the shared library in the
- * file, which stays loaded. NULL, and a sentence for duite_message, if there is none. Local. */
+ * file, which stays loaded. NULL, and a message for duite_message, if there is none. Local. */
 const void *base_policy_find(const struct base_policies *policies, const char *name);
 
 /* The names of those for tests, ended by NULL. */
@@ -79,7 +79,7 @@ struct base_mark {
     _Atomic pthread_t thread;
     /* The watchdog's: */
     uint64_t seen;        /* `inside` at the last look */
-    uint64_t looks, next; /* how many saw this call; when it is told next */
+    uint64_t looks, next; /* how many saw this call; at how many it is reported next */
 };
 
 struct base_watchdog;
@@ -91,7 +91,7 @@ struct base_watchdog;
 int base_watchdog_start(struct base_watchdog **watchdog, struct base_monitor *monitor,
                         const char *const policy[BASE_POLICY_KINDS], double seconds, unsigned n,
                         int rank);
-/* Nobody makes a mark any more. By the thread that started it. NULL is fine. */
+/* No worker makes a mark any more. By the thread that started it. NULL is fine. */
 void base_watchdog_stop(struct base_watchdog *watchdog);
 
 /* The mark that this worker sets around calls of its policy of this kind. NULL: the policy is built

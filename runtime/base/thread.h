@@ -3,9 +3,9 @@
 
 #include <pthread.h>
 
-/* pthread_create with the default attributes; `what` it is, for the sentence: "worker thread 1 of
- * 4". Errors: DUITE_E_MEMORY where the system has no room for the thread's stack, with its bytes,
- * else DUITE_E_SYSTEM with the system's reason. Local. */
+/* pthread_create with the default attributes. `what`: the thread's name in messages, "worker thread
+ * 1 of 4". Errors: DUITE_E_MEMORY where the system has no room for the thread's stack, with its
+ * bytes, else DUITE_E_SYSTEM with the system's reason. Local. */
 int base_thread_start(pthread_t *thread, const char *what, void *(*body)(void *), void *context);
 
 #endif

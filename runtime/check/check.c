@@ -134,13 +134,13 @@ struct frame {
 static _Atomic(struct check *) installed;
 static _Thread_local struct frame *volatile current;
 
-static size_t param_bytes(const duite_param *param)
+static size_t frame_param_bytes(const duite_param *param)
 {
     return param->count * data_type_size(param->type);
 }
 
 /* What the body may touch: under w and rw an object that changes size may grow. */
-static size_t param_room(const duite_param *param, duite_mode mode)
+static size_t frame_param_room(const duite_param *param, duite_mode mode)
 {
     size_t n = mode == DUITE_R || param->max < param->count ? param->count : param->max;
     return n * data_type_size(param->type);
@@ -217,7 +217,7 @@ void check_stop(struct check *check)
     base_free(check);
 }
 
-static int fault_tell(const struct frame *frame)
+static int fault_report(const struct frame *frame)
 {
     const struct region *hit = &frame->hit;
     const duite_call *call = frame->call;
@@ -253,10 +253,10 @@ static bool frame_map_param(struct frame *frame, size_t i, unsigned char fill)
     region->param = i;
     if (!param->data)
         return true;
-    if (!region_map(region, param_room(param, mode), fill))
+    if (!region_map(region, frame_param_room(param, mode), fill))
         return false;
     if (mode != DUITE_W)
-        memcpy(region->data, param->data, param_bytes(param));
+        memcpy(region->data, param->data, frame_param_bytes(param));
     return mode != DUITE_R || region_protect(region);
 }
 
@@ -312,7 +312,7 @@ static int frame_run(struct frame *frame, unsigned char fill)
     call.args = frame->region[n].base ? frame->region[n].data : NULL;
     volatile int code;
     if (sigsetjmp(frame->jump, 1)) {
-        code = fault_tell(frame);
+        code = fault_report(frame);
     } else {
         current = frame;
         code = frame->task->kernel->body(&call);
@@ -350,7 +350,7 @@ static int frames_compare(const struct frame *first, const struct frame *second)
                               "is not deterministic: two runs differ in the size of parameter %zu",
                               i);
         const unsigned char *a = first->param[i].data, *b = second->param[i].data;
-        for (size_t k = 0; k < param_bytes(&first->param[i]); k++) {
+        for (size_t k = 0; k < frame_param_bytes(&first->param[i]); k++) {
             if (a[k] == b[k])
                 continue;
             if (mode == DUITE_W && a[k] == FILL[0] && b[k] == FILL[1])
@@ -372,7 +372,7 @@ static void frame_copy_back(const struct frame *frame)
         if (!mode_writes(data_mode_of(frame->task->kernel, i)))
             continue;
         param[i].count = frame->param[i].count;
-        memcpy(param[i].data, frame->param[i].data, param_bytes(&param[i]));
+        memcpy(param[i].data, frame->param[i].data, frame_param_bytes(&param[i]));
     }
 }
 

@@ -17,14 +17,15 @@
  * by a jump: what it held (memory, locks) stays held. */
 struct check;
 
-/* What is being called. */
+/* The task whose body is called. */
 struct check_task {
     const duite_kernel *kernel;
     uint64_t number;
 };
 
-/* Takes over SIGSEGV and SIGBUS; faults that are not ours go on to the handler there was. One at a
- * time in a process: DUITE_E_STATE. Errors: memory. */
+/* Takes over SIGSEGV and SIGBUS; a fault that is none of a checked body goes on to the handler that
+ * was there before. Errors: memory; DUITE_E_STATE if the process has a runtime in checking mode
+ * already. */
 int check_start(struct check **check);
 /* No body runs. Gives the signals back. NULL is fine. */
 void check_stop(struct check *check);

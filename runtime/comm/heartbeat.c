@@ -18,11 +18,11 @@ static int rank_before(const struct comm *comm)
 
 static void heartbeat_lost(struct comm *comm)
 {
-    char sentence[200];
-    snprintf(sentence, sizeof sentence,
+    char message[200];
+    snprintf(message, sizeof message,
              "rank %d on host %s is lost: nothing was heard of it for %g s", rank_before(comm),
              comm->heartbeat.host, comm->heartbeat.seconds);
-    comm_broke(comm, DUITE_E_LOST, sentence);
+    comm_broke(comm, DUITE_E_LOST, message);
 }
 
 /* Ready for one more. */

@@ -9,7 +9,7 @@
 
 /* What a kernel says of its parameters: element types, modes and laws. */
 
-/* Element types: bytes of an element, 0 for no type; their name in a sentence. */
+/* Element types: bytes of an element, 0 for no type; their name in a message. */
 static inline size_t data_type_size(duite_type type)
 {
     static const unsigned char size[] = {

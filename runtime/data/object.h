@@ -139,7 +139,7 @@ struct data_view {
 int data_view_new(struct data_table *table, duite_object object, size_t n, const size_t *indices,
                   duite_object *name);
 
-/* DUITE_E_VIEW, with the sentence set, if the object is a view. */
+/* DUITE_E_VIEW, with the message set, if the object is a view. */
 int data_view_refuse(const struct data_table *table, const struct data_object *object,
                      const char *call);
 

@@ -50,15 +50,14 @@ static inline size_t data_packet_memory(size_t bytes)
 struct data_packet *data_packet_new(size_t bytes, bool zero);
 void data_packet_free(struct data_packet *packet); /* NULL is fine */
 
-/* A packet came from elsewhere into memory for as many bytes as it has: the header is the sender's.
- */
+/* A packet was received, header and all, into memory for as many bytes as it has. */
 static inline void data_packet_came(struct data_packet *packet)
 {
     packet->lines = data_packet_lines(packet->bytes);
 }
 
-/* The packet, or one that takes its place, with memory for so many bytes; `keep`: and with its
- * payload. NULL without memory: then it was freed. */
+/* Returns the packet, or one that takes its place, with memory for so many bytes. `keep`: with its
+ * payload, too. NULL without memory: then the packet was freed. */
 struct data_packet *data_packet_room(struct data_packet *packet, size_t bytes, bool keep);
 
 /* From now on it has so many bytes, for which there is room. */

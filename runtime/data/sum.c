@@ -120,7 +120,7 @@ struct data_waiter *data_sum_release(struct data_sum *sum)
 {
     if (atomic_fetch_sub_explicit(&sum->pending, 1, memory_order_acq_rel) != 1)
         return NULL;
-    return sum->closer;
+    return sum->reducer;
 }
 
 static int piece_compare_first(const void *a, const void *b)

@@ -28,8 +28,8 @@ struct data_sum {
     uint32_t senders; /* how many other ranks have leaves; counted on the rank that holds the
                          object's value */
     struct data_waiter
-        *closer; /* the task that combines or sends; set before the open hold is released */
-    struct data_sum *next;   /* for whoever keeps it */
+        *reducer; /* the task that combines or sends; set before the open hold is released */
+    struct data_sum *next;   /* its owner's */
     uint64_t contributors[]; /* the set of these ranks (base/rank_set.h) */
 };
 
@@ -44,17 +44,17 @@ void data_sum_sender(struct data_sum *sum, int rank);
 /* Adds leaf `first`, to be run on this rank: its task fills value. NULL without memory. */
 struct data_piece *data_sum_leaf(struct data_sum *sum, uint64_t first);
 
-/* The leaf's task is about to run: gives it a value, which is the law's neutral element. False
- * without memory. */
+/* The leaf's task is about to run: the leaf gets a value, the law's neutral element. False without
+ * memory. */
 bool data_sum_open(const struct data_sum *sum, struct data_piece *leaf);
 
-/* An empty piece, to be given away by data_sum_arrive. NULL without memory. */
+/* An empty piece, for data_sum_arrive to take over. NULL without memory. */
 struct data_piece *data_piece_new(void);
 
 /* Adds a piece from another rank; from any thread. */
 void data_sum_arrive(struct data_sum *sum, struct data_piece *piece);
 
-/* Takes one from `pending`. Returns the closer if that was the last one. */
+/* Takes one from `pending`. Returns the reducer if that was the last one. */
 struct data_waiter *data_sum_release(struct data_sum *sum);
 
 /* Combines the pieces (pending is 0) as far as complete subtrees go, in place. Writes them into

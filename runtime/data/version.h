@@ -26,7 +26,7 @@ struct data_failure {
     uint32_t kernel;      /* index in the list given at start */
     uint32_t path_length; /* bytes */
     uint8_t path[104];    /* "" for a task of the main program; zeros behind its end */
-    char text[204];       /* the body's own sentence, or "" */
+    char text[204];       /* the body's own message, or "" */
     uint8_t unused[4];
 };
 
@@ -169,7 +169,7 @@ static inline bool data_version_is_alone(const struct data_version *version)
     return atomic_load_explicit(&version->holds, memory_order_relaxed) == 1;
 }
 
-/* Nobody holds it any more: returns the heir, or frees a version without one. */
+/* No hold is left: returns the heir, or frees a version without one. */
 struct data_waiter *data_version_end(struct data_version *version);
 
 /* Releases a hold. Returns the heir if this was the last one, and NULL otherwise; frees a version

@@ -1,4 +1,4 @@
-/* A block is known by its home and its number there, which no other one ever has had. */
+/* A block is known by its home and its number there, which no other block ever had. */
 #include "runtime/map/blocks.h"
 
 #include "runtime/base/error.h"

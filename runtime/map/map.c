@@ -27,7 +27,7 @@ bool map_is_foreign(const duite_mapping *mapping)
     return !base_policy_is_ours(&mappings, mapping);
 }
 
-/* What is not built in says nothing itself. */
+/* A mapping that is not built in has no message of its own. */
 static int map_failed(const duite_mapping *own, int code)
 {
     return code && map_is_foreign(own) ? base_error(code, "mapping %s failed with code %d (%s)",

@@ -23,7 +23,7 @@ MAP_ROWS(MAP_DECLARE)
  * it. */
 int map_by_metis(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
 
-/* Whether it is none of the built-in ones. */
+/* Whether the mapping is not built in. */
 bool map_is_foreign(const duite_mapping *mapping);
 
 /* A mapping, and the mark of the worker that asks it. */
@@ -32,7 +32,7 @@ struct map_policy {
     struct base_mark *mark; /* NULL: the mapping is built in, or nobody watches it */
 };
 
-/* duite_mapping.map and map_tasks. Main thread. Errors: its own. */
+/* Call duite_mapping.map and map_tasks. Main thread. Errors: those of the mapping. */
 int map_ask(const struct map_policy *mapping, const duite_object_graph *graph, int n_ranks,
             uint64_t seed, int *home);
 int map_ask_tasks(const struct map_policy *mapping, const duite_task_graph *graph, int *home);

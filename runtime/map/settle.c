@@ -1,7 +1,7 @@
-/* Hints, and the homes that follow from them. A program says which objects belong together; every
- * rank is told the same. When homes are needed, the graph of leaders, in the order they were made,
- * goes to the mapping, and objects that are colocated with a leader get its home. Every rank draws
- * the same conclusion; homes are never asked for. All objects without a home are alive, since a
+/* Hints, and the homes that follow from them. A program says which objects belong together, the
+ * same on every rank. When homes are needed, the graph of leaders, in the order they were made,
+ * goes to the mapping, and objects that are colocated with a leader get its home. Every rank comes
+ * to the same homes; no rank asks another. All objects without a home are alive, since a
  * free settles them first; the work is in proportion to them and their hints, however many others
  * there are. */
 #include "runtime/map/map.h"
@@ -34,7 +34,7 @@ static int hint_check_edges(struct data_table *table, size_t n, const duite_obje
                             const double *edge_weights)
 {
     if (n && !neighbours)
-        return base_error(DUITE_E_ARGUMENT, "duite_hint: no neighbours given");
+        return base_error(DUITE_E_ARGUMENT, "duite_hint: no neighbours");
     for (size_t i = 0; i < n; i++) {
         int code = hint_check_object(table, neighbours[i], "duite_hint");
         if (!code)
@@ -78,7 +78,7 @@ int map_hint(struct data_table *table, duite_object object, double weight, size_
     return n ? hint_add_edges(hint, n, neighbours, edge_weights) : DUITE_OK;
 }
 
-/* Is `object` on the chain of leaders that begins with `slot`? */
+/* Whether `object` is on the chain of leaders that begins with `slot`. */
 static bool leader_is_above(struct data_table *table, uint32_t slot, uint32_t object)
 {
     while (slot != object) {
@@ -99,7 +99,7 @@ int map_colocate(struct data_table *table, duite_object object, duite_object lea
         return code;
     struct data_hint *hint = data_hint_find(table, object.slot);
     if (leader_is_above(table, leader.slot, object.slot))
-        return base_error(DUITE_E_ARGUMENT, "duite_colocate: object %u.%u would follow itself",
+        return base_error(DUITE_E_ARGUMENT, "duite_colocate: object %u.%u would be its own leader",
                           object.slot, object.generation);
     if (hint)
         hint->leader = leader.slot;
@@ -168,7 +168,7 @@ static void leaders_shorten(struct data_table *table)
     }
 }
 
-/* Numbers the leaders and adds up the weights of those who follow them. */
+/* Numbers the leaders and adds up the weights of the objects that are colocated with them. */
 static void nodes_number(const struct data_table *table, struct nodes *nodes)
 {
     const struct data_hint *hint = table->unsettled;
@@ -181,7 +181,7 @@ static void nodes_number(const struct data_table *table, struct nodes *nodes)
     }
 }
 
-static void edge_count(struct nodes *nodes, size_t a, size_t b, double weight)
+static void nodes_count_edge(struct nodes *nodes, size_t a, size_t b, double weight)
 {
     (void)b;
     (void)weight;
@@ -189,7 +189,7 @@ static void edge_count(struct nodes *nodes, size_t a, size_t b, double weight)
 }
 
 /* Adds to the edge if it is there already. Rows are short: a block has few neighbours. */
-static void edge_add(struct nodes *nodes, size_t a, size_t b, double weight)
+static void nodes_add_edge(struct nodes *nodes, size_t a, size_t b, double weight)
 {
     size_t i = nodes->start[a];
     while (i < nodes->end[a] && nodes->neighbour[i] != b)
@@ -236,7 +236,7 @@ static void edges_compress(struct nodes *nodes)
 static int edges_build(const struct data_table *table, struct nodes *nodes)
 {
     size_t n = nodes->graph.n;
-    edges_each(table, nodes, edge_count);
+    edges_each(table, nodes, nodes_count_edge);
     for (size_t a = 0; a < n; a++) {
         nodes->start[a + 1] += nodes->start[a];
         nodes->end[a] = nodes->start[a];
@@ -245,7 +245,7 @@ static int edges_build(const struct data_table *table, struct nodes *nodes)
     nodes->edge_weight = base_alloc(nodes->start[n] * sizeof *nodes->edge_weight);
     if (!nodes->neighbour || !nodes->edge_weight)
         return base_no_memory("the mapping");
-    edges_each(table, nodes, edge_add);
+    edges_each(table, nodes, nodes_add_edge);
     edges_compress(nodes);
     nodes->graph = (duite_object_graph){.n = n,
                                         .before = table->settled,
@@ -269,7 +269,7 @@ static int nodes_ask(const struct data_table *table, struct nodes *nodes,
     return DUITE_OK;
 }
 
-/* Leaders get their homes and are numbered there, followers go to theirs. */
+/* Leaders get their homes and are numbered there; the other objects get their leader's home. */
 static void nodes_settle(struct data_table *table, const struct nodes *nodes)
 {
     for (size_t i = 0; i < table->n_unsettled; i++) {

@@ -7,7 +7,7 @@
 
 #define GUESSED_SECONDS 1e-6
 
-static bool task_is_asked(const struct plan_tasks *tasks, size_t i)
+static bool task_lacks_cost(const struct plan_tasks *tasks, size_t i)
 {
     return tasks->program[i] && !(tasks->cost[i] > 0);
 }
@@ -17,19 +17,19 @@ static bool task_is_asked(const struct plan_tasks *tasks, size_t i)
 static bool tasks_share_out(struct map_tasks *tasks, size_t n_blocks, const double *seconds)
 {
     struct plan_tasks *all = &tasks->tasks;
-    double *asked = base_alloc_zero((n_blocks + 1) * sizeof *asked);
-    if (!asked)
+    double *lacking = base_alloc_zero((n_blocks + 1) * sizeof *lacking);
+    if (!lacking)
         return false;
     for (size_t i = 0; i < all->n; i++) {
-        bool is = task_is_asked(all, i);
+        bool is = task_lacks_cost(all, i);
         tasks->guessed |= is;
         if (is && tasks->block[i] != DUITE_NO_BLOCK)
-            asked[tasks->block[i]]++;
+            lacking[tasks->block[i]]++;
     }
     for (size_t i = 0; i < all->n; i++)
-        if (task_is_asked(all, i) && tasks->block[i] != DUITE_NO_BLOCK)
-            all->cost[i] = seconds[tasks->block[i]] / asked[tasks->block[i]];
-    base_free(asked);
+        if (task_lacks_cost(all, i) && tasks->block[i] != DUITE_NO_BLOCK)
+            all->cost[i] = seconds[tasks->block[i]] / lacking[tasks->block[i]];
+    base_free(lacking);
     return true;
 }
 
@@ -41,7 +41,7 @@ static void tasks_guess(struct plan_tasks *tasks)
         known += tasks->cost[i] > 0;
     }
     for (size_t i = 0; i < tasks->n; i++)
-        if (task_is_asked(tasks, i))
+        if (task_lacks_cost(tasks, i))
             tasks->cost[i] = known > 0 ? sum / known : GUESSED_SECONDS;
 }
 

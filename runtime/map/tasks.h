@@ -17,7 +17,7 @@ struct map_tasks {
 /* seconds: of each block, as measured. Errors: memory; map_tasks_free is due all the same. */
 int map_tasks_find(struct map_tasks *tasks, const struct plan_record *record,
                    const struct map_blocks *blocks, const double *seconds);
-/* The rest of it, where `block` and all but unknown costs of `tasks` are there. Errors: memory. */
+/* Fills in unknown costs and `graph`, once `block` and `tasks` are there. Errors: memory. */
 int map_tasks_complete(struct map_tasks *tasks, size_t n_blocks, const double *seconds);
 void map_tasks_free(struct map_tasks *tasks);
 

@@ -89,7 +89,7 @@ struct plan_record {
     bool views;   /* reads views */
     bool trails;  /* some object's contributions end the round: they stay open after the last */
     int failed;   /* code of the first call of build that failed */
-    char sentence[512]; /* of it */
+    char message[512]; /* of it */
     struct plan *plan;
     struct plan_change *changes; /* since the last replay of the plan */
     uint64_t rounds;             /* of the last replay, but for those of the plan */

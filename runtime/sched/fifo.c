@@ -1,5 +1,5 @@
 /* fifo: one queue for all, served in the order in which tasks became ready. The baseline that
- * balances best and knows nothing of where data are warm. */
+ * balances best and ignores affinity. */
 #include "runtime/sched/sched.h"
 
 const duite_scheduler sched_fifo = {

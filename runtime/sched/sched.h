@@ -24,7 +24,7 @@ SCHED_TEST_ROWS(SCHED_DECLARE)
 /* The names of those for tests, ended by NULL. */
 const char *const *sched_test_names(void);
 
-/* Whether it is none of the built-in ones. */
+/* Whether the scheduler is not built in. */
 bool sched_is_foreign(const duite_scheduler *scheduler);
 
 struct sched_state {

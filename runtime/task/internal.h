@@ -173,7 +173,7 @@ uint32_t task_new_stamp(void);
 /* Passes the value on to which the waiter of a version without task belongs. Returns the heir of
  * the version it became, if that has no more holds. */
 struct data_waiter *task_pass(struct worker *worker, struct data_waiter *waiter);
-/* Whether a child may have the object with this mode. For the sentence: the call, or its kernel,
+/* Whether a child may have the object with this mode. For the message: the call, or its kernel,
  * and which parameter it is. */
 int task_check_right(struct task_scope *scope, const char *call, size_t i, duite_object name,
                      duite_mode wanted);

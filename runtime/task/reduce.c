@@ -58,8 +58,8 @@ int task_contribute(const struct task_fork_call *call, struct data_object *objec
 
 /* A task that waits for all contributions, which leave the object; pending counts them as one.
  * Without memory they stay there until stop. */
-static struct task *sum_closer(struct task_scope *scope, struct data_object *object,
-                               enum task_type type, size_t n)
+static struct task *sum_reducer(struct task_scope *scope, struct data_object *object,
+                                enum task_type type, size_t n)
 {
     struct task *task = task_new(scope, type, n, sizeof *task->sum);
     if (!task)
@@ -72,7 +72,7 @@ static struct task *sum_closer(struct task_scope *scope, struct data_object *obj
         task->sum->send.key = task_key(scope->graph, object);
     task->block = object->block;
     atomic_fetch_add_explicit(&task->pending, 1, memory_order_relaxed);
-    object->sum->closer = &task->sum->waiter;
+    object->sum->reducer = &task->sum->waiter;
     object->sum = NULL;
     return task;
 }
@@ -94,7 +94,7 @@ static int sum_combine_here(struct task_scope *scope, struct worker *worker,
     struct task_graph *graph = scope->graph;
     struct data_sum *sum = object->sum;
     struct data_version *version = task_local(graph, object);
-    struct task *task = version ? sum_closer(scope, object, TASK_COMBINE, 1) : NULL;
+    struct task *task = version ? sum_reducer(scope, object, TASK_COMBINE, 1) : NULL;
     if (!task)
         return DUITE_E_MEMORY;
     uint32_t done = 0;
@@ -116,7 +116,7 @@ static int sum_send_pieces(struct task_scope *scope, struct worker *worker,
 {
     struct task_graph *graph = scope->graph;
     struct data_sum *sum = object->sum;
-    struct task *task = sum_closer(scope, object, TASK_PIECES, 0);
+    struct task *task = sum_reducer(scope, object, TASK_PIECES, 0);
     if (!task)
         return DUITE_E_MEMORY;
     task_wake(graph, worker, data_sum_release(sum));
@@ -144,7 +144,7 @@ int task_gather(struct task_scope *scope, struct worker *worker, struct data_obj
 {
     struct task_graph *graph = scope->graph;
     struct data_sum *sum = object->sum;
-    struct task *task = sum_closer(scope, object, TASK_GATHER, 1);
+    struct task *task = sum_reducer(scope, object, TASK_GATHER, 1);
     if (!task) {
         sum_keep_unclosed(graph, object);
         return DUITE_E_MEMORY;

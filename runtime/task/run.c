@@ -111,7 +111,7 @@ static const struct data_failure *body_failure(const struct duite_call_private *
 {
     struct data_failure failure = {.code = code};
     if (!body->text[0] && code == body->remembered)
-        memcpy(failure.text, body->sentence, sizeof failure.text);
+        memcpy(failure.text, body->message, sizeof failure.text);
     else
         memcpy(failure.text, body->text, sizeof failure.text);
     return task_fail_task(body->task, body->scope, &failure);

@@ -1,5 +1,5 @@
-/* The program's words: the main thread of rank 0 alone writes them. What every rank would say is
- * said once. An entry may lie in two sections. */
+/* The program's words: the main thread of rank 0 alone writes them. All ranks
+ * make the same calls, so that one record is enough. An entry may lie in two sections. */
 #include "runtime/trace/internal.h"
 
 #include "runtime/base/memory.h"

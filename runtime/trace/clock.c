@@ -1,7 +1,7 @@
 /* Clocks: rank 0 asks each rank in turn what time it is there. Of several round trips the shortest
- * one counts: the answer was given somewhere between its ends, so half of it bounds the error
- * (Cristian, 1989). What MPI may still write to belongs to the trace, which stays if somebody did
- * not answer in time. */
+ * counts: the other rank answered between its two ends, so that half of it bounds the error
+ * (Cristian, 1989). The buffers that MPI may still write to belong to the trace, which is not freed
+ * if a rank did not answer in time. */
 #include "runtime/trace/internal.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* Writing: one thread at a time, under the lock. The file always ends with a whole section; the
- * first failure ends all writing, and what comes later is counted as lost. */
+/* Writing: one thread at a time, under the lock. The file always ends with a whole section. The
+ * first failure ends all writing; what comes later is counted as lost. */
 #include "runtime/trace/internal.h"
 
 #include "runtime/base/error.h"

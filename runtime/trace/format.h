@@ -30,7 +30,7 @@ struct trace_header {
     double tick;      /* seconds of a tick */
     int64_t began;    /* seconds since 1970 */
     double latency;   /* seconds of the shortest message there or back that rank 0 saw; 0: none */
-    uint64_t first, end; /* steps that were asked for: first .. end - 1 */
+    uint64_t first, end; /* steps to record: first .. end - 1 */
 };
 
 /* What follows a section's head. */
@@ -66,7 +66,7 @@ enum trace_kind {
     TRACE_MIGRATE,  /* number: objects that moved; took: how long all of it took */
     TRACE_STEP,     /* number: the step that begins */
     TRACE_FLUSH,    /* events were written; number: bytes */
-    TRACE_MESSAGES, /* a worker that did not idle looked for messages, sent or took them */
+    TRACE_MESSAGES, /* a worker that was not idle polled, sent or received messages */
     TRACE_KINDS
 };
 
@@ -74,7 +74,7 @@ enum trace_kind {
 enum {
     TRACE_NESTED = 1,    /* a descendant of the main program's task with this number */
     TRACE_OFFLOADED = 2, /* of another rank's program, delegated to this one */
-    TRACE_CHAINED = 4,   /* ran directly after the one that made it ready */
+    TRACE_CHAINED = 4,   /* ran inline: directly after the one that made it ready */
 };
 
 struct trace_event {
@@ -92,7 +92,7 @@ struct trace_clock {
     double at, ahead, bound;
 };
 
-/* What the worker counted from start to end, all steps: ticks, but for the numbers of tasks. */
+/* What the worker counted from start to end, over all steps: numbers of tasks, and ticks. */
 struct trace_counters {
     uint64_t tasks, stolen, chained, delegated, busy, idle;
     uint64_t messages, bytes; /* of the rank; worker 0 */

@@ -34,7 +34,7 @@ struct trace {
     uint64_t words_lost;
     MPI_Comm mpi; /* for clocks only */
     struct trace_word said, heard;
-    bool stuck; /* somebody did not answer in time: MPI may still use the two */
+    bool stuck; /* a rank did not answer in time: MPI may still use the two */
 };
 
 /* A part of a section. */

@@ -41,7 +41,7 @@ struct trace_run {
 
 /* Reads FILE and those of the other ranks beside it. `partial`: a run that did not come to its end
  * has what is whole. Errors: DUITE_E_SYSTEM, memory; DUITE_E_ARGUMENT for a file that is foreign,
- * newer, truncated, damaged or of another run: the sentence has the byte. *run is NULL then. */
+ * newer, truncated, damaged or of another run: the message has the byte. *run is NULL then. */
 int trace_read(struct trace_run **run, const char *file, bool partial);
 void trace_run_free(struct trace_run *run);
 
@@ -49,7 +49,7 @@ void trace_run_free(struct trace_run *run);
 double trace_when(const struct trace_run *run, uint32_t rank, uint64_t ticks);
 double trace_lasts(const struct trace_run *run, uint32_t rank, uint64_t ticks);
 
-/* What is to be called: the kernel, the runtime's own task, or the kind. */
+/* An event's name: of its kernel, of the runtime's own task, or of its kind. */
 const char *trace_event_name(const struct trace_run *run, const struct trace_event *event);
 const char *trace_kind_name(unsigned kind);
 

@@ -157,8 +157,8 @@ struct body {
     uint32_t n; /* bodies, nested ones left out */
 };
 
-/* An open table. Task numbers lie close together and are asked for in their order: so do their
- * places. */
+/* An open hash table. Task numbers are dense, and looked up in rising order; so are their places in
+ * the table. */
 struct trace_bodies {
     struct body *body;
     size_t mask;
@@ -230,14 +230,13 @@ static void sums_print_shares(const struct trace_sums *sums, double all, FILE *f
     const struct {
         const char *name, *what;
         double seconds;
-    } share[] = {
-        {"busy", "bodies of tasks", sums->busy},
-        {"own", "tasks of the runtime's own", sums->own},
-        {"messages", "MPI: looking for messages, sending and taking them", sums->messaging},
-        {"writing", "of the trace", sums->flush},
-        {"idle", "of that with messages awaited", sums->idle},
-        {"rest", "the runtime between tasks, the main program, start and end",
-         fmax(all - named, 0)}};
+    } share[] = {{"busy", "bodies of tasks", sums->busy},
+                 {"own", "tasks of the runtime's own", sums->own},
+                 {"messages", "MPI: polling, sending and receiving messages", sums->messaging},
+                 {"writing", "of the trace", sums->flush},
+                 {"idle", "of that with messages awaited", sums->idle},
+                 {"rest", "the runtime between tasks, the main program, start and end",
+                  fmax(all - named, 0)}};
     fputs("  of the workers' time\n", file);
     for (size_t i = 0; i < sizeof share / sizeof *share; i++) {
         fprintf(file, "    %-11s %5.1f %%  %s", share[i].name,

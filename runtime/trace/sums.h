@@ -32,8 +32,8 @@ int trace_print(const struct trace_run *run, FILE *file);
 
 /* ---- Bodies ---- */
 
-/* Seconds of bodies by the numbers of their tasks. Read-only once it is made, so any thread may
- * ask. */
+/* Seconds of bodies by the numbers of their tasks. Never written once it is made: any thread may
+ * read it. */
 struct trace_bodies;
 
 /* NULL without memory. The caller frees it; NULL is fine there. */

@@ -30,9 +30,9 @@ struct trace_setup {
 int trace_open(struct trace **trace, const struct trace_setup *setup);
 
 /* Aligns the clocks, at the start and at the end: rank 0 makes round trips with one rank after the
- * other, and keeps the shortest. Ranks that do not answer within some seconds stay unaligned. On a
- * duplicate of the communicator, made the first time. Nobody else calls MPI meanwhile. Collective,
- * main thread. */
+ * other, and keeps the shortest. Ranks that do not answer within some seconds stay unaligned. Uses
+ * a duplicate of the communicator, which the first call makes. No other thread calls MPI meanwhile.
+ * Collective, main thread. */
 void trace_align(struct trace *trace, MPI_Comm mpi);
 
 /* Ends the trace: writes what is left. `counters`: one a worker, or NULL for want of memory.
@@ -93,7 +93,7 @@ static inline void trace_put(struct trace_ring *ring, const struct trace_event *
                           memory_order_release);
 }
 
-/* Something without a duration, now. */
+/* Puts an event without a duration, now. */
 static inline void trace_mark(struct trace_ring *ring, enum trace_kind kind, uint32_t kernel,
                               uint64_t number)
 {
@@ -104,7 +104,7 @@ static inline void trace_mark(struct trace_ring *ring, enum trace_kind kind, uin
                                               .kind = (uint8_t)kind});
 }
 
-/* Whether it is to be written soon. By the worker. */
+/* Whether the ring is to be written soon. By the worker. */
 static inline bool trace_is_full(const struct trace_ring *ring)
 {
     uint64_t head = atomic_load_explicit(&ring->head, memory_order_relaxed);

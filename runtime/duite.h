@@ -236,7 +236,7 @@ typedef struct duite_options {
     uint64_t seed;         /* of everything random in policies. Default: DUITE_SEED, else 1 */
     double spin_seconds;   /* how long an idle worker spins before it sleeps. Default 100e-6 */
     int bind;              /* bind workers to cores where the rank owns enough. Default 1 */
-    size_t window;         /* most tasks of this rank that are unfinished when a fork returns, see
+    size_t window;         /* max. tasks of this rank that are unfinished when a fork returns, see
                               duite_fork. Default 0: any number */
     size_t rename_bytes;   /* how many bytes of this rank renaming may take, see below. Default 0 */
     double stuck_seconds;  /* when nothing moves for so long, standard error tells who waits for
@@ -316,8 +316,8 @@ const char *const *duite_balancer_names(void);
  * writes to standard error, in at most 20 lines, what the main program waits for, which bodies run,
  * which tasks wait for them, and which wait for objects from which rank. A long body looks the
  * same; nothing is changed or ended. It is reported again once it lasts twice as long. Tasks that
- * wait for nothing which can be found are told of, too: a body may have written beyond its objects,
- * and DUITE_CHECK=accesses names such a body. */
+ * wait for nothing which can be found are reported, too: a body may have written beyond its
+ * objects, and DUITE_CHECK=accesses names such a body. */
 
 /* A lost rank: on several ranks a thread of each sends the next rank a heartbeat sixteen times in
  * options.lost_seconds, however busy its workers are. A rank that died, was cut off, or was
@@ -408,7 +408,7 @@ int duite_set(duite *rt, duite_object object, const void *values);
  * changes (duite_set gives it its maximum); else DUITE_E_SIZE. Collective; returns at once. */
 int duite_set_sized(duite *rt, duite_object object, const void *values, size_t count);
 
-/* How many elements the object has, as the tasks forked so far leave it. Waits, and tells errors,
+/* How many elements the object has, as the tasks forked so far leave it. Waits, and returns errors,
  * like duite_get; a duite_get afterwards need not wait. Collective. */
 int duite_get_count(duite *rt, duite_object object, size_t *count);
 
@@ -424,8 +424,8 @@ int duite_get(duite *rt, duite_object object, void *values);
 int duite_get_at(duite *rt, duite_object object, int rank, void *values);
 
 /* Tells mappings about the object: its share of work, and the bytes it exchanges with n neighbours,
- * which exist already (edge_weights NULL: 1 each). An edge may be told from either end; told twice
- * it adds up. A second hint replaces the weight and adds edges. Hints count until
+ * which exist already (edge_weights NULL: 1 each). An edge may be given from either end; given
+ * twice it adds up. A second hint replaces the weight and adds edges. Hints count until
  * the next fork, set, get, free, duite_home, duite_graph_new or replay (of an empty graph too)
  * after the object was made settles its home, and change nothing later. Collective. */
 int duite_hint(duite *rt, duite_object object, double weight, size_t n,
@@ -476,12 +476,12 @@ typedef struct duite_task_options {
     double cost;      /* seconds that the body is thought to take; 0 or less: not known */
 } duite_task_options;
 
-/* duite_fork, with what the program knows of the task (how NULL: nothing): duite_fork_with(rt,
+/* duite_fork, with what the program knows of the task (options NULL: nothing): duite_fork_with(rt,
  * &(duite_task_options){.priority = 3, .cost = 2e-5}, ...). Priority and cost are handed to
  * schedulers (duite_ready) and never change results; replays of a recorded fork have them, too.
  * They may differ between ranks, as measured costs do: those of the rank that runs the task count.
  * Errors as of duite_fork_at. Collective; returns at once. */
-int duite_fork_with(duite *rt, const duite_task_options *how, const duite_kernel *kernel,
+int duite_fork_with(duite *rt, const duite_task_options *options, const duite_kernel *kernel,
                     const void *args, size_t n, const duite_object *objects);
 
 /* duite_fork with the objects, and a structure of arguments, written out:
@@ -522,7 +522,7 @@ int duite_wait(duite *rt);
  *
  * With call->rt, and on its own thread, a body may call: duite_new, duite_new_sized, duite_free;
  * duite_set, duite_set_sized, duite_get, duite_get_count; duite_fork, duite_fork_with (without a
- * rank), duite_wait, duite_resize, duite_fail; and what tells about the runtime (duite_rank and the
+ * rank), duite_wait, duite_resize, duite_fail; and what describes the runtime (duite_rank and the
  * like). All others are DUITE_E_STATE, and so is any call from a thread of the program's own. In a
  * body the calls are local: children run on the rank of the task, and no other rank knows of them.
  *
@@ -539,8 +539,8 @@ int duite_wait(duite *rt);
  * with their descendants; what the body does afterwards comes after them. Meanwhile its thread runs
  * other tasks that come earlier, on the same stack: a body must not wait with a lock held. A
  * duite_wait returns the error that is first in the reference order among the descendants since the
- * body's last wait. The next wait of the main program tells it, too. A failed child poisons what it
- * writes, no more: its parent fails only if it says so.
+ * body's last wait. The next wait of the main program returns it, too. A failed child poisons what
+ * it writes, no more: its parent fails only if it says so.
  *
  * Errors of calls that return at once are remembered for the body's next get or wait; if there is
  * none, the task fails with the first of them. */
@@ -621,7 +621,8 @@ int duite_graph_free(duite *rt, duite_graph graph);
  * each worker did when, and what the main program called. Files of these names are replaced.
  * duite-trace turns them into the forms of viewers, duite-predict works out what the run would take
  * elsewhere. If the file cannot be made, duite_start fails; if it cannot be written later on, or is
- * removed or replaced, the run goes on, what was written is kept, and duite_trace_end tells. */
+ * removed or replaced, the run goes on, what was written is kept, and duite_trace_end returns the
+ * error. */
 
 /* Step `step` of the program begins, counted from 0. What was written down is brought to the file,
  * and recording begins or ends if options.trace_first or trace_end say so. Only when it begins or

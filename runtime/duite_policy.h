@@ -87,7 +87,7 @@ typedef struct duite_scheduler {
      * DUITE_NO_QUEUE ends the round, and the worker idles for a moment. Its own queue and the
      * shared one were found empty before attempt 0; they are always served, so that a policy cannot
      * lose a task. A round without an end is ended after 64 tries and 16 for each worker, and is an
-     * error that the next duite_wait tells. */
+     * error that the next duite_wait returns. */
     unsigned (*victim)(void *state, unsigned attempt);
     /* Whether a task that just became ready may run inline: directly after the task that made it
      * ready, on the same worker. Such tasks form a chain, hence the name, and
@@ -212,7 +212,7 @@ typedef struct duite_balancer {
     int (*victim)(void *state, unsigned attempt, int granter, double *seconds);
     /* Whether the leaf goes to the rank that requests tasks. Needed with victim. */
     int (*grant)(void *state, const duite_request *request, const duite_leaf *leaf);
-    /* The rank on which a leaf that just became ready runs, asked for or not; the own one: here. */
+    /* The rank on which a leaf that just became ready runs, requested or not; the own one: here. */
     int (*place)(void *state, const duite_leaf *leaf);
     /* Moves blocks: home[n] has their homes, and those that are changed move, with all their
      * objects, before the replay that is about to begin. Returns after how many replays to ask

@@ -153,8 +153,8 @@ bool trace_sums_agree(const struct trace_run *run, FILE *file)
  * tasks its subtree is one task. A replicated task has the mean over the ranks that ran it. */
 struct body {
     uint64_t number; /* 0: free */
-    float seconds;
-    uint32_t n; /* bodies, nested ones left out */
+    double seconds;  /* float would lose what is added to many */
+    uint32_t n;      /* bodies, nested ones left out */
 };
 
 /* An open hash table. Task numbers are dense, and looked up in rising order; so are their places in
@@ -178,7 +178,7 @@ static void body_add(struct trace_bodies *bodies, const struct trace_event *even
         return;
     struct body *body = body_at(bodies, event->number);
     body->number = event->number;
-    body->seconds += (float)(tick * (double)(event->took - event->within));
+    body->seconds += tick * (double)(event->took - event->within);
     body->n += !(event->flags & TRACE_NESTED);
 }
 
@@ -212,7 +212,7 @@ void trace_bodies_free(struct trace_bodies *bodies)
 bool trace_bodies_find(const struct trace_bodies *bodies, uint64_t number, double *seconds)
 {
     const struct body *body = body_at(bodies, number);
-    *seconds = body->n > 1 ? body->seconds / (float)body->n : body->seconds;
+    *seconds = body->n > 1 ? body->seconds / body->n : body->seconds;
     return body->number != 0;
 }
 

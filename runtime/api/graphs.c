@@ -240,11 +240,11 @@ static int replay_fork_rounds(duite *rt, struct plan_record *record, uint64_t ro
  * ranks. */
 static int replay_make_tags(duite *rt)
 {
-    int code = program_meet(rt, "duite_replay");
+    int code = api_meet(rt, "duite_replay");
     if (!code)
         code = comm_channels_settle(rt->comm);
     if (!code)
-        code = program_meet(rt, "duite_replay");
+        code = api_meet(rt, "duite_replay");
     if (!code)
         comm_channels_met(rt->comm);
     return code;

@@ -1,8 +1,8 @@
 /* A channel's turn counts its messages from the opening on, over all replays; a message lies in the
- * buffer of its turn's parity. Nothing tells a sender that its message was read, since in most
- * graphs it cannot come far without an answer; so that none comes too far, every sixteenth message
- * of a channel is sent so that MPI tells when it was received: a rank is at most so many rounds
- * ahead. */
+ * buffer of its turn's parity. A sender is not told that its message was read: in most graphs it
+ * cannot get far without an answer. So that no rank gets too far, every sixteenth message of a
+ * channel is sent synchronously: MPI tells when it was received. This bounds by how many rounds a
+ * rank is ahead. */
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/stack.h"

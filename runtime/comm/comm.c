@@ -66,7 +66,7 @@ void comm_open(struct comm *comm, bool requests)
     comm_unlock(comm);
 }
 
-/* Nothing is on its way, neither of a whole run nor of one that broke. */
+/* Whether nothing is on its way any more, at a good stop or after communication broke. */
 static bool comm_is_over(struct comm *comm)
 {
     if (comm_is_broken(comm))
@@ -108,7 +108,8 @@ bool comm_stop(struct comm *comm)
 void comm_send(struct comm *comm, struct task *task)
 {
     BASE_STACK_PUSH(&comm->posts, task, memory_order_release);
-    /* Against comm_left_to_us: the next try for the lock succeeds, or its holder sees this. */
+    /* Pairs with comm_left_to_us: either the next try for the lock succeeds, or its holder sees
+     * this task. */
     atomic_thread_fence(memory_order_seq_cst);
 }
 

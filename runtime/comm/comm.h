@@ -28,11 +28,12 @@ struct comm_target {
 int comm_start(struct comm **comm, MPI_Comm mpi, struct task_graph *graph,
                struct base_monitor *monitor);
 
-/* Before comm_open, on all ranks alike: a rank of which nothing is heard for so many seconds (0:
- * any time) is lost. host: of the rank before this one, in a ring. comm NULL is fine. */
+/* Before comm_open, on all ranks alike: a rank that sends no heartbeat for so many seconds is lost
+ * (0: never). host: that of the rank before this one in the ring. comm NULL is fine. */
 void comm_ring(struct comm *comm, double seconds, const char *host);
 
-/* Before comm_open: to be told of each message that a worker sends or receives, with its bytes. */
+/* Before comm_open: `tell` is called for each message that a worker sends or receives, with its
+ * bytes. */
 typedef void comm_told(struct worker *worker, bool sends, int peer, size_t bytes);
 void comm_tell(struct comm *comm, comm_told *tell);
 
@@ -46,8 +47,8 @@ void comm_open(struct comm *comm, bool requests);
  * collective. False if MPI may still use its communicator, which then must not be freed. */
 bool comm_stop(struct comm *comm);
 
-/* Posts a ready SEND, which is finished once it is sent. The next poll sends it; comm_posted: there
- * is something to send. Any thread. */
+/* Posts a ready SEND. The next poll sends it, and work_finish ends it once it is sent. comm_posted:
+ * whether there is something to send. Any thread. */
 void comm_send(struct comm *comm, struct task *task);
 bool comm_posted(struct comm *comm);
 
@@ -63,7 +64,7 @@ void comm_channels_met(struct comm *comm);
  * finished when that is through. Any thread. */
 void comm_channel_ready(struct comm *comm, struct worker *worker, struct task *node);
 
-/* Messages of recorded graphs are awaited. Any thread. */
+/* Whether messages of recorded graphs are awaited. Any thread. */
 bool comm_awaits(struct comm *comm);
 
 /* The packets of that key belong to a version, or to a sum; those that came already are delivered.
@@ -75,9 +76,9 @@ int comm_expect(struct comm *comm, struct worker *worker, struct data_key key,
  * thread. */
 bool comm_poll(struct comm *comm, struct worker *worker);
 
-/* Calls back with all that is awaited (see comm_arrivals_look) and what is being sent, as far as
- * MPI can be asked right now. A task that waits for something awaited stays as it is during the
- * call. Any thread. */
+/* Calls back with all that is awaited (see comm_arrivals_look), and with what is being sent if the
+ * lock can be had. Returns whether it could. A task that waits for something awaited stays as it is
+ * during the call. Any thread. */
 struct comm_looker {
     void *context;
     void (*awaited)(void *context, const struct data_key *key, const struct comm_target *target,
@@ -93,7 +94,7 @@ uint64_t comm_movement(struct comm *comm);
 
 /* ---- The machine, at start ---- */
 
-/* Ranks of one host that share their cores. */
+/* The ranks of one host that share their cores with this one. */
 struct comm_host {
     unsigned ranks;  /* this one among them */
     unsigned before; /* workers of the ranks below this one */
@@ -125,19 +126,20 @@ struct comm_requester {
     double until;
 };
 
-/* Whether there may be one; takes one, false: none now; puts one back that got no grant. */
+/* Whether there may be a request; takes one (false: there is none now); puts one back that got no
+ * grant. */
 bool comm_has_requests(struct comm *comm);
 bool comm_take_request(struct comm *comm, struct comm_requester *requester);
 void comm_return_request(struct comm *comm, const struct comm_requester *requester);
 
 /* ---- Calls that block, made by all ranks alike ---- */
 
-/* This rank enters one, and has forked what the fingerprint says. True if so many were logged that
- * all ranks must agree now. Main thread. */
+/* This rank enters a blocking call, and has forked what the fingerprint says. True if so many calls
+ * were logged that all ranks must agree now. Main thread. */
 bool comm_call(struct comm *comm, const char *name, uint64_t fingerprint);
 
-/* It waits in it for data, or not any more. Differences are found while it waits: then
- * communication breaks. Main thread. */
+/* This rank waits for data in the call, or no longer waits. If a difference between ranks is found
+ * while it waits, communication breaks. Main thread. */
 void comm_waits(struct comm *comm, bool waits);
 
 enum { COMM_SUMMED = 16, COMM_WORD_NUMBERS = sizeof(struct data_failure) / sizeof(double) };
@@ -152,11 +154,10 @@ struct comm_word {
     };
 };
 
-/* One small reduction: have all ranks forked what own->fingerprint says, and do they have the same
- * homes? own->failed becomes that of the first failed task of all ranks, or 0. Calls
- * between(context) while it waits, so that others get on; it has to poll. DUITE_E_DIFFERENT if
- * ranks differ: then communication is broken, and the message names the first difference.
- * Collective, main thread. */
+/* One small reduction, which compares own->fingerprint (the forks) and the homes of all ranks.
+ * own->failed becomes that of the first failed task of all ranks, or 0. Calls between(context)
+ * while it waits, so that others get on; it has to poll. DUITE_E_DIFFERENT if ranks differ: then
+ * communication is broken, and the message names the first difference. Collective, main thread. */
 int comm_agree(struct comm *comm, struct comm_word *own, void (*between)(void *context),
                void *context);
 
@@ -183,22 +184,21 @@ void comm_broke_memory(struct comm *comm, const char *what);
 /* The code with the message set once communication is broken, else 0. */
 int comm_broken(struct comm *comm);
 
-/* It is broken because MPI failed or a rank was lost: MPI must not be relied on, nor finalised. */
+/* Whether it is broken because MPI failed or a rank was lost: then MPI must not be relied on, nor
+ * finalised. */
 bool comm_is_cut(struct comm *comm);
 
-/* It is broken for that reason: polls for a moment, so that its abort messages go out. Main
- * thread. */
+/* After comm_is_cut: polls for a moment, so that the abort messages go out. Main thread. */
 void comm_part(struct comm *comm, struct worker *worker);
 
-/* The caller alone calls MPI from the one to the other: nothing is sent or received. Main thread.
- */
+/* Between hold and let_go the caller alone calls MPI: nothing is sent or received. Main thread. */
 void comm_hold(struct comm *comm);
 void comm_let_go(struct comm *comm);
 
 /* The workers end: nobody wakes them any more if communication breaks. Main thread. */
 void comm_workers_end(struct comm *comm);
 
-/* It is broken: whatever is expected is taken for lost. Main thread. */
+/* After it broke: whatever is expected is taken for lost. Main thread. */
 void comm_give_up(struct comm *comm, struct worker *worker);
 
 /* Ticks so far in which this rank awaited messages. Any thread. */

@@ -6,14 +6,14 @@
 #include "runtime/comm/comm.h"
 
 /* Shared by the files of this folder only: what a comm consists of, part by part, and at the end
- * the comm itself. Whatever says "under the lock" is for the holder of comm->lock. */
+ * the comm itself. "Under the lock" means: the caller holds comm->lock. */
 
 /* Tags: of packets, of heartbeats, and from the last one on of channels. */
 enum { COMM_PACKETS, COMM_HEARTBEATS, COMM_CHANNELS };
 
 /* ---- Requests (transport.c) ---- */
 
-/* MPI requests under way, and what each is about. */
+/* MPI requests under way, and for each the thing that it sends or receives. */
 struct comm_requests {
     MPI_Request *request;
     void **what;
@@ -42,7 +42,7 @@ void comm_requests_free(struct comm_requests *requests);
 struct comm_found {
     struct data_packet *packets;
     struct task *sent;
-    struct task *nodes; /* of channels, that are through */
+    struct task *nodes; /* of channels whose message is through */
     bool any;
 };
 
@@ -50,7 +50,7 @@ struct comm_found {
 void comm_transport_send(struct comm *comm, struct comm_found *found);
 void comm_transport_receive(struct comm *comm, struct comm_found *found);
 
-/* Without the lock: gives all of it to whom it is for. */
+/* Without the lock: delivers all of it to whatever expects it. */
 void comm_transport_deliver(struct comm *comm, struct worker *worker, struct comm_found *found);
 
 /* ---- Tags of channels (tags.c) ---- */
@@ -104,12 +104,13 @@ struct comm_channels {
     bool lost;           /* nothing comes any more */
 };
 
-/* Whether MPI says how many tags there are. Under no lock yet. */
+/* Starts the channels: asks MPI for its largest tag. False if that fails. Before the lock is used.
+ */
 bool comm_channels_start(struct comm *comm);
 /* Under the lock, at the end: false if MPI may still read or write memory, which then stays. */
 bool comm_channels_stop(struct comm *comm);
 
-/* Posts a node that is ready; the caller sees to it that somebody comes by. Any thread. */
+/* Posts a node that is ready; the caller makes sure that a worker polls afterwards. Any thread. */
 void comm_channel_post(struct comm *comm, struct task *node);
 
 /* Under the lock: sends and receives what can be; the nodes that are through are linked before
@@ -175,7 +176,8 @@ struct comm_control {
     _Atomic uint64_t requested;     /* requests sent; any thread */
 };
 
-/* Makes room, so that abort messages and last ones need no memory. False without memory. */
+/* Takes memory ahead, so that abort messages and last messages need none later. False without
+ * memory. */
 bool comm_control_start(struct comm_control *control, int n_ranks);
 void comm_control_stop(struct comm_control *control);
 
@@ -187,7 +189,7 @@ bool comm_control_send(struct comm *comm, int to, struct data_packet *packet);
  */
 bool comm_control_hear(struct comm *comm, struct data_packet *packet);
 
-/* What is due: the divergence check, and the abort messages if communication is broken. */
+/* Does what is due: the divergence check, and the abort messages if communication is broken. */
 void comm_control_pass(struct comm *comm);
 
 /* Tells those who may still send control messages that this rank stops. Takes the lock, since
@@ -198,21 +200,22 @@ void comm_control_end(struct comm *comm);
  * be. */
 bool comm_control_over(struct comm *comm);
 
-/* Takes the lock. Broken: nothing at all is on its way to or from this rank, nor will be. */
+/* After communication broke: whether nothing at all is on its way to or from this rank, nor will
+ * be. Takes the lock. */
 bool comm_is_quiet(struct comm *comm);
 
 /* ---- The divergence check (divergence.c) ---- */
 
-/* The divergence check: ranks that make different calls are told so, even where one waits for data
- * that no other one will ever send.
+/* The divergence check finds ranks that make different calls, even where one waits for data that no
+ * other rank will ever send.
  *
  * Every rank logs its blocking calls: number, name, and the fingerprint of all that it forked
  * before. A rank that waits long in a call sends its entry of the log along a binomial tree over
  * all ranks, in which rank r has the parent r & (r - 1). Each rank passes on the first entry of a
  * number that it sees, whether it made that call yet or not, and compares it with its own and with
  * all further ones of that number. So a call costs a rank at most one message for each of its
- * neighbours in the tree, at most log2 of the number of ranks; and since the tree joins all ranks,
- * any difference is seen somewhere. Nothing is sent as long as nobody waits long. */
+ * neighbours in the tree, at most log2 of the number of ranks. Since the tree joins all ranks, any
+ * difference is seen somewhere. Nothing is sent as long as nobody waits long. */
 
 /* So many calls are logged; then all ranks agree that they were the same, and a new log begins. */
 enum { COMM_LOGGED_CALLS = 1024 };
@@ -235,8 +238,8 @@ struct comm_calls {
     struct comm_called *seen; /* the first entries that checks showed; by number */
     uint64_t last_seen;       /* the largest number of them */
     uint64_t compared;        /* own calls up to this one were compared with them */
-    uint64_t waited;          /* of the calls that it waited in, the last that was looked at ... */
-    double since;             /* ... and when first */
+    uint64_t waited; /* the last of the calls that this rank waited in and that was looked at ... */
+    double since;    /* ... and when first */
 };
 
 /* False without memory. */
@@ -286,13 +289,13 @@ void comm_difference_stop(struct comm_difference *difference);
 /* Ranks stand in a ring: each sends the next one a heartbeat sixteen times in `seconds`, and
  * listens to the one before it. If that one is not heard at sixteen looks in a row it is lost: then
  * communication breaks, and abort messages tell all others. So a rank sends and hears one message a
- * look, however many there are; and wherever the ring is cut in two, both parts find out, since on
- * each side somebody listens to the other.
+ * look, however many ranks there are. Wherever the ring is cut in two, both parts find out, since
+ * on each side a rank listens to one of the other side.
  *
- * The monitor does it, not the poll of the workers: all of them may be inside long bodies, and such
- * a rank is not lost. It touches MPI under the lock, like everybody, and the path of a task or a
- * message not at all. Silence is counted in looks, not in seconds, so that the time in which this
- * process itself was stopped, or got no core, is nobody's silence. */
+ * The monitor sends heartbeats, not the poll of the workers: all workers may be inside long bodies,
+ * and such a rank is not lost. The monitor calls MPI under the lock, like the workers. It adds
+ * nothing to the path of a task or a message. Silence is counted in looks, not in seconds, so that
+ * the time in which this process itself was stopped, or got no core, does not count. */
 enum { COMM_SILENT_LOOKS = 16, COMM_HOST_NAME = 64 };
 
 struct comm_heartbeat {
@@ -372,7 +375,7 @@ void comm_catch_up(struct comm *comm);
 /* True for MPI_SUCCESS; else communication is broken. */
 bool comm_mpi_ok(struct comm *comm, int mpi, const char *what);
 
-/* A message is sent, or came, or nobody is told. Under the lock. */
+/* Reports a message that is sent or came, if anybody wants to know. Under the lock. */
 static inline void comm_note(const struct comm *comm, bool sends, int peer, size_t bytes)
 {
     if (comm->tell)
@@ -400,9 +403,9 @@ static inline void comm_unlock(struct comm *comm)
     atomic_flag_clear_explicit(&comm->lock, memory_order_release);
 }
 
-/* To be asked after comm_unlock: what was posted meanwhile by those who did not get the lock must
- * not wait for the next poll. Against comm_send: it tries the lock after this look, or its post is
- * seen here. */
+/* To be asked after comm_unlock: tasks that were posted meanwhile, by threads that did not get the
+ * lock, must not wait for the next poll. Pairs with comm_send: it tries the lock after this look,
+ * or its post is seen here. */
 static inline bool comm_left_to_us(struct comm *comm)
 {
     atomic_thread_fence(memory_order_seq_cst);

@@ -1,6 +1,6 @@
-/* Packets between ranks: a SEND becomes a message, and a message goes to whom it is for. Once
- * communication is broken nothing is sent any more: what was posted ends as if it had been. The
- * requests lie without gaps, as MPI_Testsome wants them. */
+/* Packets between ranks: a SEND becomes a message, and a message that comes goes to the version,
+ * sum or task that expects it. Once communication is broken nothing is sent any more: posted tasks
+ * end as if they had been sent. Requests lie without gaps, as MPI_Testsome needs them. */
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
 #include "runtime/base/stack.h"
@@ -124,7 +124,7 @@ static void message_receive_scarce(struct comm *comm, MPI_Message *message, int 
     struct data_packet *spare = comm->control.spare;
     if (lines > (int)data_packet_lines(sizeof(struct comm_abort))) {
         comm_broke_memory(comm, "a message");
-        MPI_Mrecv(NULL, 0, comm->line, message, MPI_STATUS_IGNORE); /* truncated, as it is meant */
+        MPI_Mrecv(NULL, 0, comm->line, message, MPI_STATUS_IGNORE); /* truncated on purpose */
         return;
     }
     int mpi = MPI_Mrecv(spare, lines, comm->line, message, MPI_STATUS_IGNORE);
@@ -191,7 +191,7 @@ static void message_deliver_to(struct comm *comm, struct worker *worker, struct 
         task_pieces_arrived(comm->graph, worker, target.sum, packet);
 }
 
-/* A task of another rank; once communication is broken nobody waits for it. */
+/* A task of another rank came. Once communication is broken no rank waits for it. */
 static void message_deliver_offloaded(struct comm *comm, struct worker *worker,
                                       struct data_packet *packet)
 {

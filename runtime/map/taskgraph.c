@@ -1,5 +1,5 @@
-/* taskgraph: METIS on the tasks of a recorded graph instead of on hints: a block weighs what its
- * tasks cost, and blocks are tied by the bytes that tasks of one read from tasks of the other, in a
+/* taskgraph: METIS on the tasks of a recorded graph instead of on hints. A block weighs what its
+ * tasks cost. Blocks are tied by the bytes that tasks of one read from tasks of the other, in a
  * round and from round to round. So Zara's Athapascan did in the end (2001): the graph that the
  * program itself unfolds is partitioned, and nobody has to describe it. Until a graph is replayed,
  * homes are those of `metis`. */

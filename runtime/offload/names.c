@@ -1,4 +1,5 @@
-/* A table of slots; the free ones are a list. Generations begin with 1, so that no name is 0. */
+/* A name is a slot of a table and its generation; free slots form a list. Generations begin with 1,
+ * so that no name is 0. */
 #include "runtime/offload/names.h"
 
 #include "runtime/base/memory.h"

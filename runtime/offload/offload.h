@@ -7,15 +7,15 @@
  *
  * At home (send.c) such a task is away: it stays unfinished until the result of its body comes;
  * then it does what the body would have done. On the other rank (receive.c) it is an offloaded
- * task. That one has a small reference order of its own, waits for nothing, as its descendants wait
- * for nothing but one another, and belongs to no rank's count of tasks. The layers above decide
- * which tasks go, and measure. Any worker may call these functions. */
+ * task, with a small reference order of its own. It waits for nothing, its descendants wait for
+ * nothing but one another, and no rank's count of tasks has it. The layers above decide which tasks
+ * go, and measure. Any worker may call these functions. */
 
-/* Whether a ready task may run on another rank; *bytes: that go there and come back. */
+/* Whether a ready task may run on another rank; *bytes: how many go there and come back. */
 bool offload_may_go(const struct task_graph *graph, const struct task *task, size_t *bytes);
 
-/* A ready task that may go is to run on rank `to`, which it is posted to. False without memory, or
- * if everything is being given up: it stays as it was. */
+/* Sends a ready task that may go to rank `to`. False without memory, or if everything is being
+ * given up: then the task stays as it was. */
 bool offload_send(struct task_graph *graph, struct worker *worker, struct task *task, int to);
 
 /* What a task that is away left came; the callee owns it. A result that names no task that is away
@@ -38,13 +38,14 @@ void offload_look(struct task_graph *graph,
 /* How many results came that named no task that is away. */
 uint64_t offload_refused(struct task_graph *graph);
 
-/* A task of another rank came; the packet becomes its. False without memory: it is the caller's. */
+/* A task of another rank came; the packet becomes the callee's. False without memory: then it stays
+ * the caller's. */
 bool offload_arrived(struct task_graph *graph, struct worker *worker, struct data_packet *packet);
 
 /* Runs an offloaded task; returns whether a body ran. */
 bool offload_run(struct task_graph *graph, struct worker *worker, struct task *task,
                  const duite_call *call);
-/* Its body is over. */
+/* The body of an offloaded task is over. */
 void offload_body_over(struct worker *worker, struct task *task);
 /* Its descendants are over, too: its result is sent. `above` is the top of its scopes. */
 void offload_over(struct task_scope *above, struct worker *worker);

@@ -1,6 +1,6 @@
 /* Tasks that are away. The versions that such a task reads and takes over stay here, held by it as
- * before, so nothing else changes for those who wait for it. It goes on when two things happened,
- * in whichever order: the packet is gone, and the answer came. */
+ * before, so nothing else changes for those who wait for it. The task goes on when two things
+ * happened, in any order: its packet is sent, and the answer came. */
 #include "runtime/offload/message.h"
 
 #include "runtime/base/memory.h"
@@ -21,7 +21,7 @@ size_t offload_message_put(struct data_packet *packet, size_t at, const void *fr
     return end;
 }
 
-/* What the body finds: under r and rw, unless it is poisoned. */
+/* The value that is sent along: under r and rw. */
 static const struct data_version *access_value(const struct task_access *access)
 {
     bool reads = access->waiter.mode == DUITE_R || access->waiter.mode == DUITE_RW;
@@ -112,7 +112,8 @@ static struct data_packet *message_pack(const struct task_graph *graph, struct t
     return packet;
 }
 
-/* The name that its result will come back by; 0 without memory, or if it is too late. */
+/* Gives the task the name under which its result will come back; 0 without memory, or if
+ * communication broke. */
 static uint64_t away_enter(struct task_graph *graph, struct offload_away *away)
 {
     uint64_t name = 0;
@@ -151,8 +152,8 @@ bool offload_send(struct task_graph *graph, struct worker *worker, struct task *
 
 /* ---- Coming home ---- */
 
-/* What the body left becomes what its parameters have; or its failure, kept here as if it had
- * failed here. */
+/* Gives the parameters what the body left. Returns its failure, if it failed, as if it had failed
+ * here. */
 static const struct data_failure *result_unpack(const struct task *task, duite_param *param,
                                                 struct data_packet *packet)
 {

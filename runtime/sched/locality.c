@@ -1,6 +1,6 @@
-/* locality: as `steal`, but an idle worker tries the others by their distance in the machine:
- * first, from a random one on, those that share most with it (a core, a cache, a package), then the
- * next ring, so that data leave a cache or a package only when there is no work left in it. Without
+/* locality: as `steal`, but an idle worker tries the others by their distance in the machine. First
+ * come those that share most with it (a core, a cache, a package), from a random one on; then the
+ * next ring. So data leave a cache or a package only when there is no work left in it. Without
  * distances all others are one ring. After Quintin & Wagner, Hierarchical work-stealing, Euro-Par
  * 2010. */
 #include "runtime/sched/sched.h"

@@ -14,16 +14,16 @@ struct task *task_new(struct task_scope *scope, enum task_type type, size_t n, s
 /* The same, not counted. NULL without memory: nothing else happened. */
 struct task *task_make(struct task_scope *scope, enum task_type type, size_t n, size_t extra);
 
-/* Takes `done` and the hold of the fork from pending; the task is ready if nothing is left. */
+/* Takes `done` and the hold of the fork from `pending`; at 0 the task is ready. */
 void task_settled(struct task_graph *graph, struct worker *worker, struct task *task,
                   uint32_t done);
 
-/* What the waiter waited for is there. NULL is fine. */
+/* Wakes a waiter: what it waited for is there. NULL is fine. */
 void task_wake(struct task_graph *graph, struct worker *worker, struct data_waiter *waiter);
 
 /* The version is there: wakes its readers, releases the producer's hold. */
 void task_publish(struct task_graph *graph, struct worker *worker, struct data_version *version);
-/* The same, but an heir that may have the version now is returned. */
+/* The same, but an heir that may now take the version over is returned, not woken. */
 struct data_waiter *task_produced(struct task_graph *graph, struct worker *worker,
                                   struct data_version *version);
 
@@ -58,7 +58,8 @@ static inline void task_note_version(struct data_object *object, int holder)
     data_object_moved(object, holder);
 }
 
-/* Sees to it that rank `to` gets the current version: sends, awaits, or notes that others do. */
+/* Brings the current version to rank `to`: this rank sends it, awaits it, or notes that others do
+ * so. */
 int task_fetch(struct task_graph *graph, struct worker *worker, struct data_object *object, int to);
 /* The same for all ranks. */
 int task_fetch_all(struct task_graph *graph, struct worker *worker, struct data_object *object);
@@ -70,14 +71,13 @@ int task_view_gather(struct task_graph *graph, struct worker *worker, struct dat
 /* The object has a new version on another rank: this rank's copy is stale. */
 void task_forget(struct task_graph *graph, struct worker *worker, struct data_object *object);
 
-/* Contributions: adds a leaf for access i of the fork, after ending a run of another law; and ends
- * the run of them. */
+/* Contributions. task_contribute adds a leaf for access i of the fork, and first closes a sum of
+ * another law. task_reduce closes the sum: its contributions are combined. */
 int task_contribute(const struct task_fork_call *call, struct data_object *object, size_t i);
 int task_reduce(struct task_scope *scope, struct worker *worker, struct data_object *object);
 void task_run_combine(struct task *task);
 void task_run_pieces(struct task *task);
-/* The contributions of a task's children become `leaf` of `sum`, the one it is a contribution to.
- */
+/* Makes the contributions of a task's children `leaf` of `sum`, to which the task contributes. */
 int task_gather(struct task_scope *scope, struct worker *worker, struct data_object *object,
                 struct data_sum *sum, struct data_piece *leaf);
 void task_run_gather(struct task *task);
@@ -123,7 +123,7 @@ void task_lend(struct task *task, size_t i, const struct data_object *object,
                struct data_version *version, struct data_version *out);
 /* The object that became of a postponed parameter: access->lent. */
 const struct data_object *task_lent_object(const struct task_scope *scope, size_t lent);
-/* The task of the scope failed, or met poison: so does all that it leaves. */
+/* The task of the scope failed, or read poison: all that it leaves is poisoned. */
 void task_scope_fail(struct task_scope *scope, const struct data_failure *failure);
 /* The body is over, or never ran: what the children leave goes to the scope above, poisoned if the
  * scope was told of a failure. */

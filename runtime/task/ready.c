@@ -1,7 +1,7 @@
-/* Ready, the third stage of a task: it waits through its accesses, and may run when `pending`,
- * which also counts a hold of the fork itself, comes to 0. Whoever takes the last one hands it to
- * the workers, which run it: run.c. Versions wake those who wait for them when they are there, and
- * their heir when nobody holds them any more. */
+/* Ready, the third stage of a task. `pending` counts the accesses that the task waits for, and one
+ * hold of the fork itself; at 0 the task may run. Whoever takes the last one hands the task to the
+ * workers, which run it: run.c. A version wakes its readers when its value is there, and its heir
+ * when nobody holds it any more. */
 #include "runtime/task/internal.h"
 
 #include "runtime/base/memory.h"
@@ -30,7 +30,8 @@ void task_wake(struct task_graph *graph, struct worker *worker, struct data_wait
         pending_take(graph, worker, waiter_task(waiter), 1);
 }
 
-/* An heir that is no task passes the value on to a scope above, which may have one like it. */
+/* An heir that is no task passes the value on to the scope above, whose heir may again be no task.
+ */
 static void heir_wake(struct task_graph *graph, struct worker *worker, struct data_waiter *heir)
 {
     while (heir && !heir->back)

@@ -2,7 +2,7 @@
  * that the children may use. What the task was lent is a stretch of the chain of versions of the
  * scope above. The local object begins with the version that the task would have taken over. When
  * the body is over, scope_end.c gives back what the children leave. So nobody waits for a task with
- * postponed parameters but for the values alone. A contribution is lent as a sum of its own, whose
+ * postponed parameters, only for the values. A contribution is lent as a sum of its own, whose
  * result becomes the leaf. What a task may give to a child is what its kernel's modes say, and all
  * of what it made.
  *
@@ -225,7 +225,8 @@ int task_make_object(struct duite_call_private *body, duite_type type, size_t co
     return DUITE_OK;
 }
 
-/* What the body reads, as a version: the very one, or a copy of what lies in place. */
+/* The version that the body reads: of a forked task the version itself, in a replay a copy of the
+ * bytes in place. */
 static struct data_version *read_version(const struct duite_call_private *body, uint32_t i)
 {
     const struct task *task = body->task;

@@ -22,7 +22,8 @@ struct work_spent {
     _Atomic(struct work_spent_for *) row[WORK_SPENT_ROWS];
 };
 
-/* Without memory they are forgotten. */
+/* Add ticks for a block, or for none; without memory for a row they are dropped. Take: what was
+ * added since the last take. */
 void work_spend(struct work_spent *spent, uint32_t block, uint64_t ticks);
 void work_spend_else(struct work_spent *spent, uint64_t ticks);
 uint64_t work_spent_take(struct work_spent *spent, uint32_t block);
@@ -42,14 +43,16 @@ struct work_cost {
 bool work_cost_start(struct work_cost *cost, unsigned workers, uint32_t kernels, bool by_block);
 void work_cost_stop(struct work_cost *cost);
 
-/* The body of a task took so many ticks on that worker, which calls. */
+/* Notes that the body of a task took so many ticks on `worker`, which is the caller. */
 void work_cost_learn(struct work_cost *cost, unsigned worker, const struct task *task,
                      uint64_t ticks);
 
-/* Ticks of a body of the kernel: the mean of the workers that know; 0: none does. Any worker. */
+/* Ticks of a body of the kernel: the mean over the workers that ran one; 0: none did. Any worker.
+ */
 double work_cost_mean(const struct work_cost *cost, uint32_t kernel);
 
-/* Ticks since the last time in bodies for the block; in all that run for none. Main thread. */
+/* Ticks since the last time: in bodies that ran for the block; in all that ran for no block. Main
+ * thread. */
 uint64_t work_cost_take_block(struct work_cost *cost, uint32_t block);
 uint64_t work_cost_take_other(struct work_cost *cost);
 

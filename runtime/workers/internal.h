@@ -20,9 +20,10 @@
 /* A worker that sleeps for short pauses begins with this one; each is twice as long as the last. */
 #define WORK_FIRST_PAUSE_SECONDS 2e-5
 
-/* A place where one worker sleeps. To sleep without missing a wake-up: announce, look once more for
- * what to wait for, then sleep or cancel. Whoever makes something available looks at `asleep`
- * afterwards; both sides are sequentially consistent, so at least one sees the other. */
+/* The place where one worker sleeps. To miss no wake-up a worker announces that it will sleep,
+ * looks once more for what it waits for, and then sleeps or cancels. Whoever makes something
+ * available reads `asleep` afterwards. Both sides are sequentially consistent, so at least one sees
+ * the other. */
 struct work_park {
     _Atomic int asleep;
     pthread_mutex_t lock;
@@ -50,7 +51,7 @@ struct work_standstill {
 };
 
 struct work_counts {
-    _Atomic uint64_t over, more; /* tasks of all kinds; what is waited for beside the forked ones */
+    _Atomic uint64_t over, more; /* tasks that are over, of all kinds; to come, beside the forked */
     _Atomic uint64_t tasks, placed, stolen, chained, delegated;
     _Atomic uint64_t far;                 /* of those stolen: not from the nearest */
     _Atomic uint64_t busy, idle, exposed; /* ticks; the last: idle while messages were awaited */
@@ -62,13 +63,12 @@ struct worker {
     struct work_pool *pool;
     struct trace_ring *ring; /* of the trace; NULL: there is none */
     void *state;             /* of the scheduler */
-    struct base_mark *mark;  /* around its calls; NULL: it is built in */
+    struct base_mark *mark;  /* set around the scheduler's calls; NULL: it is built in */
     unsigned index;
-    bool finishing;                 /* a task of this worker makes others ready right now */
-    bool may_chain;                 /* ... and may run one of them inline, as its next */
-    bool polls;                     /* is the poller */
-    bool left_some;                 /* tasks in the heap from which it took one: another is to be
-                                       woken */
+    bool finishing; /* a task of this worker makes others ready right now */
+    bool may_chain; /* ... and may run one of them inline, as its next */
+    bool polls;     /* is the poller */
+    bool left_some; /* the heap from which it took a task has more: another worker is to be woken */
     const struct task_scope *waits; /* of the body that waits on top; NULL: none does */
     uint64_t within;                /* ticks of tasks, messages and idling inside the body that
                                        runs */
@@ -77,8 +77,8 @@ struct worker {
     uint64_t polled, idle_since;    /* when, in ticks; 0: busy */
     uint64_t messaging;             /* when it began with messages, in ticks; 0: it does not */
     uint64_t looked, crowded_until; /* in ticks, see idle.c */
-    long switches;                  /* of its thread, that it did not want; -1: not counted yet */
-    uint64_t awaited_then;          /* comm_awaited_ticks when it began to idle */
+    long switches;         /* involuntary context switches of its thread; -1: not counted yet */
+    uint64_t awaited_then; /* comm_awaited_ticks when it began to idle */
     double pause;
     duite_call call;
     struct work_counts counts;
@@ -120,7 +120,8 @@ static inline void work_bump(_Atomic uint64_t *count, uint64_t by)
 /* A worker whose task is over waits here for the end of a report. */
 void work_standstill_passes(struct work_pool *pool);
 
-/* Whose body runs, from now on; returns whose did: a body that waits has others on top of it. */
+/* Notes the task whose body runs from now on. Returns the one before: a body that waits has others
+ * on top of it. */
 static inline const struct task *work_enters(struct worker *worker, const struct task *task)
 {
     const struct task *below = atomic_load_explicit(&worker->runs, memory_order_relaxed);
@@ -165,7 +166,8 @@ struct work_ran {
 void *work_thread(void *worker);
 /* A task, or NULL: in its own queue, in the shared one, or with a victim of the scheduler. */
 struct task *work_find(struct worker *worker);
-/* Whether a scheduler names victims without an end, in one round: the main program will tell. */
+/* Whether a scheduler names victims without an end, in one round: the next duite_wait then returns
+ * an error. */
 bool work_is_endless(struct work_pool *pool, unsigned attempt);
 /* Looks for work once; idles for a moment if there is none. */
 void work_look(struct worker *worker, const struct work_wish *wish);
@@ -187,9 +189,9 @@ void work_park_sleep(struct work_park *park, double seconds);
 /* Wakes the worker if it sleeps or is about to. Returns whether it did. */
 bool work_park_wake(struct work_park *park);
 
-/* Wakes a worker for a task in `queue`: its owner if that one sleeps, else anybody, who may steal
- * it. What it is woken for was made known by a sequentially consistent read-modify-write, or before
- * a fence, against the announcement of a sleeper. */
+/* Wakes a worker for a task in `queue`: its owner if that one sleeps, else any worker, which may
+ * steal the task. Before the call the task was published by a sequentially consistent
+ * read-modify-write, or before a fence: a worker that announces its sleep then sees it. */
 void work_wake_one(struct work_pool *pool, unsigned queue);
 /* Nothing to do: one moment of idling. */
 void work_idle(struct worker *worker, const struct work_wish *wish);
@@ -197,15 +199,16 @@ void work_idle(struct worker *worker, const struct work_wish *wish);
 void work_idles(struct worker *worker, uint64_t now);
 /* Something happened: idling begins anew. */
 void work_stir(struct worker *worker);
-/* The worker has something to do again: if it is the poller, one that sleeps becomes it. */
+/* The worker has something to do again. If it was the poller it wakes a sleeper, which becomes the
+ * poller. */
 void work_busy_again(struct worker *worker);
-/* One idle look, now in ticks: whether other programs use this worker's core. Then waiting is to
- * sleep. */
+/* One idle look, now in ticks. Returns whether other programs use this worker's core; then it
+ * should sleep instead of spinning. */
 bool work_is_crowded(struct worker *worker, uint64_t now);
 
 /* ---- wait.c ---- */
 
-/* The worker finds no task: does the main thread wait for just that? */
+/* The worker finds no task: wakes the main thread if it waits for just that. */
 void work_ran_out(struct worker *worker);
 
 /* ---- pool.c: for the trace, if there is one ---- */
@@ -216,8 +219,8 @@ void work_note_task(struct worker *worker, const struct task *task, const struct
 bool work_note_relieve(struct worker *worker);
 /* The worker idled for so many ticks since idle_since. */
 void work_note_idle(struct worker *worker, uint64_t idle, uint64_t exposed);
-/* Around what a worker that does not idle does for messages: looks for them, sends, takes them.
- * What begins within that is no other. Nothing below a microsecond is noted. */
+/* Called around what a worker that does not idle does for messages: looking for them, sending,
+ * taking them. A begin within another one does not count. Nothing below a microsecond is noted. */
 bool work_note_messages_begin(struct worker *worker);
 void work_note_messages_end(struct worker *worker, bool begun);
 void work_note_message(struct worker *worker, bool sends, int peer, size_t bytes);
@@ -271,8 +274,8 @@ static inline unsigned work_victim(struct worker *worker, unsigned attempt)
     return victim;
 }
 
-/* A task took so many ticks. In replays of short ones no place has an affinity, and none is looked
- * up. */
+/* Notes the affinity that a task leaves, which took so many ticks. In a replay of short tasks no
+ * place has an affinity, and none is looked up. */
 static inline void work_set_affinity(const struct worker *worker, const struct task *task,
                                      uint64_t took)
 {

@@ -2,8 +2,8 @@
  * Only the owner moves tasks from inbox to deque to heap.
  *
  * Deque: oldest <= newest, but for the moment in which the owner takes from an empty deque. A task
- * leaves by the owner, or by whoever moves `oldest` past it. Heap: who entered has it alone, others
- * read `n` at most. */
+ * leaves the deque by the owner, or by whoever moves `oldest` past it. Heap: the worker that
+ * entered it has it alone; others read `n` at most. */
 #include "runtime/workers/queue.h"
 
 #include "runtime/base/heap.h"
@@ -265,7 +265,7 @@ static struct task *deque_take_oldest(struct work_deque *deque)
     return task;
 }
 
-/* NULL: the heap is empty, or another one is at it. */
+/* NULL: the heap is empty, or another worker is in it. */
 static struct task *heap_take(struct work_heap *heap)
 {
     if (!atomic_load_explicit(&heap->n, memory_order_relaxed) || !work_heap_enter(heap))
@@ -330,8 +330,8 @@ struct task *work_queue_take_shared(struct work_queue *queue, duite_end end)
         if (atomic_flag_test_and_set_explicit(&queue->token, memory_order_seq_cst))
             return deque_take_oldest(&queue->deque);
         task = work_queue_take(queue, end);
-        /* Others were turned away by the token, and may have been woken for what came after this
-         * look: with it in the inbox, nobody would come back. */
+        /* Other workers did not get the token. They may have been woken for a task that came after
+         * this look; if it stayed in the inbox none of them would come back. */
         atomic_flag_clear_explicit(&queue->token,
                                    task ? memory_order_release : memory_order_seq_cst);
     } while (!task && atomic_load_explicit(&queue->inbox, memory_order_seq_cst));

@@ -125,7 +125,8 @@ static void words_add_more(struct words *words, unsigned more)
 
 /* ---- Bodies ---- */
 
-/* What a worker runs from now until the lock is let go; false if that cannot be known. */
+/* Holds the bodies that run: until the lock is let go no worker goes on after its body. False if
+ * that is not possible. */
 static bool report_hold_workers(struct work_pool *pool)
 {
     atomic_store_explicit(&pool->watched, 1, memory_order_seq_cst);
@@ -133,7 +134,7 @@ static bool report_hold_workers(struct work_pool *pool)
     return !syscall(SYS_membarrier, MEMBARRIER_CMD_PRIVATE_EXPEDITED, 0, 0);
 }
 
-/* The first in fork order of the program's tasks among some, and how many more there are. */
+/* Of the tasks that wait, the program's first one in fork order, and how many more there are. */
 static struct words report_crowd(const struct report *report, const struct data_waiter *waiter)
 {
     const struct task *first = task_who_waits(waiter);
@@ -160,7 +161,7 @@ static void report_waiters(struct report *report, const struct task *task, uint3
                     report_crowd(report, waiter).text, report_words(report, task).text, i);
 }
 
-/* Returns how many run. */
+/* Reports the bodies that run; returns how many. */
 static unsigned report_bodies(struct report *report, bool held)
 {
     struct work_pool *pool = report->pool;

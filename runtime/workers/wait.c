@@ -65,14 +65,18 @@ void work_ran_out(struct worker *worker)
 
 /* ---- Waiting ---- */
 
-void work_drain(struct work_pool *pool, bool (*done)(void *), void *context)
+static void main_drain(struct work_pool *pool, const struct work_wish *wish)
 {
-    const struct work_wish wish = {.done = done, .context = context};
     atomic_store(&pool->awaited, pool->setup.graph->tasks);
-    while (!done(context))
-        work_look(&pool->worker[0], &wish);
+    while (!wish->done(wish->context))
+        work_look(&pool->worker[0], wish);
     atomic_store_explicit(&pool->awaited, 0, memory_order_relaxed);
     work_busy_again(&pool->worker[0]);
+}
+
+void work_drain(struct work_pool *pool, bool (*done)(void *), void *context)
+{
+    main_drain(pool, &(struct work_wish){.done = done, .context = context, .unheard = true});
 }
 
 struct main_until {
@@ -94,7 +98,7 @@ void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)
     if (until.comm && comm_posted(until.comm))
         work_poll(&pool->worker[0]);
     work_waits(pool, why);
-    work_drain(pool, main_is_done, &until);
+    main_drain(pool, &(struct work_wish){.done = main_is_done, .context = &until});
     work_waits(pool, NULL);
 }
 

@@ -57,7 +57,8 @@ void work_waits(struct work_pool *pool, const struct work_why *why);
 void work_until(struct work_pool *pool, const struct work_why *why, bool (*done)(void *context),
                 void *context);
 
-/* The same, whether communication broke or not. */
+/* The same, whether communication broke or not, and for what nobody is woken for: asks done() again
+ * and again. */
 void work_drain(struct work_pool *pool, bool (*done)(void *context), void *context);
 
 /* When a rank was last seen to move; zero at first. */

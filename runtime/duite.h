@@ -297,7 +297,7 @@ const char *const *duite_balancer_names(void);
  * included, stays within options.rename_bytes; at the limit a w waits. The memory counts from the
  * fork until the last of those tasks is over. Results are the same. This pays where a program
  * overwrites one object again and again for tasks that have nothing else in common (a temporary, a
- * rim that is being sent). It brings nothing where the writer needs the results of the readers
+ * halo that is being sent). It brings nothing where the writer needs the results of the readers
  * anyway, as in stencils over two buffers and most iterations. There it costs a task some
  * allocations and its data leave the caches: so a program has to ask for it. */
 

@@ -144,7 +144,7 @@ static void abort_send(struct comm *comm)
     if (!control->aborts && comm_is_broken(comm)) {
         control->aborts = true;
         comm->reason.entered = comm->entered;
-        comm->reason.kind = comm->kind;
+        comm->reason.kind = (int32_t)comm->kind;
         abort_send_all(comm, control->abort, COMM_ABORT);
     }
     if (control->aborts && !control->tells_loss && comm_is_lost(comm)) {

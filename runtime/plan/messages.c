@@ -230,8 +230,10 @@ static void message_add(struct finding *f, int from, int to, uint32_t phase, str
     if (f->failed || (m->rank != PLAN_ALL && m->rank != from && m->rank != to))
         return;
     item.message = message_find(f, from, to, phase);
+    if (f->failed)
+        return;
     void *moved = base_grow(m->item, &m->items_capacity, m->n_items + 1, sizeof *m->item);
-    f->failed |= !moved;
+    f->failed = !moved;
     if (f->failed)
         return;
     m->item = moved;

@@ -134,7 +134,7 @@ END_TEST
 START_TEST(damage_is_refused)
 {
     static const uint32_t planted[] = {0, 1, 0xff, 0xffffff00u | TRACE_GRAPH, UINT32_MAX};
-    struct trace_file file = begun(2);
+    struct trace_file file;
     double path, bound;
     size_t n = 1;
     for (size_t at = 0; at < n; at++)

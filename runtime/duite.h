@@ -555,8 +555,8 @@ typedef struct duite_graph {
 #define DUITE_NO_GRAPH ((duite_graph){0, 0})
 
 /* Forks the tasks of one round. Called by duite_graph_new, and again when the graph is recorded
- * anew; then it must find in its context what the graph is to use from now on. Returns 0, or a code
- * that duite_graph_new or the replay returns. */
+ * again; then it must find in its context what the graph is to use from now on. Returns 0, or a
+ * code that duite_graph_new or the replay returns. */
 typedef int duite_build(duite *rt, void *context);
 
 /* Records what build(rt, context) forks; nothing runs. Inside, duite_fork, duite_fork_at,

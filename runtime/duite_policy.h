@@ -144,7 +144,7 @@ typedef struct duite_mapping {
      * the next get, wait or stop of every rank returns it and names the mapping and, on the other
      * ranks, the rank; only duite_stop is left. */
     int (*map)(const duite_object_graph *graph, int n_ranks, uint64_t seed, int *home);
-    /* Maps blocks anew, now that the tasks are known. home[n_blocks] has the present homes; blocks
+    /* Maps blocks again, now that the tasks are known. home[n_blocks] has the present homes; blocks
      * whose home is changed move. Asked at the beginning of the first replay of each graph, and,
      * unless all forks of its kernels said what they cost, once more at its second one, with
      * measured costs. On rank 0 only, and need not be deterministic. Returns 0, or a duite code.

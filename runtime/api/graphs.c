@@ -1,6 +1,6 @@
 /* Recorded graphs as the main program knows them: a slot's generation is odd while a graph lives in
- * it. Before a replay the graph is recorded anew if it names objects that are gone; then its rounds
- * go where they can run: to the plan, or through the forks of the dynamic path. */
+ * it. Before a replay the graph is recorded again if it names objects that are gone; then its
+ * rounds go where they can run: to the plan, or through the forks of the dynamic path. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/clock.h"

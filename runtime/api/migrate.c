@@ -2,7 +2,7 @@
  * no task is left. Each rank reports what the bodies of its blocks took. Rank 0 asks the mapping,
  * or the balancer, and broadcasts the moves. All ranks move the same blocks in the same order.
  * Everything that follows from homes (who runs a task, where values are needed, plans of recorded
- * graphs) is derived from them anew. */
+ * graphs) is derived from them again. */
 #include "runtime/api/instance.h"
 
 #include "runtime/base/clock.h"

@@ -25,7 +25,7 @@ bool balance_bill(const duite_blocks *blocks, const int *present, const int *hom
  * changed. False without memory. */
 bool balance_refine(const duite_blocks *blocks, double periods, int *home);
 
-/* Maps the blocks anew, by the program's mapping, with the measured work; names the parts so that
+/* Maps the blocks again, by the program's mapping, with the measured work; names the parts so that
  * as many bytes as possible stay; and refines. home: the present ones, changed. False if that is
  * not possible: memory, or the mapping fails. */
 bool balance_anew(const duite_blocks *blocks, double periods, int *home);

@@ -68,7 +68,7 @@ int plan_replay_fork(struct plan_record *record, struct worker *worker)
     return code;
 }
 
-/* The record's plan, made anew if it does not fit. */
+/* The record's plan, made again if it does not fit. */
 static struct plan *replay_plan_for(struct plan_record *record, struct worker *worker,
                                     const duite_object *flag, int *code)
 {

@@ -197,7 +197,7 @@ void work_wake_one(struct work_pool *pool, unsigned queue);
 void work_idle(struct worker *worker, const struct work_wish *wish);
 /* Idling begins, now in ticks. */
 void work_idles(struct worker *worker, uint64_t now);
-/* Something happened: idling begins anew. */
+/* Something happened: a new idle time begins. */
 void work_stir(struct worker *worker);
 /* The worker has something to do again. If it was the poller it wakes a sleeper, which becomes the
  * poller. */

@@ -123,7 +123,7 @@ bool api_is_broken(const duite *rt)
     return rt->graph.broken || (rt->comm && comm_broken(rt->comm));
 }
 
-struct instance_end {
+struct instance_leftovers {
     duite *rt;
     struct work_stillness still;
 };
@@ -132,11 +132,11 @@ struct instance_end {
  * stays where it is. */
 static bool instance_has_nothing_left(void *context)
 {
-    struct instance_end *end = context;
-    const duite *rt = end->rt;
+    struct instance_leftovers *leftovers = context;
+    const duite *rt = leftovers->rt;
     if (!work_unfinished(rt->pool) && !offload_count(&rt->graph))
         return true;
-    return rt->comm && comm_is_cut(rt->comm) && work_stands_still(rt->pool, &end->still);
+    return rt->comm && comm_is_cut(rt->comm) && work_stands_still(rt->pool, &leftovers->still);
 }
 
 void api_give_up(duite *rt)
@@ -147,7 +147,7 @@ void api_give_up(duite *rt)
         comm_broke(rt->comm, rt->graph.broken, duite_message());
     if (rt->comm)
         comm_give_up(rt->comm, work_main(rt->pool));
-    work_drain(rt->pool, instance_has_nothing_left, &(struct instance_end){.rt = rt});
+    work_drain(rt->pool, instance_has_nothing_left, &(struct instance_leftovers){.rt = rt});
     if (rt->comm && comm_is_cut(rt->comm))
         comm_part(rt->comm, work_main(rt->pool));
 }

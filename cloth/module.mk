@@ -6,6 +6,7 @@ include cloth/base/module.mk
 include cloth/mesh/module.mk
 include cloth/physics/module.mk
 include cloth/solve/module.mk
+include cloth/model/module.mk
 include cloth/flow/module.mk
 include cloth/scene/module.mk
 include cloth/output/module.mk

@@ -4,7 +4,7 @@
 #include "bench/cg/cg.h"
 
 #include "bench/tasks/tasks.h"
-#include "cloth/flow/tasks/bodies.h"
+#include "cloth/flow/bodies.h"
 #include "cloth/output/output.h"
 #include "cloth/solve/assemble.h"
 

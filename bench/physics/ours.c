@@ -5,7 +5,7 @@
 
 #include "bench/cg/cg.h"
 #include "bench/tasks/tasks.h"
-#include "cloth/flow/tasks/bodies.h"
+#include "cloth/flow/bodies.h"
 #include "cloth/scene/scene.h"
 
 #include <math.h>

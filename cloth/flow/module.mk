@@ -1,51 +1,64 @@
+# The only folder of the cloth that includes duite.h. In reading order: what a run is made of, its state, a step, the solver of a step, what is
+# seen of it.
 libduite_cloth_la_SOURCES += \
-    cloth/flow/model.c cloth/flow/model.h \
-    cloth/flow/long_steps.c cloth/flow/long_steps.h \
-    cloth/flow/run.c cloth/flow/run.h cloth/flow/warn.c \
-    cloth/flow/tables/limit.c \
-    cloth/flow/tables/loads.c \
-    cloth/flow/tables/elements.c cloth/flow/tables/elements.h \
-    cloth/flow/tables/members.c \
-    cloth/flow/tables/neighbours.c \
-    cloth/flow/tables/picks.c \
-    cloth/flow/tables/pieces.c \
-    cloth/flow/tables/particles.c \
-    cloth/flow/tables/starts.c \
-    cloth/flow/tables/sides.c \
-    cloth/flow/tables/source.c cloth/flow/tables/source.h \
-    cloth/flow/tables/springs.c \
-    cloth/flow/tables/watched.c \
-    cloth/flow/tables/tables.c cloth/flow/tables/tables.h \
-    cloth/flow/tasks/bodies.h \
-    cloth/flow/tasks/guides.h \
-    cloth/flow/tasks/cg.c \
-    cloth/flow/tasks/deal.c \
-    cloth/flow/tasks/energy.c \
-    cloth/flow/tasks/elements.c \
-    cloth/flow/tasks/explicit.c \
-    cloth/flow/tasks/far.c \
-    cloth/flow/tasks/finish.c \
-    cloth/flow/tasks/frames.c \
-    cloth/flow/tasks/grid.c cloth/flow/tasks/energy.h cloth/flow/tasks/grid.h \
-    cloth/flow/tasks/implicit.c \
-    cloth/flow/tasks/kernels_cg.c \
-    cloth/flow/tasks/kernels_beside.c \
-    cloth/flow/tasks/kernels_coarse.c \
-    cloth/flow/tasks/kernels_contact.c \
-    cloth/flow/tasks/kernels_energy.c \
-    cloth/flow/tasks/kernels_explicit.c \
-    cloth/flow/tasks/kernels_implicit.c \
-    cloth/flow/tasks/kernels_pieces.c cloth/flow/tasks/kernels_pins.c \
-    cloth/flow/tasks/kernels_report.c \
-    cloth/flow/tasks/kernels_state.c \
-    cloth/flow/tasks/kernels_step.c cloth/flow/tasks/kernels_system.c \
-    cloth/flow/tasks/kernels_turned.c \
-    cloth/flow/tasks/kernels_watch.c \
-    cloth/flow/tasks/memory.c \
-    cloth/flow/tasks/objects.c \
-    cloth/flow/tasks/step.c \
-    cloth/flow/tasks/system.c \
-    cloth/flow/tasks/kernels.h cloth/flow/tasks/patches.h cloth/flow/tasks/tasks.h \
-    cloth/flow/tasks/turned.c \
-    cloth/flow/tasks/varying.c \
-    cloth/flow/tasks/watch.c
+    cloth/flow/bodies.h \
+    cloth/flow/kernels.h \
+    cloth/flow/run.c \
+    cloth/flow/run.h \
+    cloth/flow/tasks.h \
+    cloth/flow/setup/deal.c \
+    cloth/flow/setup/elements.c \
+    cloth/flow/setup/elements.h \
+    cloth/flow/setup/limit.c \
+    cloth/flow/setup/loads.c \
+    cloth/flow/setup/long_steps.c \
+    cloth/flow/setup/long_steps.h \
+    cloth/flow/setup/members.c \
+    cloth/flow/setup/memory.c \
+    cloth/flow/setup/neighbours.c \
+    cloth/flow/setup/particles.c \
+    cloth/flow/setup/picks.c \
+    cloth/flow/setup/pieces.c \
+    cloth/flow/setup/sides.c \
+    cloth/flow/setup/source.c \
+    cloth/flow/setup/source.h \
+    cloth/flow/setup/springs.c \
+    cloth/flow/setup/starts.c \
+    cloth/flow/setup/warn.c \
+    cloth/flow/setup/watched.c \
+    cloth/flow/state/kernels_state.c \
+    cloth/flow/state/objects.c \
+    cloth/flow/state/tables.c \
+    cloth/flow/state/tables.h \
+    cloth/flow/step/elements.c \
+    cloth/flow/step/energy.c \
+    cloth/flow/step/energy.h \
+    cloth/flow/step/grid.c \
+    cloth/flow/step/grid.h \
+    cloth/flow/step/guides.h \
+    cloth/flow/step/kernels_contact.c \
+    cloth/flow/step/kernels_energy.c \
+    cloth/flow/step/kernels_pins.c \
+    cloth/flow/step/kernels_step.c \
+    cloth/flow/step/step.c \
+    cloth/flow/step/varying.c \
+    cloth/flow/integrators/explicit.c \
+    cloth/flow/integrators/implicit.c \
+    cloth/flow/integrators/kernels_explicit.c \
+    cloth/flow/integrators/kernels_implicit.c \
+    cloth/flow/solver/cg.c \
+    cloth/flow/solver/far.c \
+    cloth/flow/solver/kernels_beside.c \
+    cloth/flow/solver/kernels_cg.c \
+    cloth/flow/solver/kernels_coarse.c \
+    cloth/flow/solver/kernels_pieces.c \
+    cloth/flow/solver/kernels_system.c \
+    cloth/flow/solver/kernels_turned.c \
+    cloth/flow/solver/patches.h \
+    cloth/flow/solver/turned.c \
+    cloth/flow/observe/finish.c \
+    cloth/flow/observe/frames.c \
+    cloth/flow/observe/kernels_report.c \
+    cloth/flow/observe/kernels_watch.c \
+    cloth/flow/observe/system.c \
+    cloth/flow/observe/watch.c

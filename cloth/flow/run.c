@@ -3,7 +3,7 @@
 #include "cloth/flow/run.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/flow/tasks/tasks.h"
+#include "cloth/flow/tasks.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #ifndef CLOTH_FLOW_RUN_H
 #define CLOTH_FLOW_RUN_H
 
-#include "cloth/flow/model.h"
+#include "cloth/model/model.h"
 #include "cloth/solve/block.h"
 #include "cloth/solve/system.h"
 

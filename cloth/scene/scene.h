@@ -1,7 +1,7 @@
 #ifndef CLOTH_SCENE_SCENE_H
 #define CLOTH_SCENE_SCENE_H
 
-#include "cloth/flow/model.h"
+#include "cloth/model/model.h"
 
 #include <stdio.h>
 

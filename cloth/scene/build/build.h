@@ -1,7 +1,7 @@
 #ifndef CLOTH_SCENE_BUILD_BUILD_H
 #define CLOTH_SCENE_BUILD_BUILD_H
 
-#include "cloth/flow/model.h"
+#include "cloth/model/model.h"
 #include "cloth/scene/yaml/tree.h"
 
 /* From a tree that scene_check accepted to a model. They check what a table cannot: names, sizes,

@@ -8,7 +8,7 @@
  *
  * long: all pairs of what there is to choose (test_checked_long.sh); by default each choice at
  * least once; quick, also with DUITE_QUICK=1: so much that each kernel runs. */
-#include "cloth/flow/tasks/kernels.h"
+#include "cloth/flow/kernels.h"
 #include "runtime/check/check.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/cloth/scene/scene_file.h"

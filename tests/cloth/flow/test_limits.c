@@ -1,6 +1,6 @@
 /* The bound of the fastest vibration against a chain's, whose frequencies are known; what a run
  * says of a step that is too long; and that such a step is, on the chain, just too long. */
-#include "cloth/flow/tables/source.h"
+#include "cloth/flow/setup/source.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 

@@ -1,0 +1,234 @@
+#ifndef CLOTH_FLOW_BODIES_H
+#define CLOTH_FLOW_BODIES_H
+
+#include "cloth/flow/tasks.h"
+#include "cloth/physics/tiny.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What the bodies of kernels have in common. Local functions. */
+
+static inline struct flow *flow_of(const duite_call *call)
+{
+    return call->context;
+}
+
+static inline const struct flow_args *flow_args_of(const duite_call *call)
+{
+    return call->args;
+}
+
+/* The number, counted from 1, of the step of length h that a tick is in. */
+static inline double flow_step_number(double tick)
+{
+    return floor(tick / FLOW_TICKS) + 1;
+}
+
+/* The block of a task without its table. */
+static inline const struct flow_table *flow_shape_of(const duite_call *call)
+{
+    return flow_of(call)->tables.block + flow_args_of(call)->block;
+}
+
+/* The block with its table, which is the first parameter. */
+static inline struct flow_table flow_table_of(const duite_call *call)
+{
+    struct flow_table table = *flow_shape_of(call);
+    flow_table_open(&table, call->param[0].data);
+    return table;
+}
+
+/* Notes in the status, parameter i, that this rank is asked to stop, if it is. */
+void flow_note_stop(const duite_call *call, size_t i);
+
+/* Fails if a row diverged, naming it by the input's number, or, where the step can be made anew,
+ * notes it in the status, parameter i. Notes there, too, that a stop is asked for. what: "position"
+ * or "velocity". */
+int flow_check(const duite_call *call, const struct flow_table *table, const phys_vec *y,
+               const char *what, size_t i);
+
+/* The matrix of a step as its object has it: the diagonal, the filter if there is one, then the
+ * values of the entries. */
+static inline size_t flow_diagonal_rows(const struct flow_table *t)
+{
+    return ((size_t)t->n + 3) / 4;
+}
+
+/* Gives the table the diagonal of parameter i and returns the values. */
+static inline const phys_vec *flow_open_matrix(const duite_call *call, struct flow_table *t,
+                                               size_t i)
+{
+    const phys_vec *filter = duite_in(call, i, phys_vec) + flow_diagonal_rows(t);
+    const bool filtered = model_is_filtered(flow_of(call)->model);
+    t->matrix.diagonal = duite_in(call, i, double);
+    t->matrix.filter = filtered ? filter : NULL;
+    return filtered ? filter + t->n : filter;
+}
+
+/* Elements of a block (elements.c). What they see in a task of which x and v are parameters 1 and
+ * 2, rims of x come from parameter `rims` on, those of v behind them; or without v. One at a time
+ * on a worker, until its task ends. */
+bool flow_has_elements(const struct flow_table *t);
+struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t,
+                                    size_t rims);
+struct phys_sight flow_elements_see_still(const duite_call *call, const struct flow_table *t,
+                                          size_t rims);
+/* Adds their forces; those of all but triangles. */
+void flow_elements_force(const duite_call *call, const struct flow_table *t,
+                         const struct phys_sight *sight, phys_vec *f);
+void flow_elements_bend(const duite_call *call, const struct flow_table *t,
+                        const struct phys_sight *sight, phys_vec *f);
+/* y -= scale K v of all but triangles. */
+void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
+                             const struct phys_sight *sight, phys_vec *y);
+/* Adds their part of the matrix to the sums of its entries and, unless b is NULL, what triangles
+ * add to the right side with it (phys_triangles_system). */
+void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double push,
+                            const struct phys_sight *sight, phys_vec *b, struct phys_pair *sums);
+/* Their energy, J, of those that count here, to whose uncorrected forces' torque, N m, it adds; x
+ * is parameter 1. */
+double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims,
+                            double torque[3]);
+
+/* Loads that vary (varying.c), as they are at the time of the arguments: adds them (N) to f; their
+ * energy (J) at x, zero at the origin. */
+void flow_varying_add(const duite_call *call, const struct flow_table *t, phys_vec *f);
+double flow_varying_energy(const duite_call *call, const struct flow_table *t, const phys_vec *x);
+
+/* All forces on the block's rows, N, at x and v, which are parameters 1 and 2; rims of x come from
+ * parameter `rims` on, those of v behind them. Those without the drag. (kernels_step.c) */
+void flow_forces(const duite_call *call, const struct flow_table *t, size_t rims, phys_vec *f);
+void flow_forces_free(const duite_call *call, const struct flow_table *t, size_t rims, phys_vec *f);
+
+/* Rows of the worker's own for these where no other task reads them; until the task ends. */
+static inline phys_vec *flow_force_room(const duite_call *call)
+{
+    const struct flow *flow = flow_of(call);
+    return flow->forces + call->worker * flow->n_forces;
+}
+
+/* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are
+ * none. */
+static inline void flow_write_rim(const struct flow_table *table, const phys_vec *y, phys_vec *rim)
+{
+    for (uint32_t i = 0; i < table->n_rim; i++)
+        rim[i] = y[table->rim[i]];
+    if (!table->n_rim)
+        rim[0] = (phys_vec){0};
+}
+
+/* A rim of the solve: three numbers a row; one, which nobody reads, if there are no rows. */
+static inline void flow_pack_rim(const struct flow_table *t, const phys_vec *y, double *rim)
+{
+    solve_pack(t->n_rim, t->rim, y, rim);
+    if (!t->n_rim)
+        rim[0] = 0;
+}
+
+/* What passes of a solve have in common, with a preconditioner and without (kernels_beside.c). */
+struct flow_pass {
+    const struct flow_table *table;
+    const void *value; /* of the matrix */
+    const phys_vec *b;
+    struct solve_rows rows;
+    phys_vec *copies;  /* r or z of the copies, then p */
+    double *rim;       /* of this block */
+    size_t neighbours; /* parameters from here on: the rims of others */
+};
+/* Opens a pass whose parameters are those of both kinds: the scalars, the matrix, b, dv, r, p and q
+ * from 1 on; and the copies, then the block's rim; and rims of others. Also opens the matrix. */
+void flow_pass_open(const duite_call *call, struct flow_table *t, size_t copies, size_t neighbours,
+                    struct flow_pass *pass);
+/* SOLVE_SHOW; SOLVE_CHECK and SOLVE_OPEN, with what they sum; SOLVE_AGAIN but for rims and what a
+ * preconditioner makes. Nothing in other phases. */
+void flow_pass_beside(const duite_call *call, const struct solve_scalars *scalars,
+                      const struct flow_pass *pass, double dots[SOLVE_DOTS]);
+
+/* What a solve left of a block. */
+struct flow_solved {
+    const void *value; /* of the matrix */
+    const phys_vec *b, *dv, *r;
+    const struct solve_scalars *scalars;
+};
+/* Notes it in the status: what it took, its error, the momentum that it lost, whether it failed. */
+void flow_note_solve(const duite_call *call, const struct flow_table *table,
+                     const struct flow_solved *solved, double *status);
+
+/* A double as eight bytes, the lowest first. */
+static inline void flow_put_double(unsigned char *bytes, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    for (int i = 0; i < 8; i++)
+        bytes[i] = (unsigned char)(bits >> (8 * i));
+}
+
+/* How many of the dots a pass without preconditioner sums: r.z is r.r there, and the rest is for
+ * stops by norms. */
+static inline size_t flow_dots(const struct model *model)
+{
+    return model_stops_by_norms(model) ? SOLVE_DOTS : SOLVE_RZ;
+}
+
+/* The scalars before a solve. */
+static inline struct solve_scalars flow_begin_scalars(const duite_call *call)
+{
+    const struct flow_args *args = flow_args_of(call);
+    const double on = flow_of(call)->model->form == MODEL_CLASSIC ? SOLVE_UPDATE : SOLVE_ON;
+    struct solve_scalars scalars =
+        solve_scalars_start(args->begin, args->guess != 0 ? SOLVE_OPEN : on);
+    scalars.last = args->last;
+    scalars.unit = flow_of(call)->inertia / (args->h * args->h);
+    return scalars;
+}
+
+/* Adds what stops by norms ask for to the dots of a pass. */
+static inline void flow_add_norms(const duite_call *call, const struct solve_block *block,
+                                  const struct solve_rows *rows, double dots[SOLVE_DOTS])
+{
+    if (!model_stops_by_norms(flow_of(call)->model))
+        return;
+    const struct solve_norms norms = solve_norms(block->n, block->diagonal, rows->dv, rows->r);
+    dots[SOLVE_SIZE] = norms.size;
+    dots[SOLVE_BOUND] = norms.bound;
+}
+
+/* In a body: what it did since it began, or since this was called, was this part of the step. */
+static inline void flow_part_ends(const duite_call *call, enum flow_part part)
+{
+    struct flow_clock *clock = flow_of(call)->clock + call->worker;
+    const double now = flow_now();
+    clock->seconds[part] += now - clock->from;
+    clock->from = now;
+}
+
+/* Runs a body without subnormal numbers, `cost` times as long as it needs, and adds its seconds to
+ * a part of the step, on this worker's line. */
+static inline int flow_timed(const duite_call *call, duite_body *body, enum flow_part part,
+                             double cost)
+{
+    const double worked = cost > 1 ? flow_worked() : 0;
+    flow_of(call)->clock[call->worker].from = flow_now();
+    const phys_tiny before = phys_tiny_off();
+    const int code = body(call);
+    phys_tiny_back(before);
+    if (cost > 1)
+        flow_work_on(worked, cost);
+    flow_part_ends(call, part);
+    return code;
+}
+
+/* Defines NAME_timed, the body that a kernel lists; of a block, which may have a cost, or not. */
+#define FLOW_TIMED(name, part)                                                                     \
+    static int name##_timed(const duite_call *call)                                                \
+    {                                                                                              \
+        return flow_timed(call, name, part, flow_shape_of(call)->cost);                            \
+    }
+#define FLOW_TIMED_PLAIN(name, part)                                                               \
+    static int name##_timed(const duite_call *call)                                                \
+    {                                                                                              \
+        return flow_timed(call, name, part, 1);                                                    \
+    }
+
+#endif

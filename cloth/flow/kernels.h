@@ -1,0 +1,92 @@
+#ifndef CLOTH_FLOW_KERNELS_H
+#define CLOTH_FLOW_KERNELS_H
+
+#include "runtime/duite.h"
+
+/* Kernels. Objects in order; "table" (r) is that of the task's block, "rims" are one of each
+ * neighbour, in slot order. Vectors are rows of four doubles. */
+extern const duite_kernel flow_tell_head; /* w head: on rank 0 */
+extern const duite_kernel
+    flow_tell_shared; /* w shared: planes, motions, shapes, neighbours; on rank 0 */
+extern const duite_kernel flow_table_make; /* w table of a block: on rank 0 */
+extern const duite_kernel flow_table_keep; /* rw table: where the block lives */
+extern const duite_kernel flow_collect;    /* r vector of a block, w it without its fourth lane */
+extern const duite_kernel flow_ready;      /* cw ready: fails if this rank cannot begin */
+extern const duite_kernel flow_initial;    /* table, w x, w v, w rim of x, w rim of v */
+extern const duite_kernel flow_force;      /* table, r x, r v, w f; rims of x, rims of v */
+extern const duite_kernel flow_force_free; /* the same without drag */
+extern const duite_kernel flow_euler; /* table, rw x, rw v, w next rim of x, w that of v, cw status;
+                                         rims of x, rims of v: either Euler */
+extern const duite_kernel flow_euler_beside; /* table, r x, r v, w next x, w next v, w next rim of
+                                                x, w that of v, cw status; rims of x, rims of v */
+extern const duite_kernel
+    flow_verlet_first; /* table, rw x, rw v: guess of that at the end, r f, w v of the half step, w
+                          rim of x, w rim of v, cw status */
+extern const duite_kernel flow_verlet_second; /* table, r x, rw v, w f, r v of the half step, w next
+                                                 rim of v, cw status; rims of x, rims of v */
+extern const duite_kernel flow_runge; /* table, rw x, rw v, rw x0, rw v0, rw sum_x, rw sum_v, w next
+                                         rim of x, w that of v, cw status; rims of x, rims of v */
+extern const duite_kernel
+    flow_system_all; /* table, r x, r v, w f: right-hand side, w a; rims of x, rims of v */
+extern const duite_kernel flow_system_rest; /* the same where f has the forces: rw f */
+extern const duite_kernel flow_predict; /* table, rw x, r v, rw last x, rw last v, w base x, w base
+                                           v, w rim of x */
+extern const duite_kernel flow_correct; /* table, r b, r a, r dv, r r, r base x, r base v, rw v, w
+                                           x, w rim of v, w rim of x, r scalars, cw status */
+extern const duite_kernel flow_shift; /* table, r dv, r base x, rw v, w x, w rim of v, w rim of x */
+extern const duite_kernel flow_residual; /* table, r base v, r v, r dv, rw f: b, cw slope */
+extern const duite_kernel flow_contact;  /* table, r x, r v, r f, w filter */
+extern const duite_kernel flow_hold;     /* table, r filter, rw f: b, rw a */
+extern const duite_kernel flow_matrix;   /* table, r x, w a; rims of x. a: flow_open_matrix */
+extern const duite_kernel flow_begin;    /* w scalars */
+extern const duite_kernel flow_start;    /* table, r f, w dv, w r, w p, w q, w copies, w rim of q */
+extern const duite_kernel flow_guess;    /* table, r b, r a, rw dv, w r, w p, w q, w rim of q */
+extern const duite_kernel
+    flow_pass; /* table, r scalars, r a, r b, rw dv, rw r, rw p, rw q, rw copies,
+                  rw   rim of q, cw sums; the other rims of q, or far ones */
+extern const duite_kernel flow_pack;    /* r rim of q, w far rim */
+extern const duite_kernel flow_scalars; /* r sums, r scalars, w next scalars */
+/* The same with a preconditioner (turned.c, kernels_turned.c); s takes the place of q. "coarse":
+ * only with a coarse part. */
+extern const duite_kernel flow_basis; /* table, w basis, w rim of it; with contact r filter */
+extern const duite_kernel flow_basis_copies; /* table, w basis of the copies; rims of basis */
+extern const duite_kernel flow_couple; /* table, r a, r basis, r that of the copies, w coupling */
+extern const duite_kernel flow_factor_coarse; /* w coarse factor; coupling of all blocks */
+extern const duite_kernel flow_factor;        /* table, r a, w factor, cw status */
+extern const duite_kernel flow_start_turned; /* table, r f, r factor, w dv, w r, w p, w q, w z, w s,
+                                                w copies, w rim of s, w part; coarse: basis */
+extern const duite_kernel flow_begin_coarse; /* w scalars, w motion, r coarse factor; all parts */
+extern const duite_kernel
+    flow_pass_turned; /* table, r scalars, r a, r b, rw dv, rw r, rw p, rw q, rw z, rw s, rw copies,
+                         rw rim of s, rw part, r factor; the other rims of s, or far ones; coarse:
+                         basis, that of the copies, motion */
+extern const duite_kernel flow_scalars_turned; /* w next scalars, r scalars; all parts */
+extern const duite_kernel flow_scalars_coarse; /* w next scalars, w next motion, r scalars, r coarse
+                                                  factor; all parts */
+/* After a solve, where there are free pieces (kernels_pieces.c). */
+extern const duite_kernel flow_piece_sums;  /* table, r b, r a, r dv, cw sums */
+extern const duite_kernel flow_piece_shift; /* table, r a, r sums, rw dv, rw r */
+extern const duite_kernel
+    flow_velocity_dv; /* table, r f, r a, r dv, r r, rw v, w rim of v, r scalars, cw status */
+extern const duite_kernel flow_position; /* table, r v, rw x, w rim of x, cw status */
+extern const duite_kernel flow_collide;  /* table, rw x, rw v, w rim of x, w rim of v, cw status */
+extern const duite_kernel flow_touch;    /* table, r x, rw v, w rim of v */
+extern const duite_kernel flow_keep;     /* r x, r v, w kept x, w kept v */
+extern const duite_kernel flow_restore;  /* table, r kept x, r kept v, w x, w v, w rims of both */
+extern const duite_kernel flow_status;   /* cw status: whether its rank is asked to stop */
+extern const duite_kernel flow_frame;    /* rw token; x of all blocks: on rank 0 */
+extern const duite_kernel flow_drive;    /* table, r x, rw v, w rim of v */
+extern const duite_kernel flow_place;    /* table, rw x, w rim of x */
+extern const duite_kernel flow_watch_block; /* table, r x, r v, cw peaks (max); rims of x */
+extern const duite_kernel flow_probe;       /* table, r x, r v, r force, w seen */
+extern const duite_kernel flow_row; /* rw token, r status, r peaks, r energies; seen of the blocks
+                                       that have any: on rank 0 */
+extern const duite_kernel flow_stretch;     /* table, r x, cw largest stretch; rims of x */
+extern const duite_kernel flow_seconds;     /* cw seconds: of this rank */
+extern const duite_kernel flow_energy;      /* table, r x, r v, cw energies; rims of x */
+extern const duite_kernel flow_level;       /* table, r v, rw f: v where x is */
+extern const duite_kernel flow_tell;        /* w told: what rank 0 knows */
+extern const duite_kernel flow_system_part; /* table, r f, r a, r dv, r x, r v, w part */
+extern const duite_kernel flow_system_save; /* rw token; parts of all blocks: on rank 0 */
+
+#endif

@@ -1,0 +1,223 @@
+/* What a report needs of the whole state, gathered when the last step is done. The hash is made on
+ * rank 0 and told to all. */
+#include "cloth/flow/bodies.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+static int largest_stretch(struct flow_state *state)
+{
+    const int code = flow_stretch_fork(state, state->stretch[0]);
+    return code ? code : duite_get(state->rt, state->stretch[0], &state->report->max_stretch);
+}
+
+static double some(double seconds)
+{
+    return seconds > 0 ? seconds : NAN;
+}
+
+/* Seconds in bodies, of all ranks in rank order. No other task runs meanwhile. */
+static int sum_seconds(struct flow_state *state)
+{
+    const struct flow_args args = {0};
+    int code = duite_wait(state->rt);
+    for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
+        code = duite_fork_at(state->rt, rank, &flow_seconds, &args, 1, &state->seconds);
+    double sum[FLOW_PARTS];
+    if (!code)
+        code = duite_get(state->rt, state->seconds, sum);
+    if (code)
+        return code;
+    state->report->seconds_force = some(sum[FLOW_FORCE]);
+    state->report->seconds_acceleration = some(sum[FLOW_ACCELERATION]);
+    state->report->seconds_matrix = some(sum[FLOW_MATRIX]);
+    state->report->seconds_cg = some(sum[FLOW_CG]);
+    state->report->seconds_velocity = some(sum[FLOW_VELOCITY]);
+    state->report->seconds_position = some(sum[FLOW_POSITION]);
+    state->report->seconds_collide = some(sum[FLOW_COLLIDE]);
+    state->report->seconds_output = some(sum[FLOW_OUTPUT]);
+    return DUITE_OK;
+}
+
+/* ---- The hash ----
+ *
+ * Positions, then velocities, of the vertices by number, a part of the vertices at a time. Blocks
+ * with vertices in the part send theirs, some blocks at a time. */
+
+enum { AT_ONCE = 32 };
+
+uint32_t flow_hash_part(const struct flow *flow)
+{
+    const uint32_t least = 1 << 16, part = flow->n_vertices / 16 + 1;
+    const uint32_t most = part > least ? part : least;
+    return most < flow->n_vertices ? most : flow->n_vertices;
+}
+
+/* Vertices of the input, from .. to - 1. */
+struct part {
+    uint32_t from, to;
+};
+
+/* On rank 0: copies the vertices of a block that are in the part. */
+static void place(const struct flow_state *state, uint32_t block, const struct part *part)
+{
+    const struct flow *flow = state->flow;
+    const struct flow_table *t = flow->tables.block + block;
+    const unsigned char *packed = (const unsigned char *)state->rows;
+    for (uint32_t i = 0; i < t->n; i++) {
+        const uint32_t v = flow->vertex[t->first + i];
+        if (v >= part->from && v < part->to)
+            memcpy(state->bytes + FLOW_VERTEX_BYTES * (size_t)(v - part->from),
+                   packed + FLOW_VERTEX_BYTES * (size_t)i, FLOW_VERTEX_BYTES);
+    }
+}
+
+/* Sends these blocks' vectors to rank 0, which has each in a parcel only for a moment. */
+static int collect(struct flow_state *state, uint32_t n, const uint32_t *block, size_t offset,
+                   const struct part *part)
+{
+    int code = DUITE_OK;
+    for (uint32_t k = 0; k < n && !code; k++) {
+        const struct flow_args args = {.block = block[k]};
+        const void *o = (const char *)(state->block + block[k]) + offset;
+        const duite_object vector = *(const duite_object *)o, parcel = state->parcel[block[k]];
+        code = DUITE_FORK(state->rt, &flow_collect, &args, vector, parcel);
+    }
+    for (uint32_t k = 0; k < n && !code; k++) {
+        code = duite_get_at(state->rt, state->parcel[block[k]], 0, state->rows);
+        if (!code && state->bytes)
+            place(state, block[k], part);
+        if (!code)
+            code = duite_set_sized(state->rt, state->parcel[block[k]], NULL, 0);
+    }
+    return code;
+}
+
+static int collect_part(struct flow_state *state, size_t offset, const struct part *part)
+{
+    const struct flow_tables *tables = &state->flow->tables;
+    uint32_t some[AT_ONCE], n = 0;
+    int code = DUITE_OK;
+    for (uint32_t b = 0; b < tables->n_blocks && !code; b++) {
+        if (tables->block[b].highest >= part->from && tables->block[b].lowest < part->to)
+            some[n++] = b;
+        if (n < AT_ONCE && b + 1 < tables->n_blocks)
+            continue;
+        code = collect(state, n, some, offset, part);
+        n = 0;
+    }
+    const int failed = duite_wait(state->rt); /* nobody runs ahead of rank 0 with its parcels */
+    return code ? code : failed;
+}
+
+/* Vertices that no face or edge uses are at their start, at rest. */
+static void place_rest(struct flow_state *state, bool at_rest, const struct part *part)
+{
+    const struct flow_rest *rest = &state->flow->rest;
+    for (uint32_t i = 0; i < rest->n; i++) {
+        const uint32_t v = rest->vertex[i];
+        unsigned char *to = state->bytes + FLOW_VERTEX_BYTES * (size_t)(v - part->from);
+        for (size_t c = 0; v >= part->from && v < part->to && c < 3; c++)
+            flow_put_double(to + 8 * c, at_rest ? 0 : rest->position[i][c]);
+    }
+}
+
+static int hash_vectors(struct flow_state *state, size_t offset, bool at_rest, XXH64_state_t *hash)
+{
+    const uint32_t n = state->flow->n_vertices, step = flow_hash_part(state->flow);
+    int code = DUITE_OK;
+    for (struct part part = {0}; part.from < n && !code; part.from = part.to) {
+        part.to = n - part.from > step ? part.from + step : n;
+        if (hash)
+            place_rest(state, at_rest, &part);
+        code = collect_part(state, offset, &part);
+        if (hash && !code)
+            XXH64_update(hash, state->bytes, FLOW_VERTEX_BYTES * (size_t)(part.to - part.from));
+    }
+    return code;
+}
+
+static int hash_state(struct flow_state *state)
+{
+    XXH64_state_t *hash = state->hash;
+    if (hash)
+        XXH64_reset(hash, 0);
+    int code = hash_vectors(state, offsetof(struct flow_objects, x), false, hash);
+    if (!code)
+        code = hash_vectors(state, offsetof(struct flow_objects, v), true, hash);
+    if (hash)
+        state->flow->hash = XXH64_digest(hash);
+    return code;
+}
+
+static int tell(struct flow_state *state, uint64_t told[FLOW_TELL])
+{
+    const struct flow_args args = {0};
+    int code = duite_fork_at(state->rt, 0, &flow_tell, &args, 1, &state->told);
+    if (!code)
+        code = duite_get(state->rt, state->told, told);
+    return code;
+}
+
+static int hash_all(struct flow_state *state)
+{
+    uint64_t told[FLOW_TELL];
+    int code = hash_state(state);
+    if (!code)
+        code = tell(state, told);
+    if (!code)
+        state->report->state_hash = told[FLOW_TELL_HASH];
+    return code;
+}
+
+int flow_last_frame(struct flow_state *state)
+{
+    uint64_t told[FLOW_TELL] = {[FLOW_TELL_FRAMES] = state->next_frame};
+    const int code = flow_shows(state) ? tell(state, told) : DUITE_OK;
+    if (code)
+        return code;
+    state->report->frames = told[FLOW_TELL_FRAMES];
+    state->report->last_frame = told[FLOW_TELL_FRAMES] ? told[FLOW_TELL_FRAMES] - 1 : 0;
+    return DUITE_OK;
+}
+
+/* What the run itself was, without its preparations. */
+static int count(struct flow_state *state)
+{
+    duite_counters *now = &state->report->counters;
+    const duite_counters *before = &state->before;
+    const int code = duite_count_all(state->rt, now);
+    now->tasks -= before->tasks;
+    now->placed -= before->placed;
+    now->stolen -= before->stolen;
+    now->chained -= before->chained;
+    now->messages -= before->messages;
+    now->bytes -= before->bytes;
+    now->busy -= before->busy;
+    now->idle -= before->idle;
+    now->renamed -= before->renamed;
+    now->graphs_recorded -= before->graphs_recorded;
+    now->delegated -= before->delegated;
+    now->migrated -= before->migrated;
+    now->awaited -= before->awaited;
+    now->exposed -= before->exposed;
+    now->stolen_far -= before->stolen_far;
+    return code;
+}
+
+int flow_finish(struct flow_state *state)
+{
+    int code = largest_stretch(state);
+    if (!code)
+        code = flow_energy_get(state, &state->report->end);
+    if (!code)
+        code = hash_all(state);
+    if (!code)
+        code = sum_seconds(state);
+    if (!code)
+        code = flow_last_frame(state);
+    if (!code)
+        code = count(state);
+    return code;
+}

@@ -1,0 +1,235 @@
+/* The system of the last step, brought together on rank 0: each block says its part of it, in
+ * numbers, and one task on rank 0 makes plain arrays of all parts. An entry between two blocks is
+ * told by both; the lower block's word counts. */
+#include "cloth/flow/bodies.h"
+
+#include "cloth/solve/system.h"
+
+/* A part: rows, entries, rows of the rim. Of a row: its vertex, mass, diagonal, free, then vectors;
+ * of an entry: its row here, the block of its other end, or less than 0 where there is no entry any
+ * more, and the row there (in another block: its place in the rim there), then its values: those of
+ * a spring, or N by rows. */
+enum { VERTEX, MASS, DIAGONAL, FREE, B, DV = B + 3, X = DV + 3, V = X + 3, ROW = V + 3 };
+enum { HERE, BLOCK, THERE, VALUE, SPRING = VALUE + 4, PAIR = VALUE + SOLVE_NINE };
+
+static size_t entry_doubles(const struct flow_table *t)
+{
+    return t->format == SOLVE_SPRINGS ? SPRING : PAIR;
+}
+
+static size_t entries_at(const struct flow_table *t)
+{
+    return (size_t)ROW * t->n;
+}
+
+static size_t rim_at(const struct flow_table *t)
+{
+    return entries_at(t) + entry_doubles(t) * (t->n_entries + t->n_cut_entries);
+}
+
+static double *put_vector(double *to, const phys_vec *from)
+{
+    for (int c = 0; c < 3; c++)
+        *to++ = (*from)[c];
+    return to;
+}
+
+static void put_rows(const duite_call *call, const struct flow_table *t, double *to)
+{
+    for (uint32_t i = 0; i < t->n; i++) {
+        const double row[B] = {t->vertex[i], t->mass[i], t->matrix.diagonal[i], t->free[i]};
+        for (int k = 0; k < B; k++)
+            *to++ = row[k];
+        to = put_vector(to, duite_in(call, 1, phys_vec) + i);
+        for (size_t k = 3; k < 6; k++)
+            to = put_vector(to, duite_in(call, k, phys_vec) + i);
+    }
+}
+
+/* Value i of an entry. */
+static double *put_value(const struct flow_table *t, const struct solve_values *values, size_t i,
+                         double *to)
+{
+    struct solve_symmetric symmetric = {{0}, {0}};
+    struct solve_columns n;
+    phys_vec turn;
+    if (t->format == SOLVE_SPRINGS) {
+        memcpy(to, (const phys_vec *)values->entry + i, sizeof(phys_vec));
+        return to + 4;
+    }
+    solve_entry_of(t->format, values->entry, i, &symmetric, &turn);
+    solve_entry_columns(&symmetric, &turn, &n);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            *to++ = n.c[c][r];
+    return to;
+}
+
+static double *put_entry(const struct flow_table *t, const struct solve_values *values, size_t i,
+                         const uint32_t place[3], double *to)
+{
+    for (int k = 0; k < 3; k++)
+        *to++ = place[k];
+    return put_value(t, values, i, to);
+}
+
+static double *put_entries(const struct flow_table *t, uint32_t block,
+                           const struct solve_values *values, double *to)
+{
+    const struct solve_block *m = &t->matrix;
+    for (uint32_t a = 0; a < t->n; a++)
+        for (uint32_t i = m->row[a]; i < m->row[a + 1]; i++)
+            to = put_entry(t, values, i, (const uint32_t[]){a, block, m->column[i]}, to);
+    for (uint32_t s = 0; s < t->n_slots; s++)
+        for (uint32_t i = t->cut_entry[s]; i < t->cut_entry[s + 1]; i++) {
+            const uint32_t place[] = {t->copy_end[i][0], t->slot[s], t->copy[t->copy_end[i][1]]};
+            to = put_entry(t, values, m->row[t->n] + (size_t)i, place, to);
+        }
+    return to;
+}
+
+static int part(const duite_call *call)
+{
+    struct flow_table table = flow_table_of(call), *t = &table;
+    const struct solve_values values =
+        solve_values_of(t->format, t->n, flow_open_matrix(call, t, 2));
+    double *part = duite_out(call, 6, double), *to = part + entries_at(t);
+    put_rows(call, t, part);
+    to = put_entries(t, flow_args_of(call)->block, &values, to);
+    for (; to < part + rim_at(t); to += entry_doubles(t)) {
+        memset(to, 0, entry_doubles(t) * sizeof *to);
+        to[BLOCK] = -1;
+    }
+    for (uint32_t i = 0; i < t->n_rim; i++)
+        *to++ = t->rim[i];
+    return 0;
+}
+const duite_kernel flow_system_part = {
+    .name = "system_part",
+    .body = part,
+    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_W},
+    .args_size = sizeof(struct flow_args)};
+
+/* ---- On rank 0 ---- */
+
+static uint32_t vertex_of(const double *part, double row)
+{
+    return (uint32_t)part[(size_t)ROW * (size_t)row + VERTEX];
+}
+
+static void take_rows(struct solve_system *system, const struct flow_table *t, const double *row)
+{
+    for (uint32_t i = 0; i < t->n; i++, row += ROW) {
+        const size_t v = (size_t)row[VERTEX];
+        system->mass[v] = row[MASS];
+        system->diagonal[v] = row[DIAGONAL];
+        system->free[v] = row[FREE];
+        for (size_t c = 0; c < 3; c++) {
+            system->b[3 * v + c] = row[B + c];
+            system->dv[3 * v + c] = row[DV + c];
+            system->x[3 * v + c] = row[X + c];
+            system->v[3 * v + c] = row[V + c];
+        }
+    }
+}
+
+/* Of block b; parts of all blocks are the task's parameters from 1 on. */
+static void take_entries(struct solve_system *system, const duite_call *call, uint32_t b)
+{
+    const struct flow_table *tables = flow_of(call)->tables.block, *t = tables + b;
+    const double *own = duite_in(call, 1 + b, double), *entry = own + entries_at(t);
+    for (; entry < own + rim_at(t); entry += entry_doubles(t)) {
+        if (entry[BLOCK] < b)
+            continue;
+        const uint32_t other = (uint32_t)entry[BLOCK];
+        const double *there = duite_in(call, 1 + other, double);
+        const double row =
+            other == b ? entry[THERE] : there[rim_at(tables + other) + (size_t)entry[THERE]];
+        const size_t at = system->n_pairs++;
+        system->end[at][0] = vertex_of(own, entry[HERE]);
+        system->end[at][1] = vertex_of(there, row);
+        if (system->block)
+            memcpy(system->block[at], entry + VALUE, sizeof *system->block);
+        else
+            memcpy(system->value[at], entry + VALUE, sizeof *system->value);
+    }
+}
+
+static int gather(const duite_call *call, struct solve_system *system, struct cloth_error *error)
+{
+    const struct flow *flow = flow_of(call);
+    const enum solve_pairs pairs =
+        flow->model->format == SOLVE_SPRINGS ? SOLVE_PAIRS_OF_SPRINGS : SOLVE_PAIRS_OF_BLOCKS;
+    size_t entries = 0;
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
+        entries += (size_t)flow->tables.block[b].n_entries + flow->tables.block[b].n_cut_entries;
+    const int code = solve_system_make(system, flow->n_vertices, entries, pairs, error);
+    if (code)
+        return code;
+    system->h = flow_args_of(call)->h;
+    system->n_pairs = 0;
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
+        take_rows(system, flow->tables.block + b, duite_in(call, 1 + b, double));
+        take_entries(system, call, b);
+    }
+    return solve_system_sort(system, error);
+}
+
+static int save(const duite_call *call)
+{
+    struct flow *flow = flow_of(call);
+    struct solve_system system = {0};
+    int code = gather(call, &system, &flow->trouble);
+    if (!code)
+        code = flow->output->system(flow->output->context, &system, &flow->trouble);
+    solve_system_free(&system);
+    if (!code)
+        return 0;
+    return duite_fail(call, code == CLOTH_E_MEMORY ? FLOW_NO_MEMORY : FLOW_NOT_WRITTEN, "%s",
+                      flow->trouble.text);
+}
+const duite_kernel flow_system_save = {.name = "system_save",
+                                       .body = save,
+                                       .access = {DUITE_RW},
+                                       .variadic = DUITE_R,
+                                       .args_size = sizeof(struct flow_args),
+                                       .side_effects = 1};
+
+/* ---- The main program ---- */
+
+static int fork_parts(struct flow_state *state, duite_object *part)
+{
+    const struct flow_tables *tables = &state->flow->tables;
+    struct flow_args args = {0};
+    int code = DUITE_OK;
+    for (uint32_t b = 0; b < tables->n_blocks && !code; b++) {
+        const struct flow_table *t = tables->block + b;
+        code = duite_new(state->rt, DUITE_F64, rim_at(t) + t->n_rim, part + b);
+        if (!code)
+            code = duite_colocate(state->rt, part[b], state->block[b].x);
+    }
+    for (; args.block < tables->n_blocks && !code; args.block++) {
+        const struct flow_objects *o = state->block + args.block;
+        const duite_object objects[] = {o->f, o->a, o->dv, o->x, o->v, part[args.block]};
+        code = flow_fork(state, &flow_system_part, &args, 6, objects, FLOW_NO_RIM, FLOW_NO_RIM);
+    }
+    return code;
+}
+
+int flow_system(struct flow_state *state)
+{
+    const uint32_t n = state->flow->tables.n_blocks;
+    const struct flow_args args = flow_attempt_args(state);
+    duite_object *part = state->part;
+    int code = fork_parts(state, part);
+    state->refs[0] = state->token;
+    for (uint32_t b = 0; b < n; b++)
+        state->refs[1 + b] = part[b];
+    if (!code)
+        code = duite_fork_at(state->rt, 0, &flow_system_save, &args, 1 + (size_t)n, state->refs);
+    for (uint32_t b = 0; b < n; b++) {
+        const int failed = part[b].generation ? duite_free(state->rt, part[b]) : DUITE_OK;
+        code = code ? code : failed;
+    }
+    return code;
+}

@@ -1,0 +1,129 @@
+/* The state after a step is watched when the step has been forked whole; when it is accepted,
+ * probes tell of it, and the main program may find that the run rests. What is watched of a state
+ * waits where the next but one is watched, as the status of a step does. Nothing here is forked for
+ * a run that has neither. */
+#include "cloth/flow/tasks.h"
+
+#include <math.h>
+#include <stddef.h>
+
+/* Whether rows of probes are wanted. */
+static bool tells(const struct flow_state *state)
+{
+    return state->flow->model->n_probes && state->output && state->output->row;
+}
+
+static bool may_rest(const struct flow_state *state)
+{
+    return state->flow->model->rest.speed > 0;
+}
+
+void flow_watch_make(struct flow_state *state)
+{
+    for (int i = 0; i < 2; i++) {
+        duite_new(state->rt, DUITE_F64, FLOW_PEAKS, state->peaks + i);
+        duite_colocate(state->rt, state->peaks[i], state->block[0].x);
+    }
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks && tells(state); b++) {
+        const struct flow_table *t = state->flow->tables.block + b;
+        struct flow_objects *o = state->block + b;
+        if (!t->n_watched)
+            continue;
+        duite_new(state->rt, DUITE_F64, 4 * (size_t)t->n, &o->felt);
+        duite_colocate(state->rt, o->felt, o->x);
+        duite_new(state->rt, DUITE_F64, FLOW_SEEN * (size_t)t->n_watched, &o->seen);
+        duite_colocate(state->rt, o->seen, o->x);
+    }
+}
+
+int flow_watch(struct flow_state *state)
+{
+    if (!tells(state) && !may_rest(state))
+        return DUITE_OK;
+    const double none[FLOW_PEAKS] = {0, -INFINITY, -INFINITY};
+    const unsigned at = state->attempt.parity;
+    struct flow_args args = flow_attempt_args(state);
+    int code = duite_set(state->rt, state->peaks[at], none);
+    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+        const struct flow_objects *o = state->block + args.block;
+        const duite_object objects[] = {o->x, o->v, state->peaks[at]};
+        code = flow_fork(state, &flow_watch_block, &args, 3, objects, FLOW_RIM(rim_x), FLOW_NO_RIM);
+    }
+    if (!code && tells(state))
+        code = flow_energies(state, flow_attempt_args(state), state->energy);
+    return code;
+}
+
+static int fork_probe(struct flow_state *state, struct flow_args args)
+{
+    const struct flow_objects *o = state->block + args.block;
+    int code = flow_fork(state, &flow_force, &args, 3, (duite_object[]){o->x, o->v, o->felt},
+                         FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    if (!code)
+        code = flow_fork(state, &flow_probe, &args, 4,
+                         (duite_object[]){o->x, o->v, o->felt, o->seen}, FLOW_NO_RIM, FLOW_NO_RIM);
+    return code;
+}
+
+/* The row before must have been written by then. */
+static int fork_row(struct flow_state *state)
+{
+    int64_t token;
+    const uint64_t steps = state->report->steps;
+    const unsigned at = state->attempt.parity;
+    const double tick = state->flow->model->h / FLOW_TICKS;
+    const uint32_t length = state->length ? state->length : FLOW_TICKS;
+    struct flow_args args = {.frame = steps,
+                             .time = flow_time(state),
+                             .now = flow_time(state),
+                             .h = length * tick,
+                             .before =
+                                 (state->length_before ? state->length_before : length) * tick};
+    int code = steps ? duite_get(state->rt, state->token, &token) : DUITE_OK;
+    for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
+        if (state->flow->tables.block[args.block].n_watched)
+            code = fork_probe(state, args);
+    if (code)
+        return code;
+    size_t n = 0;
+    args.block = 0;
+    state->refs[n++] = state->token;
+    state->refs[n++] = state->status[at];
+    state->refs[n++] = state->peaks[at];
+    state->refs[n++] = state->energy;
+    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
+        if (state->flow->tables.block[b].n_watched)
+            state->refs[n++] = state->block[b].seen;
+    return duite_fork_at(state->rt, 0, &flow_row, &args, n, state->refs);
+}
+
+/* Whether the run rests, by the speeds at the end of a step. */
+static int find_rest(struct flow_state *state)
+{
+    const struct model *model = state->flow->model;
+    double peaks[FLOW_PEAKS];
+    if (!may_rest(state) || state->resting)
+        return DUITE_OK;
+    const int code = duite_get(state->rt, state->peaks[state->attempt.parity], peaks);
+    if (code)
+        return code;
+    const double time = flow_time(state);
+    for (uint32_t i = 0; i < model->n_motions; i++)
+        if (model->keys[model->motions[i].first + model->motions[i].n - 1].time > time)
+            state->moved = time; /* a pin will move yet */
+    for (uint32_t course = 1; course <= model->n_courses; course++)
+        if (model_course_end(model, course) > time)
+            state->moved = time; /* a load will vary yet */
+    if (!(sqrt(peaks[FLOW_PEAK_SPEED]) <= model->rest.speed))
+        state->moved = time;
+    state->resting = state->grid.now > 0 && time - state->moved >= model->rest.hold;
+    if (state->resting)
+        state->report->rest_seconds = time;
+    return DUITE_OK;
+}
+
+int flow_watched(struct flow_state *state)
+{
+    const int code = tells(state) ? fork_row(state) : DUITE_OK;
+    return code ? code : find_rest(state);
+}

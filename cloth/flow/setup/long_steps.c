@@ -1,0 +1,122 @@
+/* A run that is warned of is made all the same: what is estimated here is the start. */
+#include "cloth/flow/setup/long_steps.h"
+
+#include "cloth/base/memory.h"
+#include "cloth/flow/tasks.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* h w, w the fastest vibration, from which on the solves of implicit steps are expected to fail:
+ * the matrix is its square times the masses, and rounding leaves of dv's error that times 1e-16. */
+static const double MOST_TURN = 1e4;
+
+static const char *place_of(const struct model *model)
+{
+    return model->h_place ? model->h_place : "h";
+}
+
+/* An explicit step that lets vibrations grow is made all the same. */
+static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
+{
+    const struct model *model = flow->model;
+    const char *name = model_integrator_name(model->integrator), *place = place_of(model);
+    const double most = flow_limit_of(limit, model->integrator), turn = model->h * limit->omega;
+    const size_t size = sizeof flow->warning[4];
+    if (!(most > 0))
+        snprintf(
+            flow->warning[4], size,
+            "%.200s: no step is short enough for %s without damping: the fastest vibration "
+            "(up to %g rad/s, at vertex %u of cloth '%.60s') can grow %g times in each of %g s",
+            place, name, limit->omega, limit->vertex, limit->cloth->name, sqrt(1 + turn * turn),
+            model->h);
+    else if (model->h > most)
+        snprintf(
+            flow->warning[4], size,
+            "%.200s: steps of %g s are beyond the limit of %s, %g s: the fastest vibration (up "
+            "to %g rad/s, at vertex %u of cloth '%.60s') can grow in each",
+            place, model->h, name, most, limit->omega, limit->vertex, limit->cloth->name);
+}
+
+static void warn_implicit(struct flow *flow, const struct flow_limit *limit)
+{
+    const struct model *model = flow->model;
+    const double turn = model->h * limit->omega;
+    if (turn > MOST_TURN)
+        snprintf(flow->warning[4], sizeof flow->warning[4],
+                 "%.200s: in steps of %g s the cloth is %.1e times stiffer than its mass (vertex "
+                 "%u of cloth '%.60s'): solves can fail, and the run can take up to 1024 times as "
+                 "many steps; give a density or mass %.1e times as large, or steps of at most %.1e "
+                 "s",
+                 place_of(model), model->h, turn * turn, limit->vertex, limit->cloth->name,
+                 turn * turn / (MOST_TURN * MOST_TURN), MOST_TURN / limit->omega);
+}
+
+/* The smallest mass of an area, kg/m^2, of a cloth; infinite: it has no triangles. *edge: the mean
+ * distance of its vertices, m. */
+static int find_density(const struct model *model, const struct model_cloth *cloth, double *density,
+                        double *edge, struct cloth_error *error)
+{
+    const uint32_t n = cloth->mesh.n_vertices;
+    double *area = cloth_alloc(n, sizeof *area, error), sum = 0;
+    if (!area)
+        return CLOTH_E_MEMORY;
+    mesh_add_mass(model_rest(cloth), 1, area);
+    *density = INFINITY;
+    for (uint32_t v = 0; v < n; v++) {
+        sum += area[v];
+        if (area[v] > 0 && cloth->mass_per_vertex > 0)
+            *density = fmin(*density, cloth->mass_per_vertex / area[v]);
+    }
+    for (uint32_t i = 0; i <= cloth->n_regions && !(cloth->mass_per_vertex > 0) && sum > 0; i++)
+        *density = fmin(*density, model_material(model, cloth, i)->density);
+    *edge = sqrt(sum / n);
+    free(area);
+    return CLOTH_OK;
+}
+
+/* The longest step, s, in which the air's push on a cloth does not turn its velocity round and
+ * more: the slope of the drag over the mass, rho C |u| / density, times h is to be below 2. At the
+ * speed, m/s, that the cloth starts with against the wind at its strongest. */
+static double air_limit(const struct model *model, double density, double speed)
+{
+    const struct phys_air *air = &model->air;
+    return 2 * density / (air->density * fmax(air->normal, air->tangent) * speed);
+}
+
+/* Its push is that of the begin of a step, whatever the integrator. */
+static int warn_of_air(struct flow *flow, struct cloth_error *error)
+{
+    const struct model *model = flow->model;
+    const double strongest = model_course_most(model, model->wind_course);
+    for (uint32_t c = 0; model_has_air(model) && c < model->n_cloths && !flow->warning[5][0]; c++) {
+        const struct model_cloth *cloth = model->cloths + c;
+        double density, edge, square = 0;
+        if (find_density(model, cloth, &density, &edge, error))
+            return CLOTH_E_MEMORY;
+        for (int i = 0; i < 3; i++)
+            square += pow(strongest * model->air.wind[i] - cloth->velocity[i], 2);
+        const double speed = sqrt(square), most = air_limit(model, density, speed);
+        if (model->h > most)
+            snprintf(flow->warning[5], sizeof flow->warning[5],
+                     "%.200s: steps of %g s are beyond the limit of the air, which is not in the "
+                     "matrix, %g s: its push on cloth '%.60s' can grow in each. It blows %g m in a "
+                     "step, "
+                     "vertices are %g m apart; give shorter steps or less wind",
+                     place_of(model), model->h, most, cloth->name, speed * model->h, edge);
+    }
+    return CLOTH_OK;
+}
+
+int flow_warn_of_steps(struct flow *flow, struct cloth_error *error)
+{
+    struct flow_limit limit;
+    if (flow_limit_find(&flow->source, &limit, error))
+        return CLOTH_E_MEMORY;
+    if (model_is_implicit(flow->model))
+        warn_implicit(flow, &limit);
+    else
+        warn_explicit(flow, &limit);
+    return warn_of_air(flow, error);
+}

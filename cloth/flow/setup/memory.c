@@ -1,0 +1,145 @@
+/* What can fail on one rank alone is had before the first task of a run. A rank that lacks it does
+ * not leave: it says so in a task, and all ranks leave together. */
+#include "cloth/flow/bodies.h"
+
+#include "cloth/base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+/* What rank 0 gathers in: a frame, and a part of the state to be hashed. */
+static void take_room(struct flow_state *state)
+{
+    struct flow *flow = state->flow;
+    if (flow_shows(state))
+        flow->room = cloth_alloc(flow->n_vertices, 3 * sizeof *flow->room, &flow->trouble);
+    const struct flow_watched *watched = &flow->source.watched; /* the tables are not dealt yet */
+    if (state->output && state->output->row && watched->n_columns) {
+        flow->row = cloth_alloc(watched->n_columns, sizeof *flow->row, &flow->trouble);
+        flow->seen = cloth_alloc(watched->n, FLOW_SEEN * sizeof *flow->seen, &flow->trouble);
+    }
+    state->bytes = cloth_alloc(flow_hash_part(flow), FLOW_VERTEX_BYTES, &flow->trouble);
+    state->hash = XXH64_createState();
+    if (!state->hash)
+        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for a hash");
+}
+
+static void take_sums(struct flow *flow)
+{
+    flow->sums =
+        aligned_alloc(sizeof(phys_vec), flow->n_clocks * flow->n_sums * sizeof *flow->sums);
+    if (!flow->sums)
+        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for the entries of a matrix");
+}
+
+static void take_forces(struct flow *flow)
+{
+    flow->forces = aligned_alloc(64, flow->n_clocks * flow->n_forces * sizeof *flow->forces);
+    if (!flow->forces)
+        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for the forces of a block");
+}
+
+static void take(struct flow_state *state)
+{
+    struct flow *flow = state->flow;
+    const struct flow_head *head = &state->head;
+    const size_t refs = larger(head->n_blocks, 2 * (size_t)head->most_slots) + DUITE_MAX_ACCESS;
+    flow->n_clocks = duite_threads(state->rt);
+    flow->clock = aligned_alloc(sizeof *flow->clock, flow->n_clocks * sizeof *flow->clock);
+    if (flow->clock)
+        memset(flow->clock, 0, flow->n_clocks * sizeof *flow->clock);
+    else
+        cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for %u clocks", flow->n_clocks);
+    flow->n_sums = head->most_entries;
+    if (flow->model->format != SOLVE_SPRINGS && head->most_entries)
+        take_sums(flow);
+    flow->n_copies = 2 * ((size_t)head->most_copies + 1);
+    if (head->n_elements) {
+        flow->copies = aligned_alloc(sizeof *flow->copies,
+                                     flow->n_clocks * flow->n_copies * sizeof *flow->copies);
+        if (!flow->copies)
+            cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for copies of vertices");
+    }
+    flow->n_forces = 2 * ((size_t)head->most_rows / 2 + 1); /* whole cache lines */
+    if (!model_is_implicit(flow->model))
+        take_forces(flow);
+    flow->shared = cloth_alloc(head->shared_bytes, 1, &flow->trouble);
+    flow->tables.block = cloth_alloc(head->n_blocks, sizeof *flow->tables.block, &flow->trouble);
+    flow->tables.n_blocks = head->n_blocks;
+    state->block = cloth_alloc(head->n_blocks, sizeof *state->block, &flow->trouble);
+    state->parcel = cloth_alloc(head->n_blocks, sizeof *state->parcel, &flow->trouble);
+    state->refs = cloth_alloc(refs, sizeof *state->refs, &flow->trouble);
+    state->part = cloth_alloc(head->n_blocks, sizeof *state->part, &flow->trouble);
+    state->rows = cloth_alloc(larger(4 * (size_t)head->most_rows, head->most_slots),
+                              sizeof *state->rows, &flow->trouble);
+    flow_far_take(state);
+    if (duite_rank(state->rt) == 0)
+        take_room(state);
+}
+
+static int ready(const duite_call *call)
+{
+    const struct cloth_error *trouble = &flow_of(call)->trouble;
+    return trouble->code
+               ? duite_fail(call, FLOW_NO_MEMORY, "rank %d: %s", call->rank, trouble->text)
+               : 0;
+}
+const duite_kernel flow_ready = {
+    .name = "ready", .body = ready, .access = {DUITE_CW}, .args_size = sizeof(struct flow_args)};
+
+int flow_memory_agree(struct flow_state *state)
+{
+    const struct flow_args args = {0};
+    duite_object all;
+    int32_t nothing;
+    int code = duite_new(state->rt, DUITE_I32, 1, &all);
+    for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
+        code = duite_fork_at(state->rt, rank, &flow_ready, &args, 1, &all);
+    if (!code)
+        code = duite_get(state->rt, all, &nothing);
+    const int freed = duite_free(state->rt, all);
+    return code ? code : freed;
+}
+
+int flow_memory_take(struct flow_state *state)
+{
+    take(state);
+    return flow_memory_agree(state);
+}
+
+void flow_memory_free(struct flow_state *state)
+{
+    struct flow *flow = state->flow;
+    flow_turned_free(flow);
+    free(flow->clock);
+    free(flow->sums);
+    free(flow->copies);
+    free(flow->forces);
+    free(flow->room);
+    free(flow->row);
+    free(flow->seen);
+    free(state->block);
+    free(state->parcel);
+    free(state->refs);
+    free(state->part);
+    free(state->rows);
+    flow_far_free(state);
+    free(state->bytes);
+    XXH64_freeState(state->hash);
+    flow->clock = NULL;
+    flow->sums = NULL;
+    flow->copies = flow->forces = NULL;
+    flow->room = flow->row = flow->seen = NULL;
+    state->block = NULL;
+    state->parcel = NULL;
+    state->bytes = NULL;
+    state->hash = NULL;
+    state->refs = NULL;
+    state->part = NULL;
+    state->rows = NULL;
+}

@@ -1,0 +1,202 @@
+/* A spring between two blocks makes each read the other's row: sorted by reader, block and row, and
+ * each once, these are the copies; the blocks among them are the slots. */
+#include "cloth/flow/setup/source.h"
+
+#include "cloth/base/memory.h"
+
+#include <stdlib.h>
+
+/* Block `reader` needs a place of block `other`; patches: of the reader, as bits. */
+struct need {
+    uint32_t reader, other, place, patches;
+};
+
+struct finder {
+    struct flow_source *source;
+    uint32_t block; /* of the last spring's lower end: the next one's is often the same */
+    struct cloth_list needs;
+    struct cloth_error *error;
+    int code;
+};
+
+/* The patch of a place. */
+static uint32_t patch_of(const struct flow_source *source, uint32_t block, uint32_t place)
+{
+    const uint32_t first = source->blocks.start[block];
+    const struct solve_patches patches =
+        solve_patches_of(source->blocks.start[block + 1] - first, source->patches);
+    return solve_patch_of(&patches, place - first);
+}
+
+static void add_need(struct finder *finder, uint32_t reader, uint32_t other, uint32_t place,
+                     uint32_t patch)
+{
+    struct need *need = cloth_list_add(&finder->needs, sizeof *need, 1, finder->error);
+    finder->source->rim[place] = 1;
+    if (need)
+        *need = (struct need){reader, other, place, UINT32_C(1) << patch};
+    else
+        finder->code = CLOTH_E_MEMORY;
+}
+
+/* Counts an entry between vertices a and b that something joins; that they have one already does
+ * no harm. Returns the blocks of both. */
+static void join(struct finder *finder, uint32_t a, uint32_t b, struct flow_table *block[2])
+{
+    const struct flow_source *source = finder->source;
+    const uint32_t p = source->blocks.place[a], q = source->blocks.place[b];
+    const uint32_t bp = flow_source_block(&source->blocks, p, finder->block);
+    const uint32_t bq = flow_source_block(&source->blocks, q, bp);
+    const uint32_t kp = patch_of(source, bp, p), kq = patch_of(source, bq, q);
+    const bool free_p = source->particles.free[a], free_q = source->particles.free[b];
+    finder->block = bp;
+    block[0] = source->shape + bp;
+    block[1] = source->shape + bq;
+    if (free_p != free_q)
+        block[free_q]->n_held++;
+    if (bp == bq) {
+        block[0]->n_entries++;
+        block[0]->joined |= solve_patch_bit(kp, kq) | solve_patch_bit(kq, kp);
+        return;
+    }
+    block[0]->n_cut_entries++;
+    block[1]->n_cut_entries++;
+    if (finder->code)
+        return;
+    add_need(finder, bp, bq, q, kp);
+    add_need(finder, bq, bp, p, kq);
+}
+
+static void find(void *to, const struct flow_spring *spring)
+{
+    struct flow_table *block[2];
+    join(to, spring->a, spring->b, block);
+    block[0]->n_stiff += spring->stiffness > 0;
+    if (block[0] == block[1]) {
+        block[0]->n_inner++;
+        return;
+    }
+    block[1]->n_stiff += spring->stiffness > 0;
+    block[0]->n_cut++;
+    block[1]->n_cut++;
+}
+
+/* Numbers the rows that other blocks need, which are marked. */
+static void number_rim(const struct flow_source *source, struct flow_table *shape)
+{
+    uint32_t *rim = source->rim + shape->first;
+    const struct solve_patches patches = solve_patches_of(shape->n, source->patches);
+    for (uint32_t k = 0; k < SOLVE_MOST_PATCHES; k++) {
+        shape->rim_start[k] = shape->n_rim;
+        for (uint32_t i = patches.start[k]; i < patches.start[k + 1]; i++)
+            rim[i] = rim[i] ? shape->n_rim++ : MESH_NO_PLACE;
+    }
+    shape->rim_start[SOLVE_MOST_PATCHES] = shape->n_rim;
+}
+
+static int compare_u32(uint32_t a, uint32_t b)
+{
+    return (a > b) - (a < b);
+}
+
+static int compare_needs(const void *va, const void *vb)
+{
+    const struct need *a = va, *b = vb;
+    int order = compare_u32(a->reader, b->reader);
+    if (!order)
+        order = compare_u32(a->other, b->other);
+    return order ? order : compare_u32(a->place, b->place);
+}
+
+/* Of sorted needs: keeps each once, counts slots and copies. Returns how many are left. */
+static size_t count(struct flow_source *source, struct need *need, size_t n)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < n; i++) {
+        struct need *last = kept ? need + kept - 1 : NULL;
+        if (last && compare_needs(last, need + i) == 0) {
+            last->patches |= need[i].patches;
+            continue;
+        }
+        struct flow_table *shape = source->shape + need[i].reader;
+        if (!last || last->reader != need[i].reader || last->other != need[i].other)
+            shape->n_slots++;
+        shape->n_copies++;
+        need[kept++] = need[i];
+    }
+    return kept;
+}
+
+/* Which patches of a reader are joined with the one that a place is in. */
+static uint32_t joins_of(const struct flow_source *source, const struct need *need)
+{
+    const uint32_t there = patch_of(source, need->other, need->place);
+    uint32_t joins = 0;
+    for (uint32_t k = 0; k < source->patches; k++)
+        joins |= need->patches >> k & 1 ? solve_patch_bit(k, there) : 0;
+    return joins;
+}
+
+/* Fills the arrays, and lets the shapes point into them. */
+static void fill(struct flow_source *source, const struct need *need)
+{
+    uint32_t *slot = source->neighbours.slot, *copies = source->neighbours.copies;
+    uint32_t *copy = source->neighbours.copy, *joins = source->neighbours.joins;
+    size_t first = 0; /* of the block's needs; there may be none at all */
+    for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
+        struct flow_table *shape = source->shape + b;
+        uint32_t s = 0;
+        shape->slot = slot;
+        shape->copies = copies;
+        shape->copy = copy;
+        shape->joins = joins;
+        for (uint32_t i = 0; i < shape->n_copies; i++) {
+            const struct need *one = &need[first + i];
+            if (i == 0 || one->other != one[-1].other) {
+                copies[s] = i;
+                joins[s] = 0;
+                slot[s++] = one->other;
+            }
+            joins[s - 1] |= joins_of(source, one);
+            copy[i] = source->rim[one->place];
+        }
+        copies[s] = shape->n_copies;
+        slot += s;
+        joins += s;
+        copies += s + 1;
+        copy += shape->n_copies;
+        first += shape->n_copies;
+    }
+}
+
+static int make(struct flow_source *source, struct cloth_list *needs, struct cloth_error *error)
+{
+    struct flow_neighbours *all = &source->neighbours;
+    const uint32_t n_blocks = source->blocks.n_blocks;
+    if (needs->n)
+        qsort(needs->items, needs->n, sizeof(struct need), compare_needs);
+    all->n_copies = (uint32_t)count(source, needs->items, needs->n);
+    for (uint32_t b = 0; b < n_blocks; b++)
+        all->n_slots += source->shape[b].n_slots;
+    all->slot = cloth_alloc(all->n_slots, sizeof *all->slot, error);
+    all->copies = cloth_alloc((size_t)all->n_slots + n_blocks, sizeof *all->copies, error);
+    all->copy = cloth_alloc(all->n_copies, sizeof *all->copy, error);
+    all->joins = cloth_alloc(all->n_slots, sizeof *all->joins, error);
+    if (!all->slot || !all->joins || !all->copies || !all->copy)
+        return CLOTH_E_MEMORY;
+    fill(source, needs->items);
+    return CLOTH_OK;
+}
+
+int flow_source_meet(struct flow_source *source, struct cloth_error *error)
+{
+    struct finder finder = {.source = source, .error = error};
+    source->patches = model_patches(source->model, source->blocks.n_blocks);
+    flow_springs_each(&source->springs, find, &finder);
+    for (uint32_t b = 0; b < source->blocks.n_blocks; b++)
+        number_rim(source, source->shape + b);
+    if (!finder.code)
+        finder.code = make(source, &finder.needs, error);
+    free(finder.needs.items);
+    return finder.code;
+}

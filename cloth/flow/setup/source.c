@@ -1,0 +1,180 @@
+/* What is kept of the springs is which blocks they join, and where. */
+#include "cloth/flow/setup/source.h"
+
+#include "cloth/base/memory.h"
+
+#include <stdlib.h>
+
+uint32_t flow_source_block(const struct mesh_blocks *blocks, uint32_t place, uint32_t guess)
+{
+    if (blocks->start[guess] <= place && place < blocks->start[guess + 1])
+        return guess;
+    uint32_t low = 0, high = blocks->n_blocks;
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (blocks->start[middle] <= place)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+void flow_source_cloth(struct flow_cloths *at, const struct model *model, uint32_t vertex)
+{
+    if (vertex < at->first)
+        *at = (struct flow_cloths){0};
+    while (vertex - at->first >= model->cloths[at->cloth].mesh.n_vertices)
+        at->first += model->cloths[at->cloth++].mesh.n_vertices;
+}
+
+/* ---- Cutting ---- */
+
+struct pair_visitor {
+    void (*visit)(void *to, uint32_t a, uint32_t b);
+    void *to;
+};
+
+static void visit_pair(void *to, const struct flow_spring *spring)
+{
+    const struct pair_visitor *visitor = to;
+    visitor->visit(visitor->to, spring->a, spring->b);
+}
+
+static void each_pair(const void *context, void (*visit)(void *to, uint32_t a, uint32_t b),
+                      void *to)
+{
+    struct pair_visitor visitor = {visit, to};
+    flow_springs_each(context, visit_pair, &visitor);
+}
+
+static int cut(struct flow_source *source, int ranks, struct cloth_error *error)
+{
+    const struct mesh_pairs pairs = {&source->springs, each_pair};
+    const struct mesh_blocks *blocks = &source->blocks;
+    const uint32_t grain = source->model->grain;
+    const int code = mesh_blocks_cut(&source->blocks, source->particles.n, source->particles.used,
+                                     &pairs, grain, error);
+    if (code || (uint32_t)ranks <= blocks->n_blocks)
+        return code;
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "%d ranks are more than there are blocks (%u): %u vertices at a grain of "
+                      "%u; start fewer ranks or give a smaller grain",
+                      ranks, blocks->n_blocks, blocks->n_places, grain);
+}
+
+/* ---- Shapes ---- */
+
+static void find_range(const struct mesh_blocks *blocks, struct flow_table *shape)
+{
+    shape->lowest = UINT32_MAX;
+    for (uint32_t i = 0; i < shape->n; i++) {
+        const uint32_t v = blocks->vertex[shape->first + i];
+        shape->lowest = v < shape->lowest ? v : shape->lowest;
+        shape->highest = v > shape->highest ? v : shape->highest;
+    }
+}
+
+/* What a vertex adds to the cost of its block: 0 where nobody asked for any. */
+static double extra(const struct model *model, struct flow_cloths *at, uint32_t vertex)
+{
+    flow_source_cloth(at, model, vertex);
+    const struct model_cloth *cloth = model->cloths + at->cloth;
+    const double *x = cloth->mesh.position + 3 * (size_t)(vertex - at->first);
+    const bool in = cloth->cost.factor > 1 && model_in_box(x, cloth->cost.box);
+    return in ? cloth->cost.factor - 1.0 : 0;
+}
+
+static void find_cost(const struct flow_source *source, struct flow_table *shape)
+{
+    struct flow_cloths at = {0};
+    double sum = 0;
+    for (uint32_t i = 0; i < shape->n; i++)
+        sum += extra(source->model, &at, source->blocks.vertex[shape->first + i]);
+    shape->cost = (float)(1 + sum / shape->n);
+}
+
+/* How many vertices of each block are watched. */
+static void count_watched(struct flow_source *source)
+{
+    uint32_t block = 0;
+    for (uint32_t i = 0; i < source->watched.n; i++) {
+        block = flow_source_block(&source->blocks, source->watched.place[i], block);
+        source->shape[block].n_watched++;
+    }
+}
+
+/* How many vertices of a block have a number: that of a motion, or of a guide. */
+static uint32_t count_numbered(const struct flow_source *source, const struct flow_table *shape,
+                               const uint32_t *number)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; number && i < shape->n; i++)
+        n += number[source->blocks.vertex[shape->first + i]] != 0;
+    return n;
+}
+
+static int find_shapes(struct flow_source *source, struct cloth_error *error)
+{
+    const struct mesh_blocks *blocks = &source->blocks;
+    source->rim = cloth_alloc(blocks->n_places, sizeof *source->rim, error);
+    source->shape = cloth_alloc(blocks->n_blocks, sizeof *source->shape, error);
+    if (!source->rim || !source->shape)
+        return CLOTH_E_MEMORY;
+    flow_varying_settle(source);
+    for (uint32_t b = 0; b < blocks->n_blocks; b++) {
+        struct flow_table *shape = source->shape + b;
+        shape->format = source->model->format;
+        shape->first = blocks->start[b];
+        shape->n = blocks->start[b + 1] - blocks->start[b];
+        find_range(blocks, shape);
+        find_cost(source, shape);
+        shape->n_moved = count_numbered(source, shape, source->particles.motion);
+        shape->n_guided = count_numbered(source, shape, source->particles.guide);
+        shape->n_loose = count_numbered(source, shape, source->particles.piece);
+        shape->n_varying = flow_varying_from(source, shape->first + shape->n) -
+                           flow_varying_from(source, shape->first);
+    }
+    count_watched(source);
+    flow_source_count(source);
+    return flow_source_meet(source, error);
+}
+
+int flow_source_make(struct flow_source *source, const struct model *model, int ranks,
+                     struct cloth_error *error)
+{
+    *source = (struct flow_source){.model = model};
+    int code = flow_particles_make(&source->particles, model, error);
+    if (!code)
+        code = flow_elements_make(&source->elements, model, error);
+    if (!code)
+        code = flow_springs_make(&source->springs, model, &source->elements, error);
+    if (!code && model_is_implicit(model))
+        code = flow_pieces_make(source, error);
+    if (!code)
+        code = cut(source, ranks, error);
+    if (!code)
+        code = flow_watched_make(&source->watched, source, error);
+    if (!code)
+        code = find_shapes(source, error);
+    if (code)
+        flow_source_free(source);
+    return code;
+}
+
+void flow_source_free(struct flow_source *source)
+{
+    flow_source_forget(source);
+    free(source->neighbours.slot);
+    free(source->neighbours.copies);
+    free(source->neighbours.copy);
+    free(source->neighbours.joins);
+    flow_watched_free(&source->watched);
+    free(source->shape);
+    free(source->rim);
+    mesh_blocks_free(&source->blocks);
+    flow_springs_free(&source->springs);
+    flow_elements_free(&source->elements);
+    flow_particles_free(&source->particles);
+    *source = (struct flow_source){0};
+}

@@ -1,0 +1,243 @@
+#ifndef CLOTH_FLOW_SETUP_SOURCE_H
+#define CLOTH_FLOW_SETUP_SOURCE_H
+
+#include "cloth/flow/setup/elements.h"
+#include "cloth/flow/state/tables.h"
+#include "cloth/mesh/blocks.h"
+#include "cloth/mesh/lattice.h"
+#include "cloth/model/model.h"
+
+#include <stdbool.h>
+
+/* What rank 0 makes the tables from. It never has all of them, nor all springs, at once: springs
+ * are gone through again for each group of blocks, and a table is made when it is wanted. */
+
+/* How many vertices are odd, and the first of them: in the numbering of its cloth's mesh. */
+struct flow_odd {
+    uint32_t n, vertex;
+    const struct model_cloth *cloth;
+    const char *place; /* of the mesh, pin or load that names it */
+};
+static inline void flow_odd_note(struct flow_odd *odd, const struct model_cloth *cloth,
+                                 uint32_t vertex, const char *place)
+{
+    if (odd->n++ == 0)
+        *odd = (struct flow_odd){1, vertex, cloth, place};
+}
+
+/* A load that varies, on one vertex. */
+struct flow_varying {
+    uint32_t at;     /* its vertex, of all cloths; when blocks are there, its place */
+    uint32_t course; /* of the model, from 1 */
+    uint32_t number; /* in the scene's order */
+    double force[3]; /* N, times the course */
+};
+
+/* Particles by vertex. Arrays of n. */
+struct flow_particles {
+    uint32_t n;
+    struct flow_odd unused, pinned, loaded; /* that no face or edge uses: all; pinned; loaded */
+    unsigned char *used, *free;             /* free: 0 where a pin holds */
+    uint32_t *motion, *guide;               /* number from 1, 0: none; NULL: there are none */
+    uint32_t n_pieces, *piece;              /* free ones: the same */
+    double *mass;                           /* kg */
+    phys_vec *load;                         /* N, gravity included; NULL: gravity alone */
+    uint32_t n_varying;
+    struct flow_varying *varying; /* in the scene's order; then by place */
+    double (*start)[6];           /* m, m/s; NULL: all start where the meshes have them */
+};
+
+/* Errors: CLOTH_E_INPUT for pins and loads outside their mesh, boxes without a vertex, starts
+ * beyond FLOW_BOUND and used vertices without mass; CLOTH_E_MEMORY. Local. */
+int flow_particles_make(struct flow_particles *particles, const struct model *model,
+                        struct cloth_error *error);
+void flow_particles_free(struct flow_particles *particles);
+
+/* Where the vertices of a cloth, the first of which is `first`, start and how fast, as the part of
+ * flow_particles_make that is about it; after `used`. Does nothing unless particles->start. Local.
+ */
+int flow_starts_make(struct flow_particles *particles, uint32_t first,
+                     const struct model_cloth *cloth, struct cloth_error *error);
+
+/* The loads of a cloth, the first vertex of which is `first`, as the part of flow_particles_make
+ * that is about them; after weights. Local. */
+int flow_loads_make(struct flow_particles *particles, uint32_t first,
+                    const struct model_cloth *cloth, struct cloth_error *error);
+
+/* A part of the scene that picks vertices, and what becomes of each. */
+struct flow_picking {
+    const struct model_pick *pick;
+    const struct model_cloth *cloth;
+    const unsigned char *used;                /* of the cloth's vertices */
+    const char *what;                         /* in sentences: "a pin" */
+    void (*visit)(void *to, uint32_t vertex); /* of the cloth's mesh */
+    void *to;
+};
+/* Errors: CLOTH_E_INPUT for vertices outside the mesh and boxes without a vertex. Local. */
+int flow_pick(const struct flow_picking *picking, struct cloth_error *error);
+/* That of a vertex outside the mesh. */
+int flow_no_vertex(const struct model_cloth *cloth, const char *what, uint32_t vertex,
+                   const char *place, struct cloth_error *error);
+
+/* One particle, a used vertex, of the cloth that it belongs to: `vertex` in the numbering of all
+ * cloths, `first` that of the cloth's first. */
+struct flow_particle {
+    double mass, drag, free; /* kg; kg/s, viscous + mass damping; 1 or 0 where a pin holds */
+    phys_vec position, velocity, load; /* m, m/s, N */
+};
+void flow_particle_of(const struct flow_particles *particles, const struct model *model,
+                      const struct model_cloth *cloth, uint32_t first, uint32_t vertex,
+                      struct flow_particle *particle);
+
+/* Springs of all cloths, by vertex, cloth after cloth in the order of their meshes. */
+struct flow_spring {
+    uint32_t a, b;
+    double stiffness, damping, length;
+    unsigned char stretch; /* counts for the largest stretch */
+};
+struct flow_springs {
+    const struct model *model;
+    struct mesh_lattice *lattice; /* a cloth; none of one that is made of triangles */
+    struct mesh_regions *regions; /* a cloth; moduli NULL: none */
+    const struct flow_elements *elements;
+};
+/* The elements, whose joints come after the springs of their cloth, must outlive them. Errors:
+ * CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */
+int flow_springs_make(struct flow_springs *springs, const struct model *model,
+                      const struct flow_elements *elements, struct cloth_error *error);
+void flow_springs_each(const struct flow_springs *springs,
+                       void (*visit)(void *to, const struct flow_spring *spring), void *to);
+void flow_springs_free(struct flow_springs *springs);
+
+/* Who reads what of whom: neighbours of all blocks, block after block, as every rank knows them. */
+struct flow_neighbours {
+    uint32_t n_slots, n_copies;
+    uint32_t *slot;  /* n_slots: blocks, ascending in a block, */
+    uint32_t *joins; /* and which patches are joined with theirs */
+    uint32_t
+        *copies;    /* n_slots + blocks: of a block, where each slot's copies begin, and the end */
+    uint32_t *copy; /* n_copies: places in the rim of the slot's block, ascending */
+};
+
+/* The vertices that probes are at. A row of the table of probes has step and time, then n_columns
+ * numbers: FLOW_RUN_COLUMNS of the run, then of each probe, of each of its vertices, position,
+ * velocity and reaction as far as they are wanted, then the sum of reactions, if it is. Where there
+ * are no probes, n_columns is 0. */
+enum {
+    FLOW_COLUMN_ITERATIONS,
+    FLOW_COLUMN_LONGEST,
+    FLOW_COLUMN_SHORTEST,
+    FLOW_COLUMN_ENERGY, /* kinetic, elastic, of weights, of loads */
+    FLOW_RUN_COLUMNS = FLOW_COLUMN_ENERGY + 4
+};
+struct flow_watched {
+    uint32_t n, *place; /* ascending, each once */
+    uint32_t *first;    /* a probe, and one more: its entries */
+    uint32_t *entry;    /* where its place is in the list */
+    uint32_t *vertex;   /* an entry: its vertex, of all cloths */
+    size_t n_columns;
+};
+
+/* The sides of a block's springs, while its table is due. */
+struct flow_side;
+
+struct flow_source {
+    const struct model *model;
+    struct flow_particles particles;
+    struct flow_elements elements;
+    struct flow_springs springs;
+    struct mesh_blocks blocks;
+    uint32_t patches; /* of a block */
+    uint32_t *rim;    /* by place: its number in the rim of its block */
+    struct flow_neighbours neighbours;
+    struct flow_watched watched;
+    struct flow_table *shape;    /* a block: shapes, which point into the neighbours */
+    uint32_t from;               /* the group of blocks whose sides are gathered begins there */
+    struct flow_side *side;      /* all of the group; NULL: none are gathered */
+    size_t *start;               /* a block of the group: where its sides begin */
+    struct flow_element *member; /* its elements, */
+    size_t *member_start;        /* a block and kind: where they begin */
+};
+
+/* Cuts the model into blocks and finds their shapes. The model must outlive it. Errors: as of the
+ * functions above; too many ranks for the blocks (CLOTH_E_INPUT); CLOTH_E_LIBRARY. Local. */
+int flow_source_make(struct flow_source *source, const struct model *model, int ranks,
+                     struct cloth_error *error);
+
+/* Counts the elements of each block, whose shapes they are added to. Local. */
+void flow_source_count(struct flow_source *source);
+
+/* The part of flow_source_gather, and of flow_source_table, that is about elements. */
+int flow_source_collect(struct flow_source *source, uint32_t from, uint32_t to,
+                        struct cloth_error *error);
+void flow_source_members(const struct flow_source *source, uint32_t block,
+                         const struct flow_image *image);
+
+/* Gathers the sides of the springs, and the elements, of the blocks from .. to - 1, in place of
+ * those before. Error: CLOTH_E_MEMORY. Local. */
+int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
+                       struct cloth_error *error);
+
+void flow_source_forget(struct flow_source *source);
+
+/* Makes the table of a block of the group: writes every byte of the image. Of different blocks by
+ * several threads at once. Local. */
+void flow_source_table(const struct flow_source *source, uint32_t block, void *image);
+
+/* Finds the neighbours, and the numbers of rows in rims (source->rim), when blocks and springs are
+ * there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */
+int flow_source_meet(struct flow_source *source, struct cloth_error *error);
+
+/* Numbers the pieces of the model that no pin holds, when springs are there: vertices that springs
+ * or elements join. Error: CLOTH_E_MEMORY. Local. */
+int flow_pieces_make(struct flow_source *source, struct cloth_error *error);
+
+/* Finds what is watched, when blocks are there. Errors: as of flow_pick, and CLOTH_E_INPUT for
+ * vertices that no face or edge uses; CLOTH_E_MEMORY. Local. */
+int flow_watched_make(struct flow_watched *watched, const struct flow_source *source,
+                      struct cloth_error *error);
+void flow_watched_free(struct flow_watched *watched);
+/* Names of the columns, with units and commas; the caller frees it. NULL: no probes. Error:
+ * CLOTH_E_MEMORY. Local. */
+int flow_watched_header(const struct flow_watched *watched, const struct model *model, char **text,
+                        struct cloth_error *error);
+/* The fastest vibration that a model can have where it starts, from above, and where it is. */
+struct flow_limit {
+    double omega; /* rad/s; 0: there are no springs */
+    double drag;  /* 1/s: drag over mass there */
+    double along; /* 1/s: damping of springs in that vibration over the mass */
+    uint32_t vertex;
+    const struct model_cloth *cloth; /* that vertex is of its mesh */
+};
+/* Error: CLOTH_E_MEMORY. Local. */
+int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
+                    struct cloth_error *error);
+/* The longest step, s, in which an integrator does not let it grow; infinite for implicit ones. */
+double flow_limit_of(const struct flow_limit *limit, enum model_integrator integrator);
+
+/* What measures residuals, kg m^2: the mass of all vertices that no pin holds times the square of
+ * the mean length at rest of all edges that can be stretched; 0 where there are none. Local. */
+double flow_source_inertia(const struct flow_source *source);
+
+/* A scale of the energy that will be in play, J: what the weights and the constant loads of the
+ * vertices that no pin holds do where each vertex moves to the centre of its cloth and on; twice
+ * the sum of |force| times distance where the run starts. 0 without weights and loads. Local. */
+double flow_source_release(const struct flow_source *source);
+
+/* Orders the loads that vary by place, when blocks are there; those of unused vertices are dropped.
+ * Then: the first of them at or after a place. Local. */
+void flow_varying_settle(struct flow_source *source);
+uint32_t flow_varying_from(const struct flow_source *source, uint32_t place);
+
+/* The cloth of a vertex, and its first vertex; looked for from the last one found. */
+struct flow_cloths {
+    uint32_t cloth, first;
+};
+void flow_source_cloth(struct flow_cloths *at, const struct model *model, uint32_t vertex);
+
+/* The block of a place; looked for in block `guess` first. */
+uint32_t flow_source_block(const struct mesh_blocks *blocks, uint32_t place, uint32_t guess);
+
+void flow_source_free(struct flow_source *source);
+
+#endif

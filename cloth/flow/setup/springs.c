@@ -1,0 +1,209 @@
+/* Springs keep the order of their mesh, cloth after cloth, joints of elements after them. */
+#include "cloth/flow/setup/source.h"
+
+#include "cloth/base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Those of the regions of a cloth, for its lattice. */
+static int find_regions(struct flow_springs *springs, uint32_t c, struct mesh_regions *regions,
+                        struct cloth_error *error)
+{
+    const struct model_cloth *cloth = springs->model->cloths + c;
+    struct mesh_moduli *moduli = cloth_alloc(cloth->n_regions, sizeof *moduli, error);
+    if (!moduli)
+        return CLOTH_E_MEMORY;
+    for (uint32_t i = 0; i < cloth->n_regions; i++)
+        moduli[i] = model_moduli(springs->model->materials + cloth->region[i]);
+    *regions = (struct mesh_regions){cloth->mask, moduli};
+    return CLOTH_OK;
+}
+
+/* Edges beside triangles are in no lattice, which would refuse those without a length. */
+static int check_edges(const struct flow_springs *springs, uint32_t c, struct cloth_error *error)
+{
+    const struct model_cloth *cloth = springs->model->cloths + c;
+    const struct mesh_edges *edges = springs->elements->edges + c;
+    const double *position = model_rest(cloth)->position;
+    for (uint32_t e = 0; e < edges->n; e++) {
+        const struct mesh_edge *edge = edges->edge + e;
+        if (edge->opposite[0] == UINT32_MAX &&
+            !memcmp(position + 3 * (size_t)edge->a, position + 3 * (size_t)edge->b,
+                    3 * sizeof *position))
+            return model_fail(cloth->mesh_place, error,
+                              "cloth '%.60s': vertices %u and %u (counted from 0) are 0 m apart; "
+                              "the edge that joins them needs a length",
+                              cloth->name, edge->a, edge->b);
+    }
+    return CLOTH_OK;
+}
+
+static int make_cloth(struct flow_springs *springs, uint32_t c, struct cloth_error *error)
+{
+    const struct model_cloth *cloth = springs->model->cloths + c;
+    struct mesh_moduli moduli = model_moduli(model_material(springs->model, cloth, 0));
+    struct cloth_error inner = {0};
+    if (flow_has_triangles(springs->model, cloth))
+        return check_edges(springs, c, error);
+    int code = cloth->mask ? find_regions(springs, c, springs->regions + c, error) : CLOTH_OK;
+    if (code)
+        return code;
+    moduli.regions = cloth->mask ? springs->regions + c : NULL;
+    code = mesh_lattice_build(springs->lattice + c, model_rest(cloth), &moduli, &inner);
+    if (code == CLOTH_E_INPUT)
+        model_fail(cloth->mesh_place, error, "cloth '%.60s': %s", cloth->name, inner.text);
+    else if (code)
+        cloth_fail(error, code, "%s", inner.text);
+    return code;
+}
+
+int flow_springs_make(struct flow_springs *springs, const struct model *model,
+                      const struct flow_elements *elements, struct cloth_error *error)
+{
+    *springs = (struct flow_springs){.model = model, .elements = elements};
+    springs->lattice = cloth_alloc(model->n_cloths, sizeof *springs->lattice, error);
+    springs->regions = cloth_alloc(model->n_cloths, sizeof *springs->regions, error);
+    int code = springs->lattice && springs->regions ? CLOTH_OK : CLOTH_E_MEMORY;
+    for (uint32_t c = 0; c < model->n_cloths && !code; c++)
+        code = make_cloth(springs, c, error);
+    if (code)
+        flow_springs_free(springs);
+    return code;
+}
+
+struct visitor {
+    void (*visit)(void *to, const struct flow_spring *spring);
+    void *to;
+    uint32_t first;
+    const struct model *model;
+    const struct model_cloth *cloth;
+};
+
+/* The material of what joins two vertices of the cloth's mesh. */
+static const struct model_material *material_of(const struct visitor *visitor, uint32_t a,
+                                                uint32_t b)
+{
+    return visitor->model->materials +
+           model_material_of(visitor->cloth, 2, (const uint32_t[]){a, b});
+}
+
+static void pass_on(void *context, const struct mesh_spring *s)
+{
+    const struct visitor *visitor = context;
+    const struct model_material *material = material_of(visitor, s->a, s->b);
+    const double damping =
+        s->kind == MESH_BEND ? model_damping_bending(material) : material->damping_stiffness;
+    const struct flow_spring spring = {.a = visitor->first + s->a,
+                                       .b = visitor->first + s->b,
+                                       .stiffness = s->stiffness,
+                                       .damping = damping * s->stiffness,
+                                       .length = s->length,
+                                       .stretch = s->kind == MESH_STRETCH};
+    visitor->visit(visitor->to, &spring);
+}
+
+/* A joint without stiffness, or with ea (N) the spring of an edge without triangles. */
+static void join(const struct visitor *visitor, const struct mesh *mesh, uint32_t a, uint32_t b,
+                 double ea, unsigned char stretch)
+{
+    const double *p = mesh->position + 3 * (size_t)a, *q = mesh->position + 3 * (size_t)b;
+    const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
+    const double length = sqrt(x * x + y * y + z * z);
+    const double stiffness = length > 0 ? ea / length : 0;
+    const double damping = stiffness > 0 ? material_of(visitor, a, b)->damping_stiffness : 0;
+    const struct flow_spring spring = {.a = visitor->first + (a < b ? a : b),
+                                       .b = visitor->first + (a < b ? b : a),
+                                       .stiffness = stiffness,
+                                       .damping = damping * stiffness,
+                                       .length = length,
+                                       .stretch = stretch && length > 0};
+    visitor->visit(visitor->to, &spring);
+}
+
+/* Across the diagonals of cells, whose corners share the force of the air. */
+static void join_cells(const struct visitor *visitor, const struct mesh *mesh)
+{
+    const uint32_t nx = mesh->grid_nx;
+    for (uint32_t j = 0; j + 1 < mesh->grid_ny; j++)
+        for (uint32_t i = 0; i + 1 < nx; i++) {
+            const uint32_t v = j * nx + i;
+            if (mesh_cell_turned(mesh, i, j))
+                join(visitor, mesh, v, v + nx + 1, 0, 0);
+            else
+                join(visitor, mesh, v + 1, v + nx, 0, 0);
+        }
+}
+
+/* What the elements of a cloth join, and its edges without triangles, which are springs as in any
+ * cloth. */
+static void each_joint(const struct flow_springs *springs, uint32_t c,
+                       const struct visitor *visitor)
+{
+    const struct model *model = springs->model;
+    const struct model_cloth *cloth = model->cloths + c;
+    const struct mesh *mesh = model_rest(cloth);
+    const struct mesh_edges *edges = springs->elements->edges + c;
+    const bool triangles = flow_has_triangles(model, cloth);
+    for (uint32_t e = 0; e < edges->n; e++) {
+        const struct mesh_edge *edge = edges->edge + e;
+        const bool lone = edge->opposite[0] == UINT32_MAX;
+        if (triangles || !lone)
+            join(visitor, mesh, edge->a, edge->b,
+                 lone ? material_of(visitor, edge->a, edge->b)->ea : 0, triangles);
+        if (flow_has_bending(model, cloth) && edge->opposite[1] != UINT32_MAX &&
+            edge->opposite[0] != edge->opposite[1])
+            join(visitor, mesh, edge->opposite[0], edge->opposite[1], 0, 0);
+    }
+    if (model_has_air(model) && flow_has_cells(model, cloth))
+        join_cells(visitor, mesh);
+}
+
+void flow_springs_each(const struct flow_springs *springs,
+                       void (*visit)(void *to, const struct flow_spring *spring), void *to)
+{
+    const struct model *model = springs->model;
+    struct visitor visitor = {.visit = visit, .to = to, .model = model};
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        visitor.cloth = model->cloths + c;
+        mesh_lattice_each(springs->lattice + c, pass_on, &visitor);
+        each_joint(springs, c, &visitor);
+        visitor.first += visitor.cloth->mesh.n_vertices;
+    }
+}
+
+void flow_springs_free(struct flow_springs *springs)
+{
+    for (uint32_t c = 0; springs->lattice && c < springs->model->n_cloths; c++)
+        mesh_lattice_free(springs->lattice + c);
+    for (uint32_t c = 0; springs->regions && c < springs->model->n_cloths; c++)
+        free((void *)springs->regions[c].moduli);
+    free(springs->lattice);
+    free(springs->regions);
+    *springs = (struct flow_springs){0};
+}
+
+struct lengths {
+    double sum;
+    uint64_t n;
+};
+
+static void add_length(void *to, const struct flow_spring *spring)
+{
+    struct lengths *lengths = to;
+    lengths->sum += spring->stretch ? spring->length : 0;
+    lengths->n += spring->stretch;
+}
+
+double flow_source_inertia(const struct flow_source *source)
+{
+    const struct flow_particles *particles = &source->particles;
+    struct lengths lengths = {0};
+    double mass = 0;
+    flow_springs_each(&source->springs, add_length, &lengths);
+    for (uint32_t v = 0; v < particles->n; v++)
+        mass += particles->used[v] && particles->free[v] ? particles->mass[v] : 0;
+    const double mean = lengths.n ? lengths.sum / (double)lengths.n : 0;
+    return mass * mean * mean;
+}

@@ -1,0 +1,112 @@
+/* What is odd about a model but no error. Each kind of warning has its place in flow->warning, and
+ * says at most one thing. */
+#include "cloth/flow/setup/long_steps.h"
+#include "cloth/flow/tasks.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double LEAST_EXTENT = 0.01, MOST_EXTENT = 10; /* m: of a garment */
+
+static void describe_odd(char *text, size_t size, const char *what, const struct flow_odd *odd,
+                         const char *effect)
+{
+    if (odd->n)
+        snprintf(text, size,
+                 "%.200s%s%s that no face or edge uses: %u, the first is vertex %u of cloth "
+                 "'%.60s'; %s",
+                 odd->place ? odd->place : "", odd->place ? ": " : "", what, odd->n, odd->vertex,
+                 odd->cloth->name, effect);
+}
+
+static void warn(struct flow *flow, const struct flow_particles *particles)
+{
+    const size_t size = sizeof flow->warning[0];
+    describe_odd(flow->warning[0], size, "vertices", &particles->unused,
+                 "they are kept and stay where they are");
+    describe_odd(flow->warning[1], size, "pinned vertices", &particles->pinned,
+                 "they stay where they are without a pin");
+    describe_odd(flow->warning[2], size, "loads on vertices", &particles->loaded,
+                 "they move nothing");
+}
+
+/* What a material says that its cloth has nothing for; NULL: nothing. A chain beside a grid may
+ * share a material that shears. */
+static const char *idle_key(const struct model *model, const struct model_material *material,
+                            const struct model_cloth *cloth)
+{
+    bool triangles, edges;
+    model_parts(model, (uint32_t)(material - model->materials), &triangles, &edges);
+    if (material->ea > 0 && !edges)
+        return "ea is of edges without triangles";
+    if (material->stretch > 0 && !triangles)
+        return "stretch is of triangles and threads; edges without triangles have ea";
+    if (material->model == MODEL_TRIANGLES)
+        return material->bend > 0 ? "bend is of springs; triangles have bending" : NULL;
+    if (material->poisson < 0 || material->poisson > 0)
+        return "poisson is of triangles; springs have no such ratio of their own";
+    if (material->uncorrected)
+        return "forces is of triangles";
+    return material->shear > 0 && !cloth->mesh.grid_nx && cloth->mesh.n_triangles
+               ? "shear is of the springs of grids, and of "
+                 "triangles; other meshes have no diagonals"
+               : NULL;
+}
+
+static void warn_of_moduli(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        for (uint32_t i = 0; i <= model->cloths[c].n_regions; i++) {
+            const struct model_cloth *cloth = model->cloths + c;
+            const struct model_material *material = model_material(model, cloth, i);
+            const char *key = idle_key(model, material, cloth);
+            if (key && !flow->warning[6][0])
+                snprintf(flow->warning[6], sizeof flow->warning[6],
+                         "%.200s%smaterial '%.60s' says what means nothing to cloth '%.60s': %s",
+                         cloth->place ? cloth->place : "", cloth->place ? ": " : "",
+                         material->name ? material->name : "", cloth->name ? cloth->name : "", key);
+        }
+}
+
+/* The largest extent of a mesh along an axis, m. */
+static double extent_of(const struct mesh *mesh)
+{
+    double extent = 0;
+    for (size_t i = 0; i < 3; i++) {
+        double least = INFINITY, most = -INFINITY;
+        for (size_t v = 0; v < mesh->n_vertices; v++) {
+            least = fmin(least, mesh->position[3 * v + i]);
+            most = fmax(most, mesh->position[3 * v + i]);
+        }
+        extent = fmax(extent, most - least);
+    }
+    return extent;
+}
+
+/* Files are often in centimetres or millimetres. Chains, which no garment is, may have any length.
+ */
+static void warn_of_extent(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    for (uint32_t c = 0; c < model->n_cloths && !flow->warning[7][0]; c++) {
+        const struct model_cloth *cloth = model->cloths + c;
+        const double extent = extent_of(&cloth->mesh);
+        if (!cloth->mesh.n_triangles || (extent >= LEAST_EXTENT && extent <= MOST_EXTENT))
+            continue;
+        snprintf(flow->warning[7], sizeof flow->warning[7],
+                 "%.200s%scloth '%.60s' is %g m long in its largest extent, %s than %g m: is its "
+                 "mesh in metres? transform.scale changes that (0.01 for centimetres)",
+                 cloth->mesh_place ? cloth->mesh_place : "", cloth->mesh_place ? ": " : "",
+                 cloth->name ? cloth->name : "", extent, extent > MOST_EXTENT ? "more" : "less",
+                 extent > MOST_EXTENT ? MOST_EXTENT : LEAST_EXTENT);
+    }
+}
+
+int flow_warn(struct flow *flow, struct cloth_error *error)
+{
+    warn(flow, &flow->source.particles);
+    warn_of_moduli(flow);
+    warn_of_extent(flow);
+    return flow_warn_of_steps(flow, error);
+}

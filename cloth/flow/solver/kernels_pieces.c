@@ -1,0 +1,88 @@
+/* What a solve leaves of a free piece's momentum. A solve ends with a residual r = b - A dv, and
+ * the sum of r over the rows of a piece that nothing holds is momentum that the step lost. The
+ * entries of A cancel in that sum, so that it is of the rows alone: b - D dv - w x dv, D the
+ * diagonal besides entries, w the turn (cloth/solve/format.h). A row of what moves as a whole by c
+ * feels D c - w x c alone, and w cancels over a piece: the c that takes the sum away is exact, and
+ * needs no iteration. */
+#include "cloth/flow/bodies.h"
+
+/* What is summed over a piece: the lost momentum, its turn, its D, kg, and how many of its rows
+ * contact or the program's filter holds. */
+enum { LOST, TURN = 3, MASS = 6, HELD };
+
+static bool is_held(const struct flow_table *t, uint32_t row)
+{
+    if (!t->matrix.filter)
+        return false;
+    const phys_vec filter = t->matrix.filter[row]; /* free: 0 0 0 1 */
+    return filter[0] != 0 || filter[1] != 0 || filter[2] != 0 || filter[3] != 1;
+}
+
+static int piece_sums(const duite_call *call)
+{
+    struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *b = duite_in(call, 1, phys_vec), *dv = duite_in(call, 3, phys_vec);
+    const void *value = flow_open_matrix(call, t, 2);
+    const struct solve_values values = solve_values_of(t->format, t->n, value);
+    double *all = duite_out(call, 4, double);
+    for (uint32_t i = 0; i < t->n_loose; i++) {
+        const uint32_t row = t->loose[i][0];
+        double *sums = all + FLOW_PIECE_SUMS * (size_t)(t->loose[i][1] - 1);
+        phys_vec turned = {0};
+        if (values.turn)
+            solve_cross(values.turn + row, dv + row, &turned);
+        const phys_vec lost = b[row] - t->matrix.diagonal[row] * dv[row] - turned;
+        for (int c = 0; c < 3; c++) {
+            sums[LOST + c] += lost[c];
+            sums[TURN + c] += values.turn ? values.turn[row][c] : 0;
+        }
+        sums[MASS] += t->matrix.diagonal[row];
+        sums[HELD] += is_held(t, row);
+    }
+    return 0;
+}
+FLOW_TIMED(piece_sums, FLOW_CG)
+const duite_kernel flow_piece_sums = {.name = "piece_sums",
+                                      .body = piece_sums_timed,
+                                      .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_CW},
+                                      .args_size = sizeof(struct flow_args)};
+
+/* c of m c + w x c = l: c = (m l - w x l + (w.l / m) w) / (m^2 + w.w). Zero for a piece of which a
+ * row is held. */
+static void shift_of(const double *sums, phys_vec *shift)
+{
+    const phys_vec l = {sums[LOST], sums[LOST + 1], sums[LOST + 2], 0};
+    const phys_vec w = {sums[TURN], sums[TURN + 1], sums[TURN + 2], 0};
+    const double m = sums[MASS], held = sums[HELD];
+    phys_vec turned;
+    solve_cross(&w, &l, &turned);
+    *shift = (m * l - turned + phys_dot(&w, &l) / m * w) / (m * m + phys_dot(&w, &w));
+    if (held > 0)
+        *shift = (phys_vec){0};
+}
+
+static int piece_shift(const duite_call *call)
+{
+    struct flow_table table = flow_table_of(call), *t = &table;
+    const void *value = flow_open_matrix(call, t, 1);
+    const struct solve_values values = solve_values_of(t->format, t->n, value);
+    const double *all = duite_in(call, 2, double);
+    phys_vec *dv = duite_out(call, 3, phys_vec), *r = duite_out(call, 4, phys_vec), shift = {0};
+    for (uint32_t i = 0, last = 0; i < t->n_loose; i++) {
+        const uint32_t row = t->loose[i][0], piece = t->loose[i][1];
+        if (piece != last)
+            shift_of(all + FLOW_PIECE_SUMS * (size_t)(piece - 1), &shift);
+        last = piece;
+        phys_vec turned = {0};
+        if (values.turn)
+            solve_cross(values.turn + row, &shift, &turned);
+        dv[row] += shift;
+        r[row] -= t->matrix.diagonal[row] * shift - turned;
+    }
+    return 0;
+}
+FLOW_TIMED(piece_shift, FLOW_CG)
+const duite_kernel flow_piece_shift = {.name = "piece_shift",
+                                       .body = piece_shift_timed,
+                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW},
+                                       .args_size = sizeof(struct flow_args)};

@@ -1,0 +1,198 @@
+/* The system of an implicit step, block by block: the right side b = h (f - h K v) and the matrix
+ * (Baraff & Witkin 1998, equation 16), of elements and springs that are worked out once for both.
+ * In half storage each worker sums entries up in room of its own, which stays in its cache. */
+#include "cloth/flow/bodies.h"
+
+#include "cloth/physics/particle.h"
+#include "cloth/solve/assemble.h"
+
+#include <string.h>
+
+#define ARGS sizeof(struct flow_args)
+
+/* What is made in a body. */
+struct making {
+    const duite_call *call;
+    const struct flow_table *t;
+    double h, push;
+    size_t rims;            /* parameters: rims of x from here on; of v behind them */
+    phys_vec *b;            /* NULL: the matrix alone */
+    void *values;           /* of the entries */
+    struct phys_pair *sums; /* NULL: springs are the entries */
+};
+
+/* Writes the diagonal of the matrix, parameter i, and a filter that lets all pass until the one of
+ * the step comes (flow_hold); what follows is for the values. */
+static void *begin_matrix(const duite_call *call, const struct flow_table *t, size_t i)
+{
+    const double h = flow_args_of(call)->h;
+    double *diagonal = duite_out(call, i, double);
+    phys_vec *value = duite_out(call, i, phys_vec) + flow_diagonal_rows(t);
+    const bool filtered = model_is_filtered(flow_of(call)->model);
+    for (uint32_t a = 0; a < t->n; a++)
+        diagonal[a] = t->mass[a] + h * t->drag[a];
+    for (size_t a = t->n; a < 4 * flow_diagonal_rows(t); a++)
+        diagonal[a] = 0;
+    for (size_t a = 0; filtered && a < t->n; a++)
+        value[a] = (phys_vec){0, 0, 0, 1};
+    return filtered ? value + t->n : value;
+}
+
+/* ---- Springs ---- */
+
+/* The springs of a block, or some of them, into values. Those into slot s; UINT32_MAX: inner. */
+static void some_springs(const struct making *m, const struct phys_springs *springs, uint32_t s,
+                         phys_vec *value)
+{
+    const duite_call *call = m->call;
+    const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
+    const bool inner = s == UINT32_MAX;
+    const phys_vec *x_other = inner ? x : duite_in(call, m->rims + s, phys_vec);
+    if (!m->b)
+        phys_springs_matrix(springs, m->h, x, x_other, value);
+    else if (inner)
+        phys_springs_system(springs, m->h, m->push, x, v, m->b, value);
+    else
+        phys_springs_system_cut(springs, m->h, m->push, x, v, x_other,
+                                duite_in(call, m->rims + m->t->n_slots + s, phys_vec), m->b, value);
+}
+
+/* Springs from .. to - 1; in half storage so many at once that they stay in the nearest cache. */
+static void springs_from(const struct making *m, uint32_t from, uint32_t to, uint32_t s)
+{
+    enum { AT_ONCE = 64 };
+    phys_vec room[AT_ONCE];
+    while (from < to) {
+        const uint32_t n = m->sums && to - from > AT_ONCE ? AT_ONCE : to - from;
+        struct phys_springs springs = flow_table_springs(m->t, from, from + n);
+        springs.full = flow_of(m->call)->model->full_slope;
+        some_springs(m, &springs, s, m->sums ? room : (phys_vec *)m->values + from);
+        if (m->sums)
+            solve_assemble_springs(n, m->t->at + from, room, m->sums);
+        from += n;
+    }
+}
+
+static void all_springs(const struct making *m)
+{
+    const struct flow_table *t = m->t;
+    if (!t->n_stiff && m->sums)
+        return;
+    springs_from(m, 0, t->n_inner, UINT32_MAX);
+    for (uint32_t s = 0; s < t->n_slots; s++)
+        springs_from(m, t->n_inner + t->cut[s], t->n_inner + t->cut[s + 1], s);
+}
+
+/* ---- Both ---- */
+
+/* b of what is not in the matrix: unless forces are in it, those of the outside and of what is
+ * bent.
+ */
+static void begin_right_side(const struct making *m, const struct phys_sight *sight)
+{
+    const struct flow_table *t = m->t;
+    if (m->push > 0) {
+        phys_outside(t->n, t->load, t->drag, duite_in(m->call, 2, phys_vec), m->b);
+        flow_varying_add(m->call, t, m->b);
+        if (sight->x)
+            flow_elements_bend(m->call, t, sight, m->b);
+    }
+    for (uint32_t i = 0; i < t->n; i++)
+        m->b[i] = m->h * m->b[i];
+    if (sight->x)
+        flow_elements_stiffness(m->call, t, m->h * m->h, sight, m->b);
+}
+
+/* The values from the sums. The object has room for what is joined twice, too: zeros. */
+static void end_matrix(const struct making *m, const struct solve_cut *cut)
+{
+    const struct flow_table *t = m->t;
+    const size_t entries = t->matrix.row[t->n] + cut->n;
+    const size_t n = solve_format_doubles(t->format, t->n, entries);
+    double *value = m->values;
+    solve_assembled(&t->matrix, cut, m->sums, value);
+    memset(value + n, 0, (flow_table_doubles(t) - n) * sizeof *value);
+}
+
+static void make(const struct making *m)
+{
+    const struct flow_table *t = m->t;
+    const struct solve_cut cut = flow_table_cut_entries(t);
+    struct phys_sight sight = {0};
+    if (flow_has_elements(t))
+        sight = m->b ? flow_elements_see(m->call, t, m->rims)
+                     : flow_elements_see_still(m->call, t, m->rims);
+    if (m->sums)
+        memset(m->sums, 0, (t->matrix.row[t->n] + cut.n) * sizeof *m->sums);
+    if (m->b)
+        begin_right_side(m, &sight);
+    if (sight.x)
+        flow_elements_assemble(m->call, t, m->push, &sight, m->b, m->sums);
+    all_springs(m);
+    if (m->sums)
+        end_matrix(m, &cut);
+}
+
+/* The room of the worker that runs a body. */
+static struct phys_pair *sums_of(const duite_call *call, const struct flow_table *t)
+{
+    const struct flow *flow = flow_of(call);
+    return t->format == SOLVE_SPRINGS ? NULL : flow->sums + call->worker * flow->n_sums;
+}
+
+/* push: h, or 0 where the forces are in f. */
+static int make_system(const duite_call *call, double push)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const struct making making = {.call = call,
+                                  .t = t,
+                                  .h = flow_args_of(call)->h,
+                                  .push = push,
+                                  .rims = 5,
+                                  .b = duite_out(call, 3, phys_vec),
+                                  .values = begin_matrix(call, t, 4),
+                                  .sums = sums_of(call, t)};
+    make(&making);
+    return 0;
+}
+
+static int system_all(const duite_call *call)
+{
+    return make_system(call, flow_args_of(call)->h);
+}
+FLOW_TIMED(system_all, FLOW_MATRIX)
+const duite_kernel flow_system_all = {.name = "system",
+                                      .body = system_all_timed,
+                                      .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W, DUITE_W},
+                                      .variadic = DUITE_R,
+                                      .args_size = ARGS};
+
+static int system_rest(const duite_call *call)
+{
+    return make_system(call, 0);
+}
+FLOW_TIMED(system_rest, FLOW_MATRIX)
+const duite_kernel flow_system_rest = {.name = "system_of_forces",
+                                       .body = system_rest_timed,
+                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W},
+                                       .variadic = DUITE_R,
+                                       .args_size = ARGS};
+
+static int matrix(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const struct making making = {.call = call,
+                                  .t = t,
+                                  .h = flow_args_of(call)->h,
+                                  .rims = 3,
+                                  .values = begin_matrix(call, t, 2),
+                                  .sums = sums_of(call, t)};
+    make(&making);
+    return 0;
+}
+FLOW_TIMED(matrix, FLOW_MATRIX)
+const duite_kernel flow_matrix = {.name = "matrix",
+                                  .body = matrix_timed,
+                                  .access = {DUITE_R, DUITE_R, DUITE_W},
+                                  .variadic = DUITE_R,
+                                  .args_size = ARGS};

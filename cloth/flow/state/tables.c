@@ -1,0 +1,134 @@
+/* A table is one piece of memory, so that it travels between ranks as it is: what its arrays are
+ * and where they lie follows from the shape alone. */
+#include "cloth/flow/state/tables.h"
+
+#include <string.h>
+
+enum { LINE = 64 };
+
+/* Where arrays go: base NULL only counts. */
+struct room {
+    char *base;
+    size_t used;
+};
+
+/* The next array of `bytes`; each begins on a line of its own. */
+static void *next(struct room *room, size_t bytes)
+{
+    char *here = room->base ? room->base + room->used : NULL;
+    room->used += (bytes + LINE - 1) / LINE * LINE;
+    return here;
+}
+
+const uint32_t flow_pairs[FLOW_KINDS] = {3, PHYS_BEND_PAIRS, PHYS_BEND_PAIRS, 0};
+
+static void lay_list(const struct flow_table *t, enum flow_kind kind, struct room *room,
+                     struct flow_list *list)
+{
+    const size_t n = t->n_elements[kind];
+    const int numbers = kind == FLOW_TRIANGLES ? 1 : kind == FLOW_HINGES ? 3 : 0;
+    list->corner = next(room, n * sizeof *list->corner);
+    list->at = next(room, flow_pairs[kind] * n * sizeof *list->at);
+    list->vector =
+        next(room, kind == FLOW_HINGES || kind == FLOW_SAILS ? 0 : n * sizeof *list->vector);
+    for (int i = 0; i < 3; i++)
+        list->number[i] = next(room, i < numbers ? n * sizeof(double) : 0);
+}
+
+static void lay(const struct flow_table *t, struct room *room, struct flow_image *image)
+{
+    const size_t n = t->n, sides = (size_t)t->n_inner + t->n_cut;
+    const size_t slots = (size_t)t->n_slots + 1;
+    image->load = next(room, n * sizeof *image->load);
+    image->position = next(room, n * sizeof *image->position);
+    image->velocity = next(room, n * sizeof *image->velocity);
+    image->mass = next(room, n * sizeof *image->mass);
+    image->drag = next(room, n * sizeof *image->drag);
+    image->free = next(room, n * sizeof *image->free);
+    image->stiffness = next(room, sides * sizeof *image->stiffness);
+    image->damping = next(room, sides * sizeof *image->damping);
+    image->length = next(room, sides * sizeof *image->length);
+    image->end = next(room, sides * sizeof *image->end);
+    image->copy_end = next(room, t->n_cut_entries * sizeof *image->copy_end);
+    image->held = next(room, t->n_held * sizeof *image->held);
+    image->vertex = next(room, n * sizeof *image->vertex);
+    image->row = next(room, (n + 1) * sizeof *image->row);
+    image->column = next(room, t->n_entries * sizeof *image->column);
+    image->rim = next(room, t->n_rim * sizeof *image->rim);
+    image->cut = next(room, slots * sizeof *image->cut);
+    image->cut_entry = next(room, slots * sizeof *image->cut_entry);
+    image->at = next(room, t->format == SOLVE_SPRINGS ? 0 : sides * sizeof *image->at);
+    image->n_held = next(room, sizeof *image->n_held);
+    image->moved = next(room, t->n_moved * sizeof *image->moved);
+    image->guided = next(room, t->n_guided * sizeof *image->guided);
+    image->loose = next(room, t->n_loose * sizeof *image->loose);
+    image->varying = next(room, t->n_varying * sizeof *image->varying);
+    image->varying_force = next(room, t->n_varying * sizeof *image->varying_force);
+    image->watched = next(room, t->n_watched * sizeof *image->watched);
+    image->stretch = next(room, sides);
+    for (int kind = 0; kind < FLOW_KINDS; kind++)
+        lay_list(t, (enum flow_kind)kind, room, image->list + kind);
+    image->membrane = next(room, t->n_membranes * sizeof *image->membrane);
+}
+
+size_t flow_table_bytes(const struct flow_table *table)
+{
+    struct room room = {0};
+    struct flow_image image;
+    lay(table, &room, &image);
+    return room.used;
+}
+
+struct flow_image flow_table_image(const struct flow_table *table, void *image)
+{
+    struct room room = {.base = image};
+    struct flow_image arrays;
+    lay(table, &room, &arrays);
+    return arrays;
+}
+
+void flow_table_open(struct flow_table *t, const void *image)
+{
+    const struct flow_image arrays = flow_table_image(t, (void *)image); /* it is only read */
+    t->vertex = arrays.vertex;
+    t->cut = arrays.cut;
+    t->rim = arrays.rim;
+    t->watched = arrays.watched;
+    t->moved = (const uint32_t(*)[2])arrays.moved;
+    t->guided = (const uint32_t(*)[2])arrays.guided;
+    t->loose = (const uint32_t(*)[2])arrays.loose;
+    t->varying = (const uint32_t(*)[2])arrays.varying;
+    t->varying_force = arrays.varying_force;
+    t->end = (const uint32_t(*)[2])arrays.end;
+    t->copy_end = (const uint32_t(*)[2])arrays.copy_end;
+    t->stiffness = arrays.stiffness;
+    t->damping = arrays.damping;
+    t->length = arrays.length;
+    t->stretch = arrays.stretch;
+    t->cut_entry = arrays.cut_entry;
+    t->at = arrays.at;
+    t->matrix =
+        (struct solve_block){t->n, NULL, arrays.free, arrays.row, arrays.column, t->format, NULL};
+    t->held = (struct solve_held){*arrays.n_held, (const uint32_t(*)[2])arrays.held};
+    t->mass = arrays.mass;
+    t->drag = arrays.drag;
+    t->free = arrays.free;
+    t->load = arrays.load;
+    t->position = arrays.position;
+    t->velocity = arrays.velocity;
+    memcpy(t->list, arrays.list, sizeof t->list);
+    t->membrane = arrays.membrane;
+}
+
+uint32_t flow_table_copy(const struct flow_table *t, uint32_t s, uint32_t row)
+{
+    uint32_t low = t->copies[s], high = t->copies[s + 1];
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (t->copy[middle] <= row)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}

@@ -1,0 +1,174 @@
+#ifndef CLOTH_FLOW_STATE_TABLES_H
+#define CLOTH_FLOW_STATE_TABLES_H
+
+#include "cloth/base/error.h"
+#include "cloth/physics/bending.h"
+#include "cloth/physics/spring.h"
+#include "cloth/physics/triangle.h"
+#include "cloth/solve/patches.h"
+
+/* What does not change during a run. Every rank knows the shapes of all blocks and who their
+ * neighbours are; the rest of a block is its table, a shared object beside the block's others,
+ * which tasks read where they run. All cloths of a model together: vertices are numbered cloth
+ * after cloth in the input's order, places block after block (cloth/mesh/blocks.h). */
+
+/* Positions and speeds of this size (m, m/s, along an axis) are no cloth's: a run does not start
+ * with them, and a run that comes to them diverged. */
+#define FLOW_BOUND 1e6
+
+/* Elements besides springs, and how many pairs of corners each has in the matrix. Sails are the
+ * triangles that the air meets (cloth/physics/air.h), which is not in the matrix. */
+enum flow_kind { FLOW_TRIANGLES, FLOW_HINGES, FLOW_FOLDS, FLOW_SAILS, FLOW_KINDS };
+extern const uint32_t flow_pairs[FLOW_KINDS];
+
+/* Those of one kind in a block, all that have a corner there. */
+struct flow_list {
+    uint32_t (*corner)[4]; /* rows, then copies; triangles: the last is the membrane */
+    uint32_t *at;          /* pairs: the entry of each, as solve_assemble_pairs wants it */
+    phys_vec *vector;      /* triangles: gradient; folds: weight */
+    double *number[3];     /* triangles: area; hinges: stiffness, damping, rest */
+};
+
+/* One block. Its springs: first the inner ones, sorted by (lower row, higher row), then those cut
+ * by its border, neighbour after neighbour. A cut spring is known to both blocks. The entries of
+ * its matrix (cloth/solve/format.h) are in that order, too: the springs themselves or, in half
+ * storage, the pairs of rows that anything joins, each once. What elements join has a spring
+ * without stiffness, a joint. */
+struct flow_table {
+    /* Its shape, known to every rank. */
+    uint32_t n, first;       /* rows, place of row 0 */
+    uint32_t n_inner, n_cut; /* springs */
+    uint32_t n_stiff;        /* of them, those that are more than joints */
+    uint32_t n_elements[FLOW_KINDS], n_membranes;
+    uint32_t n_entries, n_cut_entries; /* of the matrix: what is counted here may be one entry */
+    enum solve_format format;
+    uint32_t n_rim;           /* rows that any neighbour needs */
+    uint32_t n_held;          /* springs from free rows here to held ends: entries at most */
+    uint32_t n_watched;       /* rows that probes are at */
+    uint32_t n_moved;         /* rows that pins move */
+    uint32_t n_guided;        /* rows that pins leave free along a guide */
+    uint32_t n_loose;         /* rows of pieces that no pin holds */
+    uint32_t n_varying;       /* loads that vary */
+    uint32_t lowest, highest; /* of its vertices */
+    uint32_t n_slots;         /* neighbours */
+    uint32_t n_copies;        /* rows that the cut springs end at, neighbour after neighbour */
+    uint32_t joined;          /* which of its patches are (cloth/solve/patches.h) */
+    uint32_t rim_start[SOLVE_MOST_PATCHES + 1]; /* places in the rim where patches begin */
+    float cost; /* its tasks take so many times as long as they need, at least 1 */
+    /* Not owned: */
+    const uint32_t *slot;   /* n_slots: blocks, ascending */
+    const uint32_t *copies; /* n_slots + 1: those of slot s are copies[s] .. */
+    const uint32_t *joins;  /* n_slots: which patches here and there */
+    const uint32_t *copy;   /* n_copies: places in the neighbour's rim, ascending in a slot */
+    /* The table itself, in an image that is not owned; NULL but where one is open. */
+    const uint32_t *vertex;       /* n: of the input */
+    const uint32_t *cut;          /* n_slots + 1: the springs into slot s are n_inner + cut[s] .. */
+    const uint32_t *rim;          /* n_rim: ascending */
+    const uint32_t *watched;      /* n_watched: rows, ascending */
+    const uint32_t (*moved)[2];   /* n_moved: row, ascending; number of its motion, from 1 */
+    const uint32_t (*guided)[2];  /* n_guided: row, ascending; number of its guide, from 1 */
+    const uint32_t (*loose)[2];   /* n_loose: row, ascending; number of its piece, from 1 */
+    const uint32_t (*varying)[2]; /* n_varying: row, ascending; number of its course, from 1 */
+    const phys_vec *varying_force; /* n_varying: N, times the course */
+    const uint32_t (*end)[2];      /* inner: rows; cut: row here, place in the neighbour's rim */
+    const uint32_t (*copy_end)[2]; /* cut entries: row here, number of the copy */
+    const uint32_t *cut_entry; /* n_slots + 1: the cut entries into slot s are cut_entry[s] .. */
+    const uint32_t *at;        /* half storage: of each spring, its entry */
+    const double *stiffness, *damping, *length;
+    const unsigned char *stretch; /* counts for the largest stretch */
+    struct flow_list list[FLOW_KINDS];
+    const struct phys_membrane *membrane; /* n_membranes: by material */
+    struct solve_block matrix;            /* its diagonal: of each step, NULL here */
+    struct solve_held held;
+    const double *mass, *drag, *free; /* kg; kg/s, viscous + mass damping; 1 or 0 where held */
+    const phys_vec *load, *position, *velocity; /* N, gravity included; m, m/s, at the start */
+};
+
+struct flow_tables {
+    uint32_t n_blocks;
+    struct flow_table *block;    /* shapes, unless somebody opens the tables; not owned */
+    const uint32_t *slot, *copy; /* of all blocks, block after block; not owned */
+};
+
+/* The arrays of a table as they lie in its image, one piece of memory, for who makes it. */
+struct flow_image {
+    phys_vec *load, *position, *velocity; /* n */
+    double *mass, *drag, *free;           /* n */
+    double *stiffness, *damping, *length; /* n_inner + n_cut */
+    uint32_t (*end)[2];                   /* n_inner + n_cut */
+    uint32_t (*copy_end)[2];              /* n_cut_entries */
+    uint32_t (*held)[2];                  /* n_held */
+    uint32_t (*moved)[2];                 /* n_moved */
+    uint32_t (*guided)[2];                /* n_guided */
+    uint32_t (*loose)[2];                 /* n_loose */
+    uint32_t (*varying)[2];               /* n_varying */
+    phys_vec *varying_force;              /* n_varying */
+    uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_entries */, *rim;
+    uint32_t *cut, *cut_entry; /* n_slots + 1 */
+    uint32_t *watched;         /* n_watched */
+    uint32_t *at;              /* n_inner + n_cut; of springs as entries: none */
+    uint32_t *n_held;          /* 1: held entries */
+    unsigned char *stretch;    /* n_inner + n_cut */
+    struct flow_list list[FLOW_KINDS];
+    struct phys_membrane *membrane;
+};
+
+/* Bytes of an image, which its shape decides; and where its arrays are. image: aligned to 64 bytes.
+ */
+size_t flow_table_bytes(const struct flow_table *table);
+struct flow_image flow_table_image(const struct flow_table *table, void *image);
+
+/* Lets the arrays of a table that has its shape point into the image. */
+void flow_table_open(struct flow_table *table, const void *image);
+
+/* Where a row of the rim of slot s is among the block's copies. */
+uint32_t flow_table_copy(const struct flow_table *table, uint32_t s, uint32_t row);
+
+/* The inner springs of a block; those into neighbour slot s. */
+static inline struct phys_springs flow_table_springs(const struct flow_table *t, uint32_t from,
+                                                     uint32_t to)
+{
+    return (struct phys_springs){to - from,         t->end + from,    t->stiffness + from,
+                                 t->damping + from, t->length + from, 0};
+}
+static inline struct phys_springs flow_table_inner(const struct flow_table *t)
+{
+    return flow_table_springs(t, 0, t->n_inner);
+}
+static inline struct phys_springs flow_table_cut(const struct flow_table *t, uint32_t s)
+{
+    return flow_table_springs(t, t->n_inner + t->cut[s], t->n_inner + t->cut[s + 1]);
+}
+
+/* The other elements of a block. */
+static inline struct phys_triangles flow_table_triangles(const struct flow_table *t)
+{
+    const struct flow_list *list = t->list + FLOW_TRIANGLES;
+    return (struct phys_triangles){t->n_elements[FLOW_TRIANGLES],
+                                   (const uint32_t(*)[4])list->corner, list->vector,
+                                   list->number[0], t->membrane};
+}
+static inline struct phys_hinges flow_table_hinges(const struct flow_table *t)
+{
+    const struct flow_list *list = t->list + FLOW_HINGES;
+    return (struct phys_hinges){t->n_elements[FLOW_HINGES], (const uint32_t(*)[4])list->corner,
+                                list->number[0], list->number[1], list->number[2]};
+}
+static inline struct phys_folds flow_table_folds(const struct flow_table *t)
+{
+    const struct flow_list *list = t->list + FLOW_FOLDS;
+    return (struct phys_folds){t->n_elements[FLOW_FOLDS], (const uint32_t(*)[4])list->corner,
+                               list->vector};
+}
+
+/* The cut entries, and the doubles of the values of all. */
+static inline struct solve_cut flow_table_cut_entries(const struct flow_table *t)
+{
+    return (struct solve_cut){t->cut_entry[t->n_slots], t->copy_end, t->n_rim, t->rim};
+}
+static inline size_t flow_table_doubles(const struct flow_table *t)
+{
+    return solve_format_doubles(t->format, t->n, (size_t)t->n_entries + t->n_cut_entries);
+}
+
+#endif

@@ -1,0 +1,43 @@
+#ifndef CLOTH_FLOW_STEP_ENERGY_H
+#define CLOTH_FLOW_STEP_ENERGY_H
+
+#include "cloth/flow/run.h"
+
+#include <duite.h>
+#include <stdbool.h>
+
+/* Energies of the state, and the guard that refuses steps which gain of them. All are collective,
+ * alike on every rank, and return 0 or what duite returned. */
+
+struct flow_state;
+struct flow_args;
+
+/* What a run that is guarded (model_is_guarded) knows of its energies, J. */
+struct flow_guard {
+    bool off;           /* the last step touched something: energies are not looked at */
+    double lowest;      /* of their sum, since the start, a touch, or a gain that was accepted */
+    double most;        /* of motion and strain together, since the start; no less than what
+                         * weights and loads can set free (flow_source_release) */
+    uint64_t calm;      /* tick: steps grow back from there on */
+    double sum, moving; /* of the step under way: their sum; motion and strain */
+};
+
+/* Forks what adds up the energies of the present state in `sums` (F64, FLOW_SUMS). args: those
+ * of the step that ends there. */
+int flow_energies(struct flow_state *state, struct flow_args args, duite_object sums);
+
+/* The energies of the present state. Waits for it. */
+int flow_energy_get(struct flow_state *state, struct flow_energy *energy);
+/* Those before the first step go into the report and to the guard. Waits. */
+int flow_energy_begin(struct flow_state *state);
+
+/* If a run looks at them after each step: forks that of the step under way; when its status is
+ * known, waits for them; when it is accepted, notes them. touched: something did in that step. */
+int flow_energy_fork(struct flow_state *state);
+int flow_energy_wait(struct flow_state *state);
+void flow_energy_note(struct flow_state *state, bool touched);
+
+/* After flow_energy_wait: whether the step under way ends further above the lowest than it may. */
+bool flow_energy_gained(const struct flow_state *state, bool touched);
+
+#endif

@@ -1,0 +1,65 @@
+#ifndef CLOTH_FLOW_STEP_GUIDES_H
+#define CLOTH_FLOW_STEP_GUIDES_H
+
+#include "cloth/flow/bodies.h"
+#include "cloth/physics/motion.h"
+
+/* In bodies of tasks: what pins leave of their vertices' freedom at the end of the step under way.
+ * Local functions. */
+
+/* Of a row: its part of S (solve_filter) and a point of the line or plane. */
+struct flow_guide {
+    phys_vec filter, at;
+};
+
+/* y becomes `from` but for what the guide leaves free: from + S (y - from). */
+PHYS_INLINE void flow_guide_keep(const struct flow_guide *guide, const phys_vec *from, phys_vec *y)
+{
+    phys_vec free = *y - *from;
+    solve_filter(&guide->filter, &free);
+    *y = *from + free;
+}
+
+/* up, of length 1, becomes the way along which a row leaves a plane with this normal at the same
+ * pace: that of S up. Returns false where it cannot. */
+PHYS_INLINE bool flow_guide_way(const phys_vec *filter, phys_vec *up)
+{
+    phys_vec way = *up;
+    solve_filter(filter, &way);
+    const double pace = phys_dot(&way, up);
+    *up = way / pace;
+    return pace > 1e-12;
+}
+
+/* The pins of a block at one time, and how far somebody came who goes through its rows. */
+struct flow_pins {
+    const struct model *model;
+    const struct flow_table *table;
+    double time;
+    uint32_t motion; /* that the pose is of; 0: none yet */
+    struct phys_pose pose;
+    uint32_t next; /* guided row */
+    struct flow_guide guide;
+};
+/* At the end of the task's step. */
+void flow_pins_begin(const duite_call *call, const struct flow_table *t, struct flow_pins *pins);
+/* That of guided row i. */
+void flow_pins_guide(struct flow_pins *pins, uint32_t i, struct flow_guide *guide);
+/* The part of S of a row, NULL where no guide is; for rows in ascending order. Good until the next
+ * call. */
+const phys_vec *flow_pins_filter(struct flow_pins *pins, uint32_t row);
+
+/* y = S y of the guided rows; y = before + S (y - before) of them. */
+void flow_guides_filter(const duite_call *call, const struct flow_table *t, phys_vec *y);
+void flow_guides_keep(const duite_call *call, const struct flow_table *t, const phys_vec *before,
+                      phys_vec *y);
+
+/* The acceleration that a motion gives a vertex that starts there: the change of its mean velocity
+ * from the step before to this one over the length of this one. */
+void flow_due_acceleration(const duite_call *call, uint32_t motion, const phys_vec *start,
+                           phys_vec *a);
+/* That which a guide gives a vertex at x, v; only its part that S takes away means anything. */
+void flow_guide_acceleration(const duite_call *call, uint32_t guide, const phys_vec *x,
+                             const phys_vec *v, phys_vec *a);
+
+#endif

@@ -1,0 +1,218 @@
+/* Pins that move, and those that leave their vertices free along guides: lines or planes. Before a
+ * step the vertices get, as far as they are held, the velocity that brings them, in the step, to
+ * where they are due: forces and the solve then see it as that of any other vertex, and a row that
+ * is held keeps it (b - A z of Ascher & Boxerman 2003, with the change z made beforehand). After
+ * the step they are put exactly there, so that nothing adds up. In the step a guide is where it is
+ * at its end. */
+#include "cloth/flow/step/guides.h"
+
+#include "cloth/physics/motion.h"
+
+#define ARGS sizeof(struct flow_args)
+
+void flow_pins_begin(const duite_call *call, const struct flow_table *t, struct flow_pins *pins)
+{
+    *pins = (struct flow_pins){
+        .model = flow_of(call)->model, .table = t, .time = flow_args_of(call)->time};
+}
+
+/* The pose of a motion, by number from 1, at the time of the pins. */
+static const struct phys_pose *pose_of(struct flow_pins *pins, uint32_t motion)
+{
+    const struct model_motion *m = pins->model->motions + motion - 1;
+    if (pins->motion != motion)
+        phys_pose_at(m->n, pins->model->keys + m->first, m->about, pins->time, &pins->pose);
+    pins->motion = motion;
+    return &pins->pose;
+}
+
+void flow_pins_guide(struct flow_pins *pins, uint32_t i, struct flow_guide *guide)
+{
+    const uint32_t *row = pins->table->guided[i];
+    const struct model_guide *is = pins->model->guides + row[1] - 1;
+    phys_vec d = {is->direction[0], is->direction[1], is->direction[2], 0};
+    guide->at = pins->table->position[row[0]];
+    if (is->motion) {
+        const struct phys_pose *pose = pose_of(pins, is->motion);
+        phys_pose_point(pose, &guide->at, &guide->at);
+        phys_pose_direction(pose, &d, &d);
+    }
+    guide->filter = d;
+    guide->filter[3] = is->kind == MODEL_PLANE;
+}
+
+const phys_vec *flow_pins_filter(struct flow_pins *pins, uint32_t row)
+{
+    const struct flow_table *t = pins->table;
+    while (pins->next < t->n_guided && t->guided[pins->next][0] < row)
+        pins->next++;
+    if (pins->next == t->n_guided || t->guided[pins->next][0] != row)
+        return NULL;
+    flow_pins_guide(pins, pins->next, &pins->guide);
+    return &pins->guide.filter;
+}
+
+void flow_guides_filter(const duite_call *call, const struct flow_table *t, phys_vec *y)
+{
+    struct flow_pins pins;
+    struct flow_guide guide;
+    flow_pins_begin(call, t, &pins);
+    for (uint32_t i = 0; i < t->n_guided; i++) {
+        flow_pins_guide(&pins, i, &guide);
+        solve_filter(&guide.filter, y + t->guided[i][0]);
+    }
+}
+
+void flow_guides_keep(const duite_call *call, const struct flow_table *t, const phys_vec *before,
+                      phys_vec *y)
+{
+    struct flow_pins pins;
+    struct flow_guide guide;
+    flow_pins_begin(call, t, &pins);
+    for (uint32_t i = 0; i < t->n_guided; i++) {
+        const uint32_t row = t->guided[i][0];
+        flow_pins_guide(&pins, i, &guide);
+        flow_guide_keep(&guide, before + row, y + row);
+    }
+}
+
+static int drive(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    const double h = flow_args_of(call)->h;
+    const phys_vec *x = duite_in(call, 1, phys_vec);
+    phys_vec *v = duite_out(call, 2, phys_vec);
+    struct flow_pins pins;
+    struct flow_guide guide;
+    flow_pins_begin(call, t, &pins);
+    for (uint32_t i = 0; i < t->n_moved; i++) {
+        const uint32_t row = t->moved[i][0];
+        phys_vec to;
+        phys_pose_point(pose_of(&pins, t->moved[i][1]), t->position + row, &to);
+        v[row] = (to - x[row]) / h;
+    }
+    for (uint32_t i = 0; i < t->n_guided; i++) {
+        const uint32_t row = t->guided[i][0];
+        flow_pins_guide(&pins, i, &guide);
+        const phys_vec due = (guide.at - x[row]) / h;
+        flow_guide_keep(&guide, &due, v + row);
+    }
+    flow_write_rim(t, v, duite_out(call, 3, phys_vec));
+    return 0;
+}
+FLOW_TIMED(drive, FLOW_VELOCITY)
+const duite_kernel flow_drive = {.name = "drive",
+                                 .body = drive_timed,
+                                 .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_W},
+                                 .args_size = ARGS};
+
+static int place(const duite_call *call)
+{
+    const struct flow_table table = flow_table_of(call), *t = &table;
+    phys_vec *x = duite_out(call, 1, phys_vec);
+    struct flow_pins pins;
+    struct flow_guide guide;
+    flow_pins_begin(call, t, &pins);
+    for (uint32_t i = 0; i < t->n_moved; i++) {
+        const uint32_t row = t->moved[i][0];
+        phys_pose_point(pose_of(&pins, t->moved[i][1]), t->position + row, x + row);
+    }
+    for (uint32_t i = 0; i < t->n_guided; i++) {
+        flow_pins_guide(&pins, i, &guide);
+        flow_guide_keep(&guide, &guide.at, x + t->guided[i][0]);
+    }
+    flow_write_rim(t, x, duite_out(call, 2, phys_vec));
+    return 0;
+}
+FLOW_TIMED(place, FLOW_POSITION)
+const duite_kernel flow_place = {.name = "place",
+                                 .body = place_timed,
+                                 .access = {DUITE_R, DUITE_RW, DUITE_W},
+                                 .args_size = ARGS};
+
+/* ---- Accelerations, for reactions ---- */
+
+/* Poses of a motion at the end of a step, at its begin and at that of the step before. */
+static void poses_of(const struct model *model, uint32_t motion, const struct flow_args *args,
+                     struct phys_pose pose[3])
+{
+    const double back[3] = {0, args->h, args->h + args->before};
+    for (int i = 0; i < 3; i++) {
+        struct flow_pins pins = {.model = model, .time = args->time - back[i]};
+        pose[i] = *pose_of(&pins, motion);
+    }
+}
+
+/* Of what was at x[2], x[1], x[0] in turn. */
+static void second_difference(const struct flow_args *args, const phys_vec x[3], phys_vec *a)
+{
+    *a = ((x[0] - x[1]) / args->h - (x[1] - x[2]) / args->before) / args->h;
+}
+
+void flow_due_acceleration(const duite_call *call, uint32_t motion, const phys_vec *start,
+                           phys_vec *a)
+{
+    const struct flow_args *args = flow_args_of(call);
+    struct phys_pose pose[3];
+    phys_vec x[3];
+    poses_of(flow_of(call)->model, motion, args, pose);
+    for (int i = 0; i < 3; i++)
+        phys_pose_point(pose + i, start, x + i);
+    second_difference(args, x, a);
+}
+
+/* With R the guide's rotation: of the point of the guide where the vertex is, and twice dR/dt RT on
+ * its velocity along the guide (Coriolis). */
+void flow_guide_acceleration(const duite_call *call, uint32_t guide, const phys_vec *x,
+                             const phys_vec *v, phys_vec *a)
+{
+    const struct flow_args *args = flow_args_of(call);
+    const struct model *model = flow_of(call)->model;
+    const uint32_t motion = model->guides[guide - 1].motion;
+    struct phys_pose pose[3];
+    phys_vec at[3], turned[2], own, along;
+    *a = (phys_vec){0};
+    if (!motion)
+        return;
+    poses_of(model, motion, args, pose);
+    phys_pose_back(pose, x, &own);
+    for (int i = 0; i < 3; i++)
+        phys_pose_point(pose + i, &own, at + i);
+    second_difference(args, at, a);
+    const phys_vec slip = *v - (at[0] - at[1]) / args->h;
+    phys_pose_direction_back(pose, &slip, &along);
+    for (int i = 0; i < 2; i++)
+        phys_pose_direction(pose + i, &along, turned + i);
+    *a += 2 * (turned[0] - turned[1]) / args->h;
+}
+
+/* ---- The main program ---- */
+
+static int fork_moved(struct flow_state *state, const duite_kernel *kernel, const long *objects)
+{
+    struct flow_args args = flow_attempt_args(state);
+    int code = DUITE_OK;
+    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+        const struct flow_table *t = state->flow->tables.block + args.block;
+        if (!t->n_moved && !t->n_guided)
+            continue;
+        duite_object own[DUITE_MAX_ACCESS];
+        size_t n = 0;
+        for (; objects[n] >= 0; n++)
+            own[n] =
+                *(const duite_object *)(const void *)((const char *)(state->block + args.block) +
+                                                      objects[n]);
+        code = flow_fork(state, kernel, &args, n, own, FLOW_NO_RIM, FLOW_NO_RIM);
+    }
+    return code;
+}
+
+int flow_pins_drive(struct flow_state *state)
+{
+    return fork_moved(state, &flow_drive, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_v)));
+}
+
+int flow_pins_place(struct flow_state *state)
+{
+    return fork_moved(state, &flow_place, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(rim_x)));
+}

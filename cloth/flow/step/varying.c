@@ -1,0 +1,26 @@
+/* Loads that vary are those of the time of the task's arguments, which is that of the state whose
+ * forces are asked for; by implicit steps the end of the step. */
+#include "cloth/flow/bodies.h"
+
+void flow_varying_add(const duite_call *call, const struct flow_table *t, phys_vec *f)
+{
+    const struct model *model = flow_of(call)->model;
+    uint32_t course = 0; /* that the factor is of */
+    double factor = 1;
+    for (uint32_t i = 0; i < t->n_varying; i++) {
+        if (course != t->varying[i][1])
+            factor = model_course_at(model, t->varying[i][1], flow_args_of(call)->now);
+        course = t->varying[i][1];
+        f[t->varying[i][0]] += factor * t->varying_force[i];
+    }
+}
+
+double flow_varying_energy(const duite_call *call, const struct flow_table *t, const phys_vec *x)
+{
+    const struct model *model = flow_of(call)->model;
+    double sum = 0;
+    for (uint32_t i = 0; i < t->n_varying; i++)
+        sum -= model_course_at(model, t->varying[i][1], flow_args_of(call)->now) *
+               phys_dot(t->varying_force + i, x + t->varying[i][0]);
+    return sum;
+}

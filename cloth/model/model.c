@@ -1,0 +1,192 @@
+/* A model owns all that its pointers reach; a zeroed model owns nothing. */
+#include "cloth/model/model.h"
+
+#include "cloth/solve/patches.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static void free_pick(struct model_pick *pick)
+{
+    free(pick->vertices);
+    free(pick->place);
+}
+
+static void free_cloth(struct model_cloth *cloth)
+{
+    for (uint32_t i = 0; i < cloth->n_pins; i++)
+        free_pick(&cloth->pins[i].pick);
+    for (uint32_t i = 0; i < cloth->n_loads; i++) {
+        free_pick(&cloth->loads[i].pick);
+        free(cloth->loads[i].edges);
+    }
+    for (uint32_t i = 0; i < cloth->n_masses; i++)
+        free_pick(&cloth->masses[i].pick);
+    for (uint32_t i = 0; i < cloth->n_starts; i++)
+        free_pick(&cloth->starts[i].pick);
+    free(cloth->masses);
+    free(cloth->starts);
+    free(cloth->region);
+    free(cloth->mask);
+    free(cloth->pins);
+    free(cloth->loads);
+    free(cloth->name);
+    free(cloth->start);
+    free(cloth->place);
+    free(cloth->mesh_place);
+    free(cloth->velocity_place);
+    if (cloth->rest)
+        free(cloth->rest->position);
+    free(cloth->rest);
+    mesh_free(&cloth->mesh);
+}
+
+void model_free(struct model *model)
+{
+    for (uint32_t i = 0; i < model->n_materials; i++)
+        free(model->materials[i].name);
+    for (uint32_t i = 0; i < model->n_cloths; i++)
+        free_cloth(&model->cloths[i]);
+    for (uint32_t i = 0; i < model->n_probes; i++) {
+        free(model->probes[i].name);
+        free_pick(&model->probes[i].pick);
+    }
+    free(model->probes);
+    free(model->motions);
+    free(model->keys);
+    free(model->guides);
+    free(model->courses);
+    free(model->beats);
+    free(model->materials);
+    free(model->cloths);
+    free(model->planes);
+    free(model->name);
+    free(model->h_place);
+    free(model->fps_place);
+    *model = (struct model){0};
+}
+
+const char *model_integrator_name(enum model_integrator integrator)
+{
+    static const char *const names[MODEL_INTEGRATORS] = {
+        [MODEL_EXPLICIT_EULER] = "explicit_euler",
+        [MODEL_SYMPLECTIC_EULER] = "symplectic_euler",
+        [MODEL_VERLET] = "verlet",
+        [MODEL_RK4] = "rk4",
+        [MODEL_IMPLICIT_EULER] = "implicit_euler",
+        [MODEL_BDF2] = "bdf2",
+    };
+    return names[integrator];
+}
+
+static bool has_material(const struct model_cloth *cloth, uint32_t material)
+{
+    bool found = cloth->material == material;
+    for (uint32_t i = 0; i < cloth->n_regions; i++)
+        found = found || cloth->region[i] == material;
+    return found;
+}
+
+void model_parts(const struct model *model, uint32_t material, bool *triangles, bool *edges)
+{
+    *triangles = *edges = false;
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        const struct model_cloth *cloth = model->cloths + c;
+        const bool has = has_material(cloth, material);
+        *triangles = *triangles || (has && cloth->mesh.n_triangles);
+        *edges = *edges || (has && cloth->mesh.n_bare_edges);
+    }
+}
+
+/* Alike but for rounding, of cells that are at other places. */
+static double common(double a, double b)
+{
+    return fabs(a - b) <= 1e-9 * fabs(a) ? a : NAN;
+}
+
+struct mesh_elastic model_elastic(const struct model *model, uint32_t material)
+{
+    const struct model_material *m = model->materials + material;
+    struct mesh_elastic all = {NAN, NAN, NAN, NAN};
+    uint32_t n = 0;
+    if (m->model == MODEL_TRIANGLES)
+        return (struct mesh_elastic){m->stretch, model_weft(m), m->shear, m->poisson};
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        if (!has_material(model->cloths + c, material) || !model->cloths[c].mesh.n_triangles)
+            continue;
+        const struct mesh_moduli moduli = model_moduli(m);
+        const struct mesh_elastic one = mesh_elastic_of(model_rest(model->cloths + c), &moduli);
+        if (!n++)
+            all = one;
+        all = (struct mesh_elastic){common(all.warp, one.warp), common(all.weft, one.weft),
+                                    common(all.shear, one.shear), common(all.poisson, one.poisson)};
+    }
+    return all;
+}
+
+int model_fail(const char *place, struct cloth_error *error, const char *format, ...)
+{
+    char text[900];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    return cloth_fail(error, CLOTH_E_INPUT, "%s%s%s", place ? place : "", place ? ": " : "", text);
+}
+
+bool model_is_guarded(const struct model *model)
+{
+    const double *wind = model->air.wind;
+    const bool blown = model_has_air(model) && (wind[0] != 0 || wind[1] != 0 || wind[2] != 0);
+    return model_is_implicit(model) && model->energy_growth > 0 && !blown && !model->n_motions &&
+           !model->n_courses && !model->own_filter;
+}
+
+bool model_is_coarse(const struct model *model)
+{
+    return model->preconditioner == MODEL_COARSE || model->preconditioner == MODEL_IC0_COARSE;
+}
+
+uint32_t model_patches(const struct model *model, uint32_t n_blocks)
+{
+    enum { MOST_IN_ALL = 256, LEAST_VERTICES = 100 };
+    uint32_t n = model->patches ? model->patches : SOLVE_MOST_PATCHES;
+    if (!model_is_coarse(model))
+        return 1;
+    while (!model->patches && n > 1 &&
+           (n * n_blocks > MOST_IN_ALL || model->grain / n < LEAST_VERTICES))
+        n /= 2;
+    while (n > 1 && n * n_blocks > SOLVE_MOST_BLOCKS)
+        n--;
+    return n;
+}
+
+double model_course_at(const struct model *model, uint32_t course, double time)
+{
+    if (!course)
+        return 1;
+    const struct model_course *c = model->courses + course - 1;
+    return c->n ? phys_course_at(c->n, model->beats + c->first, time)
+                : phys_sine(c->frequency * time + c->phase);
+}
+
+double model_course_most(const struct model *model, uint32_t course)
+{
+    double most = 0;
+    if (!course || !model->courses[course - 1].n)
+        return 1;
+    const struct model_course *c = model->courses + course - 1;
+    for (uint32_t i = 0; i < c->n; i++)
+        most = fmax(most, fabs(model->beats[c->first + i].factor));
+    return most;
+}
+
+double model_course_end(const struct model *model, uint32_t course)
+{
+    if (!course)
+        return 0;
+    const struct model_course *c = model->courses + course - 1;
+    return c->n ? model->beats[c->first + c->n - 1].time : INFINITY;
+}

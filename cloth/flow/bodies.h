@@ -175,9 +175,8 @@ static inline size_t flow_dots(const struct model *model)
 static inline struct solve_scalars flow_begin_scalars(const duite_call *call)
 {
     const struct flow_args *args = flow_args_of(call);
-    const double on = flow_of(call)->model->form == MODEL_CLASSIC ? SOLVE_UPDATE : SOLVE_ON;
     struct solve_scalars scalars =
-        solve_scalars_start(args->begin, args->guess != 0 ? SOLVE_OPEN : on);
+        solve_scalars_start(args->begin, args->guess != 0 ? SOLVE_OPEN : SOLVE_ON);
     scalars.last = args->last;
     scalars.unit = flow_of(call)->inertia / (args->h * args->h);
     return scalars;

@@ -187,10 +187,6 @@ enum model_guess {
     MODEL_GUESS_ZERO,
     MODEL_GUESS_PREVIOUS /* from the best multiple of the last step's dv; of one linear step only */
 };
-enum model_form {
-    MODEL_ONE_REDUCTION, /* an iteration is one pass with one sum over all blocks */
-    MODEL_CLASSIC        /* two passes and two sums: the textbook's, for comparisons */
-};
 #define MODEL_GUESS_BELOW 0.01 /* s */
 enum model_preconditioner {
     MODEL_PLAIN,     /* none */
@@ -246,7 +242,6 @@ struct model {
     double tolerance;
     uint32_t max_iterations; /* count: exactly so many */
     enum model_guess guess;  /* of dv */
-    enum model_form form;    /* of conjugate gradients */
     enum model_preconditioner preconditioner;
     uint32_t patches; /* of a block, for the coarse space, at most 4; 0: as model_patches finds */
     enum solve_format format; /* of the matrix; springs alone can be SOLVE_SPRINGS */

@@ -190,30 +190,6 @@ static bool ends(const struct solve_stop *stop, struct solve_scalars *after, int
     return true;
 }
 
-/* What follows an update of the classic form. */
-static int update(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
-                  struct solve_scalars *after)
-{
-    int code;
-    if (ends(stop, after, &code))
-        return code;
-    after->beta = after->iterations > 0 && after->product > 0 ? dots[SOLVE_RZ] / after->product : 0;
-    after->product = dots[SOLVE_RZ];
-    after->phase = SOLVE_ON;
-    return SOLVE_OK;
-}
-
-/* What follows its product. */
-static int multiplied(const double dots[SOLVE_DOTS], struct solve_scalars *after)
-{
-    after->curvature = dots[SOLVE_PQ];
-    after->iterations += 1;
-    after->phase = SOLVE_UPDATE;
-    const int code = next_alpha(after->product, after);
-    remember(after->alpha * after->product, after);
-    return fail(code, after);
-}
-
 /* What follows a pass of SOLVE_ON. */
 static int iterate(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                    struct solve_scalars *after)
@@ -235,14 +211,11 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
     if (before->phase == SOLVE_DONE)
         return SOLVE_OK;
     if (before->phase == SOLVE_SHOW || before->phase == SOLVE_AGAIN) { /* sum nothing */
-        const double on = stop->classic ? SOLVE_UPDATE : SOLVE_ON;
-        after->phase = before->phase == SOLVE_SHOW ? SOLVE_CHECK : on;
+        after->phase = before->phase == SOLVE_SHOW ? SOLVE_CHECK : SOLVE_ON;
         after->alpha = 1;
         after->beta = 0;
         return SOLVE_OK;
     }
-    if (stop->classic && before->phase == SOLVE_ON)
-        return multiplied(dots, after);
     after->square = dots[SOLVE_RR];
     after->size = dots[SOLVE_SIZE];
     after->bound = dots[SOLVE_BOUND];
@@ -251,8 +224,6 @@ int solve_scalars_next(const struct solve_stop *stop, const double dots[SOLVE_DO
     if (before->phase == SOLVE_OPEN)
         return open(stop, dots, after);
     after->phase = SOLVE_DONE;
-    if (before->phase == SOLVE_UPDATE)
-        return update(stop, dots, after);
     after->curvature = dots[SOLVE_PQ];
     return before->phase == SOLVE_LAST ? SOLVE_OK : iterate(stop, dots, after);
 }

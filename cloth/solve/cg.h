@@ -26,14 +26,6 @@
  * and alpha = r.z / p.q, beta = (r.z - 2 alpha z.q + alpha^2 q.s) / r.z: one reduction again, which
  * may carry what a coarse part of M^-1 needs of q. Without one z is r and s is q. */
 
-/* The classic form (Hestenes & Stiefel 1952), for comparisons with papers, has two passes and two
- * reductions an iteration, and what others need is z:
- *
- *     p = z + beta p,  q = S A p,  and the dot p.q                               (SOLVE_ON)
- *     dv += alpha p,  r -= alpha q,  z = M^-1 r,  and the dots r.r, r.z      (SOLVE_UPDATE)
- *
- * with alpha = r.z / p.q and beta = r.z / (r.z before). It begins with an update. */
-
 /* r is what the recurrence makes of the residual: rounding takes it away from S (b - A dv), and a
  * solve that ends by r alone may be wrong and not know. So who wants that confirmed (`confirm`) has
  * two passes more: one shows dv to the neighbours (SOLVE_SHOW), one has q = S A dv, and with it the
@@ -61,7 +53,6 @@ struct solve_stop {
     bool relative;   /* tolerance is against |S b|, else absolute (kg m/s) */
     bool normalised; /* tolerance is against sqrt(r.D^-1 r / unit), below */
     bool mass_norm;  /* tolerance is of the error against dv, both in the mass norm */
-    bool classic;    /* the classic form */
     bool confirm; /* by the true residual, which may be twice as large as the tolerance says; with
                    * mass_norm its difference from r, in D^-1, may be as large as the error */
     double tolerance;
@@ -92,8 +83,7 @@ enum {
     SOLVE_SHOW,  /* neighbours get dv for q */
     SOLVE_CHECK, /* solve_residual */
     SOLVE_AGAIN, /* dv += alpha p, r -= alpha q, then solve_again */
-    SOLVE_OPEN,  /* solve_open: the first one of a solve with a guess */
-    SOLVE_UPDATE /* the second half of a classic iteration */
+    SOLVE_OPEN   /* solve_open: the first one of a solve with a guess */
 };
 enum { SOLVE_PAST = 64 };
 struct solve_scalars {
@@ -106,7 +96,6 @@ struct solve_scalars {
     double unit;        /* kg m^2/s^2: the caller's, of a normalised residual */
     double square;      /* r.r of the last pass */
     double curvature;   /* p.q of the last pass */
-    double product;     /* classic: r.z of the last update */
     double outcome;     /* of the solve: SOLVE_OK ..., below */
     double step, last;  /* the caller's */
     double first;       /* r.r before the first pass, or b.b, if that is more */
@@ -119,8 +108,7 @@ struct solve_scalars {
 };
 enum { SOLVE_SCALARS = sizeof(struct solve_scalars) / sizeof(double) };
 
-/* Before the first pass, which is SOLVE_ON; classic: SOLVE_UPDATE; with a guess: SOLVE_OPEN; `last`
- * is zero. */
+/* Before the first pass, which is SOLVE_ON, or with a guess SOLVE_OPEN; `last` is zero. */
 struct solve_scalars solve_scalars_start(double step, double phase);
 
 /* From the dots of a pass, what the next one does. Returns SOLVE_OK; or why there is none: p.Ap is

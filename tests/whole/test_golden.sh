@@ -57,7 +57,6 @@ triangles='materials.cloth={model: triangles, density: 0.2, stretch: [3000, 1000
 for kind in none jacobi ic0 coarse; do small "preconditioner $kind" --set solver.preconditioner=$kind; done
 for format in half half_float; do small "format $format" --set solver.format=$format; done
 for jacobian in full absolute; do small "jacobian $jacobian" --set solver.jacobian=$jacobian; done
-small "classic form" --set solver.form=classic
 small "three patches, stop by mass_norm, no guess" --set solver.patches=3 --set 'solver.stop={mass_norm: 0.001}' --set solver.guess=zero
 small "both diagonals and bends" --set materials.cloth.diagonals=both --set materials.cloth.bend=10
 small "triangles and hinges" --set "$triangles, bending: {rigidity: [1e-4, 5e-5]}}"

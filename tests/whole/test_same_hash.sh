@@ -55,8 +55,6 @@ else
     done
     # shellcheck disable=SC2086
     ok "40 x 40, bdf2 with Newton steps and energies, few" ranks 4 tests/whole/same_hash "$scene" few 0 $small integrator=bdf2 newton.steps=3 energies=steps time.h=0.004 time.end=0.012
-    # shellcheck disable=SC2086
-    ok "40 x 40, classic form, few" ranks 4 tests/whole/same_hash "$scene" few 0 $small solver.form=classic time.end=0.002
     ok "8 x 8, so stiff that solves begin again, few" ranks 4 tests/whole/same_hash "$scene" few 0 'cloths[0].mesh.grid={width: 1, height: 1, nx: 8, ny: 8}' \
         grain=10 time.h=0.01 time.end=0.05 materials.cloth.stretch=1e12 'solver.stop={mass_norm: 3e-6}'
     ok "sheet, a dozen" ranks 4 tests/whole/same_hash "$scene" some 0 time.end=0.01

@@ -111,9 +111,7 @@ static int fork_pieces(struct flow_state *state)
 
 int flow_cg_iterate(struct flow_state *state)
 {
-    const struct model *model = state->flow->model;
-    const uint64_t each = model->form == MODEL_CLASSIC ? 2 : 1;
-    const uint64_t passes = each * model->max_iterations + SOLVE_EXTRA;
+    const uint64_t passes = (uint64_t)state->flow->model->max_iterations + SOLVE_EXTRA;
     const uint64_t rounds = (passes + 1) / 2;
     const int code = duite_replay_while(state->rt, state->solve, state->scalars[0], rounds);
     return code || !state->head.n_pieces ? code : fork_pieces(state);

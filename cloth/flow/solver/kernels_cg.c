@@ -49,30 +49,6 @@ static void advance_copies(const duite_call *call, const struct flow_table *t,
     }
 }
 
-/* The product of a classic iteration: copies see r itself. */
-static void multiply(const duite_call *call, const struct solve_scalars *scalars,
-                     const struct flow_pass *pass, double dots[SOLVE_DOTS])
-{
-    const struct flow_table *t = pass->table;
-    const struct solve_cut cut = flow_table_cut_entries(t);
-    const struct solve_scalars as_it_is = {.alpha = -1, .beta = scalars->beta};
-    memset(pass->copies, 0, t->n_copies * sizeof *pass->copies);
-    advance_copies(call, t, &as_it_is);
-    solve_pass(&t->matrix, &cut, pass->value, pass->copies + t->n_copies, 0, scalars->beta,
-               &pass->rows, dots);
-}
-
-/* Its other half. */
-static void update(const duite_call *call, const struct solve_scalars *scalars,
-                   const struct flow_pass *pass, double dots[SOLVE_DOTS])
-{
-    const struct flow_table *t = pass->table;
-    const struct solve_rows *rows = &pass->rows;
-    dots[SOLVE_RR] = solve_finish(t->n, scalars->alpha, rows->q, rows->p, rows->dv, rows->r);
-    flow_add_norms(call, &t->matrix, rows, dots);
-    flow_pack_rim(t, rows->r, pass->rim);
-}
-
 static void advance(const duite_call *call, const struct solve_scalars *scalars,
                     const struct flow_pass *pass, double dots[SOLVE_DOTS])
 {
@@ -95,12 +71,8 @@ static int pass(const duite_call *call)
     if (scalars->phase == SOLVE_LAST)
         dots[SOLVE_RR] =
             solve_finish(t->n, scalars->alpha, pass.rows.q, pass.rows.p, pass.rows.dv, pass.rows.r);
-    else if (scalars->phase == SOLVE_ON && flow_of(call)->model->form == MODEL_CLASSIC)
-        multiply(call, scalars, &pass, dots);
     else if (scalars->phase == SOLVE_ON)
         advance(call, scalars, &pass, dots);
-    else if (scalars->phase == SOLVE_UPDATE)
-        update(call, scalars, &pass, dots);
     else
         flow_pass_beside(call, scalars, &pass, dots);
     if (scalars->phase == SOLVE_AGAIN)
@@ -119,7 +91,6 @@ const duite_kernel flow_pass = {.name = "cg_pass",
 static struct solve_stop stop_of(const struct model *model)
 {
     return (struct solve_stop){.count = model->stop == MODEL_STOP_COUNT,
-                               .classic = model->form == MODEL_CLASSIC,
                                .confirm = model->stop != MODEL_STOP_COUNT,
                                .relative = model->stop == MODEL_STOP_RELATIVE,
                                .mass_norm = model->stop == MODEL_STOP_MASS_NORM,

@@ -186,37 +186,6 @@ static void advance(const duite_call *call, const struct solve_scalars *scalars,
     flow_add_norms(call, &t->matrix, &pass->rows, part);
 }
 
-/* The product of a classic iteration: copies see z itself. */
-static void multiply(const duite_call *call, const struct solve_scalars *scalars,
-                     const struct flow_pass *pass)
-{
-    const struct flow_table *t = pass->table;
-    const struct solve_cut cut = flow_table_cut_entries(t);
-    const struct solve_scalars as_it_is = {.alpha = -1, .beta = scalars->beta};
-    const struct solve_turned turned = {duite_out(call, Z, phys_vec), duite_out(call, S, phys_vec)};
-    if (is_coarse(call))
-        prolong_all(call, t, turned.z);
-    memset(pass->copies, 0, t->n_copies * sizeof *pass->copies);
-    advance_copies(call, t, &as_it_is);
-    solve_pass_turned(&t->matrix, &cut, pass->value, pass->copies + t->n_copies, 0, scalars->beta,
-                      &pass->rows, &turned, duite_out(call, PART, double));
-}
-
-/* Its other half. r.z is where q.s is otherwise. */
-static void update(const duite_call *call, const struct solve_scalars *scalars,
-                   const struct flow_pass *pass)
-{
-    const struct flow_table *t = pass->table;
-    const struct solve_rows *rows = &pass->rows;
-    phys_vec *z = duite_out(call, Z, phys_vec);
-    double *part = duite_out(call, PART, double);
-    part[SOLVE_RR] = solve_finish(t->n, scalars->alpha, rows->q, rows->p, rows->dv, rows->r);
-    turn(call, t, duite_in(call, FACTOR, double),
-         is_coarse(call) ? coarse_in(call, t, BASIS) : NULL, rows->r, z, part);
-    flow_add_norms(call, &t->matrix, rows, part);
-    flow_pack_rim(t, z, pass->rim);
-}
-
 /* r is the right side of a solve that begins. */
 static void again(const duite_call *call, const struct flow_pass *pass)
 {
@@ -234,12 +203,8 @@ static int pass(const duite_call *call)
     if (scalars->phase == SOLVE_LAST)
         part[SOLVE_RR] =
             solve_finish(t->n, scalars->alpha, pass.rows.q, pass.rows.p, pass.rows.dv, pass.rows.r);
-    else if (scalars->phase == SOLVE_ON && flow_of(call)->model->form == MODEL_CLASSIC)
-        multiply(call, scalars, &pass);
     else if (scalars->phase == SOLVE_ON)
         advance(call, scalars, &pass);
-    else if (scalars->phase == SOLVE_UPDATE)
-        update(call, scalars, &pass);
     else
         flow_pass_beside(call, scalars, &pass, part);
     if (scalars->phase == SOLVE_AGAIN)
@@ -299,8 +264,6 @@ static int scalars_turned(const duite_call *call)
 {
     double dots[SOLVE_DOTS] = {0};
     sum_parts(call, 2, dots);
-    if (duite_in(call, 1, struct solve_scalars)->phase == SOLVE_UPDATE)
-        dots[SOLVE_RZ] = dots[SOLVE_QQ];
     return flow_next_scalars(call, dots, duite_in(call, 1, struct solve_scalars),
                              duite_out(call, 0, struct solve_scalars));
 }
@@ -312,10 +275,8 @@ const duite_kernel flow_scalars_turned = {.name = "cg_scalars_turned",
                                           .replicated = 1};
 
 /* Whether the pass made a right side for the coarse part. */
-static bool turns(const duite_call *call, double phase)
+static bool turns(double phase)
 {
-    if (flow_of(call)->model->form == MODEL_CLASSIC)
-        return phase == SOLVE_UPDATE;
     return phase == SOLVE_ON || phase == SOLVE_AGAIN;
 }
 
@@ -324,12 +285,10 @@ static int scalars_coarse(const duite_call *call)
     const struct solve_scalars *before = duite_in(call, 2, struct solve_scalars);
     double dots[SOLVE_DOTS] = {0}, *motion = duite_out(call, 1, double);
     sum_parts(call, 4, dots);
-    if (turns(call, before->phase))
+    if (turns(before->phase))
         dots[SOLVE_QQ] += solve_motion(call, duite_in(call, 3, double), 4, motion);
     else
         memset(motion, 0, flow_motion_doubles(flow_of(call)) * sizeof *motion);
-    if (before->phase == SOLVE_UPDATE)
-        dots[SOLVE_RZ] = dots[SOLVE_QQ];
     return flow_next_scalars(call, dots, before, duite_out(call, 0, struct solve_scalars));
 }
 FLOW_TIMED_PLAIN(scalars_coarse, FLOW_CG)

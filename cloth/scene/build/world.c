@@ -244,8 +244,6 @@ static void build_solver(struct model *model, const struct scene_tree *tree)
     model->newton_steps = scene_tree_integer(tree, newton, "steps");
     model->newton_tolerance = scene_tree_number(tree, newton, "tolerance");
     model->preconditioner = preconditioner_of(scene_tree_text(tree, solver, "preconditioner"));
-    model->form = strcmp(scene_tree_text(tree, solver, "form"), "classic") ? MODEL_ONE_REDUCTION
-                                                                           : MODEL_CLASSIC;
     model->guess = guess_of(scene_tree_text(tree, solver, "guess"));
     model->patches =
         scene_tree_get(tree, solver, "patches") ? scene_tree_integer(tree, solver, "patches") : 0;

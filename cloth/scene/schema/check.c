@@ -77,6 +77,20 @@ static const struct scene_rule *rule_of(const struct scene_rule *keys, const cha
 
 enum { MOST_KEYS = 32 }; /* of a map, in sentences */
 
+/* Keys that were: of which map, and what is in their place. */
+static const struct {
+    const char *map, *key, *now;
+} gone[] = {{"solver", "form", "conjugate gradients have one form, with one sum an iteration"}};
+
+/* NULL: the key never was. */
+static const char *gone_of(const char *map, const char *key)
+{
+    for (size_t i = 0; i < sizeof gone / sizeof *gone; i++)
+        if (!strcmp(gone[i].map, map) && !strcmp(gone[i].key, key))
+            return gone[i].now;
+    return NULL;
+}
+
 static int unknown(struct walk *walk, const struct place *at, const struct scene_rule *keys,
                    int node)
 {
@@ -87,6 +101,10 @@ static int unknown(struct walk *walk, const struct place *at, const struct scene
     char path[200], is[100], allowed[400];
     path_of(at, path, sizeof path);
     const char *word = scene_tree_scalar(walk->tree, node);
+    const char *now = word ? gone_of(path, word) : NULL;
+    if (now)
+        return scene_tree_fail(walk->tree, node, walk->error, "%s is no longer a key of %s: %s",
+                               word, path, now);
     return scene_tree_fail(
         walk->tree, node, walk->error, "%s is not a key of %s%s", found(walk, node, is, sizeof is),
         path, scene_allowed_words(word ? word : "", names, n, allowed, sizeof allowed));

@@ -309,13 +309,9 @@ static const char *const preconditioners[] = {"none",   "jacobi",     "ic0",
 static const char *const formats[] = {"springs", "half", "half_float", NULL};
 static const char *const jacobians[] = {"definite", "full", "absolute", NULL};
 static const char *const guesses[] = {"auto", "zero", "previous", NULL};
-static const char *const forms[] = {"one_reduction", "classic", NULL};
 static const struct scene_rule solver_keys[] = {
     {"stop", SCENE_ONE_OF, .fallback = "{mass_norm: 0.01}", .inside = stop_kinds,
      .about = "when conjugate gradients end"},
-    {"form", SCENE_CHOICE, .fallback = "one_reduction", .words = forms,
-     .about =
-         "of conjugate gradients: one sum over all blocks an iteration, or the textbook's two"},
     {"guess", SCENE_CHOICE, .fallback = "auto", .words = guesses,
      .about = "of the change of velocity: nothing, or that of the step before"},
     {"preconditioner", SCENE_CHOICE, .fallback = "ic0_coarse", .words = preconditioners,

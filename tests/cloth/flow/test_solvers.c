@@ -173,37 +173,6 @@ START_TEST(starts_move_alike)
 }
 END_TEST
 
-/* The classic form takes the same iterations, but for rounding, and confirms, begins with guesses
- * and counts like the other. */
-START_TEST(forms_move_alike)
-{
-    static const enum model_stop stops[] = {MODEL_STOP_RELATIVE, MODEL_STOP_MASS_NORM,
-                                            MODEL_STOP_COUNT};
-    for (int i = 0; i < 3; i++) {
-        struct setup setup;
-        struct record record[2] = {{.threads = 2}, {.threads = 1}};
-        setup_stiff(&setup, 14);
-        setup.model.preconditioner = (enum model_preconditioner)_i;
-        setup.model.stop = stops[i];
-        setup.model.tolerance = 1e-9;
-        setup.model.max_iterations = i == 2 ? 7 : 10000;
-        for (int form = 0; form < 2; form++) {
-            setup.model.form = form ? MODEL_CLASSIC : MODEL_ONE_REDUCTION;
-            record_run(record + form, &setup.model);
-            ck_assert_msg(record[form].code == 0, "%s", record[form].error.text);
-        }
-        const double iterations = (double)record[0].report.cg_iterations_total;
-        ck_assert_double_eq_tol((double)record[1].report.cg_iterations_total, iterations,
-                                i == 2 ? 0.5 : 0.05 * iterations);
-        ck_assert_double_le(farthest(record, record + 1), 1e-8);
-        ck_assert_uint_ne(record[0].report.state_hash, record[1].report.state_hash);
-        record_free(record);
-        record_free(record + 1);
-        setup_free(&setup);
-    }
-}
-END_TEST
-
 /* By hand: flat and at rest all have b = h m g, so the residual is h g all over before the first
  * iteration and moves all by h h g, while neighbours along rows and columns are 0.25 m apart; a
  * vertex that is held has no part in it. */
@@ -429,7 +398,6 @@ int main(void)
     tcase_add_loop_test(cases, patches_move_alike, 0, 2);
     tcase_add_test(cases, formats_move_alike);
     tcase_add_loop_test(cases, starts_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
-    tcase_add_loop_test(cases, forms_move_alike, MODEL_PLAIN, MODEL_IC0_COARSE + 1);
     tcase_add_test(cases, normalised_by_hand);
     tcase_add_test(cases, normalised_in_any_units);
     tcase_add_test(cases, one_block);

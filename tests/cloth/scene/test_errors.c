@@ -106,6 +106,9 @@ START_TEST(unknown_and_missing_keys)
            {"stretch: 50", "strech: 50",
             .error = ":10:26: strech is not a key of materials.cotton; did you mean 'stretch'? "
                      "Allowed: like, ..."},
+           {"gravity: [0, -9.81, 0]", "solver: {form: classic}",
+            .error = ":2:10: form is no longer a key of solver: conjugate gradients have one form, "
+                     "with one sum an iteration"},
            {"vertices: [11]", "vertex: [11]",
             .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, ..."},
            {"plane:", "plan:",

@@ -11,7 +11,6 @@ struct bench_options {
     const char *scheduler; /* ours */
     bool quick;            /* tiny sizes, to see that everything works */
     const char *states;    /* of cg: the folder of its states; NULL: beside the program */
-    const char *system;    /* of cg: the folder of a saved system to be solved; NULL: none */
 };
 
 struct bench_case {
@@ -37,9 +36,6 @@ struct bench {
                    void (*say)(const char *key, const char *text));
     void (*finish)(void); /* at the end, also of a run that failed; NULL: there is nothing to do */
 };
-
-/* The case of cg that solves a saved system. */
-extern const char *const bench_cg_saved;
 
 extern const struct bench bench_tasks, bench_ranks, bench_cg, bench_physics, bench_compare;
 

@@ -28,7 +28,7 @@ enum { N_BENCHES = sizeof BENCHES / sizeof *BENCHES, MOST_ONLY = 32 };
 #define BENCH_DEBUG 0
 #endif
 
-enum { JSON = 256, LIST, ONLY, QUICK, REPEATS, SCHEDULER, SEED, STATES, SYSTEM, THREADS };
+enum { JSON = 256, LIST, ONLY, QUICK, REPEATS, SCHEDULER, SEED, STATES, THREADS };
 
 static const struct argp_option OPTIONS[] = {
     {"json", JSON, "FILE", 0, "write the figures and the host as flat JSON, too", 1},
@@ -41,10 +41,6 @@ static const struct argp_option OPTIONS[] = {
      "of cg: the folder that keeps its states from run to run (default: states beside this "
      "program)",
      3},
-    {"system", SYSTEM, "DIR", 0,
-     "of cg: solve the system that duite-cloth --save-system wrote into this folder, and nothing "
-     "else",
-     2},
     {"threads", THREADS, "N", 0, "cores for each subject (default: 2)", 3},
     {"scheduler", SCHEDULER, "NAME", 0, "which scheduler runs our tasks (default: steal)", 3},
     {0}};
@@ -100,10 +96,6 @@ static int check(struct command *command, struct argp_state *state)
 {
     if (!command->bench)
         argp_error(state, "which bench? The names are in --help");
-    if (command->options.system && (command->bench != &bench_cg || command->n_only))
-        argp_error(state, "--system is of cg, and without --only");
-    if (command->options.system)
-        command->only[command->n_only++] = bench_cg_saved;
     for (size_t i = 0; i < command->n_only; i++)
         if (!find_case(command->bench, command->only[i]))
             argp_error(state, "--only %s: %s has no such case; --list names them", command->only[i],
@@ -143,9 +135,6 @@ static error_t parse(int key, char *text, struct argp_state *state)
         return whole_number(state, "seed", text, 0, UINT64_MAX, &command->seed);
     case STATES:
         command->options.states = text;
-        return 0;
-    case SYSTEM:
-        command->options.system = text;
         return 0;
     case THREADS:
         number = 0;

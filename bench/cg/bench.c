@@ -11,9 +11,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const struct bench_case *const CASES[] = {
-    &cg_spring_150, &cg_spring_400, &cg_half_150, &cg_solve, &cg_jacobi,
-    &cg_error,      &cg_step,       &cg_realtime, &cg_saved, NULL};
+static const struct bench_case *const CASES[] = {&cg_spring_150, &cg_spring_400, &cg_half_150,
+                                                 &cg_solve,      &cg_jacobi,     &cg_error,
+                                                 &cg_step,       &cg_realtime,   NULL};
 
 /* For two threads and the full sizes. */
 static const struct measure_target TARGETS[] = {
@@ -71,15 +71,6 @@ static int prepare(const struct bench_options *options,
 {
     struct subject *maker = NULL;
     int code = make_folder(options);
-    if (!code && options->system) {
-        char text[200];
-        code = cg_system_make(options->system, options->quick, text, sizeof text);
-        if (!code)
-            say("state_" CG_SYSTEM, text);
-        else
-            fprintf(stderr, "duite-bench: %s\n", serve_failure());
-        return code;
-    }
     for (const char *const *name = states_all(); *name && !code; name++) {
         struct state state = {0};
         char key[60], text[100];

@@ -90,15 +90,6 @@ extern const struct serve_run cg_runs[];
 /* Frames of a sheet that falls (bench/cg/frames.c). */
 int cg_frames(void *session, struct serve_request *request, double *value);
 
-/* A system that was saved into a folder, as the state of this name. */
-#define CG_SYSTEM "system"
-/* Makes the state, with its solution to 1e-12; text: what it is. 0, or what serve_fail returns. */
-int cg_system_make(const char *folder, bool quick, char *text, size_t size);
-/* For ours: the plan of a run with as many pairs; the numbers of the state in place of what its
- * step made, when no task runs. 0, or what serve_fail returns. */
-int cg_system_plan(struct states_plan *plan, const struct solve_system *system, bool quick);
-int cg_system_put(const struct cg_session *session);
-
 /* Ends the runtime that runs have left for the next one; its state is kept. The same as below. */
 int cg_pause(struct cg_session *session);
 /* Ends what runs have left for the next one. 1 if the runtime did not stop well. Collective. */
@@ -116,6 +107,6 @@ struct measure_series *cg_petsc(struct measure *measure, const struct bench_opti
                                 const char *run, const char *state, const char *more);
 
 extern const struct bench_case cg_spring_150, cg_spring_400, cg_half_150, cg_solve, cg_jacobi,
-    cg_error, cg_step, cg_realtime, cg_saved;
+    cg_error, cg_step, cg_realtime;
 
 #endif

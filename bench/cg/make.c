@@ -88,7 +88,7 @@ int cg_order(struct state *state, uint32_t grain)
     for (uint32_t v = 0; used && v < s->n; v++)
         used[v] = s->mass[v] > 0;
     for (size_t i = 0; used && i < 2 * s->n_pairs; i++)
-        used[s->end[i / 2][i % 2]] = 1; /* of a saved system held vertices have no mass */
+        used[s->end[i / 2][i % 2]] = 1;
     int code = used && state->order ? 0 : serve_no_memory();
     if (!code && mesh_blocks_cut(&blocks, s->n, used, &pairs, grain, &error))
         code = serve_fail("%s", error.text);

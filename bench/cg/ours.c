@@ -159,11 +159,9 @@ static int ready(struct cg_session *s, struct serve_request *request)
     if (code || !strcmp(settings, s->settings))
         return code;
     code = end(s, code);
-    const bool saved = s->state.system.block != NULL;
     if (!code)
-        code = saved ? cg_system_plan(&s->plan, &s->state.system, quick != 0)
-                     : states_plan_make(&s->plan, s->state.name, quick != 0);
-    if (!code && !saved)
+        code = states_plan_make(&s->plan, s->state.name, quick != 0);
+    if (!code)
         code = states_start(&s->plan.model, s->state.system.x, s->state.system.v);
     if (!strcmp(solver, "plain"))
         s->plan.model.preconditioner = MODEL_PLAIN;
@@ -181,9 +179,7 @@ static int ready(struct cg_session *s, struct serve_request *request)
         code = cg_start_runtime(request, s->flow, &s->rt);
     if (!code)
         code = begin(s);
-    if (!code && saved)
-        code = cg_system_put(s);
-    if (!code && !saved && !s->flow->vertex)
+    if (!code && !s->flow->vertex)
         code = cut_again(s);
     if (!code)
         snprintf(s->settings, sizeof s->settings, "%s", settings);
@@ -191,7 +187,7 @@ static int ready(struct cg_session *s, struct serve_request *request)
 }
 
 /* dv, in the numbering of the input. Rank 0 knows the order of the blocks, others cut them as it
- * does, but for a saved system. */
+ * does. */
 static int answer(struct cg_session *s, double *dv)
 {
     const struct flow *flow = s->flow;
@@ -240,14 +236,9 @@ static int step_again(struct cg_session *s)
 static int time_solve(struct cg_session *s, double *seconds)
 {
     const uint32_t most = s->plan.model.max_iterations;
-    int code = 0;
-    if (s->state.system.block) {
-        code = cg_system_put(s);
-    } else {
-        stop_after(s, 2);
-        code = tasks_code(step_again(s));
-        stop_after(s, most);
-    }
+    stop_after(s, 2);
+    int code = tasks_code(step_again(s));
+    stop_after(s, most);
     if (code)
         return code;
     const double begin = serve_seconds();

@@ -284,35 +284,3 @@ const struct bench_case cg_realtime = {"realtime",
                                        "comes to rest: h = 20 ms, 25 frames "
                                        "a second, with substeps",
                                        plan_realtime, NULL, 3};
-
-/* ---- A saved system ---- */
-
-/* Only if there is one. */
-static void plan_saved(struct measure *measure, const struct bench_options *options)
-{
-    static const char *const pc[] = {"none", "icc", "gamg"}, *const name[] = {"cg", "icc", "gamg"};
-    enum { SAVED_ERROR = 1 }; /* millionths */
-    char more[60];
-    if (!options->system)
-        return;
-    snprintf(more, sizeof more, " error=%d", SAVED_ERROR);
-    const struct measure_series *ours =
-        cg_series(measure, options, cg_ours(0, options->threads), "solve", CG_SYSTEM, more);
-    measure_value(measure, ours, 1e3, "ms", "system_ms");
-    for (int i = 0; i < 3; i++) {
-        snprintf(more, sizeof more, " error=%d pc=%s", SAVED_ERROR, pc[i]);
-        const struct measure_series *petsc = cg_petsc(measure, options, "solve", CG_SYSTEM, more);
-        measure_value(measure, petsc, 1e3, "ms", "system_petsc_%s_ms", name[i]);
-        measure_ratio(measure, ours, petsc, "system_vs_petsc_%s", name[i]);
-    }
-    snprintf(more, sizeof more, " error=%d what=iterations", SAVED_ERROR);
-    measure_value(
-        measure,
-        cg_series(measure, options, cg_ours(0, options->threads), "solve", CG_SYSTEM, more), 1,
-        "iterations", "system_iterations");
-}
-
-const struct bench_case cg_saved = {
-    CG_SYSTEM, "the saved system of --system DIR, to an error of 1e-6 in the mass norm", plan_saved,
-    NULL, 8};
-const char *const bench_cg_saved = CG_SYSTEM;

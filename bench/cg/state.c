@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char MAGIC[8] = "state 1", BLOCKS[8] = "blocks1"; /* of springs, of pairs */
+static const char MAGIC[8] = "state 1";
 
 struct head {
     char magic[8], name[40];
@@ -29,18 +29,13 @@ static void list_arrays(const struct state *s, struct array array[ARRAYS])
 {
     const size_t n = s->system.n, springs = s->system.n_pairs;
     const struct solve_system *y = &s->system;
-    const struct array all[ARRAYS] = {{y->mass, n * sizeof(double)},
-                                      {y->diagonal, n * sizeof(double)},
-                                      {y->free, n * sizeof(double)},
-                                      {y->b, 3 * n * sizeof(double)},
-                                      {y->dv, 3 * n * sizeof(double)},
-                                      {y->x, 3 * n * sizeof(double)},
-                                      {y->v, 3 * n * sizeof(double)},
-                                      {y->end, springs * sizeof *y->end},
-                                      {y->block ? (void *)y->block : y->value,
-                                       springs * (y->block ? sizeof *y->block : sizeof *y->value)},
-                                      {s->after, 3 * n * sizeof(double)},
-                                      {s->order, n * sizeof *s->order}};
+    const struct array all[ARRAYS] = {
+        {y->mass, n * sizeof(double)},          {y->diagonal, n * sizeof(double)},
+        {y->free, n * sizeof(double)},          {y->b, 3 * n * sizeof(double)},
+        {y->dv, 3 * n * sizeof(double)},        {y->x, 3 * n * sizeof(double)},
+        {y->v, 3 * n * sizeof(double)},         {y->end, springs * sizeof *y->end},
+        {y->value, springs * sizeof *y->value}, {s->after, 3 * n * sizeof(double)},
+        {s->order, n * sizeof *s->order}};
     memcpy(array, all, sizeof all);
 }
 
@@ -61,9 +56,7 @@ static void path_of(const char *name, const char *ending, char *path, size_t siz
 static int read_arrays(struct state *state, const struct head *head, FILE *file)
 {
     struct array array[ARRAYS];
-    const enum solve_pairs pairs =
-        memcmp(head->magic, BLOCKS, sizeof BLOCKS) ? SOLVE_PAIRS_OF_SPRINGS : SOLVE_PAIRS_OF_BLOCKS;
-    if (solve_system_make(&state->system, head->n, head->n_pairs, pairs, NULL))
+    if (solve_system_make(&state->system, head->n, head->n_pairs, SOLVE_PAIRS_OF_SPRINGS, NULL))
         return serve_no_memory();
     state->system.h = head->h;
     state->after = malloc(((size_t)head->n + 1) * 3 * sizeof *state->after);
@@ -96,11 +89,9 @@ int state_read(struct state *state, const char *name)
     if (!file)
         return serve_fail("there is no state %s", path);
     *state = (struct state){0};
-    int code =
-        fread(&head, sizeof head, 1, file) != 1 || (memcmp(head.magic, MAGIC, sizeof MAGIC) &&
-                                                    memcmp(head.magic, BLOCKS, sizeof BLOCKS))
-            ? serve_fail("%s is not a state of this version", path)
-            : check_step(name, path, head.h);
+    int code = fread(&head, sizeof head, 1, file) != 1 || memcmp(head.magic, MAGIC, sizeof MAGIC)
+                   ? serve_fail("%s is not a state of this version", path)
+                   : check_step(name, path, head.h);
     if (!code)
         code = read_arrays(state, &head, file);
     fclose(file);
@@ -123,7 +114,7 @@ int state_write(const struct state *state)
                         .h = state->system.h,
                         .n = state->system.n,
                         .count = state->count};
-    memcpy(head.magic, state->system.block ? BLOCKS : MAGIC, sizeof MAGIC);
+    memcpy(head.magic, MAGIC, sizeof MAGIC);
     memcpy(head.name, state->name, sizeof head.name);
     path_of(state->name, "", path, sizeof path);
     path_of(state->name, ".part", part, sizeof part);

@@ -202,32 +202,23 @@ static inline void flow_part_ends(const duite_call *call, enum flow_part part)
     clock->from = now;
 }
 
-/* Runs a body without subnormal numbers, `cost` times as long as it needs, and adds its seconds to
- * a part of the step, on this worker's line. */
-static inline int flow_timed(const duite_call *call, duite_body *body, enum flow_part part,
-                             double cost)
+/* Runs a body without subnormal numbers, and adds its seconds to a part of the step, on this
+ * worker's line. */
+static inline int flow_timed(const duite_call *call, duite_body *body, enum flow_part part)
 {
-    const double worked = cost > 1 ? flow_worked() : 0;
     flow_of(call)->clock[call->worker].from = flow_now();
     const phys_tiny before = phys_tiny_off();
     const int code = body(call);
     phys_tiny_back(before);
-    if (cost > 1)
-        flow_work_on(worked, cost);
     flow_part_ends(call, part);
     return code;
 }
 
-/* Defines NAME_timed, the body that a kernel lists; of a block, which may have a cost, or not. */
+/* Defines NAME_timed, the body that a kernel lists. */
 #define FLOW_TIMED(name, part)                                                                     \
     static int name##_timed(const duite_call *call)                                                \
     {                                                                                              \
-        return flow_timed(call, name, part, flow_shape_of(call)->cost);                            \
-    }
-#define FLOW_TIMED_PLAIN(name, part)                                                               \
-    static int name##_timed(const duite_call *call)                                                \
-    {                                                                                              \
-        return flow_timed(call, name, part, 1);                                                    \
+        return flow_timed(call, name, part);                                                       \
     }
 
 #endif

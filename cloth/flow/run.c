@@ -18,20 +18,6 @@ double flow_now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-double flow_worked(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-void flow_work_on(double worked, double times)
-{
-    const double end = worked + times * (flow_worked() - worked);
-    while (flow_worked() < end)
-        continue;
-}
-
 const duite_kernel *const *flow_kernels(void)
 {
     static const duite_kernel *const all[] = {

@@ -451,8 +451,5 @@ int flow_last_frame(struct flow_state *state);
 
 /* Seconds since some start. Local. */
 double flow_now(void);
-/* Seconds that this thread has worked; works until those since `worked` are `times` as many. */
-double flow_worked(void);
-void flow_work_on(double worked, double times);
 
 #endif

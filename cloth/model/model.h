@@ -88,13 +88,6 @@ struct model_load {
     uint32_t course; /* that it is multiplied by, from 1; 0: it is constant */
 };
 
-/* Time lost on purpose: the tasks of a block whose vertices lie in the box take `factor` times as
- * long; of one that does in part, accordingly. Results are the same. */
-struct model_cost {
-    uint32_t factor;  /* 0: as 1 */
-    double box[2][3]; /* lower and upper corner, after the transform; may be infinite */
-};
-
 /* More mass, on each of the picked vertices. */
 struct model_mass {
     struct model_pick pick; /* a vertex that stands twice gets it twice */
@@ -138,8 +131,7 @@ struct model_cloth {
     struct model_pin *pins;
     struct model_load *loads;
     struct model_mass *masses;
-    struct model_start *starts; /* one after the other, from that start */
-    struct model_cost cost;
+    struct model_start *starts;                /* one after the other, from that start */
     char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
 };
 

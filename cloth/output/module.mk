@@ -10,6 +10,6 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/files/files.c \
 	cloth/output/files/json.h \
 	cloth/output/files/json.c \
-	cloth/output/files/market.c cloth/output/files/market_read.c \
+	cloth/output/files/market.c \
 	cloth/output/files/obj.c \
 	cloth/output/files/pc2.c

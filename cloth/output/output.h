@@ -106,13 +106,6 @@ void output_cache_close(struct output_cache *cache);
  * output_open. Local. */
 int output_system(const char *folder, const struct solve_system *system, struct cloth_error *error);
 
-/* Reads such a system back, as pairs of blocks, to be freed by solve_system_free: S A S of it is
- * that of the files, to rounding. It has one vertex more, the last, which is held: to it are tied
- * vertices whose diagonal block is more than their pairs and a multiple of I make. Entries may be
- * in any order. h, v and what was at held vertices are zero. Errors: CLOTH_E_INPUT, which name file
- * and line, CLOTH_E_IO, CLOTH_E_MEMORY. Local. */
-int output_system_read(const char *folder, struct solve_system *system, struct cloth_error *error);
-
 /* A flat JSON object, written whole or not at all (a temporary name, then renamed). Keys in the
  * order they are added; NaN and infinities become null. */
 struct output_report;

@@ -61,37 +61,8 @@ no_folder() {
     test $status = 1 && grep -q "cannot be written to" "$scratch/said"
 }
 
-# A saved system, solved again by all; another solution beside it is told.
-saved() {
-    limited "$DUITE_CLOTH" "$srcdir/cloth/scenes/sheet.yaml" --quiet --end 0.002 --save-system "$scratch/saved" \
-        --set 'cloths[0].mesh.grid.nx=12' --set 'cloths[0].mesh.grid.ny=11' --set 'solver.stop.relative=1e-9' || return 1
-    bench_cg --quick --repeats 1 --system "$scratch/saved" > "$scratch/lines_saved" 2> "$scratch/said"
-    status=$?
-    cat "$scratch/said" "$scratch/lines_saved"
-    test $status = 0 && grep -Eq '^system_ms: [0-9]' "$scratch/lines_saved" &&
-        grep -Eq '^system_petsc_icc_ms: ([0-9]|not built: )' "$scratch/lines_saved" &&
-        grep -Eq '^# state_system: [0-9a-f]{16}, 133 vertices, .* is [0-9.]+e-(0[789]|1[0-9]) off$' "$scratch/lines_saved" &&
-        ! grep -q spring_150 "$scratch/lines_saved"
-}
-not_saved() {
-    status=0
-    sed -i '4s/ [^ ]*$/ much/' "$scratch/saved/matrix.mtx"
-    bench_cg --quick --system "$scratch/saved" > "$scratch/said" 2>&1 || status=$?
-    cat "$scratch/said"
-    test $status = 1 && grep -q 'duite-bench: .*/saved/matrix.mtx:4: a row, a column' "$scratch/said"
-}
-not_of_cg() {
-    status=0
-    limited "$bench" tasks --quick --system "$scratch/saved" > "$scratch/said" 2>&1 || status=$?
-    cat "$scratch/said"
-    test $status = 2 && grep -q -e "--system is of cg" "$scratch/said"
-}
-
 ok "runs every case, and every metric listed has its line" all_listed
 ok "the metrics that have a target, and which" targets_listed
 ok "states are kept, and the same from three threads" kept
 ok "a wrong answer is an error" lie_told petsc spring_150 cg --quick --repeats 1 --only spring_150 --states "$scratch/states"
 ok "a folder that cannot be" no_folder
-ok "a system that was saved is solved again" saved
-ok "one that is damaged is told" not_saved
-ok "other benches have none" not_of_cg

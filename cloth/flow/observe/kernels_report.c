@@ -27,7 +27,7 @@ static int frame(const duite_call *call)
     flow->frames = args->frame + 1;
     return 0;
 }
-FLOW_TIMED_PLAIN(frame, FLOW_OUTPUT)
+FLOW_TIMED(frame, FLOW_OUTPUT)
 const duite_kernel flow_frame = {.name = "frame",
                                  .body = frame_timed,
                                  .access = {DUITE_RW},

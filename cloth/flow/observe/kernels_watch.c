@@ -140,7 +140,7 @@ static int row(const duite_call *call)
         return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
     return 0;
 }
-FLOW_TIMED_PLAIN(row, FLOW_OUTPUT)
+FLOW_TIMED(row, FLOW_OUTPUT)
 const duite_kernel flow_row = {.name = "row",
                                .body = row_timed,
                                .access = {DUITE_RW, DUITE_R, DUITE_R, DUITE_R},

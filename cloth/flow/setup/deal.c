@@ -19,7 +19,6 @@ struct shape {
     uint32_t joined, rim_start[SOLVE_MOST_PATCHES + 1];
     uint32_t n_watched, n_moved, n_guided, n_loose, n_varying, n_slots, n_copies, n_stiff,
         n_elements[FLOW_KINDS], n_membranes;
-    float cost;
 };
 
 /* ---- Telling ---- */
@@ -111,8 +110,7 @@ static int tell_shared(const duite_call *call)
                                              t->n_elements[FLOW_HINGES], t->n_elements[FLOW_FOLDS],
                                              t->n_elements[FLOW_SAILS]},
                               .n_membranes = t->n_membranes,
-                              .joined = t->joined,
-                              .cost = t->cost};
+                              .joined = t->joined};
         memcpy(shape.rim_start, t->rim_start, sizeof shape.rim_start);
         to = put(to, &shape, sizeof shape);
     }
@@ -210,7 +208,6 @@ static void unpack(struct flow_state *state)
                                                .n_stiff = shape->n_stiff,
                                                .n_membranes = shape->n_membranes,
                                                .joined = shape->joined,
-                                               .cost = shape->cost,
                                                .joins = joins,
                                                .slot = slot,
                                                .copies = copies,

@@ -75,25 +75,6 @@ static void find_range(const struct mesh_blocks *blocks, struct flow_table *shap
     }
 }
 
-/* What a vertex adds to the cost of its block: 0 where nobody asked for any. */
-static double extra(const struct model *model, struct flow_cloths *at, uint32_t vertex)
-{
-    flow_source_cloth(at, model, vertex);
-    const struct model_cloth *cloth = model->cloths + at->cloth;
-    const double *x = cloth->mesh.position + 3 * (size_t)(vertex - at->first);
-    const bool in = cloth->cost.factor > 1 && model_in_box(x, cloth->cost.box);
-    return in ? cloth->cost.factor - 1.0 : 0;
-}
-
-static void find_cost(const struct flow_source *source, struct flow_table *shape)
-{
-    struct flow_cloths at = {0};
-    double sum = 0;
-    for (uint32_t i = 0; i < shape->n; i++)
-        sum += extra(source->model, &at, source->blocks.vertex[shape->first + i]);
-    shape->cost = (float)(1 + sum / shape->n);
-}
-
 /* How many vertices of each block are watched. */
 static void count_watched(struct flow_source *source)
 {
@@ -128,7 +109,6 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         shape->first = blocks->start[b];
         shape->n = blocks->start[b + 1] - blocks->start[b];
         find_range(blocks, shape);
-        find_cost(source, shape);
         shape->n_moved = count_numbered(source, shape, source->particles.motion);
         shape->n_guided = count_numbered(source, shape, source->particles.guide);
         shape->n_loose = count_numbered(source, shape, source->particles.piece);

@@ -172,7 +172,7 @@ static int pack(const duite_call *call)
         memcpy(to, from + 3 * (size_t)rim->row[k], 3 * sizeof *to);
     return 0;
 }
-FLOW_TIMED_PLAIN(pack, FLOW_CG)
+FLOW_TIMED(pack, FLOW_CG)
 const duite_kernel flow_pack = {.name = "cg_pack",
                                 .body = pack_timed,
                                 .access = {DUITE_R, DUITE_W},

@@ -122,7 +122,7 @@ static int factor_coarse(const duite_call *call)
     solve_coarse_factor(&flow->pattern, factor);
     return 0;
 }
-FLOW_TIMED_PLAIN(factor_coarse, FLOW_CG)
+FLOW_TIMED(factor_coarse, FLOW_CG)
 const duite_kernel flow_factor_coarse = {.name = "factor_coarse",
                                          .body = factor_coarse_timed,
                                          .access = {DUITE_W},

@@ -291,7 +291,7 @@ static int scalars_coarse(const duite_call *call)
         memset(motion, 0, flow_motion_doubles(flow_of(call)) * sizeof *motion);
     return flow_next_scalars(call, dots, before, duite_out(call, 0, struct solve_scalars));
 }
-FLOW_TIMED_PLAIN(scalars_coarse, FLOW_CG)
+FLOW_TIMED(scalars_coarse, FLOW_CG)
 const duite_kernel flow_scalars_coarse = {.name = "cg_scalars_coarse",
                                           .body = scalars_coarse_timed,
                                           .access = {DUITE_W, DUITE_W, DUITE_R, DUITE_R},
@@ -305,7 +305,7 @@ static int begin_coarse(const duite_call *call)
     solve_motion(call, duite_in(call, 2, double), 3, duite_out(call, 1, double));
     return 0;
 }
-FLOW_TIMED_PLAIN(begin_coarse, FLOW_CG)
+FLOW_TIMED(begin_coarse, FLOW_CG)
 const duite_kernel flow_begin_coarse = {.name = "cg_begin_coarse",
                                         .body = begin_coarse_timed,
                                         .access = {DUITE_W, DUITE_W, DUITE_R},

@@ -54,7 +54,6 @@ struct flow_table {
     uint32_t n_copies;        /* rows that the cut springs end at, neighbour after neighbour */
     uint32_t joined;          /* which of its patches are (cloth/solve/patches.h) */
     uint32_t rim_start[SOLVE_MOST_PATCHES + 1]; /* places in the rim where patches begin */
-    float cost; /* its tasks take so many times as long as they need, at least 1 */
     /* Not owned: */
     const uint32_t *slot;   /* n_slots: blocks, ascending */
     const uint32_t *copies; /* n_slots + 1: those of slot s are copies[s] .. */

@@ -5,7 +5,6 @@
 #include "cloth/scene/schema/rules.h"
 #include "cloth/scene/yaml/scalar.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -121,20 +120,6 @@ static int build_pins(struct model *model, struct model_cloth *cloth, const stru
             code = scene_build_hold(model, &cloth->pins[i], tree, pin, error);
     }
     return code;
-}
-
-static int build_cost(struct model_cloth *cloth, const struct scene_tree *tree, int node,
-                      struct cloth_error *error)
-{
-    int cost = scene_tree_get(tree, node, "cost");
-    if (!cost)
-        return CLOTH_OK;
-    int box = scene_tree_get(tree, cost, "box");
-    const struct model_cost everywhere = {
-        scene_tree_integer(tree, cost, "factor"),
-        {{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}}};
-    cloth->cost = everywhere;
-    return box ? build_box(cloth->cost.box, tree, box, cloth, error) : CLOTH_OK;
 }
 
 int scene_build_no_such(const char *what, const char *name, const char *const *names, size_t n,
@@ -283,8 +268,6 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
         choose_format(model, cloth);
     if (!code)
         code = build_pins(model, cloth, tree, node, error);
-    if (!code)
-        code = build_cost(cloth, tree, node, error);
     if (!code)
         code = scene_build_starts(cloth, tree, node, error);
     return code ? code : scene_build_loads(model, cloth, tree, node, error);

@@ -77,15 +77,20 @@ static const struct scene_rule *rule_of(const struct scene_rule *keys, const cha
 
 enum { MOST_KEYS = 32 }; /* of a map, in sentences */
 
-/* Keys that were: of which map, and what is in their place. */
+/* Keys that were, and what is in their place. map: the key of the map, or of the list of maps, that
+ * had them. */
 static const struct {
     const char *map, *key, *now;
-} gone[] = {{"solver", "form", "conjugate gradients have one form, with one sum an iteration"}};
+} gone[] = {{"solver", "form", "conjugate gradients have one form, with one sum an iteration"},
+            {"cloths", "cost",
+             "uneven work to try balancers on is of duite-bench ranks (migrate) and bench/compare "
+             "(irregular)"}};
 
 /* NULL: the key never was. */
-static const char *gone_of(const char *map, const char *key)
+static const char *gone_of(const struct place *at, const char *key)
 {
-    for (size_t i = 0; i < sizeof gone / sizeof *gone; i++)
+    const char *map = at->key || !at->up ? at->key : at->up->key;
+    for (size_t i = 0; map && i < sizeof gone / sizeof *gone; i++)
         if (!strcmp(gone[i].map, map) && !strcmp(gone[i].key, key))
             return gone[i].now;
     return NULL;
@@ -101,7 +106,7 @@ static int unknown(struct walk *walk, const struct place *at, const struct scene
     char path[200], is[100], allowed[400];
     path_of(at, path, sizeof path);
     const char *word = scene_tree_scalar(walk->tree, node);
-    const char *now = word ? gone_of(path, word) : NULL;
+    const char *now = word ? gone_of(at, word) : NULL;
     if (now)
         return scene_tree_fail(walk->tree, node, walk->error, "%s is no longer a key of %s: %s",
                                word, path, now);

@@ -160,13 +160,6 @@ static const struct scene_rule start_keys[] = {
     {0}};
 static const struct scene_rule start = {.type = SCENE_MAP, .inside = start_keys};
 
-static const struct scene_rule cost_keys[] = {
-    {"factor", SCENE_INTEGER, .required = true, .least = 1, .most = 1000,
-     .about = "tasks of these blocks take so many times as long"},
-    {"box", SCENE_LIST, "m", .length = 2, .inside = &point,
-     .about = "the vertices between two corners; else all"},
-    {0}};
-
 static const struct scene_rule region_keys[] = {
     {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
      .about = "in the mesh's numbering"},
@@ -196,7 +189,6 @@ static const struct scene_rule cloth_keys[] = {
     {"masses", SCENE_LIST, .fallback = "[]", .inside = &mass, .about = "more mass of vertices"},
     {"start", SCENE_LIST, .fallback = "[]", .inside = &start,
      .about = "how vertices start, where that is not the mesh's shape"},
-    {"cost", SCENE_MAP, .inside = cost_keys, .about = "time lost on purpose, to try balancers"},
     {0}};
 static const struct scene_rule cloth = {.type = SCENE_MAP, .inside = cloth_keys};
 

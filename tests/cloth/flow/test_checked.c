@@ -327,7 +327,6 @@ START_TEST(cloths)
         "cloths[0].regions=[{box: [[-1, -1, 0], [1, 1, 1]], material: undamped}]",
         "cloths[0].masses=[{vertices: [3], mass: 0.1}]",
         "cloths[0].mass_per_vertex=0.1",
-        "cloths[0].cost={factor: 2}",
         "cloths[0].start=[{vertices: [3, 4], velocity: [0, 0, 1], spin: [0, 2, 0]}]",
         "cloths[1]={mesh: {grid: {width: 1, height: 1, nx: 2, ny: 3}}, material: triangles, "
         "transform: {translate: [0, 3, 0]}}"};

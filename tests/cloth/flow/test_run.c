@@ -240,59 +240,6 @@ START_TEST(threads_and_schedulers_change_no_bit)
 }
 END_TEST
 
-/* Seconds that a run spends in the tasks of its conjugate gradients. */
-static double work_of(const struct model *model, uint64_t *hash)
-{
-    struct record record = {0};
-    record_run(&record, model);
-    const double work = record.report.seconds_cg;
-    ck_assert_msg(record.code == 0, "%s", record.error.text);
-    *hash = record.report.state_hash;
-    record_free(&record);
-    return work;
-}
-
-/* Blocks of a sheet of 1 m, whose upper half is dear, are as dear as their vertices are on average;
- * the run takes longer and comes to the same. Other programs can only make a run longer, so the
- * shortest of some is what the tasks take, of which a dear one takes fifty times as much. */
-START_TEST(cost_takes_time_and_changes_no_bit)
-{
-    uint64_t hash, dear_hash;
-    struct setup setup;
-    struct cloth_error error = {0};
-    struct flow_source source;
-    setup_sheet(&setup, 12);
-    setup.cloth.cost = (struct model_cost){5, {{-1, -1, 0}, {1, 1, 1}}};
-    ck_assert_int_eq(flow_source_make(&source, &setup.model, 1, &error), 0);
-    double sum = 0;
-    for (uint32_t b = 0; b < source.blocks.n_blocks; b++) {
-        ck_assert(source.shape[b].cost >= 1 && source.shape[b].cost <= 5);
-        sum += (double)source.shape[b].cost * source.shape[b].n;
-    }
-    ck_assert_double_eq_tol(sum, 72 + 5 * 72, 1e-3);
-    flow_source_free(&source);
-    setup.cloth.cost.factor = 0;
-    double work = work_of(&setup.model, &hash);
-    for (int i = 0; i < 4; i++)
-        work = fmin(work, work_of(&setup.model, &hash));
-    setup.cloth.cost.factor = 50;
-    const double dear = work_of(&setup.model, &dear_hash);
-    ck_assert_double_ge(dear, 5 * work);
-    ck_assert_uint_eq(dear_hash, hash);
-    setup_free(&setup);
-}
-END_TEST
-
-START_TEST(work_goes_on)
-{
-    const double start = flow_worked();
-    while (flow_worked() < start + 1e-3)
-        continue;
-    flow_work_on(start, 5);
-    ck_assert_double_ge(flow_worked() - start, 5e-3);
-}
-END_TEST
-
 int main(void)
 {
     Suite *suite = suite_create("run");
@@ -306,8 +253,6 @@ int main(void)
     tcase_add_test(cases, unused_vertices_stay);
     tcase_add_test(cases, two_cloths);
     tcase_add_test(cases, threads_and_schedulers_change_no_bit);
-    tcase_add_test(cases, cost_takes_time_and_changes_no_bit);
-    tcase_add_test(cases, work_goes_on);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -142,73 +142,6 @@ START_TEST(springs_are_in_order)
 }
 END_TEST
 
-/* What is read back has the same product, on free vertices, and one vertex more. */
-START_TEST(read_back)
-{
-    struct cloth_error error = {0};
-    struct solve_system back;
-    double p[ROWS + 3] = {0}, y[ROWS], z[ROWS + 3];
-    for (size_t i = 0; i < ROWS; i++)
-        system_.x[i] = 0.3 * (double)i;
-    ck_assert_int_eq(output_system(sample.folder, &system_, &error), 0);
-    ck_assert_msg(output_system_read(sample.folder, &back, &error) == 0, "%s", error.text);
-    ck_assert_uint_eq(back.n, N + 1);
-    for (int k = 0; k < 5; k++) {
-        for (size_t i = 0; i < ROWS; i++)
-            p[i] = system_.free[i / 3] / (1 + (double)((i + (size_t)k) * i % 11));
-        solve_system_multiply(&system_, p, y);
-        solve_system_multiply(&back, p, z);
-        for (size_t i = 0; i < ROWS; i++)
-            ck_assert_double_eq_tol(z[i], y[i], 1e-14);
-    }
-    for (size_t i = 0; i < ROWS; i++) {
-        ck_assert_double_eq(back.b[i], system_.free[i / 3] * system_.b[i]);
-        ck_assert_double_eq(back.dv[i], system_.free[i / 3] * system_.dv[i]);
-        ck_assert_double_eq(back.x[i], system_.x[i]);
-        ck_assert_double_eq(back.mass[i / 3], system_.free[i / 3] * system_.mass[i / 3]);
-    }
-    ck_assert_double_eq_tol(back.diagonal[0], system_.diagonal[0], 1e-14); /* not tied */
-    ck_assert_double_eq(back.free[N], 0);
-    for (size_t i = 1; i < back.n_pairs; i++)
-        ck_assert(back.end[i][0] < back.end[i][1] && back.end[i - 1][0] <= back.end[i][0]);
-    solve_system_free(&back);
-}
-END_TEST
-
-static void refused(const char *name, const char *text, const char *sentence)
-{
-    struct cloth_error error = {0};
-    struct solve_system back;
-    char path[120];
-    snprintf(path, sizeof path, "%s/%s.mtx", sample.folder, name);
-    ck_assert_int_eq(output_system(sample.folder, &system_, &error), 0);
-    sample_write(path, text, strlen(text));
-    ck_assert_int_eq(output_system_read(sample.folder, &back, &error), CLOTH_E_INPUT);
-    ck_assert_msg(strstr(error.text, sentence) != NULL, "%s", error.text);
-    ck_assert_ptr_null(back.end);
-}
-
-START_TEST(what_cannot_be_read)
-{
-#define MATRIX "%%MatrixMarket matrix coordinate real symmetric\n% of h\n"
-#define ARRAY  "%%MatrixMarket matrix array real general\n"
-    refused("matrix", "3 3\n", "matrix.mtx:1: '%%MatrixMarket matrix coordinate");
-    refused("matrix", MATRIX "4 4 1\n", "matrix.mtx:3: three equal rows");
-    refused("matrix", MATRIX "3 3 2\n1 1 5\n", "matrix.mtx:5: the file ends here");
-    refused("matrix", MATRIX "3 3 1\n1 2 5\n", "matrix.mtx:4: a row, a column");
-    refused("matrix", MATRIX "3 3 1\n4 2 5\n", "matrix.mtx:4: a row, a column");
-    refused("matrix", MATRIX "3 3 1\n2 2 inf\n", "matrix.mtx:4: a row, a column");
-    refused("rhs", ARRAY "20 1\n", "rhs.mtx:2: as many rows");
-    refused("mass", ARRAY "21 1\nmuch\n", "mass.mtx:3: a finite number");
-    struct cloth_error error = {0};
-    struct solve_system back;
-    char path[120];
-    snprintf(path, sizeof path, "%s/none", sample.folder);
-    ck_assert_int_eq(output_system_read(path, &back, &error), CLOTH_E_INPUT);
-    ck_assert_ptr_nonnull(strstr(error.text, "none/matrix.mtx"));
-}
-END_TEST
-
 START_TEST(what_cannot_be_written)
 {
     struct cloth_error error = {0};
@@ -232,8 +165,6 @@ int main(void)
     tcase_add_test(one, the_matrix_is_the_product);
     tcase_add_test(one, vectors_are_filtered);
     tcase_add_test(one, springs_are_in_order);
-    tcase_add_test(one, read_back);
-    tcase_add_test(one, what_cannot_be_read);
     tcase_add_test(one, what_cannot_be_written);
     suite_add_tcase(suite, one);
     return unit_run(suite);

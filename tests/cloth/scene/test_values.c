@@ -234,8 +234,7 @@ START_TEST(cloths_of_every_mesh)
     const char *triangle = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
     char *text = scene_changed(
         scene_right, "materials:\n",
-        "  - {mesh: {file: a.obj}, material: cotton, mass_per_vertex: 0.5, velocity: [1, 2, 3],\n"
-        "     cost: {factor: 3, box: [[2, 0, -1], [-1, 4, 1]]}}\n"
+        "  - {mesh: {file: a.obj}, material: cotton, mass_per_vertex: 0.5, velocity: [1, 2, 3]}\n"
         "  - mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}\n"
         "    material: wire\n"
         "    transform: {scale: [1, 2, 3], rotate: [0, 0, 2, 0], translate: [0, 0, 5]}\n"
@@ -251,10 +250,6 @@ START_TEST(cloths_of_every_mesh)
     ck_assert_uint_eq(model.cloths[1].mesh.n_triangles, 1);
     ck_assert_double_eq(model.cloths[1].mass_per_vertex, 0.5);
     same_vector(model.cloths[1].velocity, 1, 2, 3);
-    ck_assert_uint_eq(model.cloths[0].cost.factor, 0);
-    ck_assert_uint_eq(model.cloths[1].cost.factor, 3);
-    same_vector(model.cloths[1].cost.box[0], -1, 0, -1);
-    same_vector(model.cloths[1].cost.box[1], 2, 4, 1);
     const struct model_cloth *chain = &model.cloths[2];
     ck_assert_uint_eq(chain->mesh.n_lone_edges, 1);
     ck_assert_double_eq(model.materials[chain->material].ea, 7);

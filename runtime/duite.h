@@ -184,7 +184,7 @@ int duite_fail(const duite_call *call, int code, const char *format, ...)
  * the task fails with that even if its body returns 0. */
 int duite_resize(const duite_call *call, size_t i, size_t count);
 
-enum { DUITE_MAX_ACCESS = 16 };
+enum { DUITE_MAX_ACCESS = 64 }; /* modes that a kernel lists, at most */
 
 /* A kernel: constant, alive from start to stop, listed at start in the same order on every rank.
  * Names are unique. */

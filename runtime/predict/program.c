@@ -20,9 +20,11 @@ uint32_t predict_owner(const struct predict_graph *graph, const struct predict_f
                        const uint32_t *objects)
 {
     const struct trace_kernel *kernel = &graph->run->kernel[fork->kernel];
-    duite_mode access[DUITE_MAX_ACCESS] = {DUITE_NONE};
-    for (size_t i = 0; i < kernel->n_modes && i < DUITE_MAX_ACCESS; i++)
+    duite_mode access[DUITE_MAX_ACCESS];
+    for (size_t i = 0; i < kernel->n_modes; i++)
         access[i] = trace_mode(kernel, i);
+    if (kernel->n_modes < DUITE_MAX_ACCESS)
+        access[kernel->n_modes] = DUITE_NONE;
     const uint32_t own = task_owner(access, trace_mode(kernel, SIZE_MAX), fork->n);
     return own == TASK_NOBODY ? PREDICT_NONE : objects[own];
 }

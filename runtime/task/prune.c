@@ -1,10 +1,8 @@
 /* Forks of which nothing is on this rank: most of them, where there are many ranks. What task_fork
  * would conclude about them is that other ranks have new versions and copies; it is noted in one
- * go. Whatever is not plain (accumulation, views, more than a few objects, anything wrong) is left
- * to task_fork. */
+ * go. Whatever is not plain (accumulation, views, further objects than the listed ones, anything
+ * wrong) is left to task_fork. */
 #include "runtime/task/internal.h"
-
-enum { MAX_PRUNED = 16 }; /* objects */
 
 static inline bool prune_writes(duite_mode mode)
 {
@@ -16,7 +14,7 @@ static inline bool prune_writes(duite_mode mode)
 static bool prune_find_kernel(struct task_graph *graph, const duite_kernel *kernel)
 {
     uint32_t i = task_kernel_index(graph, kernel), n = 0;
-    if (i == graph->n_kernels || kernel->replicated || graph->fixed[i].n > MAX_PRUNED)
+    if (i == graph->n_kernels || kernel->replicated)
         return false;
     struct task_prune prune = {
         .kernel = kernel, .index = i, .n = graph->fixed[i].n, .owner = graph->fixed[i].owner[0]};
@@ -24,8 +22,8 @@ static bool prune_find_kernel(struct task_graph *graph, const duite_kernel *kern
         duite_mode mode = kernel->access[n];
         if (task_immediate(mode) == DUITE_CW)
             return false;
-        prune.reads |= (unsigned)(task_immediate(mode) != DUITE_W) << n;
-        prune.writes |= (unsigned)prune_writes(mode) << n;
+        prune.reads |= (uint64_t)(task_immediate(mode) != DUITE_W) << n;
+        prune.writes |= (uint64_t)prune_writes(mode) << n;
     }
     graph->prune = prune;
     return true;
@@ -59,7 +57,7 @@ static inline bool prune_look_up(const struct task_graph *graph, size_t n,
 bool task_prune(struct task_graph *graph, const duite_kernel *kernel, const void *args, size_t n,
                 const duite_object *objects)
 {
-    struct data_object *found[MAX_PRUNED];
+    struct data_object *found[DUITE_MAX_ACCESS];
     if (!kernel || (kernel != graph->prune.kernel && !prune_find_kernel(graph, kernel)))
         return false;
     const struct task_prune prune = graph->prune;

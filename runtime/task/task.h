@@ -203,7 +203,7 @@ struct task_graph {
     struct task_prune { /* the kernel of the last task that may be none of this rank's */
         const duite_kernel *kernel;
         uint32_t index, n, owner; /* in the list; objects, and which of them it runs for */
-        unsigned reads, writes;   /* a bit an object; no other use */
+        uint64_t reads, writes;   /* a bit an object; no other use */
     } prune;
     uint64_t rename_max; /* limit of `rename_bytes` */
     struct data_table table;

@@ -1,11 +1,12 @@
 #ifndef DUITE_TRACE_FORMAT_H
 #define DUITE_TRACE_FORMAT_H
 
+#include <duite.h>
+
 #include <stdint.h>
 
-/* Trace files, version 2 (1 had no TRACE_MESSAGES, and is read, too). A run on n ranks leaves n
- * files: FILE of rank 0, and FILE.1, FILE.2, ... of the others; those of one run have the same
- * `run`.
+/* Trace files, version 3; readers refuse every other version. A run on n ranks leaves n files: FILE
+ * of rank 0, and FILE.1, FILE.2, ... of the others; those of one run have the same `run`.
  *
  * A file is a header, rewritten when the trace ends, and sections up to header.bytes, each a
  * trace_section and so many bytes behind it, a multiple of 8. All numbers are of the byte order and
@@ -14,7 +15,7 @@
  * was not written is counted in header.lost. */
 
 #define TRACE_MAGIC "duitetrc"
-enum { TRACE_VERSION = 2 };
+enum { TRACE_VERSION = 3 };
 #define TRACE_ORDER UINT32_C(0x01020304)
 
 struct trace_header {
@@ -49,7 +50,7 @@ struct trace_section {
 
 /* Modes of the first parameters; duite_mode of all further ones, 0: there are none. */
 struct trace_kernel {
-    uint8_t mode[16];
+    uint8_t mode[DUITE_MAX_ACCESS];
     uint8_t variadic, replicated, fixed, n_modes; /* n_modes: how many first ones */
     uint32_t unused;
 };

@@ -100,9 +100,8 @@ static int source_check_header(struct source *source, uint32_t rank)
     if (header->order != TRACE_ORDER)
         return source_damaged(source, offsetof(struct trace_header, order),
                               "written on a machine with another order of bytes");
-    if (!header->version || header->version > TRACE_VERSION) {
-        snprintf(text, sizeof text,
-                 "a trace of version %" PRIu32 "; this program reads versions 1 to %d",
+    if (header->version != TRACE_VERSION) {
+        snprintf(text, sizeof text, "a trace of version %" PRIu32 "; this program reads version %d",
                  header->version, TRACE_VERSION);
         return source_damaged(source, offsetof(struct trace_header, version), text);
     }
@@ -137,7 +136,7 @@ static int source_take_kernels(struct source *source, const struct trace_section
         const char *stop = memchr(name, 0, (size_t)(end - name));
         if (!stop)
             return source_damaged(source, at, "a kernel's name does not end");
-        if (run->kernel[run->n_kernels].n_modes > 16)
+        if (run->kernel[run->n_kernels].n_modes > DUITE_MAX_ACCESS)
             return source_damaged(source, at, "a kernel with too many modes");
         run->kernel_name[run->n_kernels] = name;
         name = stop + 1;

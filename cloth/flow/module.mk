@@ -26,6 +26,8 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/starts.c \
     cloth/flow/setup/warn.c \
     cloth/flow/setup/watched.c \
+    cloth/flow/state/fields.c \
+    cloth/flow/state/fields.h \
     cloth/flow/state/kernels_state.c \
     cloth/flow/state/objects.c \
     cloth/flow/state/tables.c \

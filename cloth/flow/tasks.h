@@ -4,6 +4,7 @@
 #include "cloth/flow/kernels.h"
 #include "cloth/flow/run.h"
 #include "cloth/flow/setup/source.h"
+#include "cloth/flow/state/fields.h"
 #include "cloth/flow/state/tables.h"
 #include "cloth/flow/step/energy.h"
 #include "cloth/flow/step/grid.h"
@@ -179,24 +180,6 @@ struct flow_head {
     struct model model;  /* pointers mean nothing elsewhere */
 };
 
-/* Shared objects of a block. copies: r of its copies, then p. rim_q: three numbers a row. table: an
- * image (cloth/flow/state/tables.h), never written once it is dealt. In explicit runs the names of
- * the state, its rims and what is kept pass from object to object (explicit.c). */
-struct flow_objects {
-    duite_object table, x, v, f, rim_x, rim_v;
-    duite_object spare_rim_x, spare_rim_v;         /* of explicit runs */
-    duite_object a, dv, r, p, q, copies, rim_q[2]; /* of implicit runs */
-    duite_object x0, v0, sum_x, sum_v; /* RK4: struct phys_runge; Verlet: v0, that of the half step
-                                        */
-    duite_object base_x, base_v, last_x, last_v; /* Newton steps, BDF2: struct phys_states */
-    duite_object kept_x, kept_v;                 /* before the step, where it may be given up */
-    duite_object filter;                         /* of the solve, with contact in it */
-    /* With a preconditioner; copies has z for r, rim_q s for q. */
-    duite_object z, s, factor, part;
-    duite_object basis, rim_basis, basis_copies, coupling; /* with a coarse part */
-    duite_object felt, seen; /* where probes are: the force on each row; what is told of them */
-};
-
 /* What passes read of their neighbours' rims of q (far.c). */
 struct flow_far {
     duite_object *read[2]; /* a neighbour of each block, block after block: of even passes, odd */
@@ -235,10 +218,8 @@ struct flow_state {
     struct flow_objects *block;
     struct flow_far far;
     duite_graph solve; /* a round of conjugate gradients */
-    duite_object sums[2], scalars[2], status[2], stretch[2], token, seconds, told;
-    duite_object peaks[2], energy, energies[2]; /* energies: of steps */
-    duite_object trial, slope, pieces; /* of a Newton step: status, slope; of a solve: what it left
-                                        * of free pieces, if there are any */
+    struct flow_run_objects run;
+    unsigned pass; /* of a round that is recorded: 0 or 1; else 0 */
     struct flow_newton newton;
     uint32_t length; /* ticks of the last step accepted, and of the one before it; 0: none yet */
     uint32_t length_before;
@@ -246,7 +227,6 @@ struct flow_state {
         guessed; /* ticks of the step that left dv, if the next solve may begin with it; else 0 */
     uint32_t smooth; /* ticks of the step before, if contact had no part in it; else 0, and then the
                       * next step is by implicit Euler where the others are by BDF2 */
-    duite_object coarse, motion[2]; /* with a coarse part: its factor and its part of s */
     struct flow_head head;
     duite_object *parcel;  /* a block: what travels to rank 0 on its own; empty in between */
     duite_object *part;    /* a block: what it says of the system of a step */
@@ -273,6 +253,12 @@ struct flow_state {
 static inline bool flow_shows(const struct flow_state *state)
 {
     return state->output && state->output->frame;
+}
+
+/* Whether rows of probes are wanted. */
+static inline bool flow_tells(const struct flow_state *state)
+{
+    return state->flow->model->n_probes && state->output && state->output->row;
 }
 
 /* Fills flow->warning; on rank 0, where the source is made. Errors: CLOTH_E_MEMORY. Local. */
@@ -303,9 +289,6 @@ uint32_t flow_hash_part(const struct flow *flow);
 int flow_memory_take(struct flow_state *state);
 int flow_memory_agree(struct flow_state *state); /* the same for what was taken since */
 void flow_memory_free(struct flow_state *state);
-/* A failure is returned by the next get. */
-void flow_objects_make(struct flow_state *state);
-int flow_objects_free(struct flow_state *state);
 
 /* What a run's preconditioner is made of. An explicit run has none. */
 static inline bool flow_is_turned(const struct flow *flow)
@@ -330,8 +313,6 @@ void flow_turned_choose(struct flow *flow, uint32_t n_blocks);
 int flow_turned_prepare(struct flow_state *state);
 /* Local. */
 void flow_turned_free(struct flow *flow);
-/* Objects of a preconditioner. A failure is returned by the next get. */
-void flow_turned_make(struct flow_state *state);
 /* Forks of a preconditioned solve: what its coarse space is, once a run, or with contact in the
  * solve in each step; in each step before the solve; pass `from` (0, 1) of
  * a recorded round. */
@@ -426,8 +407,6 @@ int flow_far_pack(struct flow_state *state, uint32_t block, int to);
 int flow_pins_drive(struct flow_state *state);
 int flow_pins_place(struct flow_state *state);
 
-/* Objects of what is watched. A failure is returned by the next get. */
-void flow_watch_make(struct flow_state *state);
 /* Forks what is watched of the state at the end of the step under way, or at the start. */
 int flow_watch(struct flow_state *state);
 /* Forks its row of the table of probes, and finds whether the run rests: when the step is accepted,

@@ -9,33 +9,21 @@
 
 #include <stddef.h>
 
-static void swap(duite_object *a, duite_object *b)
-{
-    const duite_object was = *a;
-    *a = *b;
-    *b = was;
-}
-
 static void swap_rims_v(struct flow_state *state)
 {
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
-        swap(&state->block[b].rim_v, &state->block[b].spare_rim_v);
+    flow_fields_swap(state, FLOW_FIELD_rim_v, FLOW_FIELD_spare_rim_v);
 }
 
 static void swap_rims(struct flow_state *state)
 {
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
-        swap(&state->block[b].rim_x, &state->block[b].spare_rim_x);
+    flow_fields_swap(state, FLOW_FIELD_rim_x, FLOW_FIELD_spare_rim_x);
     swap_rims_v(state);
 }
 
 static void swap_kept(struct flow_state *state)
 {
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++) {
-        struct flow_objects *o = state->block + b;
-        swap(&o->x, &o->kept_x);
-        swap(&o->v, &o->kept_v);
-    }
+    flow_fields_swap(state, FLOW_FIELD_x, FLOW_FIELD_kept_x);
+    flow_fields_swap(state, FLOW_FIELD_v, FLOW_FIELD_kept_v);
 }
 
 /* ---- Either Euler ---- */

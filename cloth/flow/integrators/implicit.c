@@ -107,13 +107,13 @@ static int get_slope(struct flow_state *state, struct flow_args args, double *sl
 {
     int code = fork_force(state, args);
     if (!code)
-        code = duite_set(state->rt, state->slope, NULL);
+        code = duite_set(state->rt, state->run.slope, NULL);
     for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
         code = DUITE_FORK(state->rt, &flow_residual, &args, o->table, o->base_v, o->v, o->dv, o->f,
-                          state->slope);
+                          state->run.slope);
     }
-    return code ? code : duite_get(state->rt, state->slope, slope);
+    return code ? code : duite_get(state->rt, state->run.slope, slope);
 }
 
 /* A Newton step that ends where the slope along it is steep the other way is cut. */
@@ -143,8 +143,8 @@ static int fork_correct(struct flow_state *state, struct flow_args args, duite_o
     for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
         code = DUITE_FORK(state->rt, &flow_correct, &args, o->table, o->f, o->a, o->dv, o->r,
-                          o->base_x, o->base_v, o->v, o->x, o->rim_v, o->rim_x, state->scalars[0],
-                          status);
+                          o->base_x, o->base_v, o->v, o->x, o->rim_v, o->rim_x,
+                          state->run.scalars[0], status);
     }
     return code;
 }
@@ -152,10 +152,10 @@ static int fork_correct(struct flow_state *state, struct flow_args args, duite_o
 /* One Newton step. *sums: what it told. */
 static int newton_step(struct flow_state *state, struct flow_args args, double sums[FLOW_STATUS])
 {
-    int code = duite_set(state->rt, state->trial, NULL);
+    int code = duite_set(state->rt, state->run.trial, NULL);
     if (!code)
-        code = fork_correct(state, args, state->trial);
-    return code ? code : duite_get(state->rt, state->trial, sums);
+        code = fork_correct(state, args, state->run.trial);
+    return code ? code : duite_get(state->rt, state->run.trial, sums);
 }
 
 /* Of all Newton steps together; the last one's errors count. */
@@ -221,7 +221,7 @@ static int fork_copy(struct flow_state *state, size_t x, size_t v)
 static int finish(struct flow_state *state, struct flow_args args)
 {
     return searches(state) ? newton(state, args)
-                           : fork_correct(state, args, state->status[state->attempt.parity]);
+                           : fork_correct(state, args, state->run.status[state->attempt.parity]);
 }
 
 static int euler(struct flow_state *state)

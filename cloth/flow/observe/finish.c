@@ -8,8 +8,8 @@
 
 static int largest_stretch(struct flow_state *state)
 {
-    const int code = flow_stretch_fork(state, state->stretch[0]);
-    return code ? code : duite_get(state->rt, state->stretch[0], &state->report->max_stretch);
+    const int code = flow_stretch_fork(state, state->run.stretch[0]);
+    return code ? code : duite_get(state->rt, state->run.stretch[0], &state->report->max_stretch);
 }
 
 static double some(double seconds)
@@ -23,10 +23,10 @@ static int sum_seconds(struct flow_state *state)
     const struct flow_args args = {0};
     int code = duite_wait(state->rt);
     for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
-        code = duite_fork_at(state->rt, rank, &flow_seconds, &args, 1, &state->seconds);
+        code = duite_fork_at(state->rt, rank, &flow_seconds, &args, 1, &state->run.seconds);
     double sum[FLOW_PARTS];
     if (!code)
-        code = duite_get(state->rt, state->seconds, sum);
+        code = duite_get(state->rt, state->run.seconds, sum);
     if (code)
         return code;
     state->report->seconds_force = some(sum[FLOW_FORCE]);
@@ -154,9 +154,9 @@ static int hash_state(struct flow_state *state)
 static int tell(struct flow_state *state, uint64_t told[FLOW_TELL])
 {
     const struct flow_args args = {0};
-    int code = duite_fork_at(state->rt, 0, &flow_tell, &args, 1, &state->told);
+    int code = duite_fork_at(state->rt, 0, &flow_tell, &args, 1, &state->run.told);
     if (!code)
-        code = duite_get(state->rt, state->told, told);
+        code = duite_get(state->rt, state->run.told, told);
     return code;
 }
 

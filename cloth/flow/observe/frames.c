@@ -21,12 +21,12 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
     if (!flow_shows(state)) /* only counted */
         return DUITE_OK;
     if (args.frame > 0) {
-        const int code = duite_get(state->rt, state->token, &token);
+        const int code = duite_get(state->rt, state->run.token, &token);
         if (code)
             return code;
     }
     const uint32_t n = state->flow->tables.n_blocks;
-    state->refs[0] = state->token;
+    state->refs[0] = state->run.token;
     for (uint32_t b = 0; b < n; b++)
         state->refs[1 + b] = kept ? state->block[b].kept_x : state->block[b].x;
     return duite_fork_at(state->rt, 0, &flow_frame, &args, 1 + (size_t)n, state->refs);

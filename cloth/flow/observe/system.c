@@ -222,7 +222,7 @@ int flow_system(struct flow_state *state)
     const struct flow_args args = flow_attempt_args(state);
     duite_object *part = state->part;
     int code = fork_parts(state, part);
-    state->refs[0] = state->token;
+    state->refs[0] = state->run.token;
     for (uint32_t b = 0; b < n; b++)
         state->refs[1 + b] = part[b];
     if (!code)

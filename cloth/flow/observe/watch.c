@@ -7,50 +7,26 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Whether rows of probes are wanted. */
-static bool tells(const struct flow_state *state)
-{
-    return state->flow->model->n_probes && state->output && state->output->row;
-}
-
 static bool may_rest(const struct flow_state *state)
 {
     return state->flow->model->rest.speed > 0;
 }
 
-void flow_watch_make(struct flow_state *state)
-{
-    for (int i = 0; i < 2; i++) {
-        duite_new(state->rt, DUITE_F64, FLOW_PEAKS, state->peaks + i);
-        duite_colocate(state->rt, state->peaks[i], state->block[0].x);
-    }
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks && tells(state); b++) {
-        const struct flow_table *t = state->flow->tables.block + b;
-        struct flow_objects *o = state->block + b;
-        if (!t->n_watched)
-            continue;
-        duite_new(state->rt, DUITE_F64, 4 * (size_t)t->n, &o->felt);
-        duite_colocate(state->rt, o->felt, o->x);
-        duite_new(state->rt, DUITE_F64, FLOW_SEEN * (size_t)t->n_watched, &o->seen);
-        duite_colocate(state->rt, o->seen, o->x);
-    }
-}
-
 int flow_watch(struct flow_state *state)
 {
-    if (!tells(state) && !may_rest(state))
+    if (!flow_tells(state) && !may_rest(state))
         return DUITE_OK;
     const double none[FLOW_PEAKS] = {0, -INFINITY, -INFINITY};
     const unsigned at = state->attempt.parity;
     struct flow_args args = flow_attempt_args(state);
-    int code = duite_set(state->rt, state->peaks[at], none);
+    int code = duite_set(state->rt, state->run.peaks[at], none);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
-        const duite_object objects[] = {o->x, o->v, state->peaks[at]};
+        const duite_object objects[] = {o->x, o->v, state->run.peaks[at]};
         code = flow_fork(state, &flow_watch_block, &args, 3, objects, FLOW_RIM(rim_x), FLOW_NO_RIM);
     }
-    if (!code && tells(state))
-        code = flow_energies(state, flow_attempt_args(state), state->energy);
+    if (!code && flow_tells(state))
+        code = flow_energies(state, flow_attempt_args(state), state->run.energy);
     return code;
 }
 
@@ -79,7 +55,7 @@ static int fork_row(struct flow_state *state)
                              .h = length * tick,
                              .before =
                                  (state->length_before ? state->length_before : length) * tick};
-    int code = steps ? duite_get(state->rt, state->token, &token) : DUITE_OK;
+    int code = steps ? duite_get(state->rt, state->run.token, &token) : DUITE_OK;
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
         if (state->flow->tables.block[args.block].n_watched)
             code = fork_probe(state, args);
@@ -87,10 +63,10 @@ static int fork_row(struct flow_state *state)
         return code;
     size_t n = 0;
     args.block = 0;
-    state->refs[n++] = state->token;
-    state->refs[n++] = state->status[at];
-    state->refs[n++] = state->peaks[at];
-    state->refs[n++] = state->energy;
+    state->refs[n++] = state->run.token;
+    state->refs[n++] = state->run.status[at];
+    state->refs[n++] = state->run.peaks[at];
+    state->refs[n++] = state->run.energy;
     for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
         if (state->flow->tables.block[b].n_watched)
             state->refs[n++] = state->block[b].seen;
@@ -104,7 +80,7 @@ static int find_rest(struct flow_state *state)
     double peaks[FLOW_PEAKS];
     if (!may_rest(state) || state->resting)
         return DUITE_OK;
-    const int code = duite_get(state->rt, state->peaks[state->attempt.parity], peaks);
+    const int code = duite_get(state->rt, state->run.peaks[state->attempt.parity], peaks);
     if (code)
         return code;
     const double time = flow_time(state);
@@ -124,6 +100,6 @@ static int find_rest(struct flow_state *state)
 
 int flow_watched(struct flow_state *state)
 {
-    const int code = tells(state) ? fork_row(state) : DUITE_OK;
+    const int code = flow_tells(state) ? fork_row(state) : DUITE_OK;
     return code ? code : find_rest(state);
 }

@@ -11,15 +11,15 @@ static int fork_pass(struct flow_state *state, int from)
     const struct flow_tables *tables = &state->flow->tables;
     const int to = 1 - from;
     struct flow_args args = {0};
-    int code = duite_set(state->rt, state->sums[from], NULL);
+    int code = duite_set(state->rt, state->run.sums[from], NULL);
     for (uint32_t i = 0; i < tables->n_blocks && !code; i++) {
         args.block = from ? tables->n_blocks - 1 - i : i;
         const struct flow_objects *o = state->block + args.block;
         const struct flow_table *t = tables->block + args.block;
         const duite_object *q = state->far.read[from] + (t->slot - tables->slot);
         const duite_object own[] = {
-            o->table,     state->scalars[from], o->a, o->f, o->dv, o->r, o->p, o->q, o->copies,
-            o->rim_q[to], state->sums[from]};
+            o->table,     state->run.scalars[from], o->a, o->f, o->dv, o->r, o->p, o->q, o->copies,
+            o->rim_q[to], state->run.sums[from]};
         size_t n = 0;
         for (; n < sizeof own / sizeof *own; n++)
             state->refs[n] = own[n];
@@ -30,8 +30,8 @@ static int fork_pass(struct flow_state *state, int from)
             code = flow_far_pack(state, args.block, to);
     }
     if (!code)
-        code = DUITE_FORK(state->rt, &flow_scalars, NULL, state->sums[from], state->scalars[from],
-                          state->scalars[to]);
+        code = DUITE_FORK(state->rt, &flow_scalars, NULL, state->run.sums[from],
+                          state->run.scalars[from], state->run.scalars[to]);
     return code;
 }
 
@@ -53,7 +53,7 @@ int flow_cg_record(struct flow_state *state)
 
 static int fork_start(struct flow_state *state, struct flow_args args)
 {
-    int code = DUITE_FORK(state->rt, &flow_begin, &args, state->scalars[0]);
+    int code = DUITE_FORK(state->rt, &flow_begin, &args, state->run.scalars[0]);
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
         code = args.guess != 0 ? flow_cg_guess(state, &args)
@@ -93,18 +93,18 @@ int flow_cg_start(struct flow_state *state)
 static int fork_pieces(struct flow_state *state)
 {
     struct flow_args here = flow_attempt_args(state);
-    int code = duite_set(state->rt, state->pieces, NULL);
+    int code = duite_set(state->rt, state->run.pieces, NULL);
     for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++) {
         const struct flow_objects *o = state->block + here.block;
         if (state->flow->tables.block[here.block].n_loose)
             code = DUITE_FORK(state->rt, &flow_piece_sums, &here, o->table, o->f, o->a, o->dv,
-                              state->pieces);
+                              state->run.pieces);
     }
     for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++) {
         const struct flow_objects *o = state->block + here.block;
         if (state->flow->tables.block[here.block].n_loose)
-            code = DUITE_FORK(state->rt, &flow_piece_shift, &here, o->table, o->a, state->pieces,
-                              o->dv, o->r);
+            code = DUITE_FORK(state->rt, &flow_piece_shift, &here, o->table, o->a,
+                              state->run.pieces, o->dv, o->r);
     }
     return code;
 }
@@ -113,7 +113,7 @@ int flow_cg_iterate(struct flow_state *state)
 {
     const uint64_t passes = (uint64_t)state->flow->model->max_iterations + SOLVE_EXTRA;
     const uint64_t rounds = (passes + 1) / 2;
-    const int code = duite_replay_while(state->rt, state->solve, state->scalars[0], rounds);
+    const int code = duite_replay_while(state->rt, state->solve, state->run.scalars[0], rounds);
     return code || !state->head.n_pieces ? code : fork_pieces(state);
 }
 

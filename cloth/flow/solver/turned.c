@@ -1,6 +1,5 @@
-/* The main program's side of a preconditioned solve: its objects, what is forked once a run, what
- * in each step before the solve, and a pass of the recorded round. Objects that a preconditioner
- * does not need are not made. */
+/* The main program's side of a preconditioned solve: what is forked once a run, what in each step
+ * before the solve, and a pass of the recorded round. */
 #include "cloth/flow/solver/patches.h"
 
 #include "cloth/base/memory.h"
@@ -8,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* ---- Memory and objects ---- */
+/* ---- Memory ---- */
 
 static void without_coarse(struct flow *flow, uint32_t n_blocks)
 {
@@ -114,48 +113,6 @@ void flow_turned_free(struct flow *flow)
     flow->first_beside = flow->beside = NULL;
 }
 
-/* Of so many numbers (at least one), beside another object. */
-static void make(struct flow_state *state, size_t n, duite_object beside, duite_object *object)
-{
-    duite_new(state->rt, DUITE_F64, n ? n : 1, object);
-    duite_colocate(state->rt, *object, beside);
-}
-
-static void make_coarse(struct flow_state *state, uint32_t b)
-{
-    struct flow_objects *o = state->block + b;
-    const struct flow_table *t = state->flow->tables.block + b;
-    const uint32_t last = state->flow->patches * (b + 1) - 1;
-    make(state, 4 * (size_t)t->n, o->x, &o->basis);
-    make(state, 4 * (size_t)(t->n_rim ? t->n_rim : 1), o->x, &o->rim_basis);
-    make(state, 4 * (size_t)(t->n_copies ? t->n_copies : 1), o->x, &o->basis_copies);
-    make(state, SOLVE_COUPLING * flow_coupling_at(state->flow, last, UINT32_MAX), o->x,
-         &o->coupling);
-}
-
-void flow_turned_make(struct flow_state *state)
-{
-    const struct flow *flow = state->flow;
-    const enum solve_local local = flow_local(flow);
-    if (!flow_is_turned(flow))
-        return;
-    for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
-        struct flow_objects *o = state->block + b;
-        const struct flow_table *t = flow->tables.block + b;
-        make(state, 4 * (size_t)t->n, o->x, &o->z);
-        make(state, 4 * (size_t)t->n, o->x, &o->s);
-        make(state, solve_local_doubles(t->n, t->n_entries, local), o->x, &o->factor);
-        make(state, flow_part_doubles(flow), o->x, &o->part);
-        if (flow_is_coarse(flow))
-            make_coarse(state, b);
-    }
-    if (!flow_is_coarse(flow))
-        return;
-    make(state, solve_coarse_doubles(&flow->pattern), state->block[0].x, &state->coarse);
-    for (int i = 0; i < 2; i++)
-        make(state, flow_motion_doubles(flow), state->block[0].x, state->motion + i);
-}
-
 /* ---- Tasks ---- */
 
 int flow_turned_initialise(struct flow_state *state)
@@ -187,7 +144,7 @@ static int fork_coarse(struct flow_state *state, struct flow_args args)
         code = flow_fork(state, &flow_couple, &args, 4, objects, FLOW_NO_RIM, FLOW_NO_RIM);
     }
     args.block = 0;
-    state->refs[0] = state->coarse;
+    state->refs[0] = state->run.coarse;
     for (uint32_t b = 0; b < n; b++)
         state->refs[1 + b] = state->block[b].coupling;
     return code ? code
@@ -205,11 +162,11 @@ static size_t add_parts(struct flow_state *state, size_t n)
 static int fork_begin(struct flow_state *state, struct flow_args args)
 {
     if (!flow_is_coarse(state->flow) || args.guess != 0)
-        return DUITE_FORK(state->rt, &flow_begin, &args, state->scalars[0]);
+        return DUITE_FORK(state->rt, &flow_begin, &args, state->run.scalars[0]);
     args.block = 0;
-    state->refs[0] = state->scalars[0];
-    state->refs[1] = state->motion[0];
-    state->refs[2] = state->coarse;
+    state->refs[0] = state->run.scalars[0];
+    state->refs[1] = state->run.motion[0];
+    state->refs[2] = state->run.coarse;
     return duite_fork(state->rt, &flow_begin_coarse, &args, add_parts(state, 3), state->refs);
 }
 
@@ -234,7 +191,7 @@ int flow_turned_start(struct flow_state *state, struct flow_args args)
         code = fork_coarse(state, args);
     for (; args.block < tables->n_blocks && !code; args.block++) {
         const struct flow_objects *o = state->block + args.block;
-        const duite_object factor[] = {o->a, o->factor, state->status[state->attempt.parity]};
+        const duite_object factor[] = {o->a, o->factor, state->run.status[state->attempt.parity]};
         code = flow_fork(state, &flow_factor, &args, 3, factor, FLOW_NO_RIM, FLOW_NO_RIM);
         if (!code)
             code = fork_vectors(state, &args);
@@ -251,9 +208,9 @@ static int fork_block(struct flow_state *state, const struct flow_args *args, in
     const struct flow_table *t = tables->block + args->block;
     const duite_object *s = state->far.read[from] + (t->slot - tables->slot);
     const duite_object own[] = {
-        o->table,  state->scalars[from], o->a,    o->f,     o->dv, o->r, o->p, o->q, o->z, o->s,
-        o->copies, o->rim_q[1 - from],   o->part, o->factor};
-    const duite_object coarse[] = {o->basis, o->basis_copies, state->motion[from]};
+        o->table,  state->run.scalars[from], o->a,    o->f,     o->dv, o->r, o->p, o->q, o->z, o->s,
+        o->copies, o->rim_q[1 - from],       o->part, o->factor};
+    const duite_object coarse[] = {o->basis, o->basis_copies, state->run.motion[from]};
     size_t n = 0;
     for (size_t i = 0; i < sizeof own / sizeof *own; i++)
         state->refs[n++] = own[i];
@@ -269,12 +226,12 @@ static int fork_scalars(struct flow_state *state, int from)
     const struct flow_args args = {0};
     const int to = 1 - from;
     size_t n = 0;
-    state->refs[n++] = state->scalars[to];
+    state->refs[n++] = state->run.scalars[to];
     if (flow_is_coarse(state->flow))
-        state->refs[n++] = state->motion[to];
-    state->refs[n++] = state->scalars[from];
+        state->refs[n++] = state->run.motion[to];
+    state->refs[n++] = state->run.scalars[from];
     if (flow_is_coarse(state->flow))
-        state->refs[n++] = state->coarse;
+        state->refs[n++] = state->run.coarse;
     n = add_parts(state, n);
     return duite_fork(state->rt,
                       flow_is_coarse(state->flow) ? &flow_scalars_coarse : &flow_scalars_turned,

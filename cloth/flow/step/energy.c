@@ -41,7 +41,7 @@ static bool looks(const struct flow_state *state)
 int flow_energy_fork(struct flow_state *state)
 {
     return looks(state) ? flow_energies(state, flow_attempt_args(state),
-                                        state->energies[state->attempt.parity])
+                                        state->run.energies[state->attempt.parity])
                         : DUITE_OK;
 }
 
@@ -51,7 +51,7 @@ int flow_energy_wait(struct flow_state *state)
     double sums[FLOW_SUMS];
     if (!looks(state))
         return DUITE_OK;
-    const int code = duite_get(state->rt, state->energies[state->attempt.parity], sums);
+    const int code = duite_get(state->rt, state->run.energies[state->attempt.parity], sums);
     if (code)
         return code;
     guard->sum = 0;
@@ -114,9 +114,9 @@ int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
     double sums[FLOW_SUMS];
     struct flow_args args = flow_attempt_args(state);
     args.h = args.h > 0 ? args.h : state->flow->model->h; /* before the first step */
-    int code = flow_energies(state, args, state->energy);
+    int code = flow_energies(state, args, state->run.energy);
     if (!code)
-        code = duite_get(state->rt, state->energy, sums);
+        code = duite_get(state->rt, state->run.energy, sums);
     if (code)
         return code;
     *energy = (struct flow_energy){.kinetic = sums[FLOW_ENERGY_MOTION],

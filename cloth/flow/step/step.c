@@ -38,9 +38,9 @@ int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct f
                 *(const duite_object *)(const void *)((const char *)(state->block + args.block) +
                                                       objects[n]);
         if (behind == FLOW_THEN_SCALARS_AND_STATUS)
-            own[n++] = state->scalars[0];
+            own[n++] = state->run.scalars[0];
         if (behind != FLOW_NOTHING)
-            own[n++] = state->status[state->attempt.parity];
+            own[n++] = state->run.status[state->attempt.parity];
         code = flow_fork(state, kernel, &args, n, own, rim, rim2);
     }
     return code;
@@ -127,7 +127,7 @@ static int begin_step(struct flow_state *state)
     const double nothing[FLOW_STATUS] = {0};
     int code = duite_trace_step(state->rt, state->attempt.begin / FLOW_TICKS);
     if (!code)
-        code = duite_set(state->rt, state->status[state->attempt.parity], nothing);
+        code = duite_set(state->rt, state->run.status[state->attempt.parity], nothing);
     if (!code && is_driven(model))
         code = drive(state);
     if (code)
@@ -139,7 +139,7 @@ static int begin_step(struct flow_state *state)
 static int end_step(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
-    const duite_object status = state->status[state->attempt.parity];
+    const duite_object status = state->run.status[state->attempt.parity];
     const struct flow_args args = flow_attempt_args(state);
     const bool keeps = model_keeps(model) && !is_driven(model) && !flow_explicit_keeps(model);
     int code = keeps ? keep(state) : DUITE_OK;
@@ -152,7 +152,7 @@ static int end_step(struct flow_state *state)
                         FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
                         FLOW_THEN_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
     if (!code && flow_is_judged(model))
-        code = flow_stretch_fork(state, state->stretch[state->attempt.parity]);
+        code = flow_stretch_fork(state, state->run.stretch[state->attempt.parity]);
     if (!code)
         code = flow_watch(state);
     if (!code)
@@ -273,9 +273,9 @@ static int await(struct flow_state *state, double status[FLOW_STATUS], struct fl
                                      .after = state->longest,
                                      .most = model->stretch_limit,
                                      .growth = model->stretch_growth};
-    int code = duite_get(state->rt, state->status[parity], status);
+    int code = duite_get(state->rt, state->run.status[parity], status);
     if (!code && flow_is_judged(model))
-        code = duite_get(state->rt, state->stretch[parity], &verdict->after);
+        code = duite_get(state->rt, state->run.stretch[parity], &verdict->after);
     if (!code)
         code = flow_energy_wait(state);
     if (code)
@@ -361,9 +361,9 @@ static int first_stretch(struct flow_state *state)
     state->report->stretch_highest = NAN;
     if (!flow_is_judged(state->flow->model))
         return DUITE_OK;
-    int code = flow_stretch_fork(state, state->stretch[0]);
+    int code = flow_stretch_fork(state, state->run.stretch[0]);
     if (!code)
-        code = duite_get(state->rt, state->stretch[0], &state->longest);
+        code = duite_get(state->rt, state->run.stretch[0], &state->longest);
     state->report->stretch_highest = state->longest;
     return code;
 }
@@ -371,7 +371,7 @@ static int first_stretch(struct flow_state *state)
 static int watch_start(struct flow_state *state)
 {
     const double nothing[FLOW_STATUS] = {0};
-    int code = duite_set(state->rt, state->status[state->attempt.parity], nothing);
+    int code = duite_set(state->rt, state->run.status[state->attempt.parity], nothing);
     if (!code)
         code = flow_watch(state);
     return code ? code : flow_watched(state);

@@ -1,0 +1,230 @@
+/* The table of fields: the columns of the list in fields.h as functions, and the list by number. */
+#include "cloth/flow/bodies.h"
+
+#include "cloth/flow/solver/patches.h"
+
+/* ---- How many rows ---- */
+
+static const struct flow_table *table_of(const struct flow_state *state, uint32_t block)
+{
+    return state->flow->tables.block + block;
+}
+
+static size_t one(const struct flow_state *state, uint32_t block)
+{
+    (void)state, (void)block;
+    return 1;
+}
+
+static size_t rows(const struct flow_state *state, uint32_t block)
+{
+    return table_of(state, block)->n;
+}
+
+static size_t halo(const struct flow_state *state, uint32_t block)
+{
+    return table_of(state, block)->n_rim;
+}
+
+static size_t ghosts(const struct flow_state *state, uint32_t block)
+{
+    return table_of(state, block)->n_copies;
+}
+
+static size_t watched(const struct flow_state *state, uint32_t block)
+{
+    return table_of(state, block)->n_watched;
+}
+
+static size_t table_bytes(const struct flow_state *state, uint32_t block)
+{
+    return flow_table_bytes(table_of(state, block));
+}
+
+/* The diagonal, the filter if there is one, the values of the entries: flow_open_matrix. */
+static size_t matrix(const struct flow_state *state, uint32_t block)
+{
+    const struct flow_table *t = table_of(state, block);
+    const size_t filter = model_is_filtered(state->flow->model) ? 4 * (size_t)t->n : 0;
+    return 4 * flow_diagonal_rows(t) + filter + flow_table_doubles(t);
+}
+
+static size_t factor(const struct flow_state *state, uint32_t block)
+{
+    const struct flow_table *t = table_of(state, block);
+    return solve_local_doubles(t->n, t->n_entries, flow_local(state->flow));
+}
+
+static size_t part(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return flow_part_doubles(state->flow);
+}
+
+static size_t couplings(const struct flow_state *state, uint32_t block)
+{
+    const uint32_t last = state->flow->patches * (block + 1) - 1;
+    return SOLVE_COUPLING * flow_coupling_at(state->flow, last, UINT32_MAX);
+}
+
+static size_t dots(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return flow_dots(state->flow->model);
+}
+
+static size_t coarse_factor(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return solve_coarse_doubles(&state->flow->pattern);
+}
+
+static size_t motion(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return flow_motion_doubles(state->flow);
+}
+
+static size_t pieces(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->head.n_pieces;
+}
+
+/* ---- When a field exists ---- */
+
+static bool always(const struct flow_state *state, uint32_t block)
+{
+    (void)state, (void)block;
+    return true;
+}
+
+static bool kept(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return model_keeps(state->flow->model);
+}
+
+static bool implicit_run(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return model_is_implicit(state->flow->model);
+}
+
+static bool explicit_run(const struct flow_state *state, uint32_t block)
+{
+    return !implicit_run(state, block);
+}
+
+static bool runge(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->model->integrator == MODEL_RK4;
+}
+
+static bool staged(const struct flow_state *state, uint32_t block)
+{
+    return runge(state, block) || state->flow->model->integrator == MODEL_VERLET;
+}
+
+static bool bdf2(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->flow->model->integrator == MODEL_BDF2;
+}
+
+static bool based(const struct flow_state *state, uint32_t block)
+{
+    return bdf2(state, block) ||
+           (implicit_run(state, block) && state->flow->model->newton_steps > 1);
+}
+
+static bool filtered(const struct flow_state *state, uint32_t block)
+{
+    return implicit_run(state, block) && model_is_filtered(state->flow->model);
+}
+
+static bool conditioned(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return flow_is_turned(state->flow);
+}
+
+static bool coarse_run(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return flow_is_coarse(state->flow);
+}
+
+static bool probed(const struct flow_state *state, uint32_t block)
+{
+    return flow_tells(state) && table_of(state, block)->n_watched;
+}
+
+static bool in_pieces(const struct flow_state *state, uint32_t block)
+{
+    (void)block;
+    return state->head.n_pieces;
+}
+
+/* ---- What it is between two steps ---- */
+
+static enum flow_life is_state(const struct model *model)
+{
+    (void)model;
+    return FLOW_STATE_FIELD;
+}
+
+static enum flow_life is_derived(const struct model *model)
+{
+    (void)model;
+    return FLOW_DERIVED;
+}
+
+static enum flow_life is_work(const struct model *model)
+{
+    (void)model;
+    return FLOW_WORK;
+}
+
+/* Verlet begins a step with the forces that ended the one before, which saw another velocity. */
+static enum flow_life is_state_of_verlet(const struct model *model)
+{
+    return model->integrator == MODEL_VERLET ? FLOW_STATE_FIELD : FLOW_WORK;
+}
+
+/* A solve may begin with dv of the step before. */
+static enum flow_life is_state_of_guess(const struct model *model)
+{
+    return model->guess == MODEL_GUESS_ZERO ? FLOW_WORK : FLOW_STATE_FIELD;
+}
+
+/* ---- The table ---- */
+
+#define TYPE_OF(type)                                                                              \
+    _Generic((type *)0, unsigned char *                                                            \
+             : DUITE_BYTE, int64_t *                                                               \
+             : DUITE_I64, uint64_t *                                                               \
+             : DUITE_I64, default                                                                  \
+             : DUITE_F64)
+#define FIELD(name, turns, place, type, width, rows, exists, life)                                 \
+    {#name, turns, place, TYPE_OF(type), width, rows, exists, life},
+#define ROW(name, many, ...)   ROW_##many(name, __VA_ARGS__)
+#define ROW_ONE(name, ...)     FIELD(name, FLOW_TURNS_NOT, 0, __VA_ARGS__)
+#define ROW_BY_STEP(name, ...) ROWS(name, FLOW_TURNS_BY_STEP, __VA_ARGS__)
+#define ROW_BY_PASS(name, ...) ROWS(name, FLOW_TURNS_BY_PASS, __VA_ARGS__)
+#define ROWS(name, turns, ...) FIELD(name, turns, 0, __VA_ARGS__) FIELD(name, turns, 1, __VA_ARGS__)
+
+const struct flow_field flow_fields[FLOW_FIELDS_OF_ALL] = {FLOW_FIELDS(ROW)};
+
+_Static_assert(sizeof(struct flow_objects) == FLOW_FIELDS_OF_BLOCK * sizeof(duite_object),
+               "a block's objects by name are those by number");
+_Static_assert(sizeof(struct flow_run_objects) == FLOW_FIELDS_OF_RUN * sizeof(duite_object),
+               "the run's objects by name are those by number");
+
+size_t flow_field_numbers(const struct flow_state *state, enum flow_field_id field, uint32_t block)
+{
+    const struct flow_field *is = flow_fields + field;
+    const size_t n = is->rows(state, block);
+    return is->width * (n ? n : 1);
+}

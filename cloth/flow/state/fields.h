@@ -1,0 +1,174 @@
+#ifndef CLOTH_FLOW_STATE_FIELDS_H
+#define CLOTH_FLOW_STATE_FIELDS_H
+
+#include "cloth/physics/vec.h"
+#include "cloth/solve/cg.h"
+
+#include <duite.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* The fields of a run: every shared object that lives as long as the run, in one list. A row says
+ * of a field its name, how many objects it has, the type of its numbers in C, numbers a row, how
+ * many rows (at least one is made), when it exists, and what becomes of it between two steps
+ * (enum flow_life). The words in the last three columns are functions of fields.c. Objects are
+ * made, freed and colocated by loops over the list (objects.c), kernels name them (kernel.h), and
+ * the list of a checkpoint follows from the last column. A new field is one row.
+ *
+ * ONE: one object. BY_STEP, BY_PASS: two objects that take turns, name and name_next. By step,
+ * `name` is that of the step under way; by pass, that of the pass under way (flow_state.pass). */
+
+/* Of each block; they live where its x lives. */
+/* clang-format off */
+#define FLOW_BLOCK_FIELDS(X)                                                                       \
+    /* the state, and what neighbours read of it */                                                \
+    X(x,            ONE,     phys_vec,      4, rows,         always,       is_state)               \
+    X(v,            ONE,     phys_vec,      4, rows,         always,       is_state)               \
+    X(f,            ONE,     phys_vec,      4, rows,         always,       is_state_of_verlet)     \
+    X(rim_x,        ONE,     phys_vec,      4, halo,         always,       is_derived)             \
+    X(rim_v,        ONE,     phys_vec,      4, halo,         always,       is_derived)             \
+    X(table,        ONE,     unsigned char, 1, table_bytes,  always,       is_derived)             \
+    /* before a step that may be given up */                                                       \
+    X(kept_x,       ONE,     phys_vec,      4, rows,         kept,         is_work)                \
+    X(kept_v,       ONE,     phys_vec,      4, rows,         kept,         is_work)                \
+    /* explicit integrators (explicit.c); v0: RK4's, or Verlet's of the half step */               \
+    X(spare_rim_x,  ONE,     phys_vec,      4, halo,         explicit_run, is_work)                \
+    X(spare_rim_v,  ONE,     phys_vec,      4, halo,         explicit_run, is_work)                \
+    X(v0,           ONE,     phys_vec,      4, rows,         staged,       is_work)                \
+    X(x0,           ONE,     phys_vec,      4, rows,         runge,        is_work)                \
+    X(sum_x,        ONE,     phys_vec,      4, rows,         runge,        is_work)                \
+    X(sum_v,        ONE,     phys_vec,      4, rows,         runge,        is_work)                \
+    /* implicit integrators: struct phys_states */                                                 \
+    X(base_x,       ONE,     phys_vec,      4, rows,         based,        is_work)                \
+    X(base_v,       ONE,     phys_vec,      4, rows,         based,        is_work)                \
+    X(last_x,       ONE,     phys_vec,      4, rows,         bdf2,         is_state)               \
+    X(last_v,       ONE,     phys_vec,      4, rows,         bdf2,         is_state)               \
+    /* the system of a step: matrix (flow_open_matrix), its filter with contact; its solve */      \
+    X(a,            ONE,     phys_vec,      1, matrix,       implicit_run, is_work)                \
+    X(filter,       ONE,     phys_vec,      4, rows,         filtered,     is_work)                \
+    X(dv,           ONE,     phys_vec,      4, rows,         implicit_run, is_state_of_guess)      \
+    X(r,            ONE,     phys_vec,      4, rows,         implicit_run, is_work)                \
+    X(p,            ONE,     phys_vec,      4, rows,         implicit_run, is_work)                \
+    X(q,            ONE,     phys_vec,      4, rows,         implicit_run, is_work)                \
+    /* r (with a preconditioner z) of the ghosts, then p; what neighbours read of q (of s) */      \
+    X(copies,       ONE,     phys_vec,      8, ghosts,       implicit_run, is_work)                \
+    X(rim_q,        BY_PASS, double,        3, halo,         implicit_run, is_work)                \
+    /* a preconditioner; part: sums of a pass and the coarse right side */                         \
+    X(z,            ONE,     phys_vec,      4, rows,         conditioned,  is_work)                \
+    X(s,            ONE,     phys_vec,      4, rows,         conditioned,  is_work)                \
+    X(factor,       ONE,     double,        1, factor,       conditioned,  is_work)                \
+    X(part,         ONE,     double,        1, part,         conditioned,  is_work)                \
+    /* its coarse part */                                                                          \
+    X(basis,        ONE,     phys_vec,      4, rows,         coarse_run,   is_derived)             \
+    X(rim_basis,    ONE,     phys_vec,      4, halo,         coarse_run,   is_derived)             \
+    X(basis_copies, ONE,     phys_vec,      4, ghosts,       coarse_run,   is_derived)             \
+    X(coupling,     ONE,     double,        1, couplings,    coarse_run,   is_work)                \
+    /* where probes are: the force on each row; what is reported of them */                        \
+    X(felt,         ONE,     phys_vec,      4, rows,         probed,       is_work)                \
+    X(seen,         ONE,     double, FLOW_SEEN, watched,     probed,       is_work)
+
+/* Of the whole run; they live where the first block lives. */
+#define FLOW_RUN_FIELDS(X)                                                                         \
+    /* sums of a step; trial, slope: of a Newton step */                                           \
+    X(status,       BY_STEP, double, FLOW_STATUS, one,       always,       is_work)                \
+    X(stretch,      BY_STEP, double,        1, one,          always,       is_work)                \
+    X(peaks,        BY_STEP, double, FLOW_PEAKS, one,        always,       is_work)                \
+    X(energies,     BY_STEP, double, FLOW_SUMS, one,         always,       is_work)                \
+    X(trial,        ONE,     double, FLOW_STATUS, one,       always,       is_work)                \
+    X(slope,        ONE,     double,        1, one,          always,       is_work)                \
+    /* a solve; pieces: what it left of free pieces; coarse, motion: factor, and its part of s */  \
+    X(sums,         BY_PASS, double,        1, dots,         always,       is_work)                \
+    X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one, always, is_work)            \
+    X(coarse,       ONE,     double,        1, coarse_factor, coarse_run,  is_work)                \
+    X(motion,       BY_PASS, double,        1, motion,       coarse_run,   is_work)                \
+    X(pieces,       ONE,     double, FLOW_PIECE_SUMS, pieces, in_pieces,   is_work)                \
+    /* reports; who holds the token writes a frame or a row */                                     \
+    X(token,        ONE,     int64_t,       1, one,          always,       is_work)                \
+    X(seconds,      ONE,     double, FLOW_PARTS, one,        always,       is_work)                \
+    X(energy,       ONE,     double, FLOW_SUMS, one,         always,       is_work)                \
+    X(told,         ONE,     uint64_t, FLOW_TELL, one,       always,       is_work)
+/* clang-format on */
+
+#define FLOW_FIELDS(X) FLOW_BLOCK_FIELDS(X) FLOW_RUN_FIELDS(X)
+
+/* FLOW_FIELD_name, and FLOW_FIELD_name_next behind it. */
+#define FLOW_FIELD_ID(name, many, ...) FLOW_FIELD_ID_##many(name)
+#define FLOW_FIELD_ID_ONE(name)        FLOW_FIELD_##name,
+#define FLOW_FIELD_ID_BY_STEP(name)    FLOW_FIELD_##name, FLOW_FIELD_##name##_next,
+#define FLOW_FIELD_ID_BY_PASS(name)    FLOW_FIELD_ID_BY_STEP(name)
+enum flow_field_id {
+    FLOW_BLOCK_FIELDS(FLOW_FIELD_ID) FLOW_FIELDS_OF_BLOCK,
+    FLOW_FIELD_BEFORE_RUN = FLOW_FIELDS_OF_BLOCK - 1,
+    FLOW_RUN_FIELDS(FLOW_FIELD_ID) FLOW_FIELDS_OF_ALL
+};
+enum { FLOW_FIELDS_OF_RUN = FLOW_FIELDS_OF_ALL - FLOW_FIELDS_OF_BLOCK };
+
+#define FLOW_FIELD_MEMBER(name, many, ...) FLOW_FIELD_MEMBER_##many(name)
+#define FLOW_FIELD_MEMBER_ONE(name)        duite_object name;
+#define FLOW_FIELD_MEMBER_BY_STEP(name)    duite_object name[2];
+#define FLOW_FIELD_MEMBER_BY_PASS(name)    duite_object name[2];
+
+/* The objects of a block, by name or by number; the zero object where a field does not exist. */
+struct flow_objects {
+    union {
+        duite_object of[FLOW_FIELDS_OF_BLOCK];
+        struct {
+            FLOW_BLOCK_FIELDS(FLOW_FIELD_MEMBER)
+        };
+    };
+};
+
+/* Those of the run; by number from FLOW_FIELDS_OF_BLOCK on. */
+struct flow_run_objects {
+    union {
+        duite_object of[FLOW_FIELDS_OF_RUN];
+        struct {
+            FLOW_RUN_FIELDS(FLOW_FIELD_MEMBER)
+        };
+    };
+};
+
+/* What a field is between two steps. */
+enum flow_life {
+    FLOW_STATE_FIELD, /* the next step reads it: a checkpoint has it */
+    FLOW_DERIVED, /* the next step reads it, and a restart can make it from the state and model */
+    FLOW_WORK     /* the next step writes it before it reads it */
+};
+
+/* FLOW_TURNS_NOT: one object. */
+enum flow_turns { FLOW_TURNS_NOT, FLOW_TURNS_BY_STEP, FLOW_TURNS_BY_PASS };
+
+struct flow_state;
+struct model;
+
+struct flow_field {
+    const char *name;
+    enum flow_turns turns;
+    unsigned place;  /* 1: it is the other of two, name_next */
+    duite_type type; /* of its numbers */
+    size_t width;    /* numbers a row */
+    size_t (*rows)(const struct flow_state *state, uint32_t block);
+    bool (*exists)(const struct flow_state *state, uint32_t block);
+    enum flow_life (*life)(const struct model *model);
+};
+
+/* By number; one that takes turns is there twice. */
+extern const struct flow_field flow_fields[FLOW_FIELDS_OF_ALL];
+
+/* Numbers of a field in a block; of one of the run in all, whatever the block. Local. */
+size_t flow_field_numbers(const struct flow_state *state, enum flow_field_id field, uint32_t block);
+
+/* The object of a field, of a block or of the run; of two that take turns, whose turn it is. */
+duite_object flow_field_object(const struct flow_state *state, enum flow_field_id field,
+                               uint32_t block);
+
+/* In all blocks the names of two fields pass to each other's objects. Both exist, alike. */
+void flow_fields_swap(struct flow_state *state, enum flow_field_id a, enum flow_field_id b);
+
+/* All objects that exist. A failure is returned by the next get. */
+void flow_objects_make(struct flow_state *state);
+/* Frees those that were made, packed halos and the recorded solve as well. */
+int flow_objects_free(struct flow_state *state);
+
+#endif

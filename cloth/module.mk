@@ -5,6 +5,7 @@ libduite_cloth_la_LIBADD = $(YAML_LIBS) $(METIS_LIBS) $(XXHASH_LIBS) -lm
 include cloth/base/module.mk
 include cloth/mesh/module.mk
 include cloth/physics/module.mk
+include cloth/contact/module.mk
 include cloth/solve/module.mk
 include cloth/model/module.mk
 include cloth/flow/module.mk

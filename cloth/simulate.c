@@ -134,23 +134,21 @@ static int open_output(struct run *run, struct cloth_error *error)
         return error->code;
     const struct mesh **meshes = calloc(model->n_cloths, sizeof *meshes);
     const char **names = calloc(model->n_cloths, sizeof *names);
-    double(*planes)[6] = calloc(model->n_planes + 1, sizeof *planes);
+    double(*planes)[6] = calloc(model->n_obstacles + 1, sizeof *planes);
     int code = CLOTH_E_MEMORY;
     if (meshes && names && planes) {
         for (uint32_t i = 0; i < model->n_cloths; i++) {
             meshes[i] = &model->cloths[i].mesh;
             names[i] = model->cloths[i].name;
         }
-        for (uint32_t i = 0; i < model->n_planes; i++) {
-            memcpy(planes[i], model->planes[i].point, 3 * sizeof(double));
-            memcpy(planes[i] + 3, model->planes[i].normal, 3 * sizeof(double));
-        }
+        for (uint32_t i = 0; i < model->n_obstacles; i++)
+            memcpy(planes[i], model->obstacles[i].value, sizeof planes[i]);
         const struct output_setup setup = {.folder = run->options->output,
                                            .n_meshes = model->n_cloths,
                                            .meshes = meshes,
                                            .names = names,
                                            .fps = model->fps,
-                                           .n_planes = model->n_planes,
+                                           .n_planes = model->n_obstacles,
                                            .planes = (const double(*)[6])planes};
         code = output_open(&run->frames, &setup, error);
     } else {

@@ -67,6 +67,7 @@ endif
 
 include tests/cloth/base/module.mk
 include tests/cloth/mesh/module.mk
+include tests/cloth/contact/module.mk
 include tests/cloth/physics/module.mk
 include tests/cloth/solve/module.mk
 include tests/cloth/flow/module.mk

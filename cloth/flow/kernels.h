@@ -7,7 +7,7 @@
  * neighbour, in slot order. Vectors are rows of four doubles. */
 extern const duite_kernel flow_tell_head; /* w head: on rank 0 */
 extern const duite_kernel
-    flow_tell_shared; /* w shared: planes, motions, shapes, neighbours; on rank 0 */
+    flow_tell_shared; /* w shared: obstacles, motions, shapes, neighbours; on rank 0 */
 extern const duite_kernel flow_table_make; /* w table of a block: on rank 0 */
 extern const duite_kernel flow_table_keep; /* rw table: where the block lives */
 extern const duite_kernel flow_collect;    /* r vector of a block, w it without its fourth lane */

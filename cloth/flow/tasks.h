@@ -69,7 +69,7 @@ struct flow {
     uint64_t n_steps, partition_hash;
     double inertia, release;   /* kg m^2, J: flow_source_inertia, flow_source_release */
     struct flow_tables tables; /* shapes */
-    void *shared;              /* planes, key frames, slots and copies that the above point to */
+    void *shared;              /* obstacles, key frames, slots and copies that the above point to */
 
     /* Rank 0 only. */
     char warning[8][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,

@@ -61,7 +61,7 @@ void model_free(struct model *model)
     free(model->beats);
     free(model->materials);
     free(model->cloths);
-    free(model->planes);
+    free(model->obstacles);
     free(model->name);
     free(model->h_place);
     free(model->fps_place);
@@ -136,12 +136,20 @@ int model_fail(const char *place, struct cloth_error *error, const char *format,
     return cloth_fail(error, CLOTH_E_INPUT, "%s%s%s", place ? place : "", place ? ": " : "", text);
 }
 
+bool model_obstacles_move(const struct model *model)
+{
+    bool moves = false;
+    for (uint32_t i = 0; i < model->n_obstacles; i++)
+        moves = moves || model->obstacles[i].n > 0;
+    return moves;
+}
+
 bool model_is_guarded(const struct model *model)
 {
     const double *wind = model->air.wind;
     const bool blown = model_has_air(model) && (wind[0] != 0 || wind[1] != 0 || wind[2] != 0);
     return model_is_implicit(model) && model->energy_growth > 0 && !blown && !model->n_motions &&
-           !model->n_courses && !model->own_filter;
+           !model->n_courses && !model->own_filter && !model_obstacles_move(model);
 }
 
 bool model_is_coarse(const struct model *model)

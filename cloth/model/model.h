@@ -2,6 +2,7 @@
 #define CLOTH_MODEL_MODEL_H
 
 #include "cloth/base/error.h"
+#include "cloth/contact/shape.h"
 #include "cloth/mesh/elastic.h"
 #include "cloth/mesh/mesh.h"
 #include "cloth/physics/air.h"
@@ -149,10 +150,6 @@ struct model_rest {
     double speed, hold; /* m/s, s; speed 0: it does not end so */
 };
 
-struct model_plane {
-    double point[3], normal[3]; /* normal of length 1, towards the free side */
-};
-
 /* Explicit ones come first. docs/physics.md has their formulas. */
 enum model_integrator {
     MODEL_EXPLICIT_EULER,   /* x by the velocity before the step */
@@ -164,7 +161,7 @@ enum model_integrator {
 };
 enum { MODEL_INTEGRATORS = MODEL_BDF2 + 1 };
 enum model_contact {
-    MODEL_CONTACT_PROJECT, /* vertices below a plane are put onto it after the step */
+    MODEL_CONTACT_PROJECT, /* vertices in an obstacle are put onto it after the step */
     MODEL_CONTACT_FILTER   /* the solve of implicit Euler keeps them there; so, what is left */
 };
 enum model_stop {
@@ -190,14 +187,15 @@ enum model_preconditioner {
 
 struct model {
     char *name; /* of the scene */
-    uint32_t n_materials, n_cloths, n_planes, n_probes;
+    uint32_t n_materials, n_cloths, n_obstacles, n_probes;
     struct model_material *materials;
     struct model_cloth *cloths;
-    struct model_plane *planes;
+    struct contact_shape *obstacles;
     struct model_probe *probes;
     uint32_t n_motions, n_keys;
     struct model_motion *motions;
-    struct phys_key *keys; /* of each motion in ascending order; at time 0 it is no motion */
+    struct phys_key *keys; /* of each motion in ascending order, of pins and of obstacles; at time 0
+                              that of a pin is no motion */
     uint32_t n_guides;
     struct model_guide *guides;
     uint32_t n_courses, n_beats;
@@ -250,11 +248,11 @@ static inline int model_is_implicit(const struct model *model)
     return model->integrator >= MODEL_IMPLICIT_EULER;
 }
 
-/* Whether its solves know of planes. */
+/* Whether its solves know of obstacles. */
 static inline int model_solves_contact(const struct model *model)
 {
     return model->integrator == MODEL_IMPLICIT_EULER && model->newton_steps <= 1 &&
-           model->contact == MODEL_CONTACT_FILTER && model->n_planes;
+           model->contact == MODEL_CONTACT_FILTER && model->n_obstacles;
 }
 
 /* Whether its solves are filtered by more than points: by contact, guides or the program. */
@@ -263,6 +261,9 @@ static inline int model_is_filtered(const struct model *model)
     return model_solves_contact(model) ||
            (model_is_implicit(model) && (model->n_guides || model->own_filter));
 }
+
+/* Whether an obstacle moves. */
+bool model_obstacles_move(const struct model *model);
 
 /* Whether pins have a part in the velocities that a step begins with. */
 static inline int model_is_driven(const struct model *model)

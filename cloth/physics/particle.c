@@ -26,39 +26,6 @@ PHYS_KERNEL(phys_advance, (size_t n, double scale, const phys_vec *d, phys_vec *
         y[i] += scale * d[i];
 }
 
-PHYS_INLINE size_t leave(const phys_vec *origin, const phys_vec *up, const phys_vec *way,
-                         phys_vec *x, phys_vec *v)
-{
-    const phys_vec from = *x - *origin;
-    const double height = phys_dot(&from, up);
-    if (height > 0)
-        return 0;
-    *x -= height * *way;
-    const double speed = phys_dot(v, up);
-    if (speed < 0)
-        *v -= speed * *way;
-    return 1;
-}
-
-size_t phys_plane(size_t n, const double point[3], const double normal[3], const double *free,
-                  phys_vec *x, phys_vec *v)
-{
-    const phys_vec origin = {point[0], point[1], point[2], 0};
-    const phys_vec up = {normal[0], normal[1], normal[2], 0};
-    size_t touched = 0;
-    for (size_t i = 0; i < n; i++)
-        touched += free[i] != 0 ? leave(&origin, &up, &up, x + i, v + i) : 0;
-    return touched;
-}
-
-size_t phys_plane_along(const double point[3], const double normal[3], const phys_vec *way,
-                        phys_vec *x, phys_vec *v)
-{
-    const phys_vec origin = {point[0], point[1], point[2], 0};
-    const phys_vec up = {normal[0], normal[1], normal[2], 0};
-    return leave(&origin, &up, way, x, v);
-}
-
 double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *most)
 {
     double sum = 0;

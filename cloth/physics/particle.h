@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-/* Particles one by one: forces from outside, steps of time, planes. Arrays have n rows; `free` is 1
+/* Particles one by one: forces from outside, steps of time. Arrays have n rows; `free` is 1
  * for a particle that moves and 0 for one that is held. Pure functions; nothing is allocated. */
 
 /* f = load - drag v. load: N, gravity included; drag: kg/s; v: m/s. */
@@ -17,15 +17,6 @@ void phys_accelerate(size_t n, const double *mass, const double *free, phys_vec 
 
 /* y += scale d: v += h a, v += dv, x += h v. */
 void phys_advance(size_t n, double scale, const phys_vec *d, phys_vec *y);
-
-/* Lifts particles that are on or under a plane onto it and takes the velocity into it away; what is
- * tangent stays. Returns how many. point: m, normal: of length 1, towards the free side. */
-size_t phys_plane(size_t n, const double point[3], const double normal[3], const double *free,
-                  phys_vec *x, phys_vec *v);
-
-/* The same of one particle that leaves the plane along a way with way.normal = 1. */
-size_t phys_plane_along(const double point[3], const double normal[3], const phys_vec *way,
-                        phys_vec *x, phys_vec *v);
 
 /* Sum of m v.v / 2 (J), rows in order; widens *most to the largest v.v (m^2/s^2). mass: kg. */
 double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *most);

@@ -96,7 +96,7 @@ static int verlet(struct flow_state *state)
             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f), FLOW_AT(v0), FLOW_AT(spare_rim_v)),
             FLOW_THEN_STATUS, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
     swap_rims_v(state);
-    state->settled_forces = !model->n_planes && !model_is_driven(model);
+    state->settled_forces = !model->n_obstacles && !model_is_driven(model);
     return code;
 }
 

@@ -84,9 +84,9 @@ static int find_rest(struct flow_state *state)
     if (code)
         return code;
     const double time = flow_time(state);
-    for (uint32_t i = 0; i < model->n_motions; i++)
-        if (model->keys[model->motions[i].first + model->motions[i].n - 1].time > time)
-            state->moved = time; /* a pin will move yet */
+    for (uint32_t i = 0; i < model->n_keys; i++)
+        if (model->keys[i].time > time)
+            state->moved = time; /* a pin or an obstacle will move yet */
     for (uint32_t course = 1; course <= model->n_courses; course++)
         if (model_course_end(model, course) > time)
             state->moved = time; /* a load will vary yet */

@@ -45,7 +45,7 @@ static int tell_head(const duite_call *call)
     head->n_blocks = source->blocks.n_blocks;
     head->n_slots = source->neighbours.n_slots;
     head->n_copies = source->neighbours.n_copies;
-    head->shared_bytes = flow->model->n_planes * sizeof *flow->model->planes +
+    head->shared_bytes = flow->model->n_obstacles * sizeof *flow->model->obstacles +
                          flow->model->n_keys * sizeof *flow->model->keys +
                          flow->model->n_motions * sizeof *flow->model->motions +
                          flow->model->n_guides * sizeof *flow->model->guides +
@@ -81,7 +81,7 @@ static int tell_shared(const duite_call *call)
     const struct flow_source *source = &flow->source;
     char *to = duite_out(call, 0, char);
     const struct model *model = flow->model;
-    to = put(to, model->planes, model->n_planes * sizeof *model->planes);
+    to = put(to, model->obstacles, model->n_obstacles * sizeof *model->obstacles);
     to = put(to, model->keys, model->n_keys * sizeof *model->keys);
     to = put(to, model->guides, model->n_guides * sizeof *model->guides);
     to = put(to, model->beats, model->n_beats * sizeof *model->beats);
@@ -151,7 +151,7 @@ int flow_share_head(struct flow_state *state)
     flow->told.n_materials = flow->told.n_cloths = 0;
     flow->told.materials = NULL;
     flow->told.cloths = NULL;
-    flow->told.planes = NULL;
+    flow->told.obstacles = NULL;
     flow->told.probes = NULL;
     flow->told.keys = NULL;
     flow->told.motions = NULL;
@@ -172,8 +172,8 @@ static void unpack(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     struct flow_tables *tables = &flow->tables;
-    flow->told.planes = flow->shared;
-    flow->told.keys = (void *)(flow->told.planes + flow->model->n_planes);
+    flow->told.obstacles = flow->shared;
+    flow->told.keys = (void *)(flow->told.obstacles + flow->model->n_obstacles);
     flow->told.guides = (void *)(flow->told.keys + flow->model->n_keys);
     flow->told.beats = (void *)(flow->told.guides + flow->model->n_guides);
     flow->told.courses = (void *)(flow->told.beats + flow->model->n_beats);

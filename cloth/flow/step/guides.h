@@ -1,6 +1,7 @@
 #ifndef CLOTH_FLOW_STEP_GUIDES_H
 #define CLOTH_FLOW_STEP_GUIDES_H
 
+#include "cloth/contact/shape.h"
 #include "cloth/flow/bodies.h"
 #include "cloth/physics/motion.h"
 
@@ -48,6 +49,15 @@ void flow_pins_guide(struct flow_pins *pins, uint32_t i, struct flow_guide *guid
 /* The part of S of a row, NULL where no guide is; for rows in ascending order. Good until the next
  * call. */
 const phys_vec *flow_pins_filter(struct flow_pins *pins, uint32_t row);
+
+/* An obstacle in the task's step. */
+static inline void flow_obstacle_pose(const duite_call *call, const struct contact_shape *obstacle,
+                                      struct contact_pose *pose)
+{
+    const struct model *model = flow_of(call)->model;
+    const struct flow_args *args = flow_args_of(call);
+    contact_pose_over(obstacle, model->keys, args->begin * model->h / FLOW_TICKS, args->time, pose);
+}
 
 /* y = S y of the guided rows; y = before + S (y - before) of them. */
 void flow_guides_filter(const duite_call *call, const struct flow_table *t, phys_vec *y);

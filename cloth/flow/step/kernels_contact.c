@@ -1,39 +1,38 @@
 /* Guides and contact in the solve. A row that a guide holds is filtered by it. A vertex that lies
- * on a plane, or comes to it in the step by the velocity it has, is held along the normal by the
- * filter of the solve. Before the forces its velocity along the normal is made the one that ends
- * the step on the plane, so that they and the right side see it (b - A z of Ascher & Boxerman 2003,
- * with the change z made beforehand, as for pins). One that lies there is let go when the forces on
- * it pull it off. */
+ * on an obstacle, or comes to it in the step by the velocity it has, is held along the normal by
+ * the filter of the solve. Before the forces its velocity along the normal is made the one that
+ * ends the step on the surface, so that they and the right side see it (b - A z of Ascher &
+ * Boxerman 2003, with the change z made beforehand, as for pins). One that lies there is let go
+ * when the forces on it pull it off. */
+#include "cloth/contact/meet.h"
 #include "cloth/flow/step/guides.h"
 
-/* m: so near a vertex lies on a plane. */
-static const double ON = 1e-7;
-
-enum meeting { APART, LIES, LANDS };
-
-/* Of a vertex with a plane in a step of h; *speed: along the normal, *due: what it must be. */
-static enum meeting meet(const struct model_plane *plane, double h, const phys_vec *x,
-                         const phys_vec *v, double *speed, double *due)
-{
-    const phys_vec origin = {plane->point[0], plane->point[1], plane->point[2], 0};
-    const phys_vec up = {plane->normal[0], plane->normal[1], plane->normal[2], 0};
-    const phys_vec from = *x - origin;
-    const double height = phys_dot(&from, &up);
-    *speed = phys_dot(v, &up);
-    *due = 0;
-    if (height <= ON)
-        return *speed <= 0 ? LIES : APART;
-    *due = -height / h;
-    /* What lands was given just this speed: rounding may leave it a little slower. */
-    return *speed <= *due * (1 - 1e-9) ? LANDS : APART;
-}
-
-/* Whether a row can leave a plane with the normal *way, which becomes the way along which it does.
+/* Whether a row can leave an obstacle with the normal *way, which becomes the way along which it
+ * does.
  */
 static bool can_leave(struct flow_pins *pins, uint32_t row, phys_vec *way)
 {
     const phys_vec *filter = flow_pins_filter(pins, row);
     return pins->table->free[row] != 0 && (!filter || flow_guide_way(filter, way));
+}
+
+/* Gives rows the velocity that ends the step on the obstacle. */
+static void touch_obstacle(const duite_call *call, const struct flow_table *t,
+                           const struct contact_shape *obstacle, const phys_vec *x, phys_vec *v)
+{
+    struct contact_pose pose;
+    struct flow_pins pins;
+    flow_obstacle_pose(call, obstacle, &pose);
+    flow_pins_begin(call, t, &pins);
+    for (uint32_t i = 0; i < t->n; i++) {
+        struct contact_hit hit;
+        double speed, due;
+        contact_ahead(obstacle, &pose, x + i, &hit);
+        phys_vec way = hit.normal;
+        if (can_leave(&pins, i, &way) &&
+            contact_meet(&hit, flow_args_of(call)->h, v + i, &speed, &due))
+            v[i] += (due - speed) * way;
+    }
 }
 
 static int touch(const duite_call *call)
@@ -42,18 +41,8 @@ static int touch(const duite_call *call)
     const struct model *model = flow_of(call)->model;
     const phys_vec *x = duite_in(call, 1, phys_vec);
     phys_vec *v = duite_out(call, 2, phys_vec);
-    for (uint32_t p = 0; p < model->n_planes; p++) {
-        const double *n = model->planes[p].normal;
-        struct flow_pins pins;
-        flow_pins_begin(call, t, &pins);
-        for (uint32_t i = 0; i < t->n; i++) {
-            phys_vec way = {n[0], n[1], n[2], 0};
-            double speed, due;
-            if (can_leave(&pins, i, &way) &&
-                meet(model->planes + p, flow_args_of(call)->h, x + i, v + i, &speed, &due))
-                v[i] += (due - speed) * way;
-        }
-    }
+    for (uint32_t p = 0; p < model->n_obstacles; p++)
+        touch_obstacle(call, t, model->obstacles + p, x, v);
     flow_write_rim(t, v, duite_out(call, 3, phys_vec));
     return 0;
 }
@@ -63,23 +52,27 @@ const duite_kernel flow_touch = {.name = "touch",
                                  .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_W},
                                  .args_size = sizeof(struct flow_args)};
 
-/* Holds the rows that a plane holds. */
+/* Holds the rows that an obstacle holds. */
 static void hold_rows(const duite_call *call, const struct flow_table *t,
-                      const struct model_plane *plane, phys_vec *filter)
+                      const struct contact_shape *obstacle, phys_vec *filter)
 {
     const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
     const phys_vec *f = duite_in(call, 3, phys_vec);
-    const phys_vec up = {plane->normal[0], plane->normal[1], plane->normal[2], 0};
+    struct contact_pose pose;
     struct flow_pins pins;
+    flow_obstacle_pose(call, obstacle, &pose);
     flow_pins_begin(call, t, &pins);
     for (uint32_t i = 0; i < t->n; i++) {
+        struct contact_hit hit;
         double speed, due;
-        phys_vec way = up;
+        contact_ahead(obstacle, &pose, x + i, &hit);
+        phys_vec way = hit.normal;
         if (!can_leave(&pins, i, &way))
             continue;
-        const enum meeting how = meet(plane, flow_args_of(call)->h, x + i, v + i, &speed, &due);
-        if (how == LANDS || (how == LIES && phys_dot(f + i, &way) <= 0))
-            solve_hold(&up, filter + i);
+        const enum contact_meeting how =
+            contact_meet(&hit, flow_args_of(call)->h, v + i, &speed, &due);
+        if (how == CONTACT_LANDS || (how == CONTACT_LIES && phys_dot(f + i, &way) <= 0))
+            solve_hold(&hit.normal, filter + i);
     }
 }
 
@@ -116,8 +109,8 @@ static int contact(const duite_call *call)
         flow_pins_guide(&pins, i, &guide);
         filter[t->guided[i][0]] = guide.filter;
     }
-    for (uint32_t p = 0; model_solves_contact(model) && p < model->n_planes; p++)
-        hold_rows(call, t, model->planes + p, filter);
+    for (uint32_t p = 0; model_solves_contact(model) && p < model->n_obstacles; p++)
+        hold_rows(call, t, model->obstacles + p, filter);
     return model->own_filter ? filter_own(call, t, filter) : 0;
 }
 FLOW_TIMED(contact, FLOW_COLLIDE)

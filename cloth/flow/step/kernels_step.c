@@ -1,7 +1,7 @@
 /* A body writes the rows of its own block only, in an order that the block's table gives; what it
  * needs of neighbours it finds in their rims, one object a neighbour and vector, in slot order. */
+#include "cloth/contact/meet.h"
 #include "cloth/flow/step/guides.h"
-
 #include "cloth/physics/particle.h"
 
 #include <math.h>
@@ -174,26 +174,30 @@ const duite_kernel flow_position = {.name = "position",
                                     .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_CW},
                                     .args_size = ARGS};
 
-/* Rows that a guide holds leave a plane along it. Returns how many rows of the block met it. */
-static size_t meet(const duite_call *call, const struct flow_table *t,
-                   const struct model_plane *plane, phys_vec *x, phys_vec *v)
+/* Rows that a guide holds leave an obstacle along it. Returns how many rows of the block met it. */
+static size_t obstacle_meets(const duite_call *call, const struct flow_table *t,
+                             const struct contact_shape *obstacle, phys_vec *x, phys_vec *v)
 {
-    const double *point = plane->point, *normal = plane->normal;
+    struct contact_pose pose;
+    struct contact_hit hit;
     struct flow_pins pins;
     struct flow_guide guide;
     uint32_t from = 0;
     size_t touched = 0;
+    flow_obstacle_pose(call, obstacle, &pose);
     flow_pins_begin(call, t, &pins);
     for (uint32_t i = 0; i < t->n_guided; i++) {
         const uint32_t row = t->guided[i][0];
-        phys_vec way = {normal[0], normal[1], normal[2], 0};
-        touched += phys_plane(row - from, point, normal, t->free + from, x + from, v + from);
+        touched += contact_project(obstacle, &pose, row - from, t->free + from, x + from, v + from);
         from = row + 1;
+        contact_closest(obstacle, &pose, 1, x + row, &hit);
         flow_pins_guide(&pins, i, &guide);
+        phys_vec way = hit.normal;
         if (flow_guide_way(&guide.filter, &way))
-            touched += phys_plane_along(point, normal, &way, x + row, v + row);
+            touched += contact_leave(&hit, &way, x + row, v + row);
     }
-    return touched + phys_plane(t->n - from, point, normal, t->free + from, x + from, v + from);
+    return touched +
+           contact_project(obstacle, &pose, t->n - from, t->free + from, x + from, v + from);
 }
 
 static int collide(const duite_call *call)
@@ -202,8 +206,8 @@ static int collide(const duite_call *call)
     const struct model *model = flow_of(call)->model;
     phys_vec *x = duite_out(call, 1, phys_vec), *v = duite_out(call, 2, phys_vec);
     double *status = duite_out(call, 5, double);
-    for (uint32_t i = 0; i < model->n_planes; i++)
-        status[FLOW_TOUCHED] += (double)meet(call, t, model->planes + i, x, v);
+    for (uint32_t i = 0; i < model->n_obstacles; i++)
+        status[FLOW_TOUCHED] += (double)obstacle_meets(call, t, model->obstacles + i, x, v);
     flow_write_rim(t, x, duite_out(call, 3, phys_vec));
     flow_write_rim(t, v, duite_out(call, 4, phys_vec));
     return flow_check(call, t, x, "position", 5);

@@ -147,7 +147,7 @@ static int end_step(struct flow_state *state)
         code = model_is_implicit(model) ? flow_implicit_end(state) : flow_explicit_end(state);
     if (!code && model_is_driven(model))
         code = flow_pins_place(state);
-    if (!code && model->n_planes)
+    if (!code && model->n_obstacles)
         code = fork_all(state, &flow_collide,
                         FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
                         FLOW_THEN_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);

@@ -2,15 +2,37 @@
 #include "cloth/scene/build/build.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const double TOUCH = 1e-9; /* m: planes that overlap by less touch */
 
-static int build_plane(struct model_plane *plane, const struct scene_tree *tree, int node,
+/* One number or several of a parameter; a key that the schema lets a scene leave out has a default
+ * there. */
+static int build_parameter(double *value, const struct contact_kind *kind,
+                           const struct contact_parameter *parameter, const struct scene_tree *tree,
+                           int node, struct cloth_error *error)
+{
+    char what[80];
+    snprintf(what, sizeof what, "the %s of a %s", parameter->name, kind->name);
+    if (parameter->role == CONTACT_DIRECTION)
+        return scene_build_direction(value, what, tree, node, error);
+    scene_tree_vector(tree, node, contact_role_size(parameter->role), value);
+    return CLOTH_OK;
+}
+
+static int build_shape(struct contact_shape *shape, const struct scene_tree *tree, int obstacle,
                        struct cloth_error *error)
 {
-    scene_tree_vector(tree, scene_tree_get(tree, node, "point"), 3, plane->point);
-    return scene_build_direction(plane->normal, "the normal of a plane", tree,
-                                 scene_tree_get(tree, node, "normal"), error);
+    int node = 0, code = CLOTH_OK;
+    while (!(node = scene_tree_get(tree, obstacle, contact_kinds[shape->kind]->name)))
+        shape->kind++;
+    const struct contact_kind *kind = contact_kinds[shape->kind];
+    double *value = shape->value;
+    for (const struct contact_parameter *p = kind->parameter; p->name && !code; p++) {
+        code = build_parameter(value, kind, p, tree, scene_tree_get(tree, node, p->name), error);
+        value += contact_role_size(p->role);
+    }
+    return code;
 }
 
 int scene_build_obstacles(struct model *model, const struct scene_tree *tree,
@@ -18,24 +40,37 @@ int scene_build_obstacles(struct model *model, const struct scene_tree *tree,
 {
     int list = scene_tree_get(tree, 1, "obstacles");
     size_t n = scene_tree_length(tree, list);
-    model->planes = scene_build_array(n, sizeof *model->planes, error);
-    if (!model->planes)
+    model->obstacles = scene_build_array(n, sizeof *model->obstacles, error);
+    if (!model->obstacles)
         return error->code;
-    model->n_planes = (uint32_t)n;
+    model->n_obstacles = (uint32_t)n;
     int code = CLOTH_OK;
-    for (size_t i = 0; !code && i < n; i++) {
-        int obstacle = scene_tree_item(tree, list, i);
-        code = build_plane(&model->planes[i], tree, scene_tree_get(tree, obstacle, "plane"), error);
-    }
+    for (size_t i = 0; !code && i < n; i++)
+        code = build_shape(model->obstacles + i, tree, scene_tree_item(tree, list, i), error);
     return code;
 }
 
+/* Of a plane: a point, and its normal. */
+static const double *point_of(const struct contact_shape *plane)
+{
+    return plane->value;
+}
+static const double *normal_of(const struct contact_shape *plane)
+{
+    return plane->value + contact_role_size(CONTACT_POINT);
+}
+
+static bool is_still_plane(const struct contact_shape *shape)
+{
+    return contact_kinds[shape->kind] == &contact_plane && !shape->n;
+}
+
 /* How far a point is on the free side of a plane. */
-static double height(const struct model_plane *plane, const double x[3])
+static double height(const struct contact_shape *plane, const double x[3])
 {
     double sum = 0;
     for (int i = 0; i < 3; i++)
-        sum += plane->normal[i] * (x[i] - plane->point[i]);
+        sum += normal_of(plane)[i] * (x[i] - point_of(plane)[i]);
     return sum;
 }
 
@@ -57,13 +92,14 @@ static double surround(const struct mesh *mesh, double middle[3])
 
 /* Whether no point so near to the middle is on the free sides of both: there the sum of both
  * heights is below 0, since it grows with the sum of the normals only. */
-static bool exclude(const struct model_plane *a, const struct model_plane *b,
+static bool exclude(const struct contact_shape *a, const struct contact_shape *b,
                     const double middle[3], double radius)
 {
+    const double *na = normal_of(a), *nb = normal_of(b);
     double cosine = 0, square = 0;
     for (int i = 0; i < 3; i++) {
-        cosine += a->normal[i] * b->normal[i];
-        square += (a->normal[i] + b->normal[i]) * (a->normal[i] + b->normal[i]);
+        cosine += na[i] * nb[i];
+        square += (na[i] + nb[i]) * (na[i] + nb[i]);
     }
     return cosine < 0 && height(a, middle) + height(b, middle) + radius * sqrt(square) < -TOUCH;
 }
@@ -75,7 +111,7 @@ static int check_pair(const struct model *model, const struct scene_tree *tree, 
         const struct model_cloth *cloth = model->cloths + c;
         double middle[3];
         const double radius = surround(&cloth->mesh, middle);
-        if (exclude(model->planes + a, model->planes + b, middle, radius))
+        if (exclude(model->obstacles + a, model->obstacles + b, middle, radius))
             return scene_tree_fail(
                 tree, scene_tree_item(tree, scene_tree_get(tree, 1, "obstacles"), b), error,
                 "obstacles[%u] and obstacles[%u] face each other and overlap: around cloth '%.60s' "
@@ -89,8 +125,9 @@ int scene_build_check_obstacles(const struct model *model, const struct scene_tr
                                 struct cloth_error *error)
 {
     int code = CLOTH_OK;
-    for (uint32_t b = 0; b < model->n_planes; b++)
+    for (uint32_t b = 0; b < model->n_obstacles; b++)
         for (uint32_t a = 0; a < b && !code; a++)
-            code = check_pair(model, tree, a, b, error);
+            if (is_still_plane(model->obstacles + a) && is_still_plane(model->obstacles + b))
+                code = check_pair(model, tree, a, b, error);
     return code;
 }

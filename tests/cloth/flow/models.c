@@ -17,7 +17,7 @@ static void setup_common(struct setup *s)
     s->model.n_materials = s->model.n_cloths = 1;
     s->model.materials = &s->material;
     s->model.cloths = &s->cloth;
-    s->model.planes = &s->plane;
+    s->model.obstacles = &s->plane;
     s->model.gravity[1] = -9.81;
     s->model.h = 0.001;
     s->model.end = 0.01;

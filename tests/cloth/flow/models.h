@@ -11,11 +11,14 @@ struct setup {
     struct model model;
     struct model_material material;
     struct model_cloth cloth;
-    struct model_plane plane;
+    struct contact_shape plane;
     struct model_pin pin;
     struct model_load load;
     uint32_t pinned[40], loaded[4];
 };
+
+/* A plane that stands still, through a point, with a normal of length 1. */
+#define PLANE(...) ((struct contact_shape){.value = {__VA_ARGS__}})
 
 /* A square sheet of n x n vertices and 1 m, level at y = 0, gravity, springs with damping, no pins,
  * loads or planes; implicit, h = 1 ms, 10 steps, a frame a step, relative tolerance 1e-3, blocks

@@ -17,15 +17,15 @@ static void runs(struct record *record, const struct model *model)
 static void setup_floor(struct setup *setup, uint32_t n)
 {
     setup_sheet(setup, n);
-    setup->plane = (struct model_plane){.normal = {0, 1, 0}};
-    setup->model.n_planes = 1;
+    setup->plane = PLANE(0, 0, 0, 0, 1, 0);
+    setup->model.n_obstacles = 1;
     setup->model.contact = MODEL_CONTACT_FILTER;
 }
 
 /* Turns the start, the plane and gravity about the z axis, by cos and sin. */
 static void tilt(struct setup *setup, double cosine, double sine)
 {
-    double *vectors[] = {setup->plane.normal, setup->plane.point, setup->model.gravity};
+    double *vectors[] = {setup->plane.value + 3, setup->plane.value, setup->model.gravity};
     for (size_t i = 0; i < 3; i++) {
         const double x = vectors[i][0], y = vectors[i][1];
         vectors[i][0] = cosine * x - sine * y;
@@ -72,8 +72,9 @@ END_TEST
 START_TEST(planes_that_meet)
 {
     for (uint32_t walls = 1; walls < 3; walls++) {
-        static const struct model_plane planes[] = {
-            {.normal = {0, 1, 0}}, {.normal = {0, 0.6, 0.8}}, {.normal = {-0.8, 0.6, 0}}};
+        static const struct contact_shape planes[] = {{.value = {0, 0, 0, 0, 1, 0}},
+                                                      {.value = {0, 0, 0, 0, 0.6, 0.8}},
+                                                      {.value = {0, 0, 0, -0.8, 0.6, 0}}};
         struct setup setup;
         struct record record = {0};
         setup_floor(&setup, 3);
@@ -86,8 +87,8 @@ START_TEST(planes_that_meet)
         setup.cloth.mass_per_vertex = 0.1;
         setup.material.ea = 20;
         setup.model.grain = 1;
-        setup.model.planes = (struct model_plane *)(uintptr_t)planes;
-        setup.model.n_planes = 1 + walls;
+        setup.model.obstacles = (struct contact_shape *)(uintptr_t)planes;
+        setup.model.n_obstacles = 1 + walls;
         setup.model.gravity[0] = 1;
         setup.model.gravity[2] = -4;
         runs(&record, &setup.model);
@@ -128,8 +129,8 @@ static void setup_fall(struct setup *setup, uint32_t n)
     setup->model.h = 0.02;
     setup->model.end = 0.4;
     setup->model.fps = 50;
-    setup->model.planes = &setup->plane;
-    setup->plane.point[1] = 0;
+    setup->model.obstacles = &setup->plane;
+    setup->plane.value[1] = 0;
     for (size_t v = 0; v < (size_t)n * n; v++) {
         double *p = setup->cloth.mesh.position + 3 * v, x = p[0];
         p[0] = 0.8 * x;
@@ -210,7 +211,7 @@ START_TEST(a_program_filters)
         struct setup setup;
         struct record record = {.threads = 2, .filter = {&mark, hold_three}};
         setup_floor(&setup, 8);
-        setup.plane.point[1] = contact ? -1e-4 : -1;
+        setup.plane.value[1] = contact ? -1e-4 : -1;
         setup.model.own_filter = true;
         setup.model.tolerance = 1e-10;
         setup.model.preconditioner = (enum model_preconditioner)_i;

@@ -231,8 +231,8 @@ START_TEST(a_plane_beyond_the_world)
     struct setup setup;
     struct record record = {0};
     setup_sheet(&setup, 3);
-    setup.plane = (struct model_plane){.point = {0, 1e200, 0}, .normal = {0, 1, 0}};
-    setup.model.n_planes = 1;
+    setup.plane = PLANE(0, 1e200, 0, 0, 1, 0);
+    setup.model.n_obstacles = 1;
     record_run(&record, &setup.model);
     begins(&record, "step 1: the position of vertex");
     record_free(&record);

@@ -158,8 +158,8 @@ START_TEST(guides_meet_the_floor)
         g.setup.model.integrator = (enum model_integrator)(i < MODEL_INTEGRATORS ? i : 4);
         if (i == MODEL_INTEGRATORS)
             g.setup.model.contact = MODEL_CONTACT_FILTER;
-        g.setup.model.n_planes = 1;
-        g.setup.plane = (struct model_plane){{0.5, 0, 0}, {-0.8, 0.6, 0}};
+        g.setup.model.n_obstacles = 1;
+        g.setup.plane = PLANE(0.5, 0, 0, -0.8, 0.6, 0);
         g.setup.cloth.velocity[1] = -1; /* of which the lines leave 0.8 m/s */
         runs(&record, &g.setup.model);
         for (size_t v = 0; v < VERTICES; v++) {

@@ -232,8 +232,8 @@ START_TEST(verlet_after_contact)
     setup_weight(&setup);
     setup.material.damping_stiffness = 0;
     setup.material.damping_mass = 0.3;
-    setup.model.n_planes = 1;
-    setup.plane = (struct model_plane){{0, floor, 0}, {0, 1, 0}};
+    setup.model.n_obstacles = 1;
+    setup.plane = PLANE(0, floor, 0, 0, 1, 0);
     setup.model.h = h;
     setup.model.end = 100 * h;
     setup.model.fps = 1 / h;

@@ -230,8 +230,8 @@ START_TEST(a_sheet_lands_on_the_floor)
     struct record record = {0};
     double lowest = 1;
     setup_sheet(&setup, 8);
-    setup.model.n_planes = 1;
-    setup.plane = (struct model_plane){{0, -0.05, 0}, {0, 1, 0}};
+    setup.model.n_obstacles = 1;
+    setup.plane = PLANE(0, -0.05, 0, 0, 1, 0);
     setup.model.end = 0.2;
     setup_pin(&setup, 1, (const uint32_t[]){0});
     record_run(&record, &setup.model);

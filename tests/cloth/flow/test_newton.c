@@ -227,8 +227,8 @@ START_TEST(bdf2_after_contact)
     setup.material.damping_stiffness = 0;
     setup.model.gravity[1] = -G;
     setup.model.integrator = MODEL_BDF2;
-    setup.model.n_planes = 1;
-    setup.plane = (struct model_plane){{0, floor, 0}, {0, 1, 0}};
+    setup.model.n_obstacles = 1;
+    setup.plane = PLANE(0, floor, 0, 0, 1, 0);
     setup.cloth.start = (double[12]){0, 0, 0, 0, 0, 0, 0, 0.3, 0, 1, 0, 0};
     setup.model.h = h;
     setup.model.end = 100 * h;

@@ -153,8 +153,8 @@ START_TEST(starts_move_alike)
     setup.model.preconditioner = (enum model_preconditioner)_i;
     setup.model.tolerance = 1e-8;
     setup.model.contact = MODEL_CONTACT_FILTER;
-    setup.model.n_planes = 1;
-    setup.plane = (struct model_plane){{0, -1e-4, 0}, {0, 1, 0}};
+    setup.model.n_obstacles = 1;
+    setup.plane = PLANE(0, -1e-4, 0, 0, 1, 0);
     const uint64_t many = iterations_of(&setup, MODEL_GUESS_ZERO, 0.001, &zero);
     const uint64_t few = iterations_of(&setup, MODEL_GUESS_PREVIOUS, 0.001, &previous);
     ck_assert_uint_lt(few, many);

@@ -15,8 +15,8 @@ START_TEST(sets_change_values)
     ck_assert_uint_eq(model.cloths[0].mesh.n_vertices, 120);
     model_free(&model);
     model = scene_read_set("obstacles[0].plane={point: [0, 0, 0], normal: [1, 0, 0]}");
-    ck_assert_double_eq(model.planes[0].normal[0], 1);
-    ck_assert_double_eq(model.planes[0].normal[1], 0);
+    ck_assert_double_eq(model.obstacles[0].value[3], 1);
+    ck_assert_double_eq(model.obstacles[0].value[4], 0);
     model_free(&model);
     static const char *const kinds[] = {"none", "jacobi", "ic0", "coarse", "ic0_coarse"};
     for (int i = 0; i < 5; i++) {

@@ -48,9 +48,9 @@ START_TEST(world_and_time)
     ck_assert_int_eq(model.preconditioner, MODEL_IC0_COARSE);
     ck_assert_uint_eq(model.max_iterations, 10000);
     ck_assert_uint_eq(model.grain, 1000);
-    ck_assert_uint_eq(model.n_planes, 1);
-    same_vector(model.planes[0].point, 0, -1, 0);
-    same_vector(model.planes[0].normal, 0, 3. / 4 / 1.25, 1 / 1.25);
+    ck_assert_uint_eq(model.n_obstacles, 1);
+    same_vector(model.obstacles[0].value, 0, -1, 0);
+    same_vector(model.obstacles[0].value + 3, 0, 3. / 4 / 1.25, 1 / 1.25);
     model_free(&model);
 }
 END_TEST
@@ -361,10 +361,10 @@ END_TEST
 START_TEST(huge_and_tiny_normals)
 {
     struct model model = read_changed("normal: [0, 3, 4]", "normal: [0, 3e300, 4e300]");
-    ck_assert_double_eq_tol(model.planes[0].normal[1], 0.6, 1e-15);
+    ck_assert_double_eq_tol(model.obstacles[0].value[4], 0.6, 1e-15);
     model_free(&model);
     model = read_changed("normal: [0, 3, 4]", "normal: [0, 3e-300, 4e-300]");
-    ck_assert_double_eq_tol(model.planes[0].normal[2], 0.8, 1e-15);
+    ck_assert_double_eq_tol(model.obstacles[0].value[5], 0.8, 1e-15);
     model_free(&model);
 }
 END_TEST

@@ -1,0 +1,20 @@
+/* A plane: its gap is the height of a point above it. */
+#include "cloth/contact/shape.h"
+
+enum { POINT = 0, NORMAL = 3 };
+
+static void plane_closest(const double *value, size_t n, const phys_vec *x, struct contact_hit *hit)
+{
+    const phys_vec origin = {value[POINT], value[POINT + 1], value[POINT + 2], 0};
+    const phys_vec up = {value[NORMAL], value[NORMAL + 1], value[NORMAL + 2], 0};
+    for (size_t i = 0; i < n; i++) {
+        const phys_vec from = x[i] - origin;
+        hit[i].gap = phys_dot(&from, &up);
+        hit[i].normal = up;
+    }
+}
+
+static const struct contact_parameter parameters[] = {
+    {"point", CONTACT_POINT}, {"normal", CONTACT_DIRECTION}, {NULL, 0}};
+const struct contact_kind contact_plane = {
+    .name = "plane", .parameter = parameters, .closest = plane_closest};

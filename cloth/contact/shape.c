@@ -1,0 +1,79 @@
+/* A kind sees points in the axes of its parameters; here they are brought there and back. What
+ * stands still is not touched on the way, so that its bits are those of its kind alone. */
+#include "cloth/contact/shape.h"
+
+enum { AT_ONCE = 32 }; /* points, whose room is on the stack */
+
+const struct contact_kind *const contact_kinds[] = {&contact_plane};
+const uint32_t contact_n_kinds = sizeof contact_kinds / sizeof *contact_kinds;
+
+size_t contact_role_size(enum contact_role role)
+{
+    static const size_t size[] = {[CONTACT_POINT] = 3,
+                                  [CONTACT_DIRECTION] = 3,
+                                  [CONTACT_LENGTH] = 1,
+                                  [CONTACT_LENGTHS] = 3,
+                                  [CONTACT_ROTATION] = 4};
+    return size[role];
+}
+
+void contact_pose_over(const struct contact_shape *shape, const struct phys_key *keys, double from,
+                       double to, struct contact_pose *pose)
+{
+    *pose = (struct contact_pose){.moves = shape->n > 0, .rate = to > from ? 1 / (to - from) : 0};
+    if (!pose->moves)
+        return;
+    phys_pose_at(shape->n, keys + shape->first, shape->about, from, &pose->from);
+    phys_pose_at(shape->n, keys + shape->first, shape->about, to, &pose->to);
+}
+
+static void closest_still(const struct contact_shape *shape, size_t n, const phys_vec *x,
+                          struct contact_hit *hit)
+{
+    contact_kinds[shape->kind]->closest(shape->value, n, x, hit);
+    for (size_t i = 0; i < n; i++)
+        hit[i].velocity = (phys_vec){0};
+}
+
+static void closest_moving(const struct contact_shape *shape, const struct contact_pose *pose,
+                           size_t n, const phys_vec *x, struct contact_hit *hit)
+{
+    phys_vec own[AT_ONCE], was, is;
+    for (size_t i = 0; i < n; i++)
+        phys_pose_back(&pose->to, x + i, own + i);
+    contact_kinds[shape->kind]->closest(shape->value, n, own, hit);
+    for (size_t i = 0; i < n; i++) {
+        const phys_vec surface = own[i] - hit[i].gap * hit[i].normal;
+        phys_pose_point(&pose->from, &surface, &was);
+        phys_pose_point(&pose->to, &surface, &is);
+        hit[i].velocity = pose->rate * (is - was);
+        phys_pose_direction(&pose->to, &hit[i].normal, &hit[i].normal);
+    }
+}
+
+void contact_closest(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
+                     const phys_vec *x, struct contact_hit *hit)
+{
+    for (size_t i = 0; i < n; i += AT_ONCE) {
+        const size_t some = n - i < AT_ONCE ? n - i : AT_ONCE;
+        if (pose->moves)
+            closest_moving(shape, pose, some, x + i, hit + i);
+        else
+            closest_still(shape, some, x + i, hit + i);
+    }
+}
+
+void contact_ahead(const struct contact_shape *shape, const struct contact_pose *pose,
+                   const phys_vec *x, struct contact_hit *hit)
+{
+    phys_vec own, is;
+    if (!pose->moves) {
+        closest_still(shape, 1, x, hit);
+        return;
+    }
+    phys_pose_back(&pose->from, x, &own);
+    contact_kinds[shape->kind]->closest(shape->value, 1, &own, hit);
+    phys_pose_point(&pose->to, &own, &is);
+    hit->velocity = pose->rate * (is - *x);
+    phys_pose_direction(&pose->to, &hit->normal, &hit->normal);
+}

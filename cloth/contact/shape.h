@@ -1,0 +1,80 @@
+#ifndef CLOTH_CONTACT_SHAPE_H
+#define CLOTH_CONTACT_SHAPE_H
+
+#include "cloth/physics/motion.h"
+#include "cloth/physics/vec.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Rigid shapes that cloth meets, still or moving by key frames. A shape is a row of a table of
+ * kinds and the parameters that its kind has. Pure functions of + - * / and sqrt; nothing is
+ * allocated. */
+
+enum { CONTACT_VALUES = 12 };
+
+struct contact_shape {
+    uint32_t kind;     /* row of contact_kinds */
+    uint32_t first, n; /* key frames of its motion, among those of the scene; n 0: it is still */
+    double about[3];   /* m: the point that its motion rotates about */
+    double value[CONTACT_VALUES]; /* its parameters, one after the other as its kind lists them */
+};
+
+/* Where a shape is at the begin and at the end of a step. */
+struct contact_pose {
+    bool moves; /* else the poses mean nothing: the shape is where its parameters say */
+    struct phys_pose from, to;
+    double rate; /* 1/s: 1 over the length of the step; 0: it has none */
+};
+
+/* The point of a surface that is nearest to a given one. */
+struct contact_hit {
+    phys_vec normal;   /* the gradient of the gap, of length 1, out of the shape */
+    phys_vec velocity; /* m/s: of the shape there, by the chord of its way in the step */
+    double gap;        /* m: signed distance, below 0 inside */
+};
+
+/* What a parameter means, which also says how many numbers it has. */
+enum contact_role {
+    CONTACT_POINT,     /* 3, m */
+    CONTACT_DIRECTION, /* 3, of length 1 */
+    CONTACT_LENGTH,    /* 1, m, > 0 */
+    CONTACT_LENGTHS,   /* 3, m, > 0 */
+    CONTACT_ROTATION   /* 4, quaternion w x y z of length 1 */
+};
+size_t contact_role_size(enum contact_role role);
+
+struct contact_parameter {
+    const char *name; /* in scenes and in scene.json */
+    enum contact_role role;
+};
+
+/* A kind of shape: a file of this folder. */
+struct contact_kind {
+    const char *name;                          /* in scenes and in scene.json */
+    const struct contact_parameter *parameter; /* ended by a name that is NULL */
+    /* Fills gap and normal of n points (m), in the axes that the parameters are in. */
+    void (*closest)(const double *value, size_t n, const phys_vec *x, struct contact_hit *hit);
+    /* A box around it: its own axes and middle, half its size (m); the shape is star-shaped as seen
+     * from there. NULL: the shape has no bounds. */
+    void (*around)(const double *value, struct phys_pose *axes, double half[3]);
+};
+extern const struct contact_kind contact_plane;
+extern const struct contact_kind *const contact_kinds[];
+extern const uint32_t contact_n_kinds;
+
+/* The pose of a shape over a step between two times, s. keys: of the scene. */
+void contact_pose_over(const struct contact_shape *shape, const struct phys_key *keys, double from,
+                       double to, struct contact_pose *pose);
+
+/* Of n points (m) at the end of the step. */
+void contact_closest(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
+                     const phys_vec *x, struct contact_hit *hit);
+
+/* Of a point (m) at the begin of the step: its gap there, the normal that this becomes until the
+ * end, and the velocity that would carry the point along with the shape. */
+void contact_ahead(const struct contact_shape *shape, const struct contact_pose *pose,
+                   const phys_vec *x, struct contact_hit *hit);
+
+#endif

@@ -7,10 +7,14 @@ cd "$scratch" || exit 99
 
 run() { limited "$DUITE_CLOTH" "$@" --quiet; }
 
-# row LINE FILE PROGRAM: awk on one line (2, ..., or $) of a table, where c(COLUMN) is a number of it; columns have no unit.
+# rows FILE PROGRAM: awk on the lines of a table below its head, where c(COLUMN) is a number of the line; columns have no unit. An END
+# that is reached for want of a column must leave with `wrong`. row LINE FILE PROGRAM: on one line (2, ..., or $) alone.
+rows() {
+    awk -F, 'function c(name) { if (name in at) return $at[name]; print "there is no column " name; exit wrong = 2 }
+        NR == 1 { for (i = 1; i <= NF; i++) { split($i, column, " "); at[column[1]] = i } next } '"$2" "$1"
+}
 row() {
-    sed -n "1p;$1p" "$2" | awk -F, 'function c(name) { if (name in at) return $at[name]; print "there is no column " name; exit 2 }
-        NR == 1 { for (i = 1; i <= NF; i++) { split($i, column, " "); at[column[1]] = i } next } '"$3"
+    sed -n "1p;$1p" "$2" > row.csv && rows row.csv "$3"
 }
 
 # ---- A pendulum whose pin begins to move: x = u t - u / w sin w t, w^2 = g / L, L the length that the weight stretches it to.
@@ -32,11 +36,11 @@ pendulum() { # ARGUMENT...: integrator and the error that is allowed, against th
     shift
     rm -rf swing
     run pendulum.yaml --output swing "$@" || return 1
-    awk -F, -v allowed="$allowed" 'NR > 1 { t = $2; u = 0.01; w = sqrt(9.81 / (1 + 0.981 / 2000)); n++
-            error = $19 - (u * t - u / w * sin(w * t)); if (error < 0) error = -error; if (error > most) most = error
-            pin = $10 - u * t; if (pin < 0) pin = -pin; if (pin > off) off = pin }
+    rows swing/probes.csv '{ t = c("time"); u = 0.01; w = sqrt(9.81 / (1 + 0.981 / 2000)); n++
+            error = c("probe1.1.x") - (u * t - u / w * sin(w * t)); if (error < 0) error = -error; if (error > most) most = error
+            pin = c("probe1.0.x") - u * t; if (pin < 0) pin = -pin; if (pin > off) off = pin }
         END { print n " rows, error " most / (u / w) " of the amplitude, pin off by " off
-            exit !(n == 2001 && most < allowed * u / w && off < 1e-15) }' swing/probes.csv
+            exit wrong || !(n == 2001 && most < '"$allowed"' * u / w && off < 1e-15) }'
 }
 ok "a pendulum on a pin that begins to move, rk4" pendulum 0.001
 for integrator in verlet symplectic_euler; do
@@ -49,11 +53,12 @@ ok "with implicit_euler" pendulum 0.001 --set integrator=implicit_euler --set ti
 turning() {
     run pendulum.yaml --output turn --set 'cloths[0].pins[0].motion={times: [0, 1, 2, 3], about: [1, 0, 0], rotate: [[1, 0, 0, 0],
         [0.9238795325112867, 0, 0.3826834323650898, 0], [-2, 0, -2, 0], [1, 0, 0, 0]]}' || return 1
-    awk -F, '$2 == 1 || $2 == 2 || $2 == 4 { n++; r = sqrt(0.5)
-            x = $2 == 1 ? 1 - r : $2 == 2 ? 1 : 0; z = $2 == 1 ? r : $2 == 2 ? 1 : 0; print $2, $10, $11, $12
-            if (($10 - x) ^ 2 + $11 ^ 2 + ($12 - z) ^ 2 > 1e-28) bad = 1 }
-        NR > 1 && (($10 - 1) ^ 2 + $12 ^ 2 - 1) ^ 2 > 1e-28 { bad = 1 }
-        END { exit bad || n != 3 }' turn/probes.csv
+    rows turn/probes.csv '{ t = c("time"); px = c("probe1.0.x"); py = c("probe1.0.y"); pz = c("probe1.0.z") }
+        t == 1 || t == 2 || t == 4 { n++; r = sqrt(0.5)
+            x = t == 1 ? 1 - r : t == 2 ? 1 : 0; z = t == 1 ? r : t == 2 ? 1 : 0; print t, px, py, pz
+            if ((px - x) ^ 2 + py ^ 2 + (pz - z) ^ 2 > 1e-28) bad = 1 }
+        ((px - 1) ^ 2 + pz ^ 2 - 1) ^ 2 > 1e-28 { bad = 1 }
+        END { exit wrong || bad || n != 3 }'
 }
 ok "a pin that turns" turning
 
@@ -62,8 +67,9 @@ pushed() {
     run pendulum.yaml --output push --end 0.006 --set 'gravity=[0, 0, 0]' --set 'probes[0].values=[total]' --set \
         'cloths[0].pins[0]={vertices: [0, 1], motion: {times: [0, 0.002, 0.004, 0.006],
         translate: [[0, 0, 0], [2e-6, 0, 0], [8e-6, 0, 0], [18e-6, 0, 0]]}}' || return 1
-    awk -F, 'NR > 1 { want = $1 == 0 ? 0 : $1 == 1 ? 0.1 : 0.2; print $10; if (($10 - want) ^ 2 > 1e-20) bad = 1 } END { exit bad || NR != 5 }' \
-        push/probes.csv
+    rows push/probes.csv '{ k = c("step"); rx = c("probe1.total.rx"); want = k == 0 ? 0 : k == 1 ? 0.1 : 0.2; print rx
+            if ((rx - want) ^ 2 > 1e-20) bad = 1 }
+        END { exit wrong || bad || NR != 5 }'
 }
 ok "pins that speed up push with m a" pushed
 
@@ -79,15 +85,16 @@ awk 'BEGIN { printf "schema: 1\ncloths:\n  - mesh: {inline: {vertices: ["
     print "probes: [{name: ends, vertices: [0, 16], values: [reaction, total]}, {name: all, box: [[-1, -1, -1], [1, 1, 1]], values: [position]}]" }' > chain.yaml
 chain() {
     run chain.yaml --output chain --report chain.json && grep -q '"rest_seconds": [0-9]' chain.json || return 1
-    tail -n 1 chain/probes.csv | awk -F, '{ H = -$10; V = $11; W = 0.01 * 9.81; weight = 17 * W; x = y = 0
-        print "reactions", $10, $11, $13, $14, "total", $17 - weight, "along", $16
-        bad = ($17 - weight) ^ 2 > 1e-16 || $16 ^ 2 > 1e-16
+    row \$ chain/probes.csv '{ H = -c("ends.0.rx"); V = c("ends.0.ry"); W = 0.01 * 9.81; weight = 17 * W; x = y = 0
+        total = c("ends.total.ry") - weight; along = c("ends.total.rx")
+        print "reactions", -H, V, c("ends.16.rx"), c("ends.16.ry"), "total", total, "along", along
+        bad = total ^ 2 > 1e-16 || along ^ 2 > 1e-16
         V -= W # the pin carries its own vertex, too
         for (i = 1; i <= 16; i++) {
             T = sqrt(H * H + V * V)
             l = 1 / 16 + T / 500
             x += l * H / T; y -= l * V / T; V -= W
-            off = ($(19 + 3 * i) - x) ^ 2 + ($(20 + 3 * i) - y) ^ 2
+            off = (c("all." i ".x") - x) ^ 2 + (c("all." i ".y") - y) ^ 2
             if (off > most) most = off
         }
         print "shape off by", sqrt(most), "end", x, y
@@ -99,8 +106,8 @@ ok "a chain hangs as its reactions say, which carry its weight" chain
 loads() {
     run chain.yaml --output loads --set 'cloths[0].loads=[{edges: [[3, 4], [4, 5]], force: [1, -2, 4]}, {box: [[0.49, -1, -1], [0.51, 1, 1]],
         force: [0, 0, 0.25]}, {nearest: [0.9, 0, 0], force: [0.5, 0, 0]}]' || return 1
-    tail -n 1 loads/probes.csv | awk -F, '{ print $16, $17, $18
-        exit ($16 + 0.125 + 0.5) ^ 2 > 1e-14 || ($17 - 0.25 - 17 * 0.01 * 9.81) ^ 2 > 1e-14 || ($18 + 0.5 + 0.25) ^ 2 > 1e-14 }'
+    row \$ loads/probes.csv '{ x = c("ends.total.rx"); y = c("ends.total.ry"); z = c("ends.total.rz"); print x, y, z
+        exit (x + 0.125 + 0.5) ^ 2 > 1e-14 || (y - 0.25 - 17 * 0.01 * 9.81) ^ 2 > 1e-14 || (z + 0.5 + 0.25) ^ 2 > 1e-14 }'
 }
 ok "loads along edges, in boxes and at points" loads
 

@@ -115,7 +115,7 @@ void comm_send(struct comm *comm, struct task *task)
 
 bool comm_posted(struct comm *comm)
 {
-    return !BASE_STACK_IS_EMPTY(&comm->posts) || !BASE_STACK_IS_EMPTY(&comm->channels.ready);
+    return comm_has_posts(comm);
 }
 
 void comm_hold(struct comm *comm)
@@ -141,7 +141,7 @@ void comm_workers_end(struct comm *comm)
 /* ---- Progress ---- */
 
 /* Nodes that are finished make others ready: those are taken by the pass that finished them. */
-static _Thread_local bool passing;
+static _Thread_local bool passing __attribute__((tls_model("initial-exec")));
 
 /* While a recorded graph waits for its messages others are looked for less often. */
 enum { SELDOM = 8 };
@@ -151,10 +151,11 @@ static void comm_receive_seldom(struct comm *comm, struct comm_found *found)
     if (comm->channels.awaited.n && ++comm->channels.looks % SELDOM)
         return;
     comm_transport_receive(comm, found);
-    comm_control_pass(comm);
+    if (comm_control_is_due(comm))
+        comm_control_pass(comm);
 }
 
-static bool comm_pass(struct comm *comm, struct worker *worker, bool looks)
+static inline bool comm_pass(struct comm *comm, struct worker *worker, bool looks)
 {
     bool any = false, outer = passing;
     passing = true;
@@ -169,8 +170,11 @@ static bool comm_pass(struct comm *comm, struct worker *worker, bool looks)
         if (looks)
             comm_receive_seldom(comm, &found);
         comm_unlock(comm);
-        any = any || found.any || found.packets || found.sent || found.nodes;
-        comm_transport_deliver(comm, worker, &found);
+        any |= found.any;
+        if (found.packets || found.sent || found.nodes) {
+            any = true;
+            comm_transport_deliver(comm, worker, &found);
+        }
     } while (comm_left_to_us(comm));
     passing = outer;
     return any;

@@ -2,6 +2,7 @@
 #define DUITE_COMM_INTERNAL_H
 
 #include "runtime/base/monitor.h"
+#include "runtime/base/stack.h"
 #include "runtime/comm/arrivals.h"
 #include "runtime/comm/comm.h"
 
@@ -189,7 +190,8 @@ bool comm_control_send(struct comm *comm, int to, struct data_packet *packet);
  */
 bool comm_control_hear(struct comm *comm, struct data_packet *packet);
 
-/* Does what is due: the divergence check, and the abort messages if communication is broken. */
+/* Does what is due (comm_control_is_due): the divergence check, and the abort messages if
+ * communication is broken. */
 void comm_control_pass(struct comm *comm);
 
 /* Tells those who may still send control messages that this rank stops. Takes the lock, since
@@ -403,13 +405,29 @@ static inline void comm_unlock(struct comm *comm)
     atomic_flag_clear_explicit(&comm->lock, memory_order_release);
 }
 
+/* Somebody posted something that is not sent yet. Any thread. */
+static inline bool comm_has_posts(struct comm *comm)
+{
+    return !BASE_STACK_IS_EMPTY(&comm->posts) || !BASE_STACK_IS_EMPTY(&comm->channels.ready);
+}
+
 /* To be asked after comm_unlock: tasks that were posted meanwhile, by threads that did not get the
  * lock, must not wait for the next poll. Pairs with comm_send: it tries the lock after this look,
  * or its post is seen here. */
 static inline bool comm_left_to_us(struct comm *comm)
 {
     atomic_thread_fence(memory_order_seq_cst);
-    return comm_posted(comm);
+    return comm_has_posts(comm);
+}
+
+/* Whether comm_control_pass finds anything to do. Nothing is due on most polls, so it is a look at
+ * five numbers in place of five calls. Under the lock. */
+static inline bool comm_control_is_due(struct comm *comm)
+{
+    const struct comm_calls *calls = &comm->calls;
+    return comm->control.sends.n || comm_is_broken(comm) || comm->difference.until > 0 ||
+           atomic_load_explicit(&calls->waits, memory_order_relaxed) ||
+           atomic_load_explicit(&calls->made, memory_order_relaxed) != calls->compared;
 }
 
 #endif

@@ -166,6 +166,8 @@ void comm_transport_receive(struct comm *comm, struct comm_found *found)
     int done;
     while (message_receive(comm))
         found->any = true;
+    if (!comm->receives.n)
+        return;
     comm_mpi_ok(comm, comm_requests_test(&comm->receives, &done), "MPI_Testsome");
     for (int i = 0; i < done; i++) {
         struct data_packet *packet = comm->receives.what[comm->receives.n + i];

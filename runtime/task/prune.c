@@ -60,21 +60,22 @@ bool task_prune(struct task_graph *graph, const duite_kernel *kernel, const void
     struct data_object *found[DUITE_MAX_ACCESS];
     if (!kernel || (kernel != graph->prune.kernel && !prune_find_kernel(graph, kernel)))
         return false;
-    const struct task_prune prune = graph->prune;
-    uint64_t hash = task_fork_hash(prune.index, TASK_ANYWHERE);
-    if (n != prune.n || !n || !objects || (kernel->args_size && !args) ||
+    const struct task_prune *const prune = &graph->prune;
+    uint64_t hash = task_fork_hash(prune->index, TASK_ANYWHERE);
+    if (n != prune->n || !n || !objects || (kernel->args_size && !args) ||
         !prune_look_up(graph, n, objects, found, &hash))
         return false;
-    int at = task_owner_rank(TASK_ANYWHERE, false, found[prune.owner]->home);
+    int at = task_owner_rank(TASK_ANYWHERE, false, found[prune->owner]->home);
     if (at == graph->rank)
         return false;
+    const uint64_t reads = prune->reads, writes = prune->writes;
     for (size_t i = 0; i < n; i++) {
-        if (prune.reads >> i & 1)
+        if (reads >> i & 1)
             task_note_copy(graph, found[i], at);
-        if (prune.writes >> i & 1)
+        if (writes >> i & 1)
             task_note_version(found[i], at);
     }
     graph->root.forks++;
-    task_mix_fork(graph, hash, graph->prune.index);
+    task_mix_fork(graph, hash, prune->index);
     return true;
 }

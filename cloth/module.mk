@@ -8,6 +8,7 @@ include cloth/physics/module.mk
 include cloth/contact/module.mk
 include cloth/solve/module.mk
 include cloth/model/module.mk
+include cloth/element/module.mk
 include cloth/flow/module.mk
 include cloth/scene/module.mk
 include cloth/output/module.mk

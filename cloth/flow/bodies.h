@@ -74,16 +74,16 @@ struct phys_sight flow_elements_see(const duite_call *call, const struct flow_ta
                                     size_t rims);
 struct phys_sight flow_elements_see_still(const duite_call *call, const struct flow_table *t,
                                           size_t rims);
-/* Adds their forces; those of all but triangles. */
+/* Adds their forces; those of kinds whose matrix does not come with the right side. */
 void flow_elements_force(const duite_call *call, const struct flow_table *t,
                          const struct phys_sight *sight, phys_vec *f);
 void flow_elements_bend(const duite_call *call, const struct flow_table *t,
                         const struct phys_sight *sight, phys_vec *f);
-/* y -= scale K v of all but triangles. */
+/* y -= scale K v of the same. */
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
                              const struct phys_sight *sight, phys_vec *y);
-/* Adds their part of the matrix to the sums of its entries and, unless b is NULL, what triangles
- * add to the right side with it (phys_triangles_system). */
+/* Adds their part of the matrix to the sums of its entries and, unless b is NULL, what the other
+ * kinds add to the right side with it (system in cloth/element/kind.h). */
 void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double push,
                             const struct phys_sight *sight, phys_vec *b, struct phys_pair *sums);
 /* Their energy, J, of those that count here, to whose uncorrected forces' torque, N m, it adds; x

@@ -324,6 +324,17 @@ static inline int model_has_air(const struct model *model)
     return model->air.density > 0;
 }
 
+/* Whether a cloth is made of triangles; whether its mass and air are those of its grid's cells, not
+ * of triangles: of springs, which know no triangles. */
+static inline bool model_has_triangles(const struct model *model, const struct model_cloth *cloth)
+{
+    return model->materials[cloth->material].model == MODEL_TRIANGLES;
+}
+static inline bool model_has_cells(const struct model *model, const struct model_cloth *cloth)
+{
+    return cloth->mesh.grid_nx && !model_has_triangles(model, cloth);
+}
+
 /* The material, by number, of what n > 0 vertices of the cloth's mesh have in common: that of the
  * last region that has them all, else the cloth's. */
 static inline uint32_t model_material_of(const struct model_cloth *cloth, size_t n,

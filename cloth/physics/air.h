@@ -18,11 +18,9 @@ struct phys_air {
     double normal, tangent; /* coefficients, >= 0 */
 };
 
-/* A triangle without a fourth corner has this there. */
-static const uint32_t PHYS_NO_CORNER = UINT32_MAX;
-
 /* Adds the forces (N) on the block's own corners to f. corner: of n triangles, and who else takes
- * part in their forces: the fourth corner of a cell. A triangle without area has none. */
+ * part in their forces: the fourth corner of a cell, or PHYS_NO_CORNER. A triangle without area has
+ * none. */
 void phys_air_force(const struct phys_air *air, size_t n, const uint32_t (*corner)[4],
                     const struct phys_sight *sight, phys_vec *f);
 

@@ -17,6 +17,9 @@ struct phys_sight {
     const phys_vec *x_copy, *v_copy; /* as many as corners name; NULL if none are */
 };
 
+/* A corner that an element has not got. */
+static const uint32_t PHYS_NO_CORNER = UINT32_MAX;
+
 /* What matrix an element gives. An implicit step of h seconds has M + h C + h^2 K, where C and K
  * are the slopes of the forces against velocities and positions, taken with a minus. */
 struct phys_step {

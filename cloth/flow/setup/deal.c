@@ -18,7 +18,7 @@ struct shape {
     uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_rim, n_held, lowest, highest;
     uint32_t joined, rim_start[SOLVE_MOST_PATCHES + 1];
     uint32_t n_watched, n_moved, n_guided, n_loose, n_varying, n_slots, n_copies, n_stiff,
-        n_elements[FLOW_KINDS], n_membranes;
+        n_elements[ELEMENT_KINDS], n_materials;
 };
 
 /* ---- Telling ---- */
@@ -59,7 +59,7 @@ static int tell_head(const duite_call *call)
         head->most_slots = larger(t->n_slots, head->most_slots);
         head->most_rim = larger(t->n_rim, head->most_rim);
         head->most_copies = larger(t->n_copies, head->most_copies);
-        for (int kind = 0; kind < FLOW_KINDS; kind++)
+        for (int kind = 0; kind < ELEMENT_KINDS; kind++)
             head->n_elements += t->n_elements[kind];
         head->most_entries = larger(t->n_entries + t->n_cut_entries, head->most_entries);
     }
@@ -106,11 +106,9 @@ static int tell_shared(const duite_call *call)
                               .n_slots = t->n_slots,
                               .n_copies = t->n_copies,
                               .n_stiff = t->n_stiff,
-                              .n_elements = {t->n_elements[FLOW_TRIANGLES],
-                                             t->n_elements[FLOW_HINGES], t->n_elements[FLOW_FOLDS],
-                                             t->n_elements[FLOW_SAILS]},
-                              .n_membranes = t->n_membranes,
+                              .n_materials = t->n_materials,
                               .joined = t->joined};
+        memcpy(shape.n_elements, t->n_elements, sizeof shape.n_elements);
         memcpy(shape.rim_start, t->rim_start, sizeof shape.rim_start);
         to = put(to, &shape, sizeof shape);
     }
@@ -206,7 +204,7 @@ static void unpack(struct flow_state *state)
                                                .n_slots = shape->n_slots,
                                                .n_copies = shape->n_copies,
                                                .n_stiff = shape->n_stiff,
-                                               .n_membranes = shape->n_membranes,
+                                               .n_materials = shape->n_materials,
                                                .joined = shape->joined,
                                                .joins = joins,
                                                .slot = slot,

@@ -22,6 +22,7 @@ struct visitor {
     const struct flow_source *source;
     struct flow_cloths at;
     struct block *block;
+    void *material[ELEMENT_KINDS]; /* as element_materials fills them */
 };
 
 static void particle_of(struct visitor *visitor, uint32_t vertex, struct flow_particle *particle)
@@ -58,76 +59,57 @@ static void visit(void *to, const struct flow_spring *s)
         add(visitor->block + s->b, 1 + a.free, s, &u, across);
 }
 
-/* The pairs of an element by itself, in a step of 1 s without damping: of K at the start. Returns
- * whether it has any stiffness. */
-static bool pairs_of(const struct flow_source *source, const struct flow_element *element,
-                     const phys_vec x[4], const struct flow_rest_of *rest,
-                     struct phys_pair pair[PHYS_BEND_PAIRS])
-{
-    const uint32_t corner[1][4] = {{0, 1, 2, element->kind == FLOW_TRIANGLES ? 0 : 3}};
-    const struct model_material *m = source->model->materials + rest->material;
-    const struct phys_sight sight = {.n = 4, .x = x};
-    const struct phys_step step = {1, 0};
-    const double none = 0;
-    struct phys_membrane membrane;
-    const phys_vec vector =
-        element->kind == FLOW_TRIANGLES
-            ? (phys_vec){rest->gradient[0], rest->gradient[1], rest->gradient[2], rest->gradient[3]}
-            : (phys_vec){rest->weight[0], rest->weight[1], rest->weight[2], rest->weight[3]};
-    if (element->kind == FLOW_TRIANGLES &&
-        !phys_membrane_make(m->stretch, model_weft(m), m->shear, m->poisson, 0, &membrane)) {
-        const struct phys_triangles one = {1, corner, &vector, &rest->area, &membrane};
-        phys_triangles_matrix(&one, 0, 1, &step, &sight, NULL, pair);
-    } else if (element->kind == FLOW_HINGES) {
-        const struct phys_hinges one = {1, corner, &rest->stiffness, &none, &rest->s};
-        phys_hinges_matrix(&one, 0, 1, &step, &sight, NULL, pair);
-    } else {
-        const struct phys_folds one = {1, corner, &vector};
-        phys_folds_matrix(&one, 0, 1, 1, pair);
-    }
-    return element->kind != FLOW_HINGES || rest->stiffness > 0;
-}
-
 /* Adds `times` a pair to the block of one of its corners: N, or as good N', since their sum is
- * symmetric. */
-static void add_pair(struct block *block, double times, double damping,
-                     const struct phys_pair *pair)
+ * symmetric. one, two: the pair in steps of 1 and 2 s, h^2 K + h C each. */
+static void add_pair(struct block *block, double times, const struct phys_pair *one,
+                     const struct phys_pair *two)
 {
-    const phys_vec *n = pair->cyclic; /* n01 n12 n20; n02 n10 n21 */
+    phys_vec n[3]; /* of K: n00 n11 n22; n01 n12 n20; n02 n10 n21 */
+    for (int k = 0; k < 3; k++)
+        n[k] = 0.5 * two->cyclic[k] - one->cyclic[k];
     for (int i = 0; i < 3; i++) {
         block->stiff[i] += times * n[0][i];
         block->stiff[3 + i] += times * 0.5 * (n[1][i] + n[2][(i + 1) % 3]);
-        block->damping += times * damping * n[0][i];
+        block->damping += times * (one->cyclic[0][i] - n[0][i]);
     }
 }
 
-static void visit_element(void *to, const struct flow_element *element)
+/* The pairs of an element by itself where it starts, in a step of h. */
+static void pairs_of(const struct element_kind *kind, const struct element_one *one,
+                     const phys_vec x[ELEMENT_CORNERS], double h,
+                     struct phys_pair pair[ELEMENT_PAIRS])
+{
+    const struct phys_sight sight = {.n = kind->corners, .x = x};
+    const struct phys_step step = {h, 0};
+    (kind->stiffest ? kind->stiffest : kind->matrix)(&one->list, 0, 1, &step, &sight, NULL, pair);
+}
+
+static void visit_element(void *to, const struct element *element)
 {
     struct visitor *visitor = to;
-    struct flow_particle particle[4];
-    struct phys_pair pair[PHYS_BEND_PAIRS];
-    phys_vec x[4] = {{0}};
+    const struct element_kind *kind = element_kinds[element->kind];
+    struct flow_particle particle[ELEMENT_CORNERS];
+    struct phys_pair pair[2][ELEMENT_PAIRS];
+    struct element_one one;
+    phys_vec x[ELEMENT_CORNERS] = {{0}};
     double times = 0;
-    if (element->kind == FLOW_SAILS)
+    if (!kind->pairs)
         return;
     for (uint32_t i = 0; i < element->corners; i++) {
-        particle_of(visitor, element->corner[i], particle + i);
+        particle_of(visitor, element->first + element->corner[i], particle + i);
         x[i] = particle[i].position;
         times += particle[i].free;
     }
-    struct flow_rest_of rest;
-    flow_element_rest(&visitor->source->elements, element, &rest);
-    if (!pairs_of(visitor->source, element, x, &rest, pair))
-        return;
-    const struct model_material *material = visitor->source->model->materials + rest.material;
-    const double damping = element->kind == FLOW_TRIANGLES ? material->damping_stiffness
-                                                           : model_damping_bending(material);
+    element_alone(&visitor->source->elements, element, visitor->material[element->kind], &one);
+    for (int i = 0; i < 2; i++)
+        pairs_of(kind, &one, x, 1 + i, pair[i]);
+    struct block *block = visitor->block + element->first;
     for (uint32_t j = 1, k = 0; j < element->corners; j++)
         for (uint32_t i = 0; i < j; i++, k++) {
             if (particle[i].free > 0)
-                add_pair(visitor->block + element->corner[i], times, damping, pair + k);
+                add_pair(block + element->corner[i], times, pair[0] + k, pair[1] + k);
             if (particle[j].free > 0)
-                add_pair(visitor->block + element->corner[j], times, damping, pair + k);
+                add_pair(block + element->corner[j], times, pair[0] + k, pair[1] + k);
         }
 }
 
@@ -156,19 +138,39 @@ static void find(struct visitor *visitor, struct flow_limit *limit)
     }
 }
 
+/* Whether there is memory for what elements have of materials; and that. */
+static bool make_materials(struct visitor *visitor, struct cloth_error *error)
+{
+    const struct model *model = visitor->source->model;
+    for (int i = 0; i < ELEMENT_KINDS; i++) {
+        const size_t line = sizeof(phys_vec), bytes = element_kinds[i]->material_bytes;
+        const size_t lines = bytes * model->n_materials / line + 1;
+        visitor->material[i] = aligned_alloc(line, lines * line);
+        if (!visitor->material[i]) {
+            cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %u materials", model->n_materials);
+            return false;
+        }
+        element_materials(element_kinds[i], model, visitor->material[i]);
+    }
+    return true;
+}
+
 int flow_limit_find(const struct flow_source *source, struct flow_limit *limit,
                     struct cloth_error *error)
 {
     struct visitor visitor = {.source = source};
     *limit = (struct flow_limit){0};
     visitor.block = cloth_alloc(source->particles.n, sizeof *visitor.block, error);
-    if (!visitor.block)
-        return CLOTH_E_MEMORY;
-    flow_springs_each(&source->springs, visit, &visitor);
-    flow_elements_each(&source->elements, visit_element, &visitor);
-    find(&visitor, limit);
+    const bool there = visitor.block && make_materials(&visitor, error);
+    if (there) {
+        flow_springs_each(&source->springs, visit, &visitor);
+        element_each(&source->elements, visit_element, &visitor);
+        find(&visitor, limit);
+    }
+    for (int i = 0; i < ELEMENT_KINDS; i++)
+        free(visitor.material[i]);
     free(visitor.block);
-    return CLOTH_OK;
+    return there ? CLOTH_OK : CLOTH_E_MEMORY;
 }
 
 double flow_limit_of(const struct flow_limit *limit, enum model_integrator integrator)

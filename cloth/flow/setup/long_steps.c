@@ -76,35 +76,29 @@ static int find_density(const struct model *model, const struct model_cloth *clo
     return CLOTH_OK;
 }
 
-/* The longest step, s, in which the air's push on a cloth does not turn its velocity round and
- * more: the slope of the drag over the mass, rho C |u| / density, times h is to be below 2. At the
- * speed, m/s, that the cloth starts with against the wind at its strongest. */
-static double air_limit(const struct model *model, double density, double speed)
+/* Forces on a cloth that the matrix does not know: the first kind that has something to say. */
+static void warn_of_kinds(struct flow *flow, const struct element_sheet *sheet)
 {
-    const struct phys_air *air = &model->air;
-    return 2 * density / (air->density * fmax(air->normal, air->tangent) * speed);
+    char *text = flow->warning[5];
+    const size_t size = sizeof flow->warning[5];
+    const size_t n = (size_t)snprintf(text, size, "%.200s: ", place_of(sheet->model));
+    for (int i = 0; i < ELEMENT_KINDS && !text[n]; i++)
+        if (element_kinds[i]->warn && element_kinds[i]->has(sheet->model, sheet->cloth))
+            element_kinds[i]->warn(sheet, text + n, size - n);
+    if (!text[n])
+        text[0] = 0;
 }
 
-/* Its push is that of the begin of a step, whatever the integrator. */
-static int warn_of_air(struct flow *flow, struct cloth_error *error)
+static int warn_of_elements(struct flow *flow, struct cloth_error *error)
 {
-    const struct model *model = flow->model;
-    const double strongest = model_course_most(model, model->wind_course);
-    for (uint32_t c = 0; model_has_air(model) && c < model->n_cloths && !flow->warning[5][0]; c++) {
-        const struct model_cloth *cloth = model->cloths + c;
-        double density, edge, square = 0;
-        if (find_density(model, cloth, &density, &edge, error))
+    struct element_sheet sheet = {.model = flow->model};
+    for (uint32_t c = 0; c < flow->model->n_cloths && !flow->warning[5][0]; c++) {
+        sheet.cloth = flow->model->cloths + c;
+        if (!element_parts(sheet.model, sheet.cloth))
+            continue;
+        if (find_density(sheet.model, sheet.cloth, &sheet.density, &sheet.edge, error))
             return CLOTH_E_MEMORY;
-        for (int i = 0; i < 3; i++)
-            square += pow(strongest * model->air.wind[i] - cloth->velocity[i], 2);
-        const double speed = sqrt(square), most = air_limit(model, density, speed);
-        if (model->h > most)
-            snprintf(flow->warning[5], sizeof flow->warning[5],
-                     "%.200s: steps of %g s are beyond the limit of the air, which is not in the "
-                     "matrix, %g s: its push on cloth '%.60s' can grow in each. It blows %g m in a "
-                     "step, "
-                     "vertices are %g m apart; give shorter steps or less wind",
-                     place_of(model), model->h, most, cloth->name, speed * model->h, edge);
+        warn_of_kinds(flow, &sheet);
     }
     return CLOTH_OK;
 }
@@ -118,5 +112,5 @@ int flow_warn_of_steps(struct flow *flow, struct cloth_error *error)
         warn_implicit(flow, &limit);
     else
         warn_explicit(flow, &limit);
-    return warn_of_air(flow, error);
+    return warn_of_elements(flow, error);
 }

@@ -9,12 +9,12 @@
 #include <string.h>
 
 /* The blocks of an element's corners, each once. Returns how many. */
-static uint32_t blocks_of(const struct flow_source *source, const struct flow_element *element,
+static uint32_t blocks_of(const struct flow_source *source, const struct element *element,
                           uint32_t guess, uint32_t block[4])
 {
     uint32_t n = 0;
     for (uint32_t i = 0; i < element->corners; i++) {
-        const uint32_t place = source->blocks.place[element->corner[i]];
+        const uint32_t place = source->blocks.place[element->first + element->corner[i]];
         const uint32_t b = flow_source_block(&source->blocks, place, n ? block[0] : guess);
         uint32_t k = 0;
         while (k < n && block[k] != b)
@@ -30,7 +30,7 @@ struct counter {
     uint32_t block;
 };
 
-static void count(void *to, const struct flow_element *element)
+static void count(void *to, const struct element *element)
 {
     struct counter *counter = to;
     uint32_t block[4];
@@ -43,17 +43,16 @@ static void count(void *to, const struct flow_element *element)
 void flow_source_count(struct flow_source *source)
 {
     struct counter counter = {source, 0};
-    flow_elements_each(&source->elements, count, &counter);
+    element_each(&source->elements, count, &counter);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++)
-        if (source->shape[b].n_elements[FLOW_TRIANGLES])
-            source->shape[b].n_membranes = source->model->n_materials;
+        source->shape[b].n_materials = source->model->n_materials;
 }
 
 /* ---- Gathering ---- */
 
-static size_t *list_of(const struct flow_source *source, uint32_t block, enum flow_kind kind)
+static size_t *list_of(const struct flow_source *source, uint32_t block, uint32_t kind)
 {
-    return source->member_start + (size_t)FLOW_KINDS * (block - source->from) + kind;
+    return source->member_start + (size_t)ELEMENT_KINDS * (block - source->from) + kind;
 }
 
 struct collector {
@@ -61,7 +60,7 @@ struct collector {
     uint32_t from, to, block;
 };
 
-static void collect(void *to, const struct flow_element *element)
+static void collect(void *to, const struct element *element)
 {
     struct collector *collector = to;
     const struct flow_source *source = collector->source;
@@ -77,21 +76,21 @@ int flow_source_collect(struct flow_source *source, uint32_t from, uint32_t to,
                         struct cloth_error *error)
 {
     struct collector collector = {source, from, to, from};
-    const size_t lists = (size_t)FLOW_KINDS * (to - from);
+    const size_t lists = (size_t)ELEMENT_KINDS * (to - from);
     size_t n = 0;
     source->member_start = cloth_alloc(lists + 1, sizeof *source->member_start, error);
     if (!source->member_start)
         return CLOTH_E_MEMORY;
     for (uint32_t b = from; b < to; b++)
-        for (int kind = 0; kind < FLOW_KINDS; kind++) {
-            *list_of(source, b, (enum flow_kind)kind) = n;
+        for (uint32_t kind = 0; kind < ELEMENT_KINDS; kind++) {
+            *list_of(source, b, kind) = n;
             n += source->shape[b].n_elements[kind];
         }
     source->member = cloth_alloc(n, sizeof *source->member, error);
     if (!source->member)
         return CLOTH_E_MEMORY;
     if (n)
-        flow_elements_each(&source->elements, collect, &collector);
+        element_each(&source->elements, collect, &collector);
     for (size_t i = lists; i > 0; i--) /* each was moved on to the next one's */
         source->member_start[i] = source->member_start[i - 1];
     source->member_start[0] = 0;
@@ -137,59 +136,32 @@ static uint32_t entry_of(const struct flow_table *t, const struct flow_image *im
 }
 
 static void fill_corners(const struct flow_source *source, const struct flow_table *t,
-                         const struct flow_image *image, const struct flow_element *element,
+                         const struct flow_image *image, const struct element *element,
                          uint32_t corner[4], uint32_t *at)
 {
-    for (uint32_t i = 0; i < element->corners; i++)
-        corner[i] = local_of(source, t, element->corner[i]);
-    for (uint32_t j = 1; flow_pairs[element->kind] && j < element->corners; j++)
+    for (uint32_t i = 0; i < ELEMENT_CORNERS; i++)
+        corner[i] = i < element->corners ? local_of(source, t, element->first + element->corner[i])
+                                         : PHYS_NO_CORNER;
+    for (uint32_t j = 1; element_kinds[element->kind]->pairs && j < element->corners; j++)
         for (uint32_t i = 0; i < j; i++)
             *at++ = entry_of(t, image, corner[i], corner[j]);
-}
-
-static void fill_membranes(const struct flow_source *source, const struct flow_table *t,
-                           const struct flow_image *image)
-{
-    for (uint32_t m = 0; m < t->n_membranes; m++) {
-        const struct model_material *material = source->model->materials + m;
-        if (material->model != MODEL_TRIANGLES)
-            continue;
-        phys_membrane_make(material->stretch, model_weft(material), material->shear,
-                           material->poisson, material->damping_stiffness,
-                           image->membrane + m); /* the model was checked */
-        image->membrane[m].uncorrected = material->uncorrected;
-    }
 }
 
 void flow_source_members(const struct flow_source *source, uint32_t block,
                          const struct flow_image *image)
 {
     const struct flow_table *t = source->shape + block;
-    fill_membranes(source, t, image);
-    for (int kind = 0; kind < FLOW_KINDS; kind++) {
-        const struct flow_list *list = image->list + kind;
-        const struct flow_element *element =
-            source->member + *list_of(source, block, (enum flow_kind)kind);
-        for (uint32_t e = 0; e < t->n_elements[kind]; e++, element++) {
-            struct flow_rest_of rest;
-            flow_element_rest(&source->elements, element, &rest);
+    for (uint32_t i = 0; i < ELEMENT_KINDS; i++) {
+        const struct element_kind *kind = element_kinds[i];
+        const struct element_list *list = image->list + i;
+        const struct element *element = source->member + *list_of(source, block, i);
+        if (list->n)
+            element_materials(kind, source->model, list->material);
+        for (uint32_t e = 0; e < list->n; e++, element++) {
             fill_corners(source, t, image, element, list->corner[e],
-                         list->at + (size_t)flow_pairs[kind] * e);
-            if (kind == FLOW_SAILS && element->corners < 4) {
-                list->corner[e][3] = PHYS_NO_CORNER;
-            } else if (kind == FLOW_TRIANGLES) {
-                list->corner[e][3] = rest.material;
-                list->vector[e] = (phys_vec){rest.gradient[0], rest.gradient[1], rest.gradient[2],
-                                             rest.gradient[3]};
-                list->number[0][e] = rest.area;
-            } else if (kind == FLOW_FOLDS) {
-                list->vector[e] =
-                    (phys_vec){rest.weight[0], rest.weight[1], rest.weight[2], rest.weight[3]};
-            } else if (kind == FLOW_HINGES) {
-                list->number[0][e] = rest.stiffness;
-                list->number[1][e] = rest.damping;
-                list->number[2][e] = rest.s;
-            }
+                         list->at + (size_t)kind->pairs * e);
+            if (kind->pack)
+                kind->pack(&source->elements, element, list, e);
         }
     }
 }

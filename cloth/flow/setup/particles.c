@@ -139,7 +139,7 @@ static int masses(struct flow_particles *p, uint32_t first, const struct model *
         uint32_t corner[3];
         mesh_corners(&cloth->mesh, t, corner);
         const double density = model->materials[model_material_of(cloth, 3, corner)].density;
-        if (flow_has_cells(model, cloth))
+        if (model_has_cells(model, cloth))
             mesh_add_cell_mass_of(model_rest(cloth), t, density, p->mass + first);
         else /* of a linear element, its lumped mass */
             mesh_add_mass_of(model_rest(cloth), t, density, p->mass + first);

@@ -126,7 +126,7 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
     *source = (struct flow_source){.model = model};
     int code = flow_particles_make(&source->particles, model, error);
     if (!code)
-        code = flow_elements_make(&source->elements, model, error);
+        code = element_cloths_make(&source->elements, model, error);
     if (!code)
         code = flow_springs_make(&source->springs, model, &source->elements, error);
     if (!code && model_is_implicit(model))
@@ -154,7 +154,7 @@ void flow_source_free(struct flow_source *source)
     free(source->rim);
     mesh_blocks_free(&source->blocks);
     flow_springs_free(&source->springs);
-    flow_elements_free(&source->elements);
+    element_cloths_free(&source->elements);
     flow_particles_free(&source->particles);
     *source = (struct flow_source){0};
 }

@@ -1,7 +1,7 @@
 #ifndef CLOTH_FLOW_SETUP_SOURCE_H
 #define CLOTH_FLOW_SETUP_SOURCE_H
 
-#include "cloth/flow/setup/elements.h"
+#include "cloth/element/cloths.h"
 #include "cloth/flow/state/tables.h"
 #include "cloth/mesh/blocks.h"
 #include "cloth/mesh/lattice.h"
@@ -99,12 +99,12 @@ struct flow_springs {
     const struct model *model;
     struct mesh_lattice *lattice; /* a cloth; none of one that is made of triangles */
     struct mesh_regions *regions; /* a cloth; moduli NULL: none */
-    const struct flow_elements *elements;
+    const struct element_cloths *elements;
 };
 /* The elements, whose joints come after the springs of their cloth, must outlive them. Errors:
  * CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */
 int flow_springs_make(struct flow_springs *springs, const struct model *model,
-                      const struct flow_elements *elements, struct cloth_error *error);
+                      const struct element_cloths *elements, struct cloth_error *error);
 void flow_springs_each(const struct flow_springs *springs,
                        void (*visit)(void *to, const struct flow_spring *spring), void *to);
 void flow_springs_free(struct flow_springs *springs);
@@ -144,19 +144,19 @@ struct flow_side;
 struct flow_source {
     const struct model *model;
     struct flow_particles particles;
-    struct flow_elements elements;
+    struct element_cloths elements;
     struct flow_springs springs;
     struct mesh_blocks blocks;
     uint32_t patches; /* of a block */
     uint32_t *rim;    /* by place: its number in the rim of its block */
     struct flow_neighbours neighbours;
     struct flow_watched watched;
-    struct flow_table *shape;    /* a block: shapes, which point into the neighbours */
-    uint32_t from;               /* the group of blocks whose sides are gathered begins there */
-    struct flow_side *side;      /* all of the group; NULL: none are gathered */
-    size_t *start;               /* a block of the group: where its sides begin */
-    struct flow_element *member; /* its elements, */
-    size_t *member_start;        /* a block and kind: where they begin */
+    struct flow_table *shape; /* a block: shapes, which point into the neighbours */
+    uint32_t from;            /* the group of blocks whose sides are gathered begins there */
+    struct flow_side *side;   /* all of the group; NULL: none are gathered */
+    size_t *start;            /* a block of the group: where its sides begin */
+    struct element *member;   /* its elements, */
+    size_t *member_start;     /* a block and kind: where they begin */
 };
 
 /* Cuts the model into blocks and finds their shapes. The model must outlive it. Errors: as of the

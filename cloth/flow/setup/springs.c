@@ -45,7 +45,7 @@ static int make_cloth(struct flow_springs *springs, uint32_t c, struct cloth_err
     const struct model_cloth *cloth = springs->model->cloths + c;
     struct mesh_moduli moduli = model_moduli(model_material(springs->model, cloth, 0));
     struct cloth_error inner = {0};
-    if (flow_has_triangles(springs->model, cloth))
+    if (model_has_triangles(springs->model, cloth))
         return check_edges(springs, c, error);
     int code = cloth->mask ? find_regions(springs, c, springs->regions + c, error) : CLOTH_OK;
     if (code)
@@ -60,7 +60,7 @@ static int make_cloth(struct flow_springs *springs, uint32_t c, struct cloth_err
 }
 
 int flow_springs_make(struct flow_springs *springs, const struct model *model,
-                      const struct flow_elements *elements, struct cloth_error *error)
+                      const struct element_cloths *elements, struct cloth_error *error)
 {
     *springs = (struct flow_springs){.model = model, .elements = elements};
     springs->lattice = cloth_alloc(model->n_cloths, sizeof *springs->lattice, error);
@@ -145,18 +145,18 @@ static void each_joint(const struct flow_springs *springs, uint32_t c,
     const struct model_cloth *cloth = model->cloths + c;
     const struct mesh *mesh = model_rest(cloth);
     const struct mesh_edges *edges = springs->elements->edges + c;
-    const bool triangles = flow_has_triangles(model, cloth);
+    const bool triangles = model_has_triangles(model, cloth);
+    const unsigned parts = element_parts(model, cloth);
     for (uint32_t e = 0; e < edges->n; e++) {
         const struct mesh_edge *edge = edges->edge + e;
         const bool lone = edge->opposite[0] == UINT32_MAX;
         if (triangles || !lone)
             join(visitor, mesh, edge->a, edge->b,
                  lone ? material_of(visitor, edge->a, edge->b)->ea : 0, triangles);
-        if (flow_has_bending(model, cloth) && edge->opposite[1] != UINT32_MAX &&
-            edge->opposite[0] != edge->opposite[1])
+        if (parts & 1u << ELEMENT_HINGES && element_is_hinge(edge))
             join(visitor, mesh, edge->opposite[0], edge->opposite[1], 0, 0);
     }
-    if (model_has_air(model) && flow_has_cells(model, cloth))
+    if (parts & 1u << ELEMENT_FACES && model_has_cells(model, cloth))
         join_cells(visitor, mesh);
 }
 

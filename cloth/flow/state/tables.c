@@ -20,19 +20,18 @@ static void *next(struct room *room, size_t bytes)
     return here;
 }
 
-const uint32_t flow_pairs[FLOW_KINDS] = {3, PHYS_BEND_PAIRS, PHYS_BEND_PAIRS, 0};
-
-static void lay_list(const struct flow_table *t, enum flow_kind kind, struct room *room,
-                     struct flow_list *list)
+static void lay_list(const struct flow_table *t, int i, struct room *room,
+                     struct element_list *list)
 {
-    const size_t n = t->n_elements[kind];
-    const int numbers = kind == FLOW_TRIANGLES ? 1 : kind == FLOW_HINGES ? 3 : 0;
+    const struct element_kind *kind = element_kinds[i];
+    const size_t n = t->n_elements[i], n_materials = n ? t->n_materials : 0;
+    list->n = t->n_elements[i];
     list->corner = next(room, n * sizeof *list->corner);
-    list->at = next(room, flow_pairs[kind] * n * sizeof *list->at);
-    list->vector =
-        next(room, kind == FLOW_HINGES || kind == FLOW_SAILS ? 0 : n * sizeof *list->vector);
-    for (int i = 0; i < 3; i++)
-        list->number[i] = next(room, i < numbers ? n * sizeof(double) : 0);
+    list->at = next(room, kind->pairs * n * sizeof *list->at);
+    list->vector = next(room, kind->vectors * n * sizeof *list->vector);
+    for (uint32_t k = 0; k < ELEMENT_NUMBERS; k++)
+        list->number[k] = next(room, k < kind->numbers ? n * sizeof(double) : 0);
+    list->material = next(room, n_materials * kind->material_bytes);
 }
 
 static void lay(const struct flow_table *t, struct room *room, struct flow_image *image)
@@ -66,9 +65,8 @@ static void lay(const struct flow_table *t, struct room *room, struct flow_image
     image->varying_force = next(room, t->n_varying * sizeof *image->varying_force);
     image->watched = next(room, t->n_watched * sizeof *image->watched);
     image->stretch = next(room, sides);
-    for (int kind = 0; kind < FLOW_KINDS; kind++)
-        lay_list(t, (enum flow_kind)kind, room, image->list + kind);
-    image->membrane = next(room, t->n_membranes * sizeof *image->membrane);
+    for (int i = 0; i < ELEMENT_KINDS; i++)
+        lay_list(t, i, room, image->list + i);
 }
 
 size_t flow_table_bytes(const struct flow_table *table)
@@ -117,7 +115,6 @@ void flow_table_open(struct flow_table *t, const void *image)
     t->position = arrays.position;
     t->velocity = arrays.velocity;
     memcpy(t->list, arrays.list, sizeof t->list);
-    t->membrane = arrays.membrane;
 }
 
 uint32_t flow_table_copy(const struct flow_table *t, uint32_t s, uint32_t row)

@@ -2,9 +2,8 @@
 #define CLOTH_FLOW_STATE_TABLES_H
 
 #include "cloth/base/error.h"
-#include "cloth/physics/bending.h"
+#include "cloth/element/kind.h"
 #include "cloth/physics/spring.h"
-#include "cloth/physics/triangle.h"
 #include "cloth/solve/patches.h"
 
 /* What does not change during a run. Every rank knows the shapes of all blocks and who their
@@ -16,19 +15,6 @@
  * with them, and a run that comes to them diverged. */
 #define FLOW_BOUND 1e6
 
-/* Elements besides springs, and how many pairs of corners each has in the matrix. Sails are the
- * triangles that the air meets (cloth/physics/air.h), which is not in the matrix. */
-enum flow_kind { FLOW_TRIANGLES, FLOW_HINGES, FLOW_FOLDS, FLOW_SAILS, FLOW_KINDS };
-extern const uint32_t flow_pairs[FLOW_KINDS];
-
-/* Those of one kind in a block, all that have a corner there. */
-struct flow_list {
-    uint32_t (*corner)[4]; /* rows, then copies; triangles: the last is the membrane */
-    uint32_t *at;          /* pairs: the entry of each, as solve_assemble_pairs wants it */
-    phys_vec *vector;      /* triangles: gradient; folds: weight */
-    double *number[3];     /* triangles: area; hinges: stiffness, damping, rest */
-};
-
 /* One block. Its springs: first the inner ones, sorted by (lower row, higher row), then those cut
  * by its border, neighbour after neighbour. A cut spring is known to both blocks. The entries of
  * its matrix (cloth/solve/format.h) are in that order, too: the springs themselves or, in half
@@ -36,10 +22,10 @@ struct flow_list {
  * without stiffness, a joint. */
 struct flow_table {
     /* Its shape, known to every rank. */
-    uint32_t n, first;       /* rows, place of row 0 */
-    uint32_t n_inner, n_cut; /* springs */
-    uint32_t n_stiff;        /* of them, those that are more than joints */
-    uint32_t n_elements[FLOW_KINDS], n_membranes;
+    uint32_t n, first;                               /* rows, place of row 0 */
+    uint32_t n_inner, n_cut;                         /* springs */
+    uint32_t n_stiff;                                /* of them, those that are more than joints */
+    uint32_t n_elements[ELEMENT_KINDS], n_materials; /* of a kind; of the model */
     uint32_t n_entries, n_cut_entries; /* of the matrix: what is counted here may be one entry */
     enum solve_format format;
     uint32_t n_rim;           /* rows that any neighbour needs */
@@ -75,9 +61,8 @@ struct flow_table {
     const uint32_t *at;        /* half storage: of each spring, its entry */
     const double *stiffness, *damping, *length;
     const unsigned char *stretch; /* counts for the largest stretch */
-    struct flow_list list[FLOW_KINDS];
-    const struct phys_membrane *membrane; /* n_membranes: by material */
-    struct solve_block matrix;            /* its diagonal: of each step, NULL here */
+    struct element_list list[ELEMENT_KINDS];
+    struct solve_block matrix; /* its diagonal: of each step, NULL here */
     struct solve_held held;
     const double *mass, *drag, *free; /* kg; kg/s, viscous + mass damping; 1 or 0 where held */
     const phys_vec *load, *position, *velocity; /* N, gravity included; m, m/s, at the start */
@@ -108,8 +93,7 @@ struct flow_image {
     uint32_t *at;              /* n_inner + n_cut; of springs as entries: none */
     uint32_t *n_held;          /* 1: held entries */
     unsigned char *stretch;    /* n_inner + n_cut */
-    struct flow_list list[FLOW_KINDS];
-    struct phys_membrane *membrane;
+    struct element_list list[ELEMENT_KINDS];
 };
 
 /* Bytes of an image, which its shape decides; and where its arrays are. image: aligned to 64 bytes.
@@ -137,27 +121,6 @@ static inline struct phys_springs flow_table_inner(const struct flow_table *t)
 static inline struct phys_springs flow_table_cut(const struct flow_table *t, uint32_t s)
 {
     return flow_table_springs(t, t->n_inner + t->cut[s], t->n_inner + t->cut[s + 1]);
-}
-
-/* The other elements of a block. */
-static inline struct phys_triangles flow_table_triangles(const struct flow_table *t)
-{
-    const struct flow_list *list = t->list + FLOW_TRIANGLES;
-    return (struct phys_triangles){t->n_elements[FLOW_TRIANGLES],
-                                   (const uint32_t(*)[4])list->corner, list->vector,
-                                   list->number[0], t->membrane};
-}
-static inline struct phys_hinges flow_table_hinges(const struct flow_table *t)
-{
-    const struct flow_list *list = t->list + FLOW_HINGES;
-    return (struct phys_hinges){t->n_elements[FLOW_HINGES], (const uint32_t(*)[4])list->corner,
-                                list->number[0], list->number[1], list->number[2]};
-}
-static inline struct phys_folds flow_table_folds(const struct flow_table *t)
-{
-    const struct flow_list *list = t->list + FLOW_FOLDS;
-    return (struct phys_folds){t->n_elements[FLOW_FOLDS], (const uint32_t(*)[4])list->corner,
-                               list->vector};
 }
 
 /* The cut entries, and the doubles of the values of all. */

@@ -8,7 +8,7 @@
 bool flow_has_elements(const struct flow_table *t)
 {
     bool has = false;
-    for (int kind = 0; kind < FLOW_KINDS; kind++)
+    for (int kind = 0; kind < ELEMENT_KINDS; kind++)
         has = has || t->n_elements[kind];
     return has;
 }
@@ -44,100 +44,78 @@ struct phys_sight flow_elements_see(const duite_call *call, const struct flow_ta
     return sight;
 }
 
-void flow_elements_bend(const duite_call *call, const struct flow_table *t,
-                        const struct phys_sight *sight, phys_vec *f)
+/* Whether its matrix comes with the right side. */
+static bool has_system(int kind)
 {
-    const struct phys_hinges hinges = flow_table_hinges(t);
-    const struct phys_folds folds = flow_table_folds(t);
-    const struct model *model = flow_of(call)->model;
-    phys_hinges_force(&hinges, sight, f);
-    phys_folds_force(&folds, sight, f);
-    struct phys_air air = model->air;
-    const double course = model_course_at(model, model->wind_course, flow_args_of(call)->now);
-    for (int i = 0; i < 3; i++)
-        air.wind[i] *= course;
-    phys_air_force(&air, t->n_elements[FLOW_SAILS],
-                   (const uint32_t(*)[4])t->list[FLOW_SAILS].corner, sight, f);
+    return element_kinds[kind]->system != NULL;
+}
+
+/* Adds the forces of all kinds, or of those without a system. */
+static void add_forces(const duite_call *call, const struct flow_table *t, bool all,
+                       const struct phys_sight *sight, phys_vec *f)
+{
+    const struct element_world world = {flow_of(call)->model, flow_args_of(call)->now};
+    for (int kind = 0; kind < ELEMENT_KINDS; kind++)
+        if (t->n_elements[kind] && (all || !has_system(kind)))
+            element_kinds[kind]->force(t->list + kind, &world, sight, f);
 }
 
 void flow_elements_force(const duite_call *call, const struct flow_table *t,
                          const struct phys_sight *sight, phys_vec *f)
 {
-    const struct phys_triangles triangles = flow_table_triangles(t);
-    phys_triangles_force(&triangles, sight, f);
-    flow_elements_bend(call, t, sight, f);
+    add_forces(call, t, true, sight, f);
+}
+
+void flow_elements_bend(const duite_call *call, const struct flow_table *t,
+                        const struct phys_sight *sight, phys_vec *f)
+{
+    add_forces(call, t, false, sight, f);
 }
 
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
                              const struct phys_sight *sight, phys_vec *y)
 {
-    const struct phys_hinges hinges = flow_table_hinges(t);
-    const struct phys_folds folds = flow_table_folds(t);
-    phys_hinges_stiffness(&hinges, flow_of(call)->model->full_slope == PHYS_FULL, scale, sight, y);
-    phys_folds_stiffness(&folds, scale, sight, y);
+    const int full = flow_of(call)->model->full_slope == PHYS_FULL;
+    for (int kind = 0; kind < ELEMENT_KINDS; kind++)
+        if (t->n_elements[kind] && element_kinds[kind]->pairs && !has_system(kind))
+            element_kinds[kind]->stiffness(t->list + kind, full, scale, sight, y);
 }
 
 double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims,
                             double torque[3])
 {
+    double sum = 0;
     if (!flow_has_elements(t))
         return 0;
     const struct phys_sight sight = flow_elements_see_still(call, t, rims);
-    const struct phys_triangles triangles = flow_table_triangles(t);
-    const struct phys_hinges hinges = flow_table_hinges(t);
-    const struct phys_folds folds = flow_table_folds(t);
-    phys_triangles_torque(&triangles, &sight, torque);
-    return phys_triangles_energy(&triangles, &sight) + phys_hinges_energy(&hinges, &sight) +
-           phys_folds_energy(&folds, &sight);
-}
-
-/* What is assembled of elements. */
-struct assembly {
-    const struct flow_table *t;
-    struct phys_step step;
-    double push;
-    const struct phys_sight *sight;
-    phys_vec *b; /* NULL: the matrix alone */
-};
-
-/* Elements from .. to - 1 of one kind. */
-static void pairs_of(const struct assembly *a, enum flow_kind kind, uint32_t from, uint32_t to,
-                     const uint32_t *at, struct phys_pair *pair)
-{
-    const struct phys_triangles triangles = flow_table_triangles(a->t);
-    const struct phys_hinges hinges = flow_table_hinges(a->t);
-    const struct phys_folds folds = flow_table_folds(a->t);
-    switch (kind) {
-    case FLOW_TRIANGLES:
-        if (a->b)
-            phys_triangles_system(&triangles, from, to, &a->step, a->push, a->sight, at, a->b,
-                                  pair);
-        else
-            phys_triangles_matrix(&triangles, from, to, &a->step, a->sight, at, pair);
-        break;
-    case FLOW_HINGES:
-        phys_hinges_matrix(&hinges, from, to, &a->step, a->sight, at, pair);
-        break;
-    case FLOW_FOLDS:
-    case FLOW_SAILS:
-    case FLOW_KINDS:
-        phys_folds_matrix(&folds, from, to, a->step.h, pair);
-        break;
+    for (int i = 0; i < ELEMENT_KINDS; i++) {
+        const struct element_kind *kind = element_kinds[i];
+        if (t->n_elements[i] && kind->torque)
+            kind->torque(t->list + i, &sight, torque);
+        if (t->n_elements[i] && kind->pairs)
+            sum += kind->energy(t->list + i, &sight);
     }
+    return sum;
 }
 
 void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double push,
                             const struct phys_sight *sight, phys_vec *b, struct phys_pair *sums)
 {
     enum { AT_ONCE = 32 }; /* elements, whose pairs stay in the nearest cache */
-    const struct assembly assembly = {
-        t, {flow_args_of(call)->h, flow_of(call)->model->full_slope == PHYS_FULL}, push, sight, b};
-    struct phys_pair pair[AT_ONCE * PHYS_BEND_PAIRS];
-    for (int kind = 0; kind < FLOW_SAILS; kind++)
-        for (uint32_t from = 0; from < t->n_elements[kind]; from += AT_ONCE) {
-            const uint32_t left = t->n_elements[kind] - from, n = left < AT_ONCE ? left : AT_ONCE;
-            const uint32_t *at = t->list[kind].at + flow_pairs[kind] * (size_t)from;
-            pairs_of(&assembly, (enum flow_kind)kind, from, from + n, at, pair);
-            solve_assemble_pairs(flow_pairs[kind] * (size_t)n, at, pair, sums);
+    const struct phys_step step = {flow_args_of(call)->h,
+                                   flow_of(call)->model->full_slope == PHYS_FULL};
+    struct phys_pair pair[AT_ONCE * ELEMENT_PAIRS];
+    for (int i = 0; i < ELEMENT_KINDS; i++) {
+        const struct element_kind *kind = element_kinds[i];
+        const struct element_list *list = t->list + i;
+        for (uint32_t from = 0, n; kind->pairs && from < list->n; from += n) {
+            const uint32_t *at = list->at + kind->pairs * (size_t)from;
+            n = list->n - from < AT_ONCE ? list->n - from : AT_ONCE;
+            if (b && kind->system)
+                kind->system(list, from, from + n, &step, push, sight, at, b, pair);
+            else
+                kind->matrix(list, from, from + n, &step, sight, at, pair);
+            solve_assemble_pairs(kind->pairs * (size_t)n, at, pair, sums);
         }
+    }
 }

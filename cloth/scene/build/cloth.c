@@ -1,5 +1,6 @@
 /* Cloths with their pins. Indices are checked here against the mesh, each with its own
  * place in the file. */
+#include "cloth/element/kind.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/fabrics.h"
 #include "cloth/scene/schema/rules.h"
@@ -233,15 +234,11 @@ static int build_rest(struct model_cloth *cloth, const struct scene_tree *tree, 
     return CLOTH_OK;
 }
 
-/* Triangles and bending are no springs. */
+/* A matrix of springs can hold no other elements. */
 static void choose_format(struct model *model, const struct model_cloth *cloth)
 {
-    for (uint32_t i = 0; i <= cloth->n_regions; i++) {
-        const struct model_material *material = model_material(model, cloth, i);
-        if (model->format == SOLVE_SPRINGS &&
-            (material->model == MODEL_TRIANGLES || material->bending != MODEL_NO_BENDING))
-            model->format = SOLVE_HALF;
-    }
+    if (model->format == SOLVE_SPRINGS && element_in_matrix(model, cloth))
+        model->format = SOLVE_HALF;
 }
 
 static int build_cloth(struct model *model, uint32_t i, const struct scene_tree *tree, int node,

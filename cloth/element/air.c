@@ -1,0 +1,60 @@
+/* Drag and wind on faces (cloth/physics/air.h). The matrix does not know of them, so steps have a
+ * limit. Faces have nothing in their list but corners. */
+#include "cloth/physics/air.h"
+#include "cloth/element/kind.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static bool air_has(const struct model *model, const struct model_cloth *cloth)
+{
+    (void)cloth;
+    return model_has_air(model);
+}
+
+/* The longest step, s, in which the air's push on a cloth does not turn its velocity round and
+ * more: the slope of the drag over the mass, rho C |u| / density, times h is to be below 2. At the
+ * speed, m/s, that the cloth starts with against the wind at its strongest. */
+static double air_limit(const struct model *model, double density, double speed)
+{
+    const struct phys_air *air = &model->air;
+    return 2 * density / (air->density * fmax(air->normal, air->tangent) * speed);
+}
+
+/* The air's push is that of the begin of a step, whatever the integrator. */
+static void air_warn(const struct element_sheet *sheet, char *text, size_t size)
+{
+    const struct model *model = sheet->model;
+    const double strongest = model_course_most(model, model->wind_course);
+    double square = 0;
+    for (int i = 0; i < 3; i++)
+        square += pow(strongest * model->air.wind[i] - sheet->cloth->velocity[i], 2);
+    const double speed = sqrt(square), most = air_limit(model, sheet->density, speed);
+    *text = 0;
+    if (model->h > most)
+        snprintf(text, size,
+                 "steps of %g s are beyond the limit of the air, which is not in the matrix, %g s: "
+                 "its push on cloth '%.60s' can grow in each. It blows %g m in a step, vertices "
+                 "are %g m apart; give shorter steps or less wind",
+                 model->h, most, sheet->cloth->name, speed * model->h, sheet->edge);
+}
+
+static void air_force(const struct element_list *list, const struct element_world *world,
+                      const struct phys_sight *sight, phys_vec *f)
+{
+    const struct model *model = world->model;
+    const double course = model_course_at(model, model->wind_course, world->time);
+    struct phys_air air = model->air;
+    for (int i = 0; i < 3; i++)
+        air.wind[i] *= course;
+    phys_air_force(&air, list->n, (const uint32_t(*)[4])list->corner, sight, f);
+}
+
+const struct element_kind element_air = {
+    .name = "faces in the air",
+    .part = ELEMENT_FACES,
+    .corners = 4,
+    .has = air_has,
+    .warn = air_warn,
+    .force = air_force,
+};

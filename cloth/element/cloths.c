@@ -1,0 +1,213 @@
+/* Parts of meshes become elements in the order of their mesh, so that every list of a kind has one
+ * order. */
+#include "cloth/element/cloths.h"
+
+#include "cloth/base/memory.h"
+#include "cloth/physics/triangle.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Rest shapes ---- */
+
+void element_rest_position(const struct element_cloths *cloths, uint32_t cloth, uint32_t vertex,
+                           double x[3])
+{
+    memcpy(x, model_rest(cloths->model->cloths + cloth)->position + 3 * (size_t)vertex,
+           3 * sizeof *x);
+}
+
+/* Directions of warp and weft at a vertex. */
+static void directions_of(const struct element_cloths *cloths, uint32_t cloth, uint32_t vertex,
+                          double uv[2])
+{
+    double x[3];
+    if (mesh_uv(model_rest(cloths->model->cloths + cloth), vertex, uv))
+        return;
+    element_rest_position(cloths, cloth, vertex, x);
+    for (int d = 0; d < 2; d++) {
+        const double *axis = cloths->axis[cloth][d];
+        uv[d] = x[0] * axis[0] + x[1] * axis[1] + x[2] * axis[2];
+    }
+}
+
+void element_rest_local(const struct element_cloths *cloths, uint32_t cloth,
+                        const uint32_t corner[3], double local[6])
+{
+    double x[9], uv[6];
+    for (int i = 0; i < 3; i++) {
+        element_rest_position(cloths, cloth, corner[i], x + 3 * i);
+        directions_of(cloths, cloth, corner[i], uv + 2 * i);
+    }
+    phys_triangle_local(x, uv, local);
+}
+
+void element_alone(const struct element_cloths *cloths, const struct element *element,
+                   void *material, struct element_one *one)
+{
+    const struct element_kind *kind = element_kinds[element->kind];
+    *one = (struct element_one){.list = {.n = 1, .corner = one->corner, .material = material}};
+    one->list.vector = &one->vector;
+    for (uint32_t i = 0; i < kind->numbers; i++)
+        one->list.number[i] = one->number + i;
+    for (uint32_t i = 0; i < 4; i++)
+        one->corner[0][i] = i < element->corners ? i : PHYS_NO_CORNER;
+    if (kind->pack)
+        kind->pack(cloths, element, &one->list, 0);
+}
+
+/* ---- Going through them ---- */
+
+struct walk {
+    void (*visit)(void *to, const struct element *element);
+    void *to;
+    const struct element_cloths *cloths;
+    const struct model_cloth *cloth;
+    struct element element; /* of the kind and cloth that are gone through */
+};
+
+static void walk_triangles(struct walk *walk)
+{
+    const struct mesh *mesh = &walk->cloth->mesh;
+    walk->element.corners = 3;
+    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
+        mesh_corners(mesh, t, walk->element.corner);
+        walk->visit(walk->to, &walk->element);
+    }
+}
+
+static void walk_faces(struct walk *walk)
+{
+    const struct mesh *mesh = &walk->cloth->mesh;
+    if (!model_has_cells(walk->cloths->model, walk->cloth)) {
+        walk_triangles(walk);
+        return;
+    }
+    walk->element.corners = 4;
+    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
+        mesh_corners(mesh, t, walk->element.corner);
+        walk->element.corner[3] = mesh_fourth(mesh, t);
+        walk->visit(walk->to, &walk->element);
+    }
+}
+
+static void walk_hinges(struct walk *walk)
+{
+    const struct mesh_edges *edges = walk->cloths->edges + walk->element.cloth;
+    walk->element.corners = 4;
+    for (uint32_t e = 0; e < edges->n; e++) {
+        const struct mesh_edge *edge = edges->edge + e;
+        const uint32_t corner[4] = {edge->a, edge->b, edge->opposite[0], edge->opposite[1]};
+        if (!element_is_hinge(edge))
+            continue;
+        memcpy(walk->element.corner, corner, sizeof corner);
+        walk->visit(walk->to, &walk->element);
+    }
+}
+
+/* Whether an edge of a grid is a diagonal of a cell. */
+static bool is_diagonal(const struct mesh *mesh, const struct mesh_edge *edge)
+{
+    const uint32_t nx = mesh->grid_nx;
+    return edge->a / nx != edge->b / nx && edge->a % nx != edge->b % nx;
+}
+
+static void walk_edges(struct walk *walk)
+{
+    const struct mesh_edges *edges = walk->cloths->edges + walk->element.cloth;
+    const bool cells = model_has_cells(walk->cloths->model, walk->cloth);
+    walk->element.corners = 2;
+    for (uint32_t e = 0; e < edges->n; e++) {
+        if (cells && is_diagonal(&walk->cloth->mesh, edges->edge + e))
+            continue;
+        walk->element.corner[0] = edges->edge[e].a;
+        walk->element.corner[1] = edges->edge[e].b;
+        walk->visit(walk->to, &walk->element);
+    }
+}
+
+static void (*const walks[ELEMENT_PARTS])(struct walk *) = {
+    [ELEMENT_TRIANGLES] = walk_triangles,
+    [ELEMENT_FACES] = walk_faces,
+    [ELEMENT_HINGES] = walk_hinges,
+    [ELEMENT_EDGES] = walk_edges,
+};
+
+void element_each(const struct element_cloths *cloths,
+                  void (*visit)(void *to, const struct element *element), void *to)
+{
+    const struct model *model = cloths->model;
+    for (uint32_t kind = 0; kind < ELEMENT_KINDS; kind++) {
+        struct walk walk = {.visit = visit, .to = to, .cloths = cloths};
+        for (uint32_t c = 0, first = 0; c < model->n_cloths; c++) {
+            walk.cloth = model->cloths + c;
+            walk.element = (struct element){.cloth = c, .first = first, .kind = kind};
+            if (element_kinds[kind]->has(model, walk.cloth))
+                walks[element_kinds[kind]->part](&walk);
+            first += walk.cloth->mesh.n_vertices;
+        }
+    }
+}
+
+/* ---- Making ---- */
+
+static int check_format(const struct model *model, struct cloth_error *error)
+{
+    if (model->format != SOLVE_SPRINGS)
+        return CLOTH_OK;
+    return cloth_fail(error, CLOTH_E_INPUT,
+                      "a matrix of springs cannot hold triangles or bending; the format half or "
+                      "half_float is expected");
+}
+
+static int check_cloth(const struct element_cloths *cloths, uint32_t c, struct cloth_error *error)
+{
+    const struct model *model = cloths->model;
+    int code = CLOTH_OK;
+    for (int i = 0; i < ELEMENT_KINDS && !code; i++)
+        if (element_kinds[i]->check && element_kinds[i]->has(model, model->cloths + c))
+            code = element_kinds[i]->check(cloths, c, error);
+    return code;
+}
+
+static int make_cloth(struct element_cloths *cloths, uint32_t c, struct cloth_error *error)
+{
+    const struct model *model = cloths->model;
+    const struct model_cloth *cloth = model->cloths + c;
+    struct cloth_error inner = {0};
+    if (!element_parts(model, cloth))
+        return CLOTH_OK;
+    int code = element_in_matrix(model, cloth) ? check_format(model, error) : CLOTH_OK;
+    if (code)
+        return code;
+    mesh_axes(model_rest(cloth), cloths->axis[c][0], cloths->axis[c][1]);
+    code = mesh_edges_find(cloths->edges + c, model_rest(cloth), &inner);
+    if (code == CLOTH_E_INPUT)
+        return model_fail(cloth->mesh_place, error, "cloth '%.60s': %s", cloth->name, inner.text);
+    if (code)
+        return cloth_fail(error, code, "%s", inner.text);
+    return check_cloth(cloths, c, error);
+}
+
+int element_cloths_make(struct element_cloths *cloths, const struct model *model,
+                        struct cloth_error *error)
+{
+    *cloths = (struct element_cloths){.model = model};
+    cloths->edges = cloth_alloc(model->n_cloths, sizeof *cloths->edges, error);
+    cloths->axis = cloth_alloc(model->n_cloths, sizeof *cloths->axis, error);
+    int code = cloths->edges && cloths->axis ? CLOTH_OK : CLOTH_E_MEMORY;
+    for (uint32_t c = 0; c < model->n_cloths && !code; c++)
+        code = make_cloth(cloths, c, error);
+    if (code)
+        element_cloths_free(cloths);
+    return code;
+}
+
+void element_cloths_free(struct element_cloths *cloths)
+{
+    for (uint32_t c = 0; cloths->edges && c < cloths->model->n_cloths; c++)
+        mesh_edges_free(cloths->edges + c);
+    free(cloths->edges);
+    free(cloths->axis);
+    *cloths = (struct element_cloths){0};
+}

@@ -1,0 +1,66 @@
+#ifndef CLOTH_ELEMENT_CLOTHS_H
+#define CLOTH_ELEMENT_CLOTHS_H
+
+#include "cloth/element/kind.h"
+
+/* Elements of all cloths: one kind after the other (cloth/element/kind.h), of each cloth after
+ * cloth, in the order of their meshes. Nothing of an element is stored but the edges of its mesh:
+ * rest values are worked out when a list is made. */
+
+struct element {
+    uint32_t cloth, first;                     /* its number; its first vertex, of all cloths */
+    uint32_t corner[ELEMENT_CORNERS], corners; /* of the cloth's mesh; how many */
+    uint32_t kind;                             /* of element_kinds */
+};
+
+struct element_cloths {
+    const struct model *model;
+    struct mesh_edges *edges; /* a cloth; none where it has no elements */
+    double (*axis)[2][3];     /* a cloth: directions of warp and weft where its mesh has no uv */
+};
+
+/* Finds the edges, and what is wrong with rest shapes. Errors: CLOTH_E_INPUT for triangles without
+ * area and what does not suit its material, with the place; CLOTH_E_MEMORY. Local. */
+int element_cloths_make(struct element_cloths *cloths, const struct model *model,
+                        struct cloth_error *error);
+void element_cloths_free(struct element_cloths *cloths);
+
+/* Shows every element of all cloths. */
+void element_each(const struct element_cloths *cloths,
+                  void (*visit)(void *to, const struct element *element), void *to);
+
+/* The list of one element by itself, whose corners are the first rows. It points into itself.
+ * material: of its kind, as element_materials fills it; not owned. */
+struct element_one {
+    struct element_list list;
+    uint32_t corner[1][4];
+    phys_vec vector;
+    double number[ELEMENT_NUMBERS];
+};
+void element_alone(const struct element_cloths *cloths, const struct element *element,
+                   void *material, struct element_one *one);
+
+/* ---- For descriptors: vertices are of the cloth's mesh ---- */
+
+/* Where a vertex is at rest, m. */
+void element_rest_position(const struct element_cloths *cloths, uint32_t cloth, uint32_t vertex,
+                           double x[3]);
+
+/* A triangle's coordinates along warp and weft (phys_triangle_local). */
+void element_rest_local(const struct element_cloths *cloths, uint32_t cloth,
+                        const uint32_t corner[3], double local[6]);
+
+/* The material, by number, of an element: of what its first n corners have in common. */
+static inline uint32_t element_material(const struct element_cloths *cloths,
+                                        const struct element *element, size_t n)
+{
+    return model_material_of(cloths->model->cloths + element->cloth, n, element->corner);
+}
+
+/* Whether an edge is a hinge. */
+static inline bool element_is_hinge(const struct mesh_edge *edge)
+{
+    return edge->opposite[1] != UINT32_MAX && edge->opposite[0] != edge->opposite[1];
+}
+
+#endif

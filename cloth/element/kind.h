@@ -1,0 +1,139 @@
+#ifndef CLOTH_ELEMENT_KIND_H
+#define CLOTH_ELEMENT_KIND_H
+
+#include "cloth/model/model.h"
+#include "cloth/physics/element.h"
+
+#include <stdbool.h>
+
+/* Descriptors of elements: everything that the rest of the cloth knows of a force that joins
+ * vertices, springs aside. Each kind has one descriptor, in a file of its own (bending has two).
+ * All other code walks the table of kinds and asks; none names a kind. To add a force: one file in
+ * cloth/physics, one descriptor here, its name in ELEMENT_ALL, its keys in the scene. */
+
+/* What each element of a kind is made from, of a cloth's mesh. Corners in this order. */
+enum element_part {
+    ELEMENT_TRIANGLES, /* of each triangle: its corners */
+    ELEMENT_FACES,     /* the same, and the fourth corner of its cell where the cloth has cells */
+    ELEMENT_HINGES,    /* of each edge between two triangles: its ends, the vertices opposite */
+    ELEMENT_EDGES,     /* of each edge: its ends; where the cloth has cells, without diagonals */
+    ELEMENT_PARTS
+};
+
+enum {
+    ELEMENT_CORNERS = 4, /* an element has at most; */
+    ELEMENT_PAIRS = 6,   /* of its corners; */
+    ELEMENT_NUMBERS = 3  /* numbers in its list */
+};
+
+/* The elements of one kind in a block, all that have a corner there, in the order of the mesh. */
+struct element_list {
+    uint32_t n;
+    uint32_t (*corner)[4]; /* n: rows, then copies; spare ones: see pack */
+    uint32_t *at;          /* n x pairs: the entry of each, as solve_assemble_pairs wants it */
+    phys_vec *vector;      /* n, or none */
+    double *number[ELEMENT_NUMBERS]; /* n each; those of the kind come first */
+    void *material;                  /* a material: what elements have of it; or none */
+};
+
+/* When and in what world forces act. The model has no cloths and no materials. */
+struct element_world {
+    const struct model *model;
+    double time; /* s */
+};
+
+/* A cloth, for what limits steps. */
+struct element_sheet {
+    const struct model *model;
+    const struct model_cloth *cloth;
+    double density; /* kg/m^2: its smallest mass of an area */
+    double edge;    /* m: the mean distance of its vertices */
+};
+
+struct element;
+struct element_cloths;
+
+/* A descriptor. Functions are local and pure, but for what they add to or write. Those on lists
+ * work on elements in order, and an element's numbers depend on its corners alone
+ * (cloth/physics/element.h). A part that a kind has not is NULL or 0. */
+struct element_kind {
+    const char *name; /* in the plural, as sentences have it */
+    enum element_part part;
+    uint32_t corners; /* at most */
+    uint32_t pairs;   /* of corners, that the matrix has: all, (0, 1), (0, 2), (1, 2), (0, 3), ..;
+                         0: the matrix does not know these forces */
+
+    /* A list: how many vectors (0 or 1) and numbers an element has, how many bytes a material. */
+    uint32_t vectors, numbers;
+    size_t material_bytes;
+
+    /* ---- On rank 0, when a run is set up ---- */
+
+    /* Whether a cloth has such elements; then all its parts are elements. Asks for its materials
+     * and for the model, not for its mesh. */
+    bool (*has)(const struct model *model, const struct model_cloth *cloth);
+    /* Optional: CLOTH_E_INPUT, with the place, for parts of a cloth that can be no such elements.
+     */
+    int (*check)(const struct element_cloths *cloths, uint32_t cloth, struct cloth_error *error);
+    /* Of kinds with anything in their lists: writes vector and numbers of entry e of a list, whose
+     * corners are there; corners that it has not got are PHYS_NO_CORNER until it uses them. */
+    void (*pack)(const struct element_cloths *cloths, const struct element *element,
+                 const struct element_list *list, uint32_t e);
+    /* Of kinds with material_bytes: writes what elements have of a material of any kind. */
+    void (*material)(const struct model_material *material, void *to);
+    /* Of kinds without pairs: writes why steps of the model are too long for their force on a
+     * cloth, or the empty string. */
+    void (*warn)(const struct element_sheet *sheet, char *text, size_t size);
+
+    /* ---- On the lists of blocks, in a step ---- */
+
+    /* Adds the forces (N) to f, the block's rows. */
+    void (*force)(const struct element_list *list, const struct element_world *world,
+                  const struct phys_sight *sight, phys_vec *f);
+    /* All below are of kinds with pairs. The pairs of elements from .. to - 1; at, of each of
+     * these: with bit 0 set where N' is wanted in place of N; NULL: nowhere. */
+    void (*matrix)(const struct element_list *list, size_t from, size_t to,
+                   const struct phys_step *step, const struct phys_sight *sight, const uint32_t *at,
+                   struct phys_pair *pair);
+    /* Optional: the same, and the right side of that step: b += push f - h^2 K v, with push h (s),
+     * or 0 where the forces are in b. */
+    void (*system)(const struct element_list *list, size_t from, size_t to,
+                   const struct phys_step *step, double push, const struct phys_sight *sight,
+                   const uint32_t *at, phys_vec *b, struct phys_pair *pair);
+    /* Of kinds without system: y -= scale K v. */
+    void (*stiffness)(const struct element_list *list, int full, double scale,
+                      const struct phys_sight *sight, phys_vec *y);
+    /* Energy (J) of the elements that count here: whose corner 0 is one of the block's rows. */
+    double (*energy)(const struct element_list *list, const struct phys_sight *sight);
+    /* Optional: adds the torques (N m) that the forces of elements that count here leave. */
+    void (*torque)(const struct element_list *list, const struct phys_sight *sight,
+                   double torque[3]);
+    /* Optional: as matrix, but of elements at their stiffest, where that is not at the start: for
+     * the longest step. */
+    void (*stiffest)(const struct element_list *list, size_t from, size_t to,
+                     const struct phys_step *step, const struct phys_sight *sight,
+                     const uint32_t *at, struct phys_pair *pair);
+};
+
+/* All kinds, in the order in which their forces are added and their entries assembled. */
+#define ELEMENT_ALL(KIND) KIND(triangles) KIND(hinges) KIND(quadratic) KIND(air)
+
+#define ELEMENT_COUNT(name) +1
+enum { ELEMENT_KINDS = 0 ELEMENT_ALL(ELEMENT_COUNT) };
+#undef ELEMENT_COUNT
+
+#define ELEMENT_DECLARE(name) extern const struct element_kind element_##name;
+ELEMENT_ALL(ELEMENT_DECLARE)
+#undef ELEMENT_DECLARE
+
+extern const struct element_kind *const element_kinds[ELEMENT_KINDS];
+
+/* Which parts of a cloth are elements: bit 1 << part. Of a cloth that has any: whether the matrix
+ * knows of some. */
+unsigned element_parts(const struct model *model, const struct model_cloth *cloth);
+bool element_in_matrix(const struct model *model, const struct model_cloth *cloth);
+
+/* Fills list->material of a kind, n_materials times its material_bytes. */
+void element_materials(const struct element_kind *kind, const struct model *model, void *to);
+
+#endif

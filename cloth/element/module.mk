@@ -1,0 +1,8 @@
+# Elements besides springs: a descriptor of each kind, and all of a model's cloths.
+libduite_cloth_la_SOURCES += \
+    cloth/element/air.c \
+    cloth/element/bending.c \
+    cloth/element/cloths.c cloth/element/cloths.h \
+    cloth/element/kind.h \
+    cloth/element/kinds.c \
+    cloth/element/triangles.c

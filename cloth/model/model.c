@@ -68,17 +68,20 @@ void model_free(struct model *model)
     *model = (struct model){0};
 }
 
+const struct model_word model_integrators[] = {{"implicit_euler", MODEL_IMPLICIT_EULER},
+                                               {"explicit_euler", MODEL_EXPLICIT_EULER},
+                                               {"symplectic_euler", MODEL_SYMPLECTIC_EULER},
+                                               {"verlet", MODEL_VERLET},
+                                               {"rk4", MODEL_RK4},
+                                               {"bdf2", MODEL_BDF2},
+                                               {0}};
+
 const char *model_integrator_name(enum model_integrator integrator)
 {
-    static const char *const names[MODEL_INTEGRATORS] = {
-        [MODEL_EXPLICIT_EULER] = "explicit_euler",
-        [MODEL_SYMPLECTIC_EULER] = "symplectic_euler",
-        [MODEL_VERLET] = "verlet",
-        [MODEL_RK4] = "rk4",
-        [MODEL_IMPLICIT_EULER] = "implicit_euler",
-        [MODEL_BDF2] = "bdf2",
-    };
-    return names[integrator];
+    const struct model_word *word = model_integrators;
+    while (word->word && word->value != (int)integrator)
+        word++;
+    return word->word;
 }
 
 static bool has_material(const struct model_cloth *cloth, uint32_t material)

@@ -22,9 +22,9 @@ struct model_material {
     char *name;
     double density; /* kg/m^2, > 0; 0: all its cloths have mass_per_vertex */
     enum { MODEL_SPRINGS, MODEL_TRIANGLES } model;
-    double stretch, shear, bend; /* membrane moduli, N/m, >= 0; stretch along the warp; bend: of
-                                    springs only */
-    double weft_excess;          /* the modulus along the weft less that along the warp, N/m */
+    double stretch, weft_excess; /* membrane moduli, N/m, >= 0: along the warp, and what that along
+                                    the weft is more */
+    double shear, bend;          /* likewise; bend: of springs only */
     double poisson;              /* triangles: nu12, nu12 nu21 < 1 */
     bool uncorrected;            /* triangles: with the papers' forces (cloth/physics/triangle.h) */
     enum { MODEL_NO_BENDING, MODEL_HINGES, MODEL_QUADRATIC } bending; /* besides bend springs */
@@ -35,6 +35,12 @@ struct model_material {
     double damping_excess;    /* s: what it is of bending less that */
     double ea;                /* N, >= 0: force / strain of an edge without triangles */
     int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
+};
+
+/* A word of scenes, and what it means: the value of an enum, mostly. */
+struct model_word {
+    const char *word; /* NULL ends a list */
+    int value;
 };
 
 /* A `place` is where the scene says a thing, for messages: "scene.yaml:4:11", or an option; NULL:
@@ -293,7 +299,8 @@ static inline int model_stops_by_norms(const struct model *model)
 bool model_is_coarse(const struct model *model);
 uint32_t model_patches(const struct model *model, uint32_t n_blocks);
 
-/* Its name in scenes. */
+/* Their names in scenes. */
+extern const struct model_word model_integrators[];
 const char *model_integrator_name(enum model_integrator integrator);
 
 /* The shape at rest of a cloth; the modulus along the weft. */

@@ -10,6 +10,10 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/yaml/edit.c \
 	cloth/scene/schema/rules.h \
 	cloth/scene/schema/rules.c \
+	cloth/scene/schema/rules_cloth.c \
+	cloth/scene/schema/tables.h \
+	cloth/scene/schema/store.h \
+	cloth/scene/schema/store.c \
 	cloth/scene/schema/words.c \
 	cloth/scene/schema/fabrics.h \
 	cloth/scene/schema/fabrics.c \

@@ -1,5 +1,5 @@
-/* Reading a scene: load the document, edit it, check it, build the model from it; each step relies
- * on the one before. */
+/* Reading a scene: load the document, edit it, check it and fill the model, build what is no copy;
+ * each step relies on the one before. */
 #include "cloth/scene/scene.h"
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/check.h"
@@ -20,7 +20,7 @@ int scene_read(struct model *model, const char *path, size_t n_sets, const struc
     if (!code)
         code = scene_fabrics_fill(&tree, &own);
     if (!code)
-        code = scene_check(&tree, &own);
+        code = scene_check(model, &tree, &own);
     if (!code)
         code = scene_build_world(model, &tree, &own);
     if (!code)

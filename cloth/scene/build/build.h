@@ -4,7 +4,8 @@
 #include "cloth/model/model.h"
 #include "cloth/scene/yaml/tree.h"
 
-/* From a tree that scene_check accepted to a model. They check what a table cannot: names, sizes,
+/* From a model that scene_check filled to one that is whole. They make what is no copy of a value
+ * (meshes, motions, numbers of what is named), and check what a table cannot: names, sizes,
  * indices, files. What they allocate belongs to the model, also after an error. */
 
 /* All but the cloths. */
@@ -19,8 +20,7 @@ int scene_build_check_obstacles(const struct model *model, const struct scene_tr
                                 struct cloth_error *error);
 
 /* The cloths; after the world, since they name materials. */
-int scene_build_cloths(struct model *model, const struct scene_tree *tree,
-                       struct cloth_error *error);
+int scene_build_cloths(struct model *model, struct scene_tree *tree, struct cloth_error *error);
 
 /* After the cloths, whose vertices they name. */
 int scene_build_probes(struct model *model, const struct scene_tree *tree,
@@ -34,18 +34,17 @@ int scene_build_material(uint32_t *material, const struct model_cloth *cloth,
 
 /* The regions of a cloth that has its mesh, name and material. */
 int scene_build_regions(struct model_cloth *cloth, const struct model *model,
-                        const struct scene_tree *tree, int node, struct cloth_error *error);
+                        struct scene_tree *tree, int node, struct cloth_error *error);
 
 /* That the materials of a cloth with its regions have the moduli that its mesh needs. */
 int scene_build_check_moduli(const struct model_cloth *cloth, const struct model *model,
                              const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* The key radius of a map that picks vertices, 0 without one. Error: it is there without nearest.
- */
-int scene_build_radius(double *radius, const struct scene_tree *tree, int node,
-                       struct cloth_error *error);
+/* That a map that picks vertices has no radius without nearest. */
+int scene_build_check_radius(const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* What picks vertices: a map with one of the keys vertices, nearest, box. */
+/* What picks vertices, as a map with one of the keys vertices, nearest, box filled it: that there
+ * are such vertices; corners of a box are put in order. */
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error);
 
@@ -72,9 +71,9 @@ int scene_build_loads(struct model *model, struct model_cloth *cloth, const stru
 int scene_build_starts(struct model_cloth *cloth, const struct scene_tree *tree, int node,
                        struct cloth_error *error);
 
-/* The keys scale, rotate and translate of a map. */
-int scene_build_transform(struct mesh_transform *transform, const struct scene_tree *tree, int node,
-                          struct cloth_error *error);
+/* That the key rotate of a map, which filled the transform, is a rotation. */
+int scene_build_check_turn(const struct mesh_transform *transform, const struct scene_tree *tree,
+                           int node, struct cloth_error *error);
 
 /* What a pin holds its vertices to, and how it moves: motions and guides are added to the model's.
  */
@@ -90,7 +89,7 @@ int scene_build_no_such(const char *what, const char *name, const char *const *n
                         const struct scene_tree *tree, int node, struct cloth_error *error);
 
 /* The mesh of a cloth, transformed. */
-int scene_build_mesh(struct mesh *mesh, const struct scene_tree *tree, int cloth,
+int scene_build_mesh(struct mesh *mesh, struct scene_tree *tree, int cloth,
                      struct cloth_error *error);
 
 /* n zeroed entries (at least one), or NULL with an error. */

@@ -4,8 +4,8 @@
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/fabrics.h"
 #include "cloth/scene/schema/rules.h"
-#include "cloth/scene/yaml/scalar.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,34 +19,24 @@ int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
                            vertex, cloth->name, cloth->mesh.n_vertices, cloth->mesh.n_vertices - 1);
 }
 
-static int build_vertices(uint32_t **vertices, uint32_t *n_vertices, const struct scene_tree *tree,
-                          int list, const struct model_cloth *cloth, struct cloth_error *error)
+static int check_vertices(const struct model_pick *pick, const struct scene_tree *tree, int list,
+                          const struct model_cloth *cloth, struct cloth_error *error)
 {
-    size_t n = scene_tree_length(tree, list);
-    *vertices = scene_build_array(n, sizeof **vertices, error);
-    if (!*vertices)
-        return error->code;
-    *n_vertices = (uint32_t)n;
-    for (size_t i = 0; i < n; i++) {
-        int item = scene_tree_item(tree, list, i);
-        uint32_t *vertex = &(*vertices)[i];
-        scene_scalar_integer(scene_tree_scalar(tree, item), vertex);
-        if (*vertex >= cloth->mesh.n_vertices)
-            return scene_build_no_vertex(*vertex, cloth, tree, item, error);
-    }
+    for (uint32_t i = 0; i < pick->n_vertices; i++)
+        if (pick->vertices[i] >= cloth->mesh.n_vertices)
+            return scene_build_no_vertex(pick->vertices[i], cloth, tree,
+                                         scene_tree_item(tree, list, i), error);
     return CLOTH_OK;
 }
 
+/* Of two opposite corners to the lower and the upper one. */
 static int build_box(double (*box)[3], const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error)
 {
-    double corner[2][3];
-    for (size_t i = 0; i < 2; i++)
-        scene_tree_vector(tree, scene_tree_item(tree, node, i), 3, corner[i]);
     for (int i = 0; i < 3; i++) {
-        int low = corner[0][i] > corner[1][i];
-        box[0][i] = corner[low][i];
-        box[1][i] = corner[!low][i];
+        const double a = box[0][i], b = box[1][i];
+        box[0][i] = fmin(a, b);
+        box[1][i] = fmax(a, b);
     }
     for (size_t v = 0; v < cloth->mesh.n_vertices; v++)
         if (model_in_box(cloth->mesh.position + 3 * v, (const double(*)[3])box))
@@ -57,14 +47,12 @@ static int build_box(double (*box)[3], const struct scene_tree *tree, int node,
                            cloth->name);
 }
 
-int scene_build_radius(double *radius, const struct scene_tree *tree, int node,
-                       struct cloth_error *error)
+int scene_build_check_radius(const struct scene_tree *tree, int node, struct cloth_error *error)
 {
-    const int value = scene_tree_get(tree, node, "radius");
-    *radius = value ? scene_tree_number(tree, node, "radius") : 0;
-    if (!value || scene_tree_get(tree, node, "nearest"))
+    const int radius = scene_tree_get(tree, node, "radius");
+    if (!radius || scene_tree_get(tree, node, "nearest"))
         return CLOTH_OK;
-    return scene_tree_fail(tree, value, error,
+    return scene_tree_fail(tree, radius, error,
                            "radius is given without nearest, the point that it is measured from; "
                            "both or neither are expected");
 }
@@ -72,22 +60,13 @@ int scene_build_radius(double *radius, const struct scene_tree *tree, int node,
 int scene_build_pick(struct model_pick *pick, const struct scene_tree *tree, int node,
                      const struct model_cloth *cloth, struct cloth_error *error)
 {
-    const int vertices = scene_tree_get(tree, node, "vertices");
-    const int nearest = scene_tree_get(tree, node, "nearest");
-    pick->place = scene_build_place(tree, node, error);
-    if (!pick->place || scene_build_radius(&pick->radius, tree, node, error))
+    if (scene_build_check_radius(tree, node, error))
         return error->code;
-    if (vertices) {
-        pick->kind = MODEL_PICK_VERTICES;
-        return build_vertices(&pick->vertices, &pick->n_vertices, tree, vertices, cloth, error);
-    }
-    if (nearest) {
-        pick->kind = MODEL_PICK_NEAREST;
-        scene_tree_vector(tree, nearest, 3, pick->point);
-        return CLOTH_OK;
-    }
-    pick->kind = MODEL_PICK_BOX;
-    return build_box(pick->box, tree, scene_tree_get(tree, node, "box"), cloth, error);
+    if (pick->kind == MODEL_PICK_VERTICES)
+        return check_vertices(pick, tree, scene_tree_get(tree, node, "vertices"), cloth, error);
+    if (pick->kind == MODEL_PICK_BOX)
+        return build_box(pick->box, tree, scene_tree_get(tree, node, "box"), cloth, error);
+    return CLOTH_OK;
 }
 
 int scene_build_once(const struct model_pick *pick, const struct scene_tree *tree, int node,
@@ -107,15 +86,10 @@ int scene_build_once(const struct model_pick *pick, const struct scene_tree *tre
 static int build_pins(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
                       int node, struct cloth_error *error)
 {
-    int list = scene_tree_get(tree, node, "pins");
-    size_t n = scene_tree_length(tree, list);
-    cloth->pins = scene_build_array(n, sizeof *cloth->pins, error);
-    if (!cloth->pins)
-        return error->code;
-    cloth->n_pins = (uint32_t)n;
+    const int list = scene_tree_get(tree, node, "pins");
     int code = CLOTH_OK;
-    for (size_t i = 0; !code && i < n; i++) {
-        int pin = scene_tree_item(tree, list, i);
+    for (uint32_t i = 0; !code && i < cloth->n_pins; i++) {
+        const int pin = scene_tree_item(tree, list, i);
         code = scene_build_pick(&cloth->pins[i].pick, tree, pin, cloth, error);
         if (!code)
             code = scene_build_hold(model, &cloth->pins[i], tree, pin, error);
@@ -143,7 +117,7 @@ static int no_material(const char *name, const struct model *model, const struct
                        int node, struct cloth_error *error)
 {
     size_t n = model->n_materials, n_fabrics = 0;
-    while (scene_fabric_names[n_fabrics])
+    while (scene_fabrics[n_fabrics].word)
         n_fabrics++;
     const char **names = scene_build_array(n + n_fabrics, sizeof *names, error);
     if (!names)
@@ -151,8 +125,8 @@ static int no_material(const char *name, const struct model *model, const struct
     for (uint32_t i = 0; i < model->n_materials; i++)
         names[i] = model->materials[i].name;
     for (size_t i = 0; i < n_fabrics; i++)
-        if (!is_among(scene_fabric_names[i], names, n))
-            names[n++] = scene_fabric_names[i];
+        if (!is_among(scene_fabrics[i].word, names, n))
+            names[n++] = scene_fabrics[i].word;
     int code = scene_build_no_such("material", name, names, n, tree, node, error);
     free(names);
     return code;
@@ -190,25 +164,15 @@ static int name_cloth(struct model *model, uint32_t i, const struct scene_tree *
 {
     char usual[32];
     snprintf(usual, sizeof usual, "cloth%u", i + 1);
-    int at = scene_tree_get(tree, node, "name");
-    const char *name = at ? scene_tree_scalar(tree, at) : usual;
+    const int at = scene_tree_get(tree, node, "name");
+    const char *name = at ? model->cloths[i].name : usual;
     for (uint32_t j = 0; j < i; j++)
         if (!strcmp(model->cloths[j].name, name))
             return scene_tree_fail(tree, at ? at : node, error,
                                    "a second cloth is named '%.60s'; names must differ", name);
-    model->cloths[i].name = scene_build_copy(name, error);
+    if (!at)
+        model->cloths[i].name = scene_build_copy(name, error);
     return model->cloths[i].name ? CLOTH_OK : error->code;
-}
-
-/* Where the scene says what flow_prepare may find wrong. */
-static int build_places(struct model_cloth *cloth, const struct scene_tree *tree, int node,
-                        struct cloth_error *error)
-{
-    yaml_node_pair_t mesh = scene_tree_pair(tree, scene_tree_get(tree, node, "mesh"), 0);
-    cloth->place = scene_build_place(tree, node, error);
-    cloth->mesh_place = scene_build_place(tree, mesh.value, error);
-    cloth->velocity_place = scene_build_place(tree, scene_tree_get(tree, node, "velocity"), error);
-    return cloth->place && cloth->mesh_place && cloth->velocity_place ? CLOTH_OK : error->code;
 }
 
 /* A shape of its own at rest, from uv. */
@@ -216,7 +180,7 @@ static int build_rest(struct model_cloth *cloth, const struct scene_tree *tree, 
                       struct cloth_error *error)
 {
     const uint32_t n = cloth->mesh.n_vertices;
-    if (!strcmp(scene_tree_text(tree, node, "rest"), "position"))
+    if (!scene_word_value(scene_rests, scene_tree_text(tree, node, "rest"), NULL))
         return CLOTH_OK;
     cloth->rest = scene_build_array(1, sizeof *cloth->rest, error);
     if (!cloth->rest)
@@ -241,16 +205,11 @@ static void choose_format(struct model *model, const struct model_cloth *cloth)
         model->format = SOLVE_HALF;
 }
 
-static int build_cloth(struct model *model, uint32_t i, const struct scene_tree *tree, int node,
+static int build_cloth(struct model *model, uint32_t i, struct scene_tree *tree, int node,
                        struct cloth_error *error)
 {
     struct model_cloth *cloth = &model->cloths[i];
-    if (scene_tree_get(tree, node, "mass_per_vertex"))
-        cloth->mass_per_vertex = scene_tree_number(tree, node, "mass_per_vertex");
-    scene_tree_vector(tree, scene_tree_get(tree, node, "velocity"), 3, cloth->velocity);
-    int code = build_places(cloth, tree, node, error);
-    if (!code)
-        code = name_cloth(model, i, tree, node, error);
+    int code = name_cloth(model, i, tree, node, error);
     if (!code)
         code = scene_build_material(&cloth->material, cloth, model, tree, node, error);
     if (!code)
@@ -270,17 +229,11 @@ static int build_cloth(struct model *model, uint32_t i, const struct scene_tree 
     return code ? code : scene_build_loads(model, cloth, tree, node, error);
 }
 
-int scene_build_cloths(struct model *model, const struct scene_tree *tree,
-                       struct cloth_error *error)
+int scene_build_cloths(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
-    int list = scene_tree_get(tree, 1, "cloths");
-    size_t n = scene_tree_length(tree, list);
-    model->cloths = scene_build_array(n, sizeof *model->cloths, error);
-    if (!model->cloths)
-        return error->code;
-    model->n_cloths = (uint32_t)n;
+    const int list = scene_tree_get(tree, 1, "cloths");
     int code = CLOTH_OK;
-    for (uint32_t i = 0; !code && i < n; i++)
+    for (uint32_t i = 0; !code && i < model->n_cloths; i++)
         code = build_cloth(model, i, tree, scene_tree_item(tree, list, i), error);
     return code;
 }

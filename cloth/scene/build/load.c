@@ -1,21 +1,14 @@
 /* Loads: forces on vertices, or along edges. */
 #include "cloth/scene/build/build.h"
-#include "cloth/scene/yaml/scalar.h"
 
 #include <stdlib.h>
 
-static int build_edges(struct model_load *load, const struct scene_tree *tree, int list,
+static int check_edges(const struct model_load *load, const struct scene_tree *tree, int list,
                        const struct model_cloth *cloth, struct cloth_error *error)
 {
-    const size_t n = scene_tree_length(tree, list);
-    load->edges = scene_build_array(n, sizeof *load->edges, error);
-    if (!load->edges)
-        return error->code;
-    load->n_edges = (uint32_t)n;
-    for (size_t i = 0; i < 2 * n; i++) {
+    for (size_t i = 0; i < 2 * (size_t)load->n_edges; i++) {
         const int item = scene_tree_item(tree, scene_tree_item(tree, list, i / 2), i % 2);
-        uint32_t *end = &load->edges[i / 2][i % 2];
-        scene_scalar_integer(scene_tree_scalar(tree, item), end);
+        const uint32_t *end = &load->edges[i / 2][i % 2];
         if (*end >= cloth->mesh.n_vertices)
             return scene_build_no_vertex(*end, cloth, tree, item, error);
         if (i % 2 && end[0] == end[-1])
@@ -34,13 +27,10 @@ static int build_load(struct model_load *load, const struct scene_tree *tree, in
                       struct cloth_error *error)
 {
     const int edges = scene_tree_get(tree, node, "edges");
-    scene_tree_vector(tree, scene_tree_get(tree, node, "force"), 3, load->force);
-    if (edges && scene_build_radius(&load->pick.radius, tree, node, error))
+    if (edges && scene_build_check_radius(tree, node, error))
         return error->code;
-    if (edges) {
-        load->pick.place = scene_build_place(tree, node, error);
-        return load->pick.place ? build_edges(load, tree, edges, cloth, error) : error->code;
-    }
+    if (edges)
+        return check_edges(load, tree, edges, cloth, error);
     const int code = scene_build_pick(&load->pick, tree, node, cloth, error);
     if (code)
         return code;
@@ -53,13 +43,10 @@ int scene_build_loads(struct model *model, struct model_cloth *cloth, const stru
                       int node, struct cloth_error *error)
 {
     int list = scene_tree_get(tree, node, "loads"), code = CLOTH_OK;
-    uint32_t n = (uint32_t)scene_tree_length(tree, list);
+    const uint32_t n = cloth->n_loads;
     uint32_t *seen = scene_build_array(n ? cloth->mesh.n_vertices : 0, sizeof *seen, error);
-    cloth->loads = scene_build_array(n, sizeof *cloth->loads, error);
-    if (seen && cloth->loads)
-        cloth->n_loads = n;
-    else
-        code = error->code;
+    if (!seen)
+        return error->code;
     for (uint32_t i = 0; !code && i < n; i++) {
         struct model_load *load = &cloth->loads[i];
         const int item = scene_tree_item(tree, list, i);

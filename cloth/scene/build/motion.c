@@ -1,11 +1,11 @@
 /* What pins hold to, and how they move. Keys of all motions stand in one array of the model, in the
  * order of the pins; so do guides. */
 #include "cloth/scene/build/build.h"
+#include "cloth/scene/schema/rules.h"
 #include "cloth/scene/yaml/scalar.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Makes room for one more motion with n more keys. */
 static int grow(struct model *model, size_t n, struct cloth_error *error)
@@ -155,31 +155,34 @@ int scene_build_direction(double direction[3], const char *what, const struct sc
     return CLOTH_OK;
 }
 
-/* A guide has a direction or a normal, a point neither. */
-static int check_hold(const char *to, const struct scene_tree *tree, int node,
+/* A guide has one of these, a point neither. */
+static const char *const hold_keys[] = {[SCENE_LINE] = "direction", [SCENE_PLANE] = "normal"};
+
+static int check_hold(enum scene_hold hold, const struct scene_tree *tree, int node,
                       struct cloth_error *error)
 {
-    static const char *const keys[] = {"direction", "normal"}, *const of[] = {"line", "plane"};
-    for (int i = 0; i < 2; i++) {
-        const int key = scene_tree_get(tree, node, keys[i]), wanted = !strcmp(to, of[i]);
+    const char *to = scene_holds[hold].word;
+    for (int i = SCENE_LINE; i <= SCENE_PLANE; i++) {
+        const int key = scene_tree_get(tree, node, hold_keys[i]);
+        const bool wanted = i == (int)hold;
+        const char *of = scene_holds[i].word;
         if (wanted && !key)
             return scene_tree_fail(tree, node, error,
                                    "a pin to a %s has no %s; a list of 3 numbers is expected", to,
-                                   keys[i]);
+                                   hold_keys[i]);
         if (!wanted && key)
             return scene_tree_fail(tree, key, error,
                                    "a pin to a %s has a %s, which is that of a %s; to: %s is "
                                    "expected with it",
-                                   to, keys[i], of[i], of[i]);
+                                   to, hold_keys[i], of, of);
     }
     return CLOTH_OK;
 }
 
-static int build_guide(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
-                       int node, struct cloth_error *error)
+static int build_guide(struct model *model, struct model_pin *pin, enum scene_hold hold,
+                       const struct scene_tree *tree, int node, struct cloth_error *error)
 {
-    const char *to = scene_tree_text(tree, node, "to");
-    const bool line = !strcmp(to, "line");
+    const bool line = hold == SCENE_LINE;
     struct model_guide *guides = realloc(model->guides, (model->n_guides + 1) * sizeof *guides);
     if (!guides)
         return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
@@ -190,19 +193,20 @@ static int build_guide(struct model *model, struct model_pin *pin, const struct 
     pin->guide = ++model->n_guides;
     return scene_build_direction(guide->direction,
                                  line ? "the direction of a pin" : "the normal of a pin", tree,
-                                 scene_tree_get(tree, node, line ? "direction" : "normal"), error);
+                                 scene_tree_get(tree, node, hold_keys[hold]), error);
 }
 
 int scene_build_hold(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
                      int node, struct cloth_error *error)
 {
     const char *to = scene_tree_text(tree, node, "to");
+    const enum scene_hold hold = (enum scene_hold)scene_word_value(scene_holds, to, NULL);
     const int motion = scene_tree_get(tree, node, "motion");
-    int code = check_hold(to, tree, node, error);
+    int code = check_hold(hold, tree, node, error);
     if (!code && motion)
         code = build_motion(model, tree, motion, error);
     if (code)
         return code;
     pin->motion = motion ? model->n_motions : 0;
-    return strcmp(to, "point") ? build_guide(model, pin, tree, node, error) : CLOTH_OK;
+    return hold == SCENE_POINT ? CLOTH_OK : build_guide(model, pin, hold, tree, node, error);
 }

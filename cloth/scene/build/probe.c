@@ -1,6 +1,7 @@
 /* Probes. Their names stand in the header of a table, so they are words without commas or quotes.
  */
 #include "cloth/scene/build/build.h"
+#include "cloth/scene/schema/rules.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,8 +19,8 @@ static int name_probe(struct model *model, uint32_t i, const struct scene_tree *
 {
     char usual[32];
     snprintf(usual, sizeof usual, "probe%u", i + 1);
-    int at = scene_tree_get(tree, node, "name");
-    const char *name = at ? scene_tree_scalar(tree, at) : usual;
+    const int at = scene_tree_get(tree, node, "name");
+    const char *name = at ? model->probes[i].name : usual;
     if (!is_word(name))
         return scene_tree_fail(tree, at, error,
                                "the name of a probe is '%.60s'; at most 60 letters, digits, _ and "
@@ -29,7 +30,8 @@ static int name_probe(struct model *model, uint32_t i, const struct scene_tree *
         if (!strcmp(model->probes[j].name, name))
             return scene_tree_fail(tree, at ? at : node, error,
                                    "a second probe is named '%.60s'; names must differ", name);
-    model->probes[i].name = scene_build_copy(name, error);
+    if (!at)
+        model->probes[i].name = scene_build_copy(name, error);
     return model->probes[i].name ? CLOTH_OK : error->code;
 }
 
@@ -62,27 +64,18 @@ static int find_cloth(struct model_probe *probe, const struct model *model,
     return no_cloth(name, model, tree, scene_tree_get(tree, node, "cloth"), error);
 }
 
+/* A value says where its flag is. */
 static int build_values(struct model_probe *probe, const struct scene_tree *tree, int list,
                         struct cloth_error *error)
 {
-    const struct {
-        const char *word;
-        bool *value;
-    } all[] = {{"position", &probe->position},
-               {"velocity", &probe->velocity},
-               {"reaction", &probe->reaction},
-               {"total", &probe->total}};
     for (size_t i = 0; i < scene_tree_length(tree, list); i++) {
         const int item = scene_tree_item(tree, list, i);
         const char *word = scene_tree_scalar(tree, item);
-        for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-            if (strcmp(all[k].word, word) != 0)
-                continue;
-            if (*all[k].value)
-                return scene_tree_fail(tree, item, error,
-                                       "%s stands twice in the values of a probe", word);
-            *all[k].value = true;
-        }
+        bool *value = (bool *)((char *)probe + scene_word_value(scene_probe_values, word, NULL));
+        if (*value)
+            return scene_tree_fail(tree, item, error, "%s stands twice in the values of a probe",
+                                   word);
+        *value = true;
     }
     return CLOTH_OK;
 }
@@ -105,15 +98,13 @@ int scene_build_probes(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error)
 {
     int list = scene_tree_get(tree, 1, "probes"), code = CLOTH_OK;
-    uint32_t n = (uint32_t)scene_tree_length(tree, list), most = 0;
+    const uint32_t n = model->n_probes;
+    uint32_t most = 0;
     for (uint32_t c = 0; c < model->n_cloths; c++)
         most = model->cloths[c].mesh.n_vertices > most ? model->cloths[c].mesh.n_vertices : most;
     uint32_t *seen = scene_build_array(n ? most : 0, sizeof *seen, error);
-    model->probes = scene_build_array(n, sizeof *model->probes, error);
-    if (seen && model->probes)
-        model->n_probes = n;
-    else
-        code = error->code;
+    if (!seen)
+        return error->code;
     for (uint32_t i = 0; !code && i < n; i++)
         code = build_probe(model, i, tree, scene_tree_item(tree, list, i), seen, error);
     free(seen);

@@ -1,5 +1,6 @@
 /* Regions of a cloth: each a bit in the mask of every vertex that it picks. */
 #include "cloth/scene/build/build.h"
+#include "cloth/scene/schema/check.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -21,11 +22,13 @@ static bool has_edge(const struct model_cloth *cloth, uint64_t bit)
     return false;
 }
 
-static int mark(struct model_cloth *cloth, const struct scene_tree *tree, int node, uint64_t bit,
+static int mark(struct model_cloth *cloth, struct scene_tree *tree, int node, uint64_t bit,
                 struct cloth_error *error)
 {
     struct model_pick pick = {0};
-    const int code = scene_build_pick(&pick, tree, node, cloth, error);
+    int code = scene_fill(&pick, &scene_region, tree, node, error);
+    if (!code)
+        code = scene_build_pick(&pick, tree, node, cloth, error);
     for (uint32_t i = 0; i < pick.n_vertices && !code; i++)
         cloth->mask[pick.vertices[i]] |= bit;
     for (uint32_t v = 0; v < cloth->mesh.n_vertices && !code; v++)
@@ -33,7 +36,6 @@ static int mark(struct model_cloth *cloth, const struct scene_tree *tree, int no
             model_in_box(cloth->mesh.position + 3 * (size_t)v, (const double(*)[3])pick.box))
             cloth->mask[v] |= bit;
     free(pick.vertices);
-    free(pick.place);
     if (code || has_edge(cloth, bit))
         return code;
     return scene_tree_fail(tree, node, error,
@@ -63,7 +65,7 @@ static int check_alike(const struct model_material *base, const struct model_mat
 }
 
 static int build_region(struct model_cloth *cloth, const struct model *model, uint32_t i,
-                        const struct scene_tree *tree, int node, struct cloth_error *error)
+                        struct scene_tree *tree, int node, struct cloth_error *error)
 {
     uint32_t *material = cloth->region + i;
     int code = scene_build_material(material, cloth, model, tree, node, error);
@@ -77,7 +79,7 @@ static int build_region(struct model_cloth *cloth, const struct model *model, ui
 }
 
 int scene_build_regions(struct model_cloth *cloth, const struct model *model,
-                        const struct scene_tree *tree, int node, struct cloth_error *error)
+                        struct scene_tree *tree, int node, struct cloth_error *error)
 {
     const int list = scene_tree_get(tree, node, "regions");
     const size_t n = scene_tree_length(tree, list);

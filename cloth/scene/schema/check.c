@@ -1,8 +1,9 @@
-/* The walk of a document along the rules. Its depth is the schema's, whatever the document (aliases
- * may be circular). Every error is reported by `wrong` or `unknown`, so all of them have one form.
- */
+/* The walk of a document along the rules, which checks, adds defaults and fills structures in one.
+ * Its depth is the schema's, whatever the document (aliases may be circular). Every error is
+ * reported by `wrong` or `unknown`, so all of them have one form. `base` is the structure that the
+ * fields of a rule belong to; NULL: nothing is filled. */
 #include "cloth/scene/schema/check.h"
-#include "cloth/scene/schema/rules.h"
+#include "cloth/scene/schema/store.h"
 #include "cloth/scene/yaml/edit.h"
 #include "cloth/scene/yaml/scalar.h"
 
@@ -21,8 +22,8 @@ struct walk {
     struct cloth_error *error;
 };
 
-static int check(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                 int node);
+static int check(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node,
+                 void *base);
 
 /* Writes "cloths[0].mesh"; the root is "the scene". */
 static size_t path_of(const struct place *at, char *text, size_t size)
@@ -145,7 +146,7 @@ static int check_names(struct walk *walk, const struct place *at, int map)
 
 /* Checks the values of a map whose keys are the rules `keys`. */
 static int check_values(struct walk *walk, const struct place *at, const struct scene_rule *keys,
-                        int map)
+                        int map, void *base)
 {
     for (size_t i = 0; i < scene_tree_length(walk->tree, map); i++) {
         yaml_node_pair_t pair = scene_tree_pair(walk->tree, map, i);
@@ -154,7 +155,7 @@ static int check_values(struct walk *walk, const struct place *at, const struct 
             continue; /* of another key that shares this map by an alias */
         if (!rule)
             return unknown(walk, at, keys, pair.key);
-        int code = check(walk, &(struct place){at, rule->key, 0}, rule, pair.value);
+        int code = check(walk, &(struct place){at, rule->key, 0}, rule, pair.value, base);
         if (code)
             return code;
     }
@@ -163,14 +164,14 @@ static int check_values(struct walk *walk, const struct place *at, const struct 
 
 /* A default is walked like what a file says, since a map among them has defaults of its own. */
 static int add_default(struct walk *walk, const struct place *here, const struct scene_rule *rule,
-                       int map)
+                       int map, void *base)
 {
     int code = scene_edit_default(walk->tree, map, rule->key, rule->fallback, walk->error);
-    return code ? code : check(walk, here, rule, scene_tree_get(walk->tree, map, rule->key));
+    return code ? code : check(walk, here, rule, scene_tree_get(walk->tree, map, rule->key), base);
 }
 
 static int add_missing(struct walk *walk, const struct place *at, const struct scene_rule *keys,
-                       int map)
+                       int map, void *base)
 {
     char path[200], expected[300];
     for (const struct scene_rule *rule = keys; rule->key; rule++) {
@@ -181,7 +182,7 @@ static int add_missing(struct walk *walk, const struct place *at, const struct s
         if (rule->required)
             return scene_tree_fail(walk->tree, map, walk->error, "%s is missing; %s is expected",
                                    path, scene_rule_expected(rule, expected, sizeof expected));
-        int code = rule->fallback ? add_default(walk, &here, rule, map) : CLOTH_OK;
+        int code = rule->fallback ? add_default(walk, &here, rule, map, base) : CLOTH_OK;
         if (code)
             return code;
     }
@@ -221,23 +222,24 @@ static int check_choice(struct walk *walk, const struct place *at, const struct 
                            path, allowed);
 }
 
+/* base: the structure that the map fills, here and in the next one. */
 static int check_map(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                     int node)
+                     int node, void *base)
 {
     int code = check_names(walk, at, node);
     if (!code)
-        code = check_values(walk, at, rule->inside, node);
+        code = check_values(walk, at, rule->inside, node, base);
     if (!code)
         code = check_choice(walk, at, rule->inside, node);
-    return code ? code : add_missing(walk, at, rule->inside, node);
+    return code ? code : add_missing(walk, at, rule->inside, node, base);
 }
 
 static int check_one_of(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                        int node)
+                        int node, void *base)
 {
     int code = check_names(walk, at, node);
     if (!code)
-        code = check_values(walk, at, rule->inside, node);
+        code = check_values(walk, at, rule->inside, node, base);
     size_t n = scene_tree_length(walk->tree, node);
     if (code || n == 1)
         return code;
@@ -248,30 +250,46 @@ static int check_one_of(struct walk *walk, const struct place *at, const struct 
                            n, scene_rule_expected(rule, expected, sizeof expected));
 }
 
+/* Room for what a list or named map holds; NULL: nothing is filled, or an error. */
+static char *items_of(struct walk *walk, const struct scene_rule *rule, int node, void *base,
+                      size_t *step)
+{
+    const size_t n = scene_tree_length(walk->tree, node);
+    *step = 0;
+    return base ? scene_store_items(base, rule, n, step, walk->error) : NULL;
+}
+
 static int check_named(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                       int node)
+                       int node, void *base)
 {
     int code = check_names(walk, at, node);
-    if (!scene_tree_length(walk->tree, node))
+    if (!code && !scene_tree_length(walk->tree, node))
         return wrong(walk, at, rule, node);
+    size_t step;
+    char *items = code ? NULL : items_of(walk, rule, node, base, &step);
+    code = walk->error->code;
     for (size_t i = 0; !code && i < scene_tree_length(walk->tree, node); i++) {
         yaml_node_pair_t pair = scene_tree_pair(walk->tree, node, i);
-        struct place here = {at, scene_tree_scalar(walk->tree, pair.key), 0};
-        code = check(walk, &here, rule->inside, pair.value);
+        const char *name = scene_tree_scalar(walk->tree, pair.key);
+        void *item = items ? items + i * step : NULL;
+        code = item ? scene_store_name(item, rule, name, walk->error) : CLOTH_OK;
+        if (!code)
+            code = check(walk, &(struct place){at, name, 0}, rule->inside, pair.value, item);
     }
     return code;
 }
 
 static int check_list(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                      int node)
+                      int node, void *base)
 {
-    size_t n = scene_tree_length(walk->tree, node);
+    size_t n = scene_tree_length(walk->tree, node), step;
     if ((rule->length && n != rule->length) || (rule->filled && !n))
         return wrong(walk, at, rule, node);
-    int code = CLOTH_OK;
+    char *items = items_of(walk, rule, node, base, &step);
+    int code = walk->error->code;
     for (size_t i = 0; !code && i < n; i++)
         code = check(walk, &(struct place){at, NULL, i}, rule->inside,
-                     scene_tree_item(walk->tree, node, i));
+                     scene_tree_item(walk->tree, node, i), items ? items + i * step : NULL);
     return code;
 }
 
@@ -295,14 +313,13 @@ static bool integer_fits(const struct scene_rule *rule, const char *text)
 
 static bool is_word(const struct scene_rule *rule, const char *text)
 {
-    for (size_t i = 0; rule->words[i]; i++)
-        if (!strcmp(rule->words[i], text))
-            return true;
-    return false;
+    bool known;
+    scene_word_value(rule->words, text, &known);
+    return known;
 }
 
 static int check_scalar(struct walk *walk, const struct place *at, const struct scene_rule *rule,
-                        int node)
+                        int node, void *base)
 {
     const yaml_node_t *scalar = scene_tree_node(walk->tree, node);
     const char *text = scene_tree_scalar(walk->tree, node);
@@ -316,7 +333,9 @@ static int check_scalar(struct walk *walk, const struct place *at, const struct 
         fits = plain && integer_fits(rule, text);
     else
         fits = plain && number_fits(rule, text);
-    return fits ? CLOTH_OK : wrong(walk, at, rule, node);
+    if (!fits)
+        return wrong(walk, at, rule, node);
+    return base ? scene_store_scalar(base, rule, text, walk->error) : CLOTH_OK;
 }
 
 static bool has_own_tag(const yaml_node_t *node)
@@ -327,7 +346,14 @@ static bool has_own_tag(const yaml_node_t *node)
     return node->tag && strcmp((const char *)node->tag, usual[node->type]) != 0;
 }
 
-static int check(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node)
+/* The structure that a map fills: a member of that which it stands in, or this itself. */
+static void *structure_of(const struct scene_rule *rule, void *base)
+{
+    return base && !rule->apart ? (char *)base + rule->field.offset : NULL;
+}
+
+static int check(struct walk *walk, const struct place *at, const struct scene_rule *rule, int node,
+                 void *base)
 {
     char path[200];
     const yaml_node_t *here = scene_tree_node(walk->tree, node);
@@ -338,25 +364,37 @@ static int check(struct walk *walk, const struct place *at, const struct scene_r
                                "%s has the tag %.60s; a value without a tag is expected", path,
                                (const char *)here->tag);
     }
+    const int code =
+        base ? scene_store_presence(base, rule, walk->tree, node, walk->error) : CLOTH_OK;
+    if (code)
+        return code;
     if (map && rule->type == SCENE_MAP)
-        return check_map(walk, at, rule, node);
+        return check_map(walk, at, rule, node, structure_of(rule, base));
     if (map && rule->type == SCENE_ONE_OF)
-        return check_one_of(walk, at, rule, node);
+        return check_one_of(walk, at, rule, node, structure_of(rule, base));
     if (map && rule->type == SCENE_NAMED)
-        return check_named(walk, at, rule, node);
+        return check_named(walk, at, rule, node, base);
     if (list && (rule->type == SCENE_LIST || rule->type == SCENE_NUMBER_OR_LIST))
-        return check_list(walk, at, rule, node);
+        return check_list(walk, at, rule, node, base);
     if (!list && !map && rule->type >= SCENE_NUMBER)
-        return check_scalar(walk, at, rule, node);
+        return check_scalar(walk, at, rule, node, base);
     return wrong(walk, at, rule, node);
 }
 
-int scene_check(struct scene_tree *tree, struct cloth_error *error)
+int scene_fill(void *structure, const struct scene_rule *rule, struct scene_tree *tree, int node,
+               struct cloth_error *error)
+{
+    struct walk walk = {tree, error};
+    return check(&walk, &(struct place){0}, rule, node, structure);
+}
+
+int scene_check(struct model *model, struct scene_tree *tree, struct cloth_error *error)
 {
     struct walk walk = {tree, error};
     const struct place root = {0}, schema = {&root, "schema", 0};
     /* A file of another schema is told so before its keys are called unknown. */
     int node = scene_tree_get(tree, 1, "schema");
-    int code = node ? check(&walk, &schema, rule_of(scene_root.inside, "schema"), node) : CLOTH_OK;
-    return code ? code : check(&walk, &root, &scene_root, 1);
+    int code =
+        node ? check(&walk, &schema, rule_of(scene_root.inside, "schema"), node, NULL) : CLOTH_OK;
+    return code ? code : check(&walk, &root, &scene_root, 1, model);
 }

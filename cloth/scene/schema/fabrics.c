@@ -2,56 +2,57 @@
  * a tree of another shape; what is wrong with it the check finds. */
 #include "cloth/scene/schema/fabrics.h"
 
+#include "cloth/scene/schema/rules.h"
 #include "cloth/scene/yaml/edit.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-const char *const scene_fabric_names[] = {"rib_knit", "silk", "denim", "polycotton", NULL};
+enum { RIB_KNIT, SILK, DENIM, POLYCOTTON };
+const struct model_word scene_fabrics[] = {
+    {"rib_knit", RIB_KNIT}, {"silk", SILK}, {"denim", DENIM}, {"polycotton", POLYCOTTON}, {0}};
 
 enum { KEYS = 7 }; /* and the end */
 struct value {
     const char *key, *yaml;
 };
 
-/* In the order of the names. */
 static const struct value fabrics[][KEYS] = {
     /* Wang, O'Brien & Ramamoorthi 2011: ivory rib knit, 95 % cotton and 5 % spandex */
-    {{"model", "triangles"},
-     {"density", "0.276"},
-     {"stretch", "[130.3, 85.7]"},
-     {"shear", "83.2"},
-     {"bending", "{rigidity: 9.04e-6}"}},
+    [RIB_KNIT] = {{"model", "triangles"},
+                  {"density", "0.276"},
+                  {"stretch", "[130.3, 85.7]"},
+                  {"shear", "83.2"},
+                  {"bending", "{rigidity: 9.04e-6}"}},
     /* 8 momme; bent as its filaments are, which slide (Meredith 1945); moduli chosen, not measured
      */
-    {{"model", "triangles"},
-     {"density", "0.0347"},
-     {"stretch", "2000"},
-     {"shear", "20"},
-     {"bending", "{rigidity: 9.8e-7}"}},
+    [SILK] = {{"model", "triangles"},
+              {"density", "0.0347"},
+              {"stretch", "2000"},
+              {"shear", "20"},
+              {"bending", "{rigidity: 9.8e-7}"}},
     /* Wang, O'Brien & Ramamoorthi 2011: 11 oz black denim, 99 % cotton and 1 % spandex */
-    {{"model", "triangles"},
-     {"density", "0.324"},
-     {"stretch", "[2026.8, 410.5]"},
-     {"shear", "53.4"},
-     {"poisson", "0.0498"},
-     {"bending", "{rigidity: 1.954e-5}"}},
+    [DENIM] = {{"model", "triangles"},
+               {"density", "0.324"},
+               {"stretch", "[2026.8, 410.5]"},
+               {"shear", "53.4"},
+               {"poisson", "0.0498"},
+               {"bending", "{rigidity: 1.954e-5}"}},
     /* Wang, O'Brien & Ramamoorthi 2011: "royal target", of trousers, 65 % cotton, 35 % polyester */
-    {{"model", "triangles"},
-     {"density", "0.22"},
-     {"stretch", "[4069.9, 4033.0]"},
-     {"shear", "104.8"},
-     {"poisson", "0.00455"},
-     {"bending", "{rigidity: 2.99e-5}"}}};
+    [POLYCOTTON] = {{"model", "triangles"},
+                    {"density", "0.22"},
+                    {"stretch", "[4069.9, 4033.0]"},
+                    {"shear", "104.8"},
+                    {"poisson", "0.00455"},
+                    {"bending", "{rigidity: 2.99e-5}"}}};
 
 /* The number of a name, -1: it is none of them. */
 static int find(const char *name)
 {
-    for (int i = 0; name && scene_fabric_names[i]; i++)
-        if (!strcmp(scene_fabric_names[i], name))
-            return i;
-    return -1;
+    bool known = false;
+    const int fabric = name ? scene_word_value(scene_fabrics, name, &known) : -1;
+    return known ? fabric : -1;
 }
 
 /* The fabric that a key of a map names. */
@@ -81,7 +82,7 @@ static int add(struct scene_tree *tree, const char *name, struct cloth_error *er
 static int add_named(struct scene_tree *tree, int map, struct cloth_error *error)
 {
     const int fabric = named_by(tree, map, "material");
-    return fabric < 0 ? CLOTH_OK : add(tree, scene_fabric_names[fabric], error);
+    return fabric < 0 ? CLOTH_OK : add(tree, scene_fabrics[fabric].word, error);
 }
 
 /* The same of each map of a list, and of those in its key `inner`, unless that is NULL. */

@@ -1,11 +1,14 @@
 #ifndef CLOTH_SCENE_SCHEMA_RULES_H
 #define CLOTH_SCENE_SCHEMA_RULES_H
 
+#include "cloth/model/model.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
 /* What a scene may say, as a tree of constant rules: a map has the rules of its keys, a list the
- * rule of its items. */
+ * rule of its items. A rule also says which field takes the value, so that the walk that checks a
+ * scene (check.h) fills the model, too. */
 
 enum scene_type {
     SCENE_MAP,            /* inside: its keys */
@@ -21,6 +24,14 @@ enum scene_type {
 
 enum scene_range { SCENE_ANY, SCENE_POSITIVE, SCENE_NOT_NEGATIVE, SCENE_FRACTION };
 
+/* A member of the structure that a map fills. `of` and `size` name the structure, for the test that
+ * all keys of a map mean the same one. */
+struct scene_field {
+    size_t offset, width; /* bytes; width 0: there is no such field */
+    const char *of;
+    size_t size;
+};
+
 struct scene_rule {
     const char *key; /* NULL ends the keys of a map */
     enum scene_type type;
@@ -29,16 +40,53 @@ struct scene_rule {
     bool required;        /* without a default: whether the key must be there */
     bool choice;          /* of the keys of a map that are choices one must be there, and no more */
     enum scene_range range;
-    double least, most;       /* of integers; most 0: 2^32 - 1 */
-    size_t length;            /* of lists; 0: any */
-    bool filled;              /* lists: at least one entry */
-    const char *const *words; /* choices, ended by NULL */
+    double least, most;             /* of integers; most 0: 2^32 - 1 */
+    size_t length;                  /* of lists; 0: any */
+    bool filled;                    /* lists: at least one entry */
+    const struct model_word *words; /* choices, ended by one without a word */
     const struct scene_rule *inside;
     const char *about; /* for the list of keys */
+
+    /* The fields, all of the structure that the map of this key fills. A number takes a double, a
+     * whole one a uint32_t, a text a char * that the structure owns, a choice a bool, int or enum;
+     * a list of fixed length an array of these. Maps without a field fill the structure that they
+     * stand in. */
+    struct scene_field field;
+    struct scene_field count; /* lists of any length and named maps: a uint32_t; `field` is then a
+                                 pointer, to calloc'ed entries */
+    size_t item;              /* of their `item` bytes each */
+    struct scene_field name;  /* named maps: of each entry */
+    struct scene_field place, kind;
+    int value;
+    bool apart; /* maps: its keys fill a structure that is no part of this one, by scene_fill */
 };
 
-/* The rule of the whole document. */
+/* The rule of the whole document, which fills a struct model. */
 extern const struct scene_rule scene_root;
+
+/* Rules of maps that stand apart, and the structures that they fill. */
+struct scene_grid {
+    double width, height; /* m; height 0: it is not given */
+    uint32_t nx, ny;
+    enum mesh_cells cells;
+};
+struct scene_inline {
+    uint32_t n_vertices, n_edges, n_triangles;
+    double (*vertices)[3];
+    uint32_t (*edges)[2], (*triangles)[3];
+};
+extern const struct scene_rule scene_grid, scene_inline;
+extern const struct scene_rule scene_transform; /* a struct mesh_transform */
+extern const struct scene_rule scene_region;    /* a struct model_pick */
+
+/* Words of choices that no field takes as they are. */
+enum scene_hold { SCENE_POINT, SCENE_LINE, SCENE_PLANE };
+extern const struct model_word scene_holds[];        /* enum scene_hold, in its order */
+extern const struct model_word scene_rests[];        /* whether by uv */
+extern const struct model_word scene_probe_values[]; /* offsets of flags in a struct model_probe */
+
+/* What a word among `words` means; *known: whether it is among them. */
+int scene_word_value(const struct model_word *words, const char *word, bool *known);
 
 /* What is allowed, in words: "a finite number > 0 (s)". Returns text. */
 char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size);

@@ -52,6 +52,15 @@ const char *scene_nearest_word(const char *word, const char *const *candidates, 
     return nearest;
 }
 
+int scene_word_value(const struct model_word *words, const char *word, bool *known)
+{
+    while (words->word && strcmp(words->word, word) != 0)
+        words++;
+    if (known)
+        *known = words->word;
+    return words->value;
+}
+
 static void append(char *text, size_t size, const char *more)
 {
     size_t used = strlen(text);
@@ -151,9 +160,9 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
         append(text, size, "a text");
         break;
     case SCENE_CHOICE:
-        for (size_t i = 0; rule->words[i]; i++) {
-            append(text, size, i ? " or " : "");
-            append(text, size, rule->words[i]);
+        for (const struct model_word *word = rule->words; word->word; word++) {
+            append(text, size, word == rule->words ? "" : " or ");
+            append(text, size, word->word);
         }
         break;
     }

@@ -1,0 +1,236 @@
+/* The rules of cloths, of what stands in them, and of probes, which pick vertices alike. */
+#include "cloth/scene/schema/tables.h"
+
+/* clang-format off */
+static const struct scene_rule number = {.type = SCENE_NUMBER, ITEM(double)};
+static const struct scene_rule positive = {
+    .type = SCENE_NUMBER, .range = SCENE_POSITIVE, ITEM(double)};
+static const struct scene_rule vertex = {.type = SCENE_INTEGER, ITEM(uint32_t)};
+static const struct scene_rule point = {
+    .type = SCENE_LIST, .length = 3, .inside = &number, .unit = "m", ITEM(double[3])};
+static const struct scene_rule edge = {
+    .type = SCENE_LIST, .length = 2, .inside = &vertex, ITEM(uint32_t[2])};
+static const struct scene_rule triangle = {
+    .type = SCENE_LIST, .length = 3, .inside = &vertex, ITEM(uint32_t[3])};
+
+static const struct scene_rule grid_keys[] = {
+    {"width", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE,
+     INTO(struct scene_grid, width), .about = "along x"},
+    {"height", SCENE_NUMBER, "m", .range = SCENE_POSITIVE, INTO(struct scene_grid, height),
+     .about = "along z; left out where cells are equilateral, of which it follows"},
+    {"nx", SCENE_INTEGER, .required = true, .least = 2, INTO(struct scene_grid, nx),
+     .about = "vertices along x"},
+    {"ny", SCENE_INTEGER, .required = true, .least = 2, INTO(struct scene_grid, ny),
+     .about = "vertices along z"},
+    {"cells", SCENE_CHOICE, .fallback = "mirrored", INTO(struct scene_grid, cells),
+     WORDS({"mirrored", MESH_MIRRORED}, {"alternate", MESH_ALTERNATE}, {"same", MESH_SAME},
+           {"equilateral", MESH_EQUILATERAL}),
+     .about = "how their diagonals run: mirrored at the middle lines of the sheet, by turns, "
+              "alike; or equilateral triangles"},
+    {0}};
+
+static const struct scene_rule inline_keys[] = {
+    {"vertices", SCENE_LIST, "m", .required = true, .filled = true, .inside = &point,
+     ARRAY(struct scene_inline, vertices, n_vertices), .about = "positions [x, y, z]"},
+    {"edges", SCENE_LIST, .fallback = "[]", .inside = &edge,
+     ARRAY(struct scene_inline, edges, n_edges),
+     .about = "pairs of vertices: edges without triangles"},
+    {"triangles", SCENE_LIST, .fallback = "[]", .inside = &triangle,
+     ARRAY(struct scene_inline, triangles, n_triangles), .about = "triples of vertices"},
+    {0}};
+
+#define MESH_PLACE PLACE(struct model_cloth, mesh_place)
+static const struct scene_rule mesh_kinds[] = {
+    {"grid", SCENE_MAP, .inside = grid_keys, .apart = true, MESH_PLACE,
+     .about = "a flat sheet in the x-z plane"},
+    {"file", SCENE_TEXT, MESH_PLACE, .about = "an OBJ file, relative to the scene's folder"},
+    {"inline", SCENE_MAP, .inside = inline_keys, .apart = true, MESH_PLACE,
+     .about = "a mesh written out"},
+    {0}};
+
+static const struct scene_rule transform_keys[] = {
+    {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3,
+     .inside = &positive, INTO(struct mesh_transform, scale),
+     .about = "first: a factor, or one for each axis"},
+    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number,
+     INTO(struct mesh_transform, rotate), .about = "then: a quaternion [w, x, y, z]"},
+    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     INTO(struct mesh_transform, translate), .about = "last: a shift"},
+    {0}};
+
+const struct model_word scene_rests[] = {{"position", false}, {"uv", true}, {0}};
+const struct model_word scene_holds[] = {
+    {"point", SCENE_POINT}, {"line", SCENE_LINE}, {"plane", SCENE_PLANE}, {0}};
+const struct model_word scene_probe_values[] = {
+    {"position", (int)offsetof(struct model_probe, position)},
+    {"velocity", (int)offsetof(struct model_probe, velocity)},
+    {"reaction", (int)offsetof(struct model_probe, reaction)},
+    {"total", (int)offsetof(struct model_probe, total)},
+    {0}};
+
+static const struct scene_rule quaternion = {
+    .type = SCENE_LIST, .length = 4, .inside = &number};
+static const struct scene_rule motion_keys[] = {
+    {"times", SCENE_LIST, "s", .required = true, .filled = true, .inside = &number,
+     .about = "of the key frames, ascending"},
+    {"translate", SCENE_LIST, "m", .inside = &point, .about = "a shift for each time"},
+    {"rotate", SCENE_LIST, .inside = &quaternion,
+     .about = "a quaternion [w, x, y, z] for each time"},
+    {"about", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     .about = "the point that is rotated about"},
+    {0}};
+
+/* How vertices are chosen, one of these: into the struct model_pick `pick` of a type. */
+#define PICK_VERTICES(type, pick) \
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex, \
+     ARRAY(type, pick vertices, pick n_vertices), MEANS(type, pick kind, MODEL_PICK_VERTICES), \
+     .about = "in the mesh's numbering"}
+#define PICK_BOX(type, pick) \
+    {"box", SCENE_LIST, "m", .choice = true, .length = 2, .inside = &point, \
+     INTO(type, pick box), MEANS(type, pick kind, MODEL_PICK_BOX), \
+     .about = "all vertices in the box between two corners"}
+#define PICK(type) \
+    PICK_VERTICES(type, pick.), \
+    {"nearest", SCENE_LIST, "m", .choice = true, .length = 3, .inside = &number, \
+     INTO(type, pick.point), MEANS(type, pick.kind, MODEL_PICK_NEAREST), \
+     .about = "the vertex nearest to a point"}, \
+    {"radius", SCENE_NUMBER, "m", .range = SCENE_NOT_NEGATIVE, INTO(type, pick.radius), \
+     .about = "of nearest: and all vertices within it"}, \
+    PICK_BOX(type, pick.)
+
+static const struct scene_rule pin_keys[] = {
+    PICK(struct model_pin),
+    {"to", SCENE_CHOICE, .fallback = "point", .words = scene_holds,
+     .about = "where they are held: each at a point, or on a line or plane through it"},
+    {"direction", SCENE_LIST, .length = 3, .inside = &number,
+     .about = "of the line, of any length but 0"},
+    {"normal", SCENE_LIST, .length = 3, .inside = &number,
+     .about = "to the plane, of any length but 0"},
+    {"motion", SCENE_MAP, .inside = motion_keys,
+     .about = "of the vertices, or of their lines or planes, by key frames"},
+    {0}};
+static const struct scene_rule pin = {
+    .type = SCENE_MAP, .inside = pin_keys, PLACE(struct model_pin, pick.place)};
+
+static const struct scene_rule probe_value = {.type = SCENE_CHOICE, .words = scene_probe_values};
+static const struct scene_rule probe_keys[] = {
+    {"name", SCENE_TEXT, INTO(struct model_probe, name),
+     .about = "unique, of letters, digits, _ and -; else probe1, probe2, ..."},
+    {"cloth", SCENE_TEXT, .about = "its name; optional where there is one only"},
+    PICK(struct model_probe),
+    {"values", SCENE_LIST, .filled = true, .fallback = "[position, velocity, reaction]",
+     .inside = &probe_value,
+     .about = "of each vertex position, velocity, reaction; total: the sum of their reactions"},
+    {0}};
+const struct scene_rule scene_probe = {
+    .type = SCENE_MAP, .inside = probe_keys, PLACE(struct model_probe, pick.place)};
+
+static const struct scene_rule beat = {.type = SCENE_LIST, .length = 2, .inside = &number};
+static const struct scene_rule sine_keys[] = {
+    {"frequency", SCENE_NUMBER, "1/s", .required = true, .range = SCENE_POSITIVE,
+     .about = "turns a second"},
+    {"phase", SCENE_NUMBER, .fallback = "0", .about = "turns at time 0; 0.25: a cosine"},
+    {0}};
+const struct scene_rule scene_course_kinds[] = {
+    {"keys", SCENE_LIST, .filled = true, .inside = &beat,
+     .about = "[time in s, factor], times ascending; linear in between"},
+    {"sine", SCENE_MAP, .inside = sine_keys, .about = "sin 2 pi (frequency t + phase)"},
+    {0}};
+
+static const struct scene_rule load_keys[] = {
+    PICK(struct model_load),
+    {"edges", SCENE_LIST, .choice = true, .filled = true, .inside = &edge,
+     ARRAY(struct model_load, edges, n_edges),
+     .about = "pairs of vertices: the force is along them, in N/m of their length at rest"},
+    {"force", SCENE_LIST, "N", .required = true, .length = 3, .inside = &number,
+     INTO(struct model_load, force), .about = "on each of the vertices"},
+    {"course", SCENE_ONE_OF, .inside = scene_course_kinds,
+     .about = "what the force is multiplied by in time; else it is constant"},
+    {0}};
+static const struct scene_rule load = {
+    .type = SCENE_MAP, .inside = load_keys, PLACE(struct model_load, pick.place)};
+
+static const struct scene_rule mass_keys[] = {
+    PICK(struct model_mass),
+    {"mass", SCENE_NUMBER, "kg", .required = true, .range = SCENE_POSITIVE,
+     INTO(struct model_mass, mass), .about = "more, at each of the vertices"},
+    {0}};
+static const struct scene_rule mass = {
+    .type = SCENE_MAP, .inside = mass_keys, PLACE(struct model_mass, pick.place)};
+
+static const struct scene_rule wave_keys[] = {
+    {"vector", SCENE_LIST, "1/m", .required = true, .length = 3, .inside = &number,
+     INTO(struct model_wave, vector),
+     .about = "waves a metre along each axis, by where the mesh has the vertices"},
+    {"phase", SCENE_NUMBER, .fallback = "0", INTO(struct model_wave, phase),
+     .about = "in waves, at the point `about`"},
+    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     INTO(struct model_wave, translate), .about = "a shift, times the sine"},
+    {"velocity", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     INTO(struct model_wave, velocity), .about = "added, times the sine"},
+    {0}};
+
+static const struct scene_rule start_keys[] = {
+    PICK(struct model_start),
+    {"scale", SCENE_NUMBER_OR_LIST, .fallback = "1", .range = SCENE_POSITIVE, .length = 3,
+     .inside = &positive, INTO(struct model_start, transform.scale),
+     .about = "first: a factor, or one for each axis"},
+    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number,
+     INTO(struct model_start, transform.rotate), .about = "then: a quaternion [w, x, y, z]"},
+    {"translate", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     INTO(struct model_start, transform.translate), .about = "last: a shift"},
+    {"about", SCENE_LIST, "m", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     INTO(struct model_start, about), .about = "the point that is scaled, rotated and spun about"},
+    {"velocity", SCENE_LIST, "m/s", .length = 3, .inside = &number,
+     INTO(struct model_start, velocity), MEANS(struct model_start, has_velocity, true),
+     .about = "instead of what it was before"},
+    {"spin", SCENE_LIST, "rad/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     INTO(struct model_start, spin),
+     .about = "added: the velocity of a rigid turn about the point"},
+    {"wave", SCENE_MAP, .inside = wave_keys, INTO(struct model_start, wave),
+     .about = "added: a sine over the mesh, of the place or the velocity"},
+    {0}};
+static const struct scene_rule start = {
+    .type = SCENE_MAP, .inside = start_keys, PLACE(struct model_start, pick.place)};
+
+static const struct scene_rule region_keys[] = {
+    PICK_VERTICES(struct model_pick, ),
+    PICK_BOX(struct model_pick, ),
+    {"material", SCENE_TEXT, .required = true, .about = "of what has all its vertices there"},
+    {0}};
+const struct scene_rule scene_region = {.type = SCENE_MAP, .inside = region_keys};
+
+static const struct scene_rule cloth_keys[] = {
+    {"name", SCENE_TEXT, INTO(struct model_cloth, name),
+     .about = "unique; else cloth1, cloth2, ..."},
+    {"mesh", SCENE_ONE_OF, .required = true, .inside = mesh_kinds, .about = "its shape at rest"},
+    {"transform", SCENE_MAP, .fallback = "{}", .inside = transform_keys, .apart = true,
+     .about = "of the mesh, before lengths and masses are taken"},
+    {"material", SCENE_TEXT, .required = true, .about = "a name in materials"},
+    {"regions", SCENE_LIST, .fallback = "[]", .inside = &scene_region,
+     .about = "parts of other materials; the last one that has an element counts"},
+    {"rest", SCENE_CHOICE, .fallback = "position", .words = scene_rests,
+     .about = "where the shape at rest is taken from; uv: in m"},
+    {"mass_per_vertex", SCENE_NUMBER, "kg", .range = SCENE_POSITIVE,
+     INTO(struct model_cloth, mass_per_vertex), .about = "instead of density times area"},
+    {"velocity", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
+     INTO(struct model_cloth, velocity), PLACE(struct model_cloth, velocity_place),
+     .about = "at the start"},
+    {"pins", SCENE_LIST, .fallback = "[]", .inside = &pin, ARRAY(struct model_cloth, pins, n_pins),
+     .about = "vertices held, or moved"},
+    {"loads", SCENE_LIST, .fallback = "[]", .inside = &load,
+     ARRAY(struct model_cloth, loads, n_loads), .about = "forces on vertices"},
+    {"masses", SCENE_LIST, .fallback = "[]", .inside = &mass,
+     ARRAY(struct model_cloth, masses, n_masses), .about = "more mass of vertices"},
+    {"start", SCENE_LIST, .fallback = "[]", .inside = &start,
+     ARRAY(struct model_cloth, starts, n_starts),
+     .about = "how vertices start, where that is not the mesh's shape"},
+    {0}};
+const struct scene_rule scene_cloth = {
+    .type = SCENE_MAP, .inside = cloth_keys, PLACE(struct model_cloth, place)};
+
+/* clang-format on */
+
+const struct scene_rule scene_grid = {.type = SCENE_MAP, .inside = grid_keys};
+const struct scene_rule scene_inline = {.type = SCENE_MAP, .inside = inline_keys};
+const struct scene_rule scene_transform = {.type = SCENE_MAP, .inside = transform_keys};

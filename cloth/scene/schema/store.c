@@ -1,0 +1,92 @@
+/* A field is found by its offset alone, so its rule must fit its type: tests/cloth/scene/test_rules
+ * compares the widths of all rules. */
+#include "cloth/scene/schema/store.h"
+#include "cloth/scene/yaml/scalar.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int no_memory(struct cloth_error *error)
+{
+    return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+}
+
+static void *member(void *base, const struct scene_field *field)
+{
+    return (char *)base + field->offset;
+}
+
+static int store_text(char **field, const char *text, struct cloth_error *error)
+{
+    *field = strdup(text);
+    return *field ? CLOTH_OK : no_memory(error);
+}
+
+/* A number into each of the doubles that the field has. */
+static void store_number(double *field, size_t width, const char *text)
+{
+    scene_scalar_number(text, field);
+    for (size_t i = 1; i < width / sizeof *field; i++)
+        field[i] = field[0];
+}
+
+/* Enums are ints here. */
+static void store_value(void *field, size_t width, int value)
+{
+    if (width == sizeof(bool))
+        *(bool *)field = value;
+    else
+        *(int *)field = value;
+}
+
+int scene_store_scalar(void *base, const struct scene_rule *rule, const char *text,
+                       struct cloth_error *error)
+{
+    void *field = member(base, &rule->field);
+    if (!rule->field.width)
+        return CLOTH_OK;
+    if (rule->type == SCENE_TEXT)
+        return store_text(field, text, error);
+    if (rule->type == SCENE_CHOICE)
+        store_value(field, rule->field.width, scene_word_value(rule->words, text, NULL));
+    else if (rule->type == SCENE_INTEGER)
+        scene_scalar_integer(text, field);
+    else
+        store_number(field, rule->field.width, text);
+    return CLOTH_OK;
+}
+
+int scene_store_presence(void *base, const struct scene_rule *rule, const struct scene_tree *tree,
+                         int node, struct cloth_error *error)
+{
+    if (rule->kind.width)
+        store_value(member(base, &rule->kind), rule->kind.width, rule->value);
+    if (!rule->place.width)
+        return CLOTH_OK;
+    char **place = member(base, &rule->place);
+    *place = scene_tree_place(tree, node);
+    return *place ? CLOTH_OK : no_memory(error);
+}
+
+void *scene_store_items(void *base, const struct scene_rule *rule, size_t n, size_t *step,
+                        struct cloth_error *error)
+{
+    void *field = member(base, &rule->field);
+    *step = rule->count.width ? rule->item : rule->inside->field.width;
+    if (!rule->field.width)
+        return NULL;
+    if (!rule->count.width)
+        return field;
+    void **array = field;
+    *array = calloc(n ? n : 1, rule->item);
+    *(uint32_t *)member(base, &rule->count) = *array ? (uint32_t)n : 0;
+    if (!*array)
+        no_memory(error);
+    return *array;
+}
+
+int scene_store_name(void *item, const struct scene_rule *rule, const char *name,
+                     struct cloth_error *error)
+{
+    return rule->name.width ? store_text(member(item, &rule->name), name, error) : CLOTH_OK;
+}

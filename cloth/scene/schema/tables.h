@@ -1,0 +1,26 @@
+#ifndef CLOTH_SCENE_SCHEMA_TABLES_H
+#define CLOTH_SCENE_SCHEMA_TABLES_H
+
+#include "cloth/scene/schema/rules.h"
+
+/* How tables of rules are written. Where the value goes; where a list of any length goes, and the
+ * number of its items; where the place of the value goes (model.h); which field says, by a value,
+ * that this key is the one that was chosen, or that it was given; the words of a choice, each with
+ * what it means; what an item of a list takes. */
+/* clang-format off */
+#define FIELD(type, member) \
+    {offsetof(type, member), sizeof(((type *)0)->member), #type, sizeof(type)}
+#define INTO(type, member) .field = FIELD(type, member)
+#define ARRAY(type, member, number) \
+    .field = FIELD(type, member), .count = FIELD(type, number), .item = sizeof *((type *)0)->member
+#define PLACE(type, member) .place = FIELD(type, member)
+#define MEANS(type, member, is) .kind = FIELD(type, member), .value = (is)
+#define WORDS(...) .words = (const struct model_word[]){__VA_ARGS__, {0}}
+#define ITEM(type) .field = {.width = sizeof(type)}
+/* clang-format on */
+
+/* Shared by the tables. */
+extern const struct scene_rule scene_cloth, scene_probe;
+extern const struct scene_rule scene_course_kinds[];
+
+#endif

@@ -30,8 +30,10 @@ struct elements_state {
  * the same seed. */
 void elements_shake(struct elements_state *state, double size, unsigned seed);
 
-/* Forces (without speeds) are minus the slope of the energy: central differences miss them by an
- * error that falls as the square of the step, and by no more than `most` at the smaller one. */
+/* Forces (without speeds) are minus the slope of the energy: central differences over 2e-5 m miss
+ * them by no more than `most`; the other: and by an error that falls as the square of the step. */
+void elements_check_gradient(const struct elements *model, const struct elements_state *state,
+                             double most);
 void elements_check_force(const struct elements *model, const struct elements_state *state,
                           double most);
 

@@ -63,20 +63,20 @@ int api_body_free(struct duite_call_private *body, duite_object object)
     return body_remember(body, code);
 }
 
-int api_body_fork(struct duite_call_private *body, const duite_task_options *how,
+int api_body_fork(struct duite_call_private *body, const duite_task_options *options,
                   const duite_kernel *kernel, const void *args, size_t n,
                   const duite_object *objects)
 {
     struct task_options own = {.at = TASK_ANYWHERE};
     int code = body_enter(body, "duite_fork");
-    if (!code && how && how->at)
+    if (!code && options && options->at)
         code = base_error(DUITE_E_STATE,
                           "duite_fork_with: the children of a task run on its rank (%d), none can "
                           "be named",
                           body->graph->rank);
-    if (how) {
-        own.priority = how->priority;
-        own.cost = how->cost > 0 ? how->cost : 0;
+    if (options) {
+        own.priority = options->priority;
+        own.cost = options->cost > 0 ? options->cost : 0;
     }
     struct task_scope *scope = code ? NULL : task_inside(body);
     if (!code)

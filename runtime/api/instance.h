@@ -1,5 +1,5 @@
-#ifndef DUITE_INSTANCE_H
-#define DUITE_INSTANCE_H
+#ifndef DUITE_API_INSTANCE_H
+#define DUITE_API_INSTANCE_H
 
 #include "runtime/base/policy.h"
 #include "runtime/comm/comm.h"
@@ -142,7 +142,7 @@ struct duite_call_private *api_body(const duite *rt);
 int api_body_new(struct duite_call_private *body, duite_type type, size_t count, size_t max,
                  bool sized, duite_object *object);
 int api_body_free(struct duite_call_private *body, duite_object object);
-int api_body_fork(struct duite_call_private *body, const duite_task_options *how,
+int api_body_fork(struct duite_call_private *body, const duite_task_options *options,
                   const duite_kernel *kernel, const void *args, size_t n,
                   const duite_object *objects);
 int api_body_set(struct duite_call_private *body, duite_object object, const void *values,

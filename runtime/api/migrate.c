@@ -293,10 +293,8 @@ static int migration_refused(const struct migration *m)
                           m->rt->mapping.own->name, code, duite_code_text(code));
     if (!(m->values[ANSWER_REFUSED] > 0))
         return DUITE_OK;
-    return base_error(DUITE_E_ARGUMENT,
-                      "%s %s moves a block to a rank that there is not, or one that stays",
-                      m->record ? "mapping" : "balancer",
-                      m->record ? m->rt->mapping.own->name : m->rt->balance->name);
+    return m->record ? map_moves_refused("mapping", m->rt->mapping.own->name)
+                     : map_moves_refused("balancer", m->rt->balance->name);
 }
 
 static int migration_run(struct migration *m, uint64_t replay, uint64_t *map_at)

@@ -105,16 +105,16 @@ void api_throttle(duite *rt)
         work_throttle(rt->pool, rt->window);
 }
 
-static int fork_task(duite *rt, const struct task_options *how, const duite_kernel *kernel,
+static int fork_task(duite *rt, const struct task_options *options, const duite_kernel *kernel,
                      const void *args, size_t n, const duite_object *objects)
 {
     if (rt->building)
-        return api_remember(rt, plan_record_fork(rt->building, how, kernel, args, n, objects));
+        return api_remember(rt, plan_record_fork(rt->building, options, kernel, args, n, objects));
     int code = api_settle(rt);
     if (!code)
-        code = task_fork(&rt->graph.root, work_main(rt->pool), how, kernel, args, n, objects);
+        code = task_fork(&rt->graph.root, work_main(rt->pool), options, kernel, args, n, objects);
     if (!code)
-        trace_fork(rt->trace, kernel, how, n, objects);
+        trace_fork(rt->trace, kernel, options, n, objects);
     work_tick(rt->pool);
     if (!code)
         api_throttle(rt);
@@ -163,21 +163,21 @@ int duite_fork_at(duite *rt, int rank, const duite_kernel *kernel, const void *a
     return fork_task(rt, &(struct task_options){.at = rank}, kernel, args, n, objects);
 }
 
-int duite_fork_with(duite *rt, const duite_task_options *how, const duite_kernel *kernel,
+int duite_fork_with(duite *rt, const duite_task_options *options, const duite_kernel *kernel,
                     const void *args, size_t n, const duite_object *objects)
 {
     struct duite_call_private *body = api_body(rt);
     if (body)
-        return api_body_fork(body, how, kernel, args, n, objects);
+        return api_body_fork(body, options, kernel, args, n, objects);
     int code = api_enter_any(rt, "duite_fork_with");
     if (code)
         return code;
     struct task_options own = {.at = TASK_ANYWHERE};
-    if (how)
-        own = (struct task_options){.at = how->at ? *how->at : TASK_ANYWHERE,
-                                    .priority = how->priority,
-                                    .cost = how->cost > 0 ? how->cost : 0};
-    if (how && how->at && own.at < 0)
+    if (options)
+        own = (struct task_options){.at = options->at ? *options->at : TASK_ANYWHERE,
+                                    .priority = options->priority,
+                                    .cost = options->cost > 0 ? options->cost : 0};
+    if (options && options->at && own.at < 0)
         return api_remember(
             rt, base_error(DUITE_E_ARGUMENT, "duite_fork_with: there is no rank %d", own.at));
     return fork_task(rt, &own, kernel, args, n, objects);

@@ -52,9 +52,9 @@ void comm_ring(struct comm *comm, double seconds, const char *host)
         comm_heartbeat_open(comm, seconds, host);
 }
 
-void comm_tell(struct comm *comm, comm_told *tell)
+void comm_set_report(struct comm *comm, comm_report *report)
 {
-    comm->tell = tell;
+    comm->report = report;
 }
 
 void comm_open(struct comm *comm, bool requests)

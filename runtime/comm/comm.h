@@ -32,10 +32,10 @@ int comm_start(struct comm **comm, MPI_Comm mpi, struct task_graph *graph,
  * (0: never). host: that of the rank before this one in the ring. comm NULL is fine. */
 void comm_ring(struct comm *comm, double seconds, const char *host);
 
-/* Before comm_open: `tell` is called for each message that a worker sends or receives, with its
+/* Before comm_open: `report` is called for each message that a worker sends or receives, with its
  * bytes. */
-typedef void comm_told(struct worker *worker, bool sends, int peer, size_t bytes);
-void comm_tell(struct comm *comm, comm_told *tell);
+typedef void comm_report(struct worker *worker, bool sends, int peer, size_t bytes);
+void comm_set_report(struct comm *comm, comm_report *report);
 
 /* From now on messages are sent and received; `requests`: ranks may request tasks of
  * others, the same on all. Before, the lock keeps workers out of MPI, so that the main thread may

@@ -147,8 +147,8 @@ static void abort_send(struct comm *comm)
         comm->reason.kind = (int32_t)comm->kind;
         abort_send_all(comm, control->abort, COMM_ABORT);
     }
-    if (control->aborts && !control->tells_loss && comm_is_lost(comm)) {
-        control->tells_loss = true;
+    if (control->aborts && !control->loss_sent && comm_is_lost(comm)) {
+        control->loss_sent = true;
         if (!code_is_loss(comm->reason.code))
             abort_send_all(comm, control->loss, COMM_LOSS);
     }
@@ -305,10 +305,14 @@ static const struct control_kind {
     uint32_t kind;
     void (*hear)(struct comm *comm, struct data_packet *packet);
 } CONTROL_KINDS[] = {
-    {COMM_ABORT, abort_hear},         {COMM_LOSS, loss_hear},
-    {COMM_CHECK, check_hear},         {COMM_DIFFERS, comm_difference_hear},
-    {COMM_ASK, comm_difference_hear}, {COMM_ANSWER, comm_difference_hear},
-    {COMM_REQUEST, request_hear},     {COMM_LAST, last_hear},
+    {COMM_ABORT, abort_hear},
+    {COMM_LOSS, loss_hear},
+    {COMM_CHECK, check_hear},
+    {COMM_DIFFERS, comm_difference_hear},
+    {COMM_INQUIRY, comm_difference_hear},
+    {COMM_ANSWER, comm_difference_hear},
+    {COMM_REQUEST, request_hear},
+    {COMM_LAST, last_hear},
 };
 
 bool comm_control_hear(struct comm *comm, struct data_packet *packet)

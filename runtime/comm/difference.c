@@ -21,11 +21,11 @@
 
 enum { SHOWN_GROUPS = 4, SHOWN_RANGES = 4 };
 
-/* COMM_DIFFERS: a rank found a difference at its blocking call of that number. COMM_ASK: only the
- * number. */
+/* COMM_DIFFERS: a rank found a difference at its blocking call of that number. COMM_INQUIRY: only
+ * the number. */
 struct difference_found {
     uint64_t number;
-    char sentence[300];
+    char message[300];
 };
 
 /* COMM_ANSWER */
@@ -244,7 +244,7 @@ static void difference_conclude(struct comm *comm)
     if (first)
         difference_say(comm, first, &groups, &text);
     else if (!groups.of || !difference_say_homes(comm, &groups, &text))
-        text_add(&text, "%s", difference->sentence);
+        text_add(&text, "%s", difference->message);
     base_free(groups.of);
     comm_broke(comm, DUITE_E_DIFFERENT, text.text);
 }
@@ -317,13 +317,13 @@ static struct data_packet *difference_packet(struct comm *comm, enum comm_kind k
     if (packet)
         packet->kind = kind;
     else if (comm->difference.found)
-        comm_broke(comm, DUITE_E_DIFFERENT, comm->difference.sentence);
+        comm_broke(comm, DUITE_E_DIFFERENT, comm->difference.message);
     else
         comm_broke_memory(comm, "a control message");
     return packet;
 }
 
-static void difference_ask(struct comm *comm)
+static void difference_inquire(struct comm *comm)
 {
     struct comm_difference *difference = &comm->difference;
     difference->inquiry = base_alloc_zero(
@@ -341,7 +341,7 @@ static void difference_ask(struct comm *comm)
     base_free(own);
     for (int to = 0; to < comm->n_ranks && !comm_is_broken(comm); to++) {
         struct data_packet *packet =
-            to == comm->rank ? NULL : difference_packet(comm, COMM_ASK, sizeof(uint64_t));
+            to == comm->rank ? NULL : difference_packet(comm, COMM_INQUIRY, sizeof(uint64_t));
         if (!packet)
             continue;
         memcpy(data_payload(packet), &difference->number, sizeof difference->number);
@@ -349,31 +349,31 @@ static void difference_ask(struct comm *comm)
     }
 }
 
-static void difference_tell(struct comm *comm)
+static void difference_report(struct comm *comm)
 {
     struct comm_difference *difference = &comm->difference;
     struct difference_found found = {.number = difference->number};
     struct data_packet *packet = difference_packet(comm, COMM_DIFFERS, sizeof found);
     if (!packet)
         return;
-    snprintf(found.sentence, sizeof found.sentence, "%s", difference->sentence);
+    snprintf(found.message, sizeof found.message, "%s", difference->message);
     memcpy(data_payload(packet), &found, sizeof found);
     comm_control_send(comm, 0, packet);
 }
 
-void comm_difference_found(struct comm *comm, uint64_t number, const char *sentence)
+void comm_difference_found(struct comm *comm, uint64_t number, const char *message)
 {
     struct comm_difference *difference = &comm->difference;
     if (difference->found || comm_is_broken(comm))
         return;
     difference->found = true;
     difference->number = number;
-    snprintf(difference->sentence, sizeof difference->sentence, "%s", sentence);
+    snprintf(difference->message, sizeof difference->message, "%s", message);
     difference->until = base_seconds() + (comm->rank ? VERDICT_SECONDS : ANSWER_SECONDS);
     if (comm->rank)
-        difference_tell(comm);
+        difference_report(comm);
     else
-        difference_ask(comm);
+        difference_inquire(comm);
 }
 
 void comm_difference_hear(struct comm *comm, struct data_packet *packet)
@@ -384,7 +384,7 @@ void comm_difference_hear(struct comm *comm, struct data_packet *packet)
         difference_take(comm, (int)packet->key.slot, data_payload(packet));
     } else if (packet->kind == COMM_DIFFERS) {
         const struct difference_found *found = data_payload(packet);
-        comm_difference_found(comm, found->number, found->sentence);
+        comm_difference_found(comm, found->number, found->message);
     } else {
         const uint64_t *number = data_payload(packet);
         struct data_packet *answer =

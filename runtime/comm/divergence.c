@@ -106,15 +106,15 @@ static void check_pass_on(struct comm *comm, int from, const struct comm_called 
 static void call_compare(struct comm *comm, const struct comm_called *a,
                          const struct comm_called *b)
 {
-    char sentence[300];
+    char message[300];
     if (a->fingerprint == b->fingerprint && a->homes == b->homes)
         return;
-    snprintf(sentence, sizeof sentence,
+    snprintf(message, sizeof message,
              "ranks %d and %d forked different tasks, made different objects or other calls, or "
              "have different homes: the blocking call of number %llu is %s on rank %d and %s on "
              "rank %d",
              a->rank, b->rank, (unsigned long long)a->number, a->name, a->rank, b->name, b->rank);
-    comm_difference_found(comm, a->number, sentence);
+    comm_difference_found(comm, a->number, message);
 }
 
 /* An entry of this rank itself, or one that `from` sent. */

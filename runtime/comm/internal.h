@@ -137,7 +137,7 @@ enum comm_kind {
     COMM_LOSS,    /* a rank is lost, which was found after the sender's abort message: the same */
     COMM_CHECK,   /* a blocking call of some rank: struct comm_called */
     COMM_DIFFERS, /* to rank 0: the sender found that ranks differ */
-    COMM_ASK,     /* of rank 0: the history of the receiver */
+    COMM_INQUIRY, /* of rank 0: the history of the receiver */
     COMM_ANSWER,  /* to rank 0: this history */
     COMM_REQUEST, /* a rank without work requests tasks: the header says how many */
     COMM_LAST     /* the sender stops: after this only the first two may follow */
@@ -166,7 +166,7 @@ struct comm_control {
     struct comm_requests sends; /* under way; what: the packet, freed then, or NULL: one of these */
     struct data_packet *abort, *loss, *last;
     struct data_packet *spare; /* for a control message that comes when there is no memory */
-    bool aborts, tells_loss;   /* the abort messages are sent; and those of a loss */
+    bool aborts, loss_sent;    /* the abort messages are sent; and those of a loss */
     int heard;                 /* abort messages */
     uint64_t entered;          /* the most collective calls that an abort message told of */
     int32_t kind;              /* of the last of these */
@@ -268,15 +268,15 @@ const struct comm_called *comm_calls_logged(struct comm_calls *calls, uint64_t n
 struct comm_difference {
     bool found;      /* that ranks differ; the rest is about this */
     uint64_t number; /* of the blocking call where it was found */
-    double until;    /* then communication breaks with `sentence`; 0: no longer, or not yet */
-    char sentence[300];
+    double until;    /* then communication breaks with `message`; 0: no longer, or not yet */
+    char message[300];
     struct difference_inquiry *inquiry; /* rank 0's */
 };
 
 /* Under the lock: ranks differ, as was found at the blocking call of that number; which breaks
  * communication soon, with a sentence that names the first difference, the same on all ranks. The
  * sentence given is for the case that it stays unknown. */
-void comm_difference_found(struct comm *comm, uint64_t number, const char *sentence);
+void comm_difference_found(struct comm *comm, uint64_t number, const char *message);
 
 /* Under the lock: a control message about it came. */
 void comm_difference_hear(struct comm *comm, struct data_packet *packet);
@@ -357,7 +357,7 @@ struct comm {
     struct comm_heartbeat heartbeat;
     struct comm_calls calls;
     struct comm_difference difference;
-    comm_told *tell;                               /* NULL: nobody */
+    comm_report *report;                           /* NULL: nobody */
     struct worker *worker;                         /* under the lock: who passes */
     bool open, may_request;                        /* comm_open was called; with requests */
     double latency, per_byte;                      /* seconds: of the slowest link measured */
@@ -380,8 +380,8 @@ bool comm_mpi_ok(struct comm *comm, int mpi, const char *what);
 /* Reports a message that is sent or came, if anybody wants to know. Under the lock. */
 static inline void comm_note(const struct comm *comm, bool sends, int peer, size_t bytes)
 {
-    if (comm->tell)
-        comm->tell(comm->worker, sends, peer, bytes);
+    if (comm->report)
+        comm->report(comm->worker, sends, peer, bytes);
 }
 
 static inline bool comm_is_broken(struct comm *comm)

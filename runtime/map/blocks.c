@@ -197,6 +197,13 @@ bool map_moves_is_allowed(const struct map_moves *moves, size_t block, int n_ran
     return to == from || (to >= 0 && to < n_ranks && !moves->fixed[block]);
 }
 
+int map_moves_refused(const char *kind, const char *name)
+{
+    return base_error(DUITE_E_ARGUMENT,
+                      "%s %s moves a block to a rank that does not exist, or moves a fixed block",
+                      kind, name);
+}
+
 duite_blocks map_moves_shown(const struct map_moves *moves)
 {
     return (duite_blocks){.graph = {.n = moves->blocks.n,

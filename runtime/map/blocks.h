@@ -69,6 +69,8 @@ void map_moves_free(struct map_moves *moves);
 
 /* Whether the policy left a fixed block where it is, and named a rank that exists. */
 bool map_moves_is_allowed(const struct map_moves *moves, size_t block, int n_ranks);
+/* The error of a policy that did neither: "mapping" or "balancer", and its name. */
+int map_moves_refused(const char *kind, const char *name);
 
 /* What a balancer sees, but for what is no block's: the caller adds that. Points into the moves,
  * whose traffic was ended. */

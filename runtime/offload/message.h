@@ -12,8 +12,8 @@
  * values that the body reads.
  *
  * Back, DATA_RESULT (key.number: that name). A body that did not fail: for each parameter a count
- * of bytes (0 under r), then these values; then, with MESSAGE_TOLD, the first failure among its
- * descendants. One that failed, MESSAGE_FAILED: its failure, then that first one. */
+ * of bytes (0 under r), then these values; then, with MESSAGE_FAILED_BELOW, the first failure among
+ * its descendants. One that failed, MESSAGE_FAILED: its failure, then that first one. */
 struct offload_message {
     uint64_t number; /* of the main program's task that it is or descends from */
     uint64_t index;  /* in its scope */
@@ -29,7 +29,7 @@ struct offload_param {
     uint32_t type, sized;
 };
 
-enum { MESSAGE_FAILED = 1, MESSAGE_TOLD = 2 }; /* packet->pieces */
+enum { MESSAGE_FAILED = 1, MESSAGE_FAILED_BELOW = 2 }; /* packet->pieces */
 
 static inline size_t message_lines(size_t bytes)
 {
@@ -58,8 +58,8 @@ static inline size_t message_values_at(size_t n)
  * place of what follows. */
 size_t offload_message_put(struct data_packet *packet, size_t at, const void *from, size_t bytes);
 
-/* A task that is away. */
-struct offload_away {
+/* At home: a delegated task, until its result came. */
+struct offload_pending {
     struct task_send send; /* first: the task's */
     struct task *task;
     _Atomic int left;           /* it is sent; it came back */

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-uint64_t offload_name_give(struct offload_names *names, struct offload_away *away)
+uint64_t offload_name_give(struct offload_names *names, struct offload_pending *pending)
 {
     uint32_t i = names->free - 1;
     if (!names->free) {
@@ -21,24 +21,24 @@ uint64_t offload_name_give(struct offload_names *names, struct offload_away *awa
     }
     struct offload_name *slot = &names->slot[i];
     names->free = slot->next;
-    slot->away = away;
+    slot->pending = pending;
     return (uint64_t)slot->generation << 32 | i;
 }
 
-struct offload_away *offload_name_take(struct offload_names *names, uint64_t name)
+struct offload_pending *offload_name_take(struct offload_names *names, uint64_t name)
 {
     uint32_t i = (uint32_t)name;
     struct offload_name *slot = i < names->n ? &names->slot[i] : NULL;
-    if (!slot || !slot->away || slot->generation != name >> 32) {
+    if (!slot || !slot->pending || slot->generation != name >> 32) {
         names->refused++;
         return NULL;
     }
-    struct offload_away *away = slot->away;
-    slot->away = NULL;
+    struct offload_pending *pending = slot->pending;
+    slot->pending = NULL;
     slot->generation += slot->generation == UINT32_MAX ? 2 : 1; /* never 0 */
     slot->next = names->free;
     names->free = i + 1;
-    return away;
+    return pending;
 }
 
 void offload_names_free(struct offload_names *names)

@@ -8,12 +8,12 @@
  * is a number, never an address. A name is a slot and its generation, which grows whenever the slot
  * is given back; so a name that came twice, or was never given, names nothing. Callers lock. */
 
-struct offload_away;
+struct offload_pending;
 
 struct offload_name {
-    struct offload_away *away; /* NULL: the slot is free */
-    uint32_t generation;       /* of the task that has the slot, or will have it next */
-    uint32_t next;             /* of the free ones: index + 1, or 0 */
+    struct offload_pending *pending; /* NULL: the slot is free */
+    uint32_t generation;             /* of the task that has the slot, or will have it next */
+    uint32_t next;                   /* of the free ones: index + 1, or 0 */
 };
 
 /* Empty: all zero. */
@@ -26,10 +26,10 @@ struct offload_names {
 };
 
 /* Gives the task a name, which is never 0. 0: no memory. */
-uint64_t offload_name_give(struct offload_names *names, struct offload_away *away);
+uint64_t offload_name_give(struct offload_names *names, struct offload_pending *pending);
 
 /* Whose name it is, which is given up; NULL: nobody's, which is counted in `refused`. */
-struct offload_away *offload_name_take(struct offload_names *names, uint64_t name);
+struct offload_pending *offload_name_take(struct offload_names *names, uint64_t name);
 
 void offload_names_free(struct offload_names *names);
 

@@ -5,11 +5,11 @@
 
 /* Offloading: leaf tasks that run on another rank than the one that forked them.
  *
- * At home (send.c) such a task is away: it stays unfinished until the result of its body comes;
- * then it does what the body would have done. On the other rank (receive.c) it is an offloaded
- * task, with a small reference order of its own. It waits for nothing, its descendants wait for
- * nothing but one another, and no rank's count of tasks has it. The layers above decide which tasks
- * go, and measure. Any worker may call these functions. */
+ * At home (send.c) such a task is delegated: it stays unfinished until the result of its body
+ * comes; then it does what the body would have done. On the other rank (receive.c) it is an
+ * offloaded task, with a small reference order of its own. It waits for nothing, its descendants
+ * wait for nothing but one another, and no rank's count of tasks has it. The layers above decide
+ * which tasks go, and measure. Any worker may call these functions. */
 
 /* Whether a ready task may run on another rank; *bytes: how many go there and come back. */
 bool offload_may_go(const struct task_graph *graph, const struct task *task, size_t *bytes);
@@ -18,10 +18,10 @@ bool offload_may_go(const struct task_graph *graph, const struct task *task, siz
  * given up: then the task stays as it was. */
 bool offload_send(struct task_graph *graph, struct worker *worker, struct task *task, int to);
 
-/* What a task that is away left came; the callee owns it. A result that names no task that is away
- * is dropped. After offload_lost that is what was given up. Before, each task that goes away comes
- * back once, so such a result is an error of the rank that sent it. It is counted
- * (offload_refused), and a standstill's report names the count. */
+/* What a delegated task left came; the callee owns it. A result that names no delegated task is
+ * dropped. After offload_lost that is what was given up. Before, each delegated task has one
+ * result, so such a result is an error of the rank that sent it. It is counted (offload_refused),
+ * and a standstill's report names the count. */
 void offload_result_arrived(struct task_graph *graph, struct worker *worker,
                             struct data_packet *packet);
 
@@ -31,11 +31,11 @@ void offload_lost(struct task_graph *graph, struct worker *worker);
 /* No task is left and no message comes any more: frees what was kept for them. */
 void offload_stop(struct task_graph *graph);
 
-/* Calls back with each task that is away, which stays so during the call. */
+/* Calls back with each delegated task, which stays so during the call. */
 void offload_look(struct task_graph *graph,
-                  void (*away)(void *context, const struct task *task, int rank), void *context);
+                  void (*look)(void *context, const struct task *task, int rank), void *context);
 
-/* How many results came that named no task that is away. */
+/* How many results came that named no delegated task. */
 uint64_t offload_refused(struct task_graph *graph);
 
 /* A task of another rank came; the packet becomes the callee's. False without memory: then it stays
@@ -52,7 +52,7 @@ void offload_over(struct task_scope *above, struct worker *worker);
 /* Its result is sent: frees it. */
 void offload_answered(struct task_graph *graph, struct task *task);
 
-/* A task that went away is sent. */
+/* The message of a delegated task is sent. */
 void offload_sent(struct task_graph *graph, struct worker *worker, struct task *task);
 
 /* The rank that an offloaded task comes from. */

@@ -185,25 +185,25 @@ void offload_body_over(struct worker *worker, struct task *task)
 
 /* NULL without memory. */
 static struct data_packet *result_failures(const struct offload_task *own,
-                                           const struct data_failure *told)
+                                           const struct data_failure *below)
 {
-    struct data_packet *packet = data_packet_new(2 * sizeof *told, true);
+    struct data_packet *packet = data_packet_new(2 * sizeof *below, true);
     if (!packet)
         return NULL;
     struct data_failure *both = data_payload(packet);
     both[0] = *own->failure;
-    if (told)
-        both[1] = *told;
-    packet->pieces = MESSAGE_FAILED | (told ? MESSAGE_TOLD : 0);
+    if (below)
+        both[1] = *below;
+    packet->pieces = MESSAGE_FAILED | (below ? MESSAGE_FAILED_BELOW : 0);
     return packet;
 }
 
-static void result_append(struct data_packet *packet, const struct data_failure *told)
+static void result_append(struct data_packet *packet, const struct data_failure *below)
 {
     size_t at = packet->bytes;
-    data_packet_resize(packet, at + sizeof *told);
-    offload_message_put(packet, at, told, sizeof *told);
-    packet->pieces = MESSAGE_TOLD;
+    data_packet_resize(packet, at + sizeof *below);
+    offload_message_put(packet, at, below, sizeof *below);
+    packet->pieces = MESSAGE_FAILED_BELOW;
 }
 
 void offload_over(struct task_scope *above, struct worker *worker)
@@ -211,12 +211,12 @@ void offload_over(struct task_scope *above, struct worker *worker)
     struct offload_task *own = (struct offload_task *)above;
     struct task_graph *graph = above->graph;
     struct task *task = own->task;
-    const struct data_failure *told = task_first_failure(above);
+    const struct data_failure *below = task_first_failure(above);
     if (own->failure) {
         data_packet_free(own->result);
-        own->result = result_failures(own, told);
-    } else if (told) {
-        result_append(own->result, told);
+        own->result = result_failures(own, below);
+    } else if (below) {
+        result_append(own->result, below);
     }
     struct data_packet *result = own->result;
     own->send =

@@ -1,5 +1,5 @@
-/* Tasks that are away. The versions that such a task reads and takes over stay here, held by it as
- * before, so nothing else changes for those who wait for it. The task goes on when two things
+/* Delegated tasks, at home. The versions that such a task reads and takes over stay here, held by
+ * it as before, so nothing else changes for those who wait for it. The task goes on when two things
  * happened, in any order: its packet is sent, and the answer came. */
 #include "runtime/offload/message.h"
 
@@ -39,7 +39,7 @@ static size_t access_room(const struct task_access *access)
 
 bool offload_may_go(const struct task_graph *graph, const struct task *task, size_t *bytes)
 {
-    if (task->type != TASK_BODY || task->state != TASK_STAYS || task->inner || task->pinned)
+    if (task->type != TASK_BODY || task->state != TASK_LOCAL || task->inner || task->at_rank)
         return false;
     /* What an offloaded task forks stays with it: it waits for nothing on another rank. */
     if (task->scope->top != &graph->root)
@@ -114,14 +114,14 @@ static struct data_packet *message_pack(const struct task_graph *graph, struct t
 
 /* Gives the task the name under which its result will come back; 0 without memory, or if
  * communication broke. */
-static uint64_t away_enter(struct task_graph *graph, struct offload_away *away)
+static uint64_t pending_enter(struct task_graph *graph, struct offload_pending *pending)
 {
     uint64_t name = 0;
     pthread_mutex_lock(&graph->lock);
-    if (!graph->away && !graph->away_closed)
-        graph->away = base_alloc_zero(sizeof *graph->away);
-    if (graph->away)
-        name = offload_name_give(graph->away, away);
+    if (!graph->offload_names && !graph->offload_closed)
+        graph->offload_names = base_alloc_zero(sizeof *graph->offload_names);
+    if (graph->offload_names)
+        name = offload_name_give(graph->offload_names, pending);
     pthread_mutex_unlock(&graph->lock);
     return name;
 }
@@ -129,23 +129,24 @@ static uint64_t away_enter(struct task_graph *graph, struct offload_away *away)
 bool offload_send(struct task_graph *graph, struct worker *worker, struct task *task, int to)
 {
     struct data_packet *packet = message_pack(graph, task);
-    struct offload_away *away = packet ? base_pool_take(sizeof *away) : NULL;
-    if (!away) {
+    struct offload_pending *pending = packet ? base_pool_take(sizeof *pending) : NULL;
+    if (!pending) {
         data_packet_free(packet);
         return false;
     }
-    *away = (struct offload_away){.send = {.to = to, .packet = packet}, .task = task, .left = 2};
-    uint64_t name = away_enter(graph, away);
+    *pending =
+        (struct offload_pending){.send = {.to = to, .packet = packet}, .task = task, .left = 2};
+    uint64_t name = pending_enter(graph, pending);
     if (!name) {
         data_packet_free(packet);
-        base_pool_give(away, sizeof *away);
+        base_pool_give(pending, sizeof *pending);
         return false;
     }
     packet->kind = DATA_OFFLOADED;
     packet->key = (struct data_key){.slot = (uint32_t)graph->rank, .number = name};
-    away->send.key = packet->key;
-    task->state = TASK_AWAY;
-    task->send = &away->send;
+    pending->send.key = packet->key;
+    task->state = TASK_DELEGATED;
+    task->send = &pending->send;
     work_ready(graph->pool, worker, task);
     return true;
 }
@@ -163,7 +164,7 @@ static const struct data_failure *result_unpack(const struct task *task, duite_p
     size_t at = message_values_at(task->n);
     if (packet->pieces & MESSAGE_FAILED) {
         const struct data_failure *both = (const void *)payload;
-        if (packet->pieces & MESSAGE_TOLD)
+        if (packet->pieces & MESSAGE_FAILED_BELOW)
             task_fail_below(graph, &both[1], task->scope);
         return task_fail(graph, &both[0], false);
     }
@@ -174,7 +175,7 @@ static const struct data_failure *result_unpack(const struct task *task, duite_p
             param[i].count = bytes[i] / data_type_size(param[i].type);
         at += message_lines(bytes[i]);
     }
-    if (packet->pieces & MESSAGE_TOLD)
+    if (packet->pieces & MESSAGE_FAILED_BELOW)
         task_fail_below(graph, (const void *)(payload + at), task->scope);
     return NULL;
 }
@@ -185,17 +186,17 @@ static const struct data_failure *result_take(const struct task *task, duite_par
     return result ? result_unpack(task, param, result) : task_lost_failure();
 }
 
-/* One of two things happened; `away` may be gone afterwards, and the task. */
-static void away_one_less(struct task_graph *graph, struct worker *worker,
-                          struct offload_away *away)
+/* One of two things happened; `pending` may be gone afterwards, and the task. */
+static void pending_one_less(struct task_graph *graph, struct worker *worker,
+                             struct offload_pending *pending)
 {
-    struct task *task = away->task;
+    struct task *task = pending->task;
     struct data_packet *result;
-    if (atomic_fetch_sub_explicit(&away->left, 1, memory_order_acq_rel) != 1)
+    if (atomic_fetch_sub_explicit(&pending->left, 1, memory_order_acq_rel) != 1)
         return;
-    result = away->result;
-    base_pool_give(away, sizeof *away);
-    task->state = TASK_STAYS;
+    result = pending->result;
+    base_pool_give(pending, sizeof *pending);
+    task->state = TASK_LOCAL;
     task->inner = NULL;
     task_run_result(graph, task, result_take, result);
     data_packet_free(result);
@@ -204,35 +205,35 @@ static void away_one_less(struct task_graph *graph, struct worker *worker,
 
 void offload_sent(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    away_one_less(graph, worker, (struct offload_away *)task->send);
+    pending_one_less(graph, worker, (struct offload_pending *)task->send);
 }
 
 void offload_result_arrived(struct task_graph *graph, struct worker *worker,
                             struct data_packet *packet)
 {
-    struct offload_away *away = NULL;
+    struct offload_pending *pending = NULL;
     pthread_mutex_lock(&graph->lock);
-    if (graph->away)
-        away = offload_name_take(graph->away, packet->key.number);
+    if (graph->offload_names)
+        pending = offload_name_take(graph->offload_names, packet->key.number);
     pthread_mutex_unlock(&graph->lock);
-    if (!away) { /* it was given up; or the name is none of ours, which was counted */
+    if (!pending) { /* it was given up; or the name is none of ours, which was counted */
         data_packet_free(packet);
         return;
     }
-    away->result = packet;
-    away_one_less(graph, worker, away);
+    pending->result = packet;
+    pending_one_less(graph, worker, pending);
 }
 
 void offload_lost(struct task_graph *graph, struct worker *worker)
 {
     pthread_mutex_lock(&graph->lock);
-    struct offload_names *names = graph->away;
-    graph->away = NULL;
-    graph->away_closed = true;
+    struct offload_names *names = graph->offload_names;
+    graph->offload_names = NULL;
+    graph->offload_closed = true;
     pthread_mutex_unlock(&graph->lock);
     for (uint32_t i = 0; names && i < names->n; i++)
-        if (names->slot[i].away)
-            away_one_less(graph, worker, names->slot[i].away);
+        if (names->slot[i].pending)
+            pending_one_less(graph, worker, names->slot[i].pending);
     if (names)
         offload_names_free(names);
     base_free(names);
@@ -242,10 +243,10 @@ void offload_look(struct task_graph *graph,
                   void (*look)(void *context, const struct task *task, int rank), void *context)
 {
     pthread_mutex_lock(&graph->lock);
-    for (uint32_t i = 0; graph->away && i < graph->away->n; i++) {
-        const struct offload_away *away = graph->away->slot[i].away;
-        if (away)
-            look(context, away->task, away->send.to);
+    for (uint32_t i = 0; graph->offload_names && i < graph->offload_names->n; i++) {
+        const struct offload_pending *pending = graph->offload_names->slot[i].pending;
+        if (pending)
+            look(context, pending->task, pending->send.to);
     }
     pthread_mutex_unlock(&graph->lock);
 }
@@ -253,15 +254,15 @@ void offload_look(struct task_graph *graph,
 uint64_t offload_refused(struct task_graph *graph)
 {
     pthread_mutex_lock(&graph->lock);
-    uint64_t refused = graph->away ? graph->away->refused : 0;
+    uint64_t refused = graph->offload_names ? graph->offload_names->refused : 0;
     pthread_mutex_unlock(&graph->lock);
     return refused;
 }
 
 void offload_stop(struct task_graph *graph)
 {
-    if (graph->away)
-        offload_names_free(graph->away);
-    base_free(graph->away);
-    graph->away = NULL;
+    if (graph->offload_names)
+        offload_names_free(graph->offload_names);
+    base_free(graph->offload_names);
+    graph->offload_names = NULL;
 }

@@ -72,11 +72,11 @@ static size_t channel_pack_failures(const struct plan *plan, const struct task *
     const struct plan_node_use *use = plan->use + task->node->first_use;
     for (uint32_t i = 0; i < task->n; i++) {
         const struct data_failure *failure = plan->place[use[i].place].failure;
-        struct message_failure told = {.use = i};
+        struct message_failure failed = {.use = i};
         if (!failure)
             continue;
-        told.failure = *failure;
-        memcpy(at + message->failures++ * sizeof told, &told, sizeof told);
+        failed.failure = *failure;
+        memcpy(at + message->failures++ * sizeof failed, &failed, sizeof failed);
     }
     return message->failures * sizeof(struct message_failure);
 }
@@ -109,9 +109,9 @@ static void channel_unpack_failures(struct plan *plan, const struct task *task,
     for (uint32_t i = 0; i < task->n; i++)
         plan->place[use[i].place].failure = NULL;
     for (uint32_t i = 0; i < message->failures; i++) {
-        struct message_failure told;
-        memcpy(&told, at + i * sizeof told, sizeof told);
-        plan->place[use[told.use].place].failure = task_fail(plan->graph, &told.failure, false);
+        struct message_failure failed;
+        memcpy(&failed, at + i * sizeof failed, sizeof failed);
+        plan->place[use[failed.use].place].failure = task_fail(plan->graph, &failed.failure, false);
     }
     if (message->failures)
         atomic_store_explicit(&plan->tainted, 1, memory_order_relaxed);

@@ -119,9 +119,9 @@ static void emit_call(struct plan *plan, const struct plan_record *record,
         return;
     const duite_kernel *kernel = record->graph->kernels[fork->kernel];
     task->kernel = fork->kernel;
-    task->placed = at_home && !kernel->replicated && fork->how.at == TASK_ANYWHERE;
-    task->priority = fork->how.priority;
-    task->cost = (float)fork->how.cost;
+    task->placed = at_home && !kernel->replicated && fork->options.at == TASK_ANYWHERE;
+    task->priority = fork->options.priority;
+    task->cost = (float)fork->options.cost;
     node->args = kernel->args_size ? plan->args + fork->args : NULL;
     uint32_t stamp = task_new_stamp();
     for (uint32_t k = 0; k < fork->n; k++) {

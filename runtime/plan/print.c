@@ -27,8 +27,8 @@ static void print_fork(const struct plan_record *record, const struct plan_recor
     bool sets = fork->kernel == PLAN_SETS;
     const duite_kernel *kernel = sets ? NULL : record->graph->kernels[fork->kernel];
     print_name(file, sets ? "duite_set" : kernel->name);
-    if (fork->how.at >= 0)
-        fprintf(file, "\\nat rank %d", fork->how.at);
+    if (fork->options.at >= 0)
+        fprintf(file, "\\nat rank %d", fork->options.at);
     for (uint32_t k = 0; k < fork->n; k++) {
         duite_mode mode = sets ? DUITE_W : data_mode_of(kernel, k);
         print_use(record, record->access[fork->first + k].object, mode, file);

@@ -136,7 +136,7 @@ uint32_t plan_recorded_owner(const struct plan_record *record,
                              const struct plan_recorded_fork *fork)
 {
     if (fork->kernel == PLAN_SETS ||
-        !task_owner_decides(fork->how.at, record->graph->kernels[fork->kernel]->replicated))
+        !task_owner_decides(fork->options.at, record->graph->kernels[fork->kernel]->replicated))
         return PLAN_NONE;
     return fork->owner;
 }
@@ -154,7 +154,7 @@ static void record_fix_owner(struct plan_record *record, const struct plan_recor
 
 /* The bytes of the arguments are still to be written. */
 static struct plan_recorded_fork *record_append(struct plan_record *record, uint32_t kernel,
-                                                const struct task_options *how, size_t n,
+                                                const struct task_options *options, size_t n,
                                                 const duite_object *objects, size_t bytes)
 {
     size_t whole = (bytes + 15) / 16 * 16;
@@ -165,13 +165,13 @@ static struct plan_recorded_fork *record_append(struct plan_record *record, uint
     }
     struct plan_recorded_fork *fork = &record->fork[record->n_forks++];
     *fork = (struct plan_recorded_fork){.kernel = kernel,
-                                        .how = *how,
+                                        .options = *options,
                                         .n = (uint32_t)n,
                                         .call = (uint32_t)record->n_calls,
                                         .first = record->n_accesses,
                                         .args = record->args_bytes};
     record->args_bytes += whole;
-    task_mix(record->graph, task_fork_hash_all(kernel, how->at, n, objects));
+    task_mix(record->graph, task_fork_hash_all(kernel, options->at, n, objects));
     if (kernel != PLAN_SETS)
         task_mixed(record->graph, TASK_RECORDED, kernel);
     for (size_t i = 0; i < n; i++)
@@ -186,19 +186,19 @@ static struct plan_recorded_fork *record_append(struct plan_record *record, uint
     return fork;
 }
 
-int plan_record_fork(struct plan_record *record, const struct task_options *how,
+int plan_record_fork(struct plan_record *record, const struct task_options *options,
                      const duite_kernel *kernel, const void *args, size_t n,
                      const duite_object *objects)
 {
     uint32_t index;
-    int code = task_check_fork(&record->graph->root, how->at, kernel, args, n, objects, &index);
+    int code = task_check_fork(&record->graph->root, options->at, kernel, args, n, objects, &index);
     if (code)
         return code;
     task_unmark(&record->graph->root, n, objects);
     for (size_t i = 0; i < n; i++)
         record->forked |= task_postponed(data_mode_of(kernel, i));
     struct plan_recorded_fork *fork =
-        record_append(record, index, how, n, objects, kernel->args_size);
+        record_append(record, index, options, n, objects, kernel->args_size);
     if (!fork)
         return DUITE_E_MEMORY;
     if (kernel->args_size)

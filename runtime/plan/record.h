@@ -19,7 +19,7 @@ struct plan_record;
 struct plan_recorded_fork {
     uint32_t kernel; /* index in the list given at start */
     uint32_t n;
-    struct task_options how;
+    struct task_options options;
     uint32_t owner; /* the place in `object` that it runs for, or PLAN_NONE */
     uint32_t call;  /* forks before it, sets left out */
     size_t first;   /* of its n objects in `access` */
@@ -109,7 +109,7 @@ void plan_record_clear(struct plan_record *record, struct worker *worker);
 void plan_record_forget_changes(struct plan_record *record);
 
 /* What build calls. Errors as of task_fork and task_set_object, nothing is recorded then. */
-int plan_record_fork(struct plan_record *record, const struct task_options *how,
+int plan_record_fork(struct plan_record *record, const struct task_options *options,
                      const duite_kernel *kernel, const void *args, size_t n,
                      const duite_object *objects);
 int plan_record_set(struct plan_record *record, duite_object object, const void *values,

@@ -62,8 +62,8 @@ int plan_replay_fork(struct plan_record *record, struct worker *worker)
             code = task_set_object(&graph->root, worker, objects[0], fork->zeros ? NULL : args,
                                    &fork->count);
         else
-            code = task_fork(&graph->root, worker, &fork->how, graph->kernels[fork->kernel], args,
-                             fork->n, objects);
+            code = task_fork(&graph->root, worker, &fork->options, graph->kernels[fork->kernel],
+                             args, fork->n, objects);
     }
     return code;
 }

@@ -12,10 +12,10 @@ static struct plan_source_fork source_fork(const struct plan_record *record,
         .first = fork->first,
         .n = fork->n,
         .owner = fork->owner,
-        .rank = fork->how.at == TASK_ANYWHERE ? PLAN_BY_OWNER : fork->how.at,
+        .rank = fork->options.at == TASK_ANYWHERE ? PLAN_BY_OWNER : fork->options.at,
         .sets = sets,
         .replicated = !sets && record->graph->kernels[fork->kernel]->replicated,
-        .cost = fork->how.cost};
+        .cost = fork->options.cost};
 }
 
 uint32_t plan_record_flag(const struct plan_record *record, duite_object flag)

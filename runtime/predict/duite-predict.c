@@ -114,7 +114,7 @@ static error_t option_read(int key, char *value, struct argp_state *state)
         cluster->hosts = (uint32_t)option_whole(state, "hosts", value, 1, 1 << 20);
         return 0;
     case CORES:
-        cluster->cores = (uint32_t)option_whole(state, "cores", value, 1, 4096);
+        cluster->cores = (uint32_t)option_whole(state, "cores", value, 1, DUITE_MAX_THREADS);
         return 0;
     case CORE_SPEED:
         cluster->core_speed = option_number(state, "core-speed", value);

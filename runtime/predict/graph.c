@@ -100,7 +100,7 @@ static uint32_t node_own(struct predict_graph *graph, enum predict_kind kind, ui
 /* ---- Reading ---- */
 
 /* A message with the object's value, to a host. */
-static uint32_t message_add(struct predict_graph *graph, uint32_t object, uint32_t host)
+static uint32_t transfer_add(struct predict_graph *graph, uint32_t object, uint32_t host)
 {
     struct predict_object *o = &graph->object[object];
     uint32_t message = node_own(graph, PREDICT_MESSAGE, (uint32_t)o->holder, 0, o->bytes);
@@ -163,7 +163,7 @@ uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host)
     for (uint32_t i = o->copies; i != PREDICT_NONE; i = graph->link[i].next)
         if (graph->link[i].host == (uint32_t)host)
             return graph->link[i].node;
-    uint32_t message = message_add(graph, object, (uint32_t)host);
+    uint32_t message = transfer_add(graph, object, (uint32_t)host);
     link_push(graph, &o->copies, message, (uint32_t)host);
     return message;
 }

@@ -53,7 +53,8 @@ bool predict_queue_put(struct predict_queue *queue, const struct predict_node *n
     return true;
 }
 
-static uint32_t queue_take_highest(struct predict_queue *queue, const struct predict_node *nodes)
+static uint32_t simulated_take_highest(struct predict_queue *queue,
+                                       const struct predict_node *nodes)
 {
     uint32_t top;
     base_heap_pop(queue->node, queue->n--, &top, sizeof top, queue_before, nodes);
@@ -66,7 +67,7 @@ uint32_t predict_queue_take(struct predict_queue *queue, const struct predict_no
     if (!queue->n)
         return PREDICT_NONE;
     if (queue->heap)
-        return queue_take_highest(queue, nodes);
+        return simulated_take_highest(queue, nodes);
     size_t at = end == DUITE_NEWEST ? queue->first + queue->n - 1 : queue->first;
     queue->first += end != DUITE_NEWEST;
     queue->n--;

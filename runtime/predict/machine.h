@@ -56,7 +56,7 @@ enum { IDLE, BUSY, RESERVED }; /* of a worker; the last: it is the main program'
  * left its worker to it, or let the main program go on, which then forked it. */
 struct predict_cause {
     uint32_t by; /* NONE: the beginning */
-    enum { MADE_READY, LEFT_WORKER, FORKED } how;
+    enum { MADE_READY, LEFT_WORKER, FORKED } kind;
     float flight; /* s of a message */
 };
 

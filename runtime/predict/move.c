@@ -206,13 +206,11 @@ static int move_call_mapping(struct move *m, struct predict_recorded *recorded)
 static int move_check(const struct move *m)
 {
     const struct predict_cluster *cluster = m->p->graph->cluster;
-    for (size_t b = 0; b < m->moves.blocks.n; b++) {
+    const bool balances = cluster->balance && cluster->balance->migrate;
+    for (size_t b = 0; b < m->moves.blocks.n; b++)
         if (!map_moves_is_allowed(&m->moves, b, (int)cluster->hosts))
-            return base_error(
-                DUITE_E_ARGUMENT, "%s moves a block to a rank that there is not, or one that stays",
-                cluster->balance && cluster->balance->migrate ? cluster->balance->name
-                                                              : cluster->mapping->name);
-    }
+            return balances ? map_moves_refused("balancer", cluster->balance->name)
+                            : map_moves_refused("mapping", cluster->mapping->name);
     return DUITE_OK;
 }
 

@@ -95,8 +95,8 @@ static void conclude_chain(const struct predict_machine *m, double *chain)
             chain[PREDICT_BANDWIDTH] += all - (double)cause->flight;
         } else {
             double own = fmin(all, (double)node->seconds);
-            chain[cause->how == LEFT_WORKER ? PREDICT_WORK : PREDICT_PATH] += own;
-            chain[cause->how == FORKED ? PREDICT_MAIN : PREDICT_OVERHEAD] += all - own;
+            chain[cause->kind == LEFT_WORKER ? PREDICT_WORK : PREDICT_PATH] += own;
+            chain[cause->kind == FORKED ? PREDICT_MAIN : PREDICT_OVERHEAD] += all - own;
         }
         at = cause->by;
     }

@@ -303,8 +303,8 @@ static bool round_is_seen(struct predict_program *p, const struct predict_record
     return !p->damaged;
 }
 
-static void replay_rounds(struct predict_program *p, struct predict_recorded *recorded,
-                          uint64_t max)
+static void replay_simulate(struct predict_program *p, struct predict_recorded *recorded,
+                            uint64_t max)
 {
     struct predict_graph *graph = p->graph;
     const uint32_t *bound = recorded->bound;
@@ -344,7 +344,7 @@ void predict_replay(struct predict_program *p, size_t n_objects)
     if (bound && !p->damaged && !p->words.short_of) {
         predict_move(p, recorded);
         if (!p->graph->failed && predict_round_prepare(p, recorded, flag))
-            replay_rounds(p, recorded, max);
+            replay_simulate(p, recorded, max);
     }
     p->forks += max * recorded->n_calls;
 }

@@ -147,7 +147,7 @@ static void node_task_ready(struct predict_machine *m, uint32_t node, uint32_t w
 
 /* ---- Nodes ---- */
 
-static void node_ready(struct predict_machine *m, uint32_t node, uint32_t worker)
+static void machine_ready(struct predict_machine *m, uint32_t node, uint32_t worker)
 {
     const struct predict_node *n = &m->graph->node[node];
     double flight = 0, end = m->now;
@@ -181,7 +181,7 @@ static void node_count_down(struct predict_machine *m, uint32_t node, uint32_t b
         return;
     m->cause[node] = by == PREDICT_NONE ? (struct predict_cause){m->went_on, FORKED, 0}
                                         : (struct predict_cause){by, MADE_READY, 0};
-    node_ready(m, node, worker);
+    machine_ready(m, node, worker);
 }
 
 /* ---- The main program ---- */

@@ -230,7 +230,7 @@ void task_void(struct task_graph *graph, struct worker *worker, struct task *tas
 }
 
 /* NULL without memory. */
-static struct task *fork_body(const struct task_fork_call *call, const struct task_options *how,
+static struct task *fork_body(const struct task_fork_call *call, const struct task_options *options,
                               const void *args)
 {
     struct task_scope *scope = call->scope;
@@ -239,9 +239,9 @@ static struct task *fork_body(const struct task_fork_call *call, const struct ta
     if (!task)
         return NULL;
     task->kernel = call->index;
-    task->priority = how->priority;
-    task->cost = (float)how->cost;
-    task->pinned = how->at != TASK_ANYWHERE;
+    task->priority = options->priority;
+    task->cost = (float)options->cost;
+    task->at_rank = options->at != TASK_ANYWHERE;
     if (kernel->args_size)
         memcpy(task_rest(task, call->n), args, kernel->args_size);
     const struct task_fixed *fixed = &scope->graph->fixed[call->index];
@@ -278,7 +278,7 @@ static void fork_give_block(struct task *task, struct data_object *own, bool fol
 }
 
 /* Checked: nothing but memory can be missing. */
-static int fork_checked(struct task_fork_call *call, const struct task_options *how,
+static int fork_checked(struct task_fork_call *call, const struct task_options *options,
                         const void *args)
 {
     const struct task_graph *graph = call->scope->graph;
@@ -289,27 +289,27 @@ static int fork_checked(struct task_fork_call *call, const struct task_options *
     if (code)
         return code;
     call->at = call->scope->depth ? graph->rank
-                                  : task_owner_rank(how->at, replicated, own ? own->home : -1);
+                                  : task_owner_rank(options->at, replicated, own ? own->home : -1);
     if (call->at == TASK_EVERYWHERE)
         call->at = graph->rank;
-    if (call->at == graph->rank && !(call->task = fork_body(call, how, args)))
+    if (call->at == graph->rank && !(call->task = fork_body(call, options, args)))
         return DUITE_E_MEMORY;
     if (call->task && own)
-        fork_give_block(call->task, own, task_owner_decides(how->at, replicated));
+        fork_give_block(call->task, own, task_owner_decides(options->at, replicated));
     return task_depend(call);
 }
 
-int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *how,
+int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects)
 {
     struct task_fork_call call;
     fork_call_init(&call, scope, worker, kernel, n, objects);
-    int code = fork_check(&call, how->at, args);
+    int code = fork_check(&call, options->at, args);
     if (code)
         return code;
     scope->forks++;
     if (!scope->depth && scope->graph->n_ranks > 1)
-        task_mix_fork(scope->graph, task_fork_hash_all(call.index, how->at, n, objects),
+        task_mix_fork(scope->graph, task_fork_hash_all(call.index, options->at, n, objects),
                       call.index);
-    return fork_checked(&call, how, args);
+    return fork_checked(&call, options, args);
 }

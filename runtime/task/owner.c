@@ -1,13 +1,13 @@
 /* The owner rule by modes and a number of objects: nothing else decides. */
 #include "runtime/task/owner.h"
 
-uint32_t task_owner(const duite_mode *access, duite_mode rest, size_t n)
+uint32_t task_owner(const duite_mode *access, duite_mode variadic, size_t n)
 {
     uint32_t first_read = TASK_NOBODY;
     bool ended = false;
     for (uint32_t i = 0; i < n && i <= DUITE_MAX_ACCESS; i++) { /* what follows is like the last */
         ended |= i == DUITE_MAX_ACCESS || access[i] == DUITE_NONE;
-        switch (ended ? rest : access[i]) {
+        switch (ended ? variadic : access[i]) {
         case DUITE_W:
         case DUITE_WP:
         case DUITE_RW:

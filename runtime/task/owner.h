@@ -19,8 +19,8 @@ enum {
 /* The parameter that a task with n objects runs for: the first one that it writes (w, rw), else the
  * first one that it reads; TASK_NOBODY if it only accumulates. Postponed modes count like those
  * without delay. `access` has DUITE_MAX_ACCESS modes or is ended by DUITE_NONE; further parameters
- * have the mode `rest` (duite_kernel.variadic). */
-uint32_t task_owner(const duite_mode *access, duite_mode rest, size_t n);
+ * have the mode `variadic`. */
+uint32_t task_owner(const duite_mode *access, duite_mode variadic, size_t n);
 
 /* Whether the home of that object says where a task of the main program runs: its fork names no
  * rank, and its kernel is not replicated. */

@@ -45,10 +45,10 @@ enum task_type {
 
 /* What has become of it. */
 enum task_state {
-    TASK_STAYS = 0, /* nothing: it waits, runs and ends here, as its type says */
-    TASK_VOID,  /* memory ran out while it was forked: does not run, and poisons what it writes */
-    TASK_AWAY,  /* a BODY: goes to another rank in a message, until that rank answers */
-    TASK_LEAVES /* PIECES, OFFLOADED: it ran, and what it left is to be sent */
+    TASK_LOCAL = 0, /* nothing: it waits, runs and ends here, as its type says */
+    TASK_VOID, /* memory ran out while it was forked: does not run, and poisons what it writes */
+    TASK_DELEGATED, /* a BODY: goes to another rank in a message, until that rank answers */
+    TASK_LEAVES     /* PIECES, OFFLOADED: it ran, and what it left is to be sent */
 };
 
 struct task_scope;
@@ -79,7 +79,7 @@ struct task {
     union {
         struct task_scope *inner;       /* BODY: what its children may use, or NULL */
         struct task_sum *sum;           /* COMBINE, PIECES, GATHER */
-        struct task_send *send;         /* SEND; as long as it is AWAY or LEAVES */
+        struct task_send *send;         /* SEND; as long as it is DELEGATED or LEAVES */
         struct offload_task *offloaded; /* OFFLOADED */
         struct data_view *view;         /* VIEW: held */
         struct task_copy *copy;         /* COPY */
@@ -98,8 +98,8 @@ struct task {
     };
     enum task_type type : 8;
     enum task_state state : 8;
-    unsigned pinned : 1; /* its fork named a rank: no other one runs it */
-    unsigned placed : 1; /* by the home of an object, whose block it has: it moves with that */
+    unsigned at_rank : 1; /* its fork named a rank: no other one runs it */
+    unsigned placed : 1;  /* by the home of an object, whose block it has: it moves with that */
     struct task_access access[];
 };
 
@@ -214,9 +214,9 @@ struct task_graph {
     _Atomic uint64_t offloaded;      /* tasks of other ranks that are here */
     pthread_mutex_t lock;            /* of the rest, and of the failures of scopes */
     struct task_failure *failures;
-    struct offload_names *away; /* tasks on other ranks, or NULL */
-    bool away_closed;           /* no more of them */
-    struct data_sum *unclosed;  /* of tasks that are over: there was no memory to combine them */
+    struct offload_names *offload_names; /* tasks on other ranks, or NULL */
+    bool offload_closed;                 /* no more of them */
+    struct data_sum *unclosed; /* of tasks that are over: there was no memory to combine them */
 };
 
 /* kernels: ended by NULL, checked, the list copied; laws likewise, or NULL, not kept. `pool` and
@@ -272,7 +272,7 @@ struct task_options {
 bool task_prune(struct task_graph *graph, const duite_kernel *kernel, const void *args, size_t n,
                 const duite_object *objects);
 
-int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *how,
+int task_fork(struct task_scope *scope, struct worker *worker, const struct task_options *options,
               const duite_kernel *kernel, const void *args, size_t n, const duite_object *objects);
 /* Overwrites with a copy of *count values, or with zeros if they are NULL, without waiting for
  * anything. count NULL: as many as the object has at most. Errors: objects, DUITE_E_SIZE, memory.
@@ -374,7 +374,7 @@ static inline bool task_has_given_up(const struct task_graph *graph)
 /* It is to be sent now: it was made for that, or that has become of it. */
 static inline bool task_to_send(const struct task *task)
 {
-    return task->type == TASK_SEND || task->state == TASK_AWAY || task->state == TASK_LEAVES;
+    return task->type == TASK_SEND || task->state == TASK_DELEGATED || task->state == TASK_LEAVES;
 }
 
 /* The task whose link it is, if it is a task that waits. */
@@ -417,7 +417,7 @@ const char *task_own_name(uint32_t number);
 /* Whether the task calls a body of the program. */
 static inline bool task_has_body(const struct task *task)
 {
-    return task->state == TASK_STAYS && TASK_IS(task, TASK_TYPES_WITH_BODY);
+    return task->state == TASK_LOCAL && TASK_IS(task, TASK_TYPES_WITH_BODY);
 }
 
 /* A packet came for an expected version or sum; the callee owns it. */

@@ -150,19 +150,19 @@ void trace_switch(struct trace *trace, bool on, uint64_t step, uint64_t forks)
     word_put_long(trace, base_ticks());
 }
 
-void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct task_options *how,
+void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct task_options *options,
                 size_t n, const duite_object *objects)
 {
     if (!trace_keeps_words_now(trace))
         return;
-    bool plain = how->at == TASK_ANYWHERE && !how->priority && !(how->cost > 0);
+    bool plain = options->at == TASK_ANYWHERE && !options->priority && !(options->cost > 0);
     if (!entry_begin(trace, plain ? TRACE_FORK : TRACE_FORKED, n))
         return;
     word_put(trace, task_kernel_index(trace->graph, kernel));
     if (!plain) {
-        word_put(trace, (uint32_t)how->at);
-        word_put(trace, (uint32_t)how->priority);
-        word_put_float(trace, how->cost);
+        word_put(trace, (uint32_t)options->at);
+        word_put(trace, (uint32_t)options->priority);
+        word_put_float(trace, options->cost);
     }
     for (size_t i = 0; i < n; i++)
         word_put(trace, objects[i].slot);
@@ -210,9 +210,9 @@ void trace_graph(struct trace *trace, uint32_t name, const struct plan_record *r
         const struct plan_recorded_fork *fork = &record->fork[i];
         word_put(trace, fork->kernel);
         word_put(trace, fork->n);
-        word_put(trace, (uint32_t)fork->how.at);
-        word_put(trace, (uint32_t)fork->how.priority);
-        word_put_float(trace, fork->how.cost);
+        word_put(trace, (uint32_t)fork->options.at);
+        word_put(trace, (uint32_t)fork->options.priority);
+        word_put_float(trace, fork->options.cost);
         for (uint32_t k = 0; k < fork->n; k++)
             word_put(trace, record->access[fork->first + k].object);
     }

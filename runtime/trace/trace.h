@@ -135,7 +135,7 @@ void trace_settled(struct trace *trace, const struct data_table *table);
 /* Homes of objects that moved. */
 void trace_moved(struct trace *trace, const struct data_table *table, const uint32_t *slots,
                  size_t n);
-void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct task_options *how,
+void trace_fork(struct trace *trace, const duite_kernel *kernel, const struct task_options *options,
                 size_t n, const duite_object *objects);
 void trace_set(struct trace *trace, duite_object name);
 void trace_get(struct trace *trace, duite_object name, int rank, uint64_t from);

@@ -32,7 +32,7 @@ bool work_run_task(struct task_graph *graph, struct worker *worker, struct task 
 /* Ends a task that did not stay what it was. */
 static void finish_changed(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    if (task->state == TASK_AWAY)
+    if (task->state == TASK_DELEGATED)
         offload_sent(graph, worker, task);
     else if (task->type == TASK_OFFLOADED)
         offload_answered(graph, task);
@@ -42,7 +42,7 @@ static void finish_changed(struct task_graph *graph, struct worker *worker, stru
 
 void work_finish(struct task_graph *graph, struct worker *worker, struct task *task)
 {
-    if (task->state != TASK_STAYS)
+    if (task->state != TASK_LOCAL)
         finish_changed(graph, worker, task);
     else if (task_is_node(task))
         plan_node_finish(graph, worker, task);

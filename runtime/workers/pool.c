@@ -99,7 +99,7 @@ int work_start(struct work_pool **out, const struct work_setup *setup)
     setup->graph->pool = pool;
     setup->graph->checks = setup->check != NULL;
     if (setup->trace && setup->comm)
-        comm_tell(setup->comm, work_note_message);
+        comm_set_report(setup->comm, work_note_message);
     int code = fine ? pool_start_threads(pool) : base_no_memory("the workers");
     int watched = work_standstill_start(pool, code ? 0 : setup->stuck_seconds);
     return code ? code : watched;

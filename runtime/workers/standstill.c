@@ -74,19 +74,19 @@ bool work_stands_still(struct work_pool *pool, struct work_stillness *still)
 
 /* ---- The report ---- */
 
-enum { MOST_LINES = 20, MOST_BODIES = 8 };
+enum { MAX_LINES = 20, MAX_BODIES = 8 };
 
 struct report {
     struct work_pool *pool;
     unsigned lines, left_out;
     size_t length;
-    char text[MOST_LINES * 256];
+    char text[MAX_LINES * 256];
 };
 
 __attribute__((format(printf, 2, 3))) static void report_line(struct report *report,
                                                               const char *format, ...)
 {
-    if (report->lines >= MOST_LINES - 1) {
+    if (report->lines >= MAX_LINES - 1) {
         report->left_out++;
         return;
     }
@@ -170,7 +170,7 @@ static unsigned report_bodies(struct report *report, bool held)
         const struct task *task = atomic_load_explicit(&pool->worker[i].runs, memory_order_acquire);
         if (!task)
             continue;
-        if (n++ >= MOST_BODIES)
+        if (n++ >= MAX_BODIES)
             report->left_out++;
         else
             report_line(report, "worker %u%s runs %s", i, i ? "" : " (the main thread)",
@@ -246,7 +246,7 @@ static void report_away(void *context, const struct task *task, int rank)
 static void report_refused(struct report *report, uint64_t refused)
 {
     if (refused)
-        report_line(report, "%llu results of tasks on other ranks named no task that is away",
+        report_line(report, "%llu results of tasks on other ranks named no delegated task",
                     (unsigned long long)refused);
 }
 

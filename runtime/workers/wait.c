@@ -174,7 +174,7 @@ bool work_may_fork(struct work_pool *pool)
 enum {
     NOT_BARREN = -1,
     SHARED_DEPTH = 16, /* of the shared queue's new end, that are looked at */
-    MOST_REFUSED = 4   /* tasks taken from others in vain between two pauses */
+    MAX_REFUSED = 4    /* tasks taken from others in vain between two pauses */
 };
 #define LONGEST_INSIDE_SECONDS 2e-4
 
@@ -255,7 +255,7 @@ static struct task *inside_steal(struct worker *worker, struct inside_wait *wait
 {
     struct work_pool *pool = worker->pool;
     struct task *task = NULL;
-    for (unsigned attempt = 0; !task && wait->refused < MOST_REFUSED; attempt++) {
+    for (unsigned attempt = 0; !task && wait->refused < MAX_REFUSED; attempt++) {
         unsigned victim = work_victim(worker, attempt);
         if (victim >= pool->setup.threads || work_is_endless(pool, attempt))
             break;

@@ -11,7 +11,7 @@
 enum { LONGEST_INLINE = 64, CLOCKED = 16 };
 
 /* Tries of a scheduler that names victims, in one round. */
-enum { MOST_ATTEMPTS = 64, MOST_ATTEMPTS_A_WORKER = 16 };
+enum { MAX_ATTEMPTS = 64, MAX_ATTEMPTS_A_WORKER = 16 };
 
 /* ---- Ready: a task goes to a queue ---- */
 
@@ -89,7 +89,7 @@ void work_ready(struct work_pool *pool, struct worker *worker, struct task *task
 
 bool work_is_endless(struct work_pool *pool, unsigned attempt)
 {
-    if (attempt < MOST_ATTEMPTS + MOST_ATTEMPTS_A_WORKER * pool->setup.threads)
+    if (attempt < MAX_ATTEMPTS + MAX_ATTEMPTS_A_WORKER * pool->setup.threads)
         return false;
     atomic_store_explicit(&pool->endless, 1, memory_order_relaxed);
     return true;

@@ -222,7 +222,8 @@ int main(void)
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     shown(5, 1, "with all costs it is asked once");
     shown(0, 2, "else twice");
-    refused(1, 0, "mapping told moves a block to a rank that there is not, or one that stays");
+    refused(1, 0,
+            "mapping told moves a block to a rank that does not exist, or moves a fixed block");
     refused(0, 3, "mapping told failed on rank 0 with code 3");
     chains();
     return tap_done();

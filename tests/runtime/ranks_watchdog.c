@@ -244,7 +244,8 @@ static void one_hangs(const char *what, const char *function, int where,
     options.mapping = policies->mapping ? policies->mapping : duite_mapping_find("block");
     options.balance = policies->balance ? policies->balance : options.balance;
     options.policy_seconds = SECONDS;
-    snprintf(name, sizeof name, "%s of a %s hangs on rank %d", function, what, where);
+    snprintf(name, sizeof name, "%s of a %s%s hangs on rank %d", function, what,
+             policies->mapping && policies->balance ? " that a balancer asks" : "", where);
     kind = what;
     atomic_store(&named, 0);
     atomic_store(&hangs, NULL);

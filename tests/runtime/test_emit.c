@@ -50,7 +50,7 @@ static void make(struct made *made)
     for (uint32_t i = 0; i < 4; i++)
         made->fork[i] = (struct plan_recorded_fork){.kernel = fork[i].kernel,
                                                     .n = fork[i].n,
-                                                    .how = anywhere,
+                                                    .options = anywhere,
                                                     .owner = fork[i].owner,
                                                     .call = i,
                                                     .first = fork[i].first};
@@ -72,7 +72,7 @@ START_TEST(source)
     struct made made;
     struct plan_source plain;
     make(&made);
-    made.fork[1].how.at = 0;
+    made.fork[1].options.at = 0;
     made.fork[2].kernel = PLAN_SETS;
     made.object[1].parent = 1;
     ck_assert(plan_record_source(&made.record, NULL, &plain));

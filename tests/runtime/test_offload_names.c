@@ -6,10 +6,10 @@
 enum { N = 100 };
 
 /* Names point at these; they are not looked into. */
-static struct offload_away *task_at(int i)
+static struct offload_pending *task_at(int i)
 {
     static char place[N + 1];
-    return (struct offload_away *)(void *)&place[i];
+    return (struct offload_pending *)(void *)&place[i];
 }
 
 START_TEST(each_finds_its_own)

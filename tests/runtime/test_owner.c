@@ -3,7 +3,8 @@
 #include "tests/support/unit.h"
 
 /* The parameter that a task with n objects runs for, of a kernel with these first modes. */
-#define OWNER(rest, n, ...) task_owner((const duite_mode[DUITE_MAX_ACCESS]){__VA_ARGS__}, rest, n)
+#define OWNER(variadic, n, ...)                                                                    \
+    task_owner((const duite_mode[DUITE_MAX_ACCESS]){__VA_ARGS__}, variadic, n)
 
 START_TEST(the_first_written)
 {

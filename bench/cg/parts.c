@@ -84,6 +84,8 @@ static int allocate(struct part *part, uint32_t n, uint32_t n_inner, size_t n_si
     phys_vec **rows[] = {&part->rows.dv, &part->rows.r, &part->rows.p, &part->rows.q, &part->b};
     for (int i = 0; i < 5; i++)
         has = (*rows[i] = vectors(n)) && has;
+    part->rows.z = part->rows.r;
+    part->rows.s = part->rows.q;
     has = (part->value = vectors(n_sides)) && has;
     has = (part->copy_r = vectors(cut)) && has;
     has = (part->copy_p = vectors(cut)) && has;

@@ -245,7 +245,8 @@ void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *sca
     const size_t first = t->first, copies = (size_t)(t->copy - all->copy);
     const phys_vec *value = s->value + s->value_start[block];
     const struct solve_cut cut = flow_table_cut_entries(t);
-    const struct solve_rows rows = {s->dv + first, s->r + first, s->p + first, s->q + first};
+    const struct solve_rows rows =
+        solve_rows_plain(s->dv + first, s->r + first, s->p + first, s->q + first);
     if (scalars->phase == SOLVE_LAST)
         dots[SOLVE_RR] = solve_finish(t->n, scalars->alpha, rows.q, rows.p, rows.dv, rows.r);
     if (scalars->phase != SOLVE_ON)

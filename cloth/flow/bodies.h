@@ -126,25 +126,6 @@ static inline void flow_pack_rim(const struct flow_table *t, const phys_vec *y, 
         rim[0] = 0;
 }
 
-/* What passes of a solve have in common, with a preconditioner and without (kernels_beside.c). */
-struct flow_pass {
-    const struct flow_table *table;
-    const void *value; /* of the matrix */
-    const phys_vec *b;
-    struct solve_rows rows;
-    phys_vec *copies;  /* r or z of the copies, then p */
-    double *rim;       /* of this block */
-    size_t neighbours; /* parameters from here on: the rims of others */
-};
-/* Opens a pass whose parameters are those of both kinds: the scalars, the matrix, b, dv, r, p and q
- * from 1 on; and the copies, then the block's rim; and rims of others. Also opens the matrix. */
-void flow_pass_open(const duite_call *call, struct flow_table *t, size_t copies, size_t neighbours,
-                    struct flow_pass *pass);
-/* SOLVE_SHOW; SOLVE_CHECK and SOLVE_OPEN, with what they sum; SOLVE_AGAIN but for rims and what a
- * preconditioner makes. Nothing in other phases. */
-void flow_pass_beside(const duite_call *call, const struct solve_scalars *scalars,
-                      const struct flow_pass *pass, double dots[SOLVE_DOTS]);
-
 /* What a solve left of a block. */
 struct flow_solved {
     const void *value; /* of the matrix */
@@ -164,33 +145,12 @@ static inline void flow_put_double(unsigned char *bytes, double value)
         bytes[i] = (unsigned char)(bits >> (8 * i));
 }
 
-/* How many of the dots a pass without preconditioner sums: r.z is r.r there, and the rest is for
- * stops by norms. */
-static inline size_t flow_dots(const struct model *model)
+/* How many of the dots a pass sums: without a preconditioner r.z is r.r, and the rest is for stops
+ * by norms. */
+static inline size_t flow_dots(const struct flow *flow)
 {
-    return model_stops_by_norms(model) ? SOLVE_DOTS : SOLVE_RZ;
-}
-
-/* The scalars before a solve. */
-static inline struct solve_scalars flow_begin_scalars(const duite_call *call)
-{
-    const struct flow_args *args = flow_args_of(call);
-    struct solve_scalars scalars =
-        solve_scalars_start(args->begin, args->guess != 0 ? SOLVE_OPEN : SOLVE_ON);
-    scalars.last = args->last;
-    scalars.unit = flow_of(call)->inertia / (args->h * args->h);
-    return scalars;
-}
-
-/* Adds what stops by norms ask for to the dots of a pass. */
-static inline void flow_add_norms(const duite_call *call, const struct solve_block *block,
-                                  const struct solve_rows *rows, double dots[SOLVE_DOTS])
-{
-    if (!model_stops_by_norms(flow_of(call)->model))
-        return;
-    const struct solve_norms norms = solve_norms(block->n, block->diagonal, rows->dv, rows->r);
-    dots[SOLVE_SIZE] = norms.size;
-    dots[SOLVE_BOUND] = norms.bound;
+    return flow_is_preconditioned(flow) || model_stops_by_norms(flow->model) ? SOLVE_DOTS
+                                                                             : SOLVE_RZ;
 }
 
 /* In a body: what it did since it began, or since this was called, was this part of the step. */

@@ -39,29 +39,26 @@ extern const duite_kernel flow_contact;  /* table, r x, r v, r f, w filter */
 extern const duite_kernel flow_hold;     /* table, r filter, rw f: b, rw a */
 extern const duite_kernel flow_matrix;   /* table, r x, w a; rims of x. a: flow_open_matrix */
 extern const duite_kernel flow_begin;    /* w scalars */
-extern const duite_kernel flow_start;    /* table, r f, w dv, w r, w p, w q, w copies, w rim of q */
+extern const duite_kernel flow_start;    /* table, r b, w dv, w r, w p, w q, w copies, w rim of q */
 extern const duite_kernel flow_guess;    /* table, r b, r a, rw dv, w r, w p, w q, w rim of q */
 extern const duite_kernel
     flow_pass; /* table, r scalars, r a, r b, rw dv, rw r, rw p, rw q, rw copies,
                   rw   rim of q, cw sums; the other rims of q, or far ones */
 extern const duite_kernel flow_pack;    /* r rim of q, w far rim */
-extern const duite_kernel flow_scalars; /* r sums, r scalars, w next scalars */
-/* The same with a preconditioner (turned.c, kernels_turned.c); s takes the place of q. "coarse":
- * only with a coarse part. */
+extern const duite_kernel flow_scalars; /* w next scalars, r scalars; sums, or all parts */
+/* The same with a preconditioner; s takes the place of q. "coarse": only with a coarse part. */
 extern const duite_kernel flow_basis; /* table, w basis, w rim of it; with contact r filter */
 extern const duite_kernel flow_basis_copies; /* table, w basis of the copies; rims of basis */
 extern const duite_kernel flow_couple; /* table, r a, r basis, r that of the copies, w coupling */
-extern const duite_kernel flow_factor_coarse; /* w coarse factor; coupling of all blocks */
-extern const duite_kernel flow_factor;        /* table, r a, w factor, cw status */
-extern const duite_kernel flow_start_turned; /* table, r f, r factor, w dv, w r, w p, w q, w z, w s,
-                                                w copies, w rim of s, w part; coarse: basis */
+extern const duite_kernel flow_factor_coarse;        /* w coarse factor; coupling of all blocks */
+extern const duite_kernel flow_factor;               /* table, r a, w factor, cw status */
+extern const duite_kernel flow_start_preconditioned; /* as flow_start; w part, w z, w s, r factor;
+                                                        coarse: basis */
 extern const duite_kernel flow_begin_coarse; /* w scalars, w motion, r coarse factor; all parts */
-extern const duite_kernel
-    flow_pass_turned; /* table, r scalars, r a, r b, rw dv, rw r, rw p, rw q, rw z, rw s, rw copies,
-                         rw rim of s, rw part, r factor; the other rims of s, or far ones; coarse:
-                         basis, that of the copies, motion */
-extern const duite_kernel flow_scalars_turned; /* w next scalars, r scalars; all parts */
-extern const duite_kernel flow_scalars_coarse; /* w next scalars, w next motion, r scalars, r coarse
+extern const duite_kernel flow_pass_preconditioned; /* as flow_pass, rw part for sums; rw z, rw s, r
+                                                       factor; the other rims of s, or far ones;
+                                                       coarse: basis, that of the copies, motion */
+extern const duite_kernel flow_scalars_coarse; /* w next scalars, r scalars, w next motion, r coarse
                                                   factor; all parts */
 /* After a solve, where there are free pieces (kernels_pieces.c). */
 extern const duite_kernel flow_piece_sums;  /* table, r b, r a, r dv, cw sums */

@@ -46,16 +46,14 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/integrators/implicit.c \
     cloth/flow/integrators/kernels_explicit.c \
     cloth/flow/integrators/kernels_implicit.c \
+    cloth/flow/solver/solver.h \
+    cloth/flow/solver/system.c \
     cloth/flow/solver/cg.c \
-    cloth/flow/solver/far.c \
-    cloth/flow/solver/kernels_beside.c \
-    cloth/flow/solver/kernels_cg.c \
-    cloth/flow/solver/kernels_coarse.c \
-    cloth/flow/solver/kernels_pieces.c \
-    cloth/flow/solver/kernels_system.c \
-    cloth/flow/solver/kernels_turned.c \
-    cloth/flow/solver/patches.h \
-    cloth/flow/solver/turned.c \
+    cloth/flow/solver/pass.c \
+    cloth/flow/solver/preconditioner.c \
+    cloth/flow/solver/coarse.c \
+    cloth/flow/solver/halo.c \
+    cloth/flow/solver/pieces.c \
     cloth/flow/observe/finish.c \
     cloth/flow/observe/frames.c \
     cloth/flow/observe/kernels_report.c \

@@ -33,7 +33,7 @@ const duite_kernel *const *flow_kernels(void)
         &flow_energy, &flow_level, &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
         /* With one */
         &flow_basis, &flow_basis_copies, &flow_couple, &flow_factor_coarse, &flow_factor,
-        &flow_start_turned, &flow_begin_coarse, &flow_pass_turned, &flow_scalars_turned,
+        &flow_start_preconditioned, &flow_begin_coarse, &flow_pass_preconditioned,
         &flow_scalars_coarse, NULL};
     return all;
 }
@@ -74,7 +74,7 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     flow->partition_hash = flow->source.blocks.hash;
     flow->inertia = flow_source_inertia(&flow->source);
     flow->release = flow_source_release(&flow->source);
-    flow_turned_choose(flow, flow->source.blocks.n_blocks);
+    flow_preconditioner_choose(flow, flow->source.blocks.n_blocks);
     if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||
         flow_warn(flow, error))
         return CLOTH_E_MEMORY;
@@ -168,7 +168,7 @@ static int make(struct flow_state *state)
     flow_objects_make(state);
     flow_parcels_make(state);
     if (model_is_implicit(state->flow->model))
-        flow_far_make(state);
+        flow_halo_make(state);
     int code = flow_deal(state);
     if (!code)
         code = duite_count_all(state->rt, &state->before);
@@ -191,7 +191,7 @@ int flow_run_begin(struct flow_state *state)
     if (!code)
         code = flow_share(state);
     if (!code)
-        code = flow_turned_prepare(state);
+        code = flow_preconditioner_prepare(state);
     if (!code)
         code = make(state);
     for (uint32_t i = 0; flow->room && i < flow->rest.n; i++)

@@ -96,7 +96,7 @@ struct flow {
                        * NULL: the run is implicit */
     size_t n_forces;  /* of a worker */
     uint32_t *at; /* of each copy of all blocks: its place in what a pass reads of the neighbour */
-    struct flow_far_rim *far_rim; /* of far.c */
+    struct flow_far_rim *far_rim; /* of halo.c */
     uint32_t *far_row;
     enum model_preconditioner preconditioner;
     uint32_t patches;             /* of a block; patch k of block b is number patches * b + k */
@@ -180,7 +180,7 @@ struct flow_head {
     struct model model;  /* pointers mean nothing elsewhere */
 };
 
-/* What passes read of their neighbours' rims of q (far.c). */
+/* What passes read of their neighbours' rims of s (halo.c). */
 struct flow_far {
     duite_object *read[2]; /* a neighbour of each block, block after block: of even passes, odd */
     struct {
@@ -291,7 +291,7 @@ int flow_memory_agree(struct flow_state *state); /* the same for what was taken 
 void flow_memory_free(struct flow_state *state);
 
 /* What a run's preconditioner is made of. An explicit run has none. */
-static inline bool flow_is_turned(const struct flow *flow)
+static inline bool flow_is_preconditioned(const struct flow *flow)
 {
     return flow->preconditioner != MODEL_PLAIN;
 }
@@ -308,21 +308,14 @@ static inline enum solve_local flow_local(const struct flow *flow)
 
 /* Decides on the preconditioner of a run: the model's, but no coarse part of more than
  * SOLVE_MOST_BLOCKS blocks; and on patches. Local. */
-void flow_turned_choose(struct flow *flow, uint32_t n_blocks);
+void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks);
 /* That once more on all ranks, and the pattern of the coarse factor, if there is one. */
-int flow_turned_prepare(struct flow_state *state);
+int flow_preconditioner_prepare(struct flow_state *state);
 /* Local. */
-void flow_turned_free(struct flow *flow);
-/* Forks of a preconditioned solve: what its coarse space is, once a run, or with contact in the
- * solve in each step; in each step before the solve; pass `from` (0, 1) of
- * a recorded round. */
-int flow_turned_initialise(struct flow_state *state);
-int flow_turned_start(struct flow_state *state, struct flow_args args);
-int flow_turned_pass(struct flow_state *state, int from);
-
-/* In a body: what solve_scalars_next makes of these dots under the model's stop, or its failure. */
-int flow_next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
-                      const struct solve_scalars *before, struct solve_scalars *after);
+void flow_preconditioner_free(struct flow *flow);
+/* Forks what the coarse space is, if there is one: once a run, or with contact in the solve in each
+ * step. */
+int flow_coarse_initialise(struct flow_state *state);
 
 /* Forks `kernel` on one block: first its table, then the objects given, then the neighbours'
  * objects at `offset` in struct flow_objects (and at `offset2`); FLOW_NO_RIM: none. */
@@ -390,18 +383,16 @@ int flow_cg_record(struct flow_state *state);
 /* Forks what a solve for dv begins with, which reads f and a; then its iterations; both, without a
  * guess. */
 int flow_cg_start(struct flow_state *state);
-/* Its vectors of one block, where it begins with a guess. */
-int flow_cg_guess(struct flow_state *state, const struct flow_args *args);
 int flow_cg_iterate(struct flow_state *state);
 int flow_cg(struct flow_state *state);
 
 /* What a solve reads of neighbours: memory, a part of flow_memory_take; which objects these are,
  * when the others are made (a failure is returned by the next get); forks of the tasks that pack
  * the far rims of a block, for even passes or odd ones. */
-void flow_far_take(struct flow_state *state);
-void flow_far_free(struct flow_state *state);
-void flow_far_make(struct flow_state *state); /* flow_run_begin does */
-int flow_far_pack(struct flow_state *state, uint32_t block, int to);
+void flow_halo_take(struct flow_state *state);
+void flow_halo_free(struct flow_state *state);
+void flow_halo_make(struct flow_state *state); /* flow_run_begin does */
+int flow_halo_pack(struct flow_state *state, uint32_t block, int to);
 
 /* Fork what moves the pins of a step: before its forces, and when x has moved. */
 int flow_pins_drive(struct flow_state *state);

@@ -14,11 +14,10 @@ enum {
     LINE = 64
 };
 
-/* The first half of a pass for rows from .. to - 1; leaves q zero. Adds r * r to sum, and r * z if
- * there is a z. */
-PHYS_INLINE void begin_rows(size_t from, size_t to, double alpha, double beta,
-                            const struct solve_rows *rows, const struct solve_turned *turned,
-                            phys_vec sum[SOLVE_DOTS])
+/* The first half of a pass for rows from .. to - 1; leaves q zero. Adds r * r to sum, and r * z
+ * with a preconditioner. */
+PHYS_INLINE void begin_rows(bool preconditioned, size_t from, size_t to, double alpha, double beta,
+                            const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
 {
     phys_vec *restrict dv = rows->dv, *restrict r = rows->r;
     phys_vec *restrict p = rows->p, *restrict q = rows->q;
@@ -27,14 +26,14 @@ PHYS_INLINE void begin_rows(size_t from, size_t to, double alpha, double beta,
         const phys_vec before = q[a]; /* in registers: compilers read again what they stored */
         phys_vec left = r[a], next = p[a];
         dv[a] += alpha * next;
-        if (turned) {
-            phys_vec z = turned->z[a];
+        if (preconditioned) {
+            phys_vec z = rows->z[a];
             left -= alpha * before;
-            solve_turn(alpha, beta, turned->s + a, &z, &next);
-            turned->z[a] = z;
+            solve_advance(alpha, beta, rows->s + a, &z, &next);
+            rows->z[a] = z;
             product += left * z;
         } else {
-            solve_turn(alpha, beta, &before, &left, &next);
+            solve_advance(alpha, beta, &before, &left, &next);
         }
         r[a] = left;
         p[a] = next;
@@ -93,8 +92,8 @@ PHYS_INLINE void row(enum solve_format format, size_t from, size_t to, const voi
 /* q = S A p of row a, of which total is the sum over the entries. Adds p * q, r * q, q * q to the
  * sums; with a preconditioner p * q and z * q. */
 PHYS_INLINE void end_row(const struct solve_block *block, enum solve_format format,
-                         const struct solve_values *values, size_t a, const phys_vec *total,
-                         const struct solve_rows *rows, const struct solve_turned *turned,
+                         bool preconditioned, const struct solve_values *values, size_t a,
+                         const phys_vec *total, const struct solve_rows *rows,
                          phys_vec sum[SOLVE_DOTS])
 {
     const phys_vec three = {1, 1, 1, 0};
@@ -110,17 +109,17 @@ PHYS_INLINE void end_row(const struct solve_block *block, enum solve_format form
         solve_filter(block->filter + a, &q);
     rows->q[a] = q;
     sum[SOLVE_PQ] += p * q;
-    sum[SOLVE_RQ] += (turned ? turned->z : rows->r)[a] * q;
-    if (!turned)
+    sum[SOLVE_RQ] += (preconditioned ? rows->z : rows->r)[a] * q;
+    if (!preconditioned)
         sum[SOLVE_QQ] += q * q;
 }
 
 /* The inner entries of rows from .. to - 1. Ends the rows but those of the rim, of which *met were
  * met before. */
 PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format format,
-                          const struct solve_cut *cut, size_t *met, size_t from, size_t to,
-                          const struct solve_values *values, const struct solve_rows *rows,
-                          const struct solve_turned *turned, phys_vec sum[SOLVE_DOTS])
+                          bool preconditioned, const struct solve_cut *cut, size_t *met,
+                          size_t from, size_t to, const struct solve_values *values,
+                          const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
 {
     size_t i = block->row[from], rim = *met < cut->n_rim ? cut->rim[*met] : block->n;
     for (size_t a = from; a < to; a++) {
@@ -130,7 +129,7 @@ PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format for
         row(format, i, end, values->entry, block->column, a, rows->p, rows->q, &total);
         i = end;
         if (a != rim) {
-            end_row(block, format, values, a, &total, rows, turned, sum);
+            end_row(block, format, preconditioned, values, a, &total, rows, sum);
             continue;
         }
         rows->q[a] = total;
@@ -140,9 +139,9 @@ PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format for
 
 /* The entries into other blocks, and the rows that waited for them. */
 PHYS_INLINE void end_rim(const struct solve_block *block, enum solve_format format,
-                         const struct solve_cut *cut, const struct solve_values *values,
-                         const phys_vec *p_other, const struct solve_rows *rows,
-                         const struct solve_turned *turned, phys_vec sum[SOLVE_DOTS])
+                         bool preconditioned, const struct solve_cut *cut,
+                         const struct solve_values *values, const phys_vec *p_other,
+                         const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
 {
     const size_t inner = block->row[block->n];
     for (size_t i = 0; i < cut->n; i++) {
@@ -154,16 +153,16 @@ PHYS_INLINE void end_rim(const struct solve_block *block, enum solve_format form
     }
     for (size_t i = 0; i < cut->n_rim; i++) {
         const phys_vec total = rows->q[cut->rim[i]];
-        end_row(block, format, values, cut->rim[i], &total, rows, turned, sum);
+        end_row(block, format, preconditioned, values, cut->rim[i], &total, rows, sum);
     }
 }
 
-/* The format is known and turned is NULL or not where this is inlined: six passes are made of it,
- * none with a look at either in a loop. */
+/* The format and whether there is a preconditioner are constants where this is inlined: six passes
+ * are made of it, none with a look at either in a loop. */
 PHYS_INLINE void pass(const struct solve_block *block, enum solve_format format,
-                      const struct solve_cut *cut, const void *memory, const phys_vec *p_other,
-                      double alpha, double beta, const struct solve_rows *rows,
-                      const struct solve_turned *turned, double dots[SOLVE_DOTS])
+                      bool preconditioned, const struct solve_cut *cut, const void *memory,
+                      const phys_vec *p_other, double alpha, double beta,
+                      const struct solve_rows *rows, double dots[SOLVE_DOTS])
 {
     const struct solve_values values = solve_values_of(format, block->n, memory);
     phys_vec sum[SOLVE_DOTS] = {{0}}; /* no loop over it: it lives in registers */
@@ -171,40 +170,31 @@ PHYS_INLINE void pass(const struct solve_block *block, enum solve_format format,
     for (size_t from = 0; from < block->n; from += STRETCH) {
         const size_t to = block->n - from > STRETCH ? from + STRETCH : block->n;
         const size_t next = reach(block, from, to, begun);
-        begin_rows(begun, next, alpha, beta, rows, turned, sum);
+        begin_rows(preconditioned, begun, next, alpha, beta, rows, sum);
         begun = next;
-        multiply(block, format, cut, &met, from, to, &values, rows, turned, sum);
+        multiply(block, format, preconditioned, cut, &met, from, to, &values, rows, sum);
     }
-    end_rim(block, format, cut, &values, p_other, rows, turned, sum);
+    end_rim(block, format, preconditioned, cut, &values, p_other, rows, sum);
     dots[SOLVE_RR] = phys_lanes(sum + SOLVE_RR);
     dots[SOLVE_PQ] = phys_lanes(sum + SOLVE_PQ);
     dots[SOLVE_RQ] = phys_lanes(sum + SOLVE_RQ);
     dots[SOLVE_QQ] = phys_lanes(sum + SOLVE_QQ);
-    dots[SOLVE_RZ] = turned ? phys_lanes(sum + SOLVE_RZ) : dots[SOLVE_RR];
+    dots[SOLVE_RZ] = preconditioned ? phys_lanes(sum + SOLVE_RZ) : dots[SOLVE_RR];
 }
 
-/* turned: NULL or not where this is inlined, too. */
-PHYS_INLINE void pass_of(const struct solve_block *block, const struct solve_cut *cut,
-                         const void *values, const phys_vec *p_other, double alpha, double beta,
-                         const struct solve_rows *rows, const struct solve_turned *turned,
+/* preconditioned: a constant where this is inlined, too. */
+PHYS_INLINE void pass_of(const struct solve_block *block, bool preconditioned,
+                         const struct solve_cut *cut, const void *values, const phys_vec *p_other,
+                         double alpha, double beta, const struct solve_rows *rows,
                          double dots[SOLVE_DOTS])
 {
     if (block->format == SOLVE_SPRINGS)
-        pass(block, SOLVE_SPRINGS, cut, values, p_other, alpha, beta, rows, turned, dots);
+        pass(block, SOLVE_SPRINGS, preconditioned, cut, values, p_other, alpha, beta, rows, dots);
     else if (block->format == SOLVE_HALF)
-        pass(block, SOLVE_HALF, cut, values, p_other, alpha, beta, rows, turned, dots);
+        pass(block, SOLVE_HALF, preconditioned, cut, values, p_other, alpha, beta, rows, dots);
     else
-        pass(block, SOLVE_HALF_FLOAT, cut, values, p_other, alpha, beta, rows, turned, dots);
-}
-
-PHYS_KERNEL(solve_pass_turned,
-            (const struct solve_block *block, const struct solve_cut *cut, const void *values,
-             const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
-             const struct solve_turned *turned, double dots[SOLVE_DOTS]),
-            (block, cut, values, p_other, alpha, beta, rows, turned, dots))
-{
-    const struct solve_turned here = *turned;
-    pass_of(block, cut, values, p_other, alpha, beta, rows, &here, dots);
+        pass(block, SOLVE_HALF_FLOAT, preconditioned, cut, values, p_other, alpha, beta, rows,
+             dots);
 }
 
 PHYS_KERNEL(solve_pass,
@@ -213,7 +203,11 @@ PHYS_KERNEL(solve_pass,
              double dots[SOLVE_DOTS]),
             (block, cut, values, p_other, alpha, beta, rows, dots))
 {
-    pass_of(block, cut, values, p_other, alpha, beta, rows, NULL, dots);
+    const struct solve_rows here = *rows;
+    if (here.z == here.r)
+        pass_of(block, false, cut, values, p_other, alpha, beta, &here, dots);
+    else
+        pass_of(block, true, cut, values, p_other, alpha, beta, &here, dots);
 }
 
 /* A pass with dv for r and without factors: p = dv, q = S A dv, and nothing else changes. */
@@ -221,7 +215,7 @@ void solve_residual(const struct solve_block *block, const struct solve_cut *cut
                     const void *values, const phys_vec *b, const phys_vec *dv_other,
                     const struct solve_rows *rows, double dots[SOLVE_DOTS])
 {
-    const struct solve_rows of_dv = {.dv = rows->r, .r = rows->dv, .p = rows->p, .q = rows->q};
+    const struct solve_rows of_dv = solve_rows_plain(rows->r, rows->dv, rows->p, rows->q);
     solve_pass(block, cut, values, dv_other, 0, 0, &of_dv, dots);
     solve_renew(block->n, block->free, block->diagonal, b, rows->q, rows->r, dots);
     const struct solve_norms norms = solve_norms(block->n, block->diagonal, rows->dv, rows->r);
@@ -232,7 +226,7 @@ void solve_residual(const struct solve_block *block, const struct solve_cut *cut
 void solve_open(const struct solve_block *block, const struct solve_cut *cut, const void *values,
                 const phys_vec *guess_other, const struct solve_rows *rows, double dots[SOLVE_DOTS])
 {
-    const struct solve_rows of_dv = {.dv = rows->r, .r = rows->dv, .p = rows->p, .q = rows->q};
+    const struct solve_rows of_dv = solve_rows_plain(rows->r, rows->dv, rows->p, rows->q);
     phys_vec square = {0}, along = {0};
     solve_pass(block, cut, values, guess_other, 0, 0, &of_dv, dots);
     for (size_t a = 0; a < block->n; a++) {

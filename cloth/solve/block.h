@@ -57,28 +57,25 @@ struct solve_cut {
     const uint32_t *rim; /* n_rim: ascending */
 };
 
-/* The vectors of a block, n rows each. */
+/* The vectors of a block, n rows each. z = M^-1 r and s = M^-1 q, M the preconditioner
+ * (cloth/solve/local.h, coarse.h); without one z is r and s is q. */
 struct solve_rows {
-    phys_vec *dv, *r, *p, *q;
+    phys_vec *dv, *r, *p, *q, *z, *s;
 };
 
-/* A pass over a block (cloth/solve/cg.h): all of it but the factors. values: of the entries, as the
+/* Those of a solve without a preconditioner. */
+static inline struct solve_rows solve_rows_plain(phys_vec *dv, phys_vec *r, phys_vec *p,
+                                                 phys_vec *q)
+{
+    return (struct solve_rows){dv, r, p, q, .z = r, .s = q};
+}
+
+/* A pass over a block (cloth/solve/cg.h): all of it but the factors, and but s and q.s where there
+ * is a preconditioner: who applies it to the new q makes them. values: of the entries, as the
  * block's format has them. p_other: p of the copies, as it is after the first half of this pass. */
 void solve_pass(const struct solve_block *block, const struct solve_cut *cut, const void *values,
                 const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
                 double dots[SOLVE_DOTS]);
-
-/* The same with a preconditioner (cloth/solve/precondition.h), which turns residuals: z = M^-1 r, s
- * = M^-1 q, n rows each. The first half is dv += alpha p, r -= alpha q, z -= alpha s, p = z + beta
- * p; r.q is z.q; q.q, which is q.s, is left to who makes s of the new q. */
-struct solve_turned {
-    phys_vec *z;
-    const phys_vec *s;
-};
-void solve_pass_turned(const struct solve_block *block, const struct solve_cut *cut,
-                       const void *values, const phys_vec *p_other, double alpha, double beta,
-                       const struct solve_rows *rows, const struct solve_turned *turned,
-                       double dots[SOLVE_DOTS]);
 
 /* SOLVE_CHECK: r = S (b - A dv), of dv as it is; dv_other: that of the copies. p becomes dv, q
  * becomes S A dv. Writes r.r, the drift, and the norms of both. */

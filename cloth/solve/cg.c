@@ -82,29 +82,19 @@ static bool reached(const struct solve_stop *stop, const struct solve_scalars *n
            solve_scalars_error(now, now->bound) <= stop->tolerance * stop->tolerance * now->size;
 }
 
-/* alpha of the next pass, with r.z = product. Where r is nothing, nothing is left to do. */
-static int next_alpha(double product, struct solve_scalars *after)
+/* alpha and beta of the next pass. Where r is nothing, nothing is left to do. */
+static int next_factors(const double dots[SOLVE_DOTS], struct solve_scalars *after)
 {
+    const double product = dots[SOLVE_RZ];
     after->alpha = after->beta = 0;
     if (after->square < SOLVE_NOTHING)
         return SOLVE_OK;
     const double alpha = product / after->curvature;
-    if (isfinite(after->curvature) && isfinite(product) && product > 0 && alpha > 0) {
-        after->alpha = alpha;
-        return SOLVE_OK;
+    if (!isfinite(after->curvature) || !isfinite(product) || product <= 0 || !(alpha > 0)) {
+        const double rubbish = RUBBISH * after->first;
+        return isfinite(rubbish) && after->square <= rubbish ? SOLVE_OK : SOLVE_BREAKDOWN;
     }
-    const double rubbish = RUBBISH * after->first;
-    return isfinite(rubbish) && after->square <= rubbish ? SOLVE_OK : SOLVE_BREAKDOWN;
-}
-
-/* alpha and beta of the next pass. */
-static int next_factors(const double dots[SOLVE_DOTS], struct solve_scalars *after)
-{
-    const double product = dots[SOLVE_RZ];
-    const int code = next_alpha(product, after);
-    const double alpha = after->alpha;
-    if (alpha == 0)
-        return code;
+    after->alpha = alpha;
     const double next = product - 2 * alpha * dots[SOLVE_RQ] + alpha * alpha * dots[SOLVE_QQ];
     after->beta = next > 0 ? next / product : 0; /* what rounding leaves of nothing may be < 0 */
     return SOLVE_OK;
@@ -312,14 +302,14 @@ PHYS_KERNEL(solve_again,
 }
 
 PHYS_KERNEL(solve_advance_copies,
-            (size_t n, double alpha, double beta, const double *restrict q,
-             const uint32_t *restrict at, phys_vec *restrict r, phys_vec *restrict p),
-            (n, alpha, beta, q, at, r, p))
+            (size_t n, double alpha, double beta, const double *restrict s,
+             const uint32_t *restrict at, phys_vec *restrict z, phys_vec *restrict p),
+            (n, alpha, beta, s, at, z, p))
 {
     for (size_t i = 0; i < n; i++) {
-        const double *row = q + 3 * (size_t)at[i];
+        const double *row = s + 3 * (size_t)at[i];
         const phys_vec value = {row[0], row[1], row[2], 0};
-        solve_turn(alpha, beta, &value, r + i, p + i);
+        solve_advance(alpha, beta, &value, z + i, p + i);
     }
 }
 

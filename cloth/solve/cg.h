@@ -24,7 +24,8 @@
  *     dv += alpha p,  r -= alpha q,  z -= alpha s,  p = z + beta p,  q = S A p,  s = M^-1 q
  *
  * and alpha = r.z / p.q, beta = (r.z - 2 alpha z.q + alpha^2 q.s) / r.z: one reduction again, which
- * may carry what a coarse part of M^-1 needs of q. Without one z is r and s is q. */
+ * may carry what a coarse part of M^-1 needs of q. Without a preconditioner M is the identity: z is
+ * r and s is q, the same vectors. */
 
 /* r is what the recurrence makes of the residual: rounding takes it away from S (b - A dv), and a
  * solve that ends by r alone may be wrong and not know. So who wants that confirmed (`confirm`) has
@@ -142,12 +143,13 @@ struct solve_norms solve_norms(size_t n, const double *diagonal, const phys_vec 
 void solve_start(size_t n, const double *free, const phys_vec *b, phys_vec *dv, phys_vec *r,
                  phys_vec *p, phys_vec *q);
 
-/* r and p of one row in the first half of a pass. Whoever has a row or a copy of it turns it here,
- * so that all of them have the same bits. */
-PHYS_INLINE void solve_turn(double alpha, double beta, const phys_vec *q, phys_vec *r, phys_vec *p)
+/* z -= alpha s, p = z + beta p of one row: the recurrence of the first half of a pass. Whoever has
+ * a row or a copy of it takes it from here, so that all of them have the same bits. */
+PHYS_INLINE void solve_advance(double alpha, double beta, const phys_vec *s, phys_vec *z,
+                               phys_vec *p)
 {
-    const phys_vec left = *r - alpha * *q;
-    *r = left;
+    const phys_vec left = *z - alpha * *s;
+    *z = left;
     *p = left + beta * *p;
 }
 
@@ -168,10 +170,10 @@ void solve_start_guess(size_t n, const double *free, const phys_vec *filter, con
  * them, but for dv. */
 void solve_again(size_t n, phys_vec *r, phys_vec *p, phys_vec *q);
 
-/* r and p of copies of another block's rows: n rows, row i has its q in q[3 at[i]] and the two
+/* z and p of copies of another block's rows: n rows, row i has its s in s[3 at[i]] and the two
  * numbers behind it. */
-void solve_advance_copies(size_t n, double alpha, double beta, const double *q, const uint32_t *at,
-                          phys_vec *r, phys_vec *p);
+void solve_advance_copies(size_t n, double alpha, double beta, const double *s, const uint32_t *at,
+                          phys_vec *z, phys_vec *p);
 
 /* Those rows alone: y[i] has the three numbers from packed[3 at[i]] on. */
 void solve_unpack(size_t n, const double *packed, const uint32_t *at, phys_vec *y);

@@ -344,6 +344,6 @@ PHYS_KERNEL(solve_advance_copies_coarse,
         const double *row = s + 3 * (size_t)at[i];
         phys_vec value = {row[0], row[1], row[2], 0};
         lift(basis + i, motion, &value);
-        solve_turn(alpha, beta, &value, z + i, p + i);
+        solve_advance(alpha, beta, &value, z + i, p + i);
     }
 }

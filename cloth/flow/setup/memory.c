@@ -77,7 +77,7 @@ static void take(struct flow_state *state)
     state->part = cloth_alloc(head->n_blocks, sizeof *state->part, &flow->trouble);
     state->rows = cloth_alloc(larger(4 * (size_t)head->most_rows, head->most_slots),
                               sizeof *state->rows, &flow->trouble);
-    flow_far_take(state);
+    flow_halo_take(state);
     if (duite_rank(state->rt) == 0)
         take_room(state);
 }
@@ -115,7 +115,7 @@ int flow_memory_take(struct flow_state *state)
 void flow_memory_free(struct flow_state *state)
 {
     struct flow *flow = state->flow;
-    flow_turned_free(flow);
+    flow_preconditioner_free(flow);
     free(flow->clock);
     free(flow->sums);
     free(flow->copies);
@@ -128,7 +128,7 @@ void flow_memory_free(struct flow_state *state)
     free(state->refs);
     free(state->part);
     free(state->rows);
-    flow_far_free(state);
+    flow_halo_free(state);
     free(state->bytes);
     XXH64_freeState(state->hash);
     flow->clock = NULL;

@@ -1,7 +1,7 @@
 /* The table of fields: the columns of the list in fields.h as functions, and the list by number. */
 #include "cloth/flow/bodies.h"
 
-#include "cloth/flow/solver/patches.h"
+#include "cloth/flow/solver/solver.h"
 
 /* ---- How many rows ---- */
 
@@ -70,7 +70,7 @@ static size_t couplings(const struct flow_state *state, uint32_t block)
 static size_t dots(const struct flow_state *state, uint32_t block)
 {
     (void)block;
-    return flow_dots(state->flow->model);
+    return flow_dots(state->flow);
 }
 
 static size_t coarse_factor(const struct flow_state *state, uint32_t block)
@@ -147,7 +147,7 @@ static bool filtered(const struct flow_state *state, uint32_t block)
 static bool conditioned(const struct flow_state *state, uint32_t block)
 {
     (void)block;
-    return flow_is_turned(state->flow);
+    return flow_is_preconditioned(state->flow);
 }
 
 static bool coarse_run(const struct flow_state *state, uint32_t block)

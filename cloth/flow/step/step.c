@@ -59,7 +59,7 @@ int flow_initialise(struct flow_state *state)
                               FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
                               FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
     state->settled_forces = false;
-    return code || model_is_filtered(state->flow->model) ? code : flow_turned_initialise(state);
+    return code || model_is_filtered(state->flow->model) ? code : flow_coarse_initialise(state);
 }
 
 int flow_stretch_fork(struct flow_state *state, duite_object stretch)

@@ -12,7 +12,7 @@ TESTS += tests/cloth/flow/test_memory
 check_PROGRAMS += tests/cloth/flow/test_late
 tests_cloth_flow_test_late_SOURCES = tests/cloth/flow/test_late.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_late_LDADD = $(CLOTH_TEST_LIBS)
-tests_cloth_flow_test_late_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=flow_far_make
+tests_cloth_flow_test_late_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=flow_halo_make
 tests_cloth_flow_test_motion_SOURCES = tests/cloth/flow/test_motion.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_motion_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_run_SOURCES = tests/cloth/flow/test_run.c $(FLOW_TEST_MODELS)

@@ -8,16 +8,16 @@
 #include <time.h>
 
 struct flow_state;
-void __real_flow_far_make(struct flow_state *state);
-void __wrap_flow_far_make(struct flow_state *state);
+void __real_flow_halo_make(struct flow_state *state);
+void __wrap_flow_halo_make(struct flow_state *state);
 
-void __wrap_flow_far_make(struct flow_state *state)
+void __wrap_flow_halo_make(struct flow_state *state)
 {
     int rank, ranks;
     record_mpi(&rank, &ranks);
     if (rank == ranks - 1)
         nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
-    __real_flow_far_make(state);
+    __real_flow_halo_make(state);
 }
 
 static uint64_t hash_of(const struct model *model, const char *balance)

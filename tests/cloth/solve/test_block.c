@@ -122,7 +122,8 @@ static void pass(struct vectors *x, double alpha, double beta, double dots[SOLVE
     for (int s = 0; s < 2; s++) {
         const struct half *h = half + s;
         const int at = s * ROWS;
-        const struct solve_rows rows = {x->dv + at, x->r + at, x->p + at, x->q + at};
+        const struct solve_rows rows =
+            solve_rows_plain(x->dv + at, x->r + at, x->p + at, x->q + at);
         double part[SOLVE_DOTS];
         solve_advance_copies(ROWS, alpha, beta, packed[1 - s], all, x->copy_r + at, x->copy_p + at);
         solve_pass(&h->block, &h->cut, h->value, x->copy_p + at, alpha, beta, &rows, part);

@@ -45,7 +45,7 @@ START_TEST(copies_keep_the_bits)
     solve_pack(4, rim, q, packed);
     solve_advance_copies(3, 0.123, 0.77, packed, at, copy_r, copy_p);
     for (int i = 0; i < 8; i++)
-        solve_turn(0.123, 0.77, q + i, r + i, p + i);
+        solve_advance(0.123, 0.77, q + i, r + i, p + i);
     for (int i = 0; i < 3; i++) {
         ck_assert_int_eq(memcmp(copy_r + i, r + rim[at[i]], sizeof *r), 0);
         ck_assert_int_eq(memcmp(copy_p + i, p + rim[at[i]], sizeof *p), 0);

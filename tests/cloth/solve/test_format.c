@@ -28,7 +28,7 @@ static void multiply(const phys_vec *x, phys_vec *q)
         const struct system_block *block = sys.block + b;
         phys_vec dv[SYSTEM_ROWS] = {{0}}, r[SYSTEM_ROWS], p[SYSTEM_ROWS] = {{0}};
         phys_vec copies[SYSTEM_SPRINGS];
-        const struct solve_rows rows = {dv, r, p, q + block->first};
+        const struct solve_rows rows = solve_rows_plain(dv, r, p, q + block->first);
         double dots[SOLVE_DOTS];
         memcpy(r, x + block->first, block->matrix.n * sizeof *r);
         memset(q + block->first, 0, block->matrix.n * sizeof *q);

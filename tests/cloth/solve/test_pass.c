@@ -128,7 +128,7 @@ static void check(size_t n, uint32_t far, int rim)
     expect(&wanted, 0.3, 0.7, right);
     const struct solve_block block = {
         n, whole.diagonal, whole.free, whole.row, whole.column, SOLVE_SPRINGS, NULL};
-    const struct solve_rows rows = {whole.dv, whole.r, whole.p, whole.q};
+    const struct solve_rows rows = solve_rows_plain(whole.dv, whole.r, whole.p, whole.q);
     solve_pass(&block, &whole.cut, whole.value, whole.other, 0.3, 0.7, &rows, dots);
     compare("dv", whole.dv, wanted.dv, n);
     compare("r", whole.r, wanted.r, n);

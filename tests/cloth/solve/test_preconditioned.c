@@ -54,8 +54,8 @@ static void copies_of(const struct run *run, enum kind kind, const struct system
         const uint32_t a = block->copy[i];
         phys_vec r = kind == NONE ? run->r[a] : run->z[a];
         p[i] = run->p[a];
-        solve_turn(run->scalars.alpha, run->scalars.beta, (kind == NONE ? run->q : run->s) + a, &r,
-                   p + i);
+        solve_advance(run->scalars.alpha, run->scalars.beta, (kind == NONE ? run->q : run->s) + a,
+                      &r, p + i);
     }
 }
 
@@ -65,16 +65,15 @@ static void pass_block(struct run *run, const struct run *before, enum kind kind
     const struct system_block *block = sys.block + b;
     const uint32_t at = block->first;
     const double alpha = before->scalars.alpha, beta = before->scalars.beta;
-    const struct solve_rows rows = {run->dv + at, run->r + at, run->p + at, run->q + at};
-    const struct solve_turned turned = {run->z + at, run->s + at};
+    struct solve_rows rows = solve_rows_plain(run->dv + at, run->r + at, run->p + at, run->q + at);
     phys_vec copies[SYSTEM_SPRINGS];
     double own[SOLVE_DOTS];
     copies_of(before, kind, block, copies);
-    if (kind == NONE)
-        solve_pass(&block->matrix, &block->cut, block->value, copies, alpha, beta, &rows, own);
-    else
-        solve_pass_turned(&block->matrix, &block->cut, block->value, copies, alpha, beta, &rows,
-                          &turned, own);
+    if (kind != NONE) {
+        rows.z = run->z + at;
+        rows.s = run->s + at;
+    }
+    solve_pass(&block->matrix, &block->cut, block->value, copies, alpha, beta, &rows, own);
     const struct solve_norms norms = solve_norms(block->matrix.n, block->diagonal, rows.dv, rows.r);
     own[SOLVE_SIZE] = norms.size;
     own[SOLVE_BOUND] = norms.bound;
@@ -107,7 +106,8 @@ static void open(struct run *run, const phys_vec *b, const phys_vec *guess,
     for (uint32_t k = 0; k < sys.n_blocks; k++) {
         const struct system_block *block = sys.block + k;
         const uint32_t at = block->first;
-        const struct solve_rows rows = {run->dv + at, run->r + at, run->p + at, run->q + at};
+        const struct solve_rows rows =
+            solve_rows_plain(run->dv + at, run->r + at, run->p + at, run->q + at);
         for (uint32_t i = 0; i < block->n_copies; i++)
             copies[i] = whole[block->copy[i]];
         solve_open(&block->matrix, &block->cut, block->value, copies, &rows, own);

@@ -4,7 +4,7 @@
  * diagonal besides entries, w the turn (cloth/solve/format.h). A row of what moves as a whole by c
  * feels D c - w x c alone, and w cancels over a piece: the c that takes the sum away is exact, and
  * needs no iteration. */
-#include "cloth/flow/bodies.h"
+#include "cloth/flow/solver/solver.h"
 
 /* What is summed over a piece: the lost momentum, its turn, its D, kg, and how many of its rows
  * contact or the program's filter holds. */
@@ -86,3 +86,24 @@ const duite_kernel flow_piece_shift = {.name = "piece_shift",
                                        .body = piece_shift_timed,
                                        .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW},
                                        .args_size = sizeof(struct flow_args)};
+
+int flow_pieces_fork(struct flow_state *state)
+{
+    if (!state->head.n_pieces)
+        return DUITE_OK;
+    struct flow_args here = flow_attempt_args(state);
+    int code = duite_set(state->rt, state->run.pieces, NULL);
+    for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++) {
+        const struct flow_objects *o = state->block + here.block;
+        if (state->flow->tables.block[here.block].n_loose)
+            code = DUITE_FORK(state->rt, &flow_piece_sums, &here, o->table, o->f, o->a, o->dv,
+                              state->run.pieces);
+    }
+    for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++) {
+        const struct flow_objects *o = state->block + here.block;
+        if (state->flow->tables.block[here.block].n_loose)
+            code = DUITE_FORK(state->rt, &flow_piece_shift, &here, o->table, o->a,
+                              state->run.pieces, o->dv, o->r);
+    }
+    return code;
+}

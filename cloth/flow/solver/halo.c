@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void flow_far_take(struct flow_state *state)
+void flow_halo_take(struct flow_state *state)
 {
     const struct flow_head *head = &state->head;
     struct cloth_error *trouble = &state->flow->trouble;
@@ -27,7 +27,7 @@ void flow_far_take(struct flow_state *state)
     state->flow->far_rim = cloth_alloc(slots, sizeof *state->flow->far_rim, trouble);
 }
 
-void flow_far_free(struct flow_state *state)
+void flow_halo_free(struct flow_state *state)
 {
     struct flow_far *far = &state->far;
     for (int i = 0; i < 2; i++)
@@ -132,7 +132,7 @@ static bool is_first(const struct flow_far *far, const struct flow_table *t, uin
     return true;
 }
 
-void flow_far_make(struct flow_state *state)
+void flow_halo_make(struct flow_state *state)
 {
     const struct flow_tables *tables = &state->flow->tables;
     struct flow_far *far = &state->far;
@@ -152,7 +152,7 @@ void flow_far_make(struct flow_state *state)
     far->first[tables->n_blocks] = far->n;
 }
 
-int flow_far_pack(struct flow_state *state, uint32_t b, int to)
+int flow_halo_pack(struct flow_state *state, uint32_t b, int to)
 {
     const struct flow_far *far = &state->far;
     int code = DUITE_OK;

@@ -1,0 +1,87 @@
+/* Preconditioners of a solve: M is none, of each block alone (cloth/solve/local.h), or that with a
+ * coarse part (coarse.c).
+ *
+ * In reading order: which one a run has, the factor of a block in each step, what a
+ * pass does with it. */
+#include "cloth/flow/solver/solver.h"
+
+#include <stdio.h>
+
+/* ---- Which one ---- */
+
+static void without_coarse(struct flow *flow, uint32_t n_blocks)
+{
+    const bool ic0 = flow->preconditioner == MODEL_IC0_COARSE;
+    flow->preconditioner = ic0 ? MODEL_IC0 : MODEL_JACOBI;
+    snprintf(
+        flow->warning[3], sizeof flow->warning[3],
+        "%u blocks are too many for a coarse space, which has at most %d: conjugate gradients do "
+        "without; a grain of %u would have one",
+        n_blocks, SOLVE_MOST_BLOCKS, flow->n_vertices / SOLVE_MOST_BLOCKS * 5 / 4 + 1);
+}
+
+void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks)
+{
+    flow->preconditioner =
+        model_is_implicit(flow->model) ? flow->model->preconditioner : MODEL_PLAIN;
+    if (flow_is_coarse(flow) && n_blocks > SOLVE_MOST_BLOCKS)
+        without_coarse(flow, n_blocks);
+    flow->patches = model_patches(flow->model, n_blocks);
+}
+
+int flow_preconditioner_prepare(struct flow_state *state)
+{
+    struct flow *flow = state->flow;
+    flow_preconditioner_choose(flow, flow->tables.n_blocks);
+    return flow_is_coarse(flow) ? flow_coarse_prepare(state) : DUITE_OK;
+}
+
+void flow_preconditioner_free(struct flow *flow)
+{
+    flow_coarse_free(flow);
+}
+
+/* ---- The factor of a block, of each step's matrix ---- */
+
+static int factor(const duite_call *call)
+{
+    struct flow_table table = flow_table_of(call), *t = &table;
+    const phys_vec *values = flow_open_matrix(call, t, 1);
+    const struct solve_cut cut = flow_table_cut_entries(t);
+    double *factor = duite_out(call, 2, double);
+    const int tried =
+        solve_local_factor(&t->matrix, &cut, values, flow_local(flow_of(call)), factor);
+    /* The object has room for entries that are there twice, too (flow_table): zeros. */
+    const size_t used = solve_local_doubles(t->n, t->matrix.row[t->n], flow_local(flow_of(call)));
+    memset(factor + used, 0,
+           (solve_local_doubles(t->n, t->n_entries, flow_local(flow_of(call))) - used) *
+               sizeof *factor);
+    duite_out(call, 3, double)[FLOW_SHIFTED] = tried > 0;
+    return 0;
+}
+FLOW_TIMED(factor, FLOW_CG)
+const duite_kernel flow_factor = {.name = "factor",
+                                  .body = factor_timed,
+                                  .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_CW},
+                                  .args_size = sizeof(struct flow_args)};
+
+int flow_preconditioner_factor(struct flow_state *state, const struct flow_args *args)
+{
+    const struct flow_objects *o = state->block + args->block;
+    const duite_object objects[] = {o->a, o->factor, state->run.status[state->attempt.parity]};
+    return flow_is_preconditioned(state->flow)
+               ? flow_fork(state, &flow_factor, args, 3, objects, FLOW_NO_RIM, FLOW_NO_RIM)
+               : DUITE_OK;
+}
+
+/* ---- In a pass ---- */
+
+double flow_precondition(const struct flow_preconditioner *m, const phys_vec *q, phys_vec *s,
+                         double *right)
+{
+    const double product =
+        solve_local_apply(&m->table->matrix, flow_local(m->flow), m->factor, q, s);
+    if (m->basis)
+        flow_coarse_restrict(m, q, right);
+    return product;
+}

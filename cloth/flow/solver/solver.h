@@ -1,0 +1,86 @@
+#ifndef CLOTH_FLOW_SOLVER_SOLVER_H
+#define CLOTH_FLOW_SOLVER_SOLVER_H
+
+#include "cloth/flow/bodies.h"
+
+/* What the files of the solver share. In reading order: system.c makes the system of a step; cg.c
+ * solves it, in rounds of passes (pass.c), with a preconditioner (preconditioner.c, coarse.c) or
+ * none; halo.c is what a pass reads of other blocks; pieces.c puts right what a solve leaves of the
+ * momentum of free pieces.
+ *
+ * Patch k of block b has the number flow->patches * b + k. */
+
+/* ---- Tasks of a solve. Collective. They return 0 or what duite_fork returned ---- */
+
+/* Fork the vectors of a block, args->block, before the first pass, and what neighbours read of
+ * them; pass `from` (0, 1) of a recorded round on all blocks. (pass.c) */
+int flow_pass_start(struct flow_state *state, const struct flow_args *args);
+int flow_pass_fork(struct flow_state *state, int from);
+
+/* Fork what comes of a step's matrix before its solve: the coarse factor; the factor of a block.
+ * Nothing where there is none. (coarse.c, preconditioner.c) */
+int flow_coarse_start(struct flow_state *state, struct flow_args args);
+int flow_preconditioner_factor(struct flow_state *state, const struct flow_args *args);
+
+/* Fork what takes out of dv what a solve left of the momentum of free pieces, if there are any.
+ * (pieces.c) */
+int flow_pieces_fork(struct flow_state *state);
+
+/* The pattern of the coarse factor, in memory of the flow: all ranks agree on whether they have it.
+ * (coarse.c) */
+int flow_coarse_prepare(struct flow_state *state);
+void flow_coarse_free(struct flow *flow);
+
+/* ---- In a body: a preconditioner as a pass over a block sees it. Local ---- */
+
+struct flow_preconditioner {
+    const struct flow *flow;
+    const struct flow_table *table;
+    uint32_t block;
+    const double *factor;                 /* NULL: there is no preconditioner */
+    const phys_vec *basis, *basis_copies; /* of rows, copies; NULL: there is no coarse part */
+    const double *motion;                 /* of all patches: the coarse part of s */
+};
+
+/* s = M^-1 q but for the coarse part, of which `right` gets the right side, P' q of each patch.
+ * Returns q.s. (preconditioner.c) */
+double flow_precondition(const struct flow_preconditioner *m, const phys_vec *q, phys_vec *s,
+                         double *right);
+
+/* Adds the coarse part to s. The first half of a pass (solve_advance) for the copies of one
+ * neighbour, with that part; rim: of its s. `at`: of all copies of the block, places in what is
+ * read. (coarse.c) */
+void flow_coarse_prolong(const struct flow_preconditioner *m, phys_vec *s);
+void flow_coarse_advance_copies(const struct flow_preconditioner *m, uint32_t slot,
+                                const struct solve_scalars *scalars, const double *rim,
+                                const uint32_t *at, phys_vec *z, phys_vec *p);
+/* P' q of each patch. */
+void flow_coarse_restrict(const struct flow_preconditioner *m, const phys_vec *q, double *right);
+
+/* In the task of the scalars: the coarse part of s, of the parts of all blocks, parameters `from`
+ * on. Returns its share in q.s. (coarse.c) */
+double flow_coarse_motion(const duite_call *call, const double *factor, size_t from,
+                          double *motion);
+
+/* ---- Sizes ---- */
+
+/* What a preconditioned pass leaves of its block: the dots, then the coarse right side of each
+ * patch. */
+enum { FLOW_PART_COARSE = SOLVE_DOTS };
+static inline size_t flow_part_doubles(const struct flow *flow)
+{
+    return FLOW_PART_COARSE + SOLVE_COARSE * (size_t)flow->patches;
+}
+
+/* Numbers of a motion: a vector of the coarse space. */
+static inline size_t flow_motion_doubles(const struct flow *flow)
+{
+    return SOLVE_COARSE_STRIDE * (size_t)flow->pattern.n;
+}
+
+/* Of patches p <= q: how many blocks of nine by nine are before theirs in the coupling of p's
+ * block, which has for each patch its own and those of its neighbours behind it; q is one of these.
+ */
+size_t flow_coupling_at(const struct flow *flow, uint32_t p, uint32_t q);
+
+#endif

@@ -7,6 +7,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/run.h \
     cloth/flow/tasks.h \
     cloth/flow/setup/deal.c \
+    cloth/flow/setup/joints.c \
     cloth/flow/setup/limit.c \
     cloth/flow/setup/loads.c \
     cloth/flow/setup/long_steps.c \

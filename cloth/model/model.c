@@ -14,6 +14,13 @@ static void free_pick(struct model_pick *pick)
     free(pick->place);
 }
 
+static void free_pairs(struct model_pairs *pairs)
+{
+    free(pairs->end[0].vertices);
+    free(pairs->end[1].vertices);
+    free(pairs->place);
+}
+
 static void free_cloth(struct model_cloth *cloth)
 {
     for (uint32_t i = 0; i < cloth->n_pins; i++)
@@ -53,6 +60,9 @@ void model_free(struct model *model)
         free(model->probes[i].name);
         free_pick(&model->probes[i].pick);
     }
+    for (uint32_t i = 0; i < model->n_joints; i++)
+        free_pairs(&model->joints[i].pairs);
+    free(model->joints);
     free(model->probes);
     free(model->motions);
     free(model->keys);

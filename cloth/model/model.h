@@ -142,6 +142,27 @@ struct model_cloth {
     char *place, *mesh_place, *velocity_place; /* of the cloth, and of parts of it */
 };
 
+/* Vertices of a cloth's mesh. */
+struct model_end {
+    uint32_t cloth, n;
+    uint32_t *vertices;
+};
+
+/* Pairs of vertices, of two cloths or of one: vertex i of one end and vertex i of the other, of
+ * which there are as many. */
+struct model_pairs {
+    struct model_end end[2];
+    char *place;
+};
+
+/* A spring of the scene for each pair. It has no mass. */
+enum { MODEL_START_LENGTH = -1 };
+struct model_joint {
+    struct model_pairs pairs;
+    double stiffness, damping; /* N/m, > 0; kg/s, along the joint */
+    double length;             /* at rest, m; MODEL_START_LENGTH: the distance at the start */
+};
+
 /* What is told of vertices after each step. */
 struct model_probe {
     char *name;
@@ -198,6 +219,8 @@ struct model {
     struct model_cloth *cloths;
     struct contact_shape *obstacles;
     struct model_probe *probes;
+    uint32_t n_joints;
+    struct model_joint *joints;
     uint32_t n_motions, n_keys;
     struct model_motion *motions;
     struct phys_key *keys; /* of each motion in ascending order, of pins and of obstacles; at time 0

@@ -15,7 +15,7 @@
  * PHYS_ABSOLUTE turns its sign, t = min(1, |1 - L / l|) (the eigenvalues' absolute values, after
  * Chen et al. 2024): a step pushes springs aside no further than their push is a slope for. Two
  * particles at one place have no direction: u = 0 there, and only t and its K remain defined, as
- * zero; absolute as t = 1.
+ * zero; absolute as t = 1. With an L just below 0 (for 0) t = 1 there, too, but not with PHYS_FULL.
  *
  * Functions come in pairs. The plain one has both ends in the same arrays and writes both rows. The
  * one called `_cut` has end 1 in arrays of another block, and writes the rows of end 0 only; the
@@ -28,7 +28,7 @@ struct phys_springs {
     const uint32_t (*end)[2]; /* n: rows of the two ends */
     const double *stiffness;  /* n: k, N/m */
     const double *damping;    /* n: c, kg/s */
-    const double *length;     /* n: L, m, > 0 */
+    const double *length;     /* n: L, m, > 0; or below 0 and tiny, as good as 0 */
     int full;                 /* which K: an enum phys_slope */
 };
 

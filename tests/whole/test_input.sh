@@ -70,7 +70,7 @@ refused "a chain without EA" "mass.yaml:4:15: cloth 'cloth1' has edges without t
     )is expected: the spring constant of such an edge times its length (stretch is of triangles and threads)" mass.yaml
 sed -i 's/stretch: 500/ea: 500/' mass.yaml
 refused "a vertex without mass" \
-    "mass.yaml:3:5: mass_per_vertex is missing: only edges use vertex 0 of cloth 'cloth1', which have no area to take a$(
+    "mass.yaml:3:5: mass_per_vertex is missing: only edges or joints use vertex 0 of cloth 'cloth1', which have no area to take a$(
     ) mass from; a finite number > 0 (kg) is expected" mass.yaml --grain 1
 chain='cloths[0].mesh.inline.vertices=[[0, 0, 0], [0, 0, 0]]'
 ok "an edge of no length" says 1 \

@@ -146,10 +146,11 @@ int flow_share_head(struct flow_state *state)
         return code;
     flow->told = head->model;
     flow->told.name = flow->told.h_place = flow->told.fps_place = NULL;
-    flow->told.n_materials = flow->told.n_cloths = 0;
+    flow->told.n_materials = flow->told.n_cloths = flow->told.n_joints = 0;
     flow->told.materials = NULL;
     flow->told.cloths = NULL;
     flow->told.obstacles = NULL;
+    flow->told.joints = NULL;
     flow->told.probes = NULL;
     flow->told.keys = NULL;
     flow->told.motions = NULL;

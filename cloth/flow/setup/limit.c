@@ -52,7 +52,8 @@ static void visit(void *to, const struct flow_spring *s)
     const phys_vec d = b.position - a.position;
     const double length = sqrt(phys_dot(&d, &d));
     const phys_vec u = length > 0 ? d / length : d;
-    const double across = length > s->length ? 1 - s->length / length : 0;
+    const double longer = length > 0 ? 1 - s->length / length : 1;
+    const double across = length > s->length ? longer : 0;
     if (a.free > 0)
         add(visitor->block + s->a, 1 + b.free, s, &u, across);
     if (b.free > 0)

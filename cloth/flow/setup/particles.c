@@ -125,7 +125,7 @@ static int no_mass(const struct model_cloth *cloth, uint32_t vertex, struct clot
     }
     return model_fail(
         cloth->place, error,
-        "mass_per_vertex is missing: only edges use vertex %u of cloth '%.60s', which "
+        "mass_per_vertex is missing: only edges or joints use vertex %u of cloth '%.60s', which "
         "have no area to take a mass from; a finite number > 0 (kg) is expected",
         vertex, cloth->name);
 }
@@ -190,7 +190,6 @@ static int check_start(const struct model_cloth *cloth, struct cloth_error *erro
 static int cloth_particles(struct flow_particles *p, uint32_t first, const struct model *model,
                            const struct model_cloth *cloth, struct cloth_error *error)
 {
-    mesh_used(&cloth->mesh, p->used + first);
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
         p->free[first + i] = 1;
         if (!p->used[first + i])
@@ -227,6 +226,16 @@ static int allocate(struct flow_particles *p, uint32_t n, bool loaded, const str
                    : cloth_fail(error, CLOTH_E_MEMORY, "out of memory for %u vertices", n);
 }
 
+static int find_used(struct flow_particles *p, const struct model *model, struct cloth_error *error)
+{
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < model->n_cloths; c++) {
+        mesh_used(&model->cloths[c].mesh, p->used + first);
+        first += model->cloths[c].mesh.n_vertices;
+    }
+    return flow_joints_use(model, p->used, error);
+}
+
 int flow_particles_make(struct flow_particles *particles, const struct model *model,
                         struct cloth_error *error)
 {
@@ -246,6 +255,8 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
         particles->start = cloth_alloc(n, sizeof *particles->start, error);
         code = particles->start ? CLOTH_OK : CLOTH_E_MEMORY;
     }
+    if (!code)
+        code = find_used(particles, model, error);
     uint32_t first = 0;
     for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
         code = cloth_particles(particles, first, model, model->cloths + c, error);

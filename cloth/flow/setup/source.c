@@ -129,6 +129,8 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
         code = element_cloths_make(&source->elements, model, error);
     if (!code)
         code = flow_springs_make(&source->springs, model, &source->elements, error);
+    if (!code)
+        code = flow_joints_make(&source->springs, &source->particles, error);
     if (!code && model_is_implicit(model))
         code = flow_pieces_make(source, error);
     if (!code)

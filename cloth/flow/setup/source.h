@@ -89,25 +89,40 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
                       const struct model_cloth *cloth, uint32_t first, uint32_t vertex,
                       struct flow_particle *particle);
 
-/* Springs of all cloths, by vertex, cloth after cloth in the order of their meshes. */
+/* Springs of all cloths, by vertex, cloth after cloth in the order of their meshes; then joints. A
+ * link is a spring without stiffness: it says that an element joins two vertices. */
 struct flow_spring {
-    uint32_t a, b;
-    double stiffness, damping, length;
-    unsigned char stretch; /* counts for the largest stretch */
+    uint32_t a, b;                     /* a < b */
+    double stiffness, damping, length; /* N/m, kg/s, m */
+    unsigned char stretch;             /* counts for the largest stretch */
 };
 struct flow_springs {
     const struct model *model;
     struct mesh_lattice *lattice; /* a cloth; none of one that is made of triangles */
     struct mesh_regions *regions; /* a cloth; moduli NULL: none */
     const struct element_cloths *elements;
+    uint32_t n_joints;
+    struct flow_spring *joint; /* the scene's joints; NULL: there are none */
 };
-/* The elements, whose joints come after the springs of their cloth, must outlive them. Errors:
+/* The elements, whose links come after the springs of their cloth, must outlive them. Errors:
  * CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */
 int flow_springs_make(struct flow_springs *springs, const struct model *model,
                       const struct element_cloths *elements, struct cloth_error *error);
 void flow_springs_each(const struct flow_springs *springs,
                        void (*visit)(void *to, const struct flow_spring *spring), void *to);
 void flow_springs_free(struct flow_springs *springs);
+
+/* Adds the model's joints to the springs, which free them, when particles are there. Errors:
+ * CLOTH_E_INPUT for two joints between the same vertices and one between a vertex and itself;
+ * CLOTH_E_MEMORY. Local. */
+int flow_joints_make(struct flow_springs *springs, const struct flow_particles *particles,
+                     struct cloth_error *error);
+/* Marks the vertices that joints use. used: by vertex of all cloths. Error: CLOTH_E_INPUT for one
+ * outside its mesh. Local. */
+int flow_joints_use(const struct model *model, unsigned char *used, struct cloth_error *error);
+/* That all vertices of the pairs are in their meshes. what: "a joint". Error: CLOTH_E_INPUT. */
+int flow_pairs_check(const struct model *model, const struct model_pairs *pairs, const char *what,
+                     struct cloth_error *error);
 
 /* Who reads what of whom: neighbours of all blocks, block after block, as every rank knows them. */
 struct flow_neighbours {

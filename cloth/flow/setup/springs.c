@@ -1,4 +1,5 @@
-/* Springs keep the order of their mesh, cloth after cloth, joints of elements after them. */
+/* Springs keep the order of their mesh, cloth after cloth, with the links of its elements after
+ * them; then come joints. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -104,9 +105,9 @@ static void pass_on(void *context, const struct mesh_spring *s)
     visitor->visit(visitor->to, &spring);
 }
 
-/* A joint without stiffness, or with ea (N) the spring of an edge without triangles. */
-static void join(const struct visitor *visitor, const struct mesh *mesh, uint32_t a, uint32_t b,
-                 double ea, unsigned char stretch)
+/* A link without stiffness, or with ea (N) the spring of an edge without triangles. */
+static void link_pair(const struct visitor *visitor, const struct mesh *mesh, uint32_t a,
+                      uint32_t b, double ea, unsigned char stretch)
 {
     const double *p = mesh->position + 3 * (size_t)a, *q = mesh->position + 3 * (size_t)b;
     const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
@@ -123,23 +124,22 @@ static void join(const struct visitor *visitor, const struct mesh *mesh, uint32_
 }
 
 /* Across the diagonals of cells, whose corners share the force of the air. */
-static void join_cells(const struct visitor *visitor, const struct mesh *mesh)
+static void link_cells(const struct visitor *visitor, const struct mesh *mesh)
 {
     const uint32_t nx = mesh->grid_nx;
     for (uint32_t j = 0; j + 1 < mesh->grid_ny; j++)
         for (uint32_t i = 0; i + 1 < nx; i++) {
             const uint32_t v = j * nx + i;
             if (mesh_cell_turned(mesh, i, j))
-                join(visitor, mesh, v, v + nx + 1, 0, 0);
+                link_pair(visitor, mesh, v, v + nx + 1, 0, 0);
             else
-                join(visitor, mesh, v + 1, v + nx, 0, 0);
+                link_pair(visitor, mesh, v + 1, v + nx, 0, 0);
         }
 }
 
 /* What the elements of a cloth join, and its edges without triangles, which are springs as in any
  * cloth. */
-static void each_joint(const struct flow_springs *springs, uint32_t c,
-                       const struct visitor *visitor)
+static void each_link(const struct flow_springs *springs, uint32_t c, const struct visitor *visitor)
 {
     const struct model *model = springs->model;
     const struct model_cloth *cloth = model->cloths + c;
@@ -151,13 +151,13 @@ static void each_joint(const struct flow_springs *springs, uint32_t c,
         const struct mesh_edge *edge = edges->edge + e;
         const bool lone = edge->opposite[0] == UINT32_MAX;
         if (triangles || !lone)
-            join(visitor, mesh, edge->a, edge->b,
-                 lone ? material_of(visitor, edge->a, edge->b)->ea : 0, triangles);
+            link_pair(visitor, mesh, edge->a, edge->b,
+                      lone ? material_of(visitor, edge->a, edge->b)->ea : 0, triangles);
         if (parts & 1u << ELEMENT_HINGES && element_is_hinge(edge))
-            join(visitor, mesh, edge->opposite[0], edge->opposite[1], 0, 0);
+            link_pair(visitor, mesh, edge->opposite[0], edge->opposite[1], 0, 0);
     }
     if (parts & 1u << ELEMENT_FACES && model_has_cells(model, cloth))
-        join_cells(visitor, mesh);
+        link_cells(visitor, mesh);
 }
 
 void flow_springs_each(const struct flow_springs *springs,
@@ -168,9 +168,11 @@ void flow_springs_each(const struct flow_springs *springs,
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         visitor.cloth = model->cloths + c;
         mesh_lattice_each(springs->lattice + c, pass_on, &visitor);
-        each_joint(springs, c, &visitor);
+        each_link(springs, c, &visitor);
         visitor.first += visitor.cloth->mesh.n_vertices;
     }
+    for (uint32_t j = 0; j < springs->n_joints; j++)
+        visit(to, springs->joint + j);
 }
 
 void flow_springs_free(struct flow_springs *springs)
@@ -181,6 +183,7 @@ void flow_springs_free(struct flow_springs *springs)
         free((void *)springs->regions[c].moduli);
     free(springs->lattice);
     free(springs->regions);
+    free(springs->joint);
     *springs = (struct flow_springs){0};
 }
 

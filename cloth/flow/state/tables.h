@@ -19,12 +19,12 @@
  * by its border, neighbour after neighbour. A cut spring is known to both blocks. The entries of
  * its matrix (cloth/solve/format.h) are in that order, too: the springs themselves or, in half
  * storage, the pairs of rows that anything joins, each once. What elements join has a spring
- * without stiffness, a joint. */
+ * without stiffness, a link. */
 struct flow_table {
     /* Its shape, known to every rank. */
     uint32_t n, first;                               /* rows, place of row 0 */
     uint32_t n_inner, n_cut;                         /* springs */
-    uint32_t n_stiff;                                /* of them, those that are more than joints */
+    uint32_t n_stiff;                                /* of them, those that are more than links */
     uint32_t n_elements[ELEMENT_KINDS], n_materials; /* of a kind; of the model */
     uint32_t n_entries, n_cut_entries; /* of the matrix: what is counted here may be one entry */
     enum solve_format format;

@@ -25,6 +25,13 @@ int scene_build_cloths(struct model *model, struct scene_tree *tree, struct clot
 /* After the cloths, whose vertices they name. */
 int scene_build_probes(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
+int scene_build_joints(struct model *model, const struct scene_tree *tree,
+                       struct cloth_error *error);
+
+/* The cloth, by number, that the key cloth of a map names; the only one where there is none. what:
+ * whose key it is, in sentences: "a probe". */
+int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *model,
+                         const struct scene_tree *tree, int node, struct cloth_error *error);
 
 /* The material, by number, that the key material of a map names, for a cloth whose
  * mass_per_vertex is known. */

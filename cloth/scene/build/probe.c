@@ -35,35 +35,6 @@ static int name_probe(struct model *model, uint32_t i, const struct scene_tree *
     return model->probes[i].name ? CLOTH_OK : error->code;
 }
 
-static int no_cloth(const char *name, const struct model *model, const struct scene_tree *tree,
-                    int node, struct cloth_error *error)
-{
-    const char **names = scene_build_array(model->n_cloths, sizeof *names, error);
-    if (!names)
-        return error->code;
-    for (uint32_t i = 0; i < model->n_cloths; i++)
-        names[i] = model->cloths[i].name;
-    int code = scene_build_no_such("cloth", name, names, model->n_cloths, tree, node, error);
-    free(names);
-    return code;
-}
-
-static int find_cloth(struct model_probe *probe, const struct model *model,
-                      const struct scene_tree *tree, int node, struct cloth_error *error)
-{
-    const char *name = scene_tree_text(tree, node, "cloth");
-    if (!name && model->n_cloths == 1)
-        return CLOTH_OK;
-    if (!name)
-        return scene_tree_fail(tree, node, error,
-                               "a probe does not name its cloth, of which there are %u",
-                               model->n_cloths);
-    for (; probe->cloth < model->n_cloths; probe->cloth++)
-        if (!strcmp(model->cloths[probe->cloth].name, name))
-            return CLOTH_OK;
-    return no_cloth(name, model, tree, scene_tree_get(tree, node, "cloth"), error);
-}
-
 /* A value says where its flag is. */
 static int build_values(struct model_probe *probe, const struct scene_tree *tree, int list,
                         struct cloth_error *error)
@@ -86,7 +57,7 @@ static int build_probe(struct model *model, uint32_t i, const struct scene_tree 
     struct model_probe *probe = &model->probes[i];
     int code = name_probe(model, i, tree, node, error);
     if (!code)
-        code = find_cloth(probe, model, tree, node, error);
+        code = scene_build_cloth_of(&probe->cloth, "a probe", model, tree, node, error);
     if (!code)
         code = scene_build_pick(&probe->pick, tree, node, model->cloths + probe->cloth, error);
     if (!code) /* it would be two columns of one name */

@@ -332,7 +332,8 @@ static int check_scalar(struct walk *walk, const struct place *at, const struct 
     else if (rule->type == SCENE_INTEGER)
         fits = plain && integer_fits(rule, text);
     else
-        fits = plain && number_fits(rule, text);
+        fits = (plain && number_fits(rule, text)) ||
+               (rule->type == SCENE_NUMBER_OR_WORD && is_word(rule, text));
     if (!fits)
         return wrong(walk, at, rule, node);
     return base ? scene_store_scalar(base, rule, text, walk->error) : CLOTH_OK;

@@ -169,6 +169,30 @@ static const struct scene_rule newton_keys[] = {
      .about = "last change of velocity against that of the step, by mass"},
     {0}};
 
+static const struct scene_rule vertex = {.type = SCENE_INTEGER, ITEM(uint32_t)};
+static const struct scene_rule end_keys[] = {
+    {"cloth", SCENE_TEXT, .about = "its name; optional where there is one only"},
+    {"vertex", SCENE_INTEGER, .choice = true, .about = "in the mesh's numbering"},
+    {"vertices", SCENE_LIST, .choice = true, .filled = true, .inside = &vertex,
+     ARRAY(struct model_end, vertices, n),
+     .about = "several, each with its own of the other end"},
+    {0}};
+static const struct scene_rule joint_keys[] = {
+    {"from", SCENE_MAP, .required = true, .inside = end_keys,
+     INTO(struct model_joint, pairs.end[0]), .about = "the vertices at one end"},
+    {"to", SCENE_MAP, .required = true, .inside = end_keys,
+     INTO(struct model_joint, pairs.end[1]), .about = "as many at the other"},
+    {"stiffness", SCENE_NUMBER, "N/m", .required = true, .range = SCENE_POSITIVE,
+     INTO(struct model_joint, stiffness), .about = "of each pair's spring"},
+    {"damping", SCENE_NUMBER, "kg/s", "0", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_joint, damping), .about = "along it"},
+    {"length", SCENE_NUMBER_OR_WORD, "m", "start", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_joint, length), WORDS({"start", MODEL_START_LENGTH}),
+     .about = "at rest; start: the distance of each pair at the start"},
+    {0}};
+static const struct scene_rule joint = {
+    .type = SCENE_MAP, .inside = joint_keys, PLACE(struct model_joint, pairs.place)};
+
 static const struct scene_rule scene_keys[] = {
     {"schema", SCENE_INTEGER, .required = true, .least = 1, .most = 1,
      .about = "version of these rules"},
@@ -197,6 +221,8 @@ static const struct scene_rule scene_keys[] = {
     {"solver", SCENE_MAP, .fallback = "{}", .inside = solver_keys, .about = "of implicit steps"},
     {"probes", SCENE_LIST, .fallback = "[]", .inside = &scene_probe,
      ARRAY(struct model, probes, n_probes), .about = "what probes.csv tells after each step"},
+    {"joints", SCENE_LIST, .fallback = "[]", .inside = &joint,
+     ARRAY(struct model, joints, n_joints), .about = "springs between any two vertices"},
     {"grain", SCENE_INTEGER, .fallback = "1000", .least = 1, INTO(struct model, grain),
      .about = "vertices a block"},
     {0}};

@@ -18,6 +18,7 @@ enum scene_type {
     SCENE_NUMBER,         /* finite, in `range` */
     SCENE_INTEGER,        /* least <= value <= most */
     SCENE_NUMBER_OR_LIST, /* a number in `range`, or a list like SCENE_LIST */
+    SCENE_NUMBER_OR_WORD, /* a number in `range`, or one of the words `words` */
     SCENE_TEXT,           /* not empty */
     SCENE_CHOICE          /* one of the words `choices` */
 };

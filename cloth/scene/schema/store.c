@@ -47,8 +47,12 @@ int scene_store_scalar(void *base, const struct scene_rule *rule, const char *te
         return CLOTH_OK;
     if (rule->type == SCENE_TEXT)
         return store_text(field, text, error);
-    if (rule->type == SCENE_CHOICE)
-        store_value(field, rule->field.width, scene_word_value(rule->words, text, NULL));
+    bool word = false;
+    const int value = rule->words ? scene_word_value(rule->words, text, &word) : 0;
+    if (rule->type == SCENE_NUMBER_OR_WORD && word)
+        *(double *)field = value;
+    else if (rule->type == SCENE_CHOICE)
+        store_value(field, rule->field.width, value);
     else if (rule->type == SCENE_INTEGER)
         scene_scalar_integer(text, field);
     else

@@ -122,6 +122,14 @@ static void number_expected(const struct scene_rule *rule, char *text, size_t si
     snprintf(text + used, size - used, " or a list of %zu of them", rule->length);
 }
 
+static void append_words(const struct scene_rule *rule, char *text, size_t size)
+{
+    for (const struct model_word *word = rule->words; word->word; word++) {
+        append(text, size, *text ? " or " : "");
+        append(text, size, word->word);
+    }
+}
+
 static void append_unit(const struct scene_rule *rule, char *text, size_t size)
 {
     if (!rule->unit)
@@ -156,14 +164,16 @@ char *scene_rule_expected(const struct scene_rule *rule, char *text, size_t size
     case SCENE_NUMBER_OR_LIST:
         number_expected(rule, text, size);
         break;
+    case SCENE_NUMBER_OR_WORD:
+        number_expected(rule, text, size);
+        append_unit(rule, text, size);
+        append_words(rule, text, size);
+        return text;
     case SCENE_TEXT:
         append(text, size, "a text");
         break;
     case SCENE_CHOICE:
-        for (const struct model_word *word = rule->words; word->word; word++) {
-            append(text, size, word == rule->words ? "" : " or ");
-            append(text, size, word->word);
-        }
+        append_words(rule, text, size);
         break;
     }
     append_unit(rule, text, size);

@@ -186,7 +186,8 @@ START_TEST(no_mass)
     setup.cloth.mass_per_vertex = 0;
     setup.cloth.place = (char[]){"a.yaml:3:5"};
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "a.yaml:3:5: mass_per_vertex is missing: only edges use vertex 0");
+    says(&record, CLOTH_E_INPUT,
+         "a.yaml:3:5: mass_per_vertex is missing: only edges or joints use vertex 0");
     says(&record, CLOTH_E_INPUT, "; a finite number > 0 (kg) is expected");
     record_free(&record);
     setup_free(&setup);

@@ -335,6 +335,43 @@ START_TEST(probes_that_tell_nothing)
 }
 END_TEST
 
+#define JOINT(text) "\ntime: {h", "\njoints: [{" text "}]\ntime: {h"
+
+START_TEST(joints_that_cannot_be_made)
+{
+    EXPECT(
+        {JOINT("from: {vertex: 1}, to: {vertex: 2}"),
+         .error = ":12:10: joints[0].stiffness is missing; a finite number > 0 (N/m) is expected"},
+        {JOINT("from: {vertex: 1}, to: {vertex: 2}, stiffness: 0"),
+         .error = ":12:58: joints[0].stiffness is 0; a finite number > 0 (N/m) is expected"},
+        {JOINT("from: {vertex: 1}, to: {vertex: 2}, stiffness: 1, damping: -1"),
+         .error = ":12:70: joints[0].damping is -1; a finite number >= 0 (kg/s) is expected"},
+        {JOINT("from: {vertex: 1}, to: {vertex: 2}, stiffness: 1, length: -1"),
+         .error = ":12:69: joints[0].length is -1; a finite number >= 0 (m) or start is expected"},
+        {JOINT("from: {vertex: 1}, to: {vertex: 2}, stiffness: 1, length: stop"),
+         .error =
+             ":12:69: joints[0].length is stop; a finite number >= 0 (m) or start is expected"},
+        {JOINT("from: {vertex: 1}, to: {vertex: 12}, stiffness: 1"),
+         .error = ":12:43: vertex 12 is outside the mesh of cloth 'sheet', which has 12 vertices; "
+                  "0 to 11 are allowed"},
+        {JOINT("from: {vertices: [1, 2, 12]}, to: {vertices: [3, 4, 5]}, stiffness: 1"),
+         .error = ":12:35: vertex 12 is outside the mesh of cloth 'sheet', which has 12 vertices; "
+                  "0 to 11 are allowed"},
+        {JOINT("from: {vertices: [1, 2]}, to: {vertex: 3}, stiffness: 1"),
+         .error = ":12:41: a joint has 2 vertices in from and 1 in to; as many are expected"},
+        {JOINT("from: {vertices: [1, 2], vertex: 1}, to: {vertex: 3}, stiffness: 1"),
+         .error = ":12:36: joints[0].from has both vertices and vertex; one of vertex or vertices "
+                  "is expected"},
+        {JOINT("from: {}, to: {vertex: 3}, stiffness: 1"),
+         .error = ":12:17: joints[0].from has no vertex or vertices; one of them is expected"},
+        {JOINT("from: {vertex: 1, cloth: shet}, to: {vertex: 3}, stiffness: 1"),
+         .error = ":12:36: there is no cloth 'shet'; did you mean 'sheet'? Allowed: sheet"},
+        {JOINT("from: {vertex: 1}, to: {vertex: 3}, stiffness: 1, begin: 1"),
+         .error = ":12:61: begin is not a key of joints[0]; allowed: from, to, stiffness, damping, "
+                  "length"});
+}
+END_TEST
+
 START_TEST(meshes_that_cannot_be_used)
 {
     struct model model;
@@ -377,6 +414,7 @@ int main(void)
     tcase_add_test(cases, motions_that_cannot_be_made);
     tcase_add_test(cases, pins_that_hold_to_nothing);
     tcase_add_test(cases, probes_that_tell_nothing);
+    tcase_add_test(cases, joints_that_cannot_be_made);
     tcase_add_test(cases, meshes_that_cannot_be_used);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -31,6 +31,14 @@ static inline const struct flow_table *flow_shape_of(const duite_call *call)
     return flow_of(call)->tables.block + flow_args_of(call)->block;
 }
 
+/* The block with its table, the object of the field. */
+static inline struct flow_table flow_table_in(const duite_call *call, const unsigned char *image)
+{
+    struct flow_table table = *flow_shape_of(call);
+    flow_table_open(&table, image);
+    return table;
+}
+
 /* The block with its table, which is the first parameter. */
 static inline struct flow_table flow_table_of(const duite_call *call)
 {
@@ -39,14 +47,26 @@ static inline struct flow_table flow_table_of(const duite_call *call)
     return table;
 }
 
-/* Notes in the status, parameter i, that this rank is asked to stop, if it is. */
-void flow_note_stop(const duite_call *call, size_t i);
+/* x and v as the task of a block sees them: its own rows, and the rims of its neighbours. Without
+ * velocities v is NULL. */
+struct flow_view {
+    const phys_vec *x, *v;
+    const duite_param *rim_x, *rim_v;
+};
+/* That of a body whose kernel declares x, v, and the neighbours' rims of both. */
+#define FLOW_VIEW(on)                                                                              \
+    {                                                                                              \
+        (on)->x, (on)->v, (on)->rim_x, (on)->rim_v                                                 \
+    }
+
+/* Notes in the status that this rank is asked to stop, if it is. */
+void flow_note_stop(const duite_call *call, double *status);
 
 /* Fails if a row diverged, naming it by the input's number, or, where the step can be made anew,
- * notes it in the status, parameter i. Notes there, too, that a stop is asked for. what: "position"
+ * notes it in the status. Notes there, too, that a stop is asked for. what: "position"
  * or "velocity". */
 int flow_check(const duite_call *call, const struct flow_table *table, const phys_vec *y,
-               const char *what, size_t i);
+               const char *what, double *status);
 
 /* The matrix of a step as its object has it: the diagonal, the filter if there is one, then the
  * values of the entries. */
@@ -55,25 +75,27 @@ static inline size_t flow_diagonal_rows(const struct flow_table *t)
     return ((size_t)t->n + 3) / 4;
 }
 
-/* Gives the table the diagonal of parameter i and returns the values. */
-static inline const phys_vec *flow_open_matrix(const duite_call *call, struct flow_table *t,
-                                               size_t i)
+/* Gives the table the diagonal of the matrix and returns the values; of parameter i. */
+static inline const phys_vec *flow_matrix_in(const duite_call *call, struct flow_table *t,
+                                             const phys_vec *a)
 {
-    const phys_vec *filter = duite_in(call, i, phys_vec) + flow_diagonal_rows(t);
+    const phys_vec *filter = a + flow_diagonal_rows(t);
     const bool filtered = model_is_filtered(flow_of(call)->model);
-    t->matrix.diagonal = duite_in(call, i, double);
+    t->matrix.diagonal = (const double *)a;
     t->matrix.filter = filtered ? filter : NULL;
     return filtered ? filter + t->n : filter;
 }
+static inline const phys_vec *flow_open_matrix(const duite_call *call, struct flow_table *t,
+                                               size_t i)
+{
+    return flow_matrix_in(call, t, duite_in(call, i, phys_vec));
+}
 
-/* Elements of a block (elements.c). What they see in a task of which x and v are parameters 1 and
- * 2, rims of x come from parameter `rims` on, those of v behind them; or without v. One at a time
- * on a worker, until its task ends. */
+/* Elements of a block (elements.c). What they see of a view; one at a time on a worker, until its
+ * task ends. */
 bool flow_has_elements(const struct flow_table *t);
 struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t,
-                                    size_t rims);
-struct phys_sight flow_elements_see_still(const duite_call *call, const struct flow_table *t,
-                                          size_t rims);
+                                    const struct flow_view *view);
 /* Adds their forces; those of kinds whose matrix does not come with the right side. */
 void flow_elements_force(const duite_call *call, const struct flow_table *t,
                          const struct phys_sight *sight, phys_vec *f);
@@ -86,20 +108,20 @@ void flow_elements_stiffness(const duite_call *call, const struct flow_table *t,
  * kinds add to the right side with it (system in cloth/element/kind.h). */
 void flow_elements_assemble(const duite_call *call, const struct flow_table *t, double push,
                             const struct phys_sight *sight, phys_vec *b, struct phys_pair *sums);
-/* Their energy, J, of those that count here, to whose uncorrected forces' torque, N m, it adds; x
- * is parameter 1. */
-double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims,
-                            double torque[3]);
+/* Their energy, J, of those that count here, to whose uncorrected forces' torque, N m, it adds. */
+double flow_elements_energy(const duite_call *call, const struct flow_table *t,
+                            const struct flow_view *view, double torque[3]);
 
 /* Loads that vary (varying.c), as they are at the time of the arguments: adds them (N) to f; their
  * energy (J) at x, zero at the origin. */
 void flow_varying_add(const duite_call *call, const struct flow_table *t, phys_vec *f);
 double flow_varying_energy(const duite_call *call, const struct flow_table *t, const phys_vec *x);
 
-/* All forces on the block's rows, N, at x and v, which are parameters 1 and 2; rims of x come from
- * parameter `rims` on, those of v behind them. Those without the drag. (kernels_step.c) */
-void flow_forces(const duite_call *call, const struct flow_table *t, size_t rims, phys_vec *f);
-void flow_forces_free(const duite_call *call, const struct flow_table *t, size_t rims, phys_vec *f);
+/* All forces on the block's rows, N; those without the drag. (forces.c) */
+void flow_forces(const duite_call *call, const struct flow_table *t, const struct flow_view *view,
+                 phys_vec *f);
+void flow_forces_free(const duite_call *call, const struct flow_table *t,
+                      const struct flow_view *view, phys_vec *f);
 
 /* Rows of the worker's own for these where no other task reads them; until the task ends. */
 static inline phys_vec *flow_force_room(const duite_call *call)

@@ -1,7 +1,22 @@
 #ifndef CLOTH_FLOW_KERNELS_H
 #define CLOTH_FLOW_KERNELS_H
 
-#include "runtime/duite.h"
+#include "cloth/flow/state/kernel.h"
+
+/* All kernels that declare their fields (state/kernel.h), in the order of a run: the state, forces,
+ * integrators. */
+/* clang-format off */
+#define FLOW_KERNELS(X)                                                                            \
+    X(initial) X(keep) X(restore) X(status)                                                        \
+    X(force) X(force_free)                                                                         \
+    X(euler) X(euler_beside) X(verlet_first) X(verlet_second) X(runge)                             \
+    X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)
+/* clang-format on */
+
+#define FLOW_KERNEL_NUMBER(name) FLOW_KERNEL_##name,
+#define FLOW_KERNEL_EXTERN(name) extern const struct flow_kernel flow_kernel_##name;
+enum { FLOW_KERNELS(FLOW_KERNEL_NUMBER) FLOW_KERNELS_OF_ALL };
+FLOW_KERNELS(FLOW_KERNEL_EXTERN)
 
 /* Kernels. Objects in order; "table" (r) is that of the task's block, "rims" are one of each
  * neighbour, in slot order. Vectors are rows of four doubles. */
@@ -12,35 +27,15 @@ extern const duite_kernel flow_table_make; /* w table of a block: on rank 0 */
 extern const duite_kernel flow_table_keep; /* rw table: where the block lives */
 extern const duite_kernel flow_collect;    /* r vector of a block, w it without its fourth lane */
 extern const duite_kernel flow_ready;      /* cw ready: fails if this rank cannot begin */
-extern const duite_kernel flow_initial;    /* table, w x, w v, w rim of x, w rim of v */
-extern const duite_kernel flow_force;      /* table, r x, r v, w f; rims of x, rims of v */
-extern const duite_kernel flow_force_free; /* the same without drag */
-extern const duite_kernel flow_euler; /* table, rw x, rw v, w next rim of x, w that of v, cw status;
-                                         rims of x, rims of v: either Euler */
-extern const duite_kernel flow_euler_beside; /* table, r x, r v, w next x, w next v, w next rim of
-                                                x, w that of v, cw status; rims of x, rims of v */
-extern const duite_kernel
-    flow_verlet_first; /* table, rw x, rw v: guess of that at the end, r f, w v of the half step, w
-                          rim of x, w rim of v, cw status */
-extern const duite_kernel flow_verlet_second; /* table, r x, rw v, w f, r v of the half step, w next
-                                                 rim of v, cw status; rims of x, rims of v */
-extern const duite_kernel flow_runge; /* table, rw x, rw v, rw x0, rw v0, rw sum_x, rw sum_v, w next
-                                         rim of x, w that of v, cw status; rims of x, rims of v */
 extern const duite_kernel
     flow_system_all; /* table, r x, r v, w f: right-hand side, w a; rims of x, rims of v */
 extern const duite_kernel flow_system_rest; /* the same where f has the forces: rw f */
-extern const duite_kernel flow_predict; /* table, rw x, r v, rw last x, rw last v, w base x, w base
-                                           v, w rim of x */
-extern const duite_kernel flow_correct; /* table, r b, r a, r dv, r r, r base x, r base v, rw v, w
-                                           x, w rim of v, w rim of x, r scalars, cw status */
-extern const duite_kernel flow_shift; /* table, r dv, r base x, rw v, w x, w rim of v, w rim of x */
-extern const duite_kernel flow_residual; /* table, r base v, r v, r dv, rw f: b, cw slope */
-extern const duite_kernel flow_contact;  /* table, r x, r v, r f, w filter */
-extern const duite_kernel flow_hold;     /* table, r filter, rw f: b, rw a */
-extern const duite_kernel flow_matrix;   /* table, r x, w a; rims of x. a: flow_open_matrix */
-extern const duite_kernel flow_begin;    /* w scalars */
-extern const duite_kernel flow_start;    /* table, r b, w dv, w r, w p, w q, w copies, w rim of q */
-extern const duite_kernel flow_guess;    /* table, r b, r a, rw dv, w r, w p, w q, w rim of q */
+extern const duite_kernel flow_contact;     /* table, r x, r v, r f, w filter */
+extern const duite_kernel flow_hold;        /* table, r filter, rw f: b, rw a */
+extern const duite_kernel flow_matrix;      /* table, r x, w a; rims of x. a: flow_open_matrix */
+extern const duite_kernel flow_begin;       /* w scalars */
+extern const duite_kernel flow_start; /* table, r b, w dv, w r, w p, w q, w copies, w rim of q */
+extern const duite_kernel flow_guess; /* table, r b, r a, rw dv, w r, w p, w q, w rim of q */
 extern const duite_kernel
     flow_pass; /* table, r scalars, r a, r b, rw dv, rw r, rw p, rw q, rw copies,
                   rw   rim of q, cw sums; the other rims of q, or far ones */
@@ -63,17 +58,11 @@ extern const duite_kernel flow_scalars_coarse; /* w next scalars, r scalars, w n
 /* After a solve, where there are free pieces (kernels_pieces.c). */
 extern const duite_kernel flow_piece_sums;  /* table, r b, r a, r dv, cw sums */
 extern const duite_kernel flow_piece_shift; /* table, r a, r sums, rw dv, rw r */
-extern const duite_kernel
-    flow_velocity_dv; /* table, r f, r a, r dv, r r, rw v, w rim of v, r scalars, cw status */
-extern const duite_kernel flow_position; /* table, r v, rw x, w rim of x, cw status */
-extern const duite_kernel flow_collide;  /* table, rw x, rw v, w rim of x, w rim of v, cw status */
-extern const duite_kernel flow_touch;    /* table, r x, rw v, w rim of v */
-extern const duite_kernel flow_keep;     /* r x, r v, w kept x, w kept v */
-extern const duite_kernel flow_restore;  /* table, r kept x, r kept v, w x, w v, w rims of both */
-extern const duite_kernel flow_status;   /* cw status: whether its rank is asked to stop */
-extern const duite_kernel flow_frame;    /* rw token; x of all blocks: on rank 0 */
-extern const duite_kernel flow_drive;    /* table, r x, rw v, w rim of v */
-extern const duite_kernel flow_place;    /* table, rw x, w rim of x */
+extern const duite_kernel flow_collide; /* table, rw x, rw v, w rim of x, w rim of v, cw status */
+extern const duite_kernel flow_touch;   /* table, r x, rw v, w rim of v */
+extern const duite_kernel flow_frame;   /* rw token; x of all blocks: on rank 0 */
+extern const duite_kernel flow_drive;   /* table, r x, rw v, w rim of v */
+extern const duite_kernel flow_place;   /* table, rw x, w rim of x */
 extern const duite_kernel flow_watch_block; /* table, r x, r v, cw peaks (max); rims of x */
 extern const duite_kernel flow_probe;       /* table, r x, r v, r force, w seen */
 extern const duite_kernel flow_row; /* rw token, r status, r peaks, r energies; seen of the blocks

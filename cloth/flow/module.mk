@@ -27,13 +27,16 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/watched.c \
     cloth/flow/state/fields.c \
     cloth/flow/state/fields.h \
-    cloth/flow/state/kernels_state.c \
+    cloth/flow/state/forks.c \
+    cloth/flow/state/kernel.h \
     cloth/flow/state/objects.c \
+    cloth/flow/state/state.c \
     cloth/flow/state/tables.c \
     cloth/flow/state/tables.h \
     cloth/flow/step/elements.c \
     cloth/flow/step/energy.c \
     cloth/flow/step/energy.h \
+    cloth/flow/step/forces.c \
     cloth/flow/step/grid.c \
     cloth/flow/step/grid.h \
     cloth/flow/step/guides.h \
@@ -41,12 +44,11 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/step/kernels_energy.c \
     cloth/flow/step/kernels_pins.c \
     cloth/flow/step/kernels_step.c \
+    cloth/flow/step/status.c \
     cloth/flow/step/step.c \
     cloth/flow/step/varying.c \
     cloth/flow/integrators/explicit.c \
     cloth/flow/integrators/implicit.c \
-    cloth/flow/integrators/kernels_explicit.c \
-    cloth/flow/integrators/kernels_implicit.c \
     cloth/flow/solver/solver.h \
     cloth/flow/solver/system.c \
     cloth/flow/solver/cg.c \

@@ -20,17 +20,17 @@ double flow_now(void)
 
 const duite_kernel *const *flow_kernels(void)
 {
+#define TASK(name) &flow_kernel_##name.task,
     static const duite_kernel *const all[] = {
-        /* Without a preconditioner */
-        &flow_tell_head, &flow_tell_shared, &flow_table_make, &flow_table_keep, &flow_collect,
-        &flow_ready, &flow_initial, &flow_force, &flow_force_free, &flow_euler, &flow_euler_beside,
-        &flow_verlet_first, &flow_verlet_second, &flow_runge, &flow_system_all, &flow_predict,
-        &flow_correct, &flow_shift, &flow_residual, &flow_system_rest, &flow_matrix, &flow_begin,
-        &flow_pack, &flow_start, &flow_guess, &flow_pass, &flow_scalars, &flow_piece_sums,
-        &flow_piece_shift, &flow_velocity_dv, &flow_position, &flow_collide, &flow_keep,
-        &flow_restore, &flow_status, &flow_frame, &flow_stretch, &flow_drive, &flow_touch,
-        &flow_contact, &flow_hold, &flow_place, &flow_watch_block, &flow_probe, &flow_row,
-        &flow_energy, &flow_level, &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
+        FLOW_KERNELS(TASK)
+            /* Without a preconditioner */
+            & flow_tell_head,
+        &flow_tell_shared, &flow_table_make, &flow_table_keep, &flow_collect, &flow_ready,
+        &flow_system_all, &flow_system_rest, &flow_matrix, &flow_begin, &flow_pack, &flow_start,
+        &flow_guess, &flow_pass, &flow_scalars, &flow_piece_sums, &flow_piece_shift, &flow_collide,
+        &flow_frame, &flow_stretch, &flow_drive, &flow_touch, &flow_contact, &flow_hold,
+        &flow_place, &flow_watch_block, &flow_probe, &flow_row, &flow_energy, &flow_level,
+        &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
         /* With one */
         &flow_basis, &flow_basis_copies, &flow_couple, &flow_factor_coarse, &flow_factor,
         &flow_start_preconditioned, &flow_begin_coarse, &flow_pass_preconditioned,

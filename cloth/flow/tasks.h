@@ -4,7 +4,7 @@
 #include "cloth/flow/kernels.h"
 #include "cloth/flow/run.h"
 #include "cloth/flow/setup/source.h"
-#include "cloth/flow/state/fields.h"
+#include "cloth/flow/state/kernel.h"
 #include "cloth/flow/state/tables.h"
 #include "cloth/flow/step/energy.h"
 #include "cloth/flow/step/grid.h"
@@ -21,6 +21,7 @@
 
 /* Parts of a step whose seconds the report gives. */
 enum flow_part {
+    FLOW_NO_PART = -1,
     FLOW_FORCE,
     FLOW_ACCELERATION,
     FLOW_MATRIX,
@@ -337,8 +338,14 @@ enum flow_behind { FLOW_NOTHING, FLOW_THEN_STATUS, FLOW_THEN_SCALARS_AND_STATUS 
 int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct flow_args args,
                   const long *objects, enum flow_behind behind, long rim, long rim2);
 
-/* Forks the start of all blocks. */
+/* Forks the start of all blocks; what copies x and v to what is kept, or to two others in its
+ * place; what makes it the state again. */
 int flow_initialise(struct flow_state *state);
+int flow_keep(struct flow_state *state);
+int flow_keep_as(struct flow_state *state, const struct flow_as *as);
+int flow_restore(struct flow_state *state);
+/* Forks what notes in the status of the step whether a rank is asked to stop. */
+int flow_status_fork(struct flow_state *state);
 /* The part of an explicit step that leaves the state as it is, if there is one; the rest of it but
  * for contact. */
 int flow_explicit_begin(struct flow_state *state);

@@ -2,11 +2,10 @@
  * With more of them the main program looks at each: whether it was the last, and whether it went
  * too far. BDF2 needs to know how the step before ended, so all of a step by it comes after that.
  * The recorded round of conjugate gradients serves all solves. */
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/step/guides.h"
 
-#include <math.h>
-#include <stddef.h>
-#include <string.h>
+#include "cloth/physics/implicit.h"
+#include "cloth/physics/particle.h"
 
 static const double OVERSHOT = 0.5; /* of the slope at the begin of a Newton step, and uphill */
 static const double LEAST_CUT = 0.1;
@@ -21,8 +20,7 @@ static bool searches(const struct flow_state *state)
 
 static int fork_force(struct flow_state *state, struct flow_args args)
 {
-    return flow_fork_all(state, &flow_force, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)),
-                         FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    return flow_fork_each(state, &flow_kernel_force, &args);
 }
 
 /* Holds what is in contact. */
@@ -83,23 +81,88 @@ static int linearise(struct flow_state *state)
     return code ? code : flow_cg_start(state);
 }
 
+/* ---- One linear step: v += dv, x += h v ---- */
+
+/* What a filtered solve lost: entries to held rows and rows in contact do not cancel. */
+static void sum_rows(size_t n, const phys_vec *r, double sum[3])
+{
+    for (size_t a = 0; a < n; a++)
+        for (int c = 0; c < 3; c++)
+            sum[c] += r[a][c];
+}
+
+void flow_note_solve(const duite_call *call, const struct flow_table *t,
+                     const struct flow_solved *solved, double *status)
+{
+    const struct solve_scalars *scalars = solved->scalars;
+    if (t->matrix.filter)
+        sum_rows(t->n, solved->r, status + FLOW_LOST);
+    else
+        solve_lost(&t->matrix, &t->held, solved->value, solved->b, solved->dv, status + FLOW_LOST);
+    const struct solve_norms norms = solve_norms(t->n, t->matrix.diagonal, solved->dv, solved->r);
+    status[FLOW_SIZE] = norms.size;
+    status[FLOW_RESIDUAL] = norms.bound;
+    status[FLOW_FAILED] = scalars->outcome != SOLVE_OK;
+    if (flow_args_of(call)->block != 0)
+        return;
+    const double error = sqrt(solve_scalars_error(scalars, INFINITY)) + sqrt(scalars->drift);
+    status[FLOW_ITERATIONS] = solve_scalars_iterations(scalars);
+    status[FLOW_ERROR] = error * error;
+    status[FLOW_RESTARTS] = scalars->restarts;
+}
+
+/* v += dv, and what the solve took and lost of the momentum. A solve that failed in a step that
+ * must not leaves no scalars: then this does not run. */
+FLOW_KERNEL(velocity_implicit, FLOW_VELOCITY, struct flow_args,
+            (R(table), R(f), R(a), R(dv), R(r), RW(v), W(rim_v), R(scalars), SUM(status)))
+static int velocity_implicit_body(const duite_call *call, const struct velocity_implicit_fields *on)
+{
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const struct flow_solved solved = {.value = flow_matrix_in(call, t, on->a),
+                                       .b = on->f,
+                                       .dv = on->dv,
+                                       .r = on->r,
+                                       .scalars = on->scalars};
+    flow_note_solve(call, t, &solved, on->status);
+    phys_advance(t->n, 1, on->dv, on->v);
+    flow_write_rim(t, on->v, on->rim_v);
+    return flow_check(call, t, on->v, "velocity", on->status);
+}
+
+FLOW_KERNEL(position, FLOW_POSITION, struct flow_args,
+            (R(table), R(v), RW(x), W(rim_x), SUM(status)))
+static int position_body(const duite_call *call, const struct position_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    phys_advance(t->n, on->args->h, on->v, on->x);
+    flow_write_rim(t, on->x, on->rim_x);
+    return flow_check(call, t, on->x, "position", on->status);
+}
+
 static int fork_move(struct flow_state *state)
 {
-    const struct flow_args args = flow_attempt_args(state);
+    struct flow_args args = flow_attempt_args(state);
     int code = flow_cg_iterate(state);
     state->guessed = state->attempt.length;
     if (!code)
-        code = flow_fork_all(state, &flow_velocity_dv, args,
-                             FLOW_OBJECTS(FLOW_AT(f), FLOW_AT(a), FLOW_AT(dv), FLOW_AT(r),
-                                          FLOW_AT(v), FLOW_AT(rim_v)),
-                             FLOW_THEN_SCALARS_AND_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
-    return code ? code
-                : flow_fork_all(state, &flow_position, args,
-                                FLOW_OBJECTS(FLOW_AT(v), FLOW_AT(x), FLOW_AT(rim_x)),
-                                FLOW_THEN_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
+        code = flow_fork_each(state, &flow_kernel_velocity_implicit, &args);
+    return code ? code : flow_fork_each(state, &flow_kernel_position, &args);
 }
 
-/* ---- Newton steps ---- */
+/* ---- Newton steps ----
+ *
+ * They and steps by BDF2 have bases (cloth/physics/implicit.h); args.h is the t of the step. */
+
+/* f becomes the right side of the next Newton step. */
+FLOW_KERNEL(residual, FLOW_ACCELERATION, struct flow_args,
+            (R(table), R(base_v), R(v), R(dv), RW(f), SUM(slope)))
+static int residual_body(const duite_call *call, const struct residual_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    phys_residual(t->n, on->args->h, t->mass, on->base_v, on->v, on->f);
+    *on->slope = phys_slope(t->n, t->free, on->dv, on->f);
+    return 0;
+}
 
 /* The slope along dv where it has led, kg m^2/s^2, and with it the right side of a Newton step from
  * there. */
@@ -108,12 +171,35 @@ static int get_slope(struct flow_state *state, struct flow_args args, double *sl
     int code = fork_force(state, args);
     if (!code)
         code = duite_set(state->rt, state->run.slope, NULL);
-    for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++) {
-        const struct flow_objects *o = state->block + args.block;
-        code = DUITE_FORK(state->rt, &flow_residual, &args, o->table, o->base_v, o->v, o->dv, o->f,
-                          state->run.slope);
-    }
+    if (!code)
+        code = flow_fork_each(state, &flow_kernel_residual, &args);
     return code ? code : duite_get(state->rt, state->run.slope, slope);
+}
+
+/* A block moves by a part of dv, its bases where it began. */
+struct newton_move {
+    const phys_vec *dv, *base_x;
+    phys_vec *v, *x, *rim_v, *rim_x;
+};
+
+static void newton_move(const struct flow_table *t, double h, double part,
+                        const struct newton_move *m)
+{
+    phys_advance(t->n, part, m->dv, m->v);
+    phys_place(t->n, h, m->base_x, m->v, m->x);
+    flow_write_rim(t, m->v, m->rim_v);
+    flow_write_rim(t, m->x, m->rim_x);
+}
+
+/* args.part of dv more. */
+FLOW_KERNEL(shift, FLOW_VELOCITY, struct flow_args,
+            (R(table), R(dv), R(base_x), RW(v), W(x), W(rim_v), W(rim_x)))
+static int shift_body(const duite_call *call, const struct shift_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table);
+    const struct newton_move move = {on->dv, on->base_x, on->v, on->x, on->rim_v, on->rim_x};
+    newton_move(&table, on->args->h, on->args->part, &move);
+    return 0;
 }
 
 /* A Newton step that ends where the slope along it is steep the other way is cut. */
@@ -126,27 +212,40 @@ static int search(struct flow_state *state, struct flow_args args, double first)
         cut = cut >= LEAST_CUT ? cut : LEAST_CUT; /* not a number: the same */
         args.part = (cut - 1) * length;
         length *= cut;
-        code = flow_fork_all(state, &flow_shift, args,
-                             FLOW_OBJECTS(FLOW_AT(dv), FLOW_AT(base_x), FLOW_AT(v), FLOW_AT(x),
-                                          FLOW_AT(rim_v), FLOW_AT(rim_x)),
-                             FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+        code = flow_fork_each(state, &flow_kernel_shift, &args);
         if (!code)
             code = get_slope(state, args, &slope);
     }
     return code;
 }
 
-/* v and x by all of dv; what is told of the solve goes to `status`. */
-static int fork_correct(struct flow_state *state, struct flow_args args, duite_object status)
+/* The whole of dv. */
+FLOW_KERNEL(correct, FLOW_VELOCITY, struct flow_args,
+            (R(table), R(f), R(a), R(dv), R(r), R(base_x), R(base_v), RW(v), W(x), W(rim_v),
+             W(rim_x), R(scalars), SUM(status)))
+static int correct_body(const duite_call *call, const struct correct_fields *on)
 {
-    int code = flow_cg_iterate(state);
-    for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++) {
-        const struct flow_objects *o = state->block + args.block;
-        code = DUITE_FORK(state->rt, &flow_correct, &args, o->table, o->f, o->a, o->dv, o->r,
-                          o->base_x, o->base_v, o->v, o->x, o->rim_v, o->rim_x,
-                          state->run.scalars[0], status);
-    }
-    return code;
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const struct flow_solved solved = {.value = flow_matrix_in(call, t, on->a),
+                                       .b = on->f,
+                                       .dv = on->dv,
+                                       .r = on->r,
+                                       .scalars = on->scalars};
+    const struct newton_move move = {on->dv, on->base_x, on->v, on->x, on->rim_v, on->rim_x};
+    flow_note_solve(call, t, &solved, on->status);
+    on->status[FLOW_SLOPE] = phys_slope(t->n, t->free, on->dv, on->f);
+    newton_move(t, on->args->h, 1, &move);
+    on->status[FLOW_CHANGE] = phys_distance(t->n, t->mass, on->dv, NULL);
+    on->status[FLOW_WHOLE] = phys_distance(t->n, t->mass, on->v, on->base_v);
+    const int code = flow_check(call, t, on->v, "velocity", on->status);
+    return code ? code : flow_check(call, t, on->x, "position", on->status);
+}
+
+/* v and x by all of dv; what is told of the solve goes to the status, or to one in its place. */
+static int fork_correct(struct flow_state *state, struct flow_args args, const struct flow_as *as)
+{
+    const int code = flow_cg_iterate(state);
+    return code ? code : flow_fork_each_as(state, &flow_kernel_correct, &args, as);
 }
 
 /* One Newton step. *sums: what it told. */
@@ -154,7 +253,7 @@ static int newton_step(struct flow_state *state, struct flow_args args, double s
 {
     int code = duite_set(state->rt, state->run.trial, NULL);
     if (!code)
-        code = fork_correct(state, args, state->run.trial);
+        code = fork_correct(state, args, FLOW_AS(FLOW_FOR(status, trial)));
     return code ? code : duite_get(state->rt, state->run.trial, sums);
 }
 
@@ -200,44 +299,69 @@ int flow_implicit_begin(struct flow_state *state)
     return state->flow->model->integrator == MODEL_BDF2 ? DUITE_OK : linearise(state);
 }
 
-/* x and v, as they are, to two other vectors. */
-static int fork_copy(struct flow_state *state, size_t x, size_t v)
+/* x and v, as they are, become the bases of a step of implicit Euler. */
+static int fork_bases(struct flow_state *state)
 {
-    struct flow_args args = flow_attempt_args(state);
-    int code = DUITE_OK;
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
-        const struct flow_objects *o = state->block + args.block;
-        const char *at = (const char *)o;
-        code = DUITE_FORK(state->rt, &flow_keep, &args, o->x, o->v,
-                          *(const duite_object *)(const void *)(at + x),
-                          *(const duite_object *)(const void *)(at + v));
-    }
-    return code;
+    return flow_keep_as(state, FLOW_AS(FLOW_FOR(kept_x, base_x), FLOW_FOR(kept_v, base_v)));
 }
-
-#define OFFSET(name) offsetof(struct flow_objects, name)
 
 /* Ends a step whose first system is made. */
 static int finish(struct flow_state *state, struct flow_args args)
 {
-    return searches(state) ? newton(state, args)
-                           : fork_correct(state, args, state->run.status[state->attempt.parity]);
+    return searches(state) ? newton(state, args) : fork_correct(state, args, NULL);
 }
 
 static int euler(struct flow_state *state)
 {
     if (!searches(state))
         return fork_move(state);
-    const int code = fork_copy(state, OFFSET(base_x), OFFSET(base_v));
+    const int code = fork_bases(state);
     return code ? code : finish(state, flow_attempt_args(state));
+}
+
+/* ---- BDF2 ---- */
+
+/* Along what a guide holds a row goes where its v says, as one that is held whole does. */
+static void hold_bases(const duite_call *call, const struct flow_table *t,
+                       const struct phys_states *s)
+{
+    struct flow_pins pins;
+    struct flow_guide guide;
+    flow_pins_begin(call, t, &pins);
+    for (uint32_t i = 0; i < t->n_guided; i++) {
+        const uint32_t row = t->guided[i][0];
+        const phys_vec held = s->x[row] + flow_args_of(call)->h / 2 * s->v[row];
+        flow_pins_guide(&pins, i, &guide);
+        flow_guide_keep(&guide, &held, s->base_x + row);
+    }
+}
+
+/* Its bases, and x where v would lead. */
+FLOW_KERNEL(predict, FLOW_POSITION, struct flow_args,
+            (R(table), RW(x), R(v), RW(last_x), RW(last_v), W(base_x), W(base_v), W(rim_x)))
+static int predict_body(const duite_call *call, const struct predict_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const double h = on->args->h;
+    const struct phys_states states = {.x = on->x,
+                                       .v = on->v,
+                                       .last_x = on->last_x,
+                                       .last_v = on->last_v,
+                                       .base_x = on->base_x,
+                                       .base_v = on->base_v};
+    phys_bdf2_bases(t->n, h, t->free, &states);
+    hold_bases(call, t, &states);
+    phys_place(t->n, h, states.base_x, states.v, on->x);
+    flow_write_rim(t, on->x, on->rim_x);
+    return 0;
 }
 
 /* The first step, and one after contact or after a step of another length, is by implicit Euler. */
 static int bdf2_start(struct flow_state *state)
 {
-    int code = fork_copy(state, OFFSET(last_x), OFFSET(last_v));
+    int code = flow_keep_as(state, FLOW_AS(FLOW_FOR(kept_x, last_x), FLOW_FOR(kept_v, last_v)));
     if (!code)
-        code = fork_copy(state, OFFSET(base_x), OFFSET(base_v));
+        code = fork_bases(state);
     if (!code)
         code = linearise(state);
     return code ? code : finish(state, flow_attempt_args(state));
@@ -255,10 +379,7 @@ static int bdf2(struct flow_state *state)
     if (!flow_implicit_is_second(state))
         return bdf2_start(state);
     args.h *= 2.0 / 3;
-    int code = flow_fork_all(state, &flow_predict, args,
-                             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(last_x), FLOW_AT(last_v),
-                                          FLOW_AT(base_x), FLOW_AT(base_v), FLOW_AT(rim_x)),
-                             FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+    int code = flow_fork_each(state, &flow_kernel_predict, &args);
     if (!code)
         code = get_slope(state, args, &slope);
     if (!code)

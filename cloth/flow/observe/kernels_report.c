@@ -2,14 +2,6 @@
  * other: each frame's task holds the token. */
 #include "cloth/flow/bodies.h"
 
-static int status(const duite_call *call)
-{
-    flow_note_stop(call, 0);
-    return 0;
-}
-const duite_kernel flow_status = {
-    .name = "status", .body = status, .access = {DUITE_CW}, .args_size = sizeof(struct flow_args)};
-
 static int frame(const duite_call *call)
 {
     struct flow *flow = flow_of(call);

@@ -33,8 +33,7 @@ int flow_watch(struct flow_state *state)
 static int fork_probe(struct flow_state *state, struct flow_args args)
 {
     const struct flow_objects *o = state->block + args.block;
-    int code = flow_fork(state, &flow_force, &args, 3, (duite_object[]){o->x, o->v, o->felt},
-                         FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    int code = flow_fork_one_as(state, &flow_kernel_force, &args, FLOW_AS(FLOW_FOR(f, felt)));
     if (!code)
         code = flow_fork(state, &flow_probe, &args, 4,
                          (duite_object[]){o->x, o->v, o->felt, o->seen}, FLOW_NO_RIM, FLOW_NO_RIM);

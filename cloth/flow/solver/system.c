@@ -119,9 +119,12 @@ static void make(const struct making *m)
     const struct flow_table *t = m->t;
     const struct solve_cut cut = flow_table_cut_entries(t);
     struct phys_sight sight = {0};
+    const struct flow_view view = {.x = duite_in(m->call, 1, phys_vec),
+                                   .v = m->b ? duite_in(m->call, 2, phys_vec) : NULL,
+                                   .rim_x = m->call->param + m->rims,
+                                   .rim_v = m->call->param + m->rims + t->n_slots};
     if (flow_has_elements(t))
-        sight = m->b ? flow_elements_see(m->call, t, m->rims)
-                     : flow_elements_see_still(m->call, t, m->rims);
+        sight = flow_elements_see(m->call, t, &view);
     if (m->sums)
         memset(m->sums, 0, (t->matrix.row[t->n] + cut.n) * sizeof *m->sums);
     if (m->b)

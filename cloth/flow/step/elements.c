@@ -13,34 +13,28 @@ bool flow_has_elements(const struct flow_table *t)
     return has;
 }
 
-/* The rows that the block copies, of the vector whose rims are the parameters from `rims` on. */
-static const phys_vec *copy_rims(const duite_call *call, const struct flow_table *t, size_t rims,
+/* The rows that the block copies, of the vector whose rims these are. */
+static const phys_vec *copy_rims(const struct flow_table *t, const duite_param *rims,
                                  phys_vec *copy)
 {
     for (uint32_t s = 0; s < t->n_slots; s++) {
-        const phys_vec *rim = duite_in(call, rims + s, phys_vec);
+        const phys_vec *rim = flow_rows_of(rims, s);
         for (uint32_t i = t->copies[s]; i < t->copies[s + 1]; i++)
             copy[i] = rim[t->copy[i]];
     }
     return copy;
 }
 
-struct phys_sight flow_elements_see_still(const duite_call *call, const struct flow_table *t,
-                                          size_t rims)
+struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t,
+                                    const struct flow_view *view)
 {
     const struct flow *flow = flow_of(call);
     phys_vec *room = flow->copies + call->worker * flow->n_copies;
-    return (struct phys_sight){
-        .n = t->n, .x = duite_in(call, 1, phys_vec), .x_copy = copy_rims(call, t, rims, room)};
-}
-
-struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t, size_t rims)
-{
-    const struct flow *flow = flow_of(call);
-    phys_vec *room = flow->copies + call->worker * flow->n_copies + t->n_copies;
-    struct phys_sight sight = flow_elements_see_still(call, t, rims);
-    sight.v = duite_in(call, 2, phys_vec);
-    sight.v_copy = copy_rims(call, t, rims + t->n_slots, room);
+    struct phys_sight sight = {.n = t->n, .x = view->x, .x_copy = copy_rims(t, view->rim_x, room)};
+    if (!view->v)
+        return sight;
+    sight.v = view->v;
+    sight.v_copy = copy_rims(t, view->rim_v, room + t->n_copies);
     return sight;
 }
 
@@ -81,13 +75,13 @@ void flow_elements_stiffness(const duite_call *call, const struct flow_table *t,
             element_kinds[kind]->stiffness(t->list + kind, full, scale, sight, y);
 }
 
-double flow_elements_energy(const duite_call *call, const struct flow_table *t, size_t rims,
-                            double torque[3])
+double flow_elements_energy(const duite_call *call, const struct flow_table *t,
+                            const struct flow_view *view, double torque[3])
 {
     double sum = 0;
     if (!flow_has_elements(t))
         return 0;
-    const struct phys_sight sight = flow_elements_see_still(call, t, rims);
+    const struct phys_sight sight = flow_elements_see(call, t, view);
     for (int i = 0; i < ELEMENT_KINDS; i++) {
         const struct element_kind *kind = element_kinds[i];
         if (t->n_elements[i] && kind->torque)

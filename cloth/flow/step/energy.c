@@ -8,9 +8,7 @@
  * energy is off by the square of h only. */
 static int fork_level(struct flow_state *state, struct flow_args args)
 {
-    const int code =
-        flow_fork_all(state, &flow_force, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f)),
-                      FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    const int code = flow_fork_each(state, &flow_kernel_force, &args);
     return code ? code
                 : flow_fork_all(state, &flow_level, args, FLOW_OBJECTS(FLOW_AT(v), FLOW_AT(f)),
                                 FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);

@@ -14,12 +14,13 @@ static int energy(const duite_call *call)
     const phys_vec *x = duite_in(call, 1, phys_vec);
     double *sums = duite_out(call, 3, double), fastest = 0;
     struct phys_springs springs = flow_table_inner(t);
+    const struct flow_view view = {.x = x, .rim_x = call->param + 4};
     sums[FLOW_ENERGY_MOTION] = phys_kinetic(t->n, t->mass, duite_in(call, 2, phys_vec), &fastest);
     sums[FLOW_ENERGY_GRAVITY] = phys_energy_weight(t->n, t->mass, gravity, x);
     sums[FLOW_ENERGY_LOADS] =
         phys_energy_load(t->n, t->mass, gravity, t->load, x) + flow_varying_energy(call, t, x);
-    sums[FLOW_ENERGY_ELASTIC] =
-        flow_elements_energy(call, t, 4, sums + FLOW_TORQUE) + phys_energy_springs(&springs, x, x);
+    sums[FLOW_ENERGY_ELASTIC] = flow_elements_energy(call, t, &view, sums + FLOW_TORQUE) +
+                                phys_energy_springs(&springs, x, x);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         springs = flow_table_cut(t, s);
         sums[FLOW_ENERGY_ELASTIC] +=

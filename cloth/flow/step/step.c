@@ -53,15 +53,6 @@ static int fork_all(struct flow_state *state, const duite_kernel *kernel, const 
     return flow_fork_all(state, kernel, flow_attempt_args(state), objects, behind, rim, rim2);
 }
 
-int flow_initialise(struct flow_state *state)
-{
-    const int code = fork_all(state, &flow_initial,
-                              FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
-                              FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
-    state->settled_forces = false;
-    return code || model_is_filtered(state->flow->model) ? code : flow_coarse_initialise(state);
-}
-
 int flow_stretch_fork(struct flow_state *state, duite_object stretch)
 {
     struct flow_args args = {0};
@@ -76,31 +67,6 @@ int flow_stretch_fork(struct flow_state *state, duite_object stretch)
 
 /* ---- A step ---- */
 
-static int keep(struct flow_state *state)
-{
-    const struct flow_args args = flow_attempt_args(state);
-    int code = DUITE_OK;
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks && !code; b++) {
-        const struct flow_objects *o = state->block + b;
-        struct flow_args here = args;
-        here.block = b;
-        code = DUITE_FORK(state->rt, &flow_keep, &here, o->x, o->v, o->kept_x, o->kept_v);
-    }
-    return code;
-}
-
-static int restore(struct flow_state *state)
-{
-    if (flow_explicit_keeps(state->flow->model)) {
-        flow_explicit_restore(state);
-        return DUITE_OK;
-    }
-    return fork_all(state, &flow_restore,
-                    FLOW_OBJECTS(FLOW_AT(kept_x), FLOW_AT(kept_v), FLOW_AT(x), FLOW_AT(v),
-                                 FLOW_AT(rim_x), FLOW_AT(rim_v)),
-                    FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
-}
-
 /* Velocities that change before the forces: such a step does not begin before the one before it is
  * accepted. */
 static bool is_driven(const struct model *model)
@@ -111,7 +77,7 @@ static bool is_driven(const struct model *model)
 static int drive(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
-    int code = model_keeps(model) ? keep(state) : DUITE_OK;
+    int code = model_keeps(model) ? flow_keep(state) : DUITE_OK;
     if (!code && model_is_driven(model))
         code = flow_pins_drive(state);
     if (!code && model_solves_contact(model))
@@ -139,10 +105,8 @@ static int begin_step(struct flow_state *state)
 static int end_step(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
-    const duite_object status = state->run.status[state->attempt.parity];
-    const struct flow_args args = flow_attempt_args(state);
     const bool keeps = model_keeps(model) && !is_driven(model) && !flow_explicit_keeps(model);
-    int code = keeps ? keep(state) : DUITE_OK;
+    int code = keeps ? flow_keep(state) : DUITE_OK;
     if (!code)
         code = model_is_implicit(model) ? flow_implicit_end(state) : flow_explicit_end(state);
     if (!code && model_is_driven(model))
@@ -157,8 +121,8 @@ static int end_step(struct flow_state *state)
         code = flow_watch(state);
     if (!code)
         code = flow_energy_fork(state);
-    for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++) /* also of no block */
-        code = duite_fork_at(state->rt, rank, &flow_status, &args, 1, &status);
+    if (!code)
+        code = flow_status_fork(state);
     state->attempt.forked = !code;
     return code;
 }
@@ -242,7 +206,7 @@ static int refuse(struct flow_state *state, const double status[FLOW_STATUS],
 {
     if (!state->flow->model->halving || !halve(state, cause_of(status, verdict)))
         return give_up(state, verdict);
-    return restore(state);
+    return flow_restore(state);
 }
 
 /* The same for a step that gained too much energy and can do with less: one by BDF2 by implicit
@@ -261,7 +225,7 @@ static int retake(struct flow_state *state, bool second)
         halve(state, FLOW_CAUSE_ENERGY);
         state->guard.calm = state->attempt.begin + CALM_AFTER_GAIN;
     }
-    return restore(state);
+    return flow_restore(state);
 }
 
 /* Waits for what is known of the step that was forked whole. */

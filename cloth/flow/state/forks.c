@@ -1,0 +1,85 @@
+/* Forks of kernels that declare their fields (kernel.h): the objects follow from the declaration.
+ */
+#include "cloth/flow/bodies.h"
+
+/* Of what a kernel declares, what the fork gives. */
+static enum flow_field_id given_for(const struct flow_as *as, enum flow_field_id declared)
+{
+    for (; as && as->declared != FLOW_FIELDS_OF_ALL; as++)
+        if (as->declared == declared)
+            return as->given;
+    return declared;
+}
+
+/* Appends the objects of one parameter to `refs`. Returns the end. */
+static duite_object *add_parameter(const struct flow_state *state, uint32_t block,
+                                   enum flow_whose whose, enum flow_field_id field,
+                                   duite_object *refs)
+{
+    const struct flow_tables *tables = &state->flow->tables;
+    const struct flow_table *t = tables->block + block;
+    switch (whose) {
+    case FLOW_OF_NEIGHBOURS:
+        for (uint32_t s = 0; s < t->n_slots; s++)
+            *refs++ = flow_field_object(state, field, t->slot[s]);
+        return refs;
+    case FLOW_OF_ALL:
+        for (uint32_t b = 0; b < tables->n_blocks; b++)
+            *refs++ = flow_field_object(state, field, b);
+        return refs;
+    case FLOW_IF_MADE:
+        if (!flow_fields[field].exists(state, block))
+            return refs;
+        break;
+    case FLOW_OWN:
+    case FLOW_NOBODY:
+        break;
+    }
+    *refs++ = flow_field_object(state, field, block);
+    return refs;
+}
+
+size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *kernel,
+                           uint32_t block, const struct flow_as *as)
+{
+    duite_object *end = state->refs;
+    for (const struct flow_parameter *p = kernel->parameter; p->whose != FLOW_NOBODY; p++)
+        end = add_parameter(state, block, p->whose, given_for(as, p->field), end);
+    return (size_t)(end - state->refs);
+}
+
+int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
+                     const struct flow_as *as)
+{
+    const uint32_t *block = args;
+    const size_t n = flow_kernel_objects(state, kernel, *block, as);
+    return duite_fork(state->rt, &kernel->task, args, n, state->refs);
+}
+
+int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args)
+{
+    return flow_fork_one_as(state, kernel, args, NULL);
+}
+
+int flow_fork_each_as(struct flow_state *state, const struct flow_kernel *kernel, void *args,
+                      const struct flow_as *as)
+{
+    uint32_t *block = args;
+    int code = DUITE_OK;
+    for (*block = 0; *block < state->flow->tables.n_blocks && !code; ++*block)
+        code = flow_fork_one_as(state, kernel, args, as);
+    return code;
+}
+
+int flow_fork_each(struct flow_state *state, const struct flow_kernel *kernel, void *args)
+{
+    return flow_fork_each_as(state, kernel, args, NULL);
+}
+
+int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
+                 const void *args, const struct flow_as *as)
+{
+    const uint32_t *block = args;
+    const size_t n = flow_kernel_objects(state, kernel, *block, as);
+    return duite_fork_at(state->rt, rank, &kernel->task, args, n, state->refs);
+}

@@ -1,0 +1,268 @@
+#ifndef CLOTH_FLOW_STATE_KERNEL_H
+#define CLOTH_FLOW_STATE_KERNEL_H
+
+#include "cloth/flow/state/fields.h"
+
+/* How a kernel is declared, and forked. A kernel names the fields (fields.h) that its task uses,
+ * once, above its body:
+ *
+ *     FLOW_KERNEL(velocity, FLOW_VELOCITY, struct flow_args,
+ *                 (R(table), R(dv), RW(v), W(rim_v), SUM(status)))
+ *     static int velocity_body(const duite_call *call, const struct velocity_fields *on)
+ *     {
+ *         const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+ *         phys_advance(t->n, 1, on->dv, on->v);
+ *         ...
+ *     }
+ *
+ * The rest follows: the struct of pointers that the body is given (of the type that the field's row
+ * says, const under R; a field that is not declared or misspelt does not compile), the parameters'
+ * modes, and the objects at the fork, `flow_fork_each(state, &flow_kernel_velocity, &args)`. A
+ * kernel stands once more in the list of kernels.h, or it does not compile. Its name in traces is
+ * its name here.
+ *
+ *     R W RW     reads, overwrites, changes: a field of the task's block or of the run
+ *     SUM MAX    contributes to it, added up, or the largest counts
+ *     NEIGHBOURS reads this field of each neighbour, in the order of slots
+ *     ALL        reads this field of every block
+ *     IF_MADE    reads it if it exists in the run; else the pointer is NULL. Either all fields of a
+ *                kernel with this word exist or none
+ *
+ * Those of the last three kinds come behind the others, those with IF_MADE last. What a body finds
+ * of NEIGHBOURS and ALL are parameters: flow_rows_of, flow_numbers_of. FLOW_INDEX_OF(velocity, v)
+ * is the index of a parameter, for calls of the runtime that want one.
+ *
+ * The arguments are a struct whose first member is `uint32_t block`; `on->args` are those of the
+ * task. A part of the step (enum flow_part) has the task's seconds; FLOW_NO_PART: none has. */
+#define FLOW_KERNEL(name, part, arguments, fields)                                                 \
+    FLOW_KERNEL_WITH(name, part, arguments, fields, .side_effects = 0)
+
+/* With more members of duite_kernel, such as .replicated = 1 or .side_effects = 1. */
+#define FLOW_KERNEL_WITH(name, part, arguments, fields, ...)                                       \
+    FLOW_KERNEL_DECLARE(name, arguments, fields)                                                   \
+    static int name##_task(const duite_call *call)                                                 \
+    {                                                                                              \
+        return (part) == FLOW_NO_PART ? name##_open(call) : flow_timed(call, name##_open, part);   \
+    }                                                                                              \
+    FLOW_KERNEL_DEFINE(name, arguments, fields, __VA_ARGS__)
+
+#define FLOW_INDEX_OF(name, field) name##_at_##field
+
+/* ---- For the macros above ---- */
+
+/* Whose object a parameter is. */
+enum flow_whose { FLOW_NOBODY, FLOW_OWN, FLOW_OF_NEIGHBOURS, FLOW_OF_ALL, FLOW_IF_MADE };
+
+struct flow_parameter {
+    enum flow_whose whose;
+    enum flow_field_id field;
+};
+
+enum { FLOW_MOST_PARAMETERS = 24 }; /* as many as FLOW_EACH takes */
+
+struct flow_kernel {
+    duite_kernel task;
+    struct flow_parameter parameter[FLOW_MOST_PARAMETERS + 1]; /* ended by FLOW_NOBODY */
+};
+
+/* FLOW_EACH(f, k, (a, b)) is f(k, a) f(k, b); at most FLOW_MOST_PARAMETERS. */
+#define FLOW_EACH(f, k, list) FLOW_EACH_OF(f, k, FLOW_LISTED list)
+#define FLOW_LISTED(...)      __VA_ARGS__
+#define FLOW_EACH_OF(...)     FLOW_EACH_IN(__VA_ARGS__)
+#define FLOW_EACH_IN(f, k, ...)                                                                    \
+    FLOW_NTH(__VA_ARGS__, FLOW_E24, FLOW_E23, FLOW_E22, FLOW_E21, FLOW_E20, FLOW_E19, FLOW_E18,    \
+             FLOW_E17, FLOW_E16, FLOW_E15, FLOW_E14, FLOW_E13, FLOW_E12, FLOW_E11, FLOW_E10,       \
+             FLOW_E9, FLOW_E8, FLOW_E7, FLOW_E6, FLOW_E5, FLOW_E4, FLOW_E3, FLOW_E2, FLOW_E1, 0)   \
+    (f, k, __VA_ARGS__)
+#define FLOW_NTH(a, b, c, d, e, g, h, i, j, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, it, ...) it
+#define FLOW_E1(f, k, a)                                                                          f(k, a)
+#define FLOW_E2(f, k, a, ...)                                                                     f(k, a) FLOW_E1(f, k, __VA_ARGS__)
+#define FLOW_E3(f, k, a, ...)                                                                     f(k, a) FLOW_E2(f, k, __VA_ARGS__)
+#define FLOW_E4(f, k, a, ...)                                                                     f(k, a) FLOW_E3(f, k, __VA_ARGS__)
+#define FLOW_E5(f, k, a, ...)                                                                     f(k, a) FLOW_E4(f, k, __VA_ARGS__)
+#define FLOW_E6(f, k, a, ...)                                                                     f(k, a) FLOW_E5(f, k, __VA_ARGS__)
+#define FLOW_E7(f, k, a, ...)                                                                     f(k, a) FLOW_E6(f, k, __VA_ARGS__)
+#define FLOW_E8(f, k, a, ...)                                                                     f(k, a) FLOW_E7(f, k, __VA_ARGS__)
+#define FLOW_E9(f, k, a, ...)                                                                     f(k, a) FLOW_E8(f, k, __VA_ARGS__)
+#define FLOW_E10(f, k, a, ...)                                                                    f(k, a) FLOW_E9(f, k, __VA_ARGS__)
+#define FLOW_E11(f, k, a, ...)                                                                    f(k, a) FLOW_E10(f, k, __VA_ARGS__)
+#define FLOW_E12(f, k, a, ...)                                                                    f(k, a) FLOW_E11(f, k, __VA_ARGS__)
+#define FLOW_E13(f, k, a, ...)                                                                    f(k, a) FLOW_E12(f, k, __VA_ARGS__)
+#define FLOW_E14(f, k, a, ...)                                                                    f(k, a) FLOW_E13(f, k, __VA_ARGS__)
+#define FLOW_E15(f, k, a, ...)                                                                    f(k, a) FLOW_E14(f, k, __VA_ARGS__)
+#define FLOW_E16(f, k, a, ...)                                                                    f(k, a) FLOW_E15(f, k, __VA_ARGS__)
+#define FLOW_E17(f, k, a, ...)                                                                    f(k, a) FLOW_E16(f, k, __VA_ARGS__)
+#define FLOW_E18(f, k, a, ...)                                                                    f(k, a) FLOW_E17(f, k, __VA_ARGS__)
+#define FLOW_E19(f, k, a, ...)                                                                    f(k, a) FLOW_E18(f, k, __VA_ARGS__)
+#define FLOW_E20(f, k, a, ...)                                                                    f(k, a) FLOW_E19(f, k, __VA_ARGS__)
+#define FLOW_E21(f, k, a, ...)                                                                    f(k, a) FLOW_E20(f, k, __VA_ARGS__)
+#define FLOW_E22(f, k, a, ...)                                                                    f(k, a) FLOW_E21(f, k, __VA_ARGS__)
+#define FLOW_E23(f, k, a, ...)                                                                    f(k, a) FLOW_E22(f, k, __VA_ARGS__)
+#define FLOW_E24(f, k, a, ...)                                                                    f(k, a) FLOW_E23(f, k, __VA_ARGS__)
+
+/* A word with its field as two arguments. */
+#define FLOW_WORD_R(field)          R, field
+#define FLOW_WORD_W(field)          W, field
+#define FLOW_WORD_RW(field)         RW, field
+#define FLOW_WORD_SUM(field)        SUM, field
+#define FLOW_WORD_MAX(field)        MAX, field
+#define FLOW_WORD_NEIGHBOURS(field) NEIGHBOURS, field
+#define FLOW_WORD_ALL(field)        ALL, field
+#define FLOW_WORD_IF_MADE(field)    IF_MADE, field
+#define FLOW_SPREAD(f, ...)         f(__VA_ARGS__)
+
+/* name_at_field, of parameters that are always there. */
+#define FLOW_INDEX(k, word)             FLOW_SPREAD(FLOW_INDEX_WORD, k, FLOW_WORD_##word)
+#define FLOW_INDEX_WORD(k, mode, field) FLOW_INDEX_##mode(k, field)
+#define FLOW_INDEX_R(k, field)          FLOW_INDEX_OF(k, field),
+#define FLOW_INDEX_W(k, field)          FLOW_INDEX_OF(k, field),
+#define FLOW_INDEX_RW(k, field)         FLOW_INDEX_OF(k, field),
+#define FLOW_INDEX_SUM(k, field)        FLOW_INDEX_OF(k, field),
+#define FLOW_INDEX_MAX(k, field)        FLOW_INDEX_OF(k, field),
+#define FLOW_INDEX_NEIGHBOURS(k, field)
+#define FLOW_INDEX_ALL(k, field)
+#define FLOW_INDEX_IF_MADE(k, field)
+
+/* Members of struct name_fields. */
+#define FLOW_HAS(k, word)             FLOW_SPREAD(FLOW_HAS_WORD, k, FLOW_WORD_##word)
+#define FLOW_HAS_WORD(k, mode, field) FLOW_HAS_##mode(field)
+#define FLOW_HAS_R(field)             const flow_type_of_##field *field;
+#define FLOW_HAS_W(field)             flow_type_of_##field *field;
+#define FLOW_HAS_RW(field)            flow_type_of_##field *field;
+#define FLOW_HAS_SUM(field)           flow_type_of_##field *field;
+#define FLOW_HAS_MAX(field)           flow_type_of_##field *field;
+#define FLOW_HAS_NEIGHBOURS(field)    const duite_param *field;
+#define FLOW_HAS_ALL(field)           const duite_param *field;
+#define FLOW_HAS_IF_MADE(field)       const flow_type_of_##field *field;
+
+/* Fills them. */
+#define FLOW_OPEN(k, word)             FLOW_SPREAD(FLOW_OPEN_WORD, k, FLOW_WORD_##word)
+#define FLOW_OPEN_WORD(k, mode, field) FLOW_OPEN_##mode(k, field)
+#define FLOW_OPEN_R(k, field)          on.field = call->param[FLOW_INDEX_OF(k, field)].data;
+#define FLOW_OPEN_W(k, field)          FLOW_OPEN_R(k, field)
+#define FLOW_OPEN_RW(k, field)         FLOW_OPEN_R(k, field)
+#define FLOW_OPEN_SUM(k, field)        FLOW_OPEN_R(k, field)
+#define FLOW_OPEN_MAX(k, field)        FLOW_OPEN_R(k, field)
+#define FLOW_OPEN_NEIGHBOURS(k, field)                                                             \
+    on.field = call->param + next;                                                                 \
+    next += flow_shape_of(call)->n_slots;
+#define FLOW_OPEN_ALL(k, field)                                                                    \
+    on.field = call->param + next;                                                                 \
+    next += flow_of(call)->tables.n_blocks;
+#define FLOW_OPEN_IF_MADE(k, field)                                                                \
+    on.field = next < call->n_params ? call->param[next++].data : NULL;
+
+/* Members of the runtime's kernel. */
+#define FLOW_MODE(k, word)             FLOW_SPREAD(FLOW_MODE_WORD, k, FLOW_WORD_##word)
+#define FLOW_MODE_WORD(k, mode, field) FLOW_MODE_##mode
+#define FLOW_MODE_R                    DUITE_R,
+#define FLOW_MODE_W                    DUITE_W,
+#define FLOW_MODE_RW                   DUITE_RW,
+#define FLOW_MODE_SUM                  DUITE_CW,
+#define FLOW_MODE_MAX                  DUITE_CW,
+#define FLOW_MODE_NEIGHBOURS
+#define FLOW_MODE_ALL
+#define FLOW_MODE_IF_MADE
+#define FLOW_LAW(k, word)             FLOW_SPREAD(FLOW_LAW_WORD, k, FLOW_WORD_##word)
+#define FLOW_LAW_WORD(k, mode, field) FLOW_LAW_##mode
+#define FLOW_LAW_R                    NULL,
+#define FLOW_LAW_W                    NULL,
+#define FLOW_LAW_RW                   NULL,
+#define FLOW_LAW_SUM                  &duite_sum,
+#define FLOW_LAW_MAX                  &duite_max,
+#define FLOW_LAW_NEIGHBOURS
+#define FLOW_LAW_ALL
+#define FLOW_LAW_IF_MADE
+
+/* What the fork gives. */
+#define FLOW_GIVEN(k, word)               FLOW_SPREAD(FLOW_GIVEN_WORD, k, FLOW_WORD_##word)
+#define FLOW_GIVEN_WORD(k, mode, field)   {FLOW_WHOSE_##mode, FLOW_FIELD_##field},
+#define FLOW_WHOSE_R                      FLOW_OWN
+#define FLOW_WHOSE_W                      FLOW_OWN
+#define FLOW_WHOSE_RW                     FLOW_OWN
+#define FLOW_WHOSE_SUM                    FLOW_OWN
+#define FLOW_WHOSE_MAX                    FLOW_OWN
+#define FLOW_WHOSE_NEIGHBOURS             FLOW_OF_NEIGHBOURS
+#define FLOW_WHOSE_ALL                    FLOW_OF_ALL
+#define FLOW_WHOSE_IF_MADE                FLOW_IF_MADE
+#define FLOW_FURTHER(k, word)             FLOW_SPREAD(FLOW_FURTHER_WORD, k, FLOW_WORD_##word)
+#define FLOW_FURTHER_WORD(k, mode, field) || FLOW_WHOSE_##mode != FLOW_OWN
+
+#define FLOW_KERNEL_DECLARE(name, arguments, fields)                                               \
+    enum { FLOW_EACH(FLOW_INDEX, name, fields) name##_at_end };                                    \
+    struct name##_fields {                                                                         \
+        const arguments *args;                                                                     \
+        FLOW_EACH(FLOW_HAS, name, fields)                                                          \
+    };                                                                                             \
+    static int name##_body(const duite_call *call, const struct name##_fields *on);                \
+    static int name##_open(const duite_call *call)                                                 \
+    {                                                                                              \
+        struct name##_fields on = {.args = call->args};                                            \
+        size_t next = name##_at_end;                                                               \
+        FLOW_EACH(FLOW_OPEN, name, fields)                                                         \
+        (void)next;                                                                                \
+        return name##_body(call, &on);                                                             \
+    }
+#define FLOW_KERNEL_DEFINE(k, arguments, fields, ...)                                              \
+    _Static_assert(FLOW_KERNEL_##k >= 0 && offsetof(arguments, block) == 0,                        \
+                   "a kernel is in the list, and its arguments begin with the block");             \
+    const struct flow_kernel flow_kernel_##k = {                                                   \
+        .task = {.name = #k,                                                                       \
+                 .body = k##_task,                                                                 \
+                 .access = {FLOW_EACH(FLOW_MODE, k, fields)},                                      \
+                 .law = {FLOW_EACH(FLOW_LAW, k, fields)},                                          \
+                 .variadic = (0 FLOW_EACH(FLOW_FURTHER, k, fields)) ? DUITE_R : DUITE_NONE,        \
+                 .args_size = sizeof(arguments),                                                   \
+                 __VA_ARGS__},                                                                     \
+        .parameter = {FLOW_EACH(FLOW_GIVEN, k, fields)}};
+
+/* flow_type_of_name: what a field's object is in C. */
+#define FLOW_FIELD_TYPE(name, many, type, ...) FLOW_FIELD_TYPE_##many(name, type)
+#define FLOW_FIELD_TYPE_ONE(name, type)        typedef type flow_type_of_##name;
+#define FLOW_FIELD_TYPE_BY_STEP(name, type)                                                        \
+    typedef type flow_type_of_##name, flow_type_of_##name##_next;
+#define FLOW_FIELD_TYPE_BY_PASS(name, type) FLOW_FIELD_TYPE_BY_STEP(name, type)
+FLOW_FIELDS(FLOW_FIELD_TYPE)
+
+/* ---- Forks ---- */
+
+/* Where a kernel names `declared`, the fork gives `given`: a field of the same shape. */
+struct flow_as {
+    enum flow_field_id declared, given;
+};
+/* FLOW_AS(FLOW_FOR(kept_x, base_x), FLOW_FOR(kept_v, base_v)) */
+#define FLOW_FOR(declared, given)                                                                  \
+    {                                                                                              \
+        FLOW_FIELD_##declared, FLOW_FIELD_##given                                                  \
+    }
+#define FLOW_AS(...)                                                                               \
+    ((const struct flow_as[]){__VA_ARGS__, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}})
+
+/* Fork a kernel with the objects that it declares: on the block that the arguments name; on each
+ * block, whose number they write into the arguments; on a rank. as: NULL, or FLOW_AS. Collective.
+ * They return what the runtime does. */
+int flow_fork_one(struct flow_state *state, const struct flow_kernel *kernel, const void *args);
+int flow_fork_one_as(struct flow_state *state, const struct flow_kernel *kernel, const void *args,
+                     const struct flow_as *as);
+int flow_fork_each(struct flow_state *state, const struct flow_kernel *kernel, void *args);
+int flow_fork_each_as(struct flow_state *state, const struct flow_kernel *kernel, void *args,
+                      const struct flow_as *as);
+int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *kernel,
+                 const void *args, const struct flow_as *as);
+
+/* Puts the objects that a fork of the kernel on a block gives into state->refs. Returns how many:
+ * for forks that give others in place of some. */
+size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *kernel,
+                           uint32_t block, const struct flow_as *as);
+
+/* In a body: the rows, or the numbers, of the neighbour in slot s, or of block s. */
+static inline const phys_vec *flow_rows_of(const duite_param *field, size_t s)
+{
+    return field[s].data;
+}
+static inline const double *flow_numbers_of(const duite_param *field, size_t s)
+{
+    return field[s].data;
+}
+
+#endif

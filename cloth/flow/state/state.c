@@ -1,0 +1,64 @@
+/* The state of a run, x and v with their rims: its start, and the copy that is kept of it until a
+ * step is accepted. Restoring the copy makes the step undone. */
+#include "cloth/flow/bodies.h"
+
+FLOW_KERNEL(initial, FLOW_NO_PART, struct flow_args, (R(table), W(x), W(v), W(rim_x), W(rim_v)))
+static int initial_body(const duite_call *call, const struct initial_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    for (uint32_t i = 0; i < t->n; i++) {
+        on->x[i] = t->position[i];
+        on->v[i] = t->velocity[i];
+    }
+    flow_write_rim(t, on->x, on->rim_x);
+    flow_write_rim(t, on->v, on->rim_v);
+    return 0;
+}
+
+int flow_initialise(struct flow_state *state)
+{
+    struct flow_args args = flow_attempt_args(state);
+    const int code = flow_fork_each(state, &flow_kernel_initial, &args);
+    state->settled_forces = false;
+    return code || model_is_filtered(state->flow->model) ? code : flow_coarse_initialise(state);
+}
+
+FLOW_KERNEL(keep, FLOW_POSITION, struct flow_args, (R(x), R(v), W(kept_x), W(kept_v)))
+static int keep_body(const duite_call *call, const struct keep_fields *on)
+{
+    memcpy(on->kept_x, on->x, duite_count(call, FLOW_INDEX_OF(keep, x)) * sizeof(double));
+    memcpy(on->kept_v, on->v, duite_count(call, FLOW_INDEX_OF(keep, v)) * sizeof(double));
+    return 0;
+}
+
+int flow_keep_as(struct flow_state *state, const struct flow_as *as)
+{
+    struct flow_args args = flow_attempt_args(state);
+    return flow_fork_each_as(state, &flow_kernel_keep, &args, as);
+}
+
+int flow_keep(struct flow_state *state)
+{
+    return flow_keep_as(state, NULL);
+}
+
+FLOW_KERNEL(restore, FLOW_POSITION, struct flow_args,
+            (R(table), R(kept_x), R(kept_v), W(x), W(v), W(rim_x), W(rim_v)))
+static int restore_body(const duite_call *call, const struct restore_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table);
+    memcpy(on->x, on->kept_x, duite_count(call, FLOW_INDEX_OF(restore, x)) * sizeof(double));
+    memcpy(on->v, on->kept_v, duite_count(call, FLOW_INDEX_OF(restore, v)) * sizeof(double));
+    flow_write_rim(&table, on->kept_x, on->rim_x);
+    flow_write_rim(&table, on->kept_v, on->rim_v);
+    return 0;
+}
+
+int flow_restore(struct flow_state *state)
+{
+    struct flow_args args = flow_attempt_args(state);
+    if (!flow_explicit_keeps(state->flow->model))
+        return flow_fork_each(state, &flow_kernel_restore, &args);
+    flow_explicit_restore(state);
+    return DUITE_OK;
+}

@@ -1,0 +1,61 @@
+/* All forces on the rows of a block, in an order that its table gives. What a body needs of
+ * neighbours it finds in their rims. */
+#include "cloth/flow/bodies.h"
+
+#include "cloth/physics/particle.h"
+
+/* Adds the forces inside the cloth. */
+static void add_inner(const duite_call *call, const struct flow_table *t,
+                      const struct flow_view *view, phys_vec *f)
+{
+    struct phys_springs springs = flow_table_inner(t);
+    if (flow_has_elements(t)) {
+        const struct phys_sight sight = flow_elements_see(call, t, view);
+        flow_elements_force(call, t, &sight, f);
+    }
+    if (!t->n_stiff)
+        return;
+    phys_springs_force(&springs, view->x, view->v, f);
+    for (uint32_t s = 0; s < t->n_slots; s++) {
+        springs = flow_table_cut(t, s);
+        phys_springs_force_cut(&springs, view->x, view->v, flow_rows_of(view->rim_x, s),
+                               flow_rows_of(view->rim_v, s), f);
+    }
+}
+
+void flow_forces(const duite_call *call, const struct flow_table *t, const struct flow_view *view,
+                 phys_vec *f)
+{
+    phys_outside(t->n, t->load, t->drag, view->v, f);
+    flow_varying_add(call, t, f);
+    add_inner(call, t, view, f);
+}
+
+void flow_forces_free(const duite_call *call, const struct flow_table *t,
+                      const struct flow_view *view, phys_vec *f)
+{
+    memcpy(f, t->load, t->n * sizeof *f);
+    flow_varying_add(call, t, f);
+    add_inner(call, t, view, f);
+}
+
+FLOW_KERNEL(force, FLOW_FORCE, struct flow_args,
+            (R(table), R(x), R(v), W(f), NEIGHBOURS(rim_x), NEIGHBOURS(rim_v)))
+static int force_body(const duite_call *call, const struct force_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table);
+    const struct flow_view view = FLOW_VIEW(on);
+    flow_forces(call, &table, &view, on->f);
+    return 0;
+}
+
+/* Without the drag. */
+FLOW_KERNEL(force_free, FLOW_FORCE, struct flow_args,
+            (R(table), R(x), R(v), W(f), NEIGHBOURS(rim_x), NEIGHBOURS(rim_v)))
+static int force_free_body(const duite_call *call, const struct force_free_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table);
+    const struct flow_view view = FLOW_VIEW(on);
+    flow_forces_free(call, &table, &view, on->f);
+    return 0;
+}

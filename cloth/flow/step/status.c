@@ -1,0 +1,46 @@
+/* What the tasks of a step note in its status: rows beyond all bounds, and that a stop is asked
+ * for. */
+#include "cloth/flow/bodies.h"
+
+#include "cloth/physics/particle.h"
+
+void flow_note_stop(const duite_call *call, double *status)
+{
+    const struct flow_progress *progress = flow_of(call)->progress;
+    if (progress && progress->stop && progress->stop(progress->context))
+        status[FLOW_STOP] = 1;
+}
+
+int flow_check(const duite_call *call, const struct flow_table *t, const phys_vec *y,
+               const char *what, double *status)
+{
+    const size_t bad = phys_diverged(t->n, FLOW_BOUND, y);
+    const struct flow_args *args = flow_args_of(call);
+    flow_note_stop(call, status);
+    if (bad < t->n)
+        status[FLOW_BEYOND] = 1;
+    if (bad == t->n || !args->last)
+        return 0;
+    return duite_fail(
+        call, FLOW_DIVERGED,
+        "step %.0f: the %s of vertex %u in block %u is (%g, %g, %g): the run diverged",
+        flow_step_number(args->begin), what, t->vertex[bad], args->block, y[bad][0], y[bad][1],
+        y[bad][2]);
+}
+
+FLOW_KERNEL(status, FLOW_NO_PART, struct flow_args, (SUM(status)))
+static int status_body(const duite_call *call, const struct status_fields *on)
+{
+    flow_note_stop(call, on->status);
+    return 0;
+}
+
+/* On every rank, also one of no block. */
+int flow_status_fork(struct flow_state *state)
+{
+    const struct flow_args args = flow_attempt_args(state);
+    int code = DUITE_OK;
+    for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
+        code = flow_fork_at(state, rank, &flow_kernel_status, &args, NULL);
+    return code;
+}

@@ -1,6 +1,6 @@
 #!/bin/sh
 # run.sh TEST: runs one test for automake's TAP driver, which takes the 77 of a skipped test for a failure. A test that is
-# stuck ends after an hour. Temporary files are in a folder of the test's own, those of Open MPI too: programs of several tests
+# stuck ends after an hour, a long one after eight. Temporary files are in a folder of the test's own, those of Open MPI too: programs of several tests
 # that start at the same moment trip over each other in the one that all runs of a user share.
 . "${0%/*}/mpi.sh"
 case $1 in
@@ -18,6 +18,10 @@ esac
 folder=$(mktemp -d "${TMPDIR:-/tmp}/duite.XXXXXX") || exit 99
 trap 'rm -rf "$folder"' EXIT
 trap 'exit 99' HUP INT TERM
-TMPDIR=$folder timeout --kill-after=10 3600 "$@"
+case $1 in
+    *_long.sh) seconds=28800 ;;
+    *) seconds=3600 ;;
+esac
+TMPDIR=$folder timeout --kill-after=10 $seconds "$@"
 status=$?
 test $status = 77 || exit $status

@@ -17,6 +17,8 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/schema/words.c \
 	cloth/scene/schema/fabrics.h \
 	cloth/scene/schema/fabrics.c \
+	cloth/scene/schema/choice.h \
+	cloth/scene/schema/choice.c \
 	cloth/scene/schema/check.h \
 	cloth/scene/schema/check.c \
 	cloth/scene/build/build.h \

@@ -3,6 +3,7 @@
  * reported by `wrong` or `unknown`, so all of them have one form. `base` is the structure that the
  * fields of a rule belong to; NULL: nothing is filled. */
 #include "cloth/scene/schema/check.h"
+#include "cloth/scene/schema/choice.h"
 #include "cloth/scene/schema/store.h"
 #include "cloth/scene/yaml/edit.h"
 #include "cloth/scene/yaml/scalar.h"
@@ -227,6 +228,7 @@ static int check_map(struct walk *walk, const struct place *at, const struct sce
                      int node, void *base)
 {
     int code = check_names(walk, at, node);
+    scene_choice_settle(walk->tree, node, rule->inside, false);
     if (!code)
         code = check_values(walk, at, rule->inside, node, base);
     if (!code)
@@ -238,6 +240,7 @@ static int check_one_of(struct walk *walk, const struct place *at, const struct 
                         int node, void *base)
 {
     int code = check_names(walk, at, node);
+    scene_choice_settle(walk->tree, node, rule->inside, true);
     if (!code)
         code = check_values(walk, at, rule->inside, node, base);
     size_t n = scene_tree_length(walk->tree, node);

@@ -237,3 +237,11 @@ int scene_edit_default(struct scene_tree *tree, int map, const char *key, const 
         key_node = out_of_memory(error);
     return key_node ? CLOTH_OK : error->code;
 }
+
+void scene_edit_remove(struct scene_tree *tree, int map, size_t i)
+{
+    yaml_node_t *node = scene_tree_node(tree, map);
+    yaml_node_pair_t *pair = node->data.mapping.pairs.start + i;
+    node->data.mapping.pairs.top--;
+    memmove(pair, pair + 1, (size_t)(node->data.mapping.pairs.top - pair) * sizeof *pair);
+}

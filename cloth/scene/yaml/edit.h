@@ -13,4 +13,7 @@ int scene_edit_sets(struct scene_tree *tree, struct cloth_error *error);
 int scene_edit_default(struct scene_tree *tree, int map, const char *key, const char *value,
                        struct cloth_error *error);
 
+/* Takes pair i from a map. */
+void scene_edit_remove(struct scene_tree *tree, int map, size_t i);
+
 #endif

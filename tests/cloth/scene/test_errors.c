@@ -192,8 +192,12 @@ START_TEST(sets_that_are_wrong)
          "cloths[1].mesh is missing; a map with exactly one of grid, file, inline is expected"},
         {"cloths[0].pins[0].vertices[0]=12", "vertex 12 is outside the mesh of cloth 'sheet', "
                                              "which has 12 vertices; 0 to 11 are allowed"},
-        {"cloths[0].pins[0].nearest=[0, 0, 0]", "cloths[0].pins[0] has both vertices and nearest; "
-                                                "one of vertices or nearest or box is expected"},
+        {"cloths[0].pins[0]={vertices: [0], nearest: [0, 0, 0]}",
+         "cloths[0].pins[0] has both vertices and nearest; one of vertices or nearest or box is "
+         "expected"},
+        {"solver.stop={count: 3, absolute: 1}",
+         "solver.stop has 2 keys; a map with exactly one of relative, absolute, mass_norm, "
+         "normalised, count is expected"},
         {"time", "KEY=VALUE is expected, such as time.h=0.002"},
         {"", "KEY=VALUE is expected, such as time.h=0.002"},
         {"=1", "KEY=VALUE is expected, such as time.h=0.002"},

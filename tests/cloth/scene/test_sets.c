@@ -78,6 +78,37 @@ START_TEST(sets_make_and_append)
 }
 END_TEST
 
+/* The last one of those that exclude each other; what an alias shares has its own. */
+START_TEST(a_choice_replaces_a_choice)
+{
+    char *text = scene_changed(scene_right, "time:", "solver: {stop: {relative: 0.1}}\ntime:");
+    const struct scene_set sets[] = {{.text = "solver.stop.mass_norm=0.2"},
+                                     {.text = "solver.stop.absolute=0.3"},
+                                     {.text = "solver.stop.relative=0.4"}};
+    static const enum model_stop stop[] = {MODEL_STOP_MASS_NORM, MODEL_STOP_ABSOLUTE,
+                                           MODEL_STOP_RELATIVE};
+    static const double tolerance[] = {0.2, 0.3, 0.4};
+    for (size_t n = 1; n <= 3; n++) {
+        struct model model = scene_read_right(text, n, sets);
+        ck_assert_int_eq(model.stop, stop[n - 1]);
+        ck_assert_double_eq(model.tolerance, tolerance[n - 1]);
+        model_free(&model);
+    }
+    free(text);
+    text = scene_changed(scene_right, "[{vertices: [0, 3]}]",
+                         "[&p {vertices: [0, 3], motion: {times: [0]}}, *p]");
+    struct model model = scene_read_right(
+        text, 1, &(struct scene_set){.text = "cloths[0].pins[1].nearest=[1, 2, 3]"});
+    ck_assert_int_eq(model.cloths[0].pins[0].pick.kind, MODEL_PICK_VERTICES);
+    ck_assert_int_eq(model.cloths[0].pins[1].pick.kind, MODEL_PICK_NEAREST);
+    ck_assert_ptr_null(model.cloths[0].pins[1].pick.vertices);
+    ck_assert_double_eq(model.cloths[0].pins[1].pick.point[2], 3);
+    ck_assert_uint_eq(model.n_motions, 2);
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
 START_TEST(sets_leave_aliases_alone)
 {
     char *text =
@@ -102,6 +133,7 @@ int main(void)
     TCase *cases = tcase_create("sets");
     tcase_add_test(cases, sets_change_values);
     tcase_add_test(cases, sets_make_and_append);
+    tcase_add_test(cases, a_choice_replaces_a_choice);
     tcase_add_test(cases, sets_leave_aliases_alone);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -1,0 +1,44 @@
+/* A map that a set changed belongs to this place alone (edit.h), so keys may be taken from it. */
+#include "cloth/scene/schema/choice.h"
+#include "cloth/scene/yaml/edit.h"
+
+#include <string.h>
+
+/* Which set gave a node, from 1; 0: none did. */
+static size_t set_of(const struct scene_tree *tree, int node)
+{
+    const yaml_mark_t mark = scene_tree_node(tree, node)->start_mark;
+    return mark.index == SCENE_BY_SET ? mark.line + 1 : 0;
+}
+
+/* Which set was the last to give a key or its value. */
+static size_t set_of_pair(const struct scene_tree *tree, yaml_node_pair_t pair)
+{
+    const size_t key = set_of(tree, pair.key), value = set_of(tree, pair.value);
+    return key > value ? key : value;
+}
+
+static bool is_choice(const struct scene_tree *tree, const struct scene_rule *keys, bool all,
+                      yaml_node_pair_t pair)
+{
+    const char *name = scene_tree_scalar(tree, pair.key);
+    while (name && keys->key && strcmp(keys->key, name) != 0)
+        keys++;
+    return name && keys->key && (all || keys->choice);
+}
+
+void scene_choice_settle(struct scene_tree *tree, int map, const struct scene_rule *keys, bool all)
+{
+    size_t last = 0;
+    for (size_t i = 0; i < scene_tree_length(tree, map); i++) {
+        const yaml_node_pair_t pair = scene_tree_pair(tree, map, i);
+        const size_t set = set_of_pair(tree, pair);
+        if (is_choice(tree, keys, all, pair) && set > last)
+            last = set;
+    }
+    for (size_t i = scene_tree_length(tree, map); i > 0; i--) {
+        const yaml_node_pair_t pair = scene_tree_pair(tree, map, i - 1);
+        if (is_choice(tree, keys, all, pair) && set_of_pair(tree, pair) < last)
+            scene_edit_remove(tree, map, i - 1);
+    }
+}

@@ -235,6 +235,8 @@ static int prepare(struct run *run)
     if (code || check_stop(run))
         return code;
     const char *warning;
+    for (uint32_t i = 0; run->rank == 0 && i < run->model.n_warnings; i++)
+        fprintf(stderr, "duite-cloth: warning: %s\n", run->model.warnings[i]);
     for (size_t i = 0; run->rank == 0 && (warning = flow_warning(run->flow, i)); i++)
         fprintf(stderr, "duite-cloth: warning: %s\n", warning);
     if (run->rank == 0 && run->model.n_probes && !options->output)

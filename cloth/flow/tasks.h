@@ -73,8 +73,8 @@ struct flow {
     void *shared;              /* obstacles, key frames, slots and copies that the above point to */
 
     /* Rank 0 only. */
-    char warning[8][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
-                             extents; empty: none */
+    char warning[9][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
+                             extents, shear; empty: none */
     struct flow_source source; /* until the tables are dealt */
     uint32_t *vertex;          /* by place; from then on */
     struct flow_rest rest;

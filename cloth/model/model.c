@@ -72,6 +72,9 @@ void model_free(struct model *model)
     free(model->materials);
     free(model->cloths);
     free(model->obstacles);
+    for (uint32_t i = 0; i < model->n_warnings; i++)
+        free(model->warnings[i]);
+    free(model->warnings);
     free(model->name);
     free(model->h_place);
     free(model->fps_place);

@@ -269,6 +269,9 @@ struct model {
                        PHYS_DEFINITE to all else */
 
     uint32_t grain; /* vertices a block */
+
+    uint32_t n_warnings;
+    char **warnings; /* what is odd about the scene but no error, each with its place */
 };
 
 /* Whether its steps solve a linear system. */

@@ -255,11 +255,24 @@ idle() { # SENTENCE SCENE...: a key that means nothing to the cloth is warned of
 one='cloths[0].mesh={inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], triangles: [[0, 1, 2]]}}'
 ok "a ratio of springs" idle "poisson is of triangles" scene.yaml --set materials.cotton.poisson=0.3
 ok "forces of springs" idle "forces is of triangles" scene.yaml --set materials.cotton.forces=uncorrected
-ok "bend of triangles" idle "bend is of springs" scene.yaml --set materials.cotton.model=triangles --set materials.cotton.bend=1
+ok "bend of triangles" idle "bend is of springs" scene.yaml --set materials.cotton.model=triangles --set materials.cotton.bend=1 --set materials.cotton.shear=9
 ok "shear of a mesh without rows" idle "shear is of the springs of grids" scene.yaml --set "$one" --set 'cloths[0].pins=[]' --set materials.cotton.shear=1
 chain='cloths[0]={mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}, material: cotton, mass_per_vertex: 1}'
 ok "EA of a sheet" idle "ea is of edges without triangles" scene.yaml --set materials.cotton.ea=1
 side='cloths[0]={mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], edges: [[0, 1]], triangles: [[0, 1, 2]]}}, material: cotton}'
 ok "EA of an edge that is a triangle's side" idle "ea is of edges without triangles" scene.yaml --set "$side" --set materials.cotton.ea=1
 ok "an edge that is a triangle's side needs none" "$DUITE_CLOTH" scene.yaml --end 0.01 --quiet --set "$side"
+ok "bend of a chain" idle "bend and bending are of triangles" scene.yaml --set "$chain" --set 'materials.cotton={ea: 1, bend: 1}'
+ok "damping of bending that is none" idle "damping.bending is of bending" scene.yaml --set materials.cotton.damping.bending=1
+shears() { # triangles without shear say so, with it nothing
+    prints run scene.yaml --end 0.002 --set materials.cotton.model=triangles && cat complained &&
+        test "$(cat complained)" = "duite-cloth: warning: scene.yaml:4:5: material 'cotton' makes triangles of cloth 'cloth1' that do not resist being sheared: its shear is 0" &&
+        prints run scene.yaml --end 0.002 --set materials.cotton.model=triangles --set materials.cotton.shear=9 && test ! -s complained
+}
+ok "triangles without shear" shears
+idle_scene() { # keys that do nothing in a scene are warned of, and the run is made
+    prints run scene.yaml --end 0.002 --set integrator=rk4 --set solver.stop.count=3 && cat complained &&
+        test "$(cat complained)" = "duite-cloth: warning: --set solver.stop.count=3: solver means nothing: explicit steps solve no system"
+}
+ok "a solver of explicit steps" idle_scene
 ok "stretch of a chain" idle "stretch is of triangles and threads" scene.yaml --set "$chain" --set materials.cotton.ea=1

@@ -41,6 +41,11 @@ static const char *idle_key(const struct model *model, const struct model_materi
         return "ea is of edges without triangles";
     if (material->stretch > 0 && !triangles)
         return "stretch is of triangles and threads; edges without triangles have ea";
+    if ((material->bend > 0 || material->bending != MODEL_NO_BENDING) && !triangles)
+        return "bend and bending are of triangles and threads, which edges without triangles lack";
+    if (model_damping_bending(material) != material->damping_stiffness && material->bend <= 0 &&
+        material->bending == MODEL_NO_BENDING)
+        return "damping.bending is of bending and of bend springs, and it has neither";
     if (material->model == MODEL_TRIANGLES)
         return material->bend > 0 ? "bend is of springs; triangles have bending" : NULL;
     if (material->poisson < 0 || material->poisson > 0)
@@ -51,6 +56,24 @@ static const char *idle_key(const struct model *model, const struct model_materi
                ? "shear is of the springs of grids, and of "
                  "triangles; other meshes have no diagonals"
                : NULL;
+}
+
+/* Diagonals that nothing but such triangles holds fold without a force. */
+static void warn_of_shear(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    for (uint32_t c = 0; c < model->n_cloths; c++)
+        for (uint32_t i = 0; i <= model->cloths[c].n_regions && !flow->warning[8][0]; i++) {
+            const struct model_cloth *cloth = model->cloths + c;
+            const struct model_material *material = model_material(model, cloth, i);
+            if (material->model == MODEL_TRIANGLES && !(material->shear > 0) &&
+                cloth->mesh.n_triangles)
+                snprintf(flow->warning[8], sizeof flow->warning[8],
+                         "%.200s%smaterial '%.60s' makes triangles of cloth '%.60s' that do not "
+                         "resist being sheared: its shear is 0",
+                         cloth->place ? cloth->place : "", cloth->place ? ": " : "",
+                         material->name ? material->name : "", cloth->name ? cloth->name : "");
+        }
 }
 
 static void warn_of_moduli(struct flow *flow)
@@ -107,6 +130,7 @@ int flow_warn(struct flow *flow, struct cloth_error *error)
 {
     warn(flow, &flow->source.particles);
     warn_of_moduli(flow);
+    warn_of_shear(flow);
     warn_of_extent(flow);
     return flow_warn_of_steps(flow, error);
 }

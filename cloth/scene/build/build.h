@@ -33,6 +33,9 @@ int scene_build_joints(struct model *model, const struct scene_tree *tree,
 int scene_build_cloth_of(uint32_t *cloth, const char *what, const struct model *model,
                          const struct scene_tree *tree, int node, struct cloth_error *error);
 
+/* Warnings of keys that do nothing in this scene; after all others. */
+int scene_build_idle(struct model *model, const struct scene_tree *tree, struct cloth_error *error);
+
 /* The material, by number, that the key material of a map names, for a cloth whose
  * mass_per_vertex is known. */
 int scene_build_material(uint32_t *material, const struct model_cloth *cloth,

@@ -19,6 +19,7 @@ static size_t width_of(const struct scene_rule *rule)
     switch (rule->type) {
     case SCENE_NUMBER:
     case SCENE_NUMBER_OR_WORD:
+    case SCENE_NUMBER_OR_WORD:
         return sizeof(double);
     case SCENE_INTEGER:
         return sizeof(uint32_t);
@@ -128,7 +129,7 @@ static void check_words(const struct model_word *words)
 static void check_all_words(const struct scene_rule *rule)
 {
     const bool map = rule->type == SCENE_MAP || rule->type == SCENE_ONE_OF;
-    if (rule->type == SCENE_CHOICE)
+    if (rule->words)
         check_words(rule->words);
     for (const struct scene_rule *key = rule->inside; map && key->key; key++)
         check_all_words(key);

@@ -1,0 +1,117 @@
+/* A key that does nothing beside the others draws one warning, with its place; the scene is read
+ * all the same. */
+#include "tests/cloth/scene/scene_file.h"
+#include "tests/support/unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SETS = 4 };
+
+/* Sets, of which the last one but for NULLs is that of the idle key, and what it is told; NULL:
+ * there is no warning. */
+static const struct {
+    const char *set[MOST_SETS], *warning;
+} cases[] = {
+    {{"contact=filter"}, NULL},
+    {{"contact=project", "integrator=bdf2"}, NULL},
+    {{"integrator=bdf2", "contact=filter"},
+     "contact filter is of implicit_euler in one linear step"},
+    {{"newton.steps=2", "contact=filter"},
+     "contact filter is of implicit_euler in one linear step"},
+    {{"integrator=verlet", "contact=filter"}, "contact filter is of implicit_euler in one"},
+    {{"obstacles=[]", "contact=filter"}, "contact filter says how obstacles are met"},
+    {{"solver.stop.count=3"}, NULL},
+    {{"integrator=rk4", "solver.stop.count=3"}, "solver means nothing: explicit steps"},
+    {{"integrator=rk4", "newton.steps=3"}, "newton means nothing: explicit steps"},
+    {{"newton.steps=3", "newton.tolerance=0.1"}, NULL},
+    {{"newton.tolerance=0.1"}, "newton.tolerance means nothing: it spares Newton steps"},
+    {{"solver.guess=previous"}, NULL},
+    {{"integrator=bdf2", "solver.guess=previous"}, "solver.guess previous is of implicit_euler"},
+    {{"newton.steps=2", "solver.guess=previous"}, "solver.guess previous is of implicit_euler"},
+    {{"solver.max_iterations=9"}, NULL},
+    {{"solver.stop.count=3", "solver.max_iterations=9"}, "solver.max_iterations means nothing"},
+    {{"solver.patches=2"}, NULL},
+    {{"solver.preconditioner=ic0", "solver.patches=2"}, "solver.patches means nothing"},
+    {{"solver.jacobian=absolute"}, NULL},
+    {{"materials.cotton.model=triangles", "solver.jacobian=absolute"},
+     "solver.jacobian absolute is of springs"},
+    {{"solver.format=springs"}, NULL},
+    {{"materials.cotton.model=triangles", "solver.format=half"}, NULL},
+    {{"materials.cotton.model=triangles", "solver.format=springs"},
+     "solver.format springs holds springs alone"},
+    {{"time.stretch_growth=0.2"}, NULL},
+    {{"time.halving=off", "time.stretch_growth=0.2"}, "time.stretch_growth means nothing"},
+    {{"time.energy_growth=0.2"}, NULL},
+    {{"integrator=rk4", "time.energy_growth=0"}, NULL},
+    {{"integrator=rk4", "time.energy_growth=0.2"}, "time.energy_growth means nothing"},
+    {{"air={wind: [1, 0, 0]}", "time.energy_growth=0.2"}, "time.energy_growth means nothing"},
+    {{"time.rest={}", "cloths[0].loads[0].course.keys=[[0, 1]]"}, NULL},
+    {{"cloths[0].loads[0].course.sine.frequency=1", "time.rest={}"}, "time.rest means nothing"},
+    {{"air={}"}, NULL},
+    {{"air={wind: [0, 0, 1], course: {keys: [[0, 1]]}}"}, NULL},
+    {{"air={course: {keys: [[0, 1]]}}"}, "air.course means nothing"},
+    {{"cloths[0]={mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}, material: "
+      "cotton}",
+      "materials.cotton.ea=1", "air={}"},
+     "air means nothing: it blows on triangles"},
+    {{"cloths[0].start=[{vertices: [1], velocity: [0, 0, 0]}]"}, NULL},
+    {{"cloths[0].start=[{vertices: [1]}]"}, "a start changes nothing"},
+    {{"cloths[0].start=[{vertices: [1], spin: [1, 0, 0], about: [1, 0, 0]}]"}, NULL},
+    {{"cloths[0].start=[{vertices: [1], velocity: [1, 0, 0], about: [1, 0, 0]}]"},
+     "about means nothing: the start has no scale, rotate or spin"},
+    {{"cloths[0].start=[{vertices: [1], wave: {vector: [1, 0, 0], translate: [0, 1, 0]}}]"}, NULL},
+    {{"cloths[0].start=[{vertices: [1], wave: {vector: [1, 0, 0]}}]"}, "a wave has neither"},
+    {{"cloths[0].pins[0].motion={times: [0], rotate: [[1, 0, 0, 0]], about: [1, 0, 0]}"}, NULL},
+    {{"cloths[0].pins[0].motion={times: [0]}"}, "a motion has neither translate nor rotate"},
+    {{"cloths[0].pins[0].motion={times: [0], translate: [[0, 0, 0]], about: [1, 0, 0]}"},
+     "about means nothing: the motion does not rotate"},
+};
+
+START_TEST(idle_keys_are_warned_of)
+{
+    struct scene_set sets[MOST_SETS];
+    size_t n = 0;
+    while (n < MOST_SETS && cases[_i].set[n]) {
+        sets[n] = (struct scene_set){.text = cases[_i].set[n]};
+        n++;
+    }
+    char begin[500];
+    snprintf(begin, sizeof begin, "--set %s: %s", cases[_i].set[n - 1],
+             cases[_i].warning ? cases[_i].warning : "");
+    struct model model = scene_read_right(scene_right, n, sets);
+    ck_assert_msg(model.n_warnings == (cases[_i].warning != NULL), "%u warnings; %s",
+                  model.n_warnings, model.n_warnings ? model.warnings[0] : begin);
+    if (cases[_i].warning)
+        ck_assert_msg(!strncmp(model.warnings[0], begin, strlen(begin)), "\"%s\", not \"%s\"",
+                      model.warnings[0], begin);
+    model_free(&model);
+}
+END_TEST
+
+/* In the file the place is that of the value. */
+START_TEST(places_in_files)
+{
+    char *text = scene_changed(scene_right, "gravity:", "contact: filter\ngravity:");
+    struct model model =
+        scene_read_right(text, 1, &(struct scene_set){.text = "integrator=explicit_euler"});
+    const size_t path = strlen(scene_path());
+    ck_assert_uint_eq(model.n_warnings, 1);
+    ck_assert_msg(!strncmp(model.warnings[0], scene_path(), path), "%s", model.warnings[0]);
+    ck_assert_msg(!strncmp(model.warnings[0] + path, ":2:10: contact", 14), "%s",
+                  model.warnings[0]);
+    model_free(&model);
+    free(text);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("idle keys");
+    TCase *all = tcase_create("keys");
+    tcase_add_loop_test(all, idle_keys_are_warned_of, 0, sizeof cases / sizeof *cases);
+    tcase_add_test(all, places_in_files);
+    suite_add_tcase(suite, all);
+    return unit_run(suite);
+}

@@ -151,13 +151,16 @@ void element_each(const struct element_cloths *cloths,
 
 /* ---- Making ---- */
 
-static int check_format(const struct model *model, struct cloth_error *error)
+static int check_format(const struct model *model, const struct model_cloth *cloth,
+                        struct cloth_error *error)
 {
-    if (model->format != SOLVE_SPRINGS)
+    const struct element_kind *kind = element_in_matrix(model, cloth);
+    if (model->format != SOLVE_SPRINGS || !kind)
         return CLOTH_OK;
-    return cloth_fail(error, CLOTH_E_INPUT,
-                      "a matrix of springs cannot hold triangles or bending; the format half or "
-                      "half_float is expected");
+    return cloth_fail(
+        error, CLOTH_E_INPUT,
+        "a matrix of springs cannot hold %s; the format half or half_float is expected",
+        kind->name);
 }
 
 static int check_cloth(const struct element_cloths *cloths, uint32_t c, struct cloth_error *error)
@@ -177,7 +180,7 @@ static int make_cloth(struct element_cloths *cloths, uint32_t c, struct cloth_er
     struct cloth_error inner = {0};
     if (!element_parts(model, cloth))
         return CLOTH_OK;
-    int code = element_in_matrix(model, cloth) ? check_format(model, error) : CLOTH_OK;
+    int code = check_format(model, cloth, error);
     if (code)
         return code;
     mesh_axes(model_rest(cloth), cloths->axis[c][0], cloths->axis[c][1]);

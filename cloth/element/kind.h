@@ -129,10 +129,11 @@ ELEMENT_ALL(ELEMENT_DECLARE)
 
 extern const struct element_kind *const element_kinds[ELEMENT_KINDS];
 
-/* Which parts of a cloth are elements: bit 1 << part. Of a cloth that has any: whether the matrix
- * knows of some. */
+/* Which parts of a cloth are elements: bit 1 << part. The first kind of them that the matrix knows;
+ * NULL: none, so that a matrix of springs can hold the cloth. */
 unsigned element_parts(const struct model *model, const struct model_cloth *cloth);
-bool element_in_matrix(const struct model *model, const struct model_cloth *cloth);
+const struct element_kind *element_in_matrix(const struct model *model,
+                                             const struct model_cloth *cloth);
 
 /* Fills list->material of a kind, n_materials times its material_bytes. */
 void element_materials(const struct element_kind *kind, const struct model *model, void *to);

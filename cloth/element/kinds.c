@@ -13,12 +13,13 @@ unsigned element_parts(const struct model *model, const struct model_cloth *clot
     return parts;
 }
 
-bool element_in_matrix(const struct model *model, const struct model_cloth *cloth)
+const struct element_kind *element_in_matrix(const struct model *model,
+                                             const struct model_cloth *cloth)
 {
-    bool in = false;
     for (int i = 0; i < ELEMENT_KINDS; i++)
-        in = in || (element_kinds[i]->pairs && element_kinds[i]->has(model, cloth));
-    return in;
+        if (element_kinds[i]->pairs && element_kinds[i]->has(model, cloth))
+            return element_kinds[i];
+    return NULL;
 }
 
 void element_materials(const struct element_kind *kind, const struct model *model, void *to)

@@ -152,7 +152,7 @@ static const struct scene_rule solver_keys[] = {
     {"format", SCENE_CHOICE, .fallback = "springs", INTO(struct model, format),
      WORDS({"springs", SOLVE_SPRINGS}, {"half", SOLVE_HALF}, {"half_float", SOLVE_HALF_FLOAT}),
      .about = "how the matrix is kept: four numbers a spring, or nine a pair of vertices, in "
-              "double or float; triangles and bending take half for springs"},
+              "double or float; what is more than springs takes half for springs"},
     {"jacobian", SCENE_CHOICE, .fallback = "definite", INTO(struct model, full_slope),
      WORDS({"definite", PHYS_DEFINITE}, {"full", PHYS_FULL}, {"absolute", PHYS_ABSOLUTE}),
      .about = "definite: without what could make the matrix indefinite; full: the whole slope; "

@@ -291,7 +291,7 @@ START_TEST(bending_that_does_not_suit)
     setup.material.bending = MODEL_QUADRATIC;
     setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
     record_run(&record, &setup.model);
-    says(&record, CLOTH_E_INPUT, "a matrix of springs cannot hold triangles or bending; ");
+    says(&record, CLOTH_E_INPUT, "a matrix of springs cannot hold hinges; ");
     record_free(&record);
     setup.model.format = SOLVE_HALF;
     setup.cloth.mesh.position[3 * 8 + 1] = 0.1;

@@ -5,4 +5,5 @@ libduite_cloth_la_SOURCES += \
     cloth/element/cloths.c cloth/element/cloths.h \
     cloth/element/kind.h \
     cloth/element/kinds.c \
+    cloth/element/strain_limit.c \
     cloth/element/triangles.c

@@ -34,6 +34,8 @@ struct model_material {
     double damping_stiffness; /* s: along each spring, times its k; of strains and angles too */
     double damping_excess;    /* s: what it is of bending less that */
     double ea;                /* N, >= 0: force / strain of an edge without triangles */
+    double limit_strain;      /* >= 0: edges stretched beyond it are pulled back, */
+    double limit_stiffness;   /* by so many N/m, >= 0; 0: they are not */
     int both_diagonals;       /* grids: shear springs along both diagonals of a cell */
 };
 

@@ -12,6 +12,7 @@ libduite_cloth_la_SOURCES += \
     cloth/physics/particle.c cloth/physics/particle.h \
     cloth/physics/spring.c cloth/physics/spring.h \
     cloth/physics/stage.c cloth/physics/stage.h cloth/physics/tiny.h \
+    cloth/physics/strain_limit.c cloth/physics/strain_limit.h \
     cloth/physics/triangle.c cloth/physics/triangle_system.c cloth/physics/triangle.h \
     cloth/physics/vec.h \
     cloth/physics/detail/hinge.h \

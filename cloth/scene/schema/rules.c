@@ -31,6 +31,13 @@ static const struct scene_rule bending_keys[] = {
      .about = "one, or those of warp and weft"},
     {0}};
 
+static const struct scene_rule limit_keys[] = {
+    {"at", SCENE_NUMBER, .required = true, .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_material, limit_strain), .about = "strain from which on it acts"},
+    {"stiffness", SCENE_NUMBER, "N/m", .required = true, .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_material, limit_stiffness), .about = "of each edge beyond it"},
+    {0}};
+
 /* The list of two takes the member that follows, too. */
 #define STRETCH_AND_WEFT \
     .field = {offsetof(struct model_material, stretch), sizeof(double[2]), \
@@ -62,6 +69,8 @@ static const struct scene_rule material_keys[] = {
     {"bend", SCENE_NUMBER, "N/m", "0", .range = SCENE_NOT_NEGATIVE,
      INTO(struct model_material, bend), .about = "of springs over two edges"},
     {"bending", SCENE_MAP, .inside = bending_keys, .about = "rigidity about edges"},
+    {"strain_limit", SCENE_MAP, .inside = limit_keys,
+     .about = "springs that pull edges back which are stretched too far"},
     {"damping", SCENE_MAP, .fallback = "{}", .inside = damping_keys, .about = "of motion"},
     {"diagonals", SCENE_CHOICE, .fallback = "both", INTO(struct model_material, both_diagonals),
      WORDS({"both", true}, {"one", false}), .about = "shear springs in a cell of a grid"},

@@ -86,9 +86,11 @@ static struct model_material material[CLOTHS] = {
      .poisson = 0.3,
      .bending = MODEL_HINGES,
      .rigidity = {1, 2},
-     .damping_stiffness = 0.02},
+     .damping_stiffness = 0.02,
+     .limit_strain = 0.05,
+     .limit_stiffness = 30},
     {.density = 1, .stretch = 20, .bending = MODEL_QUADRATIC, .rigidity = {2, 1}},
-    {.density = 1, .stretch = 20},
+    {.density = 1, .stretch = 20, .limit_strain = 0.02, .limit_stiffness = 30},
 };
 
 /* Triangles with hinges; springs that bend by the quadratic energy; springs of a grid's cells. */

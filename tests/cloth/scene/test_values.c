@@ -205,7 +205,8 @@ START_TEST(triangles_and_bending)
     struct model model = read_changed(
         "  cotton: {density: 0.2, stretch: 50, damping: {mass: 0.1}}\n",
         "  cotton: {density: 1, model: triangles, stretch: [30, 20], shear: 3, poisson: -0.5,\n"
-        "           forces: uncorrected, bending: {model: quadratic, rigidity: [5, 6]}}\n"
+        "           forces: uncorrected, bending: {model: quadratic, rigidity: [5, 6]},\n"
+        "           strain_limit: {at: 0.1, stiffness: 7}}\n"
         "solver: {jacobian: full}\n");
     const struct model_material *m = model.materials;
     ck_assert_int_eq(model.format, SOLVE_HALF);
@@ -218,6 +219,11 @@ START_TEST(triangles_and_bending)
     ck_assert_int_eq(m->bending, MODEL_QUADRATIC);
     ck_assert_double_eq(m->rigidity[0], 5);
     ck_assert_double_eq(m->rigidity[1], 6);
+    ck_assert_double_eq(m->limit_strain, 0.1);
+    ck_assert_double_eq(m->limit_stiffness, 7);
+    model_free(&model);
+    model = read_changed("stretch: 50", "stretch: 50, strain_limit: {at: 0, stiffness: 7}");
+    ck_assert_int_eq(model.format, SOLVE_HALF);
     model_free(&model);
     model = read_changed("material: cotton", "rest: uv\n    material: cotton\n"
                                              "    transform: {scale: 3}");

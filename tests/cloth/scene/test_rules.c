@@ -19,7 +19,6 @@ static size_t width_of(const struct scene_rule *rule)
     switch (rule->type) {
     case SCENE_NUMBER:
     case SCENE_NUMBER_OR_WORD:
-    case SCENE_NUMBER_OR_WORD:
         return sizeof(double);
     case SCENE_INTEGER:
         return sizeof(uint32_t);

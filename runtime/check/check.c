@@ -5,6 +5,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/memory.h"
+#include "runtime/check/region.h"
 #include "runtime/data/law.h"
 #include "runtime/data/sum.h"
 #include "runtime/task/task.h"
@@ -13,100 +14,6 @@
 #include <setjmp.h>
 #include <signal.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
-/* ---- Regions ---- */
-
-/* Bytes on pages of their own, with a guard on either side. The bytes end as near to the second
- * guard as their alignment (64) allows; the rest of the pages is filled with a known byte, and
- * compared later. */
-struct region {
-    char *base; /* of the mapping: guard, pages, guard; NULL: none */
-    size_t mapped;
-    char *data;
-    size_t bytes;
-    /* Whose: the task, its kernel, which parameter (CHECK_ARGS: its arguments). */
-    uint64_t number;
-    const char *kernel;
-    size_t param;
-};
-
-#define CHECK_ARGS SIZE_MAX
-
-enum { GUARD = 1 << 18 }; /* bytes, a multiple of every page size; they take address space only */
-
-static size_t page_bytes(void)
-{
-    return (size_t)sysconf(_SC_PAGESIZE);
-}
-
-/* Maps the region, all of it filled with `fill`, readable and writable. False without memory. */
-static bool region_map(struct region *region, size_t bytes, unsigned char fill)
-{
-    size_t pages = (bytes + page_bytes() - 1) / page_bytes() * page_bytes();
-    region->mapped = pages + 2 * (size_t)GUARD;
-    region->base = mmap(NULL, region->mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (region->base == MAP_FAILED) {
-        region->base = NULL;
-        return false;
-    }
-    region->bytes = bytes;
-    region->data = region->base + GUARD + (pages - bytes) / 64 * 64;
-    if (pages && mprotect(region->base + GUARD, pages, PROT_READ | PROT_WRITE))
-        return false;
-    memset(region->base + GUARD, fill, pages);
-    return true;
-}
-
-static size_t region_inner(const struct region *region)
-{
-    return region->mapped - 2 * (size_t)GUARD;
-}
-
-/* From now on it can be read only. */
-static bool region_protect(const struct region *region)
-{
-    return !region_inner(region) ||
-           !mprotect(region->base + GUARD, region_inner(region), PROT_READ);
-}
-
-/* From now on any access faults. Its address space stays taken, so that a stale pointer cannot
- * meet new bytes. */
-static void region_forbid(const struct region *region)
-{
-    if (!region_inner(region))
-        return;
-    madvise(region->base + GUARD, region_inner(region), MADV_DONTNEED);
-    mprotect(region->base + GUARD, region_inner(region), PROT_NONE);
-}
-
-/* Gives the address space back. */
-static void region_unmap(struct region *region)
-{
-    if (region->base)
-        munmap(region->base, region->mapped);
-    region->base = NULL;
-}
-
-/* Whether every byte around the data still is what it was filled with. */
-static bool region_whole(const struct region *region, unsigned char fill)
-{
-    const char *end = region->base + GUARD + region_inner(region);
-    for (const char *at = region->base + GUARD; at < region->data; at++)
-        if ((unsigned char)*at != fill)
-            return false;
-    for (const char *at = region->data + region->bytes; at < end; at++)
-        if ((unsigned char)*at != fill)
-            return false;
-    return true;
-}
-
-static bool region_has(const struct region *region, const void *address)
-{
-    const char *at = address;
-    return region->base && at >= region->base && at < region->base + region->mapped;
-}
 
 /* ---- Frames ---- */
 
@@ -115,7 +22,7 @@ static const unsigned char FILL[2] = {0xa5, 0x5a};
 
 struct check {
     pthread_mutex_t lock; /* the ring */
-    struct region retired[RETIRED];
+    struct check_region retired[RETIRED];
     unsigned next;
     struct sigaction segv, bus; /* before */
 };
@@ -123,12 +30,12 @@ struct check {
 struct frame {
     struct frame *outer;
     const struct check_task *task;
-    const duite_call *call; /* with the originals */
-    struct region *region;  /* n_params, and the arguments */
-    duite_param *param;     /* n_params, of the copies */
+    const duite_call *call;      /* with the originals */
+    struct check_region *region; /* n_params, and the arguments */
+    duite_param *param;          /* n_params, of the copies */
     sigjmp_buf jump;
-    struct region hit; /* what the fault was about */
-    const char *at;    /* where it was */
+    struct check_region hit; /* what the fault was about */
+    const char *at;          /* where it was */
 };
 
 static _Atomic(struct check *) installed;
@@ -156,14 +63,14 @@ static bool mode_writes(duite_mode mode)
 /* The region an address belongs to: of this call, or of an earlier one. Called by the handler: the
  * ring is read without its lock, which at worst misses a region that another thread retires right
  * now. */
-static const struct region *frame_region_at(const struct check *check, const struct frame *frame,
-                                            const void *address)
+static const struct check_region *frame_region_at(const struct check *check,
+                                                  const struct frame *frame, const void *address)
 {
     for (size_t i = 0; i <= frame->call->n_params; i++)
-        if (region_has(&frame->region[i], address))
+        if (check_region_has(&frame->region[i], address))
             return &frame->region[i];
     for (unsigned i = 0; i < RETIRED; i++)
-        if (region_has(&check->retired[i], address))
+        if (check_region_has(&check->retired[i], address))
             return &check->retired[i];
     return NULL;
 }
@@ -172,7 +79,7 @@ static void fault_handle(int signal, siginfo_t *info, void *context)
 {
     struct check *check = atomic_load(&installed);
     struct frame *frame = current;
-    const struct region *region =
+    const struct check_region *region =
         check && frame ? frame_region_at(check, frame, info->si_addr) : NULL;
     if (region) {
         frame->hit = *region;
@@ -212,18 +119,18 @@ void check_stop(struct check *check)
     sigaction(SIGBUS, &check->bus, NULL);
     atomic_store(&installed, NULL);
     for (unsigned i = 0; i < RETIRED; i++)
-        region_unmap(&check->retired[i]);
+        check_region_unmap(&check->retired[i]);
     pthread_mutex_destroy(&check->lock);
     base_free(check);
 }
 
 static int fault_report(const struct frame *frame)
 {
-    const struct region *hit = &frame->hit;
+    const struct check_region *hit = &frame->hit;
     const duite_call *call = frame->call;
     bool own = false;
     for (size_t i = 0; i <= call->n_params; i++)
-        own = own || region_has(&frame->region[i], frame->at);
+        own = own || check_region_has(&frame->region[i], frame->at);
     if (!own)
         return duite_fail(call, DUITE_E_CHECK,
                           "uses what was parameter %zu of task %llu (kernel %s), which is over",
@@ -246,46 +153,46 @@ static int fault_report(const struct frame *frame)
 static bool frame_map_param(struct frame *frame, size_t i, unsigned char fill)
 {
     const duite_param *param = &frame->call->param[i];
-    struct region *region = &frame->region[i];
+    struct check_region *region = &frame->region[i];
     duite_mode mode = data_mode_of(frame->task->kernel, i);
     region->number = frame->task->number;
     region->kernel = frame->task->kernel->name;
     region->param = i;
     if (!param->data)
         return true;
-    if (!region_map(region, frame_param_room(param, mode), fill))
+    if (!check_region_map(region, frame_param_room(param, mode), fill))
         return false;
     if (mode != DUITE_W)
         memcpy(region->data, param->data, frame_param_bytes(param));
-    return mode != DUITE_R || region_protect(region);
+    return mode != DUITE_R || check_region_protect(region);
 }
 
 static bool frame_map_args(struct frame *frame, unsigned char fill)
 {
     const duite_kernel *kernel = frame->task->kernel;
-    struct region *region = &frame->region[frame->call->n_params];
+    struct check_region *region = &frame->region[frame->call->n_params];
     region->number = frame->task->number;
     region->kernel = kernel->name;
     region->param = CHECK_ARGS;
     if (!kernel->args_size)
         return true;
-    if (!region_map(region, kernel->args_size, fill))
+    if (!check_region_map(region, kernel->args_size, fill))
         return false;
     memcpy(region->data, frame->call->args, region->bytes);
-    return region_protect(region);
+    return check_region_protect(region);
 }
 
-static void region_retire(struct check *check, struct region *region)
+static void region_retire(struct check *check, struct check_region *region)
 {
     if (!region->base)
         return;
-    region_forbid(region);
+    check_region_forbid(region);
     pthread_mutex_lock(&check->lock);
-    struct region *oldest = &check->retired[check->next++ % RETIRED];
-    struct region gone = *oldest;
+    struct check_region *oldest = &check->retired[check->next++ % RETIRED];
+    struct check_region gone = *oldest;
     *oldest = *region;
     pthread_mutex_unlock(&check->lock);
-    region_unmap(&gone);
+    check_region_unmap(&gone);
     region->base = NULL;
 }
 
@@ -319,7 +226,7 @@ static int frame_run(struct frame *frame, unsigned char fill)
     }
     current = frame->outer;
     for (size_t i = 0; i < n && !code; i++)
-        if (frame->region[i].base && !region_whole(&frame->region[i], fill))
+        if (frame->region[i].base && !check_region_whole(&frame->region[i], fill))
             code = duite_fail(original, DUITE_E_CHECK,
                               "writes beyond an end of parameter %zu (%zu bytes)", i,
                               frame->region[i].bytes);
@@ -379,7 +286,7 @@ static void frame_copy_back(const struct frame *frame)
 int check_call(struct check *check, const struct check_task *task, duite_call *call)
 {
     size_t n = call->n_params;
-    struct region *region = base_alloc_zero(2 * (n + 1) * sizeof *region);
+    struct check_region *region = base_alloc_zero(2 * (n + 1) * sizeof *region);
     duite_param *param = base_alloc(2 * (n + 1) * sizeof *param);
     if (!region || !param) {
         base_free(region);

@@ -8,18 +8,14 @@
  * are the same up to their first difference and nowhere after it. */
 #include "runtime/base/clock.h"
 #include "runtime/base/memory.h"
-#include "runtime/base/rank_set.h"
 #include "runtime/comm/internal.h"
+#include "runtime/comm/verdict.h"
 
-#include <inttypes.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 #define ANSWER_SECONDS  1.0 /* rank 0 waits so long for histories */
 #define VERDICT_SECONDS 3.0 /* and all others for rank 0 */
-
-enum { SHOWN_GROUPS = 4, SHOWN_RANGES = 4 };
 
 /* COMM_DIFFERS: a rank found a difference at its blocking call of that number. COMM_INQUIRY: only
  * the number. */
@@ -35,218 +31,13 @@ struct difference_answer {
     struct task_history_copy history;
 };
 
-/* What rank 0 knows of a rank. */
-struct difference_rank {
-    bool answered, has_homes;
-    bool compared; /* some of its calls, with the reference */
-    bool older;    /* the first of these differs already */
-    uint64_t homes;
-    uint64_t last;              /* its last call */
-    uint64_t at;                /* its first call that differs from the reference's, or 0 */
-    uint64_t fingerprint, call; /* of this call ... */
-    uint64_t other_fingerprint, other_call; /* ... and of the reference's */
-};
-
-struct difference_inquiry {
-    struct task_history_copy reference;
-    int answers;
-    struct difference_rank rank[];
-};
-
-/* ---- Sentences ---- */
-
-struct difference_text {
-    size_t length;
-    char text[900];
-};
-
-__attribute__((format(printf, 2, 3))) static void text_add(struct difference_text *text,
-                                                           const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    int n =
-        vsnprintf(text->text + text->length, sizeof text->text - text->length, format, arguments);
-    va_end(arguments);
-    text->length += n > 0 ? (size_t)n : 0;
-    if (text->length >= sizeof text->text)
-        text->length = sizeof text->text - 1;
-}
-
-/* "rank 3", "ranks 0-2 and 5", "ranks 0, 2, 4, 6 and 12 more". */
-static void text_add_ranks(struct difference_text *text, const int *group, int n_ranks, int which)
-{
-    int ranges = 0, ranks = 0, shown = 0, left = 0;
-    for (int r = 0; r < n_ranks; r++) {
-        ranks += group[r] == which;
-        ranges += group[r] == which && (!r || group[r - 1] != which);
-    }
-    text_add(text, ranks == 1 ? "rank " : "ranks ");
-    for (int r = 0, end; r < n_ranks; r = end) {
-        for (end = r + 1; end < n_ranks && group[end] == group[r]; end++)
-            ;
-        if (group[r] != which)
-            continue;
-        if (shown == SHOWN_RANGES) {
-            left += end - r;
-            continue;
-        }
-        text_add(text, "%s%d", !shown ? "" : shown == ranges - 1 ? " and " : ", ", r);
-        if (end > r + 1)
-            text_add(text, end == r + 2 ? (shown == ranges - 1 ? " and %d" : ", %d") : "-%d",
-                     end - 1);
-        shown++;
-    }
-    if (left)
-        text_add(text, " and %d more", left);
-}
-
-static void text_add_call(struct difference_text *text, const struct task_graph *graph,
-                          uint64_t call, bool again)
-{
-    const uint32_t which = task_call_which(call);
-    const bool forked = task_call_kind(call) != TASK_CALLED;
-    if (forked)
-        text_add(text, " %s \"%.60s\"", task_call_kind(call) == TASK_FORKED ? "forked" : "recorded",
-                 which < graph->n_kernels ? graph->kernels[which]->name : "another kernel");
-    else
-        text_add(text, " called %s", task_called_name(which));
-    if (again)
-        text_add(text, forked ? " with other objects or on another rank" : " with other arguments");
-}
-
-/* ---- What rank 0 concludes ---- */
-
-/* Ranks by what they did at call `at`. */
-struct difference_groups {
-    int n, *of; /* of each rank, or -1: unknown */
-    uint64_t fingerprint[SHOWN_GROUPS], call[SHOWN_GROUPS];
-};
-
-static int groups_find(struct difference_groups *groups, uint64_t fingerprint, uint64_t call)
-{
-    int i = 0;
-    while (i < groups->n && (groups->fingerprint[i] != fingerprint || groups->call[i] != call))
-        i++;
-    if (i == SHOWN_GROUPS)
-        return -1;
-    groups->fingerprint[i] = fingerprint;
-    groups->call[i] = call;
-    groups->n += i == groups->n;
-    return i;
-}
-
-/* The first call that is known to differ, by some rank; NULL: none is. One before which nothing was
- * compared counts only where there is no other. */
-static const struct difference_rank *difference_first(const struct comm *comm)
-{
-    const struct difference_inquiry *inquiry = comm->difference.inquiry;
-    const struct difference_rank *first = NULL;
-    for (int r = 0; r < comm->n_ranks; r++) {
-        const struct difference_rank *rank = &inquiry->rank[r];
-        if (rank->at && (!first || rank->older < first->older ||
-                         (rank->older == first->older && rank->at < first->at)))
-            first = rank;
-    }
-    return first;
-}
-
-static void difference_group(const struct comm *comm, const struct difference_rank *first,
-                             struct difference_groups *groups)
-{
-    const struct difference_inquiry *inquiry = comm->difference.inquiry;
-    for (int r = 0; r < comm->n_ranks; r++) {
-        const struct difference_rank *rank = &inquiry->rank[r];
-        groups->of[r] = -1;
-        if (rank->at == first->at && rank->older == first->older)
-            groups->of[r] = groups_find(groups, rank->fingerprint, rank->call);
-        else if (rank->compared && rank->last >= first->at && (!rank->at || rank->at > first->at))
-            groups->of[r] = groups_find(groups, first->other_fingerprint, first->other_call);
-    }
-}
-
-/* "ranks differ: rank 3 made other calls than ranks 0-2; the first difference lies before ..." */
-static void difference_say_older(const struct comm *comm, const struct difference_groups *groups,
-                                 uint64_t before, struct difference_text *text)
-{
-    text_add(text, "ranks differ: ");
-    text_add_ranks(text, groups->of, comm->n_ranks, 1);
-    text_add(text, " made other calls than ");
-    text_add_ranks(text, groups->of, comm->n_ranks, 0);
-    text_add(text, "; the first difference lies before call %" PRIu64, before);
-}
-
-static void difference_say_groups(const struct comm *comm, const struct difference_groups *groups,
-                                  struct difference_text *text)
-{
-    for (int i = 0; i < groups->n; i++) {
-        bool again = false;
-        for (int k = 0; k < i; k++)
-            again |= groups->call[k] == groups->call[i];
-        text_add(text, i ? ", " : " ");
-        text_add_ranks(text, groups->of, comm->n_ranks, i);
-        text_add_call(text, comm->graph, groups->call[i], again);
-    }
-}
-
-/* "ranks differ at fork 21: ...", or between two forks "after fork 20". */
-static void difference_say(const struct comm *comm, const struct difference_rank *first,
-                           struct difference_groups *groups, struct difference_text *text)
-{
-    uint64_t forks = 0, forked = 0;
-    difference_group(comm, first, groups);
-    for (int i = 0; i < groups->n; i++) {
-        forks = task_call_forks(groups->call[i]);
-        if (task_call_kind(groups->call[i]) == TASK_FORKED)
-            forked = forks;
-    }
-    if (first->older) {
-        difference_say_older(comm, groups, first->at + 1, text);
-        return;
-    }
-    if (forked)
-        text_add(text, "ranks differ at fork %" PRIu64 ":", forked);
-    else if (forks)
-        text_add(text, "ranks differ after fork %" PRIu64 ":", forks);
-    else
-        text_add(text, "ranks differ before the first fork:");
-    difference_say_groups(comm, groups, text);
-}
-
-/* Whether homes differ, which rank 0 says then. */
-static bool difference_say_homes(const struct comm *comm, struct difference_groups *groups,
-                                 struct difference_text *text)
-{
-    const struct difference_inquiry *inquiry = comm->difference.inquiry;
-    for (int r = 0; r < comm->n_ranks; r++)
-        groups->of[r] =
-            inquiry->rank[r].has_homes ? groups_find(groups, inquiry->rank[r].homes, 0) : -1;
-    if (groups->n < 2)
-        return false;
-    text_add(text, "the mapping gave objects other homes on ");
-    text_add_ranks(text, groups->of, comm->n_ranks, 1);
-    text_add(text, " than on ");
-    text_add_ranks(text, groups->of, comm->n_ranks, 0);
-    text_add(text, ": its function `map` must write the same homes on every rank, and may not look "
-                   "at the rank, the time or the machine");
-    return true;
-}
-
 /* Breaks with the best sentence there is. */
 static void difference_conclude(struct comm *comm)
 {
-    struct comm_difference *difference = &comm->difference;
-    struct difference_text text = {0};
-    struct difference_groups groups = {
-        .of = difference->inquiry ? base_alloc((size_t)comm->n_ranks * sizeof *groups.of) : NULL};
-    const struct difference_rank *first = groups.of ? difference_first(comm) : NULL;
-    difference->until = 0;
-    if (first)
-        difference_say(comm, first, &groups, &text);
-    else if (!groups.of || !difference_say_homes(comm, &groups, &text))
-        text_add(&text, "%s", difference->message);
-    base_free(groups.of);
-    comm_broke(comm, DUITE_E_DIFFERENT, text.text);
+    struct comm_verdict verdict = {0};
+    comm->difference.until = 0;
+    comm_verdict_find(comm, &verdict);
+    comm_broke(comm, DUITE_E_DIFFERENT, verdict.text);
 }
 
 /* ---- Answers, on rank 0 ---- */

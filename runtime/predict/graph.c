@@ -44,7 +44,7 @@ uint32_t predict_add(struct predict_graph *graph, const struct predict_node *nod
     return (uint32_t)graph->n_nodes++;
 }
 
-static void edge_add_kind(struct predict_graph *graph, uint32_t from, uint32_t to, bool reads)
+void predict_edge_kind(struct predict_graph *graph, uint32_t from, uint32_t to, bool reads)
 {
     if (from == PREDICT_NONE || from == to ||
         !graph_room(graph, &graph->edge, &graph->edges_capacity, graph->n_edges,
@@ -59,14 +59,13 @@ static void edge_add_kind(struct predict_graph *graph, uint32_t from, uint32_t t
 
 void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to)
 {
-    edge_add_kind(graph, from, to, false);
+    predict_edge_kind(graph, from, to, false);
 }
 
-/* The value of an object, after `from`. */
-static void edge_value(struct predict_graph *graph, uint32_t from, uint32_t to, uint32_t object)
+void predict_edge_value(struct predict_graph *graph, uint32_t from, uint32_t to, uint32_t object)
 {
     struct predict_object *o = &graph->object[object];
-    edge_add_kind(graph, from, to, true);
+    predict_edge_kind(graph, from, to, true);
     if (!graph->plain || from == PREDICT_NONE || o->shown ||
         graph->node[from].block == graph->node[to].block)
         return;
@@ -83,9 +82,8 @@ static void link_push(struct predict_graph *graph, uint32_t *list, uint32_t node
     *list = (uint32_t)graph->n_links++;
 }
 
-/* A node that a round's beginning holds back like any other root. */
-static uint32_t node_own(struct predict_graph *graph, enum predict_kind kind, uint32_t host,
-                         uint32_t what, uint64_t number)
+uint32_t predict_own_node(struct predict_graph *graph, enum predict_kind kind, uint32_t host,
+                          uint32_t what, uint64_t number)
 {
     double seconds = kind == PREDICT_TASK || kind == PREDICT_EVERYWHERE ? graph->own[what] : 0;
     return predict_add(graph, &(struct predict_node){.number = number,
@@ -103,7 +101,7 @@ static uint32_t node_own(struct predict_graph *graph, enum predict_kind kind, ui
 static uint32_t transfer_add(struct predict_graph *graph, uint32_t object, uint32_t host)
 {
     struct predict_object *o = &graph->object[object];
-    uint32_t message = node_own(graph, PREDICT_MESSAGE, (uint32_t)o->holder, 0, o->bytes);
+    uint32_t message = predict_own_node(graph, PREDICT_MESSAGE, (uint32_t)o->holder, 0, o->bytes);
     if (graph->failed)
         return PREDICT_NONE;
     graph->node[message].block = host;
@@ -131,7 +129,7 @@ static uint32_t exchange_receivers(struct predict_graph *graph, const struct pre
 static uint32_t exchange_value(struct predict_graph *graph, uint32_t object)
 {
     struct predict_object *o = &graph->object[object];
-    uint32_t exchange = node_own(graph, PREDICT_EXCHANGE, (uint32_t)o->holder, 0, o->bytes);
+    uint32_t exchange = predict_own_node(graph, PREDICT_EXCHANGE, (uint32_t)o->holder, 0, o->bytes);
     if (graph->failed)
         return PREDICT_NONE;
     struct predict_node *node = &graph->node[exchange];
@@ -170,8 +168,7 @@ uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host)
 
 /* ---- Writing ---- */
 
-/* `node` makes the next value, on a host or on all. */
-static void value_overwrite(struct predict_graph *graph, uint32_t node, uint32_t object, int host)
+void predict_overwrite(struct predict_graph *graph, uint32_t node, uint32_t object, int host)
 {
     struct predict_object *o = &graph->object[object];
     bool in_place = o->holder == host || o->holder == PREDICT_ALL || host == PREDICT_ALL;
@@ -186,126 +183,6 @@ static void value_overwrite(struct predict_graph *graph, uint32_t node, uint32_t
     o->readers = o->copies = PREDICT_NONE;
 }
 
-/* ---- Sums ---- */
-
-/* A piece for each other host that contributes, and its message: in graph->piece by host. */
-static void pieces_make(struct predict_graph *graph, uint32_t object, uint32_t home)
-{
-    const struct predict_object *o = &graph->object[object];
-    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
-        graph->piece[graph->link[i].host] = PREDICT_NONE;
-    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
-        uint32_t host = graph->link[i].host;
-        if (host == home)
-            continue;
-        if (graph->piece[host] == PREDICT_NONE)
-            graph->piece[host] = node_own(graph, PREDICT_TASK, host, TASK_PIECES, 0);
-        predict_edge(graph, graph->link[i].node, graph->piece[host]);
-    }
-}
-
-/* Each contributor has a value of its own. */
-static void edge_contribution(struct predict_graph *graph, uint32_t from, uint32_t sum,
-                              uint32_t object)
-{
-    edge_add_kind(graph, from, sum, true);
-    if (graph->plain && graph->node[from].block != graph->node[sum].block)
-        graph->shown[from] += (float)graph->object[object].bytes;
-}
-
-/* The nodes that the sum waits for where it is made: pieces of other hosts come by message. */
-static void pieces_gather(struct predict_graph *graph, uint32_t object, uint32_t home, uint32_t sum)
-{
-    const struct predict_object *o = &graph->object[object];
-    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
-        uint32_t host = graph->link[i].host;
-        if (host == home)
-            edge_contribution(graph, graph->link[i].node, sum, object);
-        else if (graph->piece[host] != PREDICT_NONE)
-            predict_edge(graph, graph->piece[host], sum);
-        if (host != home)
-            graph->piece[host] = PREDICT_NONE;
-    }
-}
-
-/* The pieces' messages take their places. */
-static void pieces_send(struct predict_graph *graph, uint32_t object, uint32_t home)
-{
-    const struct predict_object *o = &graph->object[object];
-    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
-        uint32_t host = graph->link[i].host, piece = graph->piece[host];
-        if (host == home || graph->node[piece].kind == PREDICT_MESSAGE)
-            continue;
-        uint32_t message = node_own(graph, PREDICT_MESSAGE, host, 0, o->bytes);
-        graph->node[message].block = home;
-        predict_edge(graph, piece, message);
-        graph->node[message].priority = predict_packet(graph, graph->phase[host], host, home);
-        graph->piece[host] = message;
-    }
-}
-
-/* What each host that contributes sends to those that add up. */
-static void exchange_count(struct predict_graph *graph, uint32_t object, struct predict_node *node)
-{
-    const struct predict_object *o = &graph->object[object];
-    const size_t words = base_ranks_words((int)graph->cluster->hosts);
-    const uint64_t *to = graph->travel.runs;
-    const uint32_t receivers = base_ranks_count(to, words);
-    uint32_t senders = 0, within = 0, packets = 0;
-    base_ranks_clear(graph->among, words);
-    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next) {
-        const uint32_t host = graph->link[i].host;
-        if (base_ranks_has(graph->among, (int)host))
-            continue;
-        base_ranks_add(graph->among, (int)host);
-        const bool adds = base_ranks_has(to, (int)host);
-        senders++;
-        within += adds;
-        packets += (uint32_t)predict_packets(graph, graph->phase[host], host, to, receivers - adds);
-    }
-    const uint32_t out = receivers - (within == senders), in = senders - (within == receivers);
-    node->copies = (uint64_t)senders * receivers - within;
-    node->placed = out > in ? out : in;
-    node->priority = (int32_t)packets;
-}
-
-/* Each host sends what it has to all others that add up. */
-static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object)
-{
-    const struct predict_object *o = &graph->object[object];
-    uint32_t exchange = node_own(graph, PREDICT_EXCHANGE, 0, 0, o->bytes);
-    if (graph->failed)
-        return PREDICT_NONE;
-    graph->node[exchange].block = 1; /* all send */
-    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
-        predict_edge(graph, graph->link[i].node, exchange);
-    exchange_count(graph, object, &graph->node[exchange]);
-    return exchange;
-}
-
-void predict_reduce(struct predict_graph *graph, uint32_t object, int host)
-{
-    const bool all = host == PREDICT_ALL;
-    const uint32_t home = all ? 0 : (uint32_t)host;
-    uint32_t fetched = predict_fetch(graph, object, host), exchange = PREDICT_NONE;
-    if (all) {
-        exchange = pieces_exchange(graph, object);
-    } else {
-        pieces_make(graph, object, home);
-        pieces_send(graph, object, home);
-    }
-    uint32_t sum = node_own(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, home,
-                            graph->replays ? TASK_NODE_SUM : TASK_COMBINE, 0);
-    if (graph->failed)
-        return;
-    edge_value(graph, fetched, sum, object);
-    predict_edge(graph, exchange, sum);
-    if (!all)
-        pieces_gather(graph, object, home, sum);
-    value_overwrite(graph, sum, object, host);
-    graph->object[object].leaves = PREDICT_NONE;
-}
-
 /* ---- Views and sets ---- */
 
 void predict_gather(struct predict_graph *graph, uint32_t view, int host)
@@ -314,13 +191,13 @@ void predict_gather(struct predict_graph *graph, uint32_t view, int host)
     const uint32_t parent = graph->object[view].parent;
     const uint32_t value = predict_fetch(graph, parent, host);
     uint32_t task =
-        node_own(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, all ? 0 : (uint32_t)host,
-                 graph->replays ? TASK_NODE_VIEW : TASK_VIEW, 0);
+        predict_own_node(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, all ? 0 : (uint32_t)host,
+                         graph->replays ? TASK_NODE_VIEW : TASK_VIEW, 0);
     if (graph->failed)
         return;
     graph->linked = false;
     predict_use(graph, task, parent, DUITE_R, value);
-    value_overwrite(graph, task, view, host);
+    predict_overwrite(graph, task, view, host);
     predict_hold(graph, task);
     graph->object[view].gathered = graph->object[parent].writer;
 }
@@ -345,7 +222,7 @@ void predict_set(struct predict_graph *graph, uint32_t object, int host)
     if (graph->failed)
         return;
     graph->linked = false;
-    value_overwrite(graph, node, object, host);
+    predict_overwrite(graph, node, object, host);
     predict_hold(graph, node);
 }
 
@@ -367,13 +244,13 @@ void predict_use(struct predict_graph *graph, uint32_t node, uint32_t object, du
 {
     const uint32_t at = graph->node[node].host;
     const int host = graph->node[node].kind == PREDICT_EVERYWHERE ? PREDICT_ALL : (int)at;
-    edge_value(graph, prepared, node, object);
+    predict_edge_value(graph, prepared, node, object);
     if (mode == DUITE_CW)
         link_push(graph, &graph->object[object].leaves, node, at);
     else if (mode == DUITE_R)
         link_push(graph, &graph->object[object].readers, node, at);
     else
-        value_overwrite(graph, node, object, host);
+        predict_overwrite(graph, node, object, host);
 }
 
 /* Where it was, there is a copy. */
@@ -392,7 +269,7 @@ void predict_rehome(struct predict_graph *graph, uint32_t object, int host)
 void predict_hold(struct predict_graph *graph, uint32_t node)
 {
     if (!graph->linked)
-        edge_add_kind(graph, graph->flag, node, true);
+        predict_edge_kind(graph, graph->flag, node, true);
 }
 
 void predict_graph_free(struct predict_graph *graph)

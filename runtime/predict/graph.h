@@ -119,6 +119,16 @@ struct predict_graph {
 uint32_t predict_add(struct predict_graph *graph, const struct predict_node *node);
 /* `to` waits for `from`; NONE is fine. */
 void predict_edge(struct predict_graph *graph, uint32_t from, uint32_t to);
+/* The same; `reads`: `from` writes what `to` needs, and not only comes before it. */
+void predict_edge_kind(struct predict_graph *graph, uint32_t from, uint32_t to, bool reads);
+/* The same, for the value of an object. */
+void predict_edge_value(struct predict_graph *graph, uint32_t from, uint32_t to, uint32_t object);
+/* A node of the runtime's own: a task_type, or a message. A round's beginning holds it back like
+ * any other root. 0 without memory. */
+uint32_t predict_own_node(struct predict_graph *graph, enum predict_kind kind, uint32_t host,
+                          uint32_t what, uint64_t number);
+/* `node` makes the object's next value, on a host or on all. */
+void predict_overwrite(struct predict_graph *graph, uint32_t node, uint32_t object, int host);
 /* The node after which the object's value is on the host, or everywhere; NONE: it always was. */
 uint32_t predict_fetch(struct predict_graph *graph, uint32_t object, int host);
 /* Called before a node on `host` (PREDICT_ALL: everywhere) that uses the object is made. Makes what

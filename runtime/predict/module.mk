@@ -3,7 +3,7 @@ noinst_LTLIBRARIES += libduite_predict.la
 libduite_predict_la_SOURCES = runtime/predict/export.c runtime/predict/graph.c runtime/predict/graph.h runtime/predict/machine.c \
 	runtime/predict/machine.h runtime/predict/move.c runtime/predict/objects.c runtime/predict/predict.c runtime/predict/predict.h \
 	runtime/predict/program.c runtime/predict/program.h runtime/predict/replay.c runtime/predict/round.c runtime/predict/simulate.c \
-	runtime/predict/times.c
+	runtime/predict/sum.c runtime/predict/times.c
 
 bin_PROGRAMS += duite-trace
 dist_man_MANS += runtime/predict/duite-trace.1

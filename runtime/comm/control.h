@@ -1,0 +1,170 @@
+#ifndef DUITE_COMM_CONTROL_H
+#define DUITE_COMM_CONTROL_H
+
+#include "runtime/comm/comm.h"
+#include "runtime/comm/requests.h"
+
+/* What the ranks tell one another beside values and tasks, of this folder only: control messages,
+ * the divergence check, and the search for the first difference. Everything here is under the lock
+ * of the comm unless it says otherwise. */
+
+/* ---- Control messages (control.c) ---- */
+
+/* Control messages: what the ranks tell one another beside values and tasks. Each is a packet of a
+ * kind of this folder's own and travels like a value, so that messages between two ranks keep their
+ * order. All of them share one set of MPI requests. */
+enum comm_kind {
+    COMM_ABORT = 64, /* communication is broken on the sender: struct comm_abort */
+    COMM_LOSS,    /* a rank is lost, which was found after the sender's abort message: the same */
+    COMM_CHECK,   /* a blocking call of some rank: struct comm_called */
+    COMM_DIFFERS, /* to rank 0: the sender found that ranks differ */
+    COMM_INQUIRY, /* of rank 0: the history of the receiver */
+    COMM_ANSWER,  /* to rank 0: this history */
+    COMM_REQUEST, /* a rank without work requests tasks: the header says how many */
+    COMM_LAST     /* the sender stops: after this only the first two may follow */
+};
+
+/* The abort message. A rank on which communication is broken sends it once to each other rank and
+ * nothing after it. So whoever has the abort messages of all others knows that nothing is on its
+ * way any more. One thing may follow: the news that a rank is lost, which would never send its
+ * own. */
+struct comm_abort {
+    uint64_t entered; /* collective calls so far */
+    int32_t code;
+    int32_t kind; /* of the last of them: enum comm_collective */
+    char message[1008];
+};
+
+/* A request for tasks stands at the rank that got it until a task is granted or its time is over; a
+ * newer one of the same rank takes its place. Nobody waits for a grant, and requests are no
+ * movement of the program. */
+struct comm_standing {
+    double until; /* 0: none */
+    unsigned idle;
+};
+
+struct comm_control {
+    struct comm_requests sends; /* under way; what: the packet, freed then, or NULL: one of these */
+    struct data_packet *abort, *loss, *last;
+    struct data_packet *spare; /* for a control message that comes when there is no memory */
+    bool aborts, loss_sent;    /* the abort messages are sent; and those of a loss */
+    int heard;                 /* abort messages */
+    uint64_t entered;          /* the most collective calls that an abort message told of */
+    int32_t kind;              /* of the last of these */
+    int last_heard;
+    struct comm_standing *standing; /* by rank */
+    int turn;                       /* whose request is looked at next */
+    _Atomic int standing_any;       /* there may be some; any thread */
+    _Atomic uint64_t requested;     /* requests sent; any thread */
+};
+
+/* Takes memory ahead, so that abort messages and last messages need none later. False without
+ * memory. */
+bool comm_control_start(struct comm_control *control, int n_ranks);
+void comm_control_stop(struct comm_control *control);
+
+/* Sends the packet, which is the control's from now on. False: it is freed, and communication is
+ * broken. */
+bool comm_control_send(struct comm *comm, int to, struct data_packet *packet);
+
+/* A packet came. True: it was a control message, which is done with; the packet stays the caller's.
+ */
+bool comm_control_hear(struct comm *comm, struct data_packet *packet);
+
+/* Does what is due (comm_control_is_due): the divergence check, and the abort messages if
+ * communication is broken. */
+void comm_control_pass(struct comm *comm);
+
+/* Tells those who may still send control messages that this rank stops. Takes the lock, since
+ * heartbeats go on. */
+void comm_control_end(struct comm *comm);
+
+/* Takes the lock. Communication is whole: no message is on its way to or from this rank, nor will
+ * be. */
+bool comm_control_over(struct comm *comm);
+
+/* After communication broke: whether nothing at all is on its way to or from this rank, nor will
+ * be. Takes the lock. */
+bool comm_is_quiet(struct comm *comm);
+
+/* ---- The divergence check (divergence.c) ---- */
+
+/* The divergence check finds ranks that make different calls, even where one waits for data that no
+ * other rank will ever send.
+ *
+ * Every rank logs its blocking calls: number, name, and the fingerprint of all that it forked
+ * before. A rank that waits long in a call sends its entry of the log along a binomial tree over
+ * all ranks, in which rank r has the parent r & (r - 1). Each rank passes on the first entry of a
+ * number that it sees, whether it made that call yet or not, and compares it with its own and with
+ * all further ones of that number. So a call costs a rank at most one message for each of its
+ * neighbours in the tree, at most log2 of the number of ranks. Since the tree joins all ranks, any
+ * difference is seen somewhere. Nothing is sent as long as nobody waits long. */
+
+/* So many calls are logged; then all ranks agree that they were the same, and a new log begins. */
+enum { COMM_LOGGED_CALLS = 1024 };
+
+/* A blocking call of a rank. */
+struct comm_called {
+    uint64_t number, fingerprint; /* number: from 1 on */
+    uint64_t homes;               /* data_table.homes */
+    int32_t rank;                 /* which made it */
+    char name[36];
+};
+_Static_assert(sizeof(struct comm_called) == 64, "an entry takes one cache line");
+
+struct comm_calls {
+    /* Written by the main thread; `made` last. */
+    _Atomic uint64_t made, agreed;
+    _Atomic uint64_t waits;  /* number of the call that it waits in, or 0 */
+    struct comm_called *log; /* of this rank */
+    /* Under the lock: */
+    struct comm_called *seen; /* the first entries that checks showed; by number */
+    uint64_t last_seen;       /* the largest number of them */
+    uint64_t compared;        /* own calls up to this one were compared with them */
+    uint64_t waited; /* the last of the calls that this rank waited in and that was looked at ... */
+    double since;    /* ... and when first */
+};
+
+/* False without memory. */
+bool comm_calls_start(struct comm_calls *calls);
+void comm_calls_stop(struct comm_calls *calls);
+
+/* Whether two ranks are neighbours in the tree. */
+bool comm_check_joins(int a, int b);
+
+/* Under the lock: compares what this rank called meanwhile, and begins a check when one is due. */
+void comm_check_pass(struct comm *comm);
+
+/* Under the lock: a neighbour sent, or passed on, an entry. */
+void comm_check_hear(struct comm *comm, int from, const struct comm_called *theirs);
+
+/* Under the lock: all ranks agreed on all calls so far. */
+void comm_calls_agreed(struct comm *comm);
+
+/* Under the lock: this rank's call of that number, or NULL: it is not in the log. */
+const struct comm_called *comm_calls_logged(struct comm_calls *calls, uint64_t number);
+
+/* ---- The first difference between ranks (difference.c) ---- */
+
+struct comm_difference {
+    bool found;      /* that ranks differ; the rest is about this */
+    uint64_t number; /* of the blocking call where it was found */
+    double until;    /* then communication breaks with `message`; 0: no longer, or not yet */
+    char message[300];
+    struct difference_inquiry *inquiry; /* rank 0's */
+};
+
+/* Under the lock: ranks differ, as was found at the blocking call of that number; which breaks
+ * communication soon, with a sentence that names the first difference, the same on all ranks. The
+ * sentence given is for the case that it stays unknown. */
+void comm_difference_found(struct comm *comm, uint64_t number, const char *message);
+
+/* Under the lock: a control message about it came. */
+void comm_difference_hear(struct comm *comm, struct data_packet *packet);
+
+/* Under the lock: breaks if the time is over. */
+void comm_difference_pass(struct comm *comm);
+
+void comm_difference_stop(struct comm_difference *difference);
+
+#endif

@@ -1,0 +1,42 @@
+#ifndef DUITE_COMM_VERDICT_H
+#define DUITE_COMM_VERDICT_H
+
+#include "runtime/task/fingerprint.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* What rank 0 concludes from the histories of all ranks: the sentence that names their first
+ * difference. Of this folder only. */
+
+/* What rank 0 knows of a rank. */
+struct difference_rank {
+    bool answered, has_homes;
+    bool compared; /* some of its calls, with the reference */
+    bool older;    /* the first of these differs already */
+    uint64_t homes;
+    uint64_t last;              /* its last call */
+    uint64_t at;                /* its first call that differs from the reference's, or 0 */
+    uint64_t fingerprint, call; /* of this call ... */
+    uint64_t other_fingerprint, other_call; /* ... and of the reference's */
+};
+
+struct difference_inquiry {
+    struct task_history_copy reference;
+    int answers;
+    struct difference_rank rank[];
+};
+
+/* A sentence under construction; what does not fit is cut off. */
+struct comm_verdict {
+    size_t length;
+    char text[900];
+};
+
+/* Writes the best sentence there is into an empty verdict. Without an inquiry, and where the
+ * histories do not tell, that is comm->difference.message. Under the lock. */
+struct comm;
+void comm_verdict_find(const struct comm *comm, struct comm_verdict *verdict);
+
+#endif

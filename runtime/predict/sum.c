@@ -1,0 +1,124 @@
+/* Sums of a predicted run: each host that contributes sends one piece to the host that adds up. A
+ * replay whose result is read on several hosts exchanges pieces, and each of these hosts adds. */
+#include "runtime/predict/graph.h"
+
+#include "runtime/base/rank_set.h"
+#include "runtime/task/task.h"
+
+/* A piece for each other host that contributes, and its message: in graph->piece by host. */
+static void pieces_make(struct predict_graph *graph, uint32_t object, uint32_t home)
+{
+    const struct predict_object *o = &graph->object[object];
+    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
+        graph->piece[graph->link[i].host] = PREDICT_NONE;
+    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
+        uint32_t host = graph->link[i].host;
+        if (host == home)
+            continue;
+        if (graph->piece[host] == PREDICT_NONE)
+            graph->piece[host] = predict_own_node(graph, PREDICT_TASK, host, TASK_PIECES, 0);
+        predict_edge(graph, graph->link[i].node, graph->piece[host]);
+    }
+}
+
+/* Each contributor has a value of its own. */
+static void edge_contribution(struct predict_graph *graph, uint32_t from, uint32_t sum,
+                              uint32_t object)
+{
+    predict_edge_kind(graph, from, sum, true);
+    if (graph->plain && graph->node[from].block != graph->node[sum].block)
+        graph->shown[from] += (float)graph->object[object].bytes;
+}
+
+/* The nodes that the sum waits for where it is made: pieces of other hosts come by message. */
+static void pieces_gather(struct predict_graph *graph, uint32_t object, uint32_t home, uint32_t sum)
+{
+    const struct predict_object *o = &graph->object[object];
+    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
+        uint32_t host = graph->link[i].host;
+        if (host == home)
+            edge_contribution(graph, graph->link[i].node, sum, object);
+        else if (graph->piece[host] != PREDICT_NONE)
+            predict_edge(graph, graph->piece[host], sum);
+        if (host != home)
+            graph->piece[host] = PREDICT_NONE;
+    }
+}
+
+/* The pieces' messages take their places. */
+static void pieces_send(struct predict_graph *graph, uint32_t object, uint32_t home)
+{
+    const struct predict_object *o = &graph->object[object];
+    for (uint32_t i = o->leaves; i != PREDICT_NONE && !graph->failed; i = graph->link[i].next) {
+        uint32_t host = graph->link[i].host, piece = graph->piece[host];
+        if (host == home || graph->node[piece].kind == PREDICT_MESSAGE)
+            continue;
+        uint32_t message = predict_own_node(graph, PREDICT_MESSAGE, host, 0, o->bytes);
+        graph->node[message].block = home;
+        predict_edge(graph, piece, message);
+        graph->node[message].priority = predict_packet(graph, graph->phase[host], host, home);
+        graph->piece[host] = message;
+    }
+}
+
+/* What each host that contributes sends to those that add up. */
+static void exchange_count(struct predict_graph *graph, uint32_t object, struct predict_node *node)
+{
+    const struct predict_object *o = &graph->object[object];
+    const size_t words = base_ranks_words((int)graph->cluster->hosts);
+    const uint64_t *to = graph->travel.runs;
+    const uint32_t receivers = base_ranks_count(to, words);
+    uint32_t senders = 0, within = 0, packets = 0;
+    base_ranks_clear(graph->among, words);
+    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next) {
+        const uint32_t host = graph->link[i].host;
+        if (base_ranks_has(graph->among, (int)host))
+            continue;
+        base_ranks_add(graph->among, (int)host);
+        const bool adds = base_ranks_has(to, (int)host);
+        senders++;
+        within += adds;
+        packets += (uint32_t)predict_packets(graph, graph->phase[host], host, to, receivers - adds);
+    }
+    const uint32_t out = receivers - (within == senders), in = senders - (within == receivers);
+    node->copies = (uint64_t)senders * receivers - within;
+    node->placed = out > in ? out : in;
+    node->priority = (int32_t)packets;
+}
+
+/* Each host sends what it has to all others that add up. */
+static uint32_t pieces_exchange(struct predict_graph *graph, uint32_t object)
+{
+    const struct predict_object *o = &graph->object[object];
+    uint32_t exchange = predict_own_node(graph, PREDICT_EXCHANGE, 0, 0, o->bytes);
+    if (graph->failed)
+        return PREDICT_NONE;
+    graph->node[exchange].block = 1; /* all send */
+    for (uint32_t i = o->leaves; i != PREDICT_NONE; i = graph->link[i].next)
+        predict_edge(graph, graph->link[i].node, exchange);
+    exchange_count(graph, object, &graph->node[exchange]);
+    return exchange;
+}
+
+void predict_reduce(struct predict_graph *graph, uint32_t object, int host)
+{
+    const bool all = host == PREDICT_ALL;
+    const uint32_t home = all ? 0 : (uint32_t)host;
+    uint32_t fetched = predict_fetch(graph, object, host), exchange = PREDICT_NONE;
+    if (all) {
+        exchange = pieces_exchange(graph, object);
+    } else {
+        pieces_make(graph, object, home);
+        pieces_send(graph, object, home);
+    }
+    uint32_t sum = predict_own_node(graph, all ? PREDICT_EVERYWHERE : PREDICT_TASK, home,
+                                    graph->replays ? TASK_NODE_SUM : TASK_COMBINE, 0);
+    if (graph->failed)
+        return;
+    predict_edge_value(graph, fetched, sum, object);
+    predict_edge(graph, exchange, sum);
+    if (!all)
+        pieces_gather(graph, object, home, sum);
+    predict_overwrite(graph, sum, object, host);
+    graph->object[object].leaves = PREDICT_NONE;
+}

@@ -57,7 +57,6 @@ int cg_run(const struct model *model, struct serve_request *request,
 int cg_stop(struct flow_state *run, bool begun, duite **rt, struct flow **flow, int code)
 {
     if (*rt && begun) {
-        flow_parcels_free(run);
         flow_objects_free(run);
         duite_wait(*rt);
         flow_memory_free(run);

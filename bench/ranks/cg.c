@@ -99,7 +99,6 @@ static int begin(struct flow_state *state, struct sheet *sheet, uint32_t count)
 
 static void end(struct flow_state *state)
 {
-    flow_parcels_free(state);
     flow_objects_free(state);
     duite_wait(state->rt);
     flow_memory_free(state);

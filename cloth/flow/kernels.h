@@ -3,14 +3,18 @@
 
 #include "cloth/flow/state/kernel.h"
 
-/* All kernels that declare their fields (state/kernel.h), in the order of a run: the state, forces,
- * integrators. */
+/* All kernels that declare their fields (state/kernel.h), in the order of a run: set-up, state,
+ * forces and pins, contact, integrators, what is seen of a run. */
 /* clang-format off */
 #define FLOW_KERNELS(X)                                                                            \
+    X(table_make) X(table_keep)                                                                    \
     X(initial) X(keep) X(restore) X(status)                                                        \
-    X(force) X(force_free)                                                                         \
+    X(force) X(force_free) X(drive) X(place)                                                       \
+    X(touch) X(contact) X(hold) X(collide)                                                         \
     X(euler) X(euler_beside) X(verlet_first) X(verlet_second) X(runge)                             \
-    X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)
+    X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)                    \
+    X(stretch) X(energy) X(level) X(watch) X(probe) X(row) X(frame)                                \
+    X(collect) X(seconds) X(tell) X(system_part) X(system_save)
 /* clang-format on */
 
 #define FLOW_KERNEL_NUMBER(name) FLOW_KERNEL_##name,
@@ -23,15 +27,10 @@ FLOW_KERNELS(FLOW_KERNEL_EXTERN)
 extern const duite_kernel flow_tell_head; /* w head: on rank 0 */
 extern const duite_kernel
     flow_tell_shared; /* w shared: obstacles, motions, shapes, neighbours; on rank 0 */
-extern const duite_kernel flow_table_make; /* w table of a block: on rank 0 */
-extern const duite_kernel flow_table_keep; /* rw table: where the block lives */
-extern const duite_kernel flow_collect;    /* r vector of a block, w it without its fourth lane */
-extern const duite_kernel flow_ready;      /* cw ready: fails if this rank cannot begin */
+extern const duite_kernel flow_ready; /* cw ready: fails if this rank cannot begin */
 extern const duite_kernel
     flow_system_all; /* table, r x, r v, w f: right-hand side, w a; rims of x, rims of v */
 extern const duite_kernel flow_system_rest; /* the same where f has the forces: rw f */
-extern const duite_kernel flow_contact;     /* table, r x, r v, r f, w filter */
-extern const duite_kernel flow_hold;        /* table, r filter, rw f: b, rw a */
 extern const duite_kernel flow_matrix;      /* table, r x, w a; rims of x. a: flow_open_matrix */
 extern const duite_kernel flow_begin;       /* w scalars */
 extern const duite_kernel flow_start; /* table, r b, w dv, w r, w p, w q, w copies, w rim of q */
@@ -58,21 +57,5 @@ extern const duite_kernel flow_scalars_coarse; /* w next scalars, r scalars, w n
 /* After a solve, where there are free pieces (kernels_pieces.c). */
 extern const duite_kernel flow_piece_sums;  /* table, r b, r a, r dv, cw sums */
 extern const duite_kernel flow_piece_shift; /* table, r a, r sums, rw dv, rw r */
-extern const duite_kernel flow_collide; /* table, rw x, rw v, w rim of x, w rim of v, cw status */
-extern const duite_kernel flow_touch;   /* table, r x, rw v, w rim of v */
-extern const duite_kernel flow_frame;   /* rw token; x of all blocks: on rank 0 */
-extern const duite_kernel flow_drive;   /* table, r x, rw v, w rim of v */
-extern const duite_kernel flow_place;   /* table, rw x, w rim of x */
-extern const duite_kernel flow_watch_block; /* table, r x, r v, cw peaks (max); rims of x */
-extern const duite_kernel flow_probe;       /* table, r x, r v, r force, w seen */
-extern const duite_kernel flow_row; /* rw token, r status, r peaks, r energies; seen of the blocks
-                                       that have any: on rank 0 */
-extern const duite_kernel flow_stretch;     /* table, r x, cw largest stretch; rims of x */
-extern const duite_kernel flow_seconds;     /* cw seconds: of this rank */
-extern const duite_kernel flow_energy;      /* table, r x, r v, cw energies; rims of x */
-extern const duite_kernel flow_level;       /* table, r v, rw f: v where x is */
-extern const duite_kernel flow_tell;        /* w told: what rank 0 knows */
-extern const duite_kernel flow_system_part; /* table, r f, r a, r dv, r x, r v, w part */
-extern const duite_kernel flow_system_save; /* rw token; parts of all blocks: on rank 0 */
 
 #endif

@@ -40,15 +40,16 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/step/grid.c \
     cloth/flow/step/grid.h \
     cloth/flow/step/guides.h \
-    cloth/flow/step/kernels_contact.c \
-    cloth/flow/step/kernels_energy.c \
-    cloth/flow/step/kernels_pins.c \
-    cloth/flow/step/kernels_step.c \
+    cloth/flow/step/contact.c \
+    cloth/flow/step/pins.c \
     cloth/flow/step/status.c \
+    cloth/flow/step/settle.c \
     cloth/flow/step/step.c \
     cloth/flow/step/varying.c \
     cloth/flow/integrators/explicit.c \
     cloth/flow/integrators/implicit.c \
+    cloth/flow/integrators/integrator.c \
+    cloth/flow/integrators/integrator.h \
     cloth/flow/solver/solver.h \
     cloth/flow/solver/system.c \
     cloth/flow/solver/cg.c \
@@ -59,7 +60,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/solver/pieces.c \
     cloth/flow/observe/finish.c \
     cloth/flow/observe/frames.c \
-    cloth/flow/observe/kernels_report.c \
-    cloth/flow/observe/kernels_watch.c \
+    cloth/flow/observe/probes.c \
+    cloth/flow/observe/stretch.c \
     cloth/flow/observe/system.c \
     cloth/flow/observe/watch.c

@@ -21,20 +21,32 @@ double flow_now(void)
 const duite_kernel *const *flow_kernels(void)
 {
 #define TASK(name) &flow_kernel_##name.task,
-    static const duite_kernel *const all[] = {
-        FLOW_KERNELS(TASK)
-            /* Without a preconditioner */
-            & flow_tell_head,
-        &flow_tell_shared, &flow_table_make, &flow_table_keep, &flow_collect, &flow_ready,
-        &flow_system_all, &flow_system_rest, &flow_matrix, &flow_begin, &flow_pack, &flow_start,
-        &flow_guess, &flow_pass, &flow_scalars, &flow_piece_sums, &flow_piece_shift, &flow_collide,
-        &flow_frame, &flow_stretch, &flow_drive, &flow_touch, &flow_contact, &flow_hold,
-        &flow_place, &flow_watch_block, &flow_probe, &flow_row, &flow_energy, &flow_level,
-        &flow_seconds, &flow_tell, &flow_system_part, &flow_system_save,
-        /* With one */
-        &flow_basis, &flow_basis_copies, &flow_couple, &flow_factor_coarse, &flow_factor,
-        &flow_start_preconditioned, &flow_begin_coarse, &flow_pass_preconditioned,
-        &flow_scalars_coarse, NULL};
+    static const duite_kernel *const all[] = {FLOW_KERNELS(TASK)
+                                                  /* Without a preconditioner */
+                                                  & flow_tell_head,
+                                              &flow_tell_shared,
+                                              &flow_ready,
+                                              &flow_system_all,
+                                              &flow_system_rest,
+                                              &flow_matrix,
+                                              &flow_begin,
+                                              &flow_pack,
+                                              &flow_start,
+                                              &flow_guess,
+                                              &flow_pass,
+                                              &flow_scalars,
+                                              &flow_piece_sums,
+                                              &flow_piece_shift, /* With one */
+                                              &flow_basis,
+                                              &flow_basis_copies,
+                                              &flow_couple,
+                                              &flow_factor_coarse,
+                                              &flow_factor,
+                                              &flow_start_preconditioned,
+                                              &flow_begin_coarse,
+                                              &flow_pass_preconditioned,
+                                              &flow_scalars_coarse,
+                                              NULL};
     return all;
 }
 
@@ -166,7 +178,6 @@ static void describe(const struct flow_state *state)
 static int make(struct flow_state *state)
 {
     flow_objects_make(state);
-    flow_parcels_make(state);
     if (model_is_implicit(state->flow->model))
         flow_halo_make(state);
     int code = flow_deal(state);
@@ -286,8 +297,8 @@ int flow_run(struct flow *flow, duite *rt, const struct flow_output *output,
     if (!code)
         code = flow_finish(&state);
     int failed = code ? explain(&state, code) : CLOTH_OK;
-    const int parcels = flow_parcels_free(&state), objects = flow_objects_free(&state);
-    if (!failed && (parcels || objects))
+    const int objects = flow_objects_free(&state);
+    if (!failed && objects)
         failed = cloth_fail(error, CLOTH_E_LIBRARY, "%s", duite_message());
     duite_wait(rt);
     if (flow->model) {

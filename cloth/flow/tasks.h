@@ -229,8 +229,6 @@ struct flow_state {
     uint32_t smooth; /* ticks of the step before, if contact had no part in it; else 0, and then the
                       * next step is by implicit Euler where the others are by BDF2 */
     struct flow_head head;
-    duite_object *parcel;  /* a block: what travels to rank 0 on its own; empty in between */
-    duite_object *part;    /* a block: what it says of the system of a step */
     duite_object *refs;    /* room for the objects of any task */
     double *rows;          /* room for the rows of any block, or a number for each neighbour */
     unsigned char *bytes;  /* rank 0: a part of the state, to be hashed, */
@@ -273,9 +271,6 @@ int flow_run_begin(struct flow_state *state);
 int flow_share_head(struct flow_state *state);
 /* Tells them the shapes of all blocks; fills flow->tables. */
 int flow_share(struct flow_state *state);
-/* Parcels: objects beside their blocks. A failure is returned by the next get. */
-void flow_parcels_make(struct flow_state *state);
-int flow_parcels_free(struct flow_state *state);
 /* Brings the tables, made one by one on rank 0, to the ranks that keep their blocks. Objects are
  * made. Rank 0 has freed its source then. */
 int flow_deal(struct flow_state *state);
@@ -346,17 +341,10 @@ int flow_keep_as(struct flow_state *state, const struct flow_as *as);
 int flow_restore(struct flow_state *state);
 /* Forks what notes in the status of the step whether a rank is asked to stop. */
 int flow_status_fork(struct flow_state *state);
-/* The part of an explicit step that leaves the state as it is, if there is one; the rest of it but
- * for contact. */
-int flow_explicit_begin(struct flow_state *state);
-int flow_explicit_end(struct flow_state *state);
-/* Whether its steps leave the state before them as what is kept; then, what makes that the state
- * again. */
+/* Whether its explicit steps leave the state before them as what is kept; then, what makes that the
+ * state again. */
 bool flow_explicit_keeps(const struct model *model);
 void flow_explicit_restore(struct flow_state *state);
-/* The same of an implicit one. */
-int flow_implicit_begin(struct flow_state *state);
-int flow_implicit_end(struct flow_state *state);
 /* Forks what makes the system of a step of implicit Euler, linearised where it begins: its right
  * side f, its matrix a. */
 int flow_assemble(struct flow_state *state);
@@ -372,12 +360,20 @@ static inline bool flow_is_judged(const struct model *model)
 {
     return model->stretch_growth > 0 || model->stretch_limit > 0;
 }
+/* Fork the stages of the step under way (step.c): its begin, which leaves x and v as they are,
+ * unless velocities change before the forces; the rest. */
+int flow_step_begin(struct flow_state *state);
+int flow_step_end(struct flow_state *state);
+/* Whether they do: such a step does not begin before the one before it is accepted. */
+bool flow_step_is_driven(const struct model *model);
 /* Forks a step of length h whole, which nobody judges and whose solve has no guess. */
 int flow_step(struct flow_state *state);
 /* All steps from the start on, with their frames; ends early if a stop was agreed. */
 int flow_steps(struct flow_state *state);
 /* Forks what finds the largest stretch of the current positions. */
-int flow_stretch_fork(struct flow_state *state, duite_object stretch);
+int flow_stretch_fork(struct flow_state *state);
+/* What it found. */
+int flow_stretch_get(struct flow_state *state, double *stretch);
 /* s: of the steps accepted so far. */
 static inline double flow_time(const struct flow_state *state)
 {
@@ -405,9 +401,19 @@ int flow_halo_pack(struct flow_state *state, uint32_t block, int to);
 int flow_pins_drive(struct flow_state *state);
 int flow_pins_place(struct flow_state *state);
 
+/* Fork contact (contact.c): before the forces, velocities that end the step on an obstacle; what
+ * the solves of a step are filtered by, from x, v and f; the filter on the right side and in the
+ * matrix; after the step, what puts vertices out of obstacles. */
+int flow_contact_touch(struct flow_state *state);
+int flow_contact_filter(struct flow_state *state, struct flow_args args);
+int flow_contact_hold(struct flow_state *state, struct flow_args args);
+int flow_contact_project(struct flow_state *state);
+
 /* Forks what is watched of the state at the end of the step under way, or at the start. */
 int flow_watch(struct flow_state *state);
-/* Forks its row of the table of probes, and finds whether the run rests: when the step is accepted,
+/* Forks its row of the table of probes. */
+int flow_probes_row(struct flow_state *state);
+/* The same if probes are wanted, and finds whether the run rests: when the step is accepted,
  * and for the start. */
 int flow_watched(struct flow_state *state);
 /* The tick, not rounded, that a frame shows. */
@@ -418,7 +424,9 @@ int flow_frames(struct flow_state *state, uint64_t from);
 /* Forks a frame of the state at grid.now, where the run ends, unless the last frame shows it. */
 int flow_frame_last(struct flow_state *state);
 
-/* Forks what hands the system of the last step to the program. */
+/* Doubles that a block says of its system; forks what hands the system of the last step to the
+ * program. */
+size_t flow_system_doubles(const struct flow_table *table);
 int flow_system(struct flow_state *state);
 
 /* Fills the parts of the report that need the whole state, when no task runs. */

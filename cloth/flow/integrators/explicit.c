@@ -3,6 +3,7 @@
  * its neighbours' rims and moves its own rows at once: what the neighbours are to read next goes to
  * spare rims, which are the rims when all such tasks are forked. So no block waits for its
  * neighbours to have seen it, and forces do not leave the caches. */
+#include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/step/guides.h"
 
 #include "cloth/physics/particle.h"
@@ -138,7 +139,7 @@ void flow_explicit_restore(struct flow_state *state)
     swap_rims(state);
 }
 
-static int step_euler(struct flow_state *state)
+int flow_explicit_euler_end(struct flow_state *state)
 {
     const bool keeps = flow_explicit_keeps(state->flow->model);
     struct flow_args args = args_at(state, 0);
@@ -151,6 +152,12 @@ static int step_euler(struct flow_state *state)
 }
 
 /* ---- Velocity Verlet ---- */
+
+int flow_verlet_begin(struct flow_state *state)
+{
+    struct flow_args args = args_at(state, 0);
+    return state->settled_forces ? DUITE_OK : flow_fork_each(state, &flow_kernel_force_free, &args);
+}
 
 /* v becomes a guess of the velocity at the end of the step, for forces that depend on it. */
 FLOW_KERNEL(verlet_first, FLOW_POSITION, struct flow_args,
@@ -189,7 +196,7 @@ static int verlet_second_body(const duite_call *call, const struct verlet_second
 
 /* f, without the drag, stays from step to step: what ends one begins the next, unless contact or
  * pins moved something in between, or the step was taken back. */
-static int step_verlet(struct flow_state *state)
+int flow_verlet_end(struct flow_state *state)
 {
     const struct model *model = state->flow->model;
     struct flow_args args = args_at(state, 1);
@@ -228,7 +235,7 @@ static int runge_body(const duite_call *call, const struct runge_fields *on)
     return code ? code : flow_check(call, t, on->v, "velocity", on->status);
 }
 
-static int step_runge(struct flow_state *state)
+int flow_runge_end(struct flow_state *state)
 {
     static const double when[PHYS_RUNGE_STAGES] = {0, 0.5, 0.5, 1};
     int code = DUITE_OK;
@@ -239,25 +246,4 @@ static int step_runge(struct flow_state *state)
         swap_rims(state);
     }
     return code;
-}
-
-/* ---- Steps ---- */
-
-int flow_explicit_begin(struct flow_state *state)
-{
-    struct flow_args args = args_at(state, 0);
-    const bool forces = state->flow->model->integrator == MODEL_VERLET && !state->settled_forces;
-    return forces ? flow_fork_each(state, &flow_kernel_force_free, &args) : DUITE_OK;
-}
-
-int flow_explicit_end(struct flow_state *state)
-{
-    switch (state->flow->model->integrator) {
-    case MODEL_VERLET:
-        return step_verlet(state);
-    case MODEL_RK4:
-        return step_runge(state);
-    default:
-        return step_euler(state);
-    }
 }

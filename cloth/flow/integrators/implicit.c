@@ -2,6 +2,7 @@
  * With more of them the main program looks at each: whether it was the last, and whether it went
  * too far. BDF2 needs to know how the step before ended, so all of a step by it comes after that.
  * The recorded round of conjugate gradients serves all solves. */
+#include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/step/guides.h"
 
 #include "cloth/physics/implicit.h"
@@ -23,32 +24,20 @@ static int fork_force(struct flow_state *state, struct flow_args args)
     return flow_fork_each(state, &flow_kernel_force, &args);
 }
 
-/* Holds what is in contact. */
-static int fork_hold(struct flow_state *state, struct flow_args args)
-{
-    return flow_fork_all(state, &flow_hold, args,
-                         FLOW_OBJECTS(FLOW_AT(filter), FLOW_AT(f), FLOW_AT(a)), FLOW_NOTHING,
-                         FLOW_NO_RIM, FLOW_NO_RIM);
-}
-
 /* The matrix at x where f is the right side, and the solve's begin. */
 static int fork_system(struct flow_state *state, struct flow_args args)
 {
     int code = flow_fork_all(state, &flow_matrix, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)),
                              FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_NO_RIM);
     if (!code && model_is_filtered(state->flow->model))
-        code = fork_hold(state, args);
+        code = flow_contact_hold(state, args);
     return code ? code : flow_cg_start(state);
 }
 
 /* What the solves of a step are filtered by, from x, v and f. */
 static int fork_filter(struct flow_state *state, struct flow_args args)
 {
-    return model_is_filtered(state->flow->model)
-               ? flow_fork_all(state, &flow_contact, args,
-                               FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f), FLOW_AT(filter)),
-                               FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM)
-               : DUITE_OK;
+    return model_is_filtered(state->flow->model) ? flow_contact_filter(state, args) : DUITE_OK;
 }
 
 /* The filter goes by the forces. */
@@ -61,7 +50,7 @@ static int assemble_held(struct flow_state *state, struct flow_args args)
         code = flow_fork_all(state, &flow_system_rest, args,
                              FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f), FLOW_AT(a)),
                              FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
-    return code ? code : fork_hold(state, args);
+    return code ? code : flow_contact_hold(state, args);
 }
 
 int flow_assemble(struct flow_state *state)
@@ -294,11 +283,6 @@ static int newton(struct flow_state *state, struct flow_args args)
 
 /* ---- Steps ---- */
 
-int flow_implicit_begin(struct flow_state *state)
-{
-    return state->flow->model->integrator == MODEL_BDF2 ? DUITE_OK : linearise(state);
-}
-
 /* x and v, as they are, become the bases of a step of implicit Euler. */
 static int fork_bases(struct flow_state *state)
 {
@@ -311,7 +295,12 @@ static int finish(struct flow_state *state, struct flow_args args)
     return searches(state) ? newton(state, args) : fork_correct(state, args, NULL);
 }
 
-static int euler(struct flow_state *state)
+int flow_implicit_euler_begin(struct flow_state *state)
+{
+    return linearise(state);
+}
+
+int flow_implicit_euler_end(struct flow_state *state)
 {
     if (!searches(state))
         return fork_move(state);
@@ -372,7 +361,7 @@ bool flow_implicit_is_second(const struct flow_state *state)
     return state->flow->model->integrator == MODEL_BDF2 && state->smooth == state->attempt.length;
 }
 
-static int bdf2(struct flow_state *state)
+int flow_bdf2_end(struct flow_state *state)
 {
     struct flow_args args = flow_attempt_args(state);
     double slope;
@@ -387,11 +376,6 @@ static int bdf2(struct flow_state *state)
     if (!code)
         code = fork_system(state, args);
     return code ? code : finish(state, args);
-}
-
-int flow_implicit_end(struct flow_state *state)
-{
-    return state->flow->model->integrator == MODEL_BDF2 ? bdf2(state) : euler(state);
 }
 
 void flow_implicit_status(const struct flow_state *state, double status[FLOW_STATUS])

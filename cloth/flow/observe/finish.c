@@ -3,13 +3,23 @@
 #include "cloth/flow/bodies.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 static int largest_stretch(struct flow_state *state)
 {
-    const int code = flow_stretch_fork(state, state->run.stretch[0]);
-    return code ? code : duite_get(state->rt, state->run.stretch[0], &state->report->max_stretch);
+    const int code = flow_stretch_fork(state);
+    return code ? code : flow_stretch_get(state, &state->report->max_stretch);
+}
+
+/* Runs when nothing else does. */
+FLOW_KERNEL(seconds, FLOW_NO_PART, struct flow_args, (SUM(seconds)))
+static int seconds_body(const duite_call *call, const struct seconds_fields *on)
+{
+    const struct flow *flow = flow_of(call);
+    for (unsigned w = 0; w < flow->n_clocks; w++)
+        for (int part = 0; part < FLOW_PARTS; part++)
+            on->seconds[part] += flow->clock[w].seconds[part];
+    return 0;
 }
 
 static double some(double seconds)
@@ -23,7 +33,7 @@ static int sum_seconds(struct flow_state *state)
     const struct flow_args args = {0};
     int code = duite_wait(state->rt);
     for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
-        code = duite_fork_at(state->rt, rank, &flow_seconds, &args, 1, &state->run.seconds);
+        code = flow_fork_at(state, rank, &flow_kernel_seconds, &args, NULL);
     double sum[FLOW_PARTS];
     if (!code)
         code = duite_get(state->rt, state->run.seconds, sum);
@@ -73,28 +83,42 @@ static void place(const struct flow_state *state, uint32_t block, const struct p
     }
 }
 
-/* Sends these blocks' vectors to rank 0, which has each in a parcel only for a moment. */
-static int collect(struct flow_state *state, uint32_t n, const uint32_t *block, size_t offset,
-                   const struct part *part)
+/* A vector of a block without its fourth lane. */
+FLOW_KERNEL(collect, FLOW_NO_PART, struct flow_args, (R(x), W(parcel)))
+static int collect_body(const duite_call *call, const struct collect_fields *on)
 {
+    const struct flow_table *t = flow_shape_of(call);
+    unsigned char *to = on->parcel;
+    const int code =
+        duite_resize(call, FLOW_INDEX_OF(collect, parcel), FLOW_VERTEX_BYTES * (size_t)t->n);
+    for (uint32_t i = 0; i < t->n && !code; i++)
+        for (int c = 0; c < 3; c++, to += 8)
+            flow_put_double(to, on->x[i][c]);
+    return code;
+}
+
+/* Sends this vector of these blocks to rank 0, which has each in a parcel only for a moment. */
+static int collect(struct flow_state *state, uint32_t n, const uint32_t *block,
+                   enum flow_field_id vector, const struct part *part)
+{
+    const struct flow_as as[] = {{FLOW_FIELD_x, vector}, {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
     int code = DUITE_OK;
     for (uint32_t k = 0; k < n && !code; k++) {
         const struct flow_args args = {.block = block[k]};
-        const void *o = (const char *)(state->block + block[k]) + offset;
-        const duite_object vector = *(const duite_object *)o, parcel = state->parcel[block[k]];
-        code = DUITE_FORK(state->rt, &flow_collect, &args, vector, parcel);
+        code = flow_fork_one_as(state, &flow_kernel_collect, &args, as);
     }
     for (uint32_t k = 0; k < n && !code; k++) {
-        code = duite_get_at(state->rt, state->parcel[block[k]], 0, state->rows);
+        code = duite_get_at(state->rt, state->block[block[k]].parcel, 0, state->rows);
         if (!code && state->bytes)
             place(state, block[k], part);
         if (!code)
-            code = duite_set_sized(state->rt, state->parcel[block[k]], NULL, 0);
+            code = duite_set_sized(state->rt, state->block[block[k]].parcel, NULL, 0);
     }
     return code;
 }
 
-static int collect_part(struct flow_state *state, size_t offset, const struct part *part)
+static int collect_part(struct flow_state *state, enum flow_field_id vector,
+                        const struct part *part)
 {
     const struct flow_tables *tables = &state->flow->tables;
     uint32_t some[AT_ONCE], n = 0;
@@ -104,7 +128,7 @@ static int collect_part(struct flow_state *state, size_t offset, const struct pa
             some[n++] = b;
         if (n < AT_ONCE && b + 1 < tables->n_blocks)
             continue;
-        code = collect(state, n, some, offset, part);
+        code = collect(state, n, some, vector, part);
         n = 0;
     }
     const int failed = duite_wait(state->rt); /* nobody runs ahead of rank 0 with its parcels */
@@ -123,7 +147,8 @@ static void place_rest(struct flow_state *state, bool at_rest, const struct part
     }
 }
 
-static int hash_vectors(struct flow_state *state, size_t offset, bool at_rest, XXH64_state_t *hash)
+static int hash_vectors(struct flow_state *state, enum flow_field_id vector, bool at_rest,
+                        XXH64_state_t *hash)
 {
     const uint32_t n = state->flow->n_vertices, step = flow_hash_part(state->flow);
     int code = DUITE_OK;
@@ -131,7 +156,7 @@ static int hash_vectors(struct flow_state *state, size_t offset, bool at_rest, X
         part.to = n - part.from > step ? part.from + step : n;
         if (hash)
             place_rest(state, at_rest, &part);
-        code = collect_part(state, offset, &part);
+        code = collect_part(state, vector, &part);
         if (hash && !code)
             XXH64_update(hash, state->bytes, FLOW_VERTEX_BYTES * (size_t)(part.to - part.from));
     }
@@ -143,18 +168,26 @@ static int hash_state(struct flow_state *state)
     XXH64_state_t *hash = state->hash;
     if (hash)
         XXH64_reset(hash, 0);
-    int code = hash_vectors(state, offsetof(struct flow_objects, x), false, hash);
+    int code = hash_vectors(state, FLOW_FIELD_x, false, hash);
     if (!code)
-        code = hash_vectors(state, offsetof(struct flow_objects, v), true, hash);
+        code = hash_vectors(state, FLOW_FIELD_v, true, hash);
     if (hash)
         state->flow->hash = XXH64_digest(hash);
     return code;
 }
 
+FLOW_KERNEL(tell, FLOW_NO_PART, struct flow_args, (W(told)))
+static int tell_body(const duite_call *call, const struct tell_fields *on)
+{
+    on->told[FLOW_TELL_FRAMES] = flow_of(call)->frames;
+    on->told[FLOW_TELL_HASH] = flow_of(call)->hash;
+    return 0;
+}
+
 static int tell(struct flow_state *state, uint64_t told[FLOW_TELL])
 {
     const struct flow_args args = {0};
-    int code = duite_fork_at(state->rt, 0, &flow_tell, &args, 1, &state->run.told);
+    int code = flow_fork_at(state, 0, &flow_kernel_tell, &args, NULL);
     if (!code)
         code = duite_get(state->rt, state->run.told, told);
     return code;

@@ -1,14 +1,31 @@
 /* Frame k shows the state after the step whose end is nearest to k / fps. Where steps may be
  * shorter than h it is known only when the step beyond k / fps is accepted: then either this step's
- * end or its begin, which is kept, is shown. The frame before must have been written by then. The
+ * end or its begin, which is kept, is shown. The frame before must have been written by then:
+ * frames are written by rank 0, one after the other, and each frame's task holds the token. The
  * last frame of a run that is stopped shows the state that the run ends with, whenever that is. */
-#include "cloth/flow/tasks.h"
-
-#include <math.h>
+#include "cloth/flow/bodies.h"
 
 double flow_frame_tick(const struct model *model, uint64_t frame)
 {
     return (double)frame / (model->fps * model->h) * FLOW_TICKS;
+}
+
+FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct flow_args, (RW(token), ALL(x)), .side_effects = 1)
+static int frame_body(const duite_call *call, const struct frame_fields *on)
+{
+    struct flow *flow = flow_of(call);
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
+        const phys_vec *x = flow_rows_of(on->x, b);
+        const struct flow_table *t = flow->tables.block + b;
+        for (uint32_t i = 0; i < t->n; i++)
+            for (int c = 0; c < 3; c++)
+                flow->room[3 * (size_t)flow->vertex[t->first + i] + (size_t)c] = x[i][c];
+    }
+    if (flow->output->frame(flow->output->context, on->args->frame, on->args->time, flow->room,
+                            &flow->trouble))
+        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
+    flow->frames = on->args->frame + 1;
+    return 0;
 }
 
 /* Forks a frame of the state at a tick, kept or not. */
@@ -25,11 +42,8 @@ static int fork_frame(struct flow_state *state, double tick, bool kept)
         if (code)
             return code;
     }
-    const uint32_t n = state->flow->tables.n_blocks;
-    state->refs[0] = state->run.token;
-    for (uint32_t b = 0; b < n; b++)
-        state->refs[1 + b] = kept ? state->block[b].kept_x : state->block[b].x;
-    return duite_fork_at(state->rt, 0, &flow_frame, &args, 1 + (size_t)n, state->refs);
+    return flow_fork_at(state, 0, &flow_kernel_frame, &args,
+                        kept ? FLOW_AS(FLOW_FOR(x, kept_x)) : NULL);
 }
 
 int flow_frame_last(struct flow_state *state)

@@ -34,15 +34,18 @@ static double *put_vector(double *to, const phys_vec *from)
     return to;
 }
 
-static void put_rows(const duite_call *call, const struct flow_table *t, double *to)
+FLOW_KERNEL(system_part, FLOW_NO_PART, struct flow_args,
+            (R(table), R(f), R(a), R(dv), R(x), R(v), W(saved)))
+
+static void put_rows(const struct flow_table *t, const struct system_part_fields *on, double *to)
 {
     for (uint32_t i = 0; i < t->n; i++) {
         const double row[B] = {t->vertex[i], t->mass[i], t->matrix.diagonal[i], t->free[i]};
         for (int k = 0; k < B; k++)
             *to++ = row[k];
-        to = put_vector(to, duite_in(call, 1, phys_vec) + i);
-        for (size_t k = 3; k < 6; k++)
-            to = put_vector(to, duite_in(call, k, phys_vec) + i);
+        const phys_vec *const vectors[] = {on->f, on->dv, on->x, on->v};
+        for (size_t k = 0; k < 4; k++)
+            to = put_vector(to, vectors[k] + i);
     }
 }
 
@@ -88,14 +91,14 @@ static double *put_entries(const struct flow_table *t, uint32_t block,
     return to;
 }
 
-static int part(const duite_call *call)
+static int system_part_body(const duite_call *call, const struct system_part_fields *on)
 {
-    struct flow_table table = flow_table_of(call), *t = &table;
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solve_values values =
-        solve_values_of(t->format, t->n, flow_open_matrix(call, t, 2));
-    double *part = duite_out(call, 6, double), *to = part + entries_at(t);
-    put_rows(call, t, part);
-    to = put_entries(t, flow_args_of(call)->block, &values, to);
+        solve_values_of(t->format, t->n, flow_matrix_in(call, t, on->a));
+    double *part = on->saved, *to = part + entries_at(t);
+    put_rows(t, on, part);
+    to = put_entries(t, on->args->block, &values, to);
     for (; to < part + rim_at(t); to += entry_doubles(t)) {
         memset(to, 0, entry_doubles(t) * sizeof *to);
         to[BLOCK] = -1;
@@ -104,13 +107,10 @@ static int part(const duite_call *call)
         *to++ = t->rim[i];
     return 0;
 }
-const duite_kernel flow_system_part = {
-    .name = "system_part",
-    .body = part,
-    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_W},
-    .args_size = sizeof(struct flow_args)};
-
 /* ---- On rank 0 ---- */
+
+FLOW_KERNEL_WITH(system_save, FLOW_NO_PART, struct flow_args, (RW(token), ALL(saved)),
+                 .side_effects = 1)
 
 static uint32_t vertex_of(const double *part, double row)
 {
@@ -133,16 +133,17 @@ static void take_rows(struct solve_system *system, const struct flow_table *t, c
     }
 }
 
-/* Of block b; parts of all blocks are the task's parameters from 1 on. */
-static void take_entries(struct solve_system *system, const duite_call *call, uint32_t b)
+/* Of block b, by the parts of all blocks. */
+static void take_entries(struct solve_system *system, const duite_call *call,
+                         const duite_param *parts, uint32_t b)
 {
     const struct flow_table *tables = flow_of(call)->tables.block, *t = tables + b;
-    const double *own = duite_in(call, 1 + b, double), *entry = own + entries_at(t);
+    const double *own = flow_numbers_of(parts, b), *entry = own + entries_at(t);
     for (; entry < own + rim_at(t); entry += entry_doubles(t)) {
         if (entry[BLOCK] < b)
             continue;
         const uint32_t other = (uint32_t)entry[BLOCK];
-        const double *there = duite_in(call, 1 + other, double);
+        const double *there = flow_numbers_of(parts, other);
         const double row =
             other == b ? entry[THERE] : there[rim_at(tables + other) + (size_t)entry[THERE]];
         const size_t at = system->n_pairs++;
@@ -155,7 +156,8 @@ static void take_entries(struct solve_system *system, const duite_call *call, ui
     }
 }
 
-static int gather(const duite_call *call, struct solve_system *system, struct cloth_error *error)
+static int gather(const duite_call *call, const struct system_save_fields *on,
+                  struct solve_system *system, struct cloth_error *error)
 {
     const struct flow *flow = flow_of(call);
     const enum solve_pairs pairs =
@@ -166,20 +168,20 @@ static int gather(const duite_call *call, struct solve_system *system, struct cl
     const int code = solve_system_make(system, flow->n_vertices, entries, pairs, error);
     if (code)
         return code;
-    system->h = flow_args_of(call)->h;
+    system->h = on->args->h;
     system->n_pairs = 0;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
-        take_rows(system, flow->tables.block + b, duite_in(call, 1 + b, double));
-        take_entries(system, call, b);
+        take_rows(system, flow->tables.block + b, flow_numbers_of(on->saved, b));
+        take_entries(system, call, on->saved, b);
     }
     return solve_system_sort(system, error);
 }
 
-static int save(const duite_call *call)
+static int system_save_body(const duite_call *call, const struct system_save_fields *on)
 {
     struct flow *flow = flow_of(call);
     struct solve_system system = {0};
-    int code = gather(call, &system, &flow->trouble);
+    int code = gather(call, on, &system, &flow->trouble);
     if (!code)
         code = flow->output->system(flow->output->context, &system, &flow->trouble);
     solve_system_free(&system);
@@ -188,48 +190,17 @@ static int save(const duite_call *call)
     return duite_fail(call, code == CLOTH_E_MEMORY ? FLOW_NO_MEMORY : FLOW_NOT_WRITTEN, "%s",
                       flow->trouble.text);
 }
-const duite_kernel flow_system_save = {.name = "system_save",
-                                       .body = save,
-                                       .access = {DUITE_RW},
-                                       .variadic = DUITE_R,
-                                       .args_size = sizeof(struct flow_args),
-                                       .side_effects = 1};
-
 /* ---- The main program ---- */
 
-static int fork_parts(struct flow_state *state, duite_object *part)
+size_t flow_system_doubles(const struct flow_table *t)
 {
-    const struct flow_tables *tables = &state->flow->tables;
-    struct flow_args args = {0};
-    int code = DUITE_OK;
-    for (uint32_t b = 0; b < tables->n_blocks && !code; b++) {
-        const struct flow_table *t = tables->block + b;
-        code = duite_new(state->rt, DUITE_F64, rim_at(t) + t->n_rim, part + b);
-        if (!code)
-            code = duite_colocate(state->rt, part[b], state->block[b].x);
-    }
-    for (; args.block < tables->n_blocks && !code; args.block++) {
-        const struct flow_objects *o = state->block + args.block;
-        const duite_object objects[] = {o->f, o->a, o->dv, o->x, o->v, part[args.block]};
-        code = flow_fork(state, &flow_system_part, &args, 6, objects, FLOW_NO_RIM, FLOW_NO_RIM);
-    }
-    return code;
+    return rim_at(t) + t->n_rim;
 }
 
 int flow_system(struct flow_state *state)
 {
-    const uint32_t n = state->flow->tables.n_blocks;
-    const struct flow_args args = flow_attempt_args(state);
-    duite_object *part = state->part;
-    int code = fork_parts(state, part);
-    state->refs[0] = state->run.token;
-    for (uint32_t b = 0; b < n; b++)
-        state->refs[1 + b] = part[b];
-    if (!code)
-        code = duite_fork_at(state->rt, 0, &flow_system_save, &args, 1 + (size_t)n, state->refs);
-    for (uint32_t b = 0; b < n; b++) {
-        const int failed = part[b].generation ? duite_free(state->rt, part[b]) : DUITE_OK;
-        code = code ? code : failed;
-    }
-    return code;
+    struct flow_args args = flow_attempt_args(state);
+    const int code = flow_fork_each(state, &flow_kernel_system_part, &args);
+    args.block = 0;
+    return code ? code : flow_fork_at(state, 0, &flow_kernel_system_save, &args, NULL);
 }

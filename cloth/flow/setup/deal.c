@@ -232,45 +232,22 @@ int flow_share(struct flow_state *state)
 
 /* ---- Dealing ---- */
 
-static int table_make(const duite_call *call)
+FLOW_KERNEL(table_make, FLOW_NO_PART, struct flow_args, (W(table)))
+static int table_make_body(const duite_call *call, const struct table_make_fields *on)
 {
     const struct flow *flow = flow_of(call);
     if (!flow->source.side)
         return duite_fail(call, FLOW_NO_MEMORY, "rank %d: %s", call->rank, flow->trouble.text);
-    flow_source_table(&flow->source, flow_args_of(call)->block, duite_out(call, 0, char));
+    flow_source_table(&flow->source, on->args->block, on->table);
     return 0;
 }
-const duite_kernel flow_table_make = {
-    .name = "table_make", .body = table_make, .access = {DUITE_W}, .args_size = KEYS};
 
 /* Nothing is to be done but to have it: who writes an object last holds it. */
-static int table_keep(const duite_call *call)
+FLOW_KERNEL(table_keep, FLOW_NO_PART, struct flow_args, (RW(table)))
+static int table_keep_body(const duite_call *call, const struct table_keep_fields *on)
 {
-    (void)call;
+    (void)call, (void)on;
     return 0;
-}
-const duite_kernel flow_table_keep = {
-    .name = "table_keep", .body = table_keep, .access = {DUITE_RW}, .args_size = KEYS};
-
-void flow_parcels_make(struct flow_state *state)
-{
-    const struct flow_tables *tables = &state->flow->tables;
-    for (uint32_t b = 0; b < tables->n_blocks; b++) {
-        duite_new_sized(state->rt, DUITE_BYTE, 0, FLOW_VERTEX_BYTES * (size_t)tables->block[b].n,
-                        state->parcel + b);
-        duite_colocate(state->rt, state->parcel[b], state->block[b].x);
-    }
-}
-
-int flow_parcels_free(struct flow_state *state)
-{
-    int code = DUITE_OK;
-    for (uint32_t b = 0; state->parcel && b < state->flow->tables.n_blocks; b++) {
-        const duite_object parcel = state->parcel[b];
-        const int failed = parcel.generation ? duite_free(state->rt, parcel) : DUITE_OK;
-        code = code ? code : failed;
-    }
-    return code;
 }
 
 static int deal(struct flow_state *state, uint32_t from, uint32_t to)
@@ -278,10 +255,9 @@ static int deal(struct flow_state *state, uint32_t from, uint32_t to)
     struct flow_args args = {.block = from};
     int code = DUITE_OK;
     for (; args.block < to && !code; args.block++) {
-        const duite_object *table = &state->block[args.block].table;
-        code = duite_fork_at(state->rt, 0, &flow_table_make, &args, 1, table);
+        code = flow_fork_at(state, 0, &flow_kernel_table_make, &args, NULL);
         if (!code)
-            code = duite_fork(state->rt, &flow_table_keep, &args, 1, table);
+            code = flow_fork_one(state, &flow_kernel_table_keep, &args);
     }
     const int failed = duite_wait(state->rt);
     return code ? code : failed;

@@ -72,9 +72,7 @@ static void take(struct flow_state *state)
     flow->tables.block = cloth_alloc(head->n_blocks, sizeof *flow->tables.block, &flow->trouble);
     flow->tables.n_blocks = head->n_blocks;
     state->block = cloth_alloc(head->n_blocks, sizeof *state->block, &flow->trouble);
-    state->parcel = cloth_alloc(head->n_blocks, sizeof *state->parcel, &flow->trouble);
     state->refs = cloth_alloc(refs, sizeof *state->refs, &flow->trouble);
-    state->part = cloth_alloc(head->n_blocks, sizeof *state->part, &flow->trouble);
     state->rows = cloth_alloc(larger(4 * (size_t)head->most_rows, head->most_slots),
                               sizeof *state->rows, &flow->trouble);
     flow_halo_take(state);
@@ -124,9 +122,7 @@ void flow_memory_free(struct flow_state *state)
     free(flow->row);
     free(flow->seen);
     free(state->block);
-    free(state->parcel);
     free(state->refs);
-    free(state->part);
     free(state->rows);
     flow_halo_free(state);
     free(state->bytes);
@@ -136,10 +132,8 @@ void flow_memory_free(struct flow_state *state)
     flow->copies = flow->forces = NULL;
     flow->room = flow->row = flow->seen = NULL;
     state->block = NULL;
-    state->parcel = NULL;
     state->bytes = NULL;
     state->hash = NULL;
     state->refs = NULL;
-    state->part = NULL;
     state->rows = NULL;
 }

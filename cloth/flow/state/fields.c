@@ -36,6 +36,11 @@ static size_t watched(const struct flow_state *state, uint32_t block)
     return table_of(state, block)->n_watched;
 }
 
+static size_t saved(const struct flow_state *state, uint32_t block)
+{
+    return flow_system_doubles(table_of(state, block));
+}
+
 static size_t table_bytes(const struct flow_state *state, uint32_t block)
 {
     return flow_table_bytes(table_of(state, block));
@@ -161,6 +166,11 @@ static bool probed(const struct flow_state *state, uint32_t block)
     return flow_tells(state) && table_of(state, block)->n_watched;
 }
 
+static bool saves(const struct flow_state *state, uint32_t block)
+{
+    return implicit_run(state, block) && state->output && state->output->system;
+}
+
 static bool in_pieces(const struct flow_state *state, uint32_t block)
 {
     (void)block;
@@ -210,9 +220,10 @@ static enum flow_life is_state_of_guess(const struct model *model)
 #define FIELD(name, turns, place, type, width, rows, exists, life)                                 \
     {#name, turns, place, TYPE_OF(type), width, rows, exists, life},
 #define ROW(name, many, ...)   ROW_##many(name, __VA_ARGS__)
-#define ROW_ONE(name, ...)     FIELD(name, FLOW_TURNS_NOT, 0, __VA_ARGS__)
-#define ROW_BY_STEP(name, ...) ROWS(name, FLOW_TURNS_BY_STEP, __VA_ARGS__)
-#define ROW_BY_PASS(name, ...) ROWS(name, FLOW_TURNS_BY_PASS, __VA_ARGS__)
+#define ROW_ONE(name, ...)     FIELD(name, FLOW_ONE, 0, __VA_ARGS__)
+#define ROW_SIZED(name, ...)   FIELD(name, FLOW_SIZED, 0, __VA_ARGS__)
+#define ROW_BY_STEP(name, ...) ROWS(name, FLOW_BY_STEP, __VA_ARGS__)
+#define ROW_BY_PASS(name, ...) ROWS(name, FLOW_BY_PASS, __VA_ARGS__)
 #define ROWS(name, turns, ...) FIELD(name, turns, 0, __VA_ARGS__) FIELD(name, turns, 1, __VA_ARGS__)
 
 const struct flow_field flow_fields[FLOW_FIELDS_OF_ALL] = {FLOW_FIELDS(ROW)};

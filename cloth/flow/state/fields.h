@@ -16,8 +16,9 @@
  * made, freed and colocated by loops over the list (objects.c), kernels name them (kernel.h), and
  * the list of a checkpoint follows from the last column. A new field is one row.
  *
- * ONE: one object. BY_STEP, BY_PASS: two objects that take turns, name and name_next. By step,
- * `name` is that of the step under way; by pass, that of the pass under way (flow_state.pass). */
+ * ONE: one object. SIZED: one that changes its size, up to this many rows. BY_STEP, BY_PASS: two
+ * objects that take turns, name and name_next. By step, `name` is that of the step under way; by
+ * pass, that of the pass under way (flow_state.pass). */
 
 /* Of each block; they live where its x lives. */
 /* clang-format off */
@@ -66,7 +67,10 @@
     X(coupling,     ONE,     double,        1, couplings,    coarse_run,   is_work)                \
     /* where probes are: the force on each row; what is reported of them */                        \
     X(felt,         ONE,     phys_vec,      4, rows,         probed,       is_work)                \
-    X(seen,         ONE,     double, FLOW_SEEN, watched,     probed,       is_work)
+    X(seen,         ONE,     double, FLOW_SEEN, watched,     probed,       is_work)                \
+    /* what travels to rank 0 on its own, empty in between; what is saved of the system of a step */ \
+    X(parcel,       SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows, always, is_work)              \
+    X(saved,        ONE,     double,        1, saved,        saves,        is_work)
 
 /* Of the whole run; they live where the first block lives. */
 #define FLOW_RUN_FIELDS(X)                                                                         \
@@ -95,6 +99,7 @@
 /* FLOW_FIELD_name, and FLOW_FIELD_name_next behind it. */
 #define FLOW_FIELD_ID(name, many, ...) FLOW_FIELD_ID_##many(name)
 #define FLOW_FIELD_ID_ONE(name)        FLOW_FIELD_##name,
+#define FLOW_FIELD_ID_SIZED(name)      FLOW_FIELD_##name,
 #define FLOW_FIELD_ID_BY_STEP(name)    FLOW_FIELD_##name, FLOW_FIELD_##name##_next,
 #define FLOW_FIELD_ID_BY_PASS(name)    FLOW_FIELD_ID_BY_STEP(name)
 enum flow_field_id {
@@ -106,6 +111,7 @@ enum { FLOW_FIELDS_OF_RUN = FLOW_FIELDS_OF_ALL - FLOW_FIELDS_OF_BLOCK };
 
 #define FLOW_FIELD_MEMBER(name, many, ...) FLOW_FIELD_MEMBER_##many(name)
 #define FLOW_FIELD_MEMBER_ONE(name)        duite_object name;
+#define FLOW_FIELD_MEMBER_SIZED(name)      duite_object name;
 #define FLOW_FIELD_MEMBER_BY_STEP(name)    duite_object name[2];
 #define FLOW_FIELD_MEMBER_BY_PASS(name)    duite_object name[2];
 
@@ -136,8 +142,7 @@ enum flow_life {
     FLOW_WORK     /* the next step writes it before it reads it */
 };
 
-/* FLOW_TURNS_NOT: one object. */
-enum flow_turns { FLOW_TURNS_NOT, FLOW_TURNS_BY_STEP, FLOW_TURNS_BY_PASS };
+enum flow_turns { FLOW_ONE, FLOW_SIZED, FLOW_BY_STEP, FLOW_BY_PASS };
 
 struct flow_state;
 struct model;

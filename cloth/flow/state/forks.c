@@ -25,7 +25,8 @@ static duite_object *add_parameter(const struct flow_state *state, uint32_t bloc
         return refs;
     case FLOW_OF_ALL:
         for (uint32_t b = 0; b < tables->n_blocks; b++)
-            *refs++ = flow_field_object(state, field, b);
+            if (flow_fields[field].exists(state, b))
+                *refs++ = flow_field_object(state, field, b);
         return refs;
     case FLOW_IF_MADE:
         if (!flow_fields[field].exists(state, block))
@@ -82,4 +83,46 @@ int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *k
     const uint32_t *block = args;
     const size_t n = flow_kernel_objects(state, kernel, *block, as);
     return duite_fork_at(state->rt, rank, &kernel->task, args, n, state->refs);
+}
+
+/* ---- Of kernels that do not declare their fields ---- */
+
+static duite_object at_offset(const struct flow_objects *objects, long offset)
+{
+    return *(const duite_object *)(const void *)((const char *)objects + offset);
+}
+
+int flow_fork(struct flow_state *state, const duite_kernel *kernel, const struct flow_args *args,
+              size_t n, const duite_object *objects, long offset, long offset2)
+{
+    const struct flow_table *t = state->flow->tables.block + args->block;
+    size_t count = 0;
+    state->refs[count++] = state->block[args->block].table;
+    for (size_t i = 0; i < n; i++)
+        state->refs[count++] = objects[i];
+    for (uint32_t s = 0; offset != FLOW_NO_RIM && s < t->n_slots; s++)
+        state->refs[count++] = at_offset(state->block + t->slot[s], offset);
+    for (uint32_t s = 0; offset2 != FLOW_NO_RIM && s < t->n_slots; s++)
+        state->refs[count++] = at_offset(state->block + t->slot[s], offset2);
+    return duite_fork(state->rt, kernel, args, count, state->refs);
+}
+
+int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct flow_args args,
+                  const long *objects, enum flow_behind behind, long rim, long rim2)
+{
+    int code = DUITE_OK;
+    for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+        duite_object own[DUITE_MAX_ACCESS];
+        size_t n = 0;
+        for (; objects[n] >= 0; n++)
+            own[n] =
+                *(const duite_object *)(const void *)((const char *)(state->block + args.block) +
+                                                      objects[n]);
+        if (behind == FLOW_THEN_SCALARS_AND_STATUS)
+            own[n++] = state->run.scalars[0];
+        if (behind != FLOW_NOTHING)
+            own[n++] = state->run.status[state->attempt.parity];
+        code = flow_fork(state, kernel, &args, n, own, rim, rim2);
+    }
+    return code;
 }

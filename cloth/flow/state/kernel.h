@@ -24,7 +24,7 @@
  *     R W RW     reads, overwrites, changes: a field of the task's block or of the run
  *     SUM MAX    contributes to it, added up, or the largest counts
  *     NEIGHBOURS reads this field of each neighbour, in the order of slots
- *     ALL        reads this field of every block
+ *     ALL        reads this field of every block that has it
  *     IF_MADE    reads it if it exists in the run; else the pointer is NULL. Either all fields of a
  *                kernel with this word exist or none
  *
@@ -219,6 +219,7 @@ struct flow_kernel {
 /* flow_type_of_name: what a field's object is in C. */
 #define FLOW_FIELD_TYPE(name, many, type, ...) FLOW_FIELD_TYPE_##many(name, type)
 #define FLOW_FIELD_TYPE_ONE(name, type)        typedef type flow_type_of_##name;
+#define FLOW_FIELD_TYPE_SIZED(name, type)      typedef type flow_type_of_##name;
 #define FLOW_FIELD_TYPE_BY_STEP(name, type)                                                        \
     typedef type flow_type_of_##name, flow_type_of_##name##_next;
 #define FLOW_FIELD_TYPE_BY_PASS(name, type) FLOW_FIELD_TYPE_BY_STEP(name, type)

@@ -12,7 +12,10 @@ static void make_field(struct flow_state *state, enum flow_field_id field, uint3
     if (!flow_fields[field].exists(state, block))
         return;
     const size_t numbers = flow_field_numbers(state, field, block);
-    duite_new(state->rt, flow_fields[field].type, numbers, object);
+    if (flow_fields[field].turns == FLOW_SIZED)
+        duite_new_sized(state->rt, flow_fields[field].type, 0, numbers, object);
+    else
+        duite_new(state->rt, flow_fields[field].type, numbers, object);
     if (field != FLOW_FIELD_x)
         duite_colocate(state->rt, *object, state->block[block].x);
 }
@@ -73,9 +76,9 @@ static size_t place_now(const struct flow_state *state, enum flow_field_id field
 {
     const struct flow_field *is = flow_fields + field;
     unsigned turn = 0;
-    if (is->turns == FLOW_TURNS_BY_STEP)
+    if (is->turns == FLOW_BY_STEP)
         turn = state->attempt.parity;
-    else if (is->turns == FLOW_TURNS_BY_PASS)
+    else if (is->turns == FLOW_BY_PASS)
         turn = state->pass;
     return field - is->place + (is->place ^ turn);
 }
@@ -96,24 +99,4 @@ void flow_fields_swap(struct flow_state *state, enum flow_field_id a, enum flow_
         of[a] = of[b];
         of[b] = was;
     }
-}
-
-static duite_object at_offset(const struct flow_objects *objects, long offset)
-{
-    return *(const duite_object *)(const void *)((const char *)objects + offset);
-}
-
-int flow_fork(struct flow_state *state, const duite_kernel *kernel, const struct flow_args *args,
-              size_t n, const duite_object *objects, long offset, long offset2)
-{
-    const struct flow_table *t = state->flow->tables.block + args->block;
-    size_t count = 0;
-    state->refs[count++] = state->block[args->block].table;
-    for (size_t i = 0; i < n; i++)
-        state->refs[count++] = objects[i];
-    for (uint32_t s = 0; offset != FLOW_NO_RIM && s < t->n_slots; s++)
-        state->refs[count++] = at_offset(state->block + t->slot[s], offset);
-    for (uint32_t s = 0; offset2 != FLOW_NO_RIM && s < t->n_slots; s++)
-        state->refs[count++] = at_offset(state->block + t->slot[s], offset2);
-    return duite_fork(state->rt, kernel, args, count, state->refs);
 }

@@ -1,32 +1,65 @@
-/* Energies are of the state that the tasks forked so far leave, and change nothing of it. */
-#include "cloth/flow/tasks.h"
+/* Energies are of the state that the tasks forked so far leave, and change nothing of it. A spring
+ * between two blocks gives half of its own to each. Sums are contributions, so that they are the
+ * same for any ranks and threads. */
+#include "cloth/flow/step/guides.h"
 
-#include <math.h>
-#include <stddef.h>
+#include "cloth/physics/energy.h"
+#include "cloth/physics/particle.h"
+
+FLOW_KERNEL(energy, FLOW_NO_PART, struct flow_args,
+            (R(table), R(x), R(v), SUM(energies), NEIGHBOURS(rim_x)))
+static int energy_body(const duite_call *call, const struct energy_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const double *gravity = flow_of(call)->model->gravity;
+    double *sums = on->energies, fastest = 0;
+    struct phys_springs springs = flow_table_inner(t);
+    const struct flow_view view = {.x = on->x, .rim_x = on->rim_x};
+    sums[FLOW_ENERGY_MOTION] = phys_kinetic(t->n, t->mass, on->v, &fastest);
+    sums[FLOW_ENERGY_GRAVITY] = phys_energy_weight(t->n, t->mass, gravity, on->x);
+    sums[FLOW_ENERGY_LOADS] = phys_energy_load(t->n, t->mass, gravity, t->load, on->x) +
+                              flow_varying_energy(call, t, on->x);
+    sums[FLOW_ENERGY_ELASTIC] = flow_elements_energy(call, t, &view, sums + FLOW_TORQUE) +
+                                phys_energy_springs(&springs, on->x, on->x);
+    for (uint32_t s = 0; s < t->n_slots; s++) {
+        springs = flow_table_cut(t, s);
+        sums[FLOW_ENERGY_ELASTIC] +=
+            0.5 * phys_energy_springs(&springs, on->x, flow_rows_of(on->rim_x, s));
+    }
+    return 0;
+}
+
+/* f becomes v and half a kick more: the velocity where x is, of steps that hold them half a step
+ * apart. */
+FLOW_KERNEL(level, FLOW_NO_PART, struct flow_args, (R(table), R(v), RW(f)))
+static int level_body(const duite_call *call, const struct level_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    phys_accelerate(t->n, t->mass, t->free, on->f);
+    flow_guides_filter(call, t, on->f);
+    for (uint32_t i = 0; i < t->n; i++)
+        on->f[i] = on->v[i] + 0.5 * on->args->h * on->f[i];
+    return 0;
+}
 
 /* By symplectic Euler x moved with v: it is the velocity half a step before. With that at x the
  * energy is off by the square of h only. */
 static int fork_level(struct flow_state *state, struct flow_args args)
 {
     const int code = flow_fork_each(state, &flow_kernel_force, &args);
-    return code ? code
-                : flow_fork_all(state, &flow_level, args, FLOW_OBJECTS(FLOW_AT(v), FLOW_AT(f)),
-                                FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+    return code ? code : flow_fork_each(state, &flow_kernel_level, &args);
 }
 
-int flow_energies(struct flow_state *state, struct flow_args args, duite_object sums)
+int flow_energies(struct flow_state *state, struct flow_args args, enum flow_field_id sums)
 {
     const bool apart = state->flow->model->integrator == MODEL_SYMPLECTIC_EULER;
-    int code = duite_set(state->rt, sums, NULL);
+    const struct flow_as as[] = {{FLOW_FIELD_v, apart ? FLOW_FIELD_f : FLOW_FIELD_v},
+                                 {FLOW_FIELD_energies, sums},
+                                 {FLOW_FIELDS_OF_ALL, FLOW_FIELDS_OF_ALL}};
+    int code = duite_set(state->rt, flow_field_object(state, sums, 0), NULL);
     if (!code && apart)
         code = fork_level(state, args);
-    for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++) {
-        const struct flow_objects *o = state->block + args.block;
-        code = flow_fork(state, &flow_energy, &args, 3,
-                         (duite_object[]){o->x, apart ? o->f : o->v, sums}, FLOW_RIM(rim_x),
-                         FLOW_NO_RIM);
-    }
-    return code;
+    return code ? code : flow_fork_each_as(state, &flow_kernel_energy, &args, as);
 }
 
 /* Whether energies are looked at after the step under way. */
@@ -38,8 +71,7 @@ static bool looks(const struct flow_state *state)
 
 int flow_energy_fork(struct flow_state *state)
 {
-    return looks(state) ? flow_energies(state, flow_attempt_args(state),
-                                        state->run.energies[state->attempt.parity])
+    return looks(state) ? flow_energies(state, flow_attempt_args(state), FLOW_FIELD_energies)
                         : DUITE_OK;
 }
 
@@ -49,7 +81,7 @@ int flow_energy_wait(struct flow_state *state)
     double sums[FLOW_SUMS];
     if (!looks(state))
         return DUITE_OK;
-    const int code = duite_get(state->rt, state->run.energies[state->attempt.parity], sums);
+    const int code = duite_get(state->rt, flow_field_object(state, FLOW_FIELD_energies, 0), sums);
     if (code)
         return code;
     guard->sum = 0;
@@ -112,7 +144,7 @@ int flow_energy_get(struct flow_state *state, struct flow_energy *energy)
     double sums[FLOW_SUMS];
     struct flow_args args = flow_attempt_args(state);
     args.h = args.h > 0 ? args.h : state->flow->model->h; /* before the first step */
-    int code = flow_energies(state, args, state->run.energy);
+    int code = flow_energies(state, args, FLOW_FIELD_energy);
     if (!code)
         code = duite_get(state->rt, state->run.energy, sums);
     if (code)

@@ -2,8 +2,8 @@
 #define CLOTH_FLOW_STEP_ENERGY_H
 
 #include "cloth/flow/run.h"
+#include "cloth/flow/state/fields.h"
 
-#include <duite.h>
 #include <stdbool.h>
 
 /* Energies of the state, and the guard that refuses steps which gain of them. All are collective,
@@ -22,9 +22,9 @@ struct flow_guard {
     double sum, moving; /* of the step under way: their sum; motion and strain */
 };
 
-/* Forks what adds up the energies of the present state in `sums` (F64, FLOW_SUMS). args: those
- * of the step that ends there. */
-int flow_energies(struct flow_state *state, struct flow_args args, duite_object sums);
+/* Forks what adds up the energies of the present state in a field: `energies` or `energy`. args:
+ * those of the step that ends there. */
+int flow_energies(struct flow_state *state, struct flow_args args, enum flow_field_id sums);
 
 /* The energies of the present state. Waits for it. */
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy);

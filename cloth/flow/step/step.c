@@ -1,18 +1,8 @@
-/* A step is forked whole while the one before it may still run: what only reads the state comes
- * first, then the main program looks at the status of the step before, then what changes the state
- * is forked. */
+/* A step is a list of stages, which are forked in order. It is forked whole while the one before it
+ * may still run: what only reads the state comes first (its begin), then the main program looks at
+ * the status of the step before (settle.c), then what changes the state is forked. */
+#include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/tasks.h"
-
-#include <math.h>
-#include <stddef.h>
-#include <stdio.h>
-
-/* A step that gains energy in so many ticks is not made shorter still. */
-enum { LEAST_GUARDED = FLOW_TICKS / 16 };
-/* For so many ticks after one was halved for energy, steps do not grow back: longer steps strain
- * the edges more, and the first long one would gain again what the short ones before it released.
- */
-enum { CALM_AFTER_GAIN = 8 * FLOW_TICKS };
 
 struct flow_args flow_attempt_args(const struct flow_state *state)
 {
@@ -26,103 +16,109 @@ struct flow_args flow_attempt_args(const struct flow_state *state)
                               .now = end};
 }
 
-int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct flow_args args,
-                  const long *objects, enum flow_behind behind, long rim, long rim2)
+/* ---- When there is a stage ---- */
+
+static bool always(const struct model *model)
 {
-    int code = DUITE_OK;
-    for (args.block = 0; args.block < state->flow->tables.n_blocks && !code; args.block++) {
-        duite_object own[DUITE_MAX_ACCESS];
-        size_t n = 0;
-        for (; objects[n] >= 0; n++)
-            own[n] =
-                *(const duite_object *)(const void *)((const char *)(state->block + args.block) +
-                                                      objects[n]);
-        if (behind == FLOW_THEN_SCALARS_AND_STATUS)
-            own[n++] = state->run.scalars[0];
-        if (behind != FLOW_NOTHING)
-            own[n++] = state->run.status[state->attempt.parity];
-        code = flow_fork(state, kernel, &args, n, own, rim, rim2);
-    }
-    return code;
+    (void)model;
+    return true;
 }
 
-/* The same for the step under way. */
-static int fork_all(struct flow_state *state, const duite_kernel *kernel, const long *objects,
-                    enum flow_behind behind, long rim, long rim2)
-{
-    return flow_fork_all(state, kernel, flow_attempt_args(state), objects, behind, rim, rim2);
-}
-
-int flow_stretch_fork(struct flow_state *state, duite_object stretch)
-{
-    struct flow_args args = {0};
-    const double nothing = 0;
-    int code = duite_set(state->rt, stretch, &nothing);
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
-        const duite_object objects[] = {state->block[args.block].x, stretch};
-        code = flow_fork(state, &flow_stretch, &args, 2, objects, FLOW_RIM(rim_x), FLOW_NO_RIM);
-    }
-    return code;
-}
-
-/* ---- A step ---- */
-
-/* Velocities that change before the forces: such a step does not begin before the one before it is
- * accepted. */
 static bool is_driven(const struct model *model)
+{
+    return model_is_driven(model);
+}
+
+static bool is_touched(const struct model *model)
+{
+    return model_solves_contact(model);
+}
+
+static bool meets_obstacles(const struct model *model)
+{
+    return model->n_obstacles > 0;
+}
+
+/* Velocities change before the forces: the copy is made before that. */
+static bool keeps_first(const struct model *model)
+{
+    return model_keeps(model) && flow_step_is_driven(model);
+}
+
+static bool keeps_late(const struct model *model)
+{
+    return model_keeps(model) && !flow_step_is_driven(model) && !flow_explicit_keeps(model);
+}
+
+bool flow_step_is_driven(const struct model *model)
 {
     return model_is_driven(model) || model_is_filtered(model);
 }
 
-static int drive(struct flow_state *state)
+/* ---- Stages ---- */
+
+static int fork_begin(struct flow_state *state)
 {
-    const struct model *model = state->flow->model;
-    int code = model_keeps(model) ? flow_keep(state) : DUITE_OK;
-    if (!code && model_is_driven(model))
-        code = flow_pins_drive(state);
-    if (!code && model_solves_contact(model))
-        code = fork_all(state, &flow_touch, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_v)),
-                        FLOW_NOTHING, FLOW_NO_RIM, FLOW_NO_RIM);
+    const struct flow_integrator *is = flow_integrators + state->flow->model->integrator;
+    return is->begin ? is->begin(state) : DUITE_OK;
+}
+
+static int fork_end(struct flow_state *state)
+{
+    return flow_integrators[state->flow->model->integrator].end(state);
+}
+
+/* What a stage is for. PREDICT, CONSTRAIN, SOLVE: a step's begin, which leaves x and v as they are,
+ * unless velocities change first (flow_step_is_driven). */
+enum stage_part { PREDICT, SOLVE, CORRECT, OBSERVE };
+
+struct stage {
+    const char *name;
+    enum stage_part part;
+    bool (*enabled)(const struct model *model);
+    int (*fork)(struct flow_state *state);
+};
+
+/* In order, also of their parts. A new stage is a row. */
+static const struct stage stages[] = {
+    {"keep", PREDICT, keeps_first, flow_keep},
+    {"drive pins", PREDICT, is_driven, flow_pins_drive},
+    {"touch obstacles", PREDICT, is_touched, flow_contact_touch},
+    {"constrain and solve: begin", SOLVE, always, fork_begin},
+    {"keep", CORRECT, keeps_late, flow_keep},
+    {"solve and move", CORRECT, always, fork_end},
+    {"place pins", CORRECT, is_driven, flow_pins_place},
+    {"leave obstacles", CORRECT, meets_obstacles, flow_contact_project},
+    {"stretch", OBSERVE, flow_is_judged, flow_stretch_fork},
+    {"watch", OBSERVE, always, flow_watch},
+    {"energy", OBSERVE, always, flow_energy_fork},
+    {"status", OBSERVE, always, flow_status_fork},
+};
+
+/* Those of the parts from .. to. */
+static int fork_stages(struct flow_state *state, enum stage_part from, enum stage_part to)
+{
+    int code = DUITE_OK;
+    for (size_t i = 0; i < sizeof stages / sizeof *stages && !code; i++) {
+        const struct stage *stage = stages + i;
+        if (stage->part >= from && stage->part <= to && stage->enabled(state->flow->model))
+            code = stage->fork(state);
+    }
     return code;
 }
 
-/* The part of the attempt that leaves x and v as they are, unless it is driven. */
-static int begin_step(struct flow_state *state)
+int flow_step_begin(struct flow_state *state)
 {
-    const struct model *model = state->flow->model;
     const double nothing[FLOW_STATUS] = {0};
     int code = duite_trace_step(state->rt, state->attempt.begin / FLOW_TICKS);
     if (!code)
-        code = duite_set(state->rt, state->run.status[state->attempt.parity], nothing);
-    if (!code && is_driven(model))
-        code = drive(state);
-    if (code)
-        return code;
-    return model_is_implicit(model) ? flow_implicit_begin(state) : flow_explicit_begin(state);
+        code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_status, 0), nothing);
+    return code ? code : fork_stages(state, PREDICT, SOLVE);
 }
 
-/* The rest of it. */
-static int end_step(struct flow_state *state)
+int flow_step_end(struct flow_state *state)
 {
-    const struct model *model = state->flow->model;
-    const bool keeps = model_keeps(model) && !is_driven(model) && !flow_explicit_keeps(model);
-    int code = keeps ? flow_keep(state) : DUITE_OK;
-    if (!code)
-        code = model_is_implicit(model) ? flow_implicit_end(state) : flow_explicit_end(state);
-    if (!code && model_is_driven(model))
-        code = flow_pins_place(state);
-    if (!code && model->n_obstacles)
-        code = fork_all(state, &flow_collide,
-                        FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_x), FLOW_AT(rim_v)),
-                        FLOW_THEN_STATUS, FLOW_NO_RIM, FLOW_NO_RIM);
-    if (!code && flow_is_judged(model))
-        code = flow_stretch_fork(state, state->run.stretch[state->attempt.parity]);
-    if (!code)
-        code = flow_watch(state);
-    if (!code)
-        code = flow_energy_fork(state);
-    if (!code)
-        code = flow_status_fork(state);
+    const int code = fork_stages(state, CORRECT, OBSERVE);
     state->attempt.forked = !code;
     return code;
 }
@@ -131,245 +127,6 @@ int flow_step(struct flow_state *state)
 {
     state->attempt.length = FLOW_TICKS;
     state->guessed = 0;
-    const int code = begin_step(state);
-    return code ? code : end_step(state);
-}
-
-/* ---- Judging it ---- */
-
-/* Shows a finished step to the program; on rank 0. */
-static void tell_progress(struct flow_state *state, uint64_t iterations)
-{
-    const struct flow_progress *progress = state->flow->progress;
-    if (!progress || !progress->step || duite_rank(state->rt))
-        return;
-    const uint64_t step = (state->grid.now + FLOW_TICKS - 1) / FLOW_TICKS;
-    progress->step(progress->context, step, state->flow->n_steps, iterations);
-}
-
-/* Adds an accepted step to the report. */
-static void note(struct flow_state *state, const double status[FLOW_STATUS])
-{
-    struct flow_report *report = state->report;
-    const double *lost = status + FLOW_LOST;
-    const double momentum = sqrt(lost[0] * lost[0] + lost[1] * lost[1] + lost[2] * lost[2]);
-    const uint64_t iterations = (uint64_t)status[FLOW_ITERATIONS];
-    report->steps++;
-    report->cg_iterations_total += iterations;
-    if (iterations > report->cg_iterations_max)
-        report->cg_iterations_max = iterations;
-    if (momentum > report->momentum_lost)
-        report->momentum_lost = momentum;
-    const double error = sqrt(fmin(status[FLOW_ERROR], status[FLOW_RESIDUAL]) / status[FLOW_SIZE]);
-    if (status[FLOW_SIZE] > 0 && error > report->mass_norm_error)
-        report->mass_norm_error = error;
-    report->cg_restarts += (uint64_t)status[FLOW_RESTARTS];
-    report->factors_shifted += (uint64_t)status[FLOW_SHIFTED];
-    state->stopping = state->stopping || status[FLOW_STOP] > 0;
-    tell_progress(state, iterations);
-}
-
-/* No step is short enough. */
-static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
-{
-    const struct flow_args args = flow_attempt_args(state);
-    const bool above = verdict->most > 0 && verdict->after > verdict->most;
-    snprintf(state->reason, sizeof state->reason,
-             "step %llu: in %g s the largest stretch of an edge grows from %g to %g times its "
-             "length at rest, %s %g is allowed at most (%s)",
-             (unsigned long long)(state->attempt.begin / FLOW_TICKS + 1), args.h, verdict->before,
-             verdict->after, above ? "up to" : "by", above ? verdict->most : verdict->growth,
-             above ? "time.stretch_limit" : "time.stretch_growth");
-    return FLOW_STRETCHED;
-}
-
-/* The next step has half the length. Returns false where that is less than a tick. */
-static bool halve(struct flow_state *state, enum flow_cause cause)
-{
-    const bool halved = flow_grid_halve(&state->grid);
-    state->report->halved_by[cause] += halved;
-    return halved;
-}
-
-/* Why a verdict refuses a step. */
-static enum flow_cause cause_of(const double status[FLOW_STATUS],
-                                const struct flow_verdict *verdict)
-{
-    if (status[FLOW_FAILED] > 0)
-        return FLOW_CAUSE_SOLVE;
-    return verdict->failed || !isfinite(verdict->after) ? FLOW_CAUSE_BOUNDS : FLOW_CAUSE_STRETCH;
-}
-
-/* Takes the step back: it is to be made again with half the length. */
-static int refuse(struct flow_state *state, const double status[FLOW_STATUS],
-                  const struct flow_verdict *verdict)
-{
-    if (!state->flow->model->halving || !halve(state, cause_of(status, verdict)))
-        return give_up(state, verdict);
-    return flow_restore(state);
-}
-
-/* The same for a step that gained too much energy and can do with less: one by BDF2 by implicit
- * Euler, which has the state restored and nothing to go on from, others with half the length. */
-static bool can_lose(const struct flow_state *state)
-{
-    return flow_implicit_is_second(state) ||
-           (state->flow->model->halving && state->attempt.length > LEAST_GUARDED);
-}
-
-static int retake(struct flow_state *state, bool second)
-{
-    if (second) {
-        state->report->steps_retaken++;
-    } else {
-        halve(state, FLOW_CAUSE_ENERGY);
-        state->guard.calm = state->attempt.begin + CALM_AFTER_GAIN;
-    }
-    return flow_restore(state);
-}
-
-/* Waits for what is known of the step that was forked whole. */
-static int await(struct flow_state *state, double status[FLOW_STATUS], struct flow_verdict *verdict)
-{
-    const struct model *model = state->flow->model;
-    const unsigned parity = state->attempt.parity;
-    *verdict = (struct flow_verdict){.before = state->longest,
-                                     .after = state->longest,
-                                     .most = model->stretch_limit,
-                                     .growth = model->stretch_growth};
-    int code = duite_get(state->rt, state->run.status[parity], status);
-    if (!code && flow_is_judged(model))
-        code = duite_get(state->rt, state->run.stretch[parity], &verdict->after);
-    if (!code)
-        code = flow_energy_wait(state);
-    if (code)
-        return code;
-    flow_implicit_status(state, status);
-    verdict->failed = status[FLOW_FAILED] + status[FLOW_BEYOND] > 0;
-    return DUITE_OK;
-}
-
-/* With its frames. */
-static int accept(struct flow_state *state, const double status[FLOW_STATUS],
-                  const struct flow_verdict *verdict)
-{
-    const struct flow_attempt attempt = state->attempt;
-    state->length_before = state->length;
-    state->length = attempt.length;
-    state->longest = verdict->after;
-    if (state->longest > state->report->stretch_highest)
-        state->report->stretch_highest = state->longest;
-    flow_grid_accept(&state->grid, flow_verdict_calm(verdict) &&
-                                       attempt.begin + attempt.length >= state->guard.calm);
-    note(state, status);
-    flow_energy_note(state, status[FLOW_TOUCHED] > 0);
-    const int code = flow_watched(state);
-    return code ? code : flow_frames(state, attempt.begin);
-}
-
-/* Waits for the step that was forked whole and accepts or refuses it. */
-static int settle(struct flow_state *state)
-{
-    struct flow_verdict verdict;
-    double status[FLOW_STATUS];
-    const int code = await(state, status, &verdict);
-    if (code)
-        return code;
-    const bool refused = flow_verdict_refuses(&verdict), second = flow_implicit_is_second(state);
-    const bool gained =
-        !refused && flow_energy_gained(state, status[FLOW_TOUCHED] > 0) && can_lose(state);
-    flow_implicit_settle(state, !refused && !gained, status);
-    state->attempt.forked = false;
-    if (!refused && !gained)
-        return accept(state, status, &verdict);
-    state->settled_forces = false;
-    state->guessed = 0; /* dv is of a step that is not made */
-    return refused ? refuse(state, status, &verdict) : retake(state, second);
-}
-
-/* The step that follows what is under way, if that is accepted. */
-static struct flow_attempt next_attempt(const struct flow_state *state)
-{
-    const struct flow_attempt *attempt = &state->attempt;
-    return (struct flow_attempt){.begin = state->grid.now + (attempt->forked ? attempt->length : 0),
-                                 .length = state->grid.length,
-                                 .parity = 1 - attempt->parity};
-}
-
-/* Settles what is under way while `next` begins. A step that follows a shorter one does not begin
- * before: its length is not known. *begun: next has begun and follows what was accepted. */
-static int settle_beside(struct flow_state *state, bool *begun)
-{
-    const struct flow_attempt before = state->attempt;
-    const struct flow_attempt next = next_attempt(state);
-    int code = DUITE_OK;
-    *begun = !before.forked || (before.length == FLOW_TICKS && !state->stopping &&
-                                !state->resting && !is_driven(state->flow->model));
-    *begun = *begun && next.begin < state->grid.end;
-    if (*begun) {
-        state->attempt = next;
-        code = begin_step(state);
-    }
-    if (!code && before.forked) {
-        state->attempt = before;
-        code = settle(state);
-        *begun = *begun && state->grid.now == next.begin;
-    }
-    if (*begun)
-        state->attempt = next;
-    return code;
-}
-
-static int first_stretch(struct flow_state *state)
-{
-    state->report->stretch_highest = NAN;
-    if (!flow_is_judged(state->flow->model))
-        return DUITE_OK;
-    int code = flow_stretch_fork(state, state->run.stretch[0]);
-    if (!code)
-        code = duite_get(state->rt, state->run.stretch[0], &state->longest);
-    state->report->stretch_highest = state->longest;
-    return code;
-}
-
-static int watch_start(struct flow_state *state)
-{
-    const double nothing[FLOW_STATUS] = {0};
-    int code = duite_set(state->rt, state->run.status[state->attempt.parity], nothing);
-    if (!code)
-        code = flow_watch(state);
-    return code ? code : flow_watched(state);
-}
-
-/* Before the end, where it was asked for. */
-static int stop(struct flow_state *state)
-{
-    state->report->stopped = true;
-    return flow_frame_last(state);
-}
-
-int flow_steps(struct flow_state *state)
-{
-    flow_grid_begin(&state->grid, state->flow->n_steps);
-    int code = watch_start(state);
-    if (!code)
-        code = flow_energy_begin(state);
-    if (!code)
-        code = flow_frames(state, 0);
-    if (!code)
-        code = first_stretch(state);
-    while (!code && (state->grid.now < state->grid.end)) {
-        const uint64_t frame = state->next_frame;
-        bool begun;
-        code = settle_beside(state, &begun);
-        if (!code && begun)
-            code = end_step(state);
-        else if (!code && state->grid.now < state->grid.end) {
-            if (state->stopping)
-                return stop(state);
-            if (state->resting && state->next_frame > frame)
-                break;
-        }
-    }
-    return code;
+    const int code = flow_step_begin(state);
+    return code ? code : flow_step_end(state);
 }

@@ -66,7 +66,14 @@ tests_cloth_flow_test_checked_SOURCES = tests/cloth/flow/test_checked.c $(FLOW_T
 tests_cloth_flow_test_checked_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_checked_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=check_call
 TESTS += tests/cloth/flow/test_checked
+check_PROGRAMS += tests/cloth/flow/test_fields
+tests_cloth_flow_test_fields_SOURCES = tests/cloth/flow/test_fields.c $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_fields_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/flow/test_fields
 endif
+dist_check_SCRIPTS += tests/cloth/flow/test_kernels.sh
+TESTS += tests/cloth/flow/test_kernels.sh
+EXTRA_DIST += tests/cloth/flow/kernels_wrong.c
 dist_check_SCRIPTS += tests/cloth/flow/test_ranks.sh tests/cloth/flow/test_ranks_long.sh
 TESTS += tests/cloth/flow/test_ranks.sh
 LONG_TESTS += tests/cloth/flow/test_ranks_long.sh

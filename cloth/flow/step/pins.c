@@ -8,8 +8,6 @@
 
 #include "cloth/physics/motion.h"
 
-#define ARGS sizeof(struct flow_args)
-
 void flow_pins_begin(const duite_call *call, const struct flow_table *t, struct flow_pins *pins)
 {
     *pins = (struct flow_pins){
@@ -76,12 +74,28 @@ void flow_guides_keep(const duite_call *call, const struct flow_table *t, const 
     }
 }
 
-static int drive(const duite_call *call)
+/* ---- A step ---- */
+
+/* On the blocks that have such pins. */
+static int fork_moved(struct flow_state *state, const struct flow_kernel *kernel)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    const double h = flow_args_of(call)->h;
-    const phys_vec *x = duite_in(call, 1, phys_vec);
-    phys_vec *v = duite_out(call, 2, phys_vec);
+    struct flow_args args = flow_attempt_args(state);
+    int code = DUITE_OK;
+    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
+        const struct flow_table *t = state->flow->tables.block + args.block;
+        if (t->n_moved || t->n_guided)
+            code = flow_fork_one(state, kernel, &args);
+    }
+    return code;
+}
+
+FLOW_KERNEL(drive, FLOW_VELOCITY, struct flow_args, (R(table), R(x), RW(v), W(rim_v)))
+static int drive_body(const duite_call *call, const struct drive_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const double h = on->args->h;
+    const phys_vec *x = on->x;
+    phys_vec *v = on->v;
     struct flow_pins pins;
     struct flow_guide guide;
     flow_pins_begin(call, t, &pins);
@@ -97,19 +111,20 @@ static int drive(const duite_call *call)
         const phys_vec due = (guide.at - x[row]) / h;
         flow_guide_keep(&guide, &due, v + row);
     }
-    flow_write_rim(t, v, duite_out(call, 3, phys_vec));
+    flow_write_rim(t, v, on->rim_v);
     return 0;
 }
-FLOW_TIMED(drive, FLOW_VELOCITY)
-const duite_kernel flow_drive = {.name = "drive",
-                                 .body = drive_timed,
-                                 .access = {DUITE_R, DUITE_R, DUITE_RW, DUITE_W},
-                                 .args_size = ARGS};
 
-static int place(const duite_call *call)
+int flow_pins_drive(struct flow_state *state)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    phys_vec *x = duite_out(call, 1, phys_vec);
+    return fork_moved(state, &flow_kernel_drive);
+}
+
+FLOW_KERNEL(place, FLOW_POSITION, struct flow_args, (R(table), RW(x), W(rim_x)))
+static int place_body(const duite_call *call, const struct place_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    phys_vec *x = on->x;
     struct flow_pins pins;
     struct flow_guide guide;
     flow_pins_begin(call, t, &pins);
@@ -121,14 +136,14 @@ static int place(const duite_call *call)
         flow_pins_guide(&pins, i, &guide);
         flow_guide_keep(&guide, &guide.at, x + t->guided[i][0]);
     }
-    flow_write_rim(t, x, duite_out(call, 2, phys_vec));
+    flow_write_rim(t, x, on->rim_x);
     return 0;
 }
-FLOW_TIMED(place, FLOW_POSITION)
-const duite_kernel flow_place = {.name = "place",
-                                 .body = place_timed,
-                                 .access = {DUITE_R, DUITE_RW, DUITE_W},
-                                 .args_size = ARGS};
+
+int flow_pins_place(struct flow_state *state)
+{
+    return fork_moved(state, &flow_kernel_place);
+}
 
 /* ---- Accelerations, for reactions ---- */
 
@@ -184,35 +199,4 @@ void flow_guide_acceleration(const duite_call *call, uint32_t guide, const phys_
     for (int i = 0; i < 2; i++)
         phys_pose_direction(pose + i, &along, turned + i);
     *a += 2 * (turned[0] - turned[1]) / args->h;
-}
-
-/* ---- The main program ---- */
-
-static int fork_moved(struct flow_state *state, const duite_kernel *kernel, const long *objects)
-{
-    struct flow_args args = flow_attempt_args(state);
-    int code = DUITE_OK;
-    for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
-        const struct flow_table *t = state->flow->tables.block + args.block;
-        if (!t->n_moved && !t->n_guided)
-            continue;
-        duite_object own[DUITE_MAX_ACCESS];
-        size_t n = 0;
-        for (; objects[n] >= 0; n++)
-            own[n] =
-                *(const duite_object *)(const void *)((const char *)(state->block + args.block) +
-                                                      objects[n]);
-        code = flow_fork(state, kernel, &args, n, own, FLOW_NO_RIM, FLOW_NO_RIM);
-    }
-    return code;
-}
-
-int flow_pins_drive(struct flow_state *state)
-{
-    return fork_moved(state, &flow_drive, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(rim_v)));
-}
-
-int flow_pins_place(struct flow_state *state)
-{
-    return fork_moved(state, &flow_place, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(rim_x)));
 }

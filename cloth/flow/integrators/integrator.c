@@ -1,0 +1,12 @@
+/* The integrators of a run, a row each. BDF2 needs to know how the step before ended, so that
+ * nothing of its steps is forked ahead. */
+#include "cloth/flow/integrators/integrator.h"
+
+const struct flow_integrator flow_integrators[] = {
+    [MODEL_IMPLICIT_EULER] = {flow_implicit_euler_begin, flow_implicit_euler_end},
+    [MODEL_BDF2] = {NULL, flow_bdf2_end},
+    [MODEL_EXPLICIT_EULER] = {NULL, flow_explicit_euler_end},
+    [MODEL_SYMPLECTIC_EULER] = {NULL, flow_explicit_euler_end},
+    [MODEL_VERLET] = {flow_verlet_begin, flow_verlet_end},
+    [MODEL_RK4] = {NULL, flow_runge_end},
+};

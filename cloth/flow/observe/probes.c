@@ -1,0 +1,131 @@
+/* The table of probes. When a step is accepted, blocks that probes look at find the force on their
+ * rows and what is reported of them; rank 0 writes a row, one after the other as frames are: each
+ * row's task holds the token. */
+#include "cloth/flow/step/guides.h"
+
+/* ---- Of a block ---- */
+
+/* m a - f of a row that is held, a the acceleration that its pin gives it. */
+static void reaction_of_held(const duite_call *call, const struct flow_table *t, uint32_t row,
+                             const phys_vec *force, phys_vec *pull)
+{
+    phys_vec a = {0};
+    for (uint32_t i = 0; i < t->n_moved; i++)
+        if (t->moved[i][0] == row)
+            flow_due_acceleration(call, t->moved[i][1], t->position + row, &a);
+    *pull = t->mass[row] * a - *force;
+}
+
+FLOW_KERNEL(probe, FLOW_OUTPUT, struct flow_args, (R(table), R(x), R(v), R(felt), W(seen)))
+
+/* (I - S) (m a - f) of one that a guide leaves free in part; else nothing. */
+static void reaction_of_guided(const duite_call *call, const struct flow_table *t, uint32_t row,
+                               const struct probe_fields *on, phys_vec *pull)
+{
+    struct flow_pins pins;
+    flow_pins_begin(call, t, &pins);
+    const phys_vec *filter = flow_pins_filter(&pins, row);
+    *pull = (phys_vec){0};
+    if (!filter)
+        return;
+    phys_vec a, along;
+    flow_guide_acceleration(call, t->guided[pins.next][1], on->x + row, on->v + row, &a);
+    *pull = along = t->mass[row] * a - on->felt[row];
+    solve_filter(filter, &along);
+    *pull -= along;
+}
+
+static int probe_body(const duite_call *call, const struct probe_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    double *to = on->seen;
+    for (uint32_t i = 0; i < t->n_watched; i++, to += FLOW_SEEN) {
+        const uint32_t row = t->watched[i];
+        phys_vec pull;
+        if (t->free[row] != 0)
+            reaction_of_guided(call, t, row, on, &pull);
+        else
+            reaction_of_held(call, t, row, on->felt + row, &pull);
+        for (int c = 0; c < 3; c++) {
+            to[c] = on->x[row][c];
+            to[3 + c] = on->v[row][c];
+            to[6 + c] = pull[c];
+        }
+    }
+    return 0;
+}
+
+static int fork_probe(struct flow_state *state, const struct flow_args *args)
+{
+    const int code = flow_fork_one_as(state, &flow_kernel_force, args, FLOW_AS(FLOW_FOR(f, felt)));
+    return code ? code : flow_fork_one(state, &flow_kernel_probe, args);
+}
+
+/* ---- On rank 0 ---- */
+
+static double *put(double *to, bool wanted, const double *three)
+{
+    for (int c = 0; wanted && c < 3; c++)
+        *to++ = three[c];
+    return to;
+}
+
+static void fill_probes(const struct flow *flow, const double *seen, double *to)
+{
+    const struct flow_watched *watched = &flow->watched;
+    for (uint32_t p = 0; p < flow->model->n_probes; p++) {
+        const struct model_probe *probe = flow->model->probes + p;
+        double sum[3] = {0};
+        for (uint32_t i = watched->first[p]; i < watched->first[p + 1]; i++) {
+            const double *vertex = seen + FLOW_SEEN * (size_t)watched->entry[i];
+            to = put(to, probe->position, vertex);
+            to = put(to, probe->velocity, vertex + 3);
+            to = put(to, probe->reaction, vertex + 6);
+            for (int c = 0; c < 3; c++)
+                sum[c] += vertex[6 + c];
+        }
+        to = put(to, probe->total, sum);
+    }
+}
+
+FLOW_KERNEL_WITH(row, FLOW_OUTPUT, struct flow_args,
+                 (RW(token), R(status), R(peaks), R(energy), ALL(seen)), .side_effects = 1)
+static int row_body(const duite_call *call, const struct row_fields *on)
+{
+    struct flow *flow = flow_of(call);
+    double *to = flow->row, *seen = flow->seen;
+    for (const duite_param *block = on->seen; block < call->param + call->n_params; block++) {
+        memcpy(seen, block->data, block->count * sizeof *seen);
+        seen += block->count;
+    }
+    to[FLOW_COLUMN_ITERATIONS] = on->status[FLOW_ITERATIONS];
+    to[FLOW_COLUMN_LONGEST] = on->peaks[FLOW_PEAK_LONGEST];
+    to[FLOW_COLUMN_SHORTEST] = -on->peaks[FLOW_PEAK_SHORTEST];
+    memcpy(to + FLOW_COLUMN_ENERGY, on->energy, FLOW_ENERGIES * sizeof *to);
+    fill_probes(flow, flow->seen, to + FLOW_RUN_COLUMNS);
+    if (flow->output->row(flow->output->context, on->args->frame, on->args->time,
+                          flow->watched.n_columns, flow->row, &flow->trouble))
+        return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);
+    return 0;
+}
+
+/* The row before must have been written by then. */
+int flow_probes_row(struct flow_state *state)
+{
+    int64_t token;
+    const uint64_t steps = state->report->steps;
+    const double tick = state->flow->model->h / FLOW_TICKS;
+    const uint32_t length = state->length ? state->length : FLOW_TICKS;
+    struct flow_args args = {.frame = steps,
+                             .time = flow_time(state),
+                             .now = flow_time(state),
+                             .h = length * tick,
+                             .before =
+                                 (state->length_before ? state->length_before : length) * tick};
+    int code = steps ? duite_get(state->rt, state->run.token, &token) : DUITE_OK;
+    for (; args.block < state->flow->tables.n_blocks && !code; args.block++)
+        if (state->flow->tables.block[args.block].n_watched)
+            code = fork_probe(state, &args);
+    args.block = 0;
+    return code ? code : flow_fork_at(state, 0, &flow_kernel_row, &args, NULL);
+}

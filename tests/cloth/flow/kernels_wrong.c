@@ -1,0 +1,45 @@
+/* Kernels as they must not be declared: test_kernels.sh compiles this with each number of WRONG.
+ * 0: right. */
+#include "cloth/flow/bodies.h"
+
+#if WRONG == 1 /* a misspelt field */
+FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(rim_y)))
+#elif WRONG == 2 /* a field twice */
+FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(rim_x), R(x)))
+#elif WRONG == 3 /* a kernel that is in no list */
+FLOW_KERNEL(somewhere, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(rim_x)))
+#elif WRONG == 4 /* a word that is no mode */
+FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), WR(x), W(rim_x)))
+#elif WRONG == 5 /* arguments that do not begin with the block */
+struct other {
+    double h;
+    uint32_t block;
+};
+FLOW_KERNEL(position, FLOW_POSITION, struct other, (R(table), R(v), RW(x), W(rim_x)))
+#else
+FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(rim_x)))
+#endif
+
+#if WRONG == 3
+#define FIELDS somewhere_fields
+#define BODY   somewhere_body
+#else
+#define FIELDS position_fields
+#define BODY   position_body
+#endif
+
+static int BODY(const duite_call *call, const struct FIELDS *on)
+{
+    (void)call;
+#if WRONG == 6 /* it is read only */
+    on->v[0] = on->x[0];
+#elif WRONG == 7 /* not declared */
+    on->x[0] = on->dv[0];
+#elif WRONG == 8 /* of another type */
+    double *rim = on->rim_x;
+    rim[0] = 0;
+#endif
+    on->x[0] += on->v[0];
+    on->rim_x[0] = on->x[0];
+    return 0;
+}

@@ -1,0 +1,311 @@
+/* The table of fields against runs: what exists is made in the size that the table says, and freed;
+ * what a step does with a field between two steps is what the table calls it. Work fields may be
+ * anything when a step begins; a state field may not. */
+#include "cloth/flow/tasks.h"
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STEPS = 4, SIDE = 6 };
+
+struct session {
+    struct setup setup;
+    struct flow *flow;
+    duite *rt;
+    struct flow_report report;
+    struct flow_state state;
+    struct cloth_error error;
+};
+
+static int take_row(void *context, uint64_t step, double time, size_t n, const double *values,
+                    struct cloth_error *error)
+{
+    (void)context, (void)step, (void)time, (void)n, (void)values, (void)error;
+    return CLOTH_OK;
+}
+
+static const struct flow_output output = {.row = take_row};
+
+static void start(struct session *s)
+{
+    duite_options options = duite_options_default();
+    int rank, ranks;
+    record_mpi(&rank, &ranks);
+    ck_assert_int_eq(flow_prepare(&s->flow, &s->setup.model, 1, &s->error), 0);
+    options.kernels = flow_kernels();
+    options.context = s->flow;
+    options.threads = 1;
+    options.bind = 0;
+    ck_assert_int_eq(duite_start(&s->rt, &options), 0);
+    s->state = (struct flow_state){
+        .flow = s->flow, .rt = s->rt, .output = &output, .report = &s->report, .error = &s->error};
+    ck_assert_int_eq(flow_run_begin(&s->state), 0);
+}
+
+static void end(struct session *s)
+{
+    ck_assert_int_eq(duite_wait(s->rt), 0);
+    flow_objects_free(&s->state);
+    flow_memory_free(&s->state);
+    ck_assert_int_eq(duite_stop(&s->rt), 0);
+    flow_free(s->flow);
+    setup_free(&s->setup);
+}
+
+/* ---- Kinds of runs ---- */
+
+static void run_of(struct session *s, enum model_integrator integrator)
+{
+    *s = (struct session){0};
+    setup_sheet(&s->setup, SIDE);
+    setup_pin(&s->setup, 2, (const uint32_t[]){0, SIDE - 1});
+    s->setup.model.integrator = integrator;
+    s->setup.model.grain = 9;
+    s->setup.model.halving = true;
+}
+
+static void plain(struct session *s)
+{
+    run_of(s, MODEL_IMPLICIT_EULER);
+}
+
+static void conditioned(struct session *s)
+{
+    run_of(s, MODEL_IMPLICIT_EULER);
+    s->setup.model.preconditioner = MODEL_IC0_COARSE;
+}
+
+static void newton(struct session *s)
+{
+    run_of(s, MODEL_IMPLICIT_EULER);
+    s->setup.model.newton_steps = 3;
+    s->setup.model.newton_tolerance = 1e-9;
+}
+
+static void bdf2(struct session *s)
+{
+    run_of(s, MODEL_BDF2);
+    s->setup.model.newton_steps = 1;
+}
+
+static void euler(struct session *s)
+{
+    run_of(s, MODEL_EXPLICIT_EULER);
+}
+
+static void verlet(struct session *s)
+{
+    run_of(s, MODEL_VERLET);
+}
+
+static void runge(struct session *s)
+{
+    run_of(s, MODEL_RK4);
+}
+
+static void (*const kinds[])(struct session *) = {plain, conditioned, newton, bdf2,
+                                                  euler, verlet,      runge};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* ---- What exists ---- */
+
+static duite_object made(const struct session *s, int field, uint32_t block)
+{
+    return field < FLOW_FIELDS_OF_BLOCK ? s->state.block[block].of[field]
+                                        : s->state.run.of[field - FLOW_FIELDS_OF_BLOCK];
+}
+
+static uint32_t blocks_of(const struct session *s, int field)
+{
+    return field < FLOW_FIELDS_OF_BLOCK ? s->flow->tables.n_blocks : 1;
+}
+
+static void check_made(const struct session *s, int field, uint32_t block)
+{
+    const struct flow_field *is = flow_fields + field;
+    const duite_object object = made(s, field, block);
+    const bool exists = is->exists(&s->state, block);
+    size_t count = 0;
+    ck_assert_msg(exists == (object.generation != 0), "%s of block %u", is->name, block);
+    if (!exists)
+        return;
+    ck_assert_int_eq(duite_get_count(s->rt, object, &count), 0);
+    const size_t full = flow_field_numbers(&s->state, (enum flow_field_id)field, block);
+    ck_assert_msg(count == (is->turns == FLOW_SIZED ? 0 : full), "%s of block %u has %zu numbers",
+                  is->name, block, count);
+}
+
+START_TEST(what_exists_is_made)
+{
+    struct session s;
+    kinds[_i](&s);
+    start(&s);
+    ck_assert_uint_gt(s.flow->tables.n_blocks, 2);
+    for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
+        for (uint32_t b = 0; b < blocks_of(&s, field); b++)
+            check_made(&s, field, b);
+    end(&s);
+}
+END_TEST
+
+START_TEST(all_is_freed)
+{
+    struct session s;
+    kinds[_i](&s);
+    start(&s);
+    ck_assert_int_eq(flow_objects_free(&s.state), 0);
+    for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
+        for (uint32_t b = 0; b < blocks_of(&s, field); b++) {
+            size_t count;
+            const duite_object object = made(&s, field, b);
+            if (object.generation)
+                ck_assert_msg(duite_get_count(s.rt, object, &count), "%s is there",
+                              flow_fields[field].name);
+        }
+    flow_memory_free(&s.state);
+    duite_stop(&s.rt);
+    flow_free(s.flow);
+    setup_free(&s.setup);
+}
+END_TEST
+
+/* Every field exists in some kind of run, or is of what these runs do not have. */
+START_TEST(every_field_has_a_run)
+{
+    static const char *const others[] = {"filter", "felt", "seen", "pieces", "saved"};
+    bool exists[FLOW_FIELDS_OF_ALL] = {false};
+    for (int kind = 0; kind < KINDS; kind++) {
+        struct session s;
+        kinds[kind](&s);
+        start(&s);
+        for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
+            exists[field] = exists[field] || made(&s, field, 0).generation;
+        end(&s);
+    }
+    for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++) {
+        bool other = false;
+        for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+            other = other || !strcmp(others[i], flow_fields[field].name);
+        ck_assert_msg(exists[field] || other, "%s exists in no run", flow_fields[field].name);
+    }
+}
+END_TEST
+
+/* ---- What lasts from step to step ---- */
+
+/* What is done to the fields of one kind before each step but the first. */
+typedef void change(struct session *s, int field, uint32_t block, double *numbers, size_t n);
+
+static void to_nothing(struct session *s, int field, uint32_t block, double *numbers, size_t n)
+{
+    (void)s, (void)field, (void)block;
+    for (size_t i = 0; i < n; i++)
+        numbers[i] = NAN;
+}
+
+static void by_a_little(struct session *s, int field, uint32_t block, double *numbers, size_t n)
+{
+    (void)s, (void)field, (void)block;
+    for (size_t i = 0; i < n; i++)
+        numbers[i] += 1e-7;
+}
+
+static void change_field(struct session *s, int field, change *how)
+{
+    for (uint32_t b = 0; b < blocks_of(s, field); b++) {
+        const duite_object object = made(s, field, b);
+        const size_t n = flow_field_numbers(&s->state, (enum flow_field_id)field, b);
+        double *numbers = calloc(n, sizeof *numbers);
+        ck_assert_ptr_nonnull(numbers);
+        ck_assert_int_eq(duite_get(s->rt, object, numbers), 0);
+        how(s, field, b, numbers, n);
+        ck_assert_int_eq(duite_set(s->rt, object, numbers), 0);
+        free(numbers);
+    }
+}
+
+static bool is_changed(const struct session *s, int field, enum flow_life life, int only)
+{
+    return (only < 0 || field == only) && flow_fields[field].type == DUITE_F64 &&
+           made(s, field, 0).generation && flow_fields[field].life(&s->setup.model) == life;
+}
+
+static uint64_t hash_state(struct session *s)
+{
+    XXH64_state_t *hash = XXH64_createState();
+    XXH64_reset(hash, 0);
+    for (uint32_t b = 0; b < s->flow->tables.n_blocks; b++)
+        for (int field = FLOW_FIELD_x; field <= FLOW_FIELD_v; field++) {
+            const size_t n = flow_field_numbers(&s->state, (enum flow_field_id)field, b);
+            ck_assert_int_eq(duite_get(s->rt, made(s, field, b), s->state.rows), 0);
+            XXH64_update(hash, s->state.rows, n * sizeof *s->state.rows);
+        }
+    const uint64_t digest = XXH64_digest(hash);
+    XXH64_freeState(hash);
+    return digest;
+}
+
+/* The hash after some steps, where fields of this life (one of them, or all: less than 0) are
+ * changed before each but the first. */
+static uint64_t run_changed(int kind, enum flow_life life, int only, change *how)
+{
+    struct session s;
+    kinds[kind](&s);
+    start(&s);
+    if (model_is_implicit(&s.setup.model))
+        ck_assert_int_eq(flow_cg_record(&s.state), 0);
+    ck_assert_int_eq(flow_initialise(&s.state), 0);
+    for (int step = 0; step < STEPS; step++) {
+        for (int field = 0; field < FLOW_FIELDS_OF_ALL && step && how; field++)
+            if (is_changed(&s, field, life, only))
+                change_field(&s, field, how);
+        ck_assert_int_eq(flow_step(&s.state), 0);
+        ck_assert_int_eq(duite_wait(s.rt), 0);
+        s.state.smooth = FLOW_TICKS; /* BDF2 goes on */
+    }
+    const uint64_t hash = hash_state(&s);
+    end(&s);
+    return hash;
+}
+
+START_TEST(work_is_written_before_it_is_read)
+{
+    const uint64_t hash = run_changed(_i, FLOW_WORK, -1, NULL);
+    ck_assert_uint_eq(run_changed(_i, FLOW_WORK, -1, to_nothing), hash);
+}
+END_TEST
+
+/* dv: these steps begin without a guess. */
+START_TEST(state_lasts)
+{
+    const uint64_t hash = run_changed(_i, FLOW_WORK, -1, NULL);
+    struct session s;
+    bool is_state[FLOW_FIELDS_OF_ALL];
+    kinds[_i](&s);
+    start(&s);
+    for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
+        is_state[field] = field != FLOW_FIELD_dv && is_changed(&s, field, FLOW_STATE_FIELD, field);
+    end(&s);
+    ck_assert(is_state[FLOW_FIELD_x] && is_state[FLOW_FIELD_v]);
+    for (int field = 0; field < FLOW_FIELDS_OF_ALL; field++)
+        if (is_state[field])
+            ck_assert_msg(run_changed(_i, FLOW_STATE_FIELD, field, by_a_little) != hash,
+                          "no step reads %s", flow_fields[field].name);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("fields");
+    TCase *tcase = tcase_create("fields");
+    tcase_add_loop_test(tcase, what_exists_is_made, 0, KINDS);
+    tcase_add_loop_test(tcase, all_is_freed, 0, KINDS);
+    tcase_add_test(tcase, every_field_has_a_run);
+    tcase_add_loop_test(tcase, work_is_written_before_it_is_read, 0, KINDS);
+    tcase_add_loop_test(tcase, state_lasts, 0, KINDS);
+    suite_add_tcase(suite, tcase);
+    return unit_run(suite);
+}

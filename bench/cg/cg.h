@@ -3,7 +3,7 @@
 
 #include "bench/bench.h"
 #include "bench/cg/state.h"
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/state/state.h"
 
 /* Shared by the cases of the bench "cg". Each case is a file: its plan; what our process runs for
  * all of them is in ours.c, making the states in make.c. */

@@ -4,6 +4,9 @@
 #include "bench/cg/cg.h"
 
 #include "bench/tasks/tasks.h"
+#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/solve.h"
+#include "cloth/flow/step/step.h"
 
 #include <math.h>
 #include <stdio.h>

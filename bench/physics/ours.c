@@ -6,6 +6,9 @@
 #include "bench/cg/cg.h"
 #include "bench/tasks/tasks.h"
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/solve.h"
+#include "cloth/flow/step/step.h"
 #include "cloth/scene/scene.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #define BENCH_PHYSICS_PHYSICS_H
 
 #include "bench/bench.h"
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/state/state.h"
 
 /* The bench "physics": what forces and matrices cost. bench.c has the plans, ours.c what our
  * process runs for them. */

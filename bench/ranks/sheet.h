@@ -1,7 +1,7 @@
 #ifndef BENCH_RANKS_SHEET_H
 #define BENCH_RANKS_SHEET_H
 
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/state/state.h"
 
 /* The system of one step of a sheet that hangs, waved and moving, cut into blocks, and conjugate
  * gradients on it by plain loops: what the twin does between its messages, and, over all blocks

@@ -1,7 +1,7 @@
 #ifndef CLOTH_FLOW_BODIES_H
 #define CLOTH_FLOW_BODIES_H
 
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/state/state.h"
 #include "cloth/physics/tiny.h"
 
 #include <math.h>
@@ -145,7 +145,7 @@ static inline void flow_pack_rim(const struct flow_table *t, const phys_vec *y, 
 {
     solve_pack(t->n_rim, t->rim, y, rim);
     if (!t->n_rim)
-        rim[0] = 0;
+        rim[0] = rim[1] = rim[2] = 0;
 }
 
 /* What a solve left of a block. */

@@ -5,7 +5,6 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/kernels.h \
     cloth/flow/run.c \
     cloth/flow/run.h \
-    cloth/flow/tasks.h \
     cloth/flow/setup/deal.c \
     cloth/flow/setup/joints.c \
     cloth/flow/setup/limit.c \
@@ -18,6 +17,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/particles.c \
     cloth/flow/setup/picks.c \
     cloth/flow/setup/pieces.c \
+    cloth/flow/setup/setup.h \
     cloth/flow/setup/sides.c \
     cloth/flow/setup/source.c \
     cloth/flow/setup/source.h \
@@ -27,10 +27,12 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/watched.c \
     cloth/flow/state/fields.c \
     cloth/flow/state/fields.h \
+    cloth/flow/state/flow.h \
     cloth/flow/state/forks.c \
     cloth/flow/state/kernel.h \
     cloth/flow/state/objects.c \
     cloth/flow/state/state.c \
+    cloth/flow/state/state.h \
     cloth/flow/state/tables.c \
     cloth/flow/state/tables.h \
     cloth/flow/step/elements.c \
@@ -45,11 +47,13 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/step/status.c \
     cloth/flow/step/settle.c \
     cloth/flow/step/step.c \
+    cloth/flow/step/step.h \
     cloth/flow/step/varying.c \
     cloth/flow/integrators/explicit.c \
     cloth/flow/integrators/implicit.c \
     cloth/flow/integrators/integrator.c \
     cloth/flow/integrators/integrator.h \
+    cloth/flow/solver/solve.h \
     cloth/flow/solver/solver.h \
     cloth/flow/solver/system.c \
     cloth/flow/solver/cg.c \
@@ -60,6 +64,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/solver/pieces.c \
     cloth/flow/observe/finish.c \
     cloth/flow/observe/frames.c \
+    cloth/flow/observe/observe.h \
     cloth/flow/observe/probes.c \
     cloth/flow/observe/stretch.c \
     cloth/flow/observe/system.c \

@@ -1,9 +1,13 @@
-/* A flow is read-only for tasks but for what tasks.h names. Every decision of the main program
+/* A flow is read-only for tasks but for what state/flow.h names. Every decision of the main program
  * follows from values that all ranks get alike. */
 #include "cloth/flow/run.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/observe/observe.h"
+#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/solve.h"
+#include "cloth/flow/state/state.h"
+#include "cloth/flow/step/step.h"
 
 #include <math.h>
 #include <stdio.h>

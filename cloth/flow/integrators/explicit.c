@@ -5,6 +5,7 @@
  * neighbours to have seen it, and forces do not leave the caches. */
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/step.h"
 
 #include "cloth/physics/particle.h"
 #include "cloth/physics/stage.h"

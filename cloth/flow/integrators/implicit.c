@@ -3,7 +3,9 @@
  * too far. BDF2 needs to know how the step before ended, so all of a step by it comes after that.
  * The recorded round of conjugate gradients serves all solves. */
 #include "cloth/flow/integrators/integrator.h"
+#include "cloth/flow/solver/solve.h"
 #include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/step.h"
 
 #include "cloth/physics/implicit.h"
 #include "cloth/physics/particle.h"

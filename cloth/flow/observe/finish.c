@@ -1,6 +1,8 @@
 /* What a report needs of the whole state, gathered when the last step is done. The hash is made on
  * rank 0 and told to all. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/observe/observe.h"
+#include "cloth/flow/setup/setup.h"
 
 #include <math.h>
 #include <string.h>

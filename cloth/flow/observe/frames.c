@@ -4,6 +4,7 @@
  * frames are written by rank 0, one after the other, and each frame's task holds the token. The
  * last frame of a run that is stopped shows the state that the run ends with, whenever that is. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/observe/observe.h"
 
 double flow_frame_tick(const struct model *model, uint64_t frame)
 {

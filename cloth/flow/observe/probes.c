@@ -1,6 +1,7 @@
 /* The table of probes. When a step is accepted, blocks that probes look at find the force on their
  * rows and what is reported of them; rank 0 writes a row, one after the other as frames are: each
  * row's task holds the token. */
+#include "cloth/flow/observe/observe.h"
 #include "cloth/flow/step/guides.h"
 
 /* ---- Of a block ---- */

@@ -1,5 +1,6 @@
 /* The largest stretch of the edges, by which steps are judged and which the report has. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/observe/observe.h"
 
 FLOW_KERNEL(stretch, FLOW_NO_PART, struct flow_args,
             (R(table), R(x), MAX(stretch), NEIGHBOURS(rim_x)))

@@ -2,6 +2,8 @@
  * numbers, and one task on rank 0 makes plain arrays of all parts. An entry between two blocks is
  * told by both; the lower block's word counts. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/observe/observe.h"
+#include "cloth/flow/step/step.h"
 
 #include "cloth/solve/system.h"
 

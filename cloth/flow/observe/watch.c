@@ -3,6 +3,8 @@
  * waits where the next but one is watched, as the status of a step does. Nothing here changes the
  * state, nor is it forked for a run that has neither probes nor rest. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/observe/observe.h"
+#include "cloth/flow/step/step.h"
 
 #include "cloth/physics/particle.h"
 

@@ -3,6 +3,8 @@
  * rank 0 when a task where its block lives has taken it over. A few are on their way at any time,
  * so that rank 0 never holds more than its own and those. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/observe/observe.h"
+#include "cloth/flow/setup/setup.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #include "cloth/flow/setup/long_steps.h"
 
 #include "cloth/base/memory.h"
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/state/state.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,9 @@
 /* What can fail on one rank alone is had before the first task of a run. A rank that lacks it does
  * not leave: it says so in a task, and all ranks leave together. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/observe/observe.h"
+#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/solve.h"
 
 #include "cloth/base/memory.h"
 

@@ -1,7 +1,8 @@
 /* What is odd about a model but no error. Each kind of warning has its place in flow->warning, and
  * says at most one thing. */
 #include "cloth/flow/setup/long_steps.h"
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/state/state.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,9 @@
  * round, the second one does nothing.
  *
  * In reading order: a solve, its recorded round, the scalars. */
+#include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
+#include "cloth/flow/step/step.h"
 
 #include <math.h>
 

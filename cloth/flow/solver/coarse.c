@@ -7,6 +7,8 @@
  * In reading order: the pattern of C, once a run; the space P, once a run or, with
  * contact in the solve, in each step; C and its factor, in each step; what a pass and its scalars
  * do with them. */
+#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
 #include "cloth/base/memory.h"

@@ -4,6 +4,7 @@
  * the neighbours' passes still read its other half. Which it is depends on the homes that the
  * blocks have when a run begins and changes no result. All ranks know the rows of all far rims. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/solver/solve.h"
 
 #include "cloth/base/memory.h"
 

@@ -5,6 +5,7 @@
  * with one the block's own, with the coarse right side P' q behind the dots.
  *
  * In reading order: what a solve begins with, a pass by its phases, the forks of both. */
+#include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
 #include <string.h>

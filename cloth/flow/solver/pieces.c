@@ -5,6 +5,7 @@
  * feels D c - w x c alone, and w cancels over a piece: the c that takes the sum away is exact, and
  * needs no iteration. */
 #include "cloth/flow/solver/solver.h"
+#include "cloth/flow/step/step.h"
 
 /* What is summed over a piece: the lost momentum, its turn, its D, kg, and how many of its rows
  * contact or the program's filter holds. */

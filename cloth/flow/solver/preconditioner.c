@@ -3,6 +3,7 @@
  *
  * In reading order: which one a run has, the factor of a block in each step, what a
  * pass does with it. */
+#include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
 #include <stdio.h>

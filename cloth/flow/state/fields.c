@@ -1,6 +1,7 @@
 /* The table of fields: the columns of the list in fields.h as functions, and the list by number. */
 #include "cloth/flow/bodies.h"
 
+#include "cloth/flow/observe/observe.h"
 #include "cloth/flow/solver/solver.h"
 
 /* ---- How many rows ---- */

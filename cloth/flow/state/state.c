@@ -1,6 +1,9 @@
 /* The state of a run, x and v with their rims: its start, and the copy that is kept of it until a
  * step is accepted. Restoring the copy makes the step undone. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/integrators/integrator.h"
+#include "cloth/flow/solver/solve.h"
+#include "cloth/flow/step/step.h"
 
 FLOW_KERNEL(initial, FLOW_NO_PART, struct flow_args, (R(table), W(x), W(v), W(rim_x), W(rim_v)))
 static int initial_body(const duite_call *call, const struct initial_fields *on)

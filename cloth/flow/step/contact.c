@@ -6,6 +6,7 @@
  * when the forces on it pull it off. */
 #include "cloth/contact/meet.h"
 #include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/step.h"
 
 /* Whether a row can leave an obstacle with the normal *way, which becomes the way along which it
  * does.

@@ -2,6 +2,7 @@
  * between two blocks gives half of its own to each. Sums are contributions, so that they are the
  * same for any ranks and threads. */
 #include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/step.h"
 
 #include "cloth/physics/energy.h"
 #include "cloth/physics/particle.h"

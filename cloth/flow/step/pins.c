@@ -5,6 +5,7 @@
  * the step they are put exactly there, so that nothing adds up. In the step a guide is where it is
  * at its end. */
 #include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/step.h"
 
 #include "cloth/physics/motion.h"
 

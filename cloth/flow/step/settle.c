@@ -1,7 +1,10 @@
 /* The steps of a run: each begins while the one before it is settled, that is, accepted or refused
  * by what all blocks noted in its status. What is decided follows from values that all ranks get
  * alike. */
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/integrators/integrator.h"
+#include "cloth/flow/observe/observe.h"
+#include "cloth/flow/state/state.h"
+#include "cloth/flow/step/step.h"
 
 #include <math.h>
 #include <stdio.h>

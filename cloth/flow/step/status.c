@@ -1,6 +1,7 @@
 /* What the tasks of a step note in its status: rows beyond all bounds, and that a stop is asked
  * for. */
 #include "cloth/flow/bodies.h"
+#include "cloth/flow/step/step.h"
 
 #include "cloth/physics/particle.h"
 

@@ -1,8 +1,10 @@
 /* A step is a list of stages, which are forked in order. It is forked whole while the one before it
  * may still run: what only reads the state comes first (its begin), then the main program looks at
  * the status of the step before (settle.c), then what changes the state is forked. */
+#include "cloth/flow/step/step.h"
 #include "cloth/flow/integrators/integrator.h"
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/observe/observe.h"
+#include "cloth/flow/state/state.h"
 
 struct flow_args flow_attempt_args(const struct flow_state *state)
 {

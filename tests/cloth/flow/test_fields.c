@@ -1,7 +1,9 @@
 /* The table of fields against runs: what exists is made in the size that the table says, and freed;
  * what a step does with a field between two steps is what the table calls it. Work fields may be
  * anything when a step begins; a state field may not. */
-#include "cloth/flow/tasks.h"
+#include "cloth/flow/setup/setup.h"
+#include "cloth/flow/solver/solve.h"
+#include "cloth/flow/step/step.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 

@@ -1,0 +1,39 @@
+#ifndef CLOTH_FLOW_SOLVER_SOLVE_H
+#define CLOTH_FLOW_SOLVER_SOLVE_H
+
+#include "cloth/flow/state/state.h"
+
+/* The system of a step and its solve, as a step forks them. Collective, but for what is local;
+ * they return what the runtime does. */
+
+/* Forks what makes the system of a step of implicit Euler, linearised where it begins: its right
+ * side f, its matrix a. */
+int flow_assemble(struct flow_state *state);
+/* Records a round of the solve; once a run, when its objects are made. */
+int flow_cg_record(struct flow_state *state);
+/* Forks what a solve for dv begins with, which reads f and a; then its iterations; both, without a
+ * guess. */
+int flow_cg_start(struct flow_state *state);
+int flow_cg_iterate(struct flow_state *state);
+int flow_cg(struct flow_state *state);
+
+/* What a solve reads of neighbours: memory, a part of flow_memory_take; which objects these are,
+ * when the others are made (a failure is returned by the next get); forks of the tasks that pack
+ * the far rims of a block, for even passes or odd ones. */
+void flow_halo_take(struct flow_state *state);
+void flow_halo_free(struct flow_state *state);
+void flow_halo_make(struct flow_state *state); /* flow_run_begin does */
+int flow_halo_pack(struct flow_state *state, uint32_t block, int to);
+
+/* Decides on the preconditioner of a run: the model's, but no coarse part of more than
+ * SOLVE_MOST_BLOCKS blocks; and on patches. Local. */
+void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks);
+/* That once more on all ranks, and the pattern of the coarse factor, if there is one. */
+int flow_preconditioner_prepare(struct flow_state *state);
+/* Local. */
+void flow_preconditioner_free(struct flow *flow);
+/* Forks what the coarse space is, if there is one: once a run, or with contact in the solve in each
+ * step. */
+int flow_coarse_initialise(struct flow_state *state);
+
+#endif

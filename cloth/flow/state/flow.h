@@ -1,0 +1,129 @@
+#ifndef CLOTH_FLOW_STATE_FLOW_H
+#define CLOTH_FLOW_STATE_FLOW_H
+
+#include "cloth/flow/run.h"
+#include "cloth/flow/setup/source.h"
+#include "cloth/flow/state/tables.h"
+#include "cloth/solve/coarse.h"
+#include "cloth/solve/local.h"
+
+/* What the bodies of tasks share, the runtime's context. Bodies see objects, arguments and the
+ * constant part of the flow; what else they touch is said here. */
+
+/* Parts of a step whose seconds the report gives. */
+enum flow_part {
+    FLOW_NO_PART = -1,
+    FLOW_FORCE,
+    FLOW_ACCELERATION,
+    FLOW_MATRIX,
+    FLOW_CG,
+    FLOW_VELOCITY,
+    FLOW_POSITION,
+    FLOW_COLLIDE,
+    FLOW_OUTPUT,
+    FLOW_PARTS
+};
+
+/* Seconds in bodies on one worker; each on its own cache lines, written by that worker only. */
+struct flow_clock {
+    _Alignas(64) double seconds[FLOW_PARTS];
+    double from; /* of the body that runs: when its part of the step began */
+};
+
+/* Codes of bodies that fail. */
+enum {
+    FLOW_DIVERGED = 1,
+    FLOW_INDEFINITE,
+    FLOW_NOT_WRITTEN,
+    FLOW_NO_MEMORY,
+    FLOW_NOT_CONVERGED,
+    FLOW_STRETCHED,
+    FLOW_NO_FILTER
+};
+
+/* Rows of a block's rim that blocks on one other rank read. */
+struct flow_far_rim {
+    uint32_t n;
+    const uint32_t *row; /* n: places in the rim, ascending */
+};
+
+/* Vertices that no face or edge uses: n of them, ascending, with their places. */
+struct flow_rest {
+    uint32_t n, *vertex;
+    double (*position)[3];
+};
+
+/* On rank 0 as flow_prepare left it; elsewhere what rank 0 told. */
+struct flow {
+    const struct model *model; /* rank 0: the program's; else &told */
+    struct model told;         /* without names, materials, cloths */
+    uint32_t n_vertices, n_triangles;
+    uint64_t n_steps, partition_hash;
+    double inertia, release;   /* kg m^2, J: flow_source_inertia, flow_source_release */
+    struct flow_tables tables; /* shapes */
+    void *shared;              /* obstacles, key frames, slots and copies that the above point to */
+
+    /* Rank 0 only. */
+    char warning[9][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
+                             extents, shear; empty: none */
+    struct flow_source source; /* until the tables are dealt */
+    uint32_t *vertex;          /* by place; from then on */
+    struct flow_rest rest;
+    struct flow_watched watched;
+    char *header; /* of the table of probes; NULL: none */
+
+    struct flow_filter filter; /* the program's; rows NULL: none */
+
+    /* Of the run that is on. */
+    const struct flow_progress *progress; /* tasks ask it whether to stop; NULL: nobody is asked */
+    unsigned n_clocks;
+    struct flow_clock *clock; /* a worker */
+    struct phys_pair *sums;   /* a worker, most_entries: room for a matrix while it is assembled in
+                               * half storage; else NULL */
+    size_t n_sums;            /* of a worker */
+    phys_vec *copies; /* a worker, two for each of most_copies: what elements see of neighbours
+                       * while a task works on them; NULL: there are no elements */
+    size_t n_copies;  /* of a worker */
+    phys_vec *forces; /* a worker, most_rows: those that an explicit step needs for itself alone;
+                       * NULL: the run is implicit */
+    size_t n_forces;  /* of a worker */
+    uint32_t *at; /* of each copy of all blocks: its place in what a pass reads of the neighbour */
+    struct flow_far_rim *far_rim; /* of halo.c */
+    uint32_t *far_row;
+    enum model_preconditioner preconditioner;
+    uint32_t patches;             /* of a block; patch k of block b is number patches * b + k */
+    struct solve_pattern pattern; /* of the coarse factor, if there is one: of patches */
+    uint32_t *first_beside;       /* then: pattern.n + 1, of each patch's neighbours among all */
+    uint32_t *beside;             /* of all patches, patch after patch, ascending in each */
+    struct cloth_error trouble;   /* of this rank: why it cannot begin, why a frame was not written;
+                                   * changed by the main thread when no task runs, and by `frame` */
+    /* On rank 0: written by the tasks `frame`, one at a time, and by the main thread when no task
+     * runs. */
+    const struct flow_output *output;
+    double *room;    /* n_vertices x 3: positions of a frame; NULL: there is no output */
+    double *row;     /* of the table of probes; NULL: it is not written */
+    double *seen;    /* watched x FLOW_SEEN */
+    uint64_t frames; /* written */
+    uint64_t hash;
+};
+
+/* What a run's preconditioner is made of. An explicit run has none. */
+static inline bool flow_is_preconditioned(const struct flow *flow)
+{
+    return flow->preconditioner != MODEL_PLAIN;
+}
+static inline bool flow_is_coarse(const struct flow *flow)
+{
+    return flow->preconditioner == MODEL_COARSE || flow->preconditioner == MODEL_IC0_COARSE;
+}
+static inline enum solve_local flow_local(const struct flow *flow)
+{
+    return flow->preconditioner == MODEL_IC0 || flow->preconditioner == MODEL_IC0_COARSE
+               ? SOLVE_IC0
+               : SOLVE_JACOBI;
+}
+
+/* Seconds since some start. Local. */
+double flow_now(void);
+
+#endif

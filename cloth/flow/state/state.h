@@ -1,0 +1,196 @@
+#ifndef CLOTH_FLOW_STATE_STATE_H
+#define CLOTH_FLOW_STATE_STATE_H
+
+#include "cloth/flow/kernels.h"
+#include "cloth/flow/state/flow.h"
+#include "cloth/flow/step/energy.h"
+#include "cloth/flow/step/grid.h"
+
+#include <xxhash.h>
+
+/* A run as its main program sees it: arguments of tasks, what their sums are, and the state
+ * itself. */
+
+/* Arguments of every kernel; those that a kernel does not name are zero. */
+struct flow_args {
+    uint32_t block;
+    uint32_t last; /* not zero: what goes wrong in this step is an error of its body; else it is
+                    * only counted, and the step is made anew with half the length */
+    uint64_t frame;
+    uint32_t stage;  /* of a step by RK4 */
+    double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */
+    double time;     /* s: of a frame; else at the end of the step */
+    double now;      /* s: of what varies, where forces and energies are */
+    double before;   /* s: of a row of probes: length of the step before */
+    double part;     /* of dv */
+    double guess;    /* a solve begins with dv times this; 0: from nothing */
+};
+
+/* Indices into the status of a step, F64, zero before the step and summed by its tasks. */
+enum {
+    FLOW_LOST = 0, /* three: sum of b - A dv over free rows */
+    FLOW_STOP = 3,
+    FLOW_ITERATIONS,
+    FLOW_RESTARTS, /* of solves, when the true residual refused their dv */
+    FLOW_ERROR,    /* square of the error of dv by the terms of the solve (cloth/solve/cg.h) and its
+                    * drift, */
+    FLOW_SIZE,     /* dv.D dv and */
+    FLOW_RESIDUAL, /* r.D^-1 r, D the masses */
+    FLOW_SHIFTED,  /* factors of blocks that were made with a shift or are of SSOR */
+    FLOW_FAILED,
+    FLOW_BEYOND,  /* blocks: whose solve failed; that have a row beyond all bounds */
+    FLOW_TOUCHED, /* vertices that contact moved */
+    FLOW_SLOPE,   /* of a Newton step: dv.b before it, */
+    FLOW_CHANGE,  /* dv.M dv, */
+    FLOW_WHOLE,   /* (v - base_v).M (v - base_v) after it */
+    FLOW_STATUS
+};
+/* Indices into the peaks of a state that is watched, F64, each the largest of any block: square of
+ * the speed, l / L of the springs that count for it, and minus that. */
+enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
+/* Numbers of a watched vertex: position, velocity, reaction; sums of a free piece. */
+enum { FLOW_SEEN = 9, FLOW_PIECE_SUMS = 8 };
+/* Energies, J, and after them the torque that uncorrected triangles leave, N m (kernels_energy.c).
+ */
+enum {
+    FLOW_ENERGY_MOTION,
+    FLOW_ENERGY_ELASTIC,
+    FLOW_ENERGY_GRAVITY,
+    FLOW_ENERGY_LOADS,
+    FLOW_ENERGIES,
+    FLOW_TORQUE = FLOW_ENERGIES,
+    FLOW_SUMS = FLOW_TORQUE + 3
+};
+/* Indices into what rank 0 tells, I64 x 2. */
+enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
+
+/* A position or velocity as it is hashed: little-endian doubles x y z. */
+enum { FLOW_VERTEX_BYTES = 24 };
+
+/* What all ranks are told before anything else. */
+struct flow_head {
+    uint64_t n_steps, partition_hash;
+    double inertia, release;
+    uint64_t shared_bytes;                                         /* of what they are told next */
+    uint32_t n_vertices, n_triangles, n_blocks, n_slots, n_copies; /* of all blocks */
+    uint32_t most_rows, most_slots, most_rim, most_entries;        /* of any block */
+    uint32_t most_copies, n_pieces;
+    uint64_t n_elements; /* of all blocks */
+    struct model model;  /* pointers mean nothing elsewhere */
+};
+
+/* What passes read of their neighbours' rims of s (halo.c). */
+struct flow_far {
+    duite_object *read[2]; /* a neighbour of each block, block after block: of even passes, odd */
+    struct {
+        duite_object object[2];
+    } * rim;         /* n far rims, block after block; three numbers a row */
+    uint32_t *first; /* a block, and one more: its first one */
+    uint32_t n;
+    size_t n_rows;
+    int *home;        /* a block */
+    uint32_t *number; /* room for the rows of any rim */
+};
+
+/* A step that is under way. */
+struct flow_attempt {
+    uint64_t begin;  /* tick */
+    uint32_t length; /* ticks */
+    unsigned parity; /* which status and stretch are its */
+    bool forked;     /* whole: its status can be asked for */
+};
+
+/* The Newton steps of one step of time. */
+struct flow_newton {
+    uint64_t steps;
+    bool converged;
+    double status[FLOW_STATUS]; /* in place of what the solve of a linear step notes */
+};
+
+/* A run as the main program sees it; the same on every rank. */
+struct flow_state {
+    struct flow *flow;
+    duite *rt;
+    const struct flow_output *output;
+    struct flow_report *report;
+    struct cloth_error *error;
+    struct flow_objects *block;
+    struct flow_far far;
+    duite_graph solve; /* a round of conjugate gradients */
+    struct flow_run_objects run;
+    unsigned pass; /* of a round that is recorded: 0 or 1; else 0 */
+    struct flow_newton newton;
+    uint32_t length; /* ticks of the last step accepted, and of the one before it; 0: none yet */
+    uint32_t length_before;
+    uint32_t
+        guessed; /* ticks of the step that left dv, if the next solve may begin with it; else 0 */
+    uint32_t smooth; /* ticks of the step before, if contact had no part in it; else 0, and then the
+                      * next step is by implicit Euler where the others are by BDF2 */
+    struct flow_head head;
+    duite_object *refs;    /* room for the objects of any task */
+    double *rows;          /* room for the rows of any block, or a number for each neighbour */
+    unsigned char *bytes;  /* rank 0: a part of the state, to be hashed, */
+    XXH64_state_t *hash;   /* and what was hashed so far */
+    duite_counters before; /* what was counted before the first step */
+    struct flow_grid grid;
+    struct flow_attempt attempt;
+    bool settled_forces; /* f is that of x and v (velocity Verlet) */
+    double longest;      /* largest stretch at grid.now, if steps are judged by it */
+    struct flow_guard guard;
+    char reason[600]; /* why no step is short enough */
+    uint64_t next_frame;
+    double shown;  /* tick of the last frame */
+    bool begun;    /* all ranks have their memory, objects are made */
+    bool stopping; /* a stop was agreed: no more steps begin */
+    bool resting;  /* it rests: ends after the next frame */
+    double moved;  /* s: when it was last seen too fast for that */
+};
+
+/* Whether frames are wanted. */
+static inline bool flow_shows(const struct flow_state *state)
+{
+    return state->output && state->output->frame;
+}
+
+/* Whether rows of probes are wanted. */
+static inline bool flow_tells(const struct flow_state *state)
+{
+    return state->flow->model->n_probes && state->output && state->output->row;
+}
+
+/* s: of the steps accepted so far. */
+static inline double flow_time(const struct flow_state *state)
+{
+    return (double)state->grid.now * state->flow->model->h / FLOW_TICKS;
+}
+
+/* ---- state.c: forks. Collective; they return what the runtime does ---- */
+
+/* Forks the start of all blocks; what copies x and v to what is kept, or to two others in its
+ * place; what makes it the state again. */
+int flow_initialise(struct flow_state *state);
+int flow_keep(struct flow_state *state);
+int flow_keep_as(struct flow_state *state, const struct flow_as *as);
+int flow_restore(struct flow_state *state);
+
+/* Forks `kernel` on one block: first its table, then the objects given, then the neighbours'
+ * objects at `offset` in struct flow_objects (and at `offset2`); FLOW_NO_RIM: none. */
+enum { FLOW_NO_RIM = -1 };
+#define FLOW_RIM(name) (long)offsetof(struct flow_objects, name)
+int flow_fork(struct flow_state *state, const duite_kernel *kernel, const struct flow_args *args,
+              size_t n, const duite_object *objects, long offset, long offset2);
+
+/* The objects of a block, by name: FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v)). */
+#define FLOW_AT(name)     (long)offsetof(struct flow_objects, name)
+#define FLOW_OBJECTS(...) ((const long[]){__VA_ARGS__, FLOW_NO_RIM})
+
+/* What follows the objects of a block: nothing, the status of the step, or before it the scalars of
+ * a solve. */
+enum flow_behind { FLOW_NOTHING, FLOW_THEN_STATUS, FLOW_THEN_SCALARS_AND_STATUS };
+
+/* Forks one kernel on every block, like flow_fork. args: of all of them but for the block; objects:
+ * offsets of a block's own, FLOW_OBJECTS. */
+int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct flow_args args,
+                  const long *objects, enum flow_behind behind, long rim, long rim2);
+
+#endif

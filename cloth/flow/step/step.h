@@ -1,0 +1,40 @@
+#ifndef CLOTH_FLOW_STEP_STEP_H
+#define CLOTH_FLOW_STEP_STEP_H
+
+#include "cloth/flow/state/state.h"
+
+/* A step: its stages, and what settles it. Collective; they return what the runtime does. */
+
+/* Arguments of tasks of the step under way. */
+struct flow_args flow_attempt_args(const struct flow_state *state);
+/* Steps are judged by their stretch. */
+static inline bool flow_is_judged(const struct model *model)
+{
+    return model->stretch_growth > 0 || model->stretch_limit > 0;
+}
+/* Fork the stages of the step under way (step.c): its begin, which leaves x and v as they are,
+ * unless velocities change before the forces; the rest. */
+int flow_step_begin(struct flow_state *state);
+int flow_step_end(struct flow_state *state);
+/* Whether they do: such a step does not begin before the one before it is accepted. */
+bool flow_step_is_driven(const struct model *model);
+/* Forks a step of length h whole, which nobody judges and whose solve has no guess. */
+int flow_step(struct flow_state *state);
+/* All steps from the start on, with their frames; ends early if a stop was agreed. */
+int flow_steps(struct flow_state *state);
+/* Forks what notes in the status of the step whether a rank is asked to stop. */
+int flow_status_fork(struct flow_state *state);
+
+/* Fork what moves the pins of a step: before its forces, and when x has moved. */
+int flow_pins_drive(struct flow_state *state);
+int flow_pins_place(struct flow_state *state);
+
+/* Fork contact (contact.c): before the forces, velocities that end the step on an obstacle; what
+ * the solves of a step are filtered by, from x, v and f; the filter on the right side and in the
+ * matrix; after the step, what puts vertices out of obstacles. */
+int flow_contact_touch(struct flow_state *state);
+int flow_contact_filter(struct flow_state *state, struct flow_args args);
+int flow_contact_hold(struct flow_state *state, struct flow_args args);
+int flow_contact_project(struct flow_state *state);
+
+#endif

@@ -99,8 +99,8 @@ struct phys_sight flow_elements_see(const duite_call *call, const struct flow_ta
 /* Adds their forces; those of kinds whose matrix does not come with the right side. */
 void flow_elements_force(const duite_call *call, const struct flow_table *t,
                          const struct phys_sight *sight, phys_vec *f);
-void flow_elements_bend(const duite_call *call, const struct flow_table *t,
-                        const struct phys_sight *sight, phys_vec *f);
+void flow_elements_force_beside(const duite_call *call, const struct flow_table *t,
+                                const struct phys_sight *sight, phys_vec *f);
 /* y -= scale K v of the same. */
 void flow_elements_stiffness(const duite_call *call, const struct flow_table *t, double scale,
                              const struct phys_sight *sight, phys_vec *y);

@@ -62,6 +62,7 @@ small "both diagonals and bends" --set materials.cloth.diagonals=both --set mate
 small "triangles and hinges" --set "$triangles, bending: {rigidity: [1e-4, 5e-5]}}"
 small "triangles by the papers' forces" --set "$triangles, forces: uncorrected}"
 small "quadratic bending" --set 'materials.cloth.bending={model: quadratic, rigidity: 1e-4}'
+small "limits of strain" --set "$triangles}" --set 'materials.cloth.strain_limit={at: 1e-3, stiffness: 1e4}'
 small "the floor in the solve" --set contact=filter --set 'cloths[0].transform.translate=[0,0.002,0]' --set 'cloths[0].velocity=[0,-1,0]'
 small "the floor after the step" --set contact=project --set 'cloths[0].transform.translate=[0,0.002,0]' --set 'cloths[0].velocity=[0,-1,0]'
 small "bdf2 with Newton steps" --set integrator=bdf2 --set newton.steps=3 --set energies=steps --set time.h=0.004

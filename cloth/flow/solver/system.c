@@ -85,9 +85,8 @@ static void all_springs(const struct making *m)
 
 /* ---- Both ---- */
 
-/* b of what is not in the matrix: unless forces are in it, those of the outside and of what is
- * bent.
- */
+/* b of what does not come with the matrix: unless forces are in it, those of the outside and of
+ * kinds of elements that have no system. */
 static void begin_right_side(const struct making *m, const struct phys_sight *sight)
 {
     const struct flow_table *t = m->t;
@@ -95,7 +94,7 @@ static void begin_right_side(const struct making *m, const struct phys_sight *si
         phys_outside(t->n, t->load, t->drag, duite_in(m->call, 2, phys_vec), m->b);
         flow_varying_add(m->call, t, m->b);
         if (sight->x)
-            flow_elements_bend(m->call, t, sight, m->b);
+            flow_elements_force_beside(m->call, t, sight, m->b);
     }
     for (uint32_t i = 0; i < t->n; i++)
         m->b[i] = m->h * m->b[i];

@@ -60,8 +60,8 @@ void flow_elements_force(const duite_call *call, const struct flow_table *t,
     add_forces(call, t, true, sight, f);
 }
 
-void flow_elements_bend(const duite_call *call, const struct flow_table *t,
-                        const struct phys_sight *sight, phys_vec *f)
+void flow_elements_force_beside(const duite_call *call, const struct flow_table *t,
+                                const struct phys_sight *sight, phys_vec *f)
 {
     add_forces(call, t, false, sight, f);
 }

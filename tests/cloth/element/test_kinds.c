@@ -2,6 +2,7 @@
  * belong together, and elements do not know which others they stand with. The cloths here have
  * elements of each kind; who adds one gives a material of them its keys. */
 #include "cloth/element/cloths.h"
+#include "cloth/flow/setup/source.h"
 #include "tests/cloth/physics/elements.h"
 #include "tests/support/unit.h"
 
@@ -417,6 +418,52 @@ START_TEST(elements_do_not_know_their_neighbours)
 }
 END_TEST
 
+/* ---- Links ---- */
+
+/* Which vertices springs join, of all cloths. */
+struct links {
+    bool pair[CLOTHS * VERTICES][CLOTHS * VERTICES];
+    uint32_t kind, elements;
+};
+
+static void join(void *to, const struct flow_spring *spring)
+{
+    struct links *links = to;
+    links->pair[spring->a][spring->b] = links->pair[spring->b][spring->a] = true;
+}
+
+static void find_links(void *to, const struct element *element)
+{
+    struct links *links = to;
+    if (element->kind != links->kind)
+        return;
+    links->elements++;
+    for (uint32_t j = 1; j < element->corners; j++)
+        for (uint32_t i = 0; i < j; i++)
+            ck_assert_msg(links->pair[element->first + element->corner[i]]
+                                     [element->first + element->corner[j]],
+                          "no spring joins corners %u and %u of %s", i, j,
+                          element_kinds[element->kind]->name);
+}
+
+/* Neighbours, copies and entries of the matrix are found for springs alone. */
+START_TEST(corners_are_joined)
+{
+    struct scene scene;
+    struct flow_springs springs;
+    struct cloth_error error = {0};
+    struct links links = {.kind = (uint32_t)_i};
+    make_scene(&scene);
+    ck_assert_msg(!flow_springs_make(&springs, &scene.model, &scene.cloths, &error), "%s",
+                  error.text);
+    flow_springs_each(&springs, join, &links);
+    element_each(&scene.cloths, find_links, &links);
+    ck_assert_uint_gt(links.elements, 0);
+    flow_springs_free(&springs);
+    free_scene(&scene);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("kinds");
@@ -428,6 +475,7 @@ int main(void)
     tcase_add_loop_test(kinds, rigid_motion_gives_no_force, 0, ELEMENT_KINDS);
     tcase_add_loop_test(kinds, right_side_comes_with_the_matrix, 0, ELEMENT_KINDS);
     tcase_add_loop_test(kinds, elements_do_not_know_their_neighbours, 0, ELEMENT_KINDS);
+    tcase_add_loop_test(kinds, corners_are_joined, 0, ELEMENT_KINDS);
     suite_add_tcase(suite, kinds);
     return unit_run(suite);
 }

@@ -15,6 +15,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/memory.c \
     cloth/flow/setup/neighbours.c \
     cloth/flow/setup/particles.c \
+    cloth/flow/setup/pairs.c \
     cloth/flow/setup/picks.c \
     cloth/flow/setup/pieces.c \
     cloth/flow/setup/setup.h \
@@ -25,6 +26,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/starts.c \
     cloth/flow/setup/warn.c \
     cloth/flow/setup/watched.c \
+    cloth/flow/setup/welds.c \
     cloth/flow/state/fields.c \
     cloth/flow/state/fields.h \
     cloth/flow/state/flow.h \

@@ -134,6 +134,7 @@ void flow_free(struct flow *flow)
     free(flow->tables.block);
     free(flow->shared);
     free(flow->vertex);
+    free(flow->names.name);
     free(flow->rest.vertex);
     free(flow->rest.position);
     flow_watched_free(&flow->watched);

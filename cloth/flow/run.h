@@ -111,7 +111,8 @@ struct flow; /* a model made ready, or room for one */
  * must not change in the step. */
 struct flow_rows {
     size_t n;               /* vertices of the block */
-    const uint32_t *vertex; /* n: in the numbering of the input meshes, cloth after cloth */
+    const uint32_t *vertex; /* n: in the numbering of the input meshes, cloth after cloth; of a
+                             * welded vertex its lowest number */
     const phys_vec *x, *v;  /* n: m, m/s, lanes 0 to 2; where the step begins */
     double time, h;         /* s: when the step ends; its length */
     phys_vec *filter; /* n: S of each row (solve_filter in cloth/solve/block.h), as contact and

@@ -61,28 +61,33 @@ void mesh_used(const struct mesh *mesh, unsigned char *used)
         used[mesh->lone_edge[i]] = 1;
 }
 
+void mesh_share_of(const struct mesh *mesh, uint32_t triangle, double density, bool by_cell,
+                   struct mesh_share *share)
+{
+    const uint32_t fourth = by_cell ? mesh_fourth(mesh, triangle) : UINT32_MAX;
+    mesh_corners(mesh, triangle, share->vertex);
+    share->n = fourth == UINT32_MAX ? 3 : 4;
+    share->vertex[3] = fourth;
+    share->mass = mesh_area(mesh->position, share->vertex) * density / share->n;
+}
+
+static void add_share(const struct mesh *mesh, uint32_t triangle, double density, bool by_cell,
+                      double *mass)
+{
+    struct mesh_share share;
+    mesh_share_of(mesh, triangle, density, by_cell, &share);
+    for (uint32_t i = 0; i < share.n; i++)
+        mass[share.vertex[i]] += share.mass;
+}
+
 void mesh_add_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass)
 {
-    uint32_t corner[3];
-    mesh_corners(mesh, triangle, corner);
-    double third = mesh_area(mesh->position, corner) * density / 3;
-    for (size_t i = 0; i < 3; i++)
-        mass[corner[i]] += third;
+    add_share(mesh, triangle, density, false, mass);
 }
 
 void mesh_add_cell_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass)
 {
-    const uint32_t fourth = mesh_fourth(mesh, triangle);
-    if (fourth == UINT32_MAX) {
-        mesh_add_mass_of(mesh, triangle, density, mass);
-        return;
-    }
-    uint32_t corner[3];
-    mesh_corners(mesh, triangle, corner);
-    const double quarter = mesh_area(mesh->position, corner) * density / 4;
-    for (size_t i = 0; i < 3; i++)
-        mass[corner[i]] += quarter;
-    mass[fourth] += quarter;
+    add_share(mesh, triangle, density, true, mass);
 }
 
 void mesh_add_mass(const struct mesh *mesh, double density, double *mass)

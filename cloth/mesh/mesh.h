@@ -128,6 +128,14 @@ void mesh_add_mass(const struct mesh *mesh, double density, double *mass);
 void mesh_add_mass_of(const struct mesh *mesh, uint32_t triangle, double density, double *mass);
 /* The corner that triangle t lacks of the cell of a grid that it is in; UINT32_MAX: no grid. */
 uint32_t mesh_fourth(const struct mesh *mesh, uint32_t t);
+/* What a triangle gives to each of n vertices, kg: as the next but one, by_cell, or the last
+ * function adds it. */
+struct mesh_share {
+    uint32_t n, vertex[4];
+    double mass;
+};
+void mesh_share_of(const struct mesh *mesh, uint32_t triangle, double density, bool by_cell,
+                   struct mesh_share *share);
 /* The mass of one triangle, but of a grid a quarter of it on each corner of its cell: so the masses
  * of a sheet do not depend on its diagonals. */
 void mesh_add_cell_mass_of(const struct mesh *mesh, uint32_t triangle, double density,

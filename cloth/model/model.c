@@ -62,7 +62,10 @@ void model_free(struct model *model)
     }
     for (uint32_t i = 0; i < model->n_joints; i++)
         free_pairs(&model->joints[i].pairs);
+    for (uint32_t i = 0; i < model->n_welds; i++)
+        free_pairs(&model->welds[i].pairs);
     free(model->joints);
+    free(model->welds);
     free(model->probes);
     free(model->motions);
     free(model->keys);

@@ -165,6 +165,12 @@ struct model_joint {
     double length;             /* at rest, m; MODEL_START_LENGTH: the distance at the start */
 };
 
+/* Makes the two vertices of each pair one. */
+struct model_weld {
+    struct model_pairs pairs;
+    double tolerance; /* m: they start at most so far from each other */
+};
+
 /* What is told of vertices after each step. */
 struct model_probe {
     char *name;
@@ -221,8 +227,9 @@ struct model {
     struct model_cloth *cloths;
     struct contact_shape *obstacles;
     struct model_probe *probes;
-    uint32_t n_joints;
+    uint32_t n_joints, n_welds;
     struct model_joint *joints;
+    struct model_weld *welds;
     uint32_t n_motions, n_keys;
     struct model_motion *motions;
     struct phys_key *keys; /* of each motion in ascending order, of pins and of obstacles; at time 0

@@ -32,6 +32,8 @@ int scene_read(struct model *model, const char *path, size_t n_sets, const struc
     if (!code)
         code = scene_build_joints(model, &tree, &own);
     if (!code)
+        code = scene_build_welds(model, &tree, &own);
+    if (!code)
         code = scene_build_idle(model, &tree, &own);
     scene_tree_free(&tree);
     return code ? cloth_fail(error, code, "%s", own.text) : CLOTH_OK;

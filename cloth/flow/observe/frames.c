@@ -11,6 +11,13 @@ double flow_frame_tick(const struct model *model, uint64_t frame)
     return (double)frame / (model->fps * model->h) * FLOW_TICKS;
 }
 
+static void put_position(struct flow *flow, uint32_t vertex, const phys_vec *x)
+{
+    for (int c = 0; c < 3; c++)
+        flow->room[3 * (size_t)vertex + (size_t)c] = (*x)[c];
+}
+
+/* The vertices of all blocks, by all their names. */
 FLOW_KERNEL_WITH(frame, FLOW_OUTPUT, struct flow_args, (RW(token), ALL(x)), .side_effects = 1)
 static int frame_body(const duite_call *call, const struct frame_fields *on)
 {
@@ -18,9 +25,11 @@ static int frame_body(const duite_call *call, const struct frame_fields *on)
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++) {
         const phys_vec *x = flow_rows_of(on->x, b);
         const struct flow_table *t = flow->tables.block + b;
+        const uint32_t end = flow_names_from(&flow->names, t->first + t->n);
         for (uint32_t i = 0; i < t->n; i++)
-            for (int c = 0; c < 3; c++)
-                flow->room[3 * (size_t)flow->vertex[t->first + i] + (size_t)c] = x[i][c];
+            put_position(flow, flow->vertex[t->first + i], x + i);
+        for (uint32_t i = flow_names_from(&flow->names, t->first); i < end; i++)
+            put_position(flow, flow->names.name[i][1], x + flow->names.name[i][0] - t->first);
     }
     if (flow->output->frame(flow->output->context, on->args->frame, on->args->time, flow->room,
                             &flow->trouble))

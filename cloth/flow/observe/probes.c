@@ -82,7 +82,7 @@ static void fill_probes(const struct flow *flow, const double *seen, double *to)
             to = put(to, probe->position, vertex);
             to = put(to, probe->velocity, vertex + 3);
             to = put(to, probe->reaction, vertex + 6);
-            for (int c = 0; c < 3; c++)
+            for (int c = 0; c < 3 && !watched->again[i]; c++)
                 sum[c] += vertex[6 + c];
         }
         to = put(to, probe->total, sum);

@@ -148,11 +148,13 @@ int flow_share_head(struct flow_state *state)
         return code;
     flow->told = head->model;
     flow->told.name = flow->told.h_place = flow->told.fps_place = NULL;
-    flow->told.n_materials = flow->told.n_cloths = flow->told.n_joints = 0;
+    flow->told.n_materials = flow->told.n_cloths = 0;
+    flow->told.n_joints = flow->told.n_welds = 0;
     flow->told.materials = NULL;
     flow->told.cloths = NULL;
     flow->told.obstacles = NULL;
     flow->told.joints = NULL;
+    flow->told.welds = NULL;
     flow->told.probes = NULL;
     flow->told.keys = NULL;
     flow->told.motions = NULL;
@@ -275,6 +277,8 @@ static void forget_source(struct flow_state *state)
     struct flow *flow = state->flow;
     flow->vertex = flow->source.blocks.vertex;
     flow->source.blocks.vertex = NULL;
+    flow->names = flow->source.names;
+    flow->source.names = (struct flow_names){0};
     flow->watched = flow->source.watched;
     flow->source.watched = (struct flow_watched){0};
     flow_source_free(&flow->source);

@@ -46,18 +46,20 @@ static void add(struct block *block, double times, const struct flow_spring *s, 
 static void visit(void *to, const struct flow_spring *s)
 {
     struct visitor *visitor = to;
+    const struct flow_welds *welds = &visitor->source->particles.welds;
+    const uint32_t at = flow_root(welds, s->a), bt = flow_root(welds, s->b);
     struct flow_particle a, b;
-    particle_of(visitor, s->a, &a);
-    particle_of(visitor, s->b, &b);
+    particle_of(visitor, at, &a);
+    particle_of(visitor, bt, &b);
     const phys_vec d = b.position - a.position;
     const double length = sqrt(phys_dot(&d, &d));
     const phys_vec u = length > 0 ? d / length : d;
     const double longer = length > 0 ? 1 - s->length / length : 1;
     const double across = length > s->length ? longer : 0;
     if (a.free > 0)
-        add(visitor->block + s->a, 1 + b.free, s, &u, across);
+        add(visitor->block + at, 1 + b.free, s, &u, across);
     if (b.free > 0)
-        add(visitor->block + s->b, 1 + a.free, s, &u, across);
+        add(visitor->block + bt, 1 + a.free, s, &u, across);
 }
 
 /* Adds `times` a pair to the block of one of its corners: N, or as good N', since their sum is
@@ -93,24 +95,25 @@ static void visit_element(void *to, const struct element *element)
     struct phys_pair pair[2][ELEMENT_PAIRS];
     struct element_one one;
     phys_vec x[ELEMENT_CORNERS] = {{0}};
+    uint32_t at[ELEMENT_CORNERS];
     double times = 0;
     if (!kind->pairs)
         return;
     for (uint32_t i = 0; i < element->corners; i++) {
-        particle_of(visitor, element->first + element->corner[i], particle + i);
+        at[i] = flow_root(&visitor->source->particles.welds, element->first + element->corner[i]);
+        particle_of(visitor, at[i], particle + i);
         x[i] = particle[i].position;
         times += particle[i].free;
     }
     element_alone(&visitor->source->elements, element, visitor->material[element->kind], &one);
     for (int i = 0; i < 2; i++)
         pairs_of(kind, &one, x, 1 + i, pair[i]);
-    struct block *block = visitor->block + element->first;
     for (uint32_t j = 1, k = 0; j < element->corners; j++)
         for (uint32_t i = 0; i < j; i++, k++) {
             if (particle[i].free > 0)
-                add_pair(block + element->corner[i], times, pair[0] + k, pair[1] + k);
+                add_pair(visitor->block + at[i], times, pair[0] + k, pair[1] + k);
             if (particle[j].free > 0)
-                add_pair(block + element->corner[j], times, pair[0] + k, pair[1] + k);
+                add_pair(visitor->block + at[j], times, pair[0] + k, pair[1] + k);
         }
 }
 

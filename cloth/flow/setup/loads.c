@@ -59,7 +59,7 @@ static void add_load(void *to, uint32_t vertex)
     if (loader->course)
         add_varying(loader, v);
     else
-        p->load[v] += loader->force;
+        p->load[flow_root(&p->welds, v)] += loader->force;
 }
 
 static int load_edges(struct loader *loader, const struct model_load *load,

@@ -48,7 +48,8 @@ static void join(struct finder *finder, uint32_t a, uint32_t b, struct flow_tabl
     const uint32_t bp = flow_source_block(&source->blocks, p, finder->block);
     const uint32_t bq = flow_source_block(&source->blocks, q, bp);
     const uint32_t kp = patch_of(source, bp, p), kq = patch_of(source, bq, q);
-    const bool free_p = source->particles.free[a], free_q = source->particles.free[b];
+    const unsigned char *free = source->particles.free;
+    const bool free_p = free[source->blocks.vertex[p]], free_q = free[source->blocks.vertex[q]];
     finder->block = bp;
     block[0] = source->shape + bp;
     block[1] = source->shape + bq;

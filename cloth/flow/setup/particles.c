@@ -43,7 +43,7 @@ static void hold(void *to, uint32_t vertex)
 {
     struct holder *holder = to;
     struct flow_particles *p = holder->particles;
-    const uint32_t v = holder->first + vertex, motion = holder->pin->motion;
+    const uint32_t v = flow_root(&p->welds, holder->first + vertex), motion = holder->pin->motion;
     const uint32_t guide = holder->pin->guide, guided = p->guide ? p->guide[v] : 0;
     const bool held = p->free[v] == 0 || guided;
     if (!p->used[v] && !held)
@@ -87,10 +87,18 @@ struct weigher {
     double mass;
 };
 
+/* To a vertex of all cloths: what a name has is its root's. */
+static void weigh(struct flow_particles *p, uint32_t vertex, double mass)
+{
+    p->mass[flow_root(&p->welds, vertex)] += mass;
+    if (p->own)
+        p->own[vertex] += mass;
+}
+
 static void add_mass(void *to, uint32_t vertex)
 {
     const struct weigher *weigher = to;
-    weigher->particles->mass[weigher->first + vertex] += weigher->mass;
+    weigh(weigher->particles, weigher->first + vertex, weigher->mass);
 }
 
 static int more_masses(struct flow_particles *p, uint32_t first, const struct model_cloth *cloth,
@@ -133,30 +141,36 @@ static int no_mass(const struct model_cloth *cloth, uint32_t vertex, struct clot
 static int masses(struct flow_particles *p, uint32_t first, const struct model *model,
                   const struct model_cloth *cloth, struct cloth_error *error)
 {
-    phys_vec gravity;
-    to_vector(model->gravity, &gravity);
     for (uint32_t t = 0; t < cloth->mesh.n_triangles && !(cloth->mass_per_vertex > 0); t++) {
+        struct mesh_share share; /* of a linear element its lumped mass */
         uint32_t corner[3];
         mesh_corners(&cloth->mesh, t, corner);
-        const double density = model->materials[model_material_of(cloth, 3, corner)].density;
-        if (model_has_cells(model, cloth))
-            mesh_add_cell_mass_of(model_rest(cloth), t, density, p->mass + first);
-        else /* of a linear element, its lumped mass */
-            mesh_add_mass_of(model_rest(cloth), t, density, p->mass + first);
+        mesh_share_of(model_rest(cloth), t,
+                      model->materials[model_material_of(cloth, 3, corner)].density,
+                      model_has_cells(model, cloth), &share);
+        for (uint32_t i = 0; i < share.n; i++)
+            weigh(p, first + share.vertex[i], share.mass);
     }
     for (uint32_t i = 0; i < cloth->mesh.n_vertices && cloth->mass_per_vertex > 0; i++)
-        p->mass[first + i] = cloth->mass_per_vertex;
-    const int code = more_masses(p, first, cloth, error);
-    if (code)
-        return code;
+        weigh(p, first + i, cloth->mass_per_vertex);
+    return more_masses(p, first, cloth, error);
+}
+
+/* That all masses of a cloth are there and can be; and their weights. */
+static int weights(struct flow_particles *p, uint32_t first, const struct model *model,
+                   const struct model_cloth *cloth, struct cloth_error *error)
+{
+    phys_vec gravity;
+    to_vector(model->gravity, &gravity);
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
         const uint32_t v = first + i;
-        if (p->used[v] && p->mass[v] > 0 && !(p->mass[v] >= LEAST_MASS && p->mass[v] <= MOST_MASS))
+        const double mass = p->mass[flow_root(&p->welds, v)];
+        if (p->used[v] && mass > 0 && !(mass >= LEAST_MASS && mass <= MOST_MASS))
             return model_fail(
                 cloth->place, error,
                 "vertex %u of cloth '%.60s' has a mass of %g kg; %g to %g is expected", i,
-                cloth->name, p->mass[v], LEAST_MASS, MOST_MASS);
-        if (p->used[v] && !(p->mass[v] > 0))
+                cloth->name, mass, LEAST_MASS, MOST_MASS);
+        if (p->used[v] && !(mass > 0))
             return no_mass(cloth, i, error);
         if (p->load)
             p->load[v] = p->mass[v] * gravity;
@@ -198,12 +212,33 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     int code = check_start(cloth, error);
     if (!code)
         code = flow_starts_make(p, first, cloth, error);
-    if (!code)
-        code = masses(p, first, model, cloth, error);
+    return code ? code : masses(p, first, model, cloth, error);
+}
+
+/* What acts on them, when the masses of all cloths are there: a welded vertex has several. */
+static int cloth_forces(struct flow_particles *p, uint32_t first, const struct model *model,
+                        const struct model_cloth *cloth, struct cloth_error *error)
+{
+    int code = weights(p, first, model, cloth, error);
     if (!code)
         code = flow_loads_make(p, first, cloth, error);
     if (!code)
         code = pins(p, first, model, cloth, error);
+    return code;
+}
+
+/* The same for all cloths, one after the other. */
+static int each_cloth(struct flow_particles *p, const struct model *model,
+                      int (*make)(struct flow_particles *p, uint32_t first,
+                                  const struct model *model, const struct model_cloth *cloth,
+                                  struct cloth_error *error),
+                      struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (uint32_t c = 0, first = 0; c < model->n_cloths && !code; c++) {
+        code = make(p, first, model, model->cloths + c, error);
+        first += model->cloths[c].mesh.n_vertices;
+    }
     return code;
 }
 
@@ -217,7 +252,10 @@ static int allocate(struct flow_particles *p, uint32_t n, bool loaded, const str
     p->mass = cloth_alloc(n, sizeof *p->mass, error);
     p->motion = moved ? cloth_alloc(n, sizeof *p->motion, error) : NULL;
     p->guide = guided ? cloth_alloc(n, sizeof *p->guide, error) : NULL;
-    if (!p->used || !p->free || !p->mass || (moved && !p->motion) || (guided && !p->guide))
+    p->own = model->n_welds ? cloth_alloc(n, sizeof *p->own, error) : NULL;
+    p->drag = model->n_welds ? cloth_alloc(n, sizeof *p->drag, error) : NULL;
+    if (!p->used || !p->free || !p->mass || (moved && !p->motion) || (guided && !p->guide) ||
+        (model->n_welds && (!p->own || !p->drag)))
         return CLOTH_E_MEMORY;
     if (!loaded)
         return CLOTH_OK;
@@ -241,7 +279,7 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
 {
     *particles = (struct flow_particles){0};
     size_t n = 0;
-    bool loaded = false, starts = false;
+    bool loaded = false, starts = model->n_welds; /* which may move vertices a little */
     for (uint32_t c = 0; c < model->n_cloths; c++) {
         n += model->cloths[c].mesh.n_vertices;
         loaded = loaded || model->cloths[c].n_loads;
@@ -257,11 +295,14 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     }
     if (!code)
         code = find_used(particles, model, error);
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < model->n_cloths && !code; c++) {
-        code = cloth_particles(particles, first, model, model->cloths + c, error);
-        first += model->cloths[c].mesh.n_vertices;
-    }
+    if (!code)
+        code = flow_welds_make(&particles->welds, model, particles->n, particles->used, error);
+    if (!code)
+        code = each_cloth(particles, model, cloth_particles, error);
+    if (!code)
+        code = flow_welds_settle(particles, model, error);
+    if (!code)
+        code = each_cloth(particles, model, cloth_forces, error);
     if (!code && particles->unused.n == particles->n)
         code = model_fail(model->n_cloths ? model->cloths[0].mesh_place : NULL, error,
                           "nothing to simulate: no vertex is used by a face or an edge");
@@ -287,7 +328,9 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
     const struct model_material *material = model->materials + model_material_of(cloth, 1, &own);
     const bool moves = particles->free[vertex];
     particle->mass = particles->mass[vertex];
-    particle->drag = material->damping_viscous + material->damping_mass * particle->mass;
+    particle->drag = particles->drag
+                         ? particles->drag[vertex]
+                         : material->damping_viscous + material->damping_mass * particle->mass;
     particle->free = moves ? 1 : 0;
     to_vector(cloth->mesh.position + 3 * (size_t)(vertex - first), &particle->position);
     to_vector(moves ? cloth->velocity : (const double[3]){0}, &particle->velocity);
@@ -344,6 +387,9 @@ void flow_particles_free(struct flow_particles *particles)
     free(particles->used);
     free(particles->free);
     free(particles->mass);
+    free(particles->own);
+    free(particles->drag);
+    flow_welds_free(&particles->welds);
     free(particles->motion);
     free(particles->varying);
     free(particles->guide);

@@ -47,6 +47,8 @@ int flow_pieces_make(struct flow_source *source, struct cloth_error *error)
         parent[v] = v;
     if (made)
         flow_springs_each(&source->springs, join, parent);
+    for (uint32_t i = 0; made && i < p->welds.n; i++)
+        join(parent, &(struct flow_spring){.a = p->welds.name[i][0], .b = p->welds.name[i][1]});
     for (uint32_t v = 0; made && v < p->n; v++)
         if (!p->free[v] || (p->guide && p->guide[v]))
             held[root_of(parent, v)] = 1;

@@ -31,6 +31,7 @@ void flow_source_cloth(struct flow_cloths *at, const struct model *model, uint32
 /* ---- Cutting ---- */
 
 struct pair_visitor {
+    const struct flow_welds *welds;
     void (*visit)(void *to, uint32_t a, uint32_t b);
     void *to;
 };
@@ -38,14 +39,32 @@ struct pair_visitor {
 static void visit_pair(void *to, const struct flow_spring *spring)
 {
     const struct pair_visitor *visitor = to;
-    visitor->visit(visitor->to, spring->a, spring->b);
+    visitor->visit(visitor->to, flow_root(visitor->welds, spring->a),
+                   flow_root(visitor->welds, spring->b));
 }
 
 static void each_pair(const void *context, void (*visit)(void *to, uint32_t a, uint32_t b),
                       void *to)
 {
-    struct pair_visitor visitor = {visit, to};
-    flow_springs_each(context, visit_pair, &visitor);
+    const struct flow_springs *springs = context;
+    struct pair_visitor visitor = {springs->welds, visit, to};
+    flow_springs_each(springs, visit_pair, &visitor);
+}
+
+/* Cuts the used vertices, of welded ones their roots. */
+static int cut_roots(struct flow_source *source, const struct mesh_pairs *pairs,
+                     struct cloth_error *error)
+{
+    const struct flow_particles *p = &source->particles;
+    unsigned char *used = p->welds.n ? cloth_alloc(p->n, 1, error) : p->used;
+    if (!used)
+        return CLOTH_E_MEMORY;
+    for (uint32_t v = 0; v < p->n && p->welds.n; v++)
+        used[v] = p->used[v] && p->welds.root[v] == v;
+    int code = mesh_blocks_cut(&source->blocks, p->n, used, pairs, source->model->grain, error);
+    if (used != p->used)
+        free(used);
+    return code ? code : flow_names_make(&source->names, &p->welds, &source->blocks, error);
 }
 
 static int cut(struct flow_source *source, int ranks, struct cloth_error *error)
@@ -53,8 +72,7 @@ static int cut(struct flow_source *source, int ranks, struct cloth_error *error)
     const struct mesh_pairs pairs = {&source->springs, each_pair};
     const struct mesh_blocks *blocks = &source->blocks;
     const uint32_t grain = source->model->grain;
-    const int code = mesh_blocks_cut(&source->blocks, source->particles.n, source->particles.used,
-                                     &pairs, grain, error);
+    const int code = cut_roots(source, &pairs, error);
     if (code || (uint32_t)ranks <= blocks->n_blocks)
         return code;
     return cloth_fail(error, CLOTH_E_INPUT,
@@ -65,14 +83,21 @@ static int cut(struct flow_source *source, int ranks, struct cloth_error *error)
 
 /* ---- Shapes ---- */
 
-static void find_range(const struct mesh_blocks *blocks, struct flow_table *shape)
+static void widen(struct flow_table *shape, uint32_t v)
 {
+    shape->lowest = v < shape->lowest ? v : shape->lowest;
+    shape->highest = v > shape->highest ? v : shape->highest;
+}
+
+static void find_range(const struct flow_source *source, struct flow_table *shape)
+{
+    const struct flow_names *names = &source->names;
+    const uint32_t end = flow_names_from(names, shape->first + shape->n);
     shape->lowest = UINT32_MAX;
-    for (uint32_t i = 0; i < shape->n; i++) {
-        const uint32_t v = blocks->vertex[shape->first + i];
-        shape->lowest = v < shape->lowest ? v : shape->lowest;
-        shape->highest = v > shape->highest ? v : shape->highest;
-    }
+    for (uint32_t i = 0; i < shape->n; i++)
+        widen(shape, source->blocks.vertex[shape->first + i]);
+    for (uint32_t i = flow_names_from(names, shape->first); i < end; i++)
+        widen(shape, names->name[i][1]);
 }
 
 /* How many vertices of each block are watched. */
@@ -108,7 +133,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         shape->format = source->model->format;
         shape->first = blocks->start[b];
         shape->n = blocks->start[b + 1] - blocks->start[b];
-        find_range(blocks, shape);
+        find_range(source, shape);
         shape->n_moved = count_numbered(source, shape, source->particles.motion);
         shape->n_guided = count_numbered(source, shape, source->particles.guide);
         shape->n_loose = count_numbered(source, shape, source->particles.piece);
@@ -128,7 +153,12 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
     if (!code)
         code = element_cloths_make(&source->elements, model, error);
     if (!code)
-        code = flow_springs_make(&source->springs, model, &source->elements, error);
+        code = flow_welds_check(&source->particles.welds, &source->elements, error);
+    if (!code)
+        code = flow_springs_make(&source->springs, model, &source->particles.welds,
+                                 &source->elements, error);
+    if (!code)
+        code = flow_springs_merge(&source->springs, source->particles.n, error);
     if (!code)
         code = flow_joints_make(&source->springs, &source->particles, error);
     if (!code && model_is_implicit(model))
@@ -152,6 +182,7 @@ void flow_source_free(struct flow_source *source)
     free(source->neighbours.copy);
     free(source->neighbours.joins);
     flow_watched_free(&source->watched);
+    free(source->names.name);
     free(source->shape);
     free(source->rim);
     mesh_blocks_free(&source->blocks);

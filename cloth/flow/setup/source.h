@@ -1,6 +1,7 @@
 #ifndef CLOTH_FLOW_SETUP_SOURCE_H
 #define CLOTH_FLOW_SETUP_SOURCE_H
 
+#include "cloth/base/memory.h"
 #include "cloth/element/cloths.h"
 #include "cloth/flow/state/tables.h"
 #include "cloth/mesh/blocks.h"
@@ -33,6 +34,17 @@ struct flow_varying {
     double force[3]; /* N, times the course */
 };
 
+/* Vertices that welds make one. Each of them is a name of it; the lowest, the root, stands for all:
+ * it has their masses and loads, and the row. The others have a mass of 0. */
+struct flow_welds {
+    uint32_t *root; /* by vertex: itself, or the root of its weld; NULL: there are no welds */
+    uint32_t n, (*name)[2]; /* root and another name: by root, then by name */
+};
+static inline uint32_t flow_root(const struct flow_welds *welds, uint32_t vertex)
+{
+    return welds->root ? welds->root[vertex] : vertex;
+}
+
 /* Particles by vertex. Arrays of n. */
 struct flow_particles {
     uint32_t n;
@@ -40,8 +52,10 @@ struct flow_particles {
     unsigned char *used, *free;             /* free: 0 where a pin holds */
     uint32_t *motion, *guide;               /* number from 1, 0: none; NULL: there are none */
     uint32_t n_pieces, *piece;              /* free ones: the same */
-    double *mass;                           /* kg */
-    phys_vec *load;                         /* N, gravity included; NULL: gravity alone */
+    struct flow_welds welds;
+    double *mass;       /* kg */
+    double *own, *drag; /* kg, of each name alone; kg/s; NULL: there are no welds */
+    phys_vec *load;     /* N, gravity included; NULL: gravity alone */
     uint32_t n_varying;
     struct flow_varying *varying; /* in the scene's order; then by place */
     double (*start)[6];           /* m, m/s; NULL: all start where the meshes have them */
@@ -63,6 +77,48 @@ int flow_starts_make(struct flow_particles *particles, uint32_t first,
  * that is about them; after weights. Local. */
 int flow_loads_make(struct flow_particles *particles, uint32_t first,
                     const struct model_cloth *cloth, struct cloth_error *error);
+
+/* A pair of vertices that the scene names. */
+struct flow_pair {
+    uint32_t vertex[2];           /* of all cloths */
+    uint32_t number, i;           /* among all that were listed; among those of its entry, */
+    const struct model_pairs *of; /* this */
+};
+/* Adds the pairs of an entry to a list of them. what: "a joint". Errors: CLOTH_E_INPUT for vertices
+ * outside their mesh and a vertex with itself; CLOTH_E_MEMORY. Local. */
+int flow_pairs_list(struct cloth_list *list, const struct model *model,
+                    const struct model_pairs *pairs, const char *what, struct cloth_error *error);
+/* That no pair is in the list twice, which is then in another order. Error: CLOTH_E_INPUT. Local.
+ */
+int flow_pairs_once(struct cloth_list *list, const struct model *model, const char *what,
+                    struct cloth_error *error);
+/* CLOTH_E_INPUT with a sentence: what is between the two, then `why`. */
+int flow_pair_fail(const struct model *model, const struct flow_pair *pair, const char *what,
+                   const char *why, struct cloth_error *error);
+
+/* Finds the vertices that are one. n, used: of all cloths. Errors: CLOTH_E_INPUT as of
+ * flow_pairs_list, for pairs that stand twice, vertices that nothing uses, and welds that make two
+ * corners of a triangle or two ends of an edge one; CLOTH_E_MEMORY. Local. */
+int flow_welds_make(struct flow_welds *welds, const struct model *model, uint32_t n,
+                    const unsigned char *used, struct cloth_error *error);
+void flow_welds_free(struct flow_welds *welds);
+/* That welds leave hinges their four corners. Error: CLOTH_E_INPUT. Local. */
+int flow_welds_check(const struct flow_welds *welds, const struct element_cloths *elements,
+                     struct cloth_error *error);
+/* Gives roots their start and drag, when masses and starts are there. Errors: CLOTH_E_INPUT for
+ * pairs that start farther from each other than their tolerance; CLOTH_E_MEMORY. Local. */
+int flow_welds_settle(struct flow_particles *particles, const struct model *model,
+                      struct cloth_error *error);
+
+/* The other names of the vertices in blocks, by place. */
+struct flow_names {
+    uint32_t n, (*name)[2]; /* place and vertex, ascending */
+};
+/* Gives the other names the places of their roots, and lists them. Error: CLOTH_E_MEMORY. Local. */
+int flow_names_make(struct flow_names *names, const struct flow_welds *welds,
+                    struct mesh_blocks *blocks, struct cloth_error *error);
+/* The first of them at or after a place. */
+uint32_t flow_names_from(const struct flow_names *names, uint32_t place);
 
 /* A part of the scene that picks vertices, and what becomes of each. */
 struct flow_picking {
@@ -96,6 +152,13 @@ struct flow_spring {
     double stiffness, damping, length; /* N/m, kg/s, m */
     unsigned char stretch;             /* counts for the largest stretch */
 };
+/* A spring that welds make parallel to another, of the same length at rest, by its number among all
+ * springs of the cloths: the first of them is all, the others are gone. */
+struct flow_merged {
+    uint64_t number;
+    double stiffness, damping;
+    bool gone;
+};
 struct flow_springs {
     const struct model *model;
     struct mesh_lattice *lattice; /* a cloth; none of one that is made of triangles */
@@ -103,14 +166,21 @@ struct flow_springs {
     const struct element_cloths *elements;
     uint32_t n_joints;
     struct flow_spring *joint; /* the scene's joints; NULL: there are none */
+    const struct flow_welds *welds;
+    size_t n_merged;
+    struct flow_merged *merged; /* by number; NULL: none */
 };
-/* The elements, whose links come after the springs of their cloth, must outlive them. Errors:
- * CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */
+/* Welds, and elements, whose links come after the springs of their cloth, must outlive them.
+ * Errors: CLOTH_E_INPUT as of mesh_lattice_build, with the place; CLOTH_E_MEMORY. Local. */
 int flow_springs_make(struct flow_springs *springs, const struct model *model,
-                      const struct element_cloths *elements, struct cloth_error *error);
+                      const struct flow_welds *welds, const struct element_cloths *elements,
+                      struct cloth_error *error);
 void flow_springs_each(const struct flow_springs *springs,
                        void (*visit)(void *to, const struct flow_spring *spring), void *to);
 void flow_springs_free(struct flow_springs *springs);
+/* Finds those that welds make parallel. n_vertices: of all cloths. Error: CLOTH_E_MEMORY. Local. */
+int flow_springs_merge(struct flow_springs *springs, uint32_t n_vertices,
+                       struct cloth_error *error);
 
 /* Adds the model's joints to the springs, which free them, when particles are there. Errors:
  * CLOTH_E_INPUT for two joints between the same vertices and one between a vertex and itself;
@@ -120,9 +190,6 @@ int flow_joints_make(struct flow_springs *springs, const struct flow_particles *
 /* Marks the vertices that joints use. used: by vertex of all cloths. Error: CLOTH_E_INPUT for one
  * outside its mesh. Local. */
 int flow_joints_use(const struct model *model, unsigned char *used, struct cloth_error *error);
-/* That all vertices of the pairs are in their meshes. what: "a joint". Error: CLOTH_E_INPUT. */
-int flow_pairs_check(const struct model *model, const struct model_pairs *pairs, const char *what,
-                     struct cloth_error *error);
 
 /* Who reads what of whom: neighbours of all blocks, block after block, as every rank knows them. */
 struct flow_neighbours {
@@ -146,10 +213,11 @@ enum {
     FLOW_RUN_COLUMNS = FLOW_COLUMN_ENERGY + 4
 };
 struct flow_watched {
-    uint32_t n, *place; /* ascending, each once */
-    uint32_t *first;    /* a probe, and one more: its entries */
-    uint32_t *entry;    /* where its place is in the list */
-    uint32_t *vertex;   /* an entry: its vertex, of all cloths */
+    uint32_t n, *place;   /* ascending, each once */
+    uint32_t *first;      /* a probe, and one more: its entries */
+    uint32_t *entry;      /* where its place is in the list */
+    uint32_t *vertex;     /* an entry: its vertex, of all cloths */
+    unsigned char *again; /* an entry: whether one before it, of its probe, is another name of it */
     size_t n_columns;
 };
 
@@ -161,7 +229,8 @@ struct flow_source {
     struct flow_particles particles;
     struct element_cloths elements;
     struct flow_springs springs;
-    struct mesh_blocks blocks;
+    struct mesh_blocks blocks; /* place: of other names, too */
+    struct flow_names names;
     uint32_t patches; /* of a block */
     uint32_t *rim;    /* by place: its number in the rim of its block */
     struct flow_neighbours neighbours;

@@ -61,9 +61,10 @@ static int make_cloth(struct flow_springs *springs, uint32_t c, struct cloth_err
 }
 
 int flow_springs_make(struct flow_springs *springs, const struct model *model,
-                      const struct element_cloths *elements, struct cloth_error *error)
+                      const struct flow_welds *welds, const struct element_cloths *elements,
+                      struct cloth_error *error)
 {
-    *springs = (struct flow_springs){.model = model, .elements = elements};
+    *springs = (struct flow_springs){.model = model, .welds = welds, .elements = elements};
     springs->lattice = cloth_alloc(model->n_cloths, sizeof *springs->lattice, error);
     springs->regions = cloth_alloc(model->n_cloths, sizeof *springs->regions, error);
     int code = springs->lattice && springs->regions ? CLOTH_OK : CLOTH_E_MEMORY;
@@ -160,8 +161,8 @@ static void each_link(const struct flow_springs *springs, uint32_t c, const stru
         link_cells(visitor, mesh);
 }
 
-void flow_springs_each(const struct flow_springs *springs,
-                       void (*visit)(void *to, const struct flow_spring *spring), void *to)
+static void each_of_cloths(const struct flow_springs *springs,
+                           void (*visit)(void *to, const struct flow_spring *spring), void *to)
 {
     const struct model *model = springs->model;
     struct visitor visitor = {.visit = visit, .to = to, .model = model};
@@ -171,6 +172,42 @@ void flow_springs_each(const struct flow_springs *springs,
         each_link(springs, c, &visitor);
         visitor.first += visitor.cloth->mesh.n_vertices;
     }
+}
+
+/* Goes through springs beside those that welds merged. */
+struct merger {
+    const struct flow_springs *springs;
+    void (*visit)(void *to, const struct flow_spring *spring);
+    void *to;
+    uint64_t number; /* of the next spring */
+    size_t next;     /* of the merged ones */
+};
+
+static void pass_merged(void *context, const struct flow_spring *s)
+{
+    struct merger *merger = context;
+    const struct flow_springs *springs = merger->springs;
+    const struct flow_merged *merged = springs->merged + merger->next;
+    const uint64_t number = merger->number++;
+    struct flow_spring sum = *s;
+    if (merger->next < springs->n_merged && merged->number == number) {
+        merger->next++;
+        if (merged->gone)
+            return;
+        sum.stiffness = merged->stiffness;
+        sum.damping = merged->damping;
+    }
+    merger->visit(merger->to, &sum);
+}
+
+void flow_springs_each(const struct flow_springs *springs,
+                       void (*visit)(void *to, const struct flow_spring *spring), void *to)
+{
+    struct merger merger = {.springs = springs, .visit = visit, .to = to};
+    if (springs->n_merged)
+        each_of_cloths(springs, pass_merged, &merger);
+    else
+        each_of_cloths(springs, visit, to);
     for (uint32_t j = 0; j < springs->n_joints; j++)
         visit(to, springs->joint + j);
 }
@@ -184,6 +221,7 @@ void flow_springs_free(struct flow_springs *springs)
     free(springs->lattice);
     free(springs->regions);
     free(springs->joint);
+    free(springs->merged);
     *springs = (struct flow_springs){0};
 }
 

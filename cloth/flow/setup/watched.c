@@ -83,7 +83,8 @@ static int sort(struct flow_watched *watched, const struct flow_source *source, 
     watched->place = cloth_alloc(n, sizeof *watched->place, error);
     watched->entry = cloth_alloc(n, sizeof *watched->entry, error);
     watched->vertex = cloth_alloc(n, sizeof *watched->vertex, error);
-    if (!watched->place || !watched->entry || !watched->vertex)
+    watched->again = cloth_alloc(n, 1, error);
+    if (!watched->place || !watched->entry || !watched->vertex || !watched->again)
         return CLOTH_E_MEMORY;
     for (size_t i = 0; i < n; i++)
         watched->place[i] = source->blocks.place[vertex[i]];
@@ -98,6 +99,22 @@ static int sort(struct flow_watched *watched, const struct flow_source *source, 
         watched->entry[i] = (uint32_t)(at - watched->place);
         watched->vertex[i] = vertex[i];
     }
+    return CLOTH_OK;
+}
+
+/* Marks entries whose vertex an earlier entry of their probe has by another name. */
+static int find_again(struct flow_watched *watched, uint32_t n_probes, struct cloth_error *error)
+{
+    uint32_t *last = cloth_alloc(watched->n, sizeof *last, error); /* probe, from 1 */
+    if (!last)
+        return CLOTH_E_MEMORY;
+    for (uint32_t p = 0; p < n_probes; p++)
+        for (uint32_t i = watched->first[p]; i < watched->first[p + 1]; i++) {
+            uint32_t *probe = last + watched->entry[i];
+            watched->again[i] = *probe == p + 1;
+            *probe = p + 1;
+        }
+    free(last);
     return CLOTH_OK;
 }
 
@@ -120,6 +137,8 @@ int flow_watched_make(struct flow_watched *watched, const struct flow_source *so
     int code = watched->first ? find_all(watched, source, &finder, error) : CLOTH_E_MEMORY;
     if (!code)
         code = sort(watched, source, finder.entries.n, finder.entries.items, error);
+    if (!code)
+        code = find_again(watched, model->n_probes, error);
     free(finder.entries.items);
     watched->n_columns = FLOW_RUN_COLUMNS;
     for (uint32_t p = 0; p < model->n_probes && !code; p++)
@@ -132,6 +151,7 @@ void flow_watched_free(struct flow_watched *watched)
     free(watched->place);
     free(watched->entry);
     free(watched->vertex);
+    free(watched->again);
     free(watched->first);
     *watched = (struct flow_watched){0};
 }

@@ -68,6 +68,7 @@ struct flow {
                              extents, shear; empty: none */
     struct flow_source source; /* until the tables are dealt */
     uint32_t *vertex;          /* by place; from then on */
+    struct flow_names names;   /* from then on */
     struct flow_rest rest;
     struct flow_watched watched;
     char *header; /* of the table of probes; NULL: none */

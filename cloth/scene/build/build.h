@@ -27,6 +27,8 @@ int scene_build_probes(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
 int scene_build_joints(struct model *model, const struct scene_tree *tree,
                        struct cloth_error *error);
+int scene_build_welds(struct model *model, const struct scene_tree *tree,
+                      struct cloth_error *error);
 
 /* The cloth, by number, that the key cloth of a map names; the only one where there is none. what:
  * whose key it is, in sentences: "a probe". */

@@ -83,3 +83,13 @@ int scene_build_joints(struct model *model, const struct scene_tree *tree,
                            scene_tree_item(tree, list, i), error);
     return code;
 }
+
+int scene_build_welds(struct model *model, const struct scene_tree *tree, struct cloth_error *error)
+{
+    const int list = scene_tree_get(tree, 1, "welds");
+    int code = CLOTH_OK;
+    for (size_t i = 0; !code && i < model->n_welds; i++)
+        code = build_pairs(&model->welds[i].pairs, "a weld", model, tree,
+                           scene_tree_item(tree, list, i), error);
+    return code;
+}

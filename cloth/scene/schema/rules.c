@@ -186,6 +186,17 @@ static const struct scene_rule end_keys[] = {
      ARRAY(struct model_end, vertices, n),
      .about = "several, each with its own of the other end"},
     {0}};
+static const struct scene_rule weld_keys[] = {
+    {"from", SCENE_MAP, .required = true, .inside = end_keys,
+     INTO(struct model_weld, pairs.end[0]), .about = "vertices of one side"},
+    {"to", SCENE_MAP, .required = true, .inside = end_keys,
+     INTO(struct model_weld, pairs.end[1]), .about = "as many of the other"},
+    {"tolerance", SCENE_NUMBER, "m", "1e-6", .range = SCENE_NOT_NEGATIVE,
+     INTO(struct model_weld, tolerance),
+     .about = "how far from each other the two of a pair may start"},
+    {0}};
+static const struct scene_rule weld = {
+    .type = SCENE_MAP, .inside = weld_keys, PLACE(struct model_weld, pairs.place)};
 static const struct scene_rule joint_keys[] = {
     {"from", SCENE_MAP, .required = true, .inside = end_keys,
      INTO(struct model_joint, pairs.end[0]), .about = "the vertices at one end"},
@@ -232,6 +243,8 @@ static const struct scene_rule scene_keys[] = {
      ARRAY(struct model, probes, n_probes), .about = "what probes.csv tells after each step"},
     {"joints", SCENE_LIST, .fallback = "[]", .inside = &joint,
      ARRAY(struct model, joints, n_joints), .about = "springs between any two vertices"},
+    {"welds", SCENE_LIST, .fallback = "[]", .inside = &weld, ARRAY(struct model, welds, n_welds),
+     .about = "vertices of any cloths that are one"},
     {"grain", SCENE_INTEGER, .fallback = "1000", .least = 1, INTO(struct model, grain),
      .about = "vertices a block"},
     {0}};

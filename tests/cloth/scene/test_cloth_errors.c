@@ -372,6 +372,25 @@ START_TEST(joints_that_cannot_be_made)
 }
 END_TEST
 
+#define WELD(text) "\ntime: {h", "\nwelds: [{" text "}]\ntime: {h"
+
+START_TEST(welds_that_cannot_be_made)
+{
+    EXPECT({WELD("from: {vertex: 1}"),
+            .error = ":12:9: welds[0].to is missing; a map of cloth, vertex, vertices is expected"},
+           {WELD("from: {vertex: 1}, to: {vertex: 12}"),
+            .error =
+                ":12:42: vertex 12 is outside the mesh of cloth 'sheet', which has 12 vertices; "
+                "0 to 11 are allowed"},
+           {WELD("from: {vertices: [1, 2]}, to: {vertex: 3}"),
+            .error = ":12:40: a weld has 2 vertices in from and 1 in to; as many are expected"},
+           {WELD("from: {vertex: 1, cloth: shet}, to: {vertex: 3}"),
+            .error = ":12:35: there is no cloth 'shet'; did you mean 'sheet'? Allowed: sheet"},
+           {WELD("from: {vertex: 1}, to: {vertex: 3}, tolerance: -1"),
+            .error = ":12:57: welds[0].tolerance is -1; a finite number >= 0 (m) is expected"});
+}
+END_TEST
+
 START_TEST(meshes_that_cannot_be_used)
 {
     struct model model;
@@ -415,6 +434,7 @@ int main(void)
     tcase_add_test(cases, pins_that_hold_to_nothing);
     tcase_add_test(cases, probes_that_tell_nothing);
     tcase_add_test(cases, joints_that_cannot_be_made);
+    tcase_add_test(cases, welds_that_cannot_be_made);
     tcase_add_test(cases, meshes_that_cannot_be_used);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

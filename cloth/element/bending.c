@@ -4,6 +4,7 @@
 #include "cloth/element/cloths.h"
 
 #include <math.h>
+#include <string.h>
 
 /* The material that says how a cloth bends, which is alike in all its regions; NULL: it does not.
  * Without a bending of its own a region has no rigidity. */
@@ -38,17 +39,102 @@ static int bend_rest(const struct element_cloths *cloths, uint32_t cloth, const 
     return code;
 }
 
-/* The rigidity across an edge, whose direction is the mean of what its triangles say. */
-static double rigidity_of(const struct element_cloths *cloths, const struct element *element,
-                          const struct model_material *material)
+/* y = b - a; returns y.z. */
+static double difference(const double *a, const double *b, const double *z, double y[3])
 {
-    const uint32_t *corner = element->corner, second[3] = {corner[0], corner[1], corner[3]};
+    double sum = 0;
+    for (int c = 0; c < 3; c++) {
+        y[c] = b[c] - a[c];
+        sum += y[c] * (z ? z[c] : y[c]);
+    }
+    return sum;
+}
+
+/* Lays the triangle b beside the triangle a (ends of the edge, then opposite), flat: where its
+ * opposite vertex comes to lie. */
+static void lay_beside(const double a[9], const double b[9], double x[3])
+{
+    double edge[3], arm[3], other[3], far[3], in = 0, out = 0;
+    const double square = difference(a, a + 3, NULL, edge);
+    const double foot = difference(a, a + 6, edge, arm) / square;
+    const double other_square = difference(b, b + 3, NULL, other);
+    const double other_foot = difference(b, b + 6, other, far) / other_square;
+    for (int c = 0; c < 3; c++) {
+        arm[c] -= foot * edge[c];
+        far[c] -= other_foot * other[c];
+        in += arm[c] * arm[c];
+        out += far[c] * far[c];
+    }
+    for (int c = 0; c < 3; c++)
+        x[c] = a[c] + other_foot * edge[c] - sqrt(out / in) * arm[c];
+}
+
+/* Across a seam: as the meshes lie where both have the edge at one place; else flat. */
+static int seam_rest(const struct element_cloths *cloths, const struct element_seam *seam,
+                     struct phys_bend_rest *rest)
+{
+    double x[2][12];
+    bool one = true, flat = false;
+    for (int k = 0; k < 2; k++) {
+        const struct element_side *side = seam->side + k;
+        for (int i = 0; i < 3; i++)
+            element_rest_position(cloths, side->cloth, side->corner[i], x[k] + 3 * i);
+        flat = flat || cloths->model->cloths[side->cloth].rest;
+    }
+    for (int i = 0; i < 6; i++)
+        one = one && x[0][i] - x[1][i] == 0;
+    memcpy(x[0] + 9, x[1] + 6, 3 * sizeof **x);
+    if (!one)
+        lay_beside(x[0], x[1], x[0] + 9);
+    const int code = phys_bend_rest(x[0], rest);
+    if (flat || !one)
+        rest->s = 0;
+    return code;
+}
+
+/* The rigidity across an edge whose direction is the mean of what its triangles say. */
+static double rigidity_of(const struct element_cloths *cloths, uint32_t cloth,
+                          const uint32_t corner[4], const struct model_material *material)
+{
+    const uint32_t second[3] = {corner[0], corner[1], corner[3]};
     double one[6], two[6];
-    element_rest_local(cloths, element->cloth, corner, one);
-    element_rest_local(cloths, element->cloth, second, two);
+    element_rest_local(cloths, cloth, corner, one);
+    element_rest_local(cloths, cloth, second, two);
     const double sign = one[2] * two[2] + one[3] * two[3] < 0 ? -1 : 1;
     const double direction[2] = {one[2] + sign * two[2], one[3] + sign * two[3]};
     return phys_bend_rigidity(material->rigidity[0], material->rigidity[1], direction);
+}
+
+/* What a hinge is, of one energy: across a seam the mean of both sides, each by its own material
+ * and threads. */
+struct bend {
+    struct phys_bend_rest rest;
+    double stiffness, damping; /* N m, N m s */
+};
+
+static void bend_make(const struct element_cloths *cloths, const struct element *element,
+                      int energy, struct bend *bend)
+{
+    const struct model *model = cloths->model;
+    const int sides = element->seam ? 2 : 1;
+    bend->stiffness = bend->damping = 0;
+    if (element->seam)
+        seam_rest(cloths, element->seam, &bend->rest);
+    else
+        bend_rest(cloths, element->cloth, element->corner, &bend->rest);
+    for (int k = 0; k < sides; k++) {
+        const struct element_side *side = element->seam ? element->seam->side + k : NULL;
+        const uint32_t cloth = side ? side->cloth : element->cloth;
+        const uint32_t own[4] = {side ? side->corner[0] : element->corner[0],
+                                 side ? side->corner[1] : element->corner[1],
+                                 side ? side->corner[2] : element->corner[2],
+                                 side ? side->corner[2] : element->corner[3]};
+        const struct model_material *material =
+            model->materials + model_material_of(model->cloths + cloth, 2, own);
+        const double k_of = rigidity_of(cloths, cloth, own, material) * bend->rest.shape / sides;
+        bend->stiffness += (int)material->bending == energy ? k_of : 0;
+        bend->damping += model_damping_bending(material) * k_of;
+    }
 }
 
 static int bending_check(const struct element_cloths *cloths, uint32_t c, struct cloth_error *error)
@@ -79,14 +165,11 @@ static bool hinges_has(const struct model *model, const struct model_cloth *clot
 static void hinges_pack(const struct element_cloths *cloths, const struct element *element,
                         const struct element_list *list, uint32_t e)
 {
-    const struct model_material *material =
-        cloths->model->materials + element_material(cloths, element, 2);
-    struct phys_bend_rest rest;
-    bend_rest(cloths, element->cloth, element->corner, &rest);
-    const double k = rigidity_of(cloths, element, material) * rest.shape;
-    list->number[0][e] = material->bending == MODEL_HINGES ? k : 0;
-    list->number[1][e] = model_damping_bending(material) * k;
-    list->number[2][e] = rest.s;
+    struct bend bend;
+    bend_make(cloths, element, MODEL_HINGES, &bend);
+    list->number[0][e] = bend.stiffness;
+    list->number[1][e] = bend.damping;
+    list->number[2][e] = bend.rest.s;
 }
 
 static struct phys_hinges hinges_of(const struct element_list *list)
@@ -170,16 +253,39 @@ static int quadratic_check(const struct element_cloths *cloths, uint32_t c,
     return code;
 }
 
+int element_seams_check(const struct element_cloths *cloths, struct cloth_error *error)
+{
+    const double flat = 1e-6;
+    const struct model *model = cloths->model;
+    int code = CLOTH_OK;
+    for (uint32_t s = 0; s < cloths->n_seams && !code; s++) {
+        const struct element_side *one = cloths->seam[s].side, *two = one + 1;
+        const struct model_cloth *cloth = model->cloths + one->cloth;
+        struct phys_bend_rest rest;
+        const bool failed = seam_rest(cloths, cloths->seam + s, &rest);
+        const bool bent = quadratic_has(model, cloth) &&
+                          quadratic_has(model, model->cloths + two->cloth) &&
+                          !(fabs(rest.s) <= flat);
+        if (failed || bent)
+            code = model_fail(cloth->mesh_place, error,
+                              "mesh: where welds bring cloth '%.60s' to cloth '%.60s', at the edge "
+                              "between vertices %u and %u (counted from 0), %s",
+                              cloth->name, model->cloths[two->cloth].name, one->corner[0],
+                              one->corner[1],
+                              failed ? "a triangle has no area at rest; an area above 0 is expected"
+                                     : "they are not flat at rest, as bending: {model: quadratic} "
+                                       "expects; take model: hinge, or rest: uv");
+    }
+    return code;
+}
+
 static void quadratic_pack(const struct element_cloths *cloths, const struct element *element,
                            const struct element_list *list, uint32_t e)
 {
-    const struct model_material *material =
-        cloths->model->materials + element_material(cloths, element, 2);
-    struct phys_bend_rest rest;
-    bend_rest(cloths, element->cloth, element->corner, &rest);
-    const double k = rigidity_of(cloths, element, material) * rest.shape;
+    struct bend bend;
+    bend_make(cloths, element, MODEL_QUADRATIC, &bend);
     for (int i = 0; i < 4; i++)
-        list->vector[e][i] = sqrt(k) * rest.weight[i];
+        list->vector[e][i] = sqrt(bend.stiffness) * bend.rest.weight[i];
 }
 
 static struct phys_folds folds_of(const struct element_list *list)

@@ -126,6 +126,29 @@ static void walk_edges(struct walk *walk)
     }
 }
 
+/* Across seams, both of whose cloths have elements of the kind. */
+static void walk_seams(struct walk *walk)
+{
+    const struct element_cloths *cloths = walk->cloths;
+    const struct element_kind *kind = element_kinds[walk->element.kind];
+    for (uint32_t s = 0; s < cloths->n_seams && kind->part == ELEMENT_HINGES; s++) {
+        const struct element_seam *seam = cloths->seam + s;
+        const struct element_side *one = seam->side, *two = seam->side + 1;
+        const uint32_t other = two->first - one->first + two->corner[2];
+        if (!kind->has(cloths->model, cloths->model->cloths + one->cloth) ||
+            !kind->has(cloths->model, cloths->model->cloths + two->cloth))
+            continue;
+        const struct element element = {
+            .cloth = one->cloth,
+            .first = one->first,
+            .corner = {one->corner[0], one->corner[1], one->corner[2], other},
+            .corners = 4,
+            .kind = walk->element.kind,
+            .seam = seam};
+        walk->visit(walk->to, &element);
+    }
+}
+
 static void (*const walks[ELEMENT_PARTS])(struct walk *) = {
     [ELEMENT_TRIANGLES] = walk_triangles,
     [ELEMENT_FACES] = walk_faces,
@@ -146,6 +169,8 @@ void element_each(const struct element_cloths *cloths,
                 walks[element_kinds[kind]->part](&walk);
             first += walk.cloth->mesh.n_vertices;
         }
+        walk.element.kind = kind;
+        walk_seams(&walk);
     }
 }
 
@@ -212,5 +237,6 @@ void element_cloths_free(struct element_cloths *cloths)
         mesh_edges_free(cloths->edges + c);
     free(cloths->edges);
     free(cloths->axis);
+    free(cloths->seam);
     *cloths = (struct element_cloths){0};
 }

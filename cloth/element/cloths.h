@@ -7,16 +7,30 @@
  * cloth, in the order of their meshes. Nothing of an element is stored but the edges of its mesh:
  * rest values are worked out when a list is made. */
 
+/* An edge that welds make one of two edges at borders: what each side has there. A hinge across it
+ * has the first side's ends, then the vertices opposite. */
+struct element_side {
+    uint32_t cloth, first; /* its number; its first vertex, of all cloths */
+    uint32_t corner[3];    /* of the cloth's mesh: ends, in the order of both, and opposite */
+};
+struct element_seam {
+    struct element_side side[2];
+};
+
 struct element {
     uint32_t cloth, first;                     /* its number; its first vertex, of all cloths */
     uint32_t corner[ELEMENT_CORNERS], corners; /* of the cloth's mesh; how many */
     uint32_t kind;                             /* of element_kinds */
+    const struct element_seam *seam; /* NULL; else across this: the last corner is the other side's,
+                                        so numbered that first + corner is its vertex */
 };
 
 struct element_cloths {
     const struct model *model;
     struct mesh_edges *edges; /* a cloth; none where it has no elements */
     double (*axis)[2][3];     /* a cloth: directions of warp and weft where its mesh has no uv */
+    uint32_t n_seams;
+    struct element_seam *seam; /* of cloths with hinges; added by who knows of welds */
 };
 
 /* Finds the edges, and what is wrong with rest shapes. Errors: CLOTH_E_INPUT for triangles without
@@ -24,8 +38,10 @@ struct element_cloths {
 int element_cloths_make(struct element_cloths *cloths, const struct model *model,
                         struct cloth_error *error);
 void element_cloths_free(struct element_cloths *cloths);
+/* What is wrong with the rest shapes across seams, as of element_cloths_make. Local. */
+int element_seams_check(const struct element_cloths *cloths, struct cloth_error *error);
 
-/* Shows every element of all cloths. */
+/* Shows every element of all cloths; of each kind, those across seams come last. */
 void element_each(const struct element_cloths *cloths,
                   void (*visit)(void *to, const struct element *element), void *to);
 

@@ -19,6 +19,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/setup/picks.c \
     cloth/flow/setup/pieces.c \
     cloth/flow/setup/setup.h \
+    cloth/flow/setup/seams.c \
     cloth/flow/setup/sides.c \
     cloth/flow/setup/source.c \
     cloth/flow/setup/source.h \

@@ -417,6 +417,15 @@ double model_course_at(const struct model *model, uint32_t course, double time);
 double model_course_most(const struct model *model, uint32_t course);
 double model_course_end(const struct model *model, uint32_t course);
 
+/* The first vertex of a cloth, of those of all cloths. */
+static inline uint32_t model_first(const struct model *model, uint32_t cloth)
+{
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < cloth; c++)
+        first += model->cloths[c].mesh.n_vertices;
+    return first;
+}
+
 /* Frees what the model owns and clears it. */
 void model_free(struct model *model);
 

@@ -69,6 +69,19 @@ solver: {format: half}'
 ok "by velocity Verlet" welded "$material" 'integrator: verlet'
 ok "two halves of triangles in the wind" welded "model: triangles, $material" 'air: {wind: [1, 2, 3]}'
 
+ok "two halves of triangles with hinges, damped" welded "model: triangles, bending: {rigidity: 1.0e-3}, $material" ''
+ok "with the quadratic energy" welded "model: triangles, bending: {model: quadratic, rigidity: 1.0e-3}, $material" ''
+ok "two halves of springs with hinges" welded "bending: {rigidity: [1.0e-3, 2.0e-3]}, $material" ''
+# The lower half's mesh stands upright, 3 m away, and is turned into place at the start: at rest the seam is flat.
+turned() {
+    whole "model: triangles, bending: {rigidity: 1.0e-3}, $material" 'solver: {stop: {relative: 1.0e-12}}' > whole.yaml
+    halves "model: triangles, bending: {rigidity: 1.0e-3}, $material" 'solver: {stop: {relative: 1.0e-12}}' |
+        sed "s/^    transform: .*/    transform: {rotate: [0.5, 0.5, 0, 0], translate: [0, 0, 3]}\n    start: [{box: $all, about: [0, 0, 3], rotate: [0.5, -0.5, 0, 0], translate: [0, 0, -2.75]}]/" > halves.yaml
+    run whole.yaml && high=$(last a.76.y) && run halves.yaml && below "lower edge, m" "$(less "$high" "$(last b.40.y)" | sed s/^-//)" 1e-9 &&
+        run halves.yaml --set materials.m.bending.rigidity=0 && ! below "without bending, m" "$(less "$high" "$(last b.40.y)" | sed s/^-//)" 1e-7
+}
+ok "panels that lie apart at rest are flat across their seam" turned
+
 # ---- Frames and hash name every vertex: those of a weld are at one place ----
 frames() {
     halves "$material" '' > halves.yaml
@@ -137,6 +150,14 @@ END
 }
 ok "both ends of a chain are one: a ring stays round" tube
 
+once() {
+    run tube.yaml --set gravity='[0, -9.81, 0]' --set 'cloths[0].pins=[{vertices: [0]}]' --set 'probes=[{name: p, vertices: [0, 4], values: [reaction, total]}]' || return 1
+    # shellcheck disable=SC2046 # numbers
+    set -- $(last p.0.ry p.4.ry p.total.ry)
+    echo "$@" && test "$1" = "$2" && test "$1" = "$3"
+}
+ok "a total counts a vertex with two names once" once
+
 # ---- What is refused once the meshes are there ----
 refused() { # ERROR --set ...
     error=$1
@@ -156,6 +177,19 @@ ok "pins that do not hold alike" refused "vertex 1 of cloth 'c' is held by two p
     --set 'cloths[0].pins=[{vertices: [0], motion: {times: [0, 1], translate: [[0, 0, 0], [1, 0, 0]]}}]' --set 'cloths[2].pins=[{vertices: [1]}]'
 ok "a vertex that nothing uses" refused "one of which no face, edge or joint uses" --set 'cloths[2].mesh.inline={vertices: [[0, 0, 0], [0, 0, 1], [1, 1, 1]], edges: [[1, 2]]}' \
     --set 'welds[1].to.vertices=[0]'
+folded() { # a square of two triangles, whose other corners become one
+    cat > folded.yaml << 'END'
+schema: 1
+cloths:
+  - {mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]], triangles: [[0, 1, 2], [1, 3, 2]]}}, material: m}
+welds: [{from: {vertex: 0}, to: {vertex: 3}, tolerance: 9}]
+materials: {m: {model: triangles, density: 1, stretch: 1, bending: {rigidity: 1}}}
+time: {h: 0.01, end: 0.01}
+END
+    limited "$DUITE_CLOTH" folded.yaml --quiet > said 2>&1
+    test $? -eq 2 && cat said && grep -qF "welds make vertices 0 and 3 of cloth 'cloth1' one, which a fold joins; it needs them apart" said
+}
+ok "both vertices opposite an edge that bends" folded
 ok "a joint between names of one vertex" refused "a joint is between vertex 0 of cloth 'a' and vertex 1 of cloth 'c', which welds make one" \
     --set 'joints=[{from: {cloth: a, vertex: 0}, to: {cloth: c, vertex: 1}, stiffness: 1}]'
 ok "two corners of a triangle" refused "welds make vertices 0 and 2 of cloth 'a' one, which a triangle joins; it needs them apart" \

@@ -72,6 +72,57 @@ static void collect(void *to, const struct element *element)
             source->member[(*list_of(source, block[i], element->kind))++] = *element;
 }
 
+/* Roots of the ends of a hinge's edge, the lower one above. */
+static uint64_t edge_of(const struct flow_welds *welds, const struct element *element)
+{
+    const uint64_t a = flow_root(welds, element->first + element->corner[0]);
+    const uint64_t b = flow_root(welds, element->first + element->corner[1]);
+    return a < b ? a << 32 | b : b << 32 | a;
+}
+
+struct ordered {
+    uint64_t edge;
+    size_t number;
+    struct element element;
+};
+
+static int compare_ordered(const void *va, const void *vb)
+{
+    const struct ordered *a = va, *b = vb;
+    const int order = (a->edge > b->edge) - (a->edge < b->edge);
+    return order ? order : (a->number > b->number) - (a->number < b->number);
+}
+
+/* Hinges come in the order of their edges, as in one mesh: those across seams come last till then.
+ */
+static int order_hinges(const struct flow_source *source, size_t n, struct element *element,
+                        struct cloth_error *error)
+{
+    struct ordered *ordered = cloth_alloc(n, sizeof *ordered, error);
+    if (!ordered)
+        return CLOTH_E_MEMORY;
+    for (size_t i = 0; i < n; i++)
+        ordered[i] =
+            (struct ordered){edge_of(&source->particles.welds, element + i), i, element[i]};
+    qsort(ordered, n, sizeof *ordered, compare_ordered);
+    for (size_t i = 0; i < n; i++)
+        element[i] = ordered[i].element;
+    free(ordered);
+    return CLOTH_OK;
+}
+
+static int order_all(const struct flow_source *source, uint32_t from, uint32_t to,
+                     struct cloth_error *error)
+{
+    int code = CLOTH_OK;
+    for (uint32_t b = from; b < to && source->elements.n_seams && !code; b++)
+        for (uint32_t kind = 0; kind < ELEMENT_KINDS && !code; kind++)
+            if (element_kinds[kind]->part == ELEMENT_HINGES)
+                code = order_hinges(source, source->shape[b].n_elements[kind],
+                                    source->member + *list_of(source, b, kind), error);
+    return code;
+}
+
 int flow_source_collect(struct flow_source *source, uint32_t from, uint32_t to,
                         struct cloth_error *error)
 {
@@ -94,7 +145,7 @@ int flow_source_collect(struct flow_source *source, uint32_t from, uint32_t to,
     for (size_t i = lists; i > 0; i--) /* each was moved on to the next one's */
         source->member_start[i] = source->member_start[i - 1];
     source->member_start[0] = 0;
-    return CLOTH_OK;
+    return order_all(source, from, to, error);
 }
 
 /* ---- The table ---- */

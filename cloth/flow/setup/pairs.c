@@ -6,14 +6,6 @@
 
 #include <stdlib.h>
 
-static uint32_t first_of(const struct model *model, uint32_t cloth)
-{
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < cloth; c++)
-        first += model->cloths[c].mesh.n_vertices;
-    return first;
-}
-
 int flow_pair_fail(const struct model *model, const struct flow_pair *pair, const char *what,
                    const char *why, struct cloth_error *error)
 {
@@ -39,7 +31,7 @@ int flow_pairs_list(struct cloth_list *list, const struct model *model,
                 return flow_no_vertex(cloth, what, pairs->end[end].vertices[i], pairs->place,
                                       error);
             pair->vertex[end] =
-                first_of(model, pairs->end[end].cloth) + pairs->end[end].vertices[i];
+                model_first(model, pairs->end[end].cloth) + pairs->end[end].vertices[i];
         }
         if (pair->vertex[0] == pair->vertex[1])
             return flow_pair_fail(model, pair, what, "itself; two vertices are expected", error);

@@ -102,6 +102,10 @@ int flow_pair_fail(const struct model *model, const struct flow_pair *pair, cons
 int flow_welds_make(struct flow_welds *welds, const struct model *model, uint32_t n,
                     const unsigned char *used, struct cloth_error *error);
 void flow_welds_free(struct flow_welds *welds);
+/* Adds the seams of cloths with hinges. Errors: CLOTH_E_INPUT as of element_seams_check;
+ * CLOTH_E_MEMORY. Local. */
+int flow_seams_make(struct element_cloths *elements, const struct flow_welds *welds,
+                    struct cloth_error *error);
 /* That welds leave hinges their four corners. Error: CLOTH_E_INPUT. Local. */
 int flow_welds_check(const struct flow_welds *welds, const struct element_cloths *elements,
                      struct cloth_error *error);

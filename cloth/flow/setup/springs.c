@@ -200,6 +200,19 @@ static void pass_merged(void *context, const struct flow_spring *s)
     merger->visit(merger->to, &sum);
 }
 
+/* What hinges across seams join. */
+static void each_seam(const struct flow_springs *springs,
+                      void (*visit)(void *to, const struct flow_spring *spring), void *to)
+{
+    for (uint32_t s = 0; s < springs->elements->n_seams; s++) {
+        const struct element_side *side = springs->elements->seam[s].side;
+        const uint32_t a = side[0].first + side[0].corner[2];
+        const uint32_t b = side[1].first + side[1].corner[2];
+        const struct flow_spring link = {.a = a < b ? a : b, .b = a < b ? b : a, .length = 1};
+        visit(to, &link);
+    }
+}
+
 void flow_springs_each(const struct flow_springs *springs,
                        void (*visit)(void *to, const struct flow_spring *spring), void *to)
 {
@@ -208,6 +221,7 @@ void flow_springs_each(const struct flow_springs *springs,
         each_of_cloths(springs, pass_merged, &merger);
     else
         each_of_cloths(springs, visit, to);
+    each_seam(springs, visit, to);
     for (uint32_t j = 0; j < springs->n_joints; j++)
         visit(to, springs->joint + j);
 }

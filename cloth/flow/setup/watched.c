@@ -23,14 +23,6 @@ static void find(void *to, uint32_t vertex)
         *entry = finder->first + vertex;
 }
 
-static uint32_t first_of(const struct model *model, uint32_t cloth)
-{
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < cloth; c++)
-        first += model->cloths[c].mesh.n_vertices;
-    return first;
-}
-
 static int check_used(const struct flow_source *source, const struct model_probe *probe,
                       const struct finder *finder, size_t from, struct cloth_error *error)
 {
@@ -51,7 +43,7 @@ static int find_all(struct flow_watched *watched, const struct flow_source *sour
     const struct model *model = source->model;
     for (uint32_t p = 0; p < model->n_probes; p++) {
         const struct model_probe *probe = model->probes + p;
-        finder->first = first_of(model, probe->cloth);
+        finder->first = model_first(model, probe->cloth);
         const struct flow_picking picking = {.pick = &probe->pick,
                                              .cloth = model->cloths + probe->cloth,
                                              .used = source->particles.used + finder->first,
@@ -168,7 +160,7 @@ static void print_probe(FILE *file, const struct flow_watched *watched, const st
                         uint32_t p)
 {
     const struct model_probe *probe = model->probes + p;
-    const uint32_t first = first_of(model, probe->cloth);
+    const uint32_t first = model_first(model, probe->cloth);
     char before[200];
     for (uint32_t i = watched->first[p]; i < watched->first[p + 1]; i++) {
         const struct {

@@ -1,0 +1,121 @@
+/* Where welds bring the borders of two cloths together, or two parts of the border of one, the edge
+ * that both share is a hinge as inner edges are. */
+#include "cloth/flow/setup/source.h"
+
+#include <stdlib.h>
+
+/* An edge at the border of its mesh, both of whose ends are welded. */
+struct border {
+    uint32_t root[2]; /* ascending */
+    uint32_t cloth, edge;
+    uint32_t corner[3]; /* of the mesh: ends, in the order of their roots; the vertex opposite */
+};
+
+static int compare_u32(uint32_t a, uint32_t b)
+{
+    return (a > b) - (a < b);
+}
+
+static int compare_borders(const void *va, const void *vb)
+{
+    const struct border *a = va, *b = vb;
+    int order = compare_u32(a->root[0], b->root[0]);
+    if (!order)
+        order = compare_u32(a->root[1], b->root[1]);
+    if (!order)
+        order = compare_u32(a->cloth, b->cloth);
+    return order ? order : compare_u32(a->edge, b->edge);
+}
+
+/* Whether a vertex has several names. */
+static bool is_welded(const struct flow_welds *welds, uint32_t root)
+{
+    uint32_t low = 0, high = welds->n;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (welds->name[middle][0] < root)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < welds->n && welds->name[low][0] == root;
+}
+
+/* Those of a cloth, the first vertex of which is `first`. */
+static int find_borders(struct cloth_list *list, const struct element_cloths *elements,
+                        const struct flow_welds *welds, uint32_t cloth, uint32_t first,
+                        struct cloth_error *error)
+{
+    const struct mesh_edges *edges = elements->edges + cloth;
+    for (uint32_t e = 0; e < edges->n; e++) {
+        const struct mesh_edge *edge = edges->edge + e;
+        const uint32_t a = welds->root[first + edge->a], b = welds->root[first + edge->b];
+        const bool turned = b < a;
+        if (edge->opposite[0] == UINT32_MAX || edge->opposite[1] != UINT32_MAX ||
+            !is_welded(welds, a) || !is_welded(welds, b))
+            continue;
+        struct border *border = cloth_list_add(list, sizeof *border, 1, error);
+        if (!border)
+            return CLOTH_E_MEMORY;
+        *border = (struct border){
+            .root = {turned ? b : a, turned ? a : b},
+            .cloth = cloth,
+            .edge = e,
+            .corner = {turned ? edge->b : edge->a, turned ? edge->a : edge->b, edge->opposite[0]}};
+    }
+    return CLOTH_OK;
+}
+
+static bool is_shared(const struct border *a, const struct border *b)
+{
+    return a->root[0] == b->root[0] && a->root[1] == b->root[1];
+}
+
+static void add_seam(struct element_cloths *elements, const struct flow_welds *welds,
+                     const struct border *border)
+{
+    struct element_seam *seam = elements->seam + elements->n_seams;
+    uint32_t opposite[2];
+    for (int k = 0; k < 2; k++) {
+        seam->side[k].cloth = border[k].cloth;
+        for (int i = 0; i < 3; i++)
+            seam->side[k].corner[i] = border[k].corner[i];
+        seam->side[k].first = model_first(elements->model, border[k].cloth);
+        opposite[k] = welds->root[seam->side[k].first + border[k].corner[2]];
+    }
+    elements->n_seams += opposite[0] != opposite[1]; /* else one lies on the other */
+}
+
+static int make_seams(struct element_cloths *elements, const struct flow_welds *welds,
+                      struct cloth_list *list, struct cloth_error *error)
+{
+    const struct border *border = list->items;
+    if (!list->n)
+        return CLOTH_OK;
+    qsort(list->items, list->n, sizeof *border, compare_borders);
+    elements->seam = cloth_alloc(list->n, sizeof *elements->seam, error);
+    if (!elements->seam)
+        return CLOTH_E_MEMORY;
+    for (size_t i = 0, end; i < list->n; i = end) {
+        for (end = i + 1; end < list->n && is_shared(border + i, border + end);)
+            end++;
+        if (end == i + 2)
+            add_seam(elements, welds, border + i);
+    }
+    return element_seams_check(elements, error);
+}
+
+int flow_seams_make(struct element_cloths *elements, const struct flow_welds *welds,
+                    struct cloth_error *error)
+{
+    const struct model *model = elements->model;
+    struct cloth_list list = {0};
+    int code = CLOTH_OK;
+    for (uint32_t c = 0; c < model->n_cloths && welds->n && !code; c++)
+        if (element_parts(model, model->cloths + c) & 1u << ELEMENT_HINGES)
+            code = find_borders(&list, elements, welds, c, model_first(model, c), error);
+    if (!code)
+        code = make_seams(elements, welds, &list, error);
+    free(list.items);
+    return code;
+}

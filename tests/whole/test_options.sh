@@ -176,6 +176,13 @@ ok "DUITE_MAPPING of no name on rank 1 alone" on_one_rank
 
 awk '/^```yaml/ { inside = 1; next } /^```/ && inside { exit } inside' "$top/docs/scene.md" > example.yaml
 ok "the example of docs/scene.md runs" run example.yaml --end 0.003
+documented() { # every key of --keys is a word of docs/scene.md
+    run --keys | grep -v '^ ' | sed 's/: .*//; s/.*\.//; s/\[\]//g' | sort -u > keys
+    tr -c 'A-Za-z0-9_' '\n' < "$top/docs/scene.md" | sort -u | comm -13 - keys > absent
+    cat absent
+    test "$(wc -l < keys)" -ge 100 && test ! -s absent
+}
+ok "docs/scene.md has every key" documented
 
 # ---- Ends
 

@@ -5,7 +5,7 @@
 #include "runtime/comm/comm.h"
 #include "runtime/map/map.h"
 #include "runtime/plan/record.h"
-#include "runtime/task/task.h"
+#include "runtime/task/body.h"
 #include "runtime/trace/trace.h"
 #include "runtime/workers/workers.h"
 

@@ -8,7 +8,7 @@
 #include "runtime/check/region.h"
 #include "runtime/data/law.h"
 #include "runtime/data/sum.h"
-#include "runtime/task/task.h"
+#include "runtime/task/body.h"
 
 #include <pthread.h>
 #include <setjmp.h>

@@ -60,7 +60,7 @@ static bool group_is_quiet(struct comm_group *group)
     return true;
 }
 
-/* Frees those that are closed and quiet. */
+/* Frees the closed groups whose memory MPI has done with. */
 static void channels_sweep(struct comm *comm)
 {
     struct comm_group **link = &comm->channels.closed;
@@ -125,7 +125,7 @@ static struct comm_group *group_new(struct comm *comm, struct plan_channels *cha
     return NULL;
 }
 
-/* A plan is let go: what was posted for another round will not come. */
+/* A plan is freed: no message comes for the receives that were posted for another round. */
 static void group_close(struct plan_channels *channels)
 {
     struct comm_group *group = channels->own, **link;
@@ -192,8 +192,8 @@ int comm_channels_open(struct comm *comm, struct plan_channels *channels)
     return code;
 }
 
-/* Under the lock: of the plans that the program does not hold some are open, or some of their
- * messages are still sent. */
+/* Under the lock. Whether a plan that the program no longer holds has open channels, or messages
+ * that are still being sent. */
 static bool channels_linger(struct comm *comm)
 {
     size_t open = 0;
@@ -234,7 +234,7 @@ static void node_push(struct task **list, struct task *node)
     *list = node;
 }
 
-/* Once communication is broken messages end as if they had been sent. */
+/* Once communication is broken, a message ends as if it had been sent. */
 static void channel_send(struct comm *comm, struct task *node, struct channel_side *side,
                          struct task **over)
 {
@@ -295,7 +295,7 @@ static void nodes_start(struct comm *comm, struct task *nodes, struct task **ove
     }
 }
 
-/* What is too long for its buffer was sent by another graph. */
+/* A message that is too long for its buffer comes from another graph. */
 static bool channel_fits(struct comm *comm, int mpi)
 {
     if (mpi == MPI_SUCCESS)

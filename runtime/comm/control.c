@@ -66,7 +66,7 @@ bool comm_control_send(struct comm *comm, int to, struct data_packet *packet)
     return false;
 }
 
-/* Frees what is sent. True: all is. */
+/* Frees the packets that MPI has sent. True: none is left. */
 static bool control_sent(struct comm *comm)
 {
     struct comm_requests *sends = &comm->control.sends;
@@ -126,7 +126,7 @@ bool comm_is_cut(struct comm *comm)
     return comm_is_lost(comm);
 }
 
-/* A send that fails here is a failure of MPI: there is nobody left to tell. */
+/* A send that fails here is not reported: MPI itself failed, and no rank can be reached. */
 static void abort_send_all(struct comm *comm, struct data_packet *packet, enum comm_kind kind)
 {
     packet->kind = kind;
@@ -137,7 +137,8 @@ static void abort_send_all(struct comm *comm, struct data_packet *packet, enum c
             control_isend(comm, to, packet, true);
 }
 
-/* Once each: that communication broke; and that a rank is lost, if it broke for another reason. */
+/* Reports two things, each once: that communication broke; and that a rank is lost, if it broke for
+ * another reason. */
 static void abort_send(struct comm *comm)
 {
     struct comm_control *control = &comm->control;
@@ -257,7 +258,8 @@ void comm_return_request(struct comm *comm, const struct comm_requester *request
 
 /* ---- The end ---- */
 
-/* Any rank may request tasks of any other; checks go along the tree. */
+/* Whether the rank gets a last message of this one, and this one of it: both may send one another
+ * control messages. Any rank may request tasks of any other; checks go along the tree. */
 static bool last_is_for(const struct comm *comm, int rank)
 {
     return rank != comm->rank && (comm->may_request || comm_check_joins(comm->rank, rank));

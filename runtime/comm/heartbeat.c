@@ -1,5 +1,5 @@
-/* One heartbeat is on its way at a time: a rank whose neighbour does not take it sends no more. The
- * last one of all says so, and nothing follows it. */
+/* At most one heartbeat to the next rank is on its way: while that rank does not receive it, no
+ * other is sent. The last heartbeat says that it is the last, and nothing follows it. */
 #include "runtime/base/clock.h"
 #include "runtime/comm/internal.h"
 
@@ -25,7 +25,7 @@ static void heartbeat_lost(struct comm *comm)
     comm_broke(comm, DUITE_E_LOST, message);
 }
 
-/* Ready for one more. */
+/* Posts the receive of the next heartbeat. */
 static bool heartbeat_expect(struct comm *comm)
 {
     struct comm_heartbeat *heartbeat = &comm->heartbeat;
@@ -34,7 +34,7 @@ static bool heartbeat_expect(struct comm *comm)
     return comm_mpi_ok(comm, mpi, "MPI_Irecv of a heartbeat");
 }
 
-/* Whether any was heard since the last time. */
+/* Whether a heartbeat came since the last call; once the last one came, always. */
 static bool heartbeat_hear(struct comm *comm)
 {
     struct comm_heartbeat *heartbeat = &comm->heartbeat;
@@ -53,7 +53,7 @@ static bool heartbeat_hear(struct comm *comm)
     return any;
 }
 
-/* Unless the one before is still on its way. */
+/* Sends a heartbeat, unless the one before is still on its way. */
 static void heartbeat_send(struct comm *comm, char which)
 {
     struct comm_heartbeat *heartbeat = &comm->heartbeat;
@@ -67,7 +67,7 @@ static void heartbeat_send(struct comm *comm, char which)
         heartbeat->last_sent = which == LAST_HEARTBEAT;
 }
 
-/* Not while somebody polls. */
+/* A look of the monitor. False: a worker polls, and the look is made again soon. */
 static bool heartbeat_look(void *context)
 {
     struct comm *comm = context;
@@ -112,8 +112,9 @@ void comm_heartbeat_open(struct comm *comm, double seconds, const char *host)
 
 /* ---- The end ---- */
 
-/* Sends its last heartbeat and hears that of the rank before, which may take long, if that one's
- * bodies do. A gap between two looks is one in which this process was stopped. */
+/* Sends the last heartbeat and awaits that of the rank before, which comes when the bodies of that
+ * rank are over. In a long gap between two looks this process itself was stopped: such a gap is no
+ * silence. */
 static void heartbeat_take_leave(struct comm *comm)
 {
     struct comm_heartbeat *heartbeat = &comm->heartbeat;

@@ -1,7 +1,7 @@
 #ifndef DUITE_TASK_INTERNAL_H
 #define DUITE_TASK_INTERNAL_H
 
-#include "runtime/task/task.h"
+#include "runtime/task/body.h"
 
 /* Shared by the files of this folder only. */
 

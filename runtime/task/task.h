@@ -292,60 +292,6 @@ int task_see(struct task_scope *scope, struct worker *worker, duite_object objec
 /* Releases a hold and wakes the heir. */
 void task_release(struct task_graph *graph, struct worker *worker, struct data_version *version);
 
-/* ---- A running body ---- */
-
-struct duite_call_private {
-    struct duite_call_private *outer; /* the body that waits below on this thread */
-    struct task_graph *graph;
-    struct worker *worker;
-    struct task *task;
-    const duite_param *param; /* as the runtime keeps them */
-    struct task_scope *scope; /* what its children may use, or NULL as long as it has none */
-    int refused;       /* code of a duite_resize that failed, or 0: it fails with that at least */
-    int remembered;    /* the first error of its calls that it may not have looked at */
-    char message[204]; /* of `remembered` */
-    char text[sizeof((struct data_failure *)0)->text]; /* what it says of its failure */
-};
-
-/* The body that runs on this thread for this graph, or NULL. */
-struct duite_call_private *task_running(const struct task_graph *graph);
-
-/* Whether a body, running or just over, forked a task or made an object. */
-static inline bool task_body_forked(const duite_call *call)
-{
-    return call->own->scope != NULL;
-}
-
-/* The scope of a running body, made when it is first asked for. NULL without memory. */
-struct task_scope *task_inside(struct duite_call_private *body);
-
-/* Makes an object of `count` zeros, and at most `max` elements if its size changes, that belongs
- * to the task. Errors: type, count, memory. */
-int task_make_object(struct duite_call_private *body, duite_type type, size_t count, size_t max,
-                     bool sized, duite_object *name);
-
-/* All tasks forked in this scope are over, with their descendants. */
-bool task_alone(struct task_scope *scope);
-
-/* What a body does from now on comes after the tasks it forked so far. */
-void task_close_segment(struct task_scope *scope);
-
-/* The first failure among the tasks of this scope and their descendants since the last time, or
- * NULL. */
-const struct data_failure *task_first_failure(struct task_scope *scope);
-
-/* DUITE_E_RIGHT or DUITE_E_OBJECT if a child of the body could not have the object with this mode.
- */
-int task_check_call(struct duite_call_private *body, const char *call, duite_object object,
-                    duite_mode wanted);
-/* Whether the object, whose name was checked, is a parameter of the body. */
-bool task_lent(const struct duite_call_private *body, duite_object object);
-
-/* Whether a body that waits in `scope` may have this task run on top of it. It may if the task is a
- * descendant. If its descendants may wait for tasks outside, it also may if the task comes earlier
- * in the reference order. And a body that is not an offloaded task's may have any task of these. */
-bool task_may_run(const struct task_scope *scope, const struct task *task);
-
 /* ---- Any worker ---- */
 
 /* Runs a ready task of one of this folder's types, which task_finish then ends; work_run_task runs

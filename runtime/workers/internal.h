@@ -4,6 +4,7 @@
 #include "runtime/base/monitor.h"
 #include "runtime/data/packet.h"
 #include "runtime/plan/plan.h"
+#include "runtime/task/body.h"
 #include "runtime/workers/queue.h"
 #include "runtime/workers/topology.h"
 #include "runtime/workers/workers.h"

@@ -103,6 +103,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 struct show {
     struct output_cache *cache;
     const struct options *options;
+    struct view_obstacles obstacles;
     unsigned char *used; /* a vertex: whether a face or an edge uses it */
     double *position;    /* of the frame read last */
 };
@@ -122,6 +123,17 @@ static int read_frame(struct show *show, uint64_t frame, struct cloth_error *err
     return code;
 }
 
+static uint64_t fitted_frames(const struct output_cache *cache)
+{
+    return cache->n_frames < FITTED_FRAMES ? cache->n_frames : FITTED_FRAMES;
+}
+
+static uint64_t fitted_frame(const struct output_cache *cache, uint64_t i)
+{
+    const uint64_t n = fitted_frames(cache);
+    return n > 1 ? i * (cache->n_frames - 1) / (n - 1) : 0;
+}
+
 /* All frames share one camera: it is fitted to them all, or to a hundred spread evenly over a long
  * run. */
 static int fit_camera(struct show *show, struct view_camera *camera, struct cloth_error *error)
@@ -131,15 +143,17 @@ static int fit_camera(struct show *show, struct view_camera *camera, struct clot
     struct view_fit fit;
     view_fit_start(&fit, options->azimuth, options->elevation,
                    (double)options->width / options->height, options->zoom);
-    uint64_t n = cache->n_frames < FITTED_FRAMES ? cache->n_frames : FITTED_FRAMES;
-    for (uint64_t i = 0; i < n; i++) {
-        uint64_t frame = n > 1 ? i * (cache->n_frames - 1) / (n - 1) : 0;
-        int code = read_frame(show, frame, error);
+    for (uint64_t i = 0; i < fitted_frames(cache); i++) {
+        int code = read_frame(show, fitted_frame(cache, i), error);
         if (code)
             return code;
         view_fit_add(&fit, cache->mesh.n_vertices, show->position);
     }
-    view_fit_planes(&fit, cache->n_planes, (const double(*)[6])cache->planes);
+    for (uint64_t i = 0; i < fitted_frames(cache); i++) {
+        view_obstacles_at(&show->obstacles, cache->time[fitted_frame(cache, i)]);
+        view_fit_planes(&fit, show->obstacles.n_planes, (const double(*)[6])show->obstacles.plane);
+        view_fit_near(&fit, show->obstacles.n_vertices, (const double(*)[6])show->obstacles.vertex);
+    }
     view_fit_camera(&fit, camera);
     return 0;
 }
@@ -154,8 +168,7 @@ static int draw(const struct show *show, const struct view_camera *camera,
                                .n_lines = cache->mesh.n_lone_edges,
                                .triangle = cache->mesh.triangle,
                                .line = cache->mesh.lone_edge,
-                               .n_planes = cache->n_planes,
-                               .planes = (const double(*)[6])cache->planes};
+                               .obstacles = &show->obstacles};
     struct view_picture picture = {options->width, options->height, NULL};
     struct view_context *context = NULL;
     struct view_scene *scene = NULL;
@@ -189,19 +202,25 @@ static int show_frame(struct output_cache *cache, const struct options *options,
     if (code)
         return code;
     const size_t n = cache->mesh.n_vertices;
-    struct show show = {cache, options, malloc(n), malloc(3 * n * sizeof(double))};
-    if (show.used && show.position) {
-        const bool last = options->frame == LAST_FRAME;
+    struct show show = {.cache = cache,
+                        .options = options,
+                        .used = malloc(n),
+                        .position = malloc(3 * n * sizeof(double))};
+    code = view_obstacles_make(&show.obstacles, cache->n_obstacles, cache->obstacles, cache->keys,
+                               error);
+    if (!code && !(show.used && show.position))
+        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for %zu vertices", n);
+    if (!code) {
+        const uint64_t frame =
+            options->frame == LAST_FRAME ? cache->n_frames - 1 : (uint64_t)options->frame;
         struct view_camera camera;
         mesh_used(&cache->mesh, show.used);
         code = fit_camera(&show, &camera, error);
-        code =
-            code ? code
-                 : read_frame(&show, last ? cache->n_frames - 1 : (uint64_t)options->frame, error);
+        code = code ? code : read_frame(&show, frame, error);
+        view_obstacles_at(&show.obstacles, cache->time[frame]);
         code = code ? code : draw(&show, &camera, error);
-    } else {
-        code = cloth_fail(error, CLOTH_E_MEMORY, "no memory for %zu vertices", n);
     }
+    view_obstacles_free(&show.obstacles);
     free(show.used);
     free(show.position);
     return code;

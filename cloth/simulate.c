@@ -134,29 +134,26 @@ static int open_output(struct run *run, struct cloth_error *error)
         return error->code;
     const struct mesh **meshes = calloc(model->n_cloths, sizeof *meshes);
     const char **names = calloc(model->n_cloths, sizeof *names);
-    double(*planes)[6] = calloc(model->n_obstacles + 1, sizeof *planes);
     int code = CLOTH_E_MEMORY;
-    if (meshes && names && planes) {
+    if (meshes && names) {
         for (uint32_t i = 0; i < model->n_cloths; i++) {
             meshes[i] = &model->cloths[i].mesh;
             names[i] = model->cloths[i].name;
         }
-        for (uint32_t i = 0; i < model->n_obstacles; i++)
-            memcpy(planes[i], model->obstacles[i].value, sizeof planes[i]);
         const struct output_setup setup = {.folder = run->options->output,
                                            .n_meshes = model->n_cloths,
                                            .meshes = meshes,
                                            .names = names,
                                            .fps = model->fps,
-                                           .n_planes = model->n_obstacles,
-                                           .planes = (const double(*)[6])planes};
+                                           .n_obstacles = model->n_obstacles,
+                                           .obstacles = model->obstacles,
+                                           .keys = model->keys};
         code = output_open(&run->frames, &setup, error);
     } else {
         cloth_fail(error, code, "out of memory before the first frame");
     }
     free(meshes);
     free(names);
-    free(planes);
     return code ? code : open_probes(run, error);
 }
 

@@ -2,6 +2,7 @@
  * is counted must be there, or the folder is refused. */
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/json.h"
+#include "cloth/output/files/obstacles.h"
 
 #include <errno.h>
 #include <math.h>
@@ -40,29 +41,6 @@ static int read_text(const char *path, char **text, struct cloth_error *error)
     return code;
 }
 
-static void read_plane(struct output_cache *cache, struct output_json *json)
-{
-    double(*grown)[6] = realloc(cache->planes, (cache->n_planes + 1) * sizeof *grown);
-    if (!grown) {
-        output_json_fail(json, "less planes than fit in memory");
-        return;
-    }
-    cache->planes = grown;
-    double *plane = grown[cache->n_planes++];
-    memset(plane, 0, sizeof *grown);
-    output_json_expect(json, '{');
-    if (!output_json_key(json, "point"))
-        output_json_fail(json, "\"point\"");
-    output_json_vector(json, plane);
-    output_json_expect(json, ',');
-    if (!output_json_key(json, "normal"))
-        output_json_fail(json, "\"normal\"");
-    output_json_vector(json, plane + 3);
-    output_json_expect(json, '}');
-    if (!(plane[3] * plane[3] + plane[4] * plane[4] + plane[5] * plane[5] > 0))
-        output_json_fail(json, "a normal that is not zero");
-}
-
 static void parse_scene(struct output_cache *cache, struct output_json *json)
 {
     output_json_expect(json, '{');
@@ -70,15 +48,9 @@ static void parse_scene(struct output_cache *cache, struct output_json *json)
         output_json_fail(json, "\"fps\"");
     cache->fps = output_json_double(json);
     output_json_expect(json, ',');
-    if (!output_json_key(json, "planes"))
-        output_json_fail(json, "\"planes\"");
-    output_json_expect(json, '[');
-    if (!output_json_take(json, ']')) {
-        do
-            read_plane(cache, json);
-        while (output_json_take(json, ','));
-        output_json_expect(json, ']');
-    }
+    if (!output_json_key(json, "obstacles"))
+        output_json_fail(json, "\"obstacles\"");
+    output_obstacles_read(cache, json);
     output_json_expect(json, '}');
     output_json_expect(json, '\0');
 }
@@ -223,7 +195,8 @@ void output_cache_close(struct output_cache *cache)
 {
     mesh_free(&cache->mesh);
     free(cache->time);
-    free(cache->planes);
+    free(cache->obstacles);
+    free(cache->keys);
     if (cache->pc2)
         fclose(cache->pc2);
     memset(cache, 0, sizeof *cache);

@@ -5,6 +5,7 @@
  * always belong together. scene.json comes first: where it is not, a cloth.obj is not ours. */
 #include "cloth/output/files/files.h"
 #include "cloth/output/files/json.h"
+#include "cloth/output/files/obstacles.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -33,17 +34,9 @@ static int fill_scene(FILE *file, const void *what)
     const struct output_setup *setup = what;
     fputs("{\n  \"fps\": ", file);
     output_json_number(file, setup->fps);
-    fputs(",\n  \"planes\": [", file);
-    for (size_t i = 0; i < setup->n_planes; i++) {
-        const double *plane = setup->planes[i];
-        fputs(i ? ",\n    {" : "\n    {", file);
-        for (int k = 0; k < 6; k++) {
-            fputs(k == 0 ? "\"point\": [" : k == 3 ? "], \"normal\": [" : ", ", file);
-            output_json_number(file, plane[k]);
-        }
-        fputs("]}", file);
-    }
-    fputs(setup->n_planes ? "\n  ]\n}\n" : "]\n}\n", file);
+    fputs(",\n  \"obstacles\": ", file);
+    output_obstacles(file, setup->n_obstacles, setup->obstacles, setup->keys);
+    fputs("\n}\n", file);
     return ferror(file);
 }
 

@@ -12,4 +12,6 @@ libduite_cloth_la_SOURCES += \
 	cloth/output/files/json.c \
 	cloth/output/files/market.c \
 	cloth/output/files/obj.c \
+	cloth/output/files/obstacles.c \
+	cloth/output/files/obstacles.h \
 	cloth/output/files/pc2.c

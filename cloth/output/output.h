@@ -2,6 +2,7 @@
 #define CLOTH_OUTPUT_OUTPUT_H
 
 #include "cloth/base/error.h"
+#include "cloth/contact/shape.h"
 #include "cloth/mesh/mesh.h"
 #include "cloth/solve/system.h"
 
@@ -13,7 +14,8 @@
  *   cloth.obj      the start, with the input's polygons, one `o` per cloth
  *   cloth.pc2      PC2 point cache: header, then one float x y z a vertex and frame
  *   frames.csv     frame,time: the true time of each frame
- *   scene.json     what a viewer needs: {"fps", "planes": [{"point", "normal"}]}
+ *   scene.json     what a viewer needs: {"fps", "obstacles": [{KIND: {its parameters}}]}; one that
+ *                  moves also has "about" and "keys": [{"time", "translate", "rotate"}]
  * PC2's count of frames is rewritten after each frame and the file synced, so that a run that is
  * killed leaves whole files up to the last finished frame. */
 struct output_frames;
@@ -25,8 +27,9 @@ struct output_setup {
         *meshes;              /* input meshes at their start; read during output_open only */
     const char *const *names; /* n_meshes */
     double fps;
-    size_t n_planes;
-    const double (*planes)[6]; /* n_planes x (point, normal) */
+    size_t n_obstacles;
+    const struct contact_shape *obstacles;
+    const struct phys_key *keys; /* of their motions */
 };
 
 /* Opens a folder for frames; files of an earlier run in it are replaced, a cloth.obj of anyone else
@@ -88,8 +91,9 @@ struct output_cache {
     uint64_t n_frames;
     double *time; /* n_frames, s */
     double fps;
-    size_t n_planes;
-    double (*planes)[6];
+    uint32_t n_obstacles, n_keys;
+    struct contact_shape *obstacles;
+    struct phys_key *keys; /* of their motions */
     FILE *pc2;
 };
 int output_cache_open(struct output_cache *cache, const char *folder, struct cloth_error *error);

@@ -6,6 +6,7 @@
 #include <cglm/cam.h>
 #include <cglm/mat4.h>
 #include <math.h>
+#include <stdbool.h>
 
 static const double HALF_ANGLE = 15.0; /* degrees, of the height */
 static const double MARGIN = 0.86;     /* of half the picture that the points may fill */
@@ -91,6 +92,19 @@ void view_fit_planes(struct view_fit *fit, size_t n, const double (*planes)[6])
                 p[k] -= height * normal[k];
             show(fit, p);
         }
+    }
+}
+
+void view_fit_near(struct view_fit *fit, size_t n, const double (*vertex)[6])
+{
+    const double margin = 0.5 * extent(fit);
+    for (size_t i = 0; i < n; i++) {
+        bool near = true;
+        for (int k = 0; k < 3; k++)
+            near = near && vertex[i][k] >= fit->low[k] - margin &&
+                   vertex[i][k] <= fit->high[k] + margin;
+        if (near)
+            show(fit, vertex[i]);
     }
 }
 

@@ -6,6 +6,7 @@ libduite_view_la_SOURCES = \
 	cloth/view/camera.c \
 	cloth/view/context.c \
 	cloth/view/image.c \
+	cloth/view/obstacles.c \
 	cloth/view/picture.c \
 	cloth/view/scene.c \
 	cloth/view/draw/draw.h \

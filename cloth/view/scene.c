@@ -4,14 +4,18 @@
 #include "cloth/view/view.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 enum program { PROGRAM_CAST, PROGRAM_BACK, PROGRAM_CLOTH, PROGRAM_GROUND, N_PROGRAMS };
 
+/* Colours of fronts and backs, linear. */
+static const float CLOTH[2][3] = {{0.40f, 0.030f, 0.028f}, {0.46f, 0.120f, 0.050f}};
+static const float STONE[2][3] = {{0.22f, 0.25f, 0.28f}, {0.22f, 0.25f, 0.28f}};
+
 struct view_scene {
-    size_t n_planes;
-    const double (*planes)[6];
-    struct draw_mesh mesh;
+    const struct view_obstacles *obstacles; /* NULL: none */
+    struct draw_mesh mesh, shapes;          /* the cloth; the obstacles that have a surface */
     struct draw_lights lights;
     GLuint program[N_PROGRAMS];
     GLuint nothing; /* a vertex array without attributes */
@@ -33,6 +37,11 @@ static int make_programs(struct view_scene *scene, struct cloth_error *error)
     return 0;
 }
 
+static bool has_shapes(const struct view_scene *scene)
+{
+    return scene->obstacles && scene->obstacles->n_vertices;
+}
+
 int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
                    struct cloth_error *error)
 {
@@ -40,14 +49,17 @@ int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
     struct view_scene *made = calloc(1, sizeof *made);
     if (!made)
         return cloth_fail(error, CLOTH_E_MEMORY, "no memory for a scene");
-    made->n_planes = shape->n_planes;
-    made->planes = shape->planes;
+    made->obstacles = shape->obstacles;
     glGenVertexArrays(1, &made->nothing);
     int code = make_programs(made, error);
     code = code ? code : draw_lights_make(&made->lights, error);
     code = code ? code
                 : draw_mesh_make(&made->mesh, shape->n_vertices, shape->n_triangles,
                                  shape->triangle, shape->n_lines, shape->line, error);
+    if (!code && has_shapes(made))
+        code =
+            draw_mesh_make(&made->shapes, made->obstacles->n_vertices, made->obstacles->n_triangles,
+                           made->obstacles->triangle[0], 0, NULL, error);
     if (code) {
         view_scene_free(made);
         return code;
@@ -58,16 +70,38 @@ int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
 
 static void cast(const void *context)
 {
-    draw_mesh_draw(context);
+    const struct view_scene *scene = context;
+    draw_mesh_draw(&scene->mesh);
+    if (has_shapes(scene))
+        draw_mesh_draw(&scene->shapes);
+}
+
+/* Of a sphere around the cloth and what is near to it: shadows beyond are not worth their loss of
+ * sharpness. */
+static float lit_radius(const struct view_scene *scene)
+{
+    const float *centre = scene->mesh.center, least = scene->mesh.radius;
+    float most = least;
+    for (size_t v = 0; has_shapes(scene) && v < scene->shapes.n_vertices; v++) {
+        float square = 0;
+        for (size_t k = 0; k < 3; k++) {
+            const float away = scene->shapes.vertex[6 * v + k] - centre[k];
+            square += away * away;
+        }
+        most = fmaxf(most, fminf(sqrtf(square), 2 * least));
+    }
+    return most;
 }
 
 int view_scene_move(struct view_scene *scene, const double *position, struct cloth_error *error)
 {
     draw_mesh_move(&scene->mesh, position);
+    if (has_shapes(scene))
+        draw_mesh_place(&scene->shapes, (const double(*)[6])scene->obstacles->vertex);
     GLuint program = scene->program[PROGRAM_CAST];
     glUseProgram(program);
-    draw_lights_aim(&scene->lights, scene->mesh.center, scene->mesh.radius,
-                    glGetUniformLocation(program, "map"), cast, &scene->mesh);
+    draw_lights_aim(&scene->lights, scene->mesh.center, lit_radius(scene),
+                    glGetUniformLocation(program, "map"), cast, scene);
     GLenum trouble = glGetError();
     return trouble == GL_NO_ERROR
                ? 0
@@ -147,6 +181,33 @@ static void draw_plane(const struct view_scene *scene, GLuint program, const dou
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
+static double depth_of(const struct view_camera *camera, const double x[3])
+{
+    double clip[4];
+    for (int i = 0; i < 4; i++) {
+        clip[i] = (double)camera->clip[3][i];
+        for (int k = 0; k < 3; k++)
+            clip[i] += (double)camera->clip[k][i] * x[k];
+    }
+    return 0.5 * clip[2] / clip[3];
+}
+
+/* Vertices of cloth lie on an obstacle, so that its triangles cut through what is round. Obstacles
+ * are drawn as if they were a part of an edge of the cloth farther away, in units of the depth. */
+static float behind(const struct view_scene *scene, const struct view_camera *camera)
+{
+    const double part = 0.3, units = 1 << 24;
+    double near[3], far[3], away[3];
+    for (int k = 0; k < 3; k++) {
+        near[k] = (double)scene->mesh.center[k];
+        away[k] = near[k] - (double)camera->eye[k];
+    }
+    const double distance = sqrt(dot(away, away));
+    for (int k = 0; k < 3; k++)
+        far[k] = near[k] + part * (double)draw_mesh_edge(&scene->mesh) * away[k] / distance;
+    return (float)(units * (depth_of(camera, far) - depth_of(camera, near)));
+}
+
 void view_scene_draw(const struct view_scene *scene, const struct view_camera *camera, int width,
                      int height)
 {
@@ -167,11 +228,19 @@ void view_scene_draw(const struct view_scene *scene, const struct view_camera *c
     GLuint ground = use(scene, PROGRAM_GROUND, camera, width, height);
     glEnable(GL_POLYGON_OFFSET_FILL); /* cloth that lies on a plane lies on top of it */
     glPolygonOffset(1, 16);
-    for (size_t i = 0; i < scene->n_planes; i++)
-        draw_plane(scene, ground, scene->planes[i], camera);
+    for (size_t i = 0; scene->obstacles && i < scene->obstacles->n_planes; i++)
+        draw_plane(scene, ground, scene->obstacles->plane[i], camera);
     glDisable(GL_POLYGON_OFFSET_FILL);
 
-    use(scene, PROGRAM_CLOTH, camera, width, height);
+    const GLuint surface = use(scene, PROGRAM_CLOTH, camera, width, height);
+    if (has_shapes(scene)) {
+        glPolygonOffset(0, behind(scene, camera));
+        glEnable(GL_POLYGON_OFFSET_FILL);
+        glUniform3fv(glGetUniformLocation(surface, "paint"), 2, STONE[0]);
+        draw_mesh_draw(&scene->shapes);
+        glDisable(GL_POLYGON_OFFSET_FILL);
+    }
+    glUniform3fv(glGetUniformLocation(surface, "paint"), 2, CLOTH[0]);
     draw_mesh_draw(&scene->mesh);
 }
 
@@ -180,6 +249,7 @@ void view_scene_free(struct view_scene *scene)
     if (!scene)
         return;
     draw_mesh_free(&scene->mesh);
+    draw_mesh_free(&scene->shapes);
     draw_lights_free(&scene->lights);
     for (int i = 0; i < N_PROGRAMS; i++)
         glDeleteProgram(scene->program[i]);

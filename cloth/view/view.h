@@ -2,6 +2,7 @@
 #define CLOTH_VIEW_VIEW_H
 
 #include "cloth/base/error.h"
+#include "cloth/contact/shape.h"
 
 #include <cglm/types.h>
 #include <stddef.h>
@@ -9,6 +10,25 @@
 
 /* Pictures of cloth with desktop OpenGL 3.3 core. Right-handed, metres, +y up. One thread; a
  * context must be open while scenes and pictures are made, drawn and freed. */
+
+/* --- obstacles.c: where obstacles are at one time. Pure functions. --- */
+
+struct view_obstacles {
+    size_t n, n_planes;
+    const struct contact_shape *shape; /* n */
+    const struct phys_key *keys;
+    double (*plane)[6]; /* n_planes: point, normal; at the time, */
+    uint32_t n_vertices, n_triangles;
+    double (*own)[6], (*vertex)[6]; /* n_vertices: point, normal; without motion, and at the time */
+    uint32_t (*triangle)[3];
+};
+/* What is drawn of n obstacles, at time 0 (s). shape, keys: stay the caller's, and outlive it. To
+ * be freed in any case. Error: CLOTH_E_MEMORY. */
+int view_obstacles_make(struct view_obstacles *obstacles, size_t n,
+                        const struct contact_shape *shape, const struct phys_key *keys,
+                        struct cloth_error *error);
+void view_obstacles_at(struct view_obstacles *obstacles, double time);
+void view_obstacles_free(struct view_obstacles *obstacles);
 
 /* --- camera.c: where to look from. Pure functions. --- */
 
@@ -37,6 +57,8 @@ void view_fit_start(struct view_fit *fit, double azimuth, double elevation, doub
 void view_fit_add(struct view_fit *fit, size_t n, const double *position);
 /* Adds what lies under the points on the planes (point, normal) that they are near to. */
 void view_fit_planes(struct view_fit *fit, size_t n, const double (*planes)[6]);
+/* Adds those of n points that are within half the points' extent of their box. */
+void view_fit_near(struct view_fit *fit, size_t n, const double (*vertex)[6]);
 /* The nearest camera of that direction that has all points within its margins. */
 void view_fit_camera(const struct view_fit *fit, struct view_camera *camera);
 
@@ -54,15 +76,14 @@ struct view_shape {
     uint32_t n_vertices, n_triangles, n_lines;
     const uint32_t *triangle,
         *line; /* x 3, x 2; read during view_scene_new only but for triangle */
-    size_t n_planes;
-    const double (*planes)[6]; /* (point, normal) */
+    const struct view_obstacles *obstacles; /* as they are when the cloth moves; NULL: none */
 };
 
 struct view_scene;
 /* The arrays must outlive the scene. */
 int view_scene_new(struct view_scene **scene, const struct view_shape *shape,
                    struct cloth_error *error);
-/* position: n_vertices x 3 of the frame to be drawn */
+/* position: n_vertices x 3 of the frame to be drawn; obstacles are drawn where they are now. */
 int view_scene_move(struct view_scene *scene, const double *position, struct cloth_error *error);
 void view_scene_draw(const struct view_scene *scene, const struct view_camera *camera, int width,
                      int height);

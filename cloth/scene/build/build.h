@@ -92,6 +92,14 @@ int scene_build_check_turn(const struct mesh_transform *transform, const struct 
 int scene_build_hold(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
                      int node, struct cloth_error *error);
 
+/* A motion by key frames, whose keys become the model's last. */
+int scene_build_motion(struct model *model, struct model_motion *motion,
+                       const struct scene_tree *tree, int node, struct cloth_error *error);
+
+/* A quaternion, made of length 1; what: "a rotation of a motion". */
+int scene_build_rotation(double rotate[4], const char *what, const struct scene_tree *tree,
+                         int node, struct cloth_error *error);
+
 /* A direction, made of length 1; what: "the normal of a plane". */
 int scene_build_direction(double direction[3], const char *what, const struct scene_tree *tree,
                           int node, struct cloth_error *error);

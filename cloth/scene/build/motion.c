@@ -1,5 +1,5 @@
-/* What pins hold to, and how they move. Keys of all motions stand in one array of the model, in the
- * order of the pins; so do guides. */
+/* Motions by key frames; what pins hold to, and how they move. Keys of all motions stand in one
+ * array of the model, obstacles first, then in the order of the pins; so do guides. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/rules.h"
 #include "cloth/scene/yaml/scalar.h"
@@ -7,17 +7,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Makes room for one more motion with n more keys. */
-static int grow(struct model *model, size_t n, struct cloth_error *error)
+/* Makes room for n more keys. */
+static int grow_keys(struct model *model, size_t n, struct cloth_error *error)
 {
-    struct model_motion *motions =
-        realloc(model->motions, (model->n_motions + 1) * sizeof *motions);
-    model->motions = motions ? motions : model->motions;
     struct phys_key *keys = realloc(model->keys, (model->n_keys + n) * sizeof *keys);
-    model->keys = keys ? keys : model->keys;
-    return motions && keys
-               ? CLOTH_OK
-               : cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    if (!keys)
+        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    model->keys = keys;
+    return CLOTH_OK;
 }
 
 static int build_times(struct phys_key *keys, const struct scene_tree *tree, int list, size_t n,
@@ -45,23 +42,23 @@ static int check_length(const struct scene_tree *tree, int list, const char *wha
                            what, scene_tree_length(tree, list), n);
 }
 
-static int build_rotate(struct phys_key *key, const struct scene_tree *tree, int node,
-                        struct cloth_error *error)
+int scene_build_rotation(double rotate[4], const char *what, const struct scene_tree *tree,
+                         int node, struct cloth_error *error)
 {
     double square = 0, largest = 0;
-    scene_tree_vector(tree, node, 4, key->rotate);
+    scene_tree_vector(tree, node, 4, rotate);
     for (int i = 0; i < 4; i++)
-        largest = fmax(largest, fabs(key->rotate[i]));
+        largest = fmax(largest, fabs(rotate[i]));
     if (largest <= 0)
         return scene_tree_fail(tree, node, error,
-                               "a rotation of a motion is zero; a quaternion [w, x, y, z] that is "
-                               "not is expected");
+                               "%s is zero; a quaternion [w, x, y, z] that is not is expected",
+                               what);
     for (int i = 0; i < 4; i++) {
-        key->rotate[i] /= largest; /* so that the squares neither overflow nor vanish */
-        square += key->rotate[i] * key->rotate[i];
+        rotate[i] /= largest; /* so that the squares neither overflow nor vanish */
+        square += rotate[i] * rotate[i];
     }
     for (int i = 0; i < 4; i++)
-        key->rotate[i] /= sqrt(square);
+        rotate[i] /= sqrt(square);
     return CLOTH_OK;
 }
 
@@ -100,18 +97,16 @@ static int check_begin(const struct phys_key *keys, size_t n, const double about
                            "and no rotation are expected");
 }
 
-/* A motion, which becomes the model's last. */
-static int build_motion(struct model *model, const struct scene_tree *tree, int node,
-                        struct cloth_error *error)
+int scene_build_motion(struct model *model, struct model_motion *motion,
+                       const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     const int times = scene_tree_get(tree, node, "times");
     const int translate = scene_tree_get(tree, node, "translate");
     const int rotate = scene_tree_get(tree, node, "rotate");
     const size_t n = scene_tree_length(tree, times);
-    int code = grow(model, n, error);
+    int code = grow_keys(model, n, error);
     if (code)
         return code;
-    struct model_motion *motion = &model->motions[model->n_motions];
     struct phys_key *keys = model->keys + model->n_keys;
     *motion = (struct model_motion){.first = model->n_keys, .n = (uint32_t)n};
     scene_tree_vector(tree, scene_tree_get(tree, node, "about"), 3, motion->about);
@@ -125,16 +120,29 @@ static int build_motion(struct model *model, const struct scene_tree *tree, int 
     for (size_t i = 0; translate && i < n && !code; i++)
         scene_tree_vector(tree, scene_tree_item(tree, translate, i), 3, keys[i].translate);
     for (size_t i = 0; rotate && i < n && !code; i++)
-        code = build_rotate(keys + i, tree, scene_tree_item(tree, rotate, i), error);
+        code = scene_build_rotation(keys[i].rotate, "a rotation of a motion", tree,
+                                    scene_tree_item(tree, rotate, i), error);
     if (!code && rotate)
         code = check_turns(keys, tree, rotate, n, error);
-    if (!code)
-        code = check_begin(keys, n, motion->about, tree, node, error);
+    model->n_keys += code ? 0 : (uint32_t)n;
+    return code;
+}
+
+/* That of a pin, which becomes the model's last. */
+static int build_pin_motion(struct model *model, const struct scene_tree *tree, int node,
+                            struct cloth_error *error)
+{
+    struct model_motion *motions =
+        realloc(model->motions, (model->n_motions + 1) * sizeof *motions);
+    if (!motions)
+        return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
+    model->motions = motions;
+    struct model_motion *motion = motions + model->n_motions;
+    const int code = scene_build_motion(model, motion, tree, node, error);
     if (code)
         return code;
-    model->n_keys += (uint32_t)n;
     model->n_motions++;
-    return CLOTH_OK;
+    return check_begin(model->keys + motion->first, motion->n, motion->about, tree, node, error);
 }
 
 int scene_build_direction(double direction[3], const char *what, const struct scene_tree *tree,
@@ -204,7 +212,7 @@ int scene_build_hold(struct model *model, struct model_pin *pin, const struct sc
     const int motion = scene_tree_get(tree, node, "motion");
     int code = check_hold(hold, tree, node, error);
     if (!code && motion)
-        code = build_motion(model, tree, motion, error);
+        code = build_pin_motion(model, tree, motion, error);
     if (code)
         return code;
     pin->motion = motion ? model->n_motions : 0;

@@ -1,13 +1,14 @@
 /* Obstacles, and whether they leave the cloths any room. */
 #include "cloth/scene/build/build.h"
+#include "cloth/scene/yaml/scalar.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const double TOUCH = 1e-9; /* m: planes that overlap by less touch */
 
-/* One number or several of a parameter; a key that the schema lets a scene leave out has a default
- * there. */
+/* The numbers of a parameter; its range is that of the schema, which also has its default. */
 static int build_parameter(double *value, const struct contact_kind *kind,
                            const struct contact_parameter *parameter, const struct scene_tree *tree,
                            int node, struct cloth_error *error)
@@ -16,12 +17,31 @@ static int build_parameter(double *value, const struct contact_kind *kind,
     snprintf(what, sizeof what, "the %s of a %s", parameter->name, kind->name);
     if (parameter->role == CONTACT_DIRECTION)
         return scene_build_direction(value, what, tree, node, error);
+    if (parameter->role == CONTACT_ROTATION)
+        return scene_build_rotation(value, what, tree, node, error);
+    if (parameter->role == CONTACT_LENGTH) {
+        scene_scalar_number(scene_tree_scalar(tree, node), value);
+        return CLOTH_OK;
+    }
     scene_tree_vector(tree, node, contact_role_size(parameter->role), value);
     return CLOTH_OK;
 }
 
-static int build_shape(struct contact_shape *shape, const struct scene_tree *tree, int obstacle,
-                       struct cloth_error *error)
+static int build_shape_motion(struct model *model, struct contact_shape *shape,
+                              const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    struct model_motion motion;
+    const int code = scene_build_motion(model, &motion, tree, node, error);
+    if (code)
+        return code;
+    shape->first = motion.first;
+    shape->n = motion.n;
+    memcpy(shape->about, motion.about, sizeof shape->about);
+    return CLOTH_OK;
+}
+
+static int build_shape(struct model *model, struct contact_shape *shape,
+                       const struct scene_tree *tree, int obstacle, struct cloth_error *error)
 {
     int node = 0, code = CLOTH_OK;
     while (!(node = scene_tree_get(tree, obstacle, contact_kinds[shape->kind]->name)))
@@ -32,7 +52,8 @@ static int build_shape(struct contact_shape *shape, const struct scene_tree *tre
         code = build_parameter(value, kind, p, tree, scene_tree_get(tree, node, p->name), error);
         value += contact_role_size(p->role);
     }
-    return code;
+    const int motion = scene_tree_get(tree, node, "motion");
+    return code || !motion ? code : build_shape_motion(model, shape, tree, motion, error);
 }
 
 int scene_build_obstacles(struct model *model, const struct scene_tree *tree,
@@ -46,7 +67,8 @@ int scene_build_obstacles(struct model *model, const struct scene_tree *tree,
     model->n_obstacles = (uint32_t)n;
     int code = CLOTH_OK;
     for (size_t i = 0; !code && i < n; i++)
-        code = build_shape(model->obstacles + i, tree, scene_tree_item(tree, list, i), error);
+        code =
+            build_shape(model, model->obstacles + i, tree, scene_tree_item(tree, list, i), error);
     return code;
 }
 

@@ -6,6 +6,8 @@
 #include "cloth/scene/schema/fabrics.h"
 
 static const struct scene_rule number = {.type = SCENE_NUMBER, ITEM(double)};
+static const struct scene_rule positive = {
+    .type = SCENE_NUMBER, .range = SCENE_POSITIVE, ITEM(double)};
 /* clang-format off */
 static const struct scene_rule damping_keys[] = {
     {"viscous", SCENE_NUMBER, "kg/s", "0", .range = SCENE_NOT_NEGATIVE,
@@ -77,14 +79,38 @@ static const struct scene_rule material_keys[] = {
     {0}};
 static const struct scene_rule material = {.type = SCENE_MAP, .inside = material_keys};
 
+/* What every obstacle may have. */
+#define MOVES \
+    {"motion", SCENE_MAP, .inside = scene_motion_keys, \
+     .about = "from where the other keys say, by key frames; it need not begin there"}
+
 static const struct scene_rule plane_keys[] = {
     {"point", SCENE_LIST, "m", .required = true, .length = 3, .inside = &number,
      .about = "any point of it"},
     {"normal", SCENE_LIST, .required = true, .length = 3, .inside = &number,
      .about = "towards the free side, of any length but 0"},
+    MOVES,
+    {0}};
+static const struct scene_rule sphere_keys[] = {
+    {"centre", SCENE_LIST, "m", .required = true, .length = 3, .inside = &number,
+     .about = "its middle"},
+    {"radius", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE, .about = "of a ball"},
+    MOVES,
+    {0}};
+static const struct scene_rule box_keys[] = {
+    {"centre", SCENE_LIST, "m", .required = true, .length = 3, .inside = &number,
+     .about = "its middle"},
+    {"size", SCENE_LIST, "m", .required = true, .length = 3, .inside = &positive,
+     .about = "lengths of its edges, before it is rotated"},
+    {"rotate", SCENE_LIST, .fallback = "[1, 0, 0, 0]", .length = 4, .inside = &number,
+     .about = "about its centre: a quaternion [w, x, y, z]"},
+    MOVES,
     {0}};
 static const struct scene_rule obstacle_kinds[] = {
-    {"plane", SCENE_MAP, .inside = plane_keys, .about = "a floor or wall"}, {0}};
+    {"plane", SCENE_MAP, .inside = plane_keys, .about = "a floor or wall"},
+    {"sphere", SCENE_MAP, .inside = sphere_keys, .about = "a ball"},
+    {"box", SCENE_MAP, .inside = box_keys, .about = "a block"},
+    {0}};
 static const struct scene_rule obstacle = {.type = SCENE_ONE_OF, .inside = obstacle_kinds};
 
 static const struct scene_rule air_keys[] = {
@@ -226,7 +252,8 @@ static const struct scene_rule scene_keys[] = {
     {"materials", SCENE_NAMED, .inside = &material, ARRAY(struct model, materials, n_materials),
      .name = FIELD(struct model_material, name),
      .about = "NAME is yours; rib_knit, silk, denim and polycotton are there"},
-    {"obstacles", SCENE_LIST, .fallback = "[]", .inside = &obstacle, .about = "what does not move"},
+    {"obstacles", SCENE_LIST, .fallback = "[]", .inside = &obstacle,
+     .about = "what the cloth meets, still or moving by key frames"},
     {"contact", SCENE_CHOICE, .fallback = "project", INTO(struct model, contact),
      WORDS({"project", MODEL_CONTACT_PROJECT}, {"filter", MODEL_CONTACT_FILTER}),
      .about = "how obstacles are met"},

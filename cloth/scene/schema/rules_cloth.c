@@ -70,7 +70,7 @@ const struct model_word scene_probe_values[] = {
 
 static const struct scene_rule quaternion = {
     .type = SCENE_LIST, .length = 4, .inside = &number};
-static const struct scene_rule motion_keys[] = {
+const struct scene_rule scene_motion_keys[] = {
     {"times", SCENE_LIST, "s", .required = true, .filled = true, .inside = &number,
      .about = "of the key frames, ascending"},
     {"translate", SCENE_LIST, "m", .inside = &point, .about = "a shift for each time"},
@@ -106,7 +106,7 @@ static const struct scene_rule pin_keys[] = {
      .about = "of the line, of any length but 0"},
     {"normal", SCENE_LIST, .length = 3, .inside = &number,
      .about = "to the plane, of any length but 0"},
-    {"motion", SCENE_MAP, .inside = motion_keys,
+    {"motion", SCENE_MAP, .inside = scene_motion_keys,
      .about = "of the vertices, or of their lines or planes, by key frames"},
     {0}};
 static const struct scene_rule pin = {

@@ -35,7 +35,7 @@ void draw_lights_aim(struct draw_lights *lights, const float center[3], float ra
                      GLint row_uniform, void (*cast)(const void *context), const void *context);
 void draw_lights_free(struct draw_lights *lights);
 
-/* --- mesh.c: the cloth's vertices on the graphics card --- */
+/* --- mesh.c: vertices of the cloth, or of obstacles, on the graphics card --- */
 
 struct draw_mesh {
     uint32_t n_vertices, n_triangles, n_lines;
@@ -48,6 +48,10 @@ int draw_mesh_make(struct draw_mesh *mesh, uint32_t n_vertices, uint32_t n_trian
                    const uint32_t *triangle, uint32_t n_lines, const uint32_t *line,
                    struct cloth_error *error);
 void draw_mesh_move(struct draw_mesh *mesh, const double *position);
+/* The same with normals given. vertex: n_vertices x (position, normal) */
+void draw_mesh_place(struct draw_mesh *mesh, const double (*vertex)[6]);
+/* The mean length of the triangles' edges; 0 without triangles. */
+float draw_mesh_edge(const struct draw_mesh *mesh);
 void draw_mesh_draw(const struct draw_mesh *mesh);
 void draw_mesh_free(struct draw_mesh *mesh);
 /* Area-weighted normals into vertex[6 v + 3 ..]; up where no triangle says. Pure. */

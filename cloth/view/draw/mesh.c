@@ -83,16 +83,43 @@ static void find_sphere(struct draw_mesh *mesh)
     mesh->radius = fmaxf(0.5f * sqrtf(square), 1e-6f);
 }
 
+static void upload_vertices(struct draw_mesh *mesh)
+{
+    find_sphere(mesh);
+    glBindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
+    glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((size_t)mesh->n_vertices * 6 * sizeof *mesh->vertex),
+                 mesh->vertex, GL_DYNAMIC_DRAW);
+}
+
 void draw_mesh_move(struct draw_mesh *mesh, const double *position)
 {
     for (size_t v = 0; v < mesh->n_vertices; v++)
         for (size_t k = 0; k < 3; k++)
             mesh->vertex[6 * v + k] = (float)position[3 * v + k];
     draw_normals(mesh->n_vertices, mesh->vertex, mesh->n_triangles, mesh->triangle);
-    find_sphere(mesh);
-    glBindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
-    glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((size_t)mesh->n_vertices * 6 * sizeof *mesh->vertex),
-                 mesh->vertex, GL_DYNAMIC_DRAW);
+    upload_vertices(mesh);
+}
+
+void draw_mesh_place(struct draw_mesh *mesh, const double (*vertex)[6])
+{
+    for (size_t v = 0; v < mesh->n_vertices; v++)
+        for (size_t k = 0; k < 6; k++)
+            mesh->vertex[6 * v + k] = (float)vertex[v][k];
+    upload_vertices(mesh);
+}
+
+float draw_mesh_edge(const struct draw_mesh *mesh)
+{
+    double sum = 0;
+    for (size_t i = 0; i < (size_t)3 * mesh->n_triangles; i++) {
+        const float *a = mesh->vertex + 6 * (size_t)mesh->triangle[i];
+        const float *b = mesh->vertex + 6 * (size_t)mesh->triangle[i % 3 == 2 ? i - 2 : i + 1];
+        double square = 0;
+        for (int k = 0; k < 3; k++)
+            square += (double)((a[k] - b[k]) * (a[k] - b[k]));
+        sum += sqrt(square);
+    }
+    return mesh->n_triangles ? (float)(sum / (3.0 * mesh->n_triangles)) : 0;
 }
 
 void draw_mesh_draw(const struct draw_mesh *mesh)

@@ -84,13 +84,13 @@ const char DRAW_CLOTH_VERTEX[] =
 const char DRAW_CLOTH_FRAGMENT[] =
     "in vec3 at, up;\n"
     "out vec4 shade;\n"
-    "const vec3 FRONT = vec3(0.40, 0.030, 0.028), BACK = vec3(0.46, 0.120, 0.050);\n"
+    "uniform vec3 paint[2];\n" /* of the front and of the back */
     "void main()\n"
     "{\n"
     "    vec3 n = normalize(up) * (gl_FrontFacing ? 1.0 : -1.0);\n"
     "    vec3 v = normalize(eye - at), lit, behind;\n"
     "    gather(at, n, gl_FragCoord.xy, 1.0, lit, behind);\n"
-    "    vec3 albedo = gl_FrontFacing ? FRONT : BACK;\n"
+    "    vec3 albedo = gl_FrontFacing ? paint[0] : paint[1];\n"
     "    lit += vec3(0.26, 0.25, 0.24) * (0.5 - 0.5 * n.y);\n" /* from the floor */
     "    float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 4.0);\n"
     "    vec3 c = albedo * (lit + 0.22 * behind);\n"

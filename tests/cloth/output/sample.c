@@ -8,7 +8,12 @@
 #include <string.h>
 
 static const char QUAD[] = "v 2 0 0\nv 3 0 0\nv 3 1 0\nv 2 1 0\nf 1 2 3 4\nl 1 3\n";
-static const double PLANE[1][6] = {{0, -0.1, 0, 0, 1, 0}};
+/* A floor, and a ball that moves. */
+static const struct contact_shape OBSTACLES[] = {
+    {.value = {0, -0.1, 0, 0, 1, 0}},
+    {.kind = 1, .value = {1, 2, 3, 0.5}, .n = 2, .about = {0, 0, 7}}};
+static const struct phys_key KEYS[] = {{0, {0}, {1, 0, 0, 0}},
+                                       {0.5, {-1, 0.1, 0}, {0.6, 0, 0.8, 0}}};
 static const char *const NAMES[2] = {"sheet", "a\npatch"};
 
 void sample_make(struct sample *sample)
@@ -31,8 +36,9 @@ void sample_make(struct sample *sample)
                                           .meshes = sample->meshes,
                                           .names = NAMES,
                                           .fps = 25,
-                                          .n_planes = 1,
-                                          .planes = PLANE};
+                                          .n_obstacles = 2,
+                                          .obstacles = OBSTACLES,
+                                          .keys = KEYS};
 }
 
 static int remove_one(const char *path, const struct stat *status, int kind, struct FTW *place)

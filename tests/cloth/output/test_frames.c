@@ -30,8 +30,9 @@ START_TEST(comes_back)
     ck_assert_uint_eq(cache.mesh.n_vertices, SAMPLE_POINTS);
     ck_assert_uint_eq(cache.mesh.n_faces, sample.mesh[0].n_faces + 1);
     ck_assert_uint_eq(cache.mesh.n_lone_edges, 1);
-    ck_assert(cache.fps == 25 && cache.n_planes == 1 && cache.planes[0][1] == -0.1);
-    ck_assert_mem_eq(cache.planes[0], sample.setup.planes[0], sizeof cache.planes[0]);
+    ck_assert(cache.fps == 25 && cache.n_obstacles == 2 && cache.n_keys == 2);
+    ck_assert_mem_eq(cache.obstacles, sample.setup.obstacles, 2 * sizeof *cache.obstacles);
+    ck_assert_mem_eq(cache.keys, sample.setup.keys, 2 * sizeof *cache.keys);
     ck_assert_mem_eq(cache.mesh.position, sample.mesh[0].position, 12 * 3 * sizeof(double));
     for (uint64_t i = 3; i-- > 0;) {
         sample_positions(1, i, want);
@@ -226,6 +227,11 @@ START_TEST(makes_parents)
 }
 END_TEST
 
+#define MOVES(keys)                                                                                \
+    "{\"fps\": 25, \"obstacles\": [{\"sphere\": {\"centre\": [0, 0, 0], \"radius\": 1}, "          \
+    "\"about\": "                                                                                  \
+    "[0, 0, 0], \"keys\": [" keys "]}]}"
+
 /* A file of a folder, the place in it where other text is put, and what the refusal must say. */
 static const struct damage {
     const char *file;
@@ -242,12 +248,23 @@ static const struct damage {
     {"frames.csv", -1, "frame,time\n0,0\n1,nan\n", "frames.csv:3:"},
     {"frames.csv", -1, "frame,times\n0,0\n1,0\n", "frames.csv:1:"},
     {"scene.json", -1, "", "scene.json:1: expected '{'"},
-    {"scene.json", -1, "{\"fps\": 25,\n\"plane\": []}", "scene.json:2: expected \"planes\""},
-    {"scene.json", -1, "{\"fps\": inf, \"planes\": []}", "expected a number"},
-    {"scene.json", -1, "{\"fps\": 0x10, \"planes\": []}", "expected a number"},
-    {"scene.json", -1, "{\"fps\": 25, \"planes\": []} x", "expected the end"},
-    {"scene.json", -1, "{\"fps\": 25, \"planes\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 0]}]}",
-     "not zero"},
+    {"scene.json", -1, "{\"fps\": 25,\n\"planes\": []}", "scene.json:2: expected \"obstacles\""},
+    {"scene.json", -1, "{\"fps\": inf, \"obstacles\": []}", "expected a number"},
+    {"scene.json", -1, "{\"fps\": 0x10, \"obstacles\": []}", "expected a number"},
+    {"scene.json", -1, "{\"fps\": 25, \"obstacles\": []} x", "expected the end"},
+    {"scene.json", -1,
+     "{\"fps\": 25, \"obstacles\": [{\"plane\": {\"point\": [0, 0, 0], \"normal\": [0, 0, 0]}}]}",
+     "a normal that is not zero"},
+    {"scene.json", -1,
+     "{\"fps\": 25, \"obstacles\": [{\"sphere\": {\"centre\": [0, 0, 0], \"radius\": -1}}]}",
+     "a radius above zero"},
+    {"scene.json", -1, "{\"fps\": 25, \"obstacles\": [{\"cone\": {}}]}", "a kind of obstacle"},
+    {"scene.json", -1, MOVES("{\"time\": 0, \"translate\": [0, 0, 0], \"rotate\": [0, 0, 0, 0]}"),
+     "a rotate that is not zero"},
+    {"scene.json", -1,
+     MOVES("{\"time\": 1, \"translate\": [0, 0, 0], \"rotate\": [1, 0, 0, 0]}, {\"time\": 1, "
+           "\"translate\": [0, 0, 0], \"rotate\": [1, 0, 0, 0]}"),
+     "times in ascending order"},
     {"cloth.obj", -1, "v 0 0\n", "cloth.obj"},
 };
 

@@ -54,6 +54,38 @@ START_TEST(values_out_of_range)
 }
 END_TEST
 
+#define SPHERE "sphere: {centre: [0, -1, 0], radius: 0.5, motion: "
+START_TEST(obstacles)
+{
+    static const char plane[] = "plane: {point: [0, -1, 0], normal: [0, 3, 4]}";
+    EXPECT(
+        {plane, "sphere: {centre: [0, -1, 0], radius: 0}",
+         .error = ":11:51: obstacles[0].sphere.radius is 0; a finite number > 0 (m) is expected"},
+        {plane, "sphere: {centre: [0, -1, 0]}",
+         .error =
+             ":11:22: obstacles[0].sphere.radius is missing; a finite number > 0 (m) is expected"},
+        {plane, "sphere: {centre: [0, -1, 0], radius: 1, size: [1, 1, 1]}",
+         .error = ":11:54: size is not a key of obstacles[0].sphere; allowed: centre, ..."},
+        {plane, "box: {centre: [0, -1, 0], size: [1, -2, 1]}",
+         .error = ":11:50: obstacles[0].box.size[1] is -2; a finite number > 0 is expected"},
+        {plane, "box: {centre: [0, -1, 0], size: [1, 2, 1], rotate: [0, 0, 0, 0]}",
+         .error = ":11:65: the rotate of a box is zero; a quaternion [w, x, y, z] that is not is "
+                  "expected"},
+        {plane, "ball: {centre: [0, -1, 0], radius: 1}",
+         .error = ":11:14: ball is not a key of obstacles[0]; allowed: plane, ..."},
+        {plane, SPHERE "{times: [0, 1, 1], translate: [[0, 0, 0], [0, 1, 0], [0, 2, 0]]}}",
+         .error = ":11:79: motion.times[2] is 1, which does not come after 1, the one before it; "
+                  "times in ascending order are expected"},
+        {plane, SPHERE "{times: [0, 1], translate: [[0, 0, 0]]}}",
+         .error = ":11:91: translate of a motion has 1 entries, but there are 2 times; as many are "
+                  "expected"},
+        {plane, SPHERE "{times: [0], rotate: [[0, 0, 0, 0]]}}",
+         .error =
+             ":11:86: a rotation of a motion is zero; a quaternion [w, x, y, z] that is not is "
+             "expected"});
+}
+END_TEST
+
 START_TEST(triangles_out_of_range)
 {
     EXPECT(
@@ -423,6 +455,7 @@ int main(void)
     Suite *suite = suite_create("cloth errors");
     TCase *cases = tcase_create("errors");
     tcase_add_test(cases, values_out_of_range);
+    tcase_add_test(cases, obstacles);
     tcase_add_test(cases, triangles_out_of_range);
     tcase_add_test(cases, grids_larger_than_the_machine);
     tcase_add_test(cases, names_and_indices);

@@ -112,8 +112,8 @@ START_TEST(unknown_and_missing_keys)
            {"vertices: [11]", "vertex: [11]",
             .error = ":8:14: vertex is not a key of cloths[0].loads[0]; allowed: vertices, ..."},
            {"plane:", "plan:",
-            .error =
-                ":11:14: plan is not a key of obstacles[0]; did you mean 'plane'? Allowed: plane"},
+            .error = ":11:14: plan is not a key of obstacles[0]; did you mean 'plane'? "
+                     "Allowed: plane, ..."},
            {"end: 0.1", "fps: 1",
             .error = ":12:7: time.end is missing; a finite number > 0 (s) is expected"},
            {"schema: 1\n", "", .error = ":1:1: schema is missing; 1 is expected"},

@@ -55,6 +55,35 @@ START_TEST(world_and_time)
 }
 END_TEST
 
+/* Parameters in the order of their kind, directions and rotations made of length 1; keys of
+ * obstacles come before those of pins. */
+START_TEST(obstacles)
+{
+    struct model model = scene_read_set(
+        "obstacles=[{box: {centre: [1, 2, 3], size: [4, 5, 6], rotate: [3, 0, 4, 0]}}, {sphere: "
+        "{radius: 7, motion: {times: [1, 2], translate: [[1, 0, 0], [0, 0, 8]], about: [0, 9, 0]}, "
+        "centre: [1, 0, 0]}}]");
+    ck_assert_uint_eq(model.n_obstacles, 2);
+    const struct contact_shape *box = model.obstacles, *ball = model.obstacles + 1;
+    ck_assert_str_eq(contact_kinds[box->kind]->name, "box");
+    ck_assert_str_eq(contact_kinds[ball->kind]->name, "sphere");
+    same_vector(box->value, 1, 2, 3);
+    same_vector(box->value + 3, 4, 5, 6);
+    ck_assert_double_eq_tol(box->value[6], 0.6, 1e-15);
+    same_vector(box->value + 7, 0, box->value[8], 0);
+    ck_assert_double_eq_tol(box->value[8], 0.8, 1e-15);
+    ck_assert_uint_eq(box->n, 0);
+    same_vector(ball->value, 1, 0, 0);
+    ck_assert_double_eq(ball->value[3], 7);
+    same_vector(ball->about, 0, 9, 0);
+    ck_assert_uint_eq(ball->n, 2);
+    ck_assert_double_eq(model.keys[ball->first + 1].time, 2);
+    same_vector(model.keys[ball->first + 1].translate, 0, 0, 8);
+    ck_assert(model_obstacles_move(&model) && !model_is_driven(&model));
+    model_free(&model);
+}
+END_TEST
+
 START_TEST(cloth_and_material)
 {
     struct model model = scene_read_right(scene_right, 0, NULL);
@@ -380,6 +409,7 @@ int main(void)
     Suite *suite = suite_create("scene values");
     TCase *cases = tcase_create("values");
     tcase_add_test(cases, world_and_time);
+    tcase_add_test(cases, obstacles);
     tcase_add_test(cases, cloth_and_material);
     tcase_add_test(cases, named_fabrics);
     tcase_add_test(cases, mass_without_density);

@@ -12,10 +12,11 @@
 #include <unistd.h>
 
 enum { N = 12, WIDTH = 320, HEIGHT = 200 };
-static const double PLANE[1][6] = {{0, -0.3, 0, 0, 1, 0}};
+static const struct contact_shape PLANE = {.value = {0, -0.3, 0, 0, 1, 0}};
 
 static struct view_context *context;
 static struct view_scene *scene;
+static struct view_obstacles obstacles;
 static struct view_camera camera;
 static struct view_picture picture;
 static double position[3 * N * N];
@@ -43,15 +44,15 @@ static void make_sheet(void)
 static void draw(double elevation, size_t n_planes)
 {
     struct cloth_error error = {0};
+    ck_assert_int_eq(view_obstacles_make(&obstacles, n_planes, &PLANE, NULL, &error), 0);
     struct view_shape shape = {.n_vertices = N * N,
                                .n_triangles = 2 * (N - 1) * (N - 1),
                                .triangle = triangle,
-                               .n_planes = n_planes,
-                               .planes = PLANE};
+                               .obstacles = &obstacles};
     struct view_fit fit;
     view_fit_start(&fit, 30, elevation, (double)WIDTH / HEIGHT, 1);
     view_fit_add(&fit, N * N, position);
-    view_fit_planes(&fit, n_planes, PLANE);
+    view_fit_planes(&fit, n_planes, (const double(*)[6])obstacles.plane);
     view_fit_camera(&fit, &camera);
     ck_assert_msg(view_scene_new(&scene, &shape, &error) == 0, "%s", error.text);
     ck_assert_msg(view_scene_move(scene, position, &error) == 0, "%s", error.text);
@@ -70,6 +71,7 @@ static void end(void)
 {
     view_picture_free(&picture);
     view_scene_free(scene);
+    view_obstacles_free(&obstacles);
     view_context_close(context);
 }
 
@@ -191,6 +193,7 @@ START_TEST(front_and_back_differ)
         memcpy(seen[i], pixel((int)at[0], (int)at[1]), 3);
         view_picture_free(&picture);
         view_scene_free(scene);
+        view_obstacles_free(&obstacles);
         scene = NULL;
     }
     double hue[2] = {(double)seen[0][1] / seen[0][0], (double)seen[1][1] / seen[1][0]};

@@ -9,7 +9,7 @@ dir=$scratch/frames
 mkdir "$dir"
 printf 'o t\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > "$dir/cloth.obj"
 printf 'frame,time\n0,0\n1,0.04\n' > "$dir/frames.csv"
-printf '{"fps": 25, "planes": [{"point": [0, 0, 0], "normal": [0, 1, 0]}]}\n' > "$dir/scene.json"
+printf '{"fps": 25, "obstacles": [{"plane": {"point": [0, 0, 0], "normal": [0, 1, 0]}}]}\n' > "$dir/scene.json"
 one='\0\0\200\77' nil='\0\0\0\0'
 {
     printf 'POINTCACHE2\0\1\0\0\0\3\0\0\0\0\0\0\0\0\0\200\77\2\0\0\0'

@@ -1,0 +1,253 @@
+/* Obstacles that move, against closed forms: a row of masses that a floor, a ball or a box carries
+ * up, by each way of contact and each integrator; halved steps. */
+#include "tests/cloth/flow/models.h"
+#include "tests/support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MASSES = 4 };
+static const double MASS = 0.1, EA = 40, GAP = 0.5, SPEED = 0.25, G = 9.81;
+
+/* A plane, the top of a ball and the top of a box, all at y = 0. */
+static const struct contact_shape SHAPES[] = {
+    {.kind = 0, .value = {0, 0, 0, 0, 1, 0}},
+    {.kind = 1, .value = {0, -0.3, 0, 0.3}},
+    {.kind = 2, .value = {0, -0.2, 0, 1, 0.4, 1, 1, 0, 0, 0}},
+};
+enum { N_SHAPES = sizeof SHAPES / sizeof *SHAPES };
+
+struct row {
+    struct setup setup;
+    struct phys_key keys[2];
+};
+
+/* A row of masses upright on a shape, GAP apart at rest, joined by springs, on no pin. The shape
+ * rises with SPEED from time 0 on. */
+static void row_make(struct row *row, int shape)
+{
+    static const double vertices[3 * MASSES] = {0, 0, 0, 0, 0.5, 0, 0, 1, 0, 0, 1.5, 0};
+    static const uint32_t edges[] = {0, 1, 1, 2, 2, 3};
+    struct cloth_error error = {0};
+    struct setup *s = &row->setup;
+    setup_weight(s);
+    mesh_free(&s->cloth.mesh);
+    ck_assert_int_eq(
+        mesh_inline(&s->cloth.mesh, MASSES, vertices, MASSES - 1, edges, 0, NULL, &error), 0);
+    s->cloth.n_pins = 0;
+    s->cloth.mass_per_vertex = MASS;
+    s->material.ea = EA;
+    s->material.damping_stiffness = 0.05;
+    row->keys[0] = (struct phys_key){0, {0, 0, 0}, {1, 0, 0, 0}};
+    row->keys[1] = (struct phys_key){10, {0, 10 * SPEED, 0}, {1, 0, 0, 0}};
+    s->plane = SHAPES[shape];
+    s->plane.n = 2;
+    s->model.keys = row->keys;
+    s->model.n_keys = 2;
+    s->model.n_obstacles = 1;
+    s->model.grain = 1;
+    s->model.stop = MODEL_STOP_RELATIVE;
+    s->model.tolerance = 1e-12;
+    s->model.fps = 1 / s->model.h;
+}
+
+static double speed_of(const struct record *r, size_t frame, size_t vertex)
+{
+    const double moved = record_at(r, frame, vertex, 1) - record_at(r, frame - 1, vertex, 1);
+    return moved / (r->time[frame] - r->time[frame - 1]);
+}
+
+static void runs(struct record *record, const struct model *model)
+{
+    record_run(record, model);
+    ck_assert_msg(record->code == 0, "%s", record->error.text);
+}
+
+static const struct way {
+    enum model_contact contact;
+    enum model_integrator integrator;
+    double h;
+    double least, most; /* how much of its sinking in a step the lowest spring bears */
+} WAYS[] = {{MODEL_CONTACT_PROJECT, MODEL_IMPLICIT_EULER, 0.01, 1, 1},
+            {MODEL_CONTACT_FILTER, MODEL_IMPLICIT_EULER, 0.01, 0, 0},
+            {MODEL_CONTACT_PROJECT, MODEL_BDF2, 0.01, 1, 1},
+            {MODEL_CONTACT_PROJECT, MODEL_SYMPLECTIC_EULER, 0.001, 0, 0},
+            {MODEL_CONTACT_PROJECT, MODEL_VERLET, 0.001, 0, 1},
+            {MODEL_CONTACT_PROJECT, MODEL_RK4, 0.001, 0, 1}};
+enum { N_WAYS = sizeof WAYS / sizeof *WAYS };
+
+/* When the row has come to rest on the shape, it has its speed: momentum n m v. Spring i carries
+ * the weight of the masses above it, and the shape carries n m g. Where the solve does not know of
+ * contact, n m g lets the lowest mass sink by s = n g h^2 in each step before it is put back, and
+ * the spring above it carries (k + c / h) s more. */
+START_TEST(carries_a_row)
+{
+    const struct way *way = WAYS + _i / N_SHAPES;
+    struct row row;
+    struct record record = {0};
+    row_make(&row, _i % N_SHAPES);
+    struct model *model = &row.setup.model;
+    model->contact = way->contact;
+    model->integrator = way->integrator;
+    model->h = way->h;
+    model->end = 6;
+    model->fps = 10;
+    runs(&record, model);
+    const size_t last = record.frames - 1;
+    double momentum = 0, weight = 0;
+    for (size_t v = MASSES; v-- > 0;) {
+        momentum += MASS * speed_of(&record, last, v);
+        weight += MASS * G;
+        if (v == 0)
+            break;
+        const double pressed =
+            GAP - (record_at(&record, last, v, 1) - record_at(&record, last, v - 1, 1));
+        const double sinks = v == 1 ? MASSES * G * way->h * way->h : 0;
+        const double more = EA / GAP * (1 + row.setup.material.damping_stiffness / way->h) * sinks;
+        const double force = EA / GAP * pressed, slack = 1e-6 * weight;
+        ck_assert_double_ge(force, weight + way->least * more - slack);
+        ck_assert_double_le(force, weight + way->most * more + slack);
+    }
+    ck_assert_double_eq_tol(momentum, MASSES * MASS * SPEED, 1e-6);
+    /* It lies on the shape, less what a step falls before it is put back. */
+    ck_assert_double_eq_tol(record_at(&record, last, 0, 1), SPEED * record.time[last], 1e-9);
+    ck_assert_double_eq_tol(record_at(&record, last, 0, 0), 0, 1e-12);
+    record_free(&record);
+    setup_free(&row.setup);
+}
+END_TEST
+
+/* Without weight and springs the step in which the shape comes gives the lowest mass m v. */
+START_TEST(gives_momentum)
+{
+    for (int way = 0; way < 2; way++) {
+        struct row row;
+        struct record record = {0};
+        row_make(&row, _i);
+        struct model *model = &row.setup.model;
+        model->contact = way ? MODEL_CONTACT_FILTER : MODEL_CONTACT_PROJECT;
+        row.setup.material.ea = 1e-12;
+        row.setup.material.damping_stiffness = 0;
+        model->gravity[1] = 0;
+        /* It stands still for 4.5 steps: the velocity of a step is that of its chord. */
+        row.keys[0].time = 0.0045;
+        row.keys[1].time = 1.0045;
+        row.keys[1].translate[1] = SPEED;
+        model->end = 0.02;
+        runs(&record, model);
+        ck_assert_double_eq_tol(speed_of(&record, 4, 0), 0, 1e-9);
+        ck_assert_double_eq_tol(speed_of(&record, 5, 0), SPEED / 2, 1e-9);
+        for (size_t frame = 6; frame < record.frames; frame++)
+            ck_assert_double_eq_tol(MASS * speed_of(&record, frame, 0), MASS * SPEED, 1e-9);
+        ck_assert_double_eq_tol(speed_of(&record, record.frames - 1, 1), 0, 1e-9);
+        record_free(&record);
+        setup_free(&row.setup);
+    }
+}
+END_TEST
+
+/* A step that is given up and made in parts sees the shape where it is at the end of each part: the
+ * mass on it is exactly there at every time. */
+START_TEST(halved_steps_see_their_time)
+{
+    struct row row;
+    struct record record = {0};
+    row_make(&row, _i);
+    struct model *model = &row.setup.model;
+    model->contact = _i ? MODEL_CONTACT_FILTER : MODEL_CONTACT_PROJECT;
+    model->halving = true;
+    model->stretch_growth = 0.002;
+    setup_load(&row.setup, MASSES - 1, 0, 2, 0);
+    model->h = 0.01;
+    model->end = 0.2;
+    model->fps = 800; /* of parts too */
+    runs(&record, model);
+    ck_assert_uint_gt(record.report.steps_halved, 0);
+    for (size_t frame = 0; frame < record.frames; frame++) {
+        const double off = record_at(&record, frame, 0, 1) - SPEED * record.time[frame];
+        ck_assert_double_ge(off, -1e-12);
+    }
+    record_free(&record);
+    setup_free(&row.setup);
+}
+END_TEST
+
+/* What rests while a shape has yet to move does not end the run. */
+START_TEST(waits_for_a_shape)
+{
+    struct row row;
+    struct record record = {0};
+    row_make(&row, 0);
+    struct model *model = &row.setup.model;
+    row.keys[0].time = 0.2;
+    row.keys[1].time = 0.3;
+    row.keys[1].translate[1] = 0.1;
+    model->gravity[1] = 0;
+    model->end = 3;
+    model->fps = 100;
+    model->rest.speed = 1e-3;
+    model->rest.hold = 0.01;
+    row.setup.material.damping_viscous = 1;
+    runs(&record, model);
+    ck_assert_double_gt(record.report.rest_seconds, 0.3);
+    ck_assert_double_lt(record.report.rest_seconds, 3);
+    record_free(&record);
+    setup_free(&row.setup);
+}
+END_TEST
+
+/* A ball goes through where a sheet hangs: no vertex is in it, and the sheet is out of its way. */
+START_TEST(pushes_a_sheet)
+{
+    static struct phys_key keys[2] = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0, 0, 0.6}, {1, 0, 0, 0}}};
+    const double radius = 0.15;
+    struct setup s;
+    struct record record = {0};
+    setup_sheet(&s, 21); /* in the x-z plane: its weight hangs along x */
+    s.model.gravity[0] = -9.81;
+    s.model.gravity[1] = 0;
+    setup_pin(&s, 2, (const uint32_t[]){20, 440});
+    s.material.stretch = 500;
+    s.material.shear = 200;
+    s.plane = (struct contact_shape){.kind = 1, .value = {0, -0.2, 0, radius}, .n = 2};
+    keys[1].translate[1] = 0.5;
+    keys[1].translate[2] = 0;
+    s.model.keys = keys;
+    s.model.n_keys = 2;
+    s.model.n_obstacles = 1;
+    s.model.contact = _i ? MODEL_CONTACT_FILTER : MODEL_CONTACT_PROJECT;
+    s.model.h = 0.004;
+    s.model.fps = 25;
+    s.model.end = 0.8;
+    runs(&record, &s.model);
+    for (size_t frame = 1; frame < record.frames; frame++)
+        for (size_t v = 0; v < record.vertices; v++) {
+            double square = 0;
+            for (size_t c = 0; c < 3; c++) {
+                const double centre = c == 1 ? -0.2 + 0.5 * record.time[frame] : 0;
+                const double from = record_at(&record, frame, v, c) - centre;
+                square += from * from;
+            }
+            if (sqrt(square) < radius - 1e-9)
+                ck_abort_msg("frame %zu: vertex %zu is in the ball", frame, v);
+        }
+    const size_t middle = 220;
+    ck_assert_double_gt(record_at(&record, record.frames - 1, middle, 1), 0.3);
+    record_free(&record);
+    setup_free(&s);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("obstacles");
+    TCase *cases = tcase_create("obstacles");
+    tcase_set_timeout(cases, 120);
+    tcase_add_loop_test(cases, carries_a_row, 0, N_WAYS * N_SHAPES);
+    tcase_add_loop_test(cases, gives_momentum, 0, N_SHAPES);
+    tcase_add_loop_test(cases, halved_steps_see_their_time, 0, 2);
+    tcase_add_test(cases, waits_for_a_shape);
+    tcase_add_loop_test(cases, pushes_a_sheet, 0, 2);
+    suite_add_tcase(suite, cases);
+    return unit_run(suite);
+}

@@ -4,7 +4,8 @@
 
 enum { AT_ONCE = 32 }; /* points, whose room is on the stack */
 
-const struct contact_kind *const contact_kinds[] = {&contact_plane, &contact_sphere, &contact_box};
+const struct contact_kind *const contact_kinds[] = {&contact_plane, &contact_sphere, &contact_box,
+                                                    &contact_capsule};
 const uint32_t contact_n_kinds = sizeof contact_kinds / sizeof *contact_kinds;
 
 size_t contact_role_size(enum contact_role role)

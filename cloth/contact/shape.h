@@ -60,7 +60,7 @@ struct contact_kind {
      * from there. NULL: the shape has no bounds. */
     void (*around)(const double *value, struct phys_pose *axes, double half[3]);
 };
-extern const struct contact_kind contact_plane, contact_sphere, contact_box;
+extern const struct contact_kind contact_plane, contact_sphere, contact_box, contact_capsule;
 extern const struct contact_kind *const contact_kinds[];
 extern const uint32_t contact_n_kinds;
 

@@ -106,10 +106,20 @@ static const struct scene_rule box_keys[] = {
      .about = "about its centre: a quaternion [w, x, y, z]"},
     MOVES,
     {0}};
+static const struct scene_rule capsule_keys[] = {
+    {"from", SCENE_LIST, "m", .required = true, .length = 3, .inside = &number,
+     .about = "one end of the line in its middle"},
+    {"to", SCENE_LIST, "m", .required = true, .length = 3, .inside = &number,
+     .about = "the other end"},
+    {"radius", SCENE_NUMBER, "m", .required = true, .range = SCENE_POSITIVE,
+     .about = "around the line and its ends"},
+    MOVES,
+    {0}};
 static const struct scene_rule obstacle_kinds[] = {
     {"plane", SCENE_MAP, .inside = plane_keys, .about = "a floor or wall"},
     {"sphere", SCENE_MAP, .inside = sphere_keys, .about = "a ball"},
     {"box", SCENE_MAP, .inside = box_keys, .about = "a block"},
+    {"capsule", SCENE_MAP, .inside = capsule_keys, .about = "a rod with round ends"},
     {0}};
 static const struct scene_rule obstacle = {.type = SCENE_ONE_OF, .inside = obstacle_kinds};
 

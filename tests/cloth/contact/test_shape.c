@@ -92,6 +92,24 @@ static bool inside_box(const double *v, const phys_vec *x)
     return fabs(own[0]) <= v[3] / 2 && fabs(own[1]) <= v[4] / 2 && fabs(own[2]) <= v[5] / 2;
 }
 
+/* Nearer than the radius to some point of the line: sought for by halving three parts of it. */
+static bool inside_capsule(const double *v, const phys_vec *x)
+{
+    double low = 0, high = 1, square[2] = {0};
+    for (int i = 0; i < 60; i++) {
+        const double part[2] = {low + (high - low) / 3, high - (high - low) / 3};
+        for (int k = 0; k < 2; k++) {
+            square[k] = 0;
+            for (int c = 0; c < 3; c++) {
+                const double away = (*x)[c] - (1 - part[k]) * v[c] - part[k] * v[3 + c];
+                square[k] += away * away;
+            }
+        }
+        *(square[0] < square[1] ? &high : &low) = part[square[0] < square[1]];
+    }
+    return square[0] <= v[6] * v[6];
+}
+
 /* A point that is inside, too. */
 static const struct inside {
     const char *name;
@@ -99,7 +117,8 @@ static const struct inside {
     double deep[3]; /* weights of the first three vectors of parameters */
 } INSIDE[] = {{"plane", inside_plane, {1, -1, 0}},
               {"sphere", inside_sphere, {1, 0, 0}},
-              {"box", inside_box, {1, 0, 0}}};
+              {"box", inside_box, {1, 0, 0}},
+              {"capsule", inside_capsule, {0.5, 0.5, 0}}};
 
 static const struct inside *inside_of(uint32_t kind)
 {

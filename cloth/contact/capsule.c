@@ -1,0 +1,67 @@
+/* A capsule: all points within a radius of a line between two points. Where both ends are one it is
+ * a ball. */
+#include "cloth/contact/shape.h"
+
+#include <math.h>
+
+enum { FROM = 0, TO = 3, RADIUS = 6 };
+
+/* A direction across the axis, for points on it: all are as short a way out. */
+static void find_aside(const phys_vec *axis, phys_vec *aside)
+{
+    const double square = phys_dot(axis, axis);
+    int least = 0;
+    for (int c = 1; c < 3; c++)
+        least = fabs((*axis)[c]) < fabs((*axis)[least]) ? c : least;
+    *aside = (phys_vec){0};
+    (*aside)[least] = 1;
+    if (square > 0)
+        *aside -= (*axis)[least] / square * *axis;
+    *aside /= sqrt(phys_dot(aside, aside));
+}
+
+static void capsule_closest(const double *value, size_t n, const phys_vec *x,
+                            struct contact_hit *hit)
+{
+    const phys_vec from = {value[FROM], value[FROM + 1], value[FROM + 2], 0};
+    const phys_vec to = {value[TO], value[TO + 1], value[TO + 2], 0}, axis = to - from;
+    const double square = phys_dot(&axis, &axis);
+    phys_vec aside;
+    find_aside(&axis, &aside);
+    for (size_t i = 0; i < n; i++) {
+        phys_vec away = x[i] - from;
+        const double along = square > 0 ? phys_dot(&away, &axis) / square : 0;
+        away -= (along < 0 ? 0 : along > 1 ? 1 : along) * axis;
+        const double length = sqrt(phys_dot(&away, &away));
+        hit[i].gap = length - value[RADIUS];
+        hit[i].normal = length > 0 ? away / length : aside;
+    }
+}
+
+/* The shortest rotation that takes the x axis to the capsule's. */
+static void capsule_around(const double *value, struct phys_pose *axes, double half[3])
+{
+    struct phys_key middle = {.rotate = {1, 0, 0, 0}};
+    double along[3], square = 0;
+    for (int c = 0; c < 3; c++) {
+        middle.translate[c] = (value[FROM + c] + value[TO + c]) / 2;
+        along[c] = value[TO + c] - value[FROM + c];
+        square += along[c] * along[c];
+    }
+    const double length = sqrt(square);
+    if (along[0] > -length) {
+        middle.rotate[0] = length + along[0];
+        middle.rotate[2] = -along[2];
+        middle.rotate[3] = along[1];
+    }
+    phys_pose_at(1, &middle, (const double[3]){0}, 0, axes);
+    half[0] = length / 2 + value[RADIUS];
+    half[1] = half[2] = value[RADIUS];
+}
+
+static const struct contact_parameter parameters[] = {
+    {"from", CONTACT_POINT}, {"to", CONTACT_POINT}, {"radius", CONTACT_LENGTH}, {NULL, 0}};
+const struct contact_kind contact_capsule = {.name = "capsule",
+                                             .parameter = parameters,
+                                             .closest = capsule_closest,
+                                             .around = capsule_around};

@@ -52,10 +52,13 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/step/step.c \
     cloth/flow/step/step.h \
     cloth/flow/step/varying.c \
-    cloth/flow/integrators/explicit.c \
+    cloth/flow/integrators/euler.c \
+    cloth/flow/integrators/explicit.h \
     cloth/flow/integrators/implicit.c \
     cloth/flow/integrators/integrator.c \
     cloth/flow/integrators/integrator.h \
+    cloth/flow/integrators/runge.c \
+    cloth/flow/integrators/verlet.c \
     cloth/flow/solver/solve.h \
     cloth/flow/solver/solver.h \
     cloth/flow/solver/system.c \

@@ -9,27 +9,29 @@ struct flow_integrator {
     int (*begin)(struct flow_state *state);
     /* Forks the rest, which ends with the new x and v and their rims; contact comes after it. */
     int (*end)(struct flow_state *state);
+    /* Whether its steps leave the state before them as what is kept, then what makes that the state
+     * again; NULL: it is copied before a step. */
+    bool (*keeps)(const struct model *model);
+    void (*restore)(struct flow_state *state);
 };
 
 /* By enum model_integrator. */
 extern const struct flow_integrator flow_integrators[];
 
-/* Both ends of a step by implicit Euler or BDF2 (implicit.c), and by an explicit integrator
- * (explicit.c). They return what the runtime does. */
+/* Both ends of a step by implicit Euler or BDF2 (implicit.c), by either explicit Euler (euler.c),
+ * velocity Verlet (verlet.c), RK4 (runge.c). They return what the runtime does. */
 int flow_implicit_euler_begin(struct flow_state *state);
 int flow_implicit_euler_end(struct flow_state *state);
 int flow_bdf2_end(struct flow_state *state);
-int flow_explicit_euler_end(struct flow_state *state);
+int flow_euler_end(struct flow_state *state);
+bool flow_euler_keeps(const struct model *model);
+void flow_euler_restore(struct flow_state *state);
 int flow_verlet_begin(struct flow_state *state);
 int flow_verlet_end(struct flow_state *state);
 int flow_runge_end(struct flow_state *state);
 
-/* ---- Of explicit steps ---- */
-
-/* Whether its explicit steps leave the state before them as what is kept; then, what makes that the
- * state again. */
-bool flow_explicit_keeps(const struct model *model);
-void flow_explicit_restore(struct flow_state *state);
+/* Whether steps of a model do (keeps). Local. */
+bool flow_integrator_keeps(const struct model *model);
 
 /* ---- Of implicit steps ---- */
 

@@ -2,7 +2,7 @@
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 
-FLOW_KERNEL(stretch, FLOW_NO_PART, struct flow_args,
+FLOW_KERNEL(stretch, FLOW_NO_PART, struct flow_block_args,
             (R(table), R(x), MAX(stretch), NEIGHBOURS(rim_x)))
 static int stretch_body(const duite_call *call, const struct stretch_fields *on)
 {
@@ -21,7 +21,7 @@ static int stretch_body(const duite_call *call, const struct stretch_fields *on)
 
 int flow_stretch_fork(struct flow_state *state)
 {
-    struct flow_args args = {0};
+    struct flow_block_args args;
     const double nothing = 0;
     const int code =
         duite_set(state->rt, flow_field_object(state, FLOW_FIELD_stretch, 0), &nothing);

@@ -33,7 +33,7 @@
     /* before a step that may be given up */                                                       \
     X(kept_x,       ONE,     phys_vec,      4, rows,         kept,         is_work)                \
     X(kept_v,       ONE,     phys_vec,      4, rows,         kept,         is_work)                \
-    /* explicit integrators (explicit.c); v0: RK4's, or Verlet's of the half step */               \
+    /* explicit integrators (explicit.h); v0: RK4's, or Verlet's of the half step */               \
     X(spare_rim_x,  ONE,     phys_vec,      4, halo,         explicit_run, is_work)                \
     X(spare_rim_v,  ONE,     phys_vec,      4, halo,         explicit_run, is_work)                \
     X(v0,           ONE,     phys_vec,      4, rows,         staged,       is_work)                \

@@ -5,7 +5,8 @@
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/step/step.h"
 
-FLOW_KERNEL(initial, FLOW_NO_PART, struct flow_args, (R(table), W(x), W(v), W(rim_x), W(rim_v)))
+FLOW_KERNEL(initial, FLOW_NO_PART, struct flow_block_args,
+            (R(table), W(x), W(v), W(rim_x), W(rim_v)))
 static int initial_body(const duite_call *call, const struct initial_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -20,13 +21,13 @@ static int initial_body(const duite_call *call, const struct initial_fields *on)
 
 int flow_initialise(struct flow_state *state)
 {
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_block_args args;
     const int code = flow_fork_each(state, &flow_kernel_initial, &args);
     state->settled_forces = false;
     return code || model_is_filtered(state->flow->model) ? code : flow_coarse_initialise(state);
 }
 
-FLOW_KERNEL(keep, FLOW_POSITION, struct flow_args, (R(x), R(v), W(kept_x), W(kept_v)))
+FLOW_KERNEL(keep, FLOW_POSITION, struct flow_block_args, (R(x), R(v), W(kept_x), W(kept_v)))
 static int keep_body(const duite_call *call, const struct keep_fields *on)
 {
     memcpy(on->kept_x, on->x, duite_count(call, FLOW_INDEX_OF(keep, x)) * sizeof(double));
@@ -36,7 +37,7 @@ static int keep_body(const duite_call *call, const struct keep_fields *on)
 
 int flow_keep_as(struct flow_state *state, const struct flow_as *as)
 {
-    struct flow_args args = flow_attempt_args(state);
+    struct flow_block_args args;
     return flow_fork_each_as(state, &flow_kernel_keep, &args, as);
 }
 
@@ -45,7 +46,7 @@ int flow_keep(struct flow_state *state)
     return flow_keep_as(state, NULL);
 }
 
-FLOW_KERNEL(restore, FLOW_POSITION, struct flow_args,
+FLOW_KERNEL(restore, FLOW_POSITION, struct flow_block_args,
             (R(table), R(kept_x), R(kept_v), W(x), W(v), W(rim_x), W(rim_v)))
 static int restore_body(const duite_call *call, const struct restore_fields *on)
 {
@@ -59,9 +60,9 @@ static int restore_body(const duite_call *call, const struct restore_fields *on)
 
 int flow_restore(struct flow_state *state)
 {
-    struct flow_args args = flow_attempt_args(state);
-    if (!flow_explicit_keeps(state->flow->model))
+    struct flow_block_args args;
+    if (!flow_integrator_keeps(state->flow->model))
         return flow_fork_each(state, &flow_kernel_restore, &args);
-    flow_explicit_restore(state);
+    flow_integrators[state->flow->model->integrator].restore(state);
     return DUITE_OK;
 }

@@ -11,7 +11,12 @@
 /* A run as its main program sees it: arguments of tasks, what their sums are, and the state
  * itself. */
 
-/* Arguments of every kernel; those that a kernel does not name are zero. */
+/* Arguments of a kernel that needs its block alone. */
+struct flow_block_args {
+    uint32_t block;
+};
+
+/* Those of the other kernels; what a kernel does not name is zero. */
 struct flow_args {
     uint32_t block;
     uint32_t last; /* not zero: what goes wrong in this step is an error of its body; else it is

@@ -29,7 +29,7 @@ int flow_check(const duite_call *call, const struct flow_table *t, const phys_ve
         y[bad][2]);
 }
 
-FLOW_KERNEL(status, FLOW_NO_PART, struct flow_args, (SUM(status)))
+FLOW_KERNEL(status, FLOW_NO_PART, struct flow_block_args, (SUM(status)))
 static int status_body(const duite_call *call, const struct status_fields *on)
 {
     flow_note_stop(call, on->status);
@@ -39,7 +39,7 @@ static int status_body(const duite_call *call, const struct status_fields *on)
 /* On every rank, also one of no block. */
 int flow_status_fork(struct flow_state *state)
 {
-    const struct flow_args args = flow_attempt_args(state);
+    const struct flow_block_args args = {0};
     int code = DUITE_OK;
     for (int rank = 0; rank < duite_ranks(state->rt) && !code; rank++)
         code = flow_fork_at(state, rank, &flow_kernel_status, &args, NULL);

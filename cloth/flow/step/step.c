@@ -49,7 +49,7 @@ static bool keeps_first(const struct model *model)
 
 static bool keeps_late(const struct model *model)
 {
-    return model_keeps(model) && !flow_step_is_driven(model) && !flow_explicit_keeps(model);
+    return model_keeps(model) && !flow_step_is_driven(model) && !flow_integrator_keeps(model);
 }
 
 bool flow_step_is_driven(const struct model *model)

@@ -1,0 +1,56 @@
+/* Velocity Verlet. f, without the drag, stays from step to step: what ends one begins the next,
+ * unless contact or pins moved something in between, or the step was taken back. */
+#include "cloth/flow/integrators/explicit.h"
+
+int flow_verlet_begin(struct flow_state *state)
+{
+    struct flow_args args = flow_explicit_args(state, 0);
+    return state->settled_forces ? DUITE_OK : flow_fork_each(state, &flow_kernel_force_free, &args);
+}
+
+/* v becomes a guess of the velocity at the end of the step, for forces that depend on it. */
+FLOW_KERNEL(verlet_first, FLOW_POSITION, struct flow_args,
+            (R(table), RW(x), RW(v), R(f), W(v0), W(rim_x), W(rim_v), SUM(status)))
+static int verlet_first_body(const duite_call *call, const struct verlet_first_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const double h = on->args->h, half = 0.5 * h;
+    phys_kick(t->n, half, 1, t->mass, t->drag, t->free, on->f, on->v, on->v0);
+    flow_guides_keep(call, t, on->v, on->v0);
+    phys_kick(t->n, half, 0, t->mass, t->drag, t->free, on->f, on->v0, on->v);
+    flow_guides_keep(call, t, on->v0, on->v);
+    flow_write_rim(t, on->v, on->rim_v);
+    flow_part_ends(call, FLOW_VELOCITY);
+    phys_advance(t->n, h, on->v0, on->x);
+    flow_write_rim(t, on->x, on->rim_x);
+    return flow_check(call, t, on->x, "position", on->status);
+}
+
+FLOW_KERNEL(verlet_second, FLOW_VELOCITY, struct flow_args,
+            (R(table), R(x), RW(v), W(f), R(v0), W(spare_rim_v), SUM(status), NEIGHBOURS(rim_x),
+             NEIGHBOURS(rim_v)))
+static int verlet_second_body(const duite_call *call, const struct verlet_second_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const struct flow_view view = FLOW_VIEW(on);
+    flow_fetch_own(t, on->spare_rim_v);
+    flow_fetch_rims(t, &view);
+    flow_forces_free(call, t, &view, on->f);
+    flow_part_ends(call, FLOW_FORCE);
+    phys_kick(t->n, 0.5 * on->args->h, 0, t->mass, t->drag, t->free, on->f, on->v0, on->v);
+    flow_guides_keep(call, t, on->v0, on->v);
+    flow_write_rim(t, on->v, on->spare_rim_v);
+    return flow_check(call, t, on->v, "velocity", on->status);
+}
+
+int flow_verlet_end(struct flow_state *state)
+{
+    const struct model *model = state->flow->model;
+    struct flow_args args = flow_explicit_args(state, 1);
+    int code = flow_fork_each(state, &flow_kernel_verlet_first, &args);
+    if (!code)
+        code = flow_fork_each(state, &flow_kernel_verlet_second, &args);
+    flow_swap_rims_v(state);
+    state->settled_forces = !model->n_obstacles && !model_is_driven(model);
+    return code;
+}

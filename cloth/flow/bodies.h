@@ -140,7 +140,7 @@ static inline void flow_write_rim(const struct flow_table *table, const phys_vec
         rim[0] = (phys_vec){0};
 }
 
-/* A rim of the solve: three numbers a row; one, which nobody reads, if there are no rows. */
+/* A rim of the solve: three numbers a row; one row, which nobody reads, if there are none. */
 static inline void flow_pack_rim(const struct flow_table *t, const phys_vec *y, double *rim)
 {
     solve_pack(t->n_rim, t->rim, y, rim);

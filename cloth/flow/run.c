@@ -25,32 +25,8 @@ double flow_now(void)
 const duite_kernel *const *flow_kernels(void)
 {
 #define TASK(name) &flow_kernel_##name.task,
-    static const duite_kernel *const all[] = {FLOW_KERNELS(TASK)
-                                                  /* Without a preconditioner */
-                                                  & flow_tell_head,
-                                              &flow_tell_shared,
-                                              &flow_ready,
-                                              &flow_system_all,
-                                              &flow_system_rest,
-                                              &flow_matrix,
-                                              &flow_begin,
-                                              &flow_pack,
-                                              &flow_start,
-                                              &flow_guess,
-                                              &flow_pass,
-                                              &flow_scalars,
-                                              &flow_piece_sums,
-                                              &flow_piece_shift, /* With one */
-                                              &flow_basis,
-                                              &flow_basis_copies,
-                                              &flow_couple,
-                                              &flow_factor_coarse,
-                                              &flow_factor,
-                                              &flow_start_preconditioned,
-                                              &flow_begin_coarse,
-                                              &flow_pass_preconditioned,
-                                              &flow_scalars_coarse,
-                                              NULL};
+    static const duite_kernel *const all[] = {FLOW_KERNELS(TASK) & flow_tell_head,
+                                              &flow_tell_shared, &flow_ready, &flow_pack, NULL};
     return all;
 }
 

@@ -29,8 +29,7 @@ static int fork_force(struct flow_state *state, struct flow_args args)
 /* The matrix at x where f is the right side, and the solve's begin. */
 static int fork_system(struct flow_state *state, struct flow_args args)
 {
-    int code = flow_fork_all(state, &flow_matrix, args, FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(a)),
-                             FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_NO_RIM);
+    int code = flow_fork_each(state, &flow_kernel_matrix, &args);
     if (!code && model_is_filtered(state->flow->model))
         code = flow_contact_hold(state, args);
     return code ? code : flow_cg_start(state);
@@ -49,20 +48,16 @@ static int assemble_held(struct flow_state *state, struct flow_args args)
     if (!code)
         code = fork_filter(state, args);
     if (!code)
-        code = flow_fork_all(state, &flow_system_rest, args,
-                             FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f), FLOW_AT(a)),
-                             FLOW_NOTHING, FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+        code = flow_fork_each(state, &flow_kernel_system_of_forces, &args);
     return code ? code : flow_contact_hold(state, args);
 }
 
 int flow_assemble(struct flow_state *state)
 {
-    const struct flow_args args = flow_attempt_args(state);
+    struct flow_args args = flow_attempt_args(state);
     if (model_is_filtered(state->flow->model))
         return assemble_held(state, args);
-    return flow_fork_all(state, &flow_system_all, args,
-                         FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v), FLOW_AT(f), FLOW_AT(a)), FLOW_NOTHING,
-                         FLOW_RIM(rim_x), FLOW_RIM(rim_v));
+    return flow_fork_each(state, &flow_kernel_system, &args);
 }
 
 /* The system of a step of implicit Euler, and its solve's begin. */

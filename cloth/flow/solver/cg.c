@@ -24,27 +24,11 @@ static double guess_of(const struct flow_state *state)
     return wanted && state->guessed ? (double)state->attempt.length / state->guessed : 0;
 }
 
-/* Appends to refs what all passes of a round sum: their parts, or the sums. */
-static size_t add_sums(struct flow_state *state, int from, size_t n)
-{
-    if (!flow_is_preconditioned(state->flow)) {
-        state->refs[n++] = state->run.sums[from];
-        return n;
-    }
-    for (uint32_t b = 0; b < state->flow->tables.n_blocks; b++)
-        state->refs[n++] = state->block[b].part;
-    return n;
-}
-
 /* The scalars before the first pass, and the coarse part of s that it begins with. */
 static int fork_begin(struct flow_state *state, const struct flow_args *args)
 {
-    if (!flow_is_coarse(state->flow) || args->guess != 0)
-        return DUITE_FORK(state->rt, &flow_begin, args, state->run.scalars[0]);
-    state->refs[0] = state->run.scalars[0];
-    state->refs[1] = state->run.motion[0];
-    state->refs[2] = state->run.coarse;
-    return duite_fork(state->rt, &flow_begin_coarse, args, add_sums(state, 0, 3), state->refs);
+    const bool moves = flow_is_coarse(state->flow) && args->guess == 0;
+    return flow_fork_one(state, moves ? &flow_kernel_cg_begin_coarse : &flow_kernel_cg_begin, args);
 }
 
 int flow_cg_start(struct flow_state *state)
@@ -78,32 +62,30 @@ int flow_cg(struct flow_state *state)
 
 /* ---- Its recorded round ---- */
 
-static int fork_scalars(struct flow_state *state, int from)
+static int fork_scalars(struct flow_state *state)
 {
-    const bool coarse = flow_is_coarse(state->flow);
-    size_t n = 0;
-    state->refs[n++] = state->run.scalars[1 - from];
-    state->refs[n++] = state->run.scalars[from];
-    if (coarse) {
-        state->refs[n++] = state->run.motion[1 - from];
-        state->refs[n++] = state->run.coarse;
-    }
-    return duite_fork(state->rt, coarse ? &flow_scalars_coarse : &flow_scalars, NULL,
-                      add_sums(state, from, n), state->refs);
+    const struct flow_args args = {0};
+    const struct flow_kernel *kernel = &flow_kernel_cg_scalars;
+    if (flow_is_coarse(state->flow))
+        kernel = &flow_kernel_cg_scalars_coarse;
+    else if (flow_is_preconditioned(state->flow))
+        kernel = &flow_kernel_cg_scalars_of_parts;
+    return flow_fork_one(state, kernel, &args);
 }
 
 static int build(duite *rt, void *context)
 {
     struct flow_state *state = context;
     int code = DUITE_OK;
-    for (int from = 0; from < 2 && !code; from++) {
+    for (state->pass = 0; state->pass < 2 && !code; state->pass++) {
         if (!flow_is_preconditioned(state->flow))
-            code = duite_set(rt, state->run.sums[from], NULL);
+            code = duite_set(rt, state->run.sums[state->pass], NULL);
         if (!code)
-            code = flow_pass_fork(state, from);
+            code = flow_pass_fork(state);
         if (!code)
-            code = fork_scalars(state, from);
+            code = fork_scalars(state);
     }
+    state->pass = 0;
     return code;
 }
 
@@ -124,30 +106,21 @@ static struct solve_scalars scalars_before(const duite_call *call)
     return scalars;
 }
 
-static int begin(const duite_call *call)
+FLOW_KERNEL_WITH(cg_begin, FLOW_NO_PART, struct flow_args, (W(scalars)), .replicated = 1)
+static int cg_begin_body(const duite_call *call, const struct cg_begin_fields *on)
 {
-    *duite_out(call, 0, struct solve_scalars) = scalars_before(call);
+    *on->scalars = scalars_before(call);
     return 0;
 }
-const duite_kernel flow_begin = {.name = "cg_begin",
-                                 .body = begin,
-                                 .access = {DUITE_W},
-                                 .args_size = sizeof(struct flow_args),
-                                 .replicated = 1};
 
-static int begin_coarse(const duite_call *call)
+FLOW_KERNEL_WITH(cg_begin_coarse, FLOW_CG, struct flow_args,
+                 (W(scalars), W(motion), R(coarse), ALL(part)), .replicated = 1)
+static int cg_begin_coarse_body(const duite_call *call, const struct cg_begin_coarse_fields *on)
 {
-    *duite_out(call, 0, struct solve_scalars) = scalars_before(call);
-    flow_coarse_motion(call, duite_in(call, 2, double), 3, duite_out(call, 1, double));
+    *on->scalars = scalars_before(call);
+    flow_coarse_motion(flow_of(call), on->coarse, on->part, on->motion);
     return 0;
 }
-FLOW_TIMED(begin_coarse, FLOW_CG)
-const duite_kernel flow_begin_coarse = {.name = "cg_begin_coarse",
-                                        .body = begin_coarse_timed,
-                                        .access = {DUITE_W, DUITE_W, DUITE_R},
-                                        .variadic = DUITE_R,
-                                        .args_size = sizeof(struct flow_args),
-                                        .replicated = 1};
 
 static struct solve_stop stop_of(const struct model *model)
 {
@@ -201,12 +174,11 @@ static int broken_down(const duite_call *call, const struct solve_scalars *now)
 
 /* What solve_scalars_next makes of these dots under the model's stop, or its failure: of what is
  * the same on every rank, the model too. */
-static int next_scalars(const duite_call *call, const double dots[SOLVE_DOTS])
+static int next_scalars(const duite_call *call, const double dots[SOLVE_DOTS],
+                        const struct solve_scalars *before, struct solve_scalars *after)
 {
     const struct solve_stop stop = stop_of(flow_of(call)->model);
-    struct solve_scalars *after = duite_out(call, 0, struct solve_scalars);
-    const int outcome =
-        solve_scalars_next(&stop, dots, duite_in(call, 1, struct solve_scalars), after);
+    const int outcome = solve_scalars_next(&stop, dots, before, after);
     if (after->last == 0) /* the outcome goes on to the status of the step */
         return 0;
     if (outcome == SOLVE_NOT_CONVERGED)
@@ -216,47 +188,47 @@ static int next_scalars(const duite_call *call, const double dots[SOLVE_DOTS])
     return outcome == SOLVE_BREAKDOWN ? broken_down(call, after) : 0;
 }
 
-/* The dots of all blocks, of what parameters `from` on have. */
-static void add_dots(const duite_call *call, size_t from, double dots[SOLVE_DOTS])
-{
-    const size_t n = flow_dots(flow_of(call));
-    for (size_t k = from; k < call->n_params; k++) {
-        const double *part = duite_in(call, k, double);
-        for (size_t i = 0; i < n; i++)
-            dots[i] += part[i];
-    }
-    if (!flow_is_preconditioned(flow_of(call)))
-        dots[SOLVE_RZ] = dots[SOLVE_RR];
-}
-
-static int scalars(const duite_call *call)
+FLOW_KERNEL_WITH(cg_scalars, FLOW_CG, struct flow_args, (W(scalars_next), R(scalars), R(sums)),
+                 .replicated = 1)
+static int cg_scalars_body(const duite_call *call, const struct cg_scalars_fields *on)
 {
     double dots[SOLVE_DOTS] = {0};
-    add_dots(call, 2, dots);
-    return next_scalars(call, dots);
+    memcpy(dots, on->sums, flow_dots(flow_of(call)) * sizeof *dots);
+    dots[SOLVE_RZ] = dots[SOLVE_RR];
+    return next_scalars(call, dots, on->scalars, on->scalars_next);
 }
-FLOW_TIMED(scalars, FLOW_CG)
-const duite_kernel flow_scalars = {.name = "cg_scalars",
-                                   .body = scalars_timed,
-                                   .access = {DUITE_W, DUITE_R},
-                                   .variadic = DUITE_R,
-                                   .replicated = 1};
+
+/* The dots of all blocks. */
+static void add_parts(const struct flow *flow, const duite_param *part, double dots[SOLVE_DOTS])
+{
+    for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
+        for (int i = 0; i < SOLVE_DOTS; i++)
+            dots[i] += flow_numbers_of(part, b)[i];
+}
+
+FLOW_KERNEL_WITH(cg_scalars_of_parts, FLOW_CG, struct flow_args,
+                 (W(scalars_next), R(scalars), ALL(part)), .replicated = 1)
+static int cg_scalars_of_parts_body(const duite_call *call,
+                                    const struct cg_scalars_of_parts_fields *on)
+{
+    double dots[SOLVE_DOTS] = {0};
+    add_parts(flow_of(call), on->part, dots);
+    return next_scalars(call, dots, on->scalars, on->scalars_next);
+}
 
 /* With a coarse part: the motion that belongs to the q of the pass, if that made a new one. */
-static int scalars_coarse(const duite_call *call)
+FLOW_KERNEL_WITH(cg_scalars_coarse, FLOW_CG, struct flow_args,
+                 (W(scalars_next), R(scalars), W(motion_next), R(coarse), ALL(part)),
+                 .replicated = 1)
+static int cg_scalars_coarse_body(const duite_call *call, const struct cg_scalars_coarse_fields *on)
 {
-    const double phase = duite_in(call, 1, struct solve_scalars)->phase;
-    double dots[SOLVE_DOTS] = {0}, *motion = duite_out(call, 2, double);
-    add_dots(call, 4, dots);
+    const struct flow *flow = flow_of(call);
+    const double phase = on->scalars->phase;
+    double dots[SOLVE_DOTS] = {0};
+    add_parts(flow, on->part, dots);
     if (phase == SOLVE_ON || phase == SOLVE_AGAIN)
-        dots[SOLVE_QQ] += flow_coarse_motion(call, duite_in(call, 3, double), 4, motion);
+        dots[SOLVE_QQ] += flow_coarse_motion(flow, on->coarse, on->part, on->motion_next);
     else
-        memset(motion, 0, flow_motion_doubles(flow_of(call)) * sizeof *motion);
-    return next_scalars(call, dots);
+        memset(on->motion_next, 0, flow_motion_doubles(flow) * sizeof *on->motion_next);
+    return next_scalars(call, dots, on->scalars, on->scalars_next);
 }
-FLOW_TIMED(scalars_coarse, FLOW_CG)
-const duite_kernel flow_scalars_coarse = {.name = "cg_scalars_coarse",
-                                          .body = scalars_coarse_timed,
-                                          .access = {DUITE_W, DUITE_R, DUITE_W, DUITE_R},
-                                          .variadic = DUITE_R,
-                                          .replicated = 1};

@@ -100,60 +100,43 @@ void flow_coarse_free(struct flow *flow)
 
 /* ---- The space P ---- */
 
-static int basis(const duite_call *call)
+FLOW_KERNEL(basis, FLOW_NO_PART, struct flow_args,
+            (R(table), W(basis), W(rim_basis), IF_MADE(filter)))
+static int basis_body(const duite_call *call, const struct basis_fields *on)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    phys_vec *rows = duite_out(call, 1, phys_vec);
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct solve_patches patches = solve_patches_of(t->n, flow_of(call)->patches);
     for (uint32_t k = 0; k < patches.n; k++) {
         const uint32_t from = patches.start[k], n = patches.start[k + 1] - from;
-        solve_basis(n, t->free + from, t->position + from, rows + from);
+        solve_basis(n, t->free + from, t->position + from, on->basis + from);
     }
-    if (call->n_params > 3)
-        solve_basis_filter(t->n, duite_in(call, 3, phys_vec), rows);
-    flow_write_rim(t, rows, duite_out(call, 2, phys_vec));
+    if (on->filter)
+        solve_basis_filter(t->n, on->filter, on->basis);
+    flow_write_rim(t, on->basis, on->rim_basis);
     return 0;
 }
-const duite_kernel flow_basis = {.name = "basis",
-                                 .body = basis,
-                                 .access = {DUITE_R, DUITE_W, DUITE_W},
-                                 .variadic = DUITE_R,
-                                 .args_size = sizeof(struct flow_args)};
 
-static int basis_copies(const duite_call *call)
+FLOW_KERNEL(basis_copies, FLOW_NO_PART, struct flow_args,
+            (R(table), W(basis_copies), NEIGHBOURS(rim_basis)))
+static int basis_copies_body(const duite_call *call, const struct basis_copies_fields *on)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    phys_vec *copy = duite_out(call, 1, phys_vec);
-    copy[0] = (phys_vec){0};
+    const struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    on->basis_copies[0] = (phys_vec){0};
     for (uint32_t s = 0; s < t->n_slots; s++) {
-        const phys_vec *rim = duite_in(call, 2 + s, phys_vec);
+        const phys_vec *rim = flow_rows_of(on->rim_basis, s);
         for (uint32_t i = t->copies[s]; i < t->copies[s + 1]; i++)
-            copy[i] = rim[t->copy[i]];
+            on->basis_copies[i] = rim[t->copy[i]];
     }
     return 0;
 }
-const duite_kernel flow_basis_copies = {.name = "basis_copies",
-                                        .body = basis_copies,
-                                        .access = {DUITE_R, DUITE_W},
-                                        .variadic = DUITE_R,
-                                        .args_size = sizeof(struct flow_args)};
 
 int flow_coarse_initialise(struct flow_state *state)
 {
     struct flow_args args = {0};
-    const uint32_t n = flow_is_coarse(state->flow) ? state->flow->tables.n_blocks : 0;
-    const size_t objects = model_is_filtered(state->flow->model) ? 3 : 2;
-    int code = DUITE_OK;
-    for (; args.block < n && !code; args.block++) {
-        const struct flow_objects *o = state->block + args.block;
-        code = flow_fork(state, &flow_basis, &args, objects,
-                         (duite_object[]){o->basis, o->rim_basis, o->filter}, FLOW_NO_RIM,
-                         FLOW_NO_RIM);
-    }
-    for (args.block = 0; args.block < n && !code; args.block++)
-        code = flow_fork(state, &flow_basis_copies, &args, 1,
-                         &state->block[args.block].basis_copies, FLOW_RIM(rim_basis), FLOW_NO_RIM);
-    return code;
+    if (!flow_is_coarse(state->flow))
+        return DUITE_OK;
+    const int code = flow_fork_each(state, &flow_kernel_basis, &args);
+    return code ? code : flow_fork_each(state, &flow_kernel_basis_copies, &args);
 }
 
 /* ---- The matrix C and its factor ---- */
@@ -186,74 +169,54 @@ static struct solve_patches patches_of_slot(const struct flow *flow, const struc
     return patches;
 }
 
-static int couple(const duite_call *call)
+FLOW_KERNEL(couple, FLOW_CG, struct flow_args,
+            (R(table), R(a), R(basis), R(basis_copies), W(coupling)))
+static int couple_body(const duite_call *call, const struct couple_fields *on)
 {
     const struct flow *flow = flow_of(call);
-    struct flow_table table = flow_table_of(call), *t = &table;
-    const phys_vec *values = flow_open_matrix(call, t, 1);
-    const phys_vec *rows = duite_in(call, 2, phys_vec), *copies = duite_in(call, 3, phys_vec);
-    double *coupling = duite_out(call, 4, double);
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const phys_vec *values = flow_matrix_in(call, t, on->a);
     const struct solve_patches patches = solve_patches_of(t->n, flow->patches);
-    const uint32_t block = flow_args_of(call)->block, first = patches.n * block;
+    const uint32_t block = on->args->block, first = patches.n * block;
     struct solve_couplings own, beside;
-    solve_couple_patches(&t->matrix, &patches, values, rows, &own);
+    solve_couple_patches(&t->matrix, &patches, values, on->basis, &own);
     for (uint32_t s = 0; s < t->n_slots; s++) {
         const uint32_t from = t->cut_entry[s], n = t->cut_entry[s + 1] - from;
         const struct solve_patches others = patches_of_slot(flow, t, s);
         solve_couple_patches_cut(&t->matrix, &patches, values, t->matrix.row[t->n] + from, n,
-                                 t->copy_end + from, rows, copies, &others, &own, &beside);
+                                 t->copy_end + from, on->basis, on->basis_copies, &others, &own,
+                                 &beside);
         for (uint32_t k = 0; k < patches.n && t->slot[s] > block; k++)
             for (uint32_t l = 0; l < patches.n; l++)
-                put(flow, first + k, patches.n * t->slot[s] + l, beside.matrix[k][l], coupling);
+                put(flow, first + k, patches.n * t->slot[s] + l, beside.matrix[k][l], on->coupling);
     }
     for (uint32_t k = 0; k < patches.n; k++)
         for (uint32_t l = k; l < patches.n; l++)
-            put(flow, first + k, first + l, own.matrix[k][l], coupling);
+            put(flow, first + k, first + l, own.matrix[k][l], on->coupling);
     return 0;
 }
-FLOW_TIMED(couple, FLOW_CG)
-const duite_kernel flow_couple = {.name = "couple",
-                                  .body = couple_timed,
-                                  .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_W},
-                                  .args_size = sizeof(struct flow_args)};
 
-static int factor_coarse(const duite_call *call)
+FLOW_KERNEL_WITH(factor_coarse, FLOW_CG, struct flow_args, (W(coarse), ALL(coupling)),
+                 .replicated = 1)
+static int factor_coarse_body(const duite_call *call, const struct factor_coarse_fields *on)
 {
     const struct flow *flow = flow_of(call);
-    double *factor = duite_out(call, 0, double);
-    solve_coarse_clear(&flow->pattern, factor);
+    solve_coarse_clear(&flow->pattern, on->coarse);
     for (uint32_t p = 0; p < flow->pattern.n; p++)
         solve_coarse_fill(&flow->pattern, flow->first_beside, flow->beside, p,
-                          duite_in(call, 1 + p / flow->patches, double) +
+                          flow_numbers_of(on->coupling, p / flow->patches) +
                               SOLVE_COUPLING * flow_coupling_at(flow, p, p),
-                          factor);
-    solve_coarse_factor(&flow->pattern, factor);
+                          on->coarse);
+    solve_coarse_factor(&flow->pattern, on->coarse);
     return 0;
 }
-FLOW_TIMED(factor_coarse, FLOW_CG)
-const duite_kernel flow_factor_coarse = {.name = "factor_coarse",
-                                         .body = factor_coarse_timed,
-                                         .access = {DUITE_W},
-                                         .variadic = DUITE_R,
-                                         .args_size = sizeof(struct flow_args),
-                                         .replicated = 1};
 
 /* The factor is on its way while blocks factorise theirs. */
 static int fork_factor(struct flow_state *state, struct flow_args args)
 {
-    const uint32_t n = state->flow->tables.n_blocks;
-    int code = DUITE_OK;
-    for (; args.block < n && !code; args.block++) {
-        const struct flow_objects *o = state->block + args.block;
-        const duite_object objects[] = {o->a, o->basis, o->basis_copies, o->coupling};
-        code = flow_fork(state, &flow_couple, &args, 4, objects, FLOW_NO_RIM, FLOW_NO_RIM);
-    }
+    const int code = flow_fork_each(state, &flow_kernel_couple, &args);
     args.block = 0;
-    state->refs[0] = state->run.coarse;
-    for (uint32_t b = 0; b < n; b++)
-        state->refs[1 + b] = state->block[b].coupling;
-    return code ? code
-                : duite_fork(state->rt, &flow_factor_coarse, &args, 1 + (size_t)n, state->refs);
+    return code ? code : flow_fork_one(state, &flow_kernel_factor_coarse, &args);
 }
 
 int flow_coarse_start(struct flow_state *state, struct flow_args args)
@@ -311,25 +274,24 @@ void flow_coarse_advance_copies(const struct flow_preconditioner *m, uint32_t sl
 
 /* ---- In the task of the scalars ---- */
 
-/* The right side of a patch, of the parts that begin at parameter `from`. */
-static const double *right_of(const duite_call *call, size_t from, uint32_t patch)
+/* The right side of a patch. */
+static const double *right_of(const struct flow *flow, const duite_param *part, uint32_t patch)
 {
-    const uint32_t patches = flow_of(call)->patches;
-    const double *part = duite_in(call, from + patch / patches, double);
-    return part + FLOW_PART_COARSE + SOLVE_COARSE * (patch % patches);
+    const double *all = flow_numbers_of(part, patch / flow->patches) + FLOW_PART_COARSE;
+    return all + SOLVE_COARSE * (patch % flow->patches);
 }
 
-double flow_coarse_motion(const duite_call *call, const double *factor, size_t from, double *motion)
+double flow_coarse_motion(const struct flow *flow, const double *factor, const duite_param *part,
+                          double *motion)
 {
-    const struct flow *flow = flow_of(call);
     double sum = 0;
     memset(motion, 0, flow_motion_doubles(flow) * sizeof *motion);
     for (uint32_t p = 0; p < flow->pattern.n; p++)
-        memcpy(motion + solve_coarse_at(&flow->pattern, p), right_of(call, from, p),
+        memcpy(motion + solve_coarse_at(&flow->pattern, p), right_of(flow, part, p),
                SOLVE_COARSE * sizeof *motion);
     solve_coarse_solve(&flow->pattern, factor, motion);
     for (uint32_t p = 0; p < flow->pattern.n; p++) {
-        const double *right = right_of(call, from, p);
+        const double *right = right_of(flow, part, p);
         const double *x = motion + solve_coarse_at(&flow->pattern, p);
         for (int i = 0; i < SOLVE_COARSE; i++)
             sum += right[i] * x[i];

@@ -4,17 +4,13 @@
  * What a pass sums is its part: without a preconditioner a contribution to the sums of all blocks;
  * with one the block's own, with the coarse right side P' q behind the dots.
  *
- * In reading order: what a solve begins with, a pass by its phases, the forks of both. */
+ * In reading order: what a solve begins with, a pass by its phases, its kernels, the forks. */
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/solver/solver.h"
 
 #include <string.h>
 
-/* Parameters of a pass. A preconditioner has three more; then come the neighbours' rims of s, and
- * behind them, with a coarse part, its basis, that of the copies, and motion. */
-enum { SCALARS = 1, A, B, DV, R, P, Q, COPIES, RIM, PART, PLAIN, Z = PLAIN, S, FACTOR, ALL };
-enum { BASIS, BASIS_COPIES, MOTION };
-
+/* A pass as its phases see it, of fields of the kernels below. */
 struct pass {
     const duite_call *call;
     struct flow_table table; /* with the matrix of the step */
@@ -24,19 +20,9 @@ struct pass {
     struct solve_rows rows;
     phys_vec *z_copies, *p_copies;
     double *rim, *part;
-    size_t neighbours; /* parameters from here on */
+    const duite_param *rims; /* of the neighbours */
     struct flow_preconditioner m;
 };
-
-/* The block of a pass, with no preconditioner so far. */
-static void open_block(const duite_call *call, struct pass *pass)
-{
-    pass->call = call;
-    pass->table = *flow_shape_of(call);
-    flow_table_open(&pass->table, call->param[0].data);
-    pass->m = (struct flow_preconditioner){
-        .flow = flow_of(call), .table = &pass->table, .block = flow_args_of(call)->block};
-}
 
 /* Shows the neighbours s of the new q, and sums what a preconditioner leaves of that. */
 static void show_product(struct pass *pass, double dots[SOLVE_DOTS])
@@ -50,113 +36,72 @@ static void show_product(struct pass *pass, double dots[SOLVE_DOTS])
 
 /* ---- What a solve begins with ---- */
 
-/* Parameters; a preconditioner has four more, a coarse part its basis. */
-enum { START_B = 1, START_DV, START_COPIES = START_DV + 4, START_RIM, START_PART };
-enum { START_Z = START_PART + 1, START_S, START_FACTOR, START_BASIS };
-
-static void open_start(const duite_call *call, struct pass *pass)
+/* Its vectors, and what neighbours read of them. */
+static void begin(struct pass *pass, double *copies, size_t n_copies)
 {
-    phys_vec *vector[4];
-    for (size_t i = 0; i < 4; i++)
-        vector[i] = duite_out(call, START_DV + i, phys_vec);
-    open_block(call, pass);
-    pass->rows = solve_rows_plain(vector[0], vector[1], vector[2], vector[3]);
-    pass->b = duite_in(call, START_B, phys_vec);
-    pass->z_copies = duite_out(call, START_COPIES, phys_vec);
-    pass->rim = duite_out(call, START_RIM, double);
-    if (!flow_is_preconditioned(flow_of(call)))
-        return;
-    pass->part = duite_out(call, START_PART, double);
-    pass->rows.z = duite_out(call, START_Z, phys_vec);
-    pass->rows.s = duite_out(call, START_S, phys_vec);
-    pass->m.factor = duite_in(call, START_FACTOR, double);
-    if (flow_is_coarse(flow_of(call)))
-        pass->m.basis = duite_in(call, START_BASIS, phys_vec);
+    const struct flow_table *t = &pass->table;
+    const struct solve_rows *rows = &pass->rows;
+    double dots[SOLVE_DOTS] = {0};
+    solve_start(t->n, t->free, pass->b, rows->dv, rows->r, rows->p, rows->q);
+    memset(copies, 0, n_copies * sizeof *copies);
+    if (pass->m.factor) {
+        memset(rows->z, 0, t->n * sizeof *rows->z);
+        memset(pass->part, 0, flow_part_doubles(flow_of(pass->call)) * sizeof *pass->part);
+    }
+    show_product(pass, dots);
+    if (pass->m.factor)
+        memcpy(pass->part, dots, sizeof dots);
 }
 
-static int start(const duite_call *call)
+FLOW_KERNEL(cg_start, FLOW_CG, struct flow_args,
+            (R(table), R(f), W(dv), W(r), W(p), W(q), W(copies), W(rim_q)))
+static int cg_start_body(const duite_call *call, const struct cg_start_fields *on)
 {
-    struct pass pass;
-    open_start(call, &pass);
-    const struct flow_table *t = &pass.table;
-    const struct solve_rows *rows = &pass.rows;
-    double dots[SOLVE_DOTS] = {0};
-    solve_start(t->n, t->free, pass.b, rows->dv, rows->r, rows->p, rows->q);
-    memset(pass.z_copies, 0, duite_count(call, START_COPIES) * sizeof(double));
-    if (pass.m.factor) {
-        memset(rows->z, 0, t->n * sizeof *rows->z);
-        memset(pass.part, 0, flow_part_doubles(flow_of(call)) * sizeof *pass.part);
-    }
-    show_product(&pass, dots);
-    if (pass.m.factor)
-        memcpy(pass.part, dots, sizeof dots);
+    struct pass pass = {.call = call,
+                        .table = flow_table_in(call, on->table),
+                        .b = on->f,
+                        .rows = solve_rows_plain(on->dv, on->r, on->p, on->q),
+                        .rim = on->rim_q};
+    begin(&pass, (double *)on->copies, duite_count(call, FLOW_INDEX_OF(cg_start, copies)));
     return 0;
 }
-FLOW_TIMED(start, FLOW_CG)
-const duite_kernel flow_start = {
-    .name = "cg_start",
-    .body = start_timed,
-    .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W, DUITE_W},
-    .args_size = sizeof(struct flow_args)};
-const duite_kernel flow_start_preconditioned = {.name = "cg_start_preconditioned",
-                                                .body = start_timed,
-                                                .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_W,
-                                                           DUITE_W, DUITE_W, DUITE_W, DUITE_W,
-                                                           DUITE_W, DUITE_W, DUITE_W, DUITE_R},
-                                                .variadic = DUITE_R,
-                                                .args_size = sizeof(struct flow_args)};
+
+FLOW_KERNEL(cg_start_preconditioned, FLOW_CG, struct flow_args,
+            (R(table), R(f), W(dv), W(r), W(p), W(q), W(copies), W(rim_q), W(part), W(z), W(s),
+             R(factor), IF_MADE(basis)))
+static int cg_start_preconditioned_body(const duite_call *call,
+                                        const struct cg_start_preconditioned_fields *on)
+{
+    struct pass pass = {.call = call,
+                        .table = flow_table_in(call, on->table),
+                        .b = on->f,
+                        .rows = {on->dv, on->r, on->p, on->q, on->z, on->s},
+                        .rim = on->rim_q,
+                        .part = on->part,
+                        .m = {.flow = flow_of(call),
+                              .block = on->args->block,
+                              .factor = on->factor,
+                              .basis = on->basis}};
+    pass.m.table = &pass.table;
+    begin(&pass, (double *)on->copies,
+          duite_count(call, FLOW_INDEX_OF(cg_start_preconditioned, copies)));
+    return 0;
+}
 
 /* With a guess: the first pass multiplies by it, and a later one begins again. */
-static int guess(const duite_call *call)
+FLOW_KERNEL(cg_guess, FLOW_CG, struct flow_args,
+            (R(table), R(f), R(a), RW(dv), W(r), W(p), W(q), W(rim_q)))
+static int cg_guess_body(const duite_call *call, const struct cg_guess_fields *on)
 {
-    struct flow_table table = flow_table_of(call), *t = &table;
-    phys_vec *dv = duite_out(call, 3, phys_vec);
-    flow_open_matrix(call, t, 2);
-    solve_start_guess(t->n, t->free, t->matrix.filter, duite_in(call, 1, phys_vec),
-                      flow_args_of(call)->guess, dv, duite_out(call, 4, phys_vec),
-                      duite_out(call, 5, phys_vec), duite_out(call, 6, phys_vec));
-    flow_pack_rim(t, dv, duite_out(call, 7, double));
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    flow_matrix_in(call, t, on->a);
+    solve_start_guess(t->n, t->free, t->matrix.filter, on->f, on->args->guess, on->dv, on->r, on->p,
+                      on->q);
+    flow_pack_rim(t, on->dv, on->rim_q);
     return 0;
 }
-FLOW_TIMED(guess, FLOW_CG)
-const duite_kernel flow_guess = {
-    .name = "cg_guess",
-    .body = guess_timed,
-    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W, DUITE_W, DUITE_W, DUITE_W},
-    .args_size = sizeof(struct flow_args)};
 
 /* ---- A pass, by its phases ---- */
-
-static void open_preconditioner(const duite_call *call, struct pass *pass)
-{
-    pass->neighbours = ALL;
-    pass->rows.z = duite_out(call, Z, phys_vec);
-    pass->rows.s = duite_out(call, S, phys_vec);
-    pass->m.factor = duite_in(call, FACTOR, double);
-    if (!flow_is_coarse(flow_of(call)))
-        return;
-    const size_t coarse = ALL + pass->table.n_slots;
-    pass->m.basis = duite_in(call, coarse + BASIS, phys_vec);
-    pass->m.basis_copies = duite_in(call, coarse + BASIS_COPIES, phys_vec);
-    pass->m.motion = duite_in(call, coarse + MOTION, double);
-}
-
-static void open_pass(const duite_call *call, struct pass *pass)
-{
-    open_block(call, pass);
-    pass->scalars = duite_in(call, SCALARS, struct solve_scalars);
-    pass->values = flow_open_matrix(call, &pass->table, A);
-    pass->b = duite_in(call, B, phys_vec);
-    pass->rows = solve_rows_plain(duite_out(call, DV, phys_vec), duite_out(call, R, phys_vec),
-                                  duite_out(call, P, phys_vec), duite_out(call, Q, phys_vec));
-    pass->z_copies = duite_out(call, COPIES, phys_vec);
-    pass->p_copies = pass->z_copies + pass->table.n_copies;
-    pass->rim = duite_out(call, RIM, double);
-    pass->part = duite_out(call, PART, double);
-    pass->neighbours = PLAIN;
-    if (flow_is_preconditioned(flow_of(call)))
-        open_preconditioner(call, pass);
-}
 
 /* Where copies of slot s are in what this block reads of the neighbour. */
 static const uint32_t *places_of(const struct pass *pass, uint32_t s)
@@ -168,7 +113,7 @@ static const uint32_t *places_of(const struct pass *pass, uint32_t s)
 
 static const double *rim_of(const struct pass *pass, uint32_t s)
 {
-    return duite_in(pass->call, pass->neighbours + s, double);
+    return flow_numbers_of(pass->rims, s);
 }
 
 /* The first half of a pass for the copies: they change as the rows of their owners do. */
@@ -249,112 +194,126 @@ static void begin_again(struct pass *pass, double dots[SOLVE_DOTS])
     show_product(pass, dots);
 }
 
-static int pass(const duite_call *call)
+static void run_phase(struct pass *pass)
 {
-    struct pass pass;
-    open_pass(call, &pass);
-    const double phase = pass.scalars->phase;
+    const double phase = pass->scalars->phase;
     double dots[SOLVE_DOTS] = {0};
     if (phase == SOLVE_ON)
-        iterate(&pass, dots);
+        iterate(pass, dots);
     else if (phase == SOLVE_LAST)
-        dots[SOLVE_RR] = finish(&pass);
+        dots[SOLVE_RR] = finish(pass);
     else if (phase == SOLVE_SHOW)
-        flow_pack_rim(&pass.table, pass.rows.dv, pass.rim);
+        flow_pack_rim(&pass->table, pass->rows.dv, pass->rim);
     else if (phase == SOLVE_CHECK || phase == SOLVE_OPEN)
-        multiply(&pass, dots);
+        multiply(pass, dots);
     else if (phase == SOLVE_AGAIN)
-        begin_again(&pass, dots);
-    memcpy(pass.part, dots, flow_dots(flow_of(call)) * sizeof *dots);
+        begin_again(pass, dots);
+    memcpy(pass->part, dots, flow_dots(flow_of(pass->call)) * sizeof *dots);
+}
+
+/* ---- Its kernels ---- */
+
+FLOW_KERNEL(cg_pass, FLOW_CG, struct flow_args,
+            (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(copies),
+             RW(rim_q_next), SUM(sums), NEIGHBOURS(rim_q)))
+
+static void open_pass(const duite_call *call, const struct cg_pass_fields *on, struct pass *pass)
+{
+    pass->call = call;
+    pass->table = *flow_shape_of(call);
+    flow_table_open(&pass->table, on->table);
+    pass->scalars = on->scalars;
+    pass->values = flow_matrix_in(call, &pass->table, on->a);
+    pass->b = on->f;
+    pass->rows = solve_rows_plain(on->dv, on->r, on->p, on->q);
+    pass->z_copies = on->copies;
+    pass->p_copies = on->copies + pass->table.n_copies;
+    pass->rim = on->rim_q_next;
+    pass->part = on->sums;
+    pass->rims = on->rim_q;
+    pass->m = (struct flow_preconditioner){
+        .flow = flow_of(call), .table = &pass->table, .block = on->args->block};
+}
+
+static int cg_pass_body(const duite_call *call, const struct cg_pass_fields *on)
+{
+    struct pass pass;
+    open_pass(call, on, &pass);
+    run_phase(&pass);
     return 0;
 }
-FLOW_TIMED(pass, FLOW_CG)
-const duite_kernel flow_pass = {.name = "cg_pass",
-                                .body = pass_timed,
-                                .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW,
-                                           DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_CW},
-                                .variadic = DUITE_R,
-                                .args_size = sizeof(struct flow_args)};
-const duite_kernel flow_pass_preconditioned = {
-    .name = "cg_pass_preconditioned",
-    .body = pass_timed,
-    .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW,
-               DUITE_RW, DUITE_RW, DUITE_RW, DUITE_RW, DUITE_R},
-    .variadic = DUITE_R,
-    .args_size = sizeof(struct flow_args)};
+
+FLOW_KERNEL(cg_pass_preconditioned, FLOW_CG, struct flow_args,
+            (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(copies),
+             RW(rim_q_next), RW(part), RW(z), RW(s), R(factor), NEIGHBOURS(rim_q), IF_MADE(basis),
+             IF_MADE(basis_copies), IF_MADE(motion)))
+static int cg_pass_preconditioned_body(const duite_call *call,
+                                       const struct cg_pass_preconditioned_fields *on)
+{
+    const struct cg_pass_fields plain = {
+        .args = on->args,
+        .table = on->table,
+        .scalars = on->scalars,
+        .a = on->a,
+        .f = on->f,
+        .dv = on->dv,
+        .r = on->r,
+        .p = on->p,
+        .q = on->q,
+        .copies = on->copies,
+        .rim_q_next = on->rim_q_next,
+        .sums = on->part,
+        .rim_q = on->rim_q,
+    };
+    struct pass pass;
+    open_pass(call, &plain, &pass);
+    pass.rows.z = on->z;
+    pass.rows.s = on->s;
+    pass.m.factor = on->factor;
+    pass.m.basis = on->basis;
+    pass.m.basis_copies = on->basis_copies;
+    pass.m.motion = on->motion;
+    run_phase(&pass);
+    return 0;
+}
 
 /* ---- Forks ---- */
 
-static int fork_guess(struct flow_state *state, const struct flow_args *args)
-{
-    const struct flow_objects *o = state->block + args->block;
-    return DUITE_FORK(state->rt, &flow_guess, args, o->table, o->f, o->a, o->dv, o->r, o->p, o->q,
-                      o->rim_q[0]);
-}
-
-static int fork_start(struct flow_state *state, const struct flow_args *args)
-{
-    const struct flow_objects *o = state->block + args->block;
-    const duite_object all[] = {o->f,        o->dv,   o->r, o->p, o->q,      o->copies,
-                                o->rim_q[0], o->part, o->z, o->s, o->factor, o->basis};
-    enum { WITH_BASIS = sizeof all / sizeof *all, WITHOUT = WITH_BASIS - 1, NONE = WITHOUT - 4 };
-    if (!flow_is_preconditioned(state->flow))
-        return flow_fork(state, &flow_start, args, NONE, all, FLOW_NO_RIM, FLOW_NO_RIM);
-    return flow_fork(state, &flow_start_preconditioned, args,
-                     flow_is_coarse(state->flow) ? WITH_BASIS : WITHOUT, all, FLOW_NO_RIM,
-                     FLOW_NO_RIM);
-}
-
 int flow_pass_start(struct flow_state *state, const struct flow_args *args)
 {
-    const int code = args->guess != 0 ? fork_guess(state, args) : fork_start(state, args);
+    const struct flow_kernel *start = flow_is_preconditioned(state->flow)
+                                          ? &flow_kernel_cg_start_preconditioned
+                                          : &flow_kernel_cg_start;
+    const int code = flow_fork_one(state, args->guess != 0 ? &flow_kernel_cg_guess : start, args);
     return code ? code : flow_halo_pack(state, args->block, 0);
 }
 
-static int fork_block(struct flow_state *state, const struct flow_args *args, int from)
+/* What it reads of the neighbours are their rims or far ones (halo.c). */
+static int fork_block(struct flow_state *state, const struct flow_args *args)
 {
     const struct flow_table *t = state->flow->tables.block + args->block;
-    const struct flow_objects *o = state->block + args->block;
-    const duite_object *s = state->far.read[from] + (t->slot - state->flow->tables.slot);
     const bool preconditioned = flow_is_preconditioned(state->flow);
-    const duite_object own[ALL] = {o->table,
-                                   state->run.scalars[from],
-                                   o->a,
-                                   o->f,
-                                   o->dv,
-                                   o->r,
-                                   o->p,
-                                   o->q,
-                                   o->copies,
-                                   o->rim_q[1 - from],
-                                   preconditioned ? o->part : state->run.sums[from],
-                                   o->z,
-                                   o->s,
-                                   o->factor};
-    const duite_object coarse[] = {o->basis, o->basis_copies, state->run.motion[from]};
-    size_t n = 0;
-    for (; n < (preconditioned ? ALL : PLAIN); n++)
-        state->refs[n] = own[n];
-    for (uint32_t i = 0; i < t->n_slots; i++)
-        state->refs[n++] = s[i];
-    for (size_t i = 0; i < 3 && flow_is_coarse(state->flow); i++)
-        state->refs[n++] = coarse[i];
-    return duite_fork(state->rt, preconditioned ? &flow_pass_preconditioned : &flow_pass, args, n,
-                      state->refs);
+    const struct flow_kernel *kernel =
+        preconditioned ? &flow_kernel_cg_pass_preconditioned : &flow_kernel_cg_pass;
+    const size_t rims = preconditioned ? cg_pass_preconditioned_at_end : cg_pass_at_end;
+    const size_t n = flow_kernel_objects(state, kernel, args->block, NULL);
+    const duite_object *read = state->far.read[state->pass] + (t->slot - state->flow->tables.slot);
+    memcpy(state->refs + rims, read, t->n_slots * sizeof *read);
+    return duite_fork(state->rt, &kernel->task, args, n, state->refs);
 }
 
 /* Passes go to and fro over the blocks: those that come last in one, whose rows the caches still
  * have, come first in the next. */
-int flow_pass_fork(struct flow_state *state, int from)
+int flow_pass_fork(struct flow_state *state)
 {
     const uint32_t n = state->flow->tables.n_blocks;
     struct flow_args args = {0};
     int code = DUITE_OK;
     for (uint32_t i = 0; i < n && !code; i++) {
-        args.block = from ? n - 1 - i : i;
-        code = fork_block(state, &args, from);
+        args.block = state->pass ? n - 1 - i : i;
+        code = fork_block(state, &args);
         if (!code)
-            code = flow_halo_pack(state, args.block, 1 - from);
+            code = flow_halo_pack(state, args.block, 1 - (int)state->pass);
     }
     return code;
 }

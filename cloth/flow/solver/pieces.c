@@ -19,16 +19,16 @@ static bool is_held(const struct flow_table *t, uint32_t row)
     return filter[0] != 0 || filter[1] != 0 || filter[2] != 0 || filter[3] != 1;
 }
 
-static int piece_sums(const duite_call *call)
+FLOW_KERNEL(piece_sums, FLOW_CG, struct flow_args, (R(table), R(f), R(a), R(dv), SUM(pieces)))
+static int piece_sums_body(const duite_call *call, const struct piece_sums_fields *on)
 {
-    struct flow_table table = flow_table_of(call), *t = &table;
-    const phys_vec *b = duite_in(call, 1, phys_vec), *dv = duite_in(call, 3, phys_vec);
-    const void *value = flow_open_matrix(call, t, 2);
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const phys_vec *b = on->f, *dv = on->dv;
+    const void *value = flow_matrix_in(call, t, on->a);
     const struct solve_values values = solve_values_of(t->format, t->n, value);
-    double *all = duite_out(call, 4, double);
     for (uint32_t i = 0; i < t->n_loose; i++) {
         const uint32_t row = t->loose[i][0];
-        double *sums = all + FLOW_PIECE_SUMS * (size_t)(t->loose[i][1] - 1);
+        double *sums = on->pieces + FLOW_PIECE_SUMS * (size_t)(t->loose[i][1] - 1);
         phys_vec turned = {0};
         if (values.turn)
             solve_cross(values.turn + row, dv + row, &turned);
@@ -42,11 +42,6 @@ static int piece_sums(const duite_call *call)
     }
     return 0;
 }
-FLOW_TIMED(piece_sums, FLOW_CG)
-const duite_kernel flow_piece_sums = {.name = "piece_sums",
-                                      .body = piece_sums_timed,
-                                      .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_CW},
-                                      .args_size = sizeof(struct flow_args)};
 
 /* c of m c + w x c = l: c = (m l - w x l + (w.l / m) w) / (m^2 + w.w). Zero for a piece of which a
  * row is held. */
@@ -62,31 +57,26 @@ static void shift_of(const double *sums, phys_vec *shift)
         *shift = (phys_vec){0};
 }
 
-static int piece_shift(const duite_call *call)
+FLOW_KERNEL(piece_shift, FLOW_CG, struct flow_args, (R(table), R(a), R(pieces), RW(dv), RW(r)))
+static int piece_shift_body(const duite_call *call, const struct piece_shift_fields *on)
 {
-    struct flow_table table = flow_table_of(call), *t = &table;
-    const void *value = flow_open_matrix(call, t, 1);
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const void *value = flow_matrix_in(call, t, on->a);
     const struct solve_values values = solve_values_of(t->format, t->n, value);
-    const double *all = duite_in(call, 2, double);
-    phys_vec *dv = duite_out(call, 3, phys_vec), *r = duite_out(call, 4, phys_vec), shift = {0};
+    phys_vec shift = {0};
     for (uint32_t i = 0, last = 0; i < t->n_loose; i++) {
         const uint32_t row = t->loose[i][0], piece = t->loose[i][1];
         if (piece != last)
-            shift_of(all + FLOW_PIECE_SUMS * (size_t)(piece - 1), &shift);
+            shift_of(on->pieces + FLOW_PIECE_SUMS * (size_t)(piece - 1), &shift);
         last = piece;
         phys_vec turned = {0};
         if (values.turn)
             solve_cross(values.turn + row, &shift, &turned);
-        dv[row] += shift;
-        r[row] -= t->matrix.diagonal[row] * shift - turned;
+        on->dv[row] += shift;
+        on->r[row] -= t->matrix.diagonal[row] * shift - turned;
     }
     return 0;
 }
-FLOW_TIMED(piece_shift, FLOW_CG)
-const duite_kernel flow_piece_shift = {.name = "piece_shift",
-                                       .body = piece_shift_timed,
-                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_RW},
-                                       .args_size = sizeof(struct flow_args)};
 
 int flow_pieces_fork(struct flow_state *state)
 {
@@ -94,17 +84,11 @@ int flow_pieces_fork(struct flow_state *state)
         return DUITE_OK;
     struct flow_args here = flow_attempt_args(state);
     int code = duite_set(state->rt, state->run.pieces, NULL);
-    for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++) {
-        const struct flow_objects *o = state->block + here.block;
+    for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++)
         if (state->flow->tables.block[here.block].n_loose)
-            code = DUITE_FORK(state->rt, &flow_piece_sums, &here, o->table, o->f, o->a, o->dv,
-                              state->run.pieces);
-    }
-    for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++) {
-        const struct flow_objects *o = state->block + here.block;
+            code = flow_fork_one(state, &flow_kernel_piece_sums, &here);
+    for (here.block = 0; here.block < state->flow->tables.n_blocks && !code; here.block++)
         if (state->flow->tables.block[here.block].n_loose)
-            code = DUITE_FORK(state->rt, &flow_piece_shift, &here, o->table, o->a,
-                              state->run.pieces, o->dv, o->r);
-    }
+            code = flow_fork_one(state, &flow_kernel_piece_shift, &here);
     return code;
 }

@@ -44,35 +44,26 @@ void flow_preconditioner_free(struct flow *flow)
 
 /* ---- The factor of a block, of each step's matrix ---- */
 
-static int factor(const duite_call *call)
+FLOW_KERNEL(factor, FLOW_CG, struct flow_args, (R(table), R(a), W(factor), SUM(status)))
+static int factor_body(const duite_call *call, const struct factor_fields *on)
 {
-    struct flow_table table = flow_table_of(call), *t = &table;
-    const phys_vec *values = flow_open_matrix(call, t, 1);
+    const enum solve_local local = flow_local(flow_of(call));
+    struct flow_table table = flow_table_in(call, on->table), *t = &table;
+    const phys_vec *values = flow_matrix_in(call, t, on->a);
     const struct solve_cut cut = flow_table_cut_entries(t);
-    double *factor = duite_out(call, 2, double);
-    const int tried =
-        solve_local_factor(&t->matrix, &cut, values, flow_local(flow_of(call)), factor);
+    const int tried = solve_local_factor(&t->matrix, &cut, values, local, on->factor);
     /* The object has room for entries that are there twice, too (flow_table): zeros. */
-    const size_t used = solve_local_doubles(t->n, t->matrix.row[t->n], flow_local(flow_of(call)));
-    memset(factor + used, 0,
-           (solve_local_doubles(t->n, t->n_entries, flow_local(flow_of(call))) - used) *
-               sizeof *factor);
-    duite_out(call, 3, double)[FLOW_SHIFTED] = tried > 0;
+    const size_t used = solve_local_doubles(t->n, t->matrix.row[t->n], local);
+    memset(on->factor + used, 0,
+           (solve_local_doubles(t->n, t->n_entries, local) - used) * sizeof *on->factor);
+    on->status[FLOW_SHIFTED] = tried > 0;
     return 0;
 }
-FLOW_TIMED(factor, FLOW_CG)
-const duite_kernel flow_factor = {.name = "factor",
-                                  .body = factor_timed,
-                                  .access = {DUITE_R, DUITE_R, DUITE_W, DUITE_CW},
-                                  .args_size = sizeof(struct flow_args)};
 
 int flow_preconditioner_factor(struct flow_state *state, const struct flow_args *args)
 {
-    const struct flow_objects *o = state->block + args->block;
-    const duite_object objects[] = {o->a, o->factor, state->run.status[state->attempt.parity]};
-    return flow_is_preconditioned(state->flow)
-               ? flow_fork(state, &flow_factor, args, 3, objects, FLOW_NO_RIM, FLOW_NO_RIM)
-               : DUITE_OK;
+    return flow_is_preconditioned(state->flow) ? flow_fork_one(state, &flow_kernel_factor, args)
+                                               : DUITE_OK;
 }
 
 /* ---- In a pass ---- */

@@ -13,9 +13,9 @@
 /* ---- Tasks of a solve. Collective. They return 0 or what duite_fork returned ---- */
 
 /* Fork the vectors of a block, args->block, before the first pass, and what neighbours read of
- * them; pass `from` (0, 1) of a recorded round on all blocks. (pass.c) */
+ * them; pass number state->pass of a recorded round on all blocks. (pass.c) */
 int flow_pass_start(struct flow_state *state, const struct flow_args *args);
-int flow_pass_fork(struct flow_state *state, int from);
+int flow_pass_fork(struct flow_state *state);
 
 /* Fork what comes of a step's matrix before its solve: the coarse factor; the factor of a block.
  * Nothing where there is none. (coarse.c, preconditioner.c) */
@@ -57,9 +57,9 @@ void flow_coarse_advance_copies(const struct flow_preconditioner *m, uint32_t sl
 /* P' q of each patch. */
 void flow_coarse_restrict(const struct flow_preconditioner *m, const phys_vec *q, double *right);
 
-/* In the task of the scalars: the coarse part of s, of the parts of all blocks, parameters `from`
- * on. Returns its share in q.s. (coarse.c) */
-double flow_coarse_motion(const duite_call *call, const double *factor, size_t from,
+/* In the task of the scalars: the coarse part of s, of the parts of all blocks. Returns its
+ * share in q.s. (coarse.c) */
+double flow_coarse_motion(const struct flow *flow, const double *factor, const duite_param *part,
                           double *motion);
 
 /* ---- Sizes ---- */

@@ -8,26 +8,24 @@
 
 #include <string.h>
 
-#define ARGS sizeof(struct flow_args)
-
 /* What is made in a body. */
 struct making {
     const duite_call *call;
     const struct flow_table *t;
     double h, push;
-    size_t rims;            /* parameters: rims of x from here on; of v behind them */
+    struct flow_view view;  /* without v: the matrix alone */
     phys_vec *b;            /* NULL: the matrix alone */
     void *values;           /* of the entries */
     struct phys_pair *sums; /* NULL: springs are the entries */
 };
 
-/* Writes the diagonal of the matrix, parameter i, and a filter that lets all pass until the one of
+/* Writes the diagonal of the matrix and a filter that lets all pass until the one of
  * the step comes (flow_hold); what follows is for the values. */
-static void *begin_matrix(const duite_call *call, const struct flow_table *t, size_t i)
+static void *begin_matrix(const duite_call *call, const struct flow_table *t, phys_vec *matrix)
 {
     const double h = flow_args_of(call)->h;
-    double *diagonal = duite_out(call, i, double);
-    phys_vec *value = duite_out(call, i, phys_vec) + flow_diagonal_rows(t);
+    double *diagonal = (double *)matrix;
+    phys_vec *value = matrix + flow_diagonal_rows(t);
     const bool filtered = model_is_filtered(flow_of(call)->model);
     for (uint32_t a = 0; a < t->n; a++)
         diagonal[a] = t->mass[a] + h * t->drag[a];
@@ -44,17 +42,15 @@ static void *begin_matrix(const duite_call *call, const struct flow_table *t, si
 static void some_springs(const struct making *m, const struct phys_springs *springs, uint32_t s,
                          phys_vec *value)
 {
-    const duite_call *call = m->call;
-    const phys_vec *x = duite_in(call, 1, phys_vec), *v = duite_in(call, 2, phys_vec);
     const bool inner = s == UINT32_MAX;
-    const phys_vec *x_other = inner ? x : duite_in(call, m->rims + s, phys_vec);
+    const phys_vec *x = m->view.x, *x_other = inner ? x : flow_rows_of(m->view.rim_x, s);
     if (!m->b)
         phys_springs_matrix(springs, m->h, x, x_other, value);
     else if (inner)
-        phys_springs_system(springs, m->h, m->push, x, v, m->b, value);
+        phys_springs_system(springs, m->h, m->push, x, m->view.v, m->b, value);
     else
-        phys_springs_system_cut(springs, m->h, m->push, x, v, x_other,
-                                duite_in(call, m->rims + m->t->n_slots + s, phys_vec), m->b, value);
+        phys_springs_system_cut(springs, m->h, m->push, x, m->view.v, x_other,
+                                flow_rows_of(m->view.rim_v, s), m->b, value);
 }
 
 /* Springs from .. to - 1; in half storage so many at once that they stay in the nearest cache. */
@@ -91,7 +87,7 @@ static void begin_right_side(const struct making *m, const struct phys_sight *si
 {
     const struct flow_table *t = m->t;
     if (m->push > 0) {
-        phys_outside(t->n, t->load, t->drag, duite_in(m->call, 2, phys_vec), m->b);
+        phys_outside(t->n, t->load, t->drag, m->view.v, m->b);
         flow_varying_add(m->call, t, m->b);
         if (sight->x)
             flow_elements_force_beside(m->call, t, sight, m->b);
@@ -118,12 +114,8 @@ static void make(const struct making *m)
     const struct flow_table *t = m->t;
     const struct solve_cut cut = flow_table_cut_entries(t);
     struct phys_sight sight = {0};
-    const struct flow_view view = {.x = duite_in(m->call, 1, phys_vec),
-                                   .v = m->b ? duite_in(m->call, 2, phys_vec) : NULL,
-                                   .rim_x = m->call->param + m->rims,
-                                   .rim_v = m->call->param + m->rims + t->n_slots};
     if (flow_has_elements(t))
-        sight = flow_elements_see(m->call, t, &view);
+        sight = flow_elements_see(m->call, t, &m->view);
     if (m->sums)
         memset(m->sums, 0, (t->matrix.row[t->n] + cut.n) * sizeof *m->sums);
     if (m->b)
@@ -142,59 +134,48 @@ static struct phys_pair *sums_of(const duite_call *call, const struct flow_table
     return t->format == SOLVE_SPRINGS ? NULL : flow->sums + call->worker * flow->n_sums;
 }
 
-/* push: h, or 0 where the forces are in f. */
-static int make_system(const duite_call *call, double push)
+/* push: h, or 0 where the forces are in b. b: NULL, and push 0: the matrix alone. */
+static void make_system(const duite_call *call, const struct flow_table *t, double push,
+                        const struct flow_view *view, phys_vec *b, phys_vec *matrix)
 {
-    const struct flow_table table = flow_table_of(call), *t = &table;
     const struct making making = {.call = call,
                                   .t = t,
                                   .h = flow_args_of(call)->h,
                                   .push = push,
-                                  .rims = 5,
-                                  .b = duite_out(call, 3, phys_vec),
-                                  .values = begin_matrix(call, t, 4),
+                                  .view = *view,
+                                  .b = b,
+                                  .values = begin_matrix(call, t, matrix),
                                   .sums = sums_of(call, t)};
     make(&making);
+}
+
+FLOW_KERNEL(system, FLOW_MATRIX, struct flow_args,
+            (R(table), R(x), R(v), W(f), W(a), NEIGHBOURS(rim_x), NEIGHBOURS(rim_v)))
+static int system_body(const duite_call *call, const struct system_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table);
+    const struct flow_view view = FLOW_VIEW(on);
+    make_system(call, &table, on->args->h, &view, on->f, on->a);
     return 0;
 }
 
-static int system_all(const duite_call *call)
+/* Where f has the forces. */
+FLOW_KERNEL(system_of_forces, FLOW_MATRIX, struct flow_args,
+            (R(table), R(x), R(v), RW(f), W(a), NEIGHBOURS(rim_x), NEIGHBOURS(rim_v)))
+static int system_of_forces_body(const duite_call *call, const struct system_of_forces_fields *on)
 {
-    return make_system(call, flow_args_of(call)->h);
-}
-FLOW_TIMED(system_all, FLOW_MATRIX)
-const duite_kernel flow_system_all = {.name = "system",
-                                      .body = system_all_timed,
-                                      .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_W, DUITE_W},
-                                      .variadic = DUITE_R,
-                                      .args_size = ARGS};
-
-static int system_rest(const duite_call *call)
-{
-    return make_system(call, 0);
-}
-FLOW_TIMED(system_rest, FLOW_MATRIX)
-const duite_kernel flow_system_rest = {.name = "system_of_forces",
-                                       .body = system_rest_timed,
-                                       .access = {DUITE_R, DUITE_R, DUITE_R, DUITE_RW, DUITE_W},
-                                       .variadic = DUITE_R,
-                                       .args_size = ARGS};
-
-static int matrix(const duite_call *call)
-{
-    const struct flow_table table = flow_table_of(call), *t = &table;
-    const struct making making = {.call = call,
-                                  .t = t,
-                                  .h = flow_args_of(call)->h,
-                                  .rims = 3,
-                                  .values = begin_matrix(call, t, 2),
-                                  .sums = sums_of(call, t)};
-    make(&making);
+    const struct flow_table table = flow_table_in(call, on->table);
+    const struct flow_view view = FLOW_VIEW(on);
+    make_system(call, &table, 0, &view, on->f, on->a);
     return 0;
 }
-FLOW_TIMED(matrix, FLOW_MATRIX)
-const duite_kernel flow_matrix = {.name = "matrix",
-                                  .body = matrix_timed,
-                                  .access = {DUITE_R, DUITE_R, DUITE_W},
-                                  .variadic = DUITE_R,
-                                  .args_size = ARGS};
+
+/* The matrix alone. */
+FLOW_KERNEL(matrix, FLOW_MATRIX, struct flow_args, (R(table), R(x), W(a), NEIGHBOURS(rim_x)))
+static int matrix_body(const duite_call *call, const struct matrix_fields *on)
+{
+    const struct flow_table table = flow_table_in(call, on->table);
+    const struct flow_view view = {.x = on->x, .rim_x = on->rim_x};
+    make_system(call, &table, 0, &view, NULL, on->a);
+    return 0;
+}

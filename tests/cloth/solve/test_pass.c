@@ -166,6 +166,34 @@ START_TEST(pass_of_every_rim)
 }
 END_TEST
 
+/* Where M is the identity, with vectors z and s of their own, all is to the bit what it is without
+ * a preconditioner, where z is r and s is q. */
+START_TEST(identity_is_none)
+{
+    static struct whole other;
+    static phys_vec z[MOST], s[MOST];
+    double none[SOLVE_DOTS] = {0}, identity[SOLVE_DOTS] = {0};
+    srand(14);
+    make(&whole, MOST, 20, 10);
+    other = whole;
+    memcpy(z, other.r, sizeof z);
+    memcpy(s, other.q, sizeof s);
+    const struct solve_block block = {MOST,         whole.diagonal, whole.free, whole.row,
+                                      whole.column, SOLVE_SPRINGS,  NULL};
+    const struct solve_rows plain = solve_rows_plain(whole.dv, whole.r, whole.p, whole.q);
+    const struct solve_rows rows = {other.dv, other.r, other.p, other.q, z, s};
+    solve_pass(&block, &whole.cut, whole.value, whole.other, 0.3, 0.7, &plain, none);
+    solve_pass(&block, &whole.cut, whole.value, whole.other, 0.3, 0.7, &rows, identity);
+    identity[SOLVE_QQ] = none[SOLVE_QQ]; /* q.s, left to who makes s */
+    ck_assert_mem_eq(identity, none, sizeof none);
+    ck_assert_mem_eq(z, whole.r, sizeof z);
+    ck_assert_mem_eq(other.dv, whole.dv, sizeof whole.dv);
+    ck_assert_mem_eq(other.r, whole.r, sizeof whole.r);
+    ck_assert_mem_eq(other.p, whole.p, sizeof whole.p);
+    ck_assert_mem_eq(other.q, whole.q, sizeof whole.q);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("pass");
@@ -173,6 +201,7 @@ int main(void)
     tcase_add_test(cases, pass_of_every_size);
     tcase_add_test(cases, pass_of_every_reach);
     tcase_add_test(cases, pass_of_every_rim);
+    tcase_add_test(cases, identity_is_none);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

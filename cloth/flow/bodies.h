@@ -39,14 +39,6 @@ static inline struct flow_table flow_table_in(const duite_call *call, const unsi
     return table;
 }
 
-/* The block with its table, which is the first parameter. */
-static inline struct flow_table flow_table_of(const duite_call *call)
-{
-    struct flow_table table = *flow_shape_of(call);
-    flow_table_open(&table, call->param[0].data);
-    return table;
-}
-
 /* x and v as the task of a block sees them: its own rows, and the rims of its neighbours. Without
  * velocities v is NULL. */
 struct flow_view {
@@ -75,7 +67,7 @@ static inline size_t flow_diagonal_rows(const struct flow_table *t)
     return ((size_t)t->n + 3) / 4;
 }
 
-/* Gives the table the diagonal of the matrix and returns the values; of parameter i. */
+/* Gives the table the diagonal of the matrix and returns the values. */
 static inline const phys_vec *flow_matrix_in(const duite_call *call, struct flow_table *t,
                                              const phys_vec *a)
 {
@@ -84,11 +76,6 @@ static inline const phys_vec *flow_matrix_in(const duite_call *call, struct flow
     t->matrix.diagonal = (const double *)a;
     t->matrix.filter = filtered ? filter : NULL;
     return filtered ? filter + t->n : filter;
-}
-static inline const phys_vec *flow_open_matrix(const duite_call *call, struct flow_table *t,
-                                               size_t i)
-{
-    return flow_matrix_in(call, t, duite_in(call, i, phys_vec));
 }
 
 /* Elements of a block (elements.c). What they see of a view; one at a time on a worker, until its
@@ -195,12 +182,5 @@ static inline int flow_timed(const duite_call *call, duite_body *body, enum flow
     flow_part_ends(call, part);
     return code;
 }
-
-/* Defines NAME_timed, the body that a kernel lists. */
-#define FLOW_TIMED(name, part)                                                                     \
-    static int name##_timed(const duite_call *call)                                                \
-    {                                                                                              \
-        return flow_timed(call, name, part);                                                       \
-    }
 
 #endif

@@ -27,8 +27,7 @@
 enum { FLOW_KERNELS(FLOW_KERNEL_NUMBER) FLOW_KERNELS_OF_ALL };
 FLOW_KERNELS(FLOW_KERNEL_EXTERN)
 
-/* Kernels. Objects in order; "table" (r) is that of the task's block, "rims" are one of each
- * neighbour, in slot order. Vectors are rows of four doubles. */
+/* Kernels of objects that are no fields. */
 extern const duite_kernel flow_tell_head; /* w head: on rank 0 */
 extern const duite_kernel
     flow_tell_shared; /* w shared: obstacles, motions, shapes, neighbours; on rank 0 */

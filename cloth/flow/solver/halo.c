@@ -163,7 +163,7 @@ int flow_halo_pack(struct flow_state *state, uint32_t b, int to)
     return code;
 }
 
-static int pack(const duite_call *call)
+static int pack_rows(const duite_call *call)
 {
     const uint32_t *i = call->args;
     const struct flow_far_rim *rim = flow_of(call)->far_rim + *i;
@@ -173,8 +173,10 @@ static int pack(const duite_call *call)
         memcpy(to, from + 3 * (size_t)rim->row[k], 3 * sizeof *to);
     return 0;
 }
-FLOW_TIMED(pack, FLOW_CG)
-const duite_kernel flow_pack = {.name = "cg_pack",
-                                .body = pack_timed,
-                                .access = {DUITE_R, DUITE_W},
-                                .args_size = sizeof(uint32_t)};
+
+static int pack(const duite_call *call)
+{
+    return flow_timed(call, pack_rows, FLOW_CG);
+}
+const duite_kernel flow_pack = {
+    .name = "cg_pack", .body = pack, .access = {DUITE_R, DUITE_W}, .args_size = sizeof(uint32_t)};

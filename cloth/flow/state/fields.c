@@ -47,7 +47,7 @@ static size_t table_bytes(const struct flow_state *state, uint32_t block)
     return flow_table_bytes(table_of(state, block));
 }
 
-/* The diagonal, the filter if there is one, the values of the entries: flow_open_matrix. */
+/* The diagonal, the filter if there is one, the values of the entries: flow_matrix_in. */
 static size_t matrix(const struct flow_state *state, uint32_t block)
 {
     const struct flow_table *t = table_of(state, block);

@@ -178,24 +178,4 @@ int flow_keep(struct flow_state *state);
 int flow_keep_as(struct flow_state *state, const struct flow_as *as);
 int flow_restore(struct flow_state *state);
 
-/* Forks `kernel` on one block: first its table, then the objects given, then the neighbours'
- * objects at `offset` in struct flow_objects (and at `offset2`); FLOW_NO_RIM: none. */
-enum { FLOW_NO_RIM = -1 };
-#define FLOW_RIM(name) (long)offsetof(struct flow_objects, name)
-int flow_fork(struct flow_state *state, const duite_kernel *kernel, const struct flow_args *args,
-              size_t n, const duite_object *objects, long offset, long offset2);
-
-/* The objects of a block, by name: FLOW_OBJECTS(FLOW_AT(x), FLOW_AT(v)). */
-#define FLOW_AT(name)     (long)offsetof(struct flow_objects, name)
-#define FLOW_OBJECTS(...) ((const long[]){__VA_ARGS__, FLOW_NO_RIM})
-
-/* What follows the objects of a block: nothing, the status of the step, or before it the scalars of
- * a solve. */
-enum flow_behind { FLOW_NOTHING, FLOW_THEN_STATUS, FLOW_THEN_SCALARS_AND_STATUS };
-
-/* Forks one kernel on every block, like flow_fork. args: of all of them but for the block; objects:
- * offsets of a block's own, FLOW_OBJECTS. */
-int flow_fork_all(struct flow_state *state, const duite_kernel *kernel, struct flow_args args,
-                  const long *objects, enum flow_behind behind, long rim, long rim2);
-
 #endif

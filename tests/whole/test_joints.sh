@@ -89,7 +89,7 @@ refused() { # ERROR --set ...
     limited "$DUITE_CLOTH" two.yaml --quiet "$@" > said 2>&1
     test $? -eq 2 && cat said && grep -qF -- "$error" said
 }
-ok "a joint between a vertex and itself" refused "two.yaml:7:10: a joint is between vertex 0 of cloth 'one' and itself; two vertices are expected" \
+ok "a joint between a vertex and itself" refused "two.yaml:7:10: a joint is between vertex 0 of cloth 'one' and vertex 0 of cloth 'one', itself; two vertices are expected" \
     --set 'joints[0].from={cloth: one, vertex: 0}'
-ok "a second joint between two vertices" refused "a second joint is between vertex 0 of cloth 'one' and vertex 1 of cloth 'other'; one is expected" \
+ok "a second joint between two vertices" refused "a joint is between vertex 0 of cloth 'one' and vertex 1 of cloth 'other', where there is one already" \
     --set 'joints[1]={from: {cloth: one, vertex: 0}, to: {cloth: other, vertex: 1}, stiffness: 1}'

@@ -230,8 +230,10 @@ int task_depend(struct task_fork_call *call)
 {
     struct task *task = call->task;
     struct task_graph *graph = call->scope->graph;
+    const size_t n_listed = graph->fixed[call->index].n;
     for (size_t i = 0; i < call->n; i++) {
-        duite_mode mode = data_mode_of(call->kernel, i);
+        /* As data_mode_of, without a look for the end of the list. */
+        duite_mode mode = i < n_listed ? call->kernel->access[i] : call->kernel->variadic;
         if (task)
             task->access[i].waiter.mode = mode;
         int code = access_depend(call, i, mode);

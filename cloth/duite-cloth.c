@@ -86,15 +86,15 @@ struct command {
 };
 
 static int whole_number(struct argp_state *state, const char *option, const char *text,
-                        uint64_t least, uint64_t most, uint64_t *value)
+                        uint64_t min, uint64_t max, uint64_t *value)
 {
     char *end;
     errno = 0;
     *value = strtoull(text, &end, 10);
-    if (*text >= '0' && *text <= '9' && !*end && !errno && *value >= least && *value <= most)
+    if (*text >= '0' && *text <= '9' && !*end && !errno && *value >= min && *value <= max)
         return 0;
     argp_failure(state, 0, 0, "--%s %s: a whole number from %" PRIu64 " to %" PRIu64 " is expected",
-                 option, text, least, most);
+                 option, text, min, max);
     return EINVAL;
 }
 

@@ -107,7 +107,7 @@ static int run(struct serve_request *request, bool quick, struct film *film,
                struct flow_report *report)
 {
     struct states_plan plan = {0};
-    const struct flow_progress progress = {.context = film, .dealt = begun, .step = note};
+    const struct flow_progress progress = {.context = film, .distributed = begun, .step = note};
     const struct flow_output output = {.context = film, .frame = show};
     int code = make(&plan, quick);
     if (!code) {

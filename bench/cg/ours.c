@@ -108,10 +108,10 @@ int cg_end(struct cg_session *s)
     return code;
 }
 
-/* Ranks other than 0 go by what they were told of the model. */
+/* Ranks other than 0 go by what they received of the model. */
 static void stop_by(struct cg_session *s, enum model_stop stop, double tolerance, uint32_t most)
 {
-    struct model *model[] = {&s->plan.model, s->flow ? &s->flow->told : NULL};
+    struct model *model[] = {&s->plan.model, s->flow ? &s->flow->received : NULL};
     for (int i = 0; i < 2 && model[i]; i++) {
         model[i]->stop = stop;
         model[i]->tolerance = tolerance;

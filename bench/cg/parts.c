@@ -7,8 +7,8 @@
 struct maker {
     const struct state *state;
     struct parts *parts;
-    uint32_t *place;            /* of each vertex */
-    uint32_t *part_of, *rim_of; /* by place; rim_of: number in the rim of its part, plus one */
+    uint32_t *place;             /* of each vertex */
+    uint32_t *part_of, *halo_of; /* by place; halo_of: number in the halo of its part, plus one */
 };
 
 /* One side of a spring, seen from a part. */
@@ -29,7 +29,7 @@ static int compare(const void *va, const void *vb)
     return (a->spring > b->spring) - (a->spring < b->spring);
 }
 
-/* By there: copies of one part are ascending and each once. */
+/* By there: ghosts of one part are ascending and each once. */
 static int compare_there(const void *va, const void *vb)
 {
     const struct side *a = va, *b = vb;
@@ -87,11 +87,11 @@ static int allocate(struct part *part, uint32_t n, uint32_t n_inner, size_t n_si
     part->rows.z = part->rows.r;
     part->rows.s = part->rows.q;
     has = (part->value = vectors(n_sides)) && has;
-    has = (part->copy_r = vectors(cut)) && has;
-    has = (part->copy_p = vectors(cut)) && has;
+    has = (part->ghost_r = vectors(cut)) && has;
+    has = (part->ghost_p = vectors(cut)) && has;
     for (int i = 0; i < 2; i++)
-        has = (part->rim[i] = calloc(3 * (size_t)n + 1, sizeof(double))) && has;
-    part->copies = part->owned[6];
+        has = (part->halo[i] = calloc(3 * (size_t)n + 1, sizeof(double))) && has;
+    part->ghosts = part->owned[6];
     part->at = part->owned[7];
     return has ? 0 : serve_no_memory();
 }
@@ -100,16 +100,16 @@ static void fill_rows(const struct maker *m, struct part *part, uint32_t n)
 {
     const struct solve_system *s = &m->state->system;
     double *diagonal = part->owned[0], *free = part->owned[1];
-    uint32_t *rim = part->owned[5];
+    uint32_t *halo = part->owned[5];
     for (uint32_t i = 0; i < n; i++) {
         const size_t v = m->state->order[part->first + i];
         diagonal[i] = s->diagonal[v];
         free[i] = s->free[v];
         part->b[i] = (phys_vec){s->b[3 * v], s->b[3 * v + 1], s->b[3 * v + 2], 0};
-        if (m->rim_of[part->first + i])
-            rim[part->cut.n_rim++] = i;
+        if (m->halo_of[part->first + i])
+            halo[part->cut.n_halo++] = i;
     }
-    part->cut.rim = rim;
+    part->cut.halo = halo;
 }
 
 /* `side` is sorted: inner springs by rows, cut ones by part. */
@@ -136,8 +136,8 @@ static void fill_springs(const struct maker *m, struct part *part, uint32_t n,
     part->cut.end = (const uint32_t(*)[2])end;
 }
 
-/* The copies of each other part: the rows that cut springs end at, each once. */
-static int fill_copies(const struct maker *m, struct part *part, const struct side *side, size_t n)
+/* The ghosts of each other part: the rows that cut springs end at, each once. */
+static int fill_ghosts(const struct maker *m, struct part *part, const struct side *side, size_t n)
 {
     uint32_t(*end)[2] = part->owned[4];
     struct side *sorted = malloc((n + 1) * sizeof *sorted);
@@ -150,18 +150,18 @@ static int fill_copies(const struct maker *m, struct part *part, const struct si
     size_t from = 0;
     for (uint32_t p = 0; p < m->parts->n; p++) {
         size_t to = from;
-        part->copies[p] = part->n_copies;
+        part->ghosts[p] = part->n_ghosts;
         while (to < n && sorted[to].other == p + 1)
             to++;
         qsort(sorted + from, to - from, sizeof *sorted, compare_there);
         for (size_t i = from; i < to; i++) {
             if (i == from || sorted[i].there != sorted[i - 1].there)
-                part->at[part->n_copies++] = m->rim_of[m->parts->start[p] + sorted[i].there] - 1;
-            end[sorted[i].spring][1] = part->n_copies - 1;
+                part->at[part->n_ghosts++] = m->halo_of[m->parts->start[p] + sorted[i].there] - 1;
+            end[sorted[i].spring][1] = part->n_ghosts - 1;
         }
         from = to;
     }
-    part->copies[m->parts->n] = part->n_copies;
+    part->ghosts[m->parts->n] = part->n_ghosts;
     free(sorted);
     return 0;
 }
@@ -178,26 +178,26 @@ static int make_part(const struct maker *m, uint32_t p)
     if (!code) {
         fill_rows(m, part, n);
         fill_springs(m, part, n, side, n_inner, n_sides);
-        code = fill_copies(m, part, side + n_inner, n_sides - n_inner);
+        code = fill_ghosts(m, part, side + n_inner, n_sides - n_inner);
     }
     free(side);
     return code;
 }
 
 /* Numbers the rows that springs cross the border at. */
-static void number_rims(const struct maker *m)
+static void number_halos(const struct maker *m)
 {
     const struct solve_system *s = &m->state->system;
     for (size_t i = 0; i < s->n_pairs; i++) {
         const uint32_t a = m->place[s->end[i][0]], b = m->place[s->end[i][1]];
         if (m->part_of[a] != m->part_of[b])
-            m->rim_of[a] = m->rim_of[b] = 1;
+            m->halo_of[a] = m->halo_of[b] = 1;
     }
     for (uint32_t p = 0; p < m->parts->n; p++) {
         uint32_t count = 0;
         for (uint32_t i = m->parts->start[p]; i < m->parts->start[p + 1]; i++)
-            if (m->rim_of[i])
-                m->rim_of[i] = ++count;
+            if (m->halo_of[i])
+                m->halo_of[i] = ++count;
     }
 }
 
@@ -212,7 +212,7 @@ static int cut(const struct maker *m)
             m->part_of[i] = p;
     for (uint32_t i = 0; i < n; i++)
         m->place[m->state->order[i]] = i;
-    number_rims(m);
+    number_halos(m);
     int code = 0;
     for (uint32_t p = 0; p < parts->n && !code; p++)
         code = make_part(m, p);
@@ -229,12 +229,12 @@ int parts_make(struct parts *parts, const struct state *state, uint32_t size, ui
     parts->start = calloc((size_t)parts->n + 1, sizeof *parts->start);
     m.place = calloc((size_t)n + 1, sizeof *m.place);
     m.part_of = calloc((size_t)n + 1, sizeof *m.part_of);
-    m.rim_of = calloc((size_t)n + 1, sizeof *m.rim_of);
-    const int has = parts->part && parts->start && m.place && m.part_of && m.rim_of;
+    m.halo_of = calloc((size_t)n + 1, sizeof *m.halo_of);
+    const int has = parts->part && parts->start && m.place && m.part_of && m.halo_of;
     const int code = has ? cut(&m) : serve_no_memory();
     free(m.place);
     free(m.part_of);
-    free(m.rim_of);
+    free(m.halo_of);
     return code;
 }
 
@@ -242,8 +242,8 @@ void parts_free(struct parts *parts)
 {
     for (uint32_t p = 0; parts->part && p < parts->n; p++) {
         struct part *part = parts->part + p;
-        void *all[] = {part->rows.dv, part->rows.r, part->rows.p, part->rows.q, part->b,
-                       part->value,   part->copy_r, part->copy_p, part->rim[0], part->rim[1]};
+        void *all[] = {part->rows.dv, part->rows.r,  part->rows.p,  part->rows.q,  part->b,
+                       part->value,   part->ghost_r, part->ghost_p, part->halo[0], part->halo[1]};
         for (size_t i = 0; i < sizeof all / sizeof *all; i++)
             free(all[i]);
         for (int i = 0; i < 8; i++)

@@ -5,17 +5,17 @@
 #include "cloth/solve/block.h"
 
 /* A state cut into contiguous parts of its order, for plain loops with the kernels of the cloth:
- * springs inside a part once, springs between parts on both sides, and in each part copies of the
+ * springs inside a part once, springs between parts on both sides, and in each part ghosts, the
  * rows that they end at, as the cloth's blocks have them. */
 struct part {
     struct solve_block matrix;
     struct solve_cut cut;
     struct solve_rows rows;
-    phys_vec *value, *copy_r, *copy_p, *b;
-    uint32_t n_copies, first; /* first: place of row 0 */
-    uint32_t *copies;         /* n_parts + 1: those of part s are copies[s] .. */
-    uint32_t *at;             /* n_copies: places in the rim of their part */
-    double *rim[2];           /* three numbers a row */
+    phys_vec *value, *ghost_r, *ghost_p, *b;
+    uint32_t n_ghosts, first; /* first: place of row 0 */
+    uint32_t *ghosts;         /* n_parts + 1: those of part s are ghosts[s] .. */
+    uint32_t *at;             /* n_ghosts: places in the halo of their part */
+    double *halo[2];          /* three numbers a row */
     void *owned[8];           /* what the matrix and the cut point to */
 };
 

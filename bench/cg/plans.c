@@ -267,15 +267,15 @@ static void plan_realtime(struct measure *measure, const struct bench_options *o
     static const struct {
         const char *what, *name, *unit;
         double factor;
-    } told[] = {{"mean", "realtime_ms_per_frame", "ms", 1e3},
-                {"p95", "realtime_ms_per_frame_p95", "ms", 1e3},
-                {"halved", "realtime_steps_halved", "steps", 1}};
-    for (size_t i = 0; i < sizeof told / sizeof *told; i++) {
+    } reported[] = {{"mean", "realtime_ms_per_frame", "ms", 1e3},
+                    {"p95", "realtime_ms_per_frame_p95", "ms", 1e3},
+                    {"halved", "realtime_steps_halved", "steps", 1}};
+    for (size_t i = 0; i < sizeof reported / sizeof *reported; i++) {
         char more[20];
-        snprintf(more, sizeof more, " what=%s", told[i].what);
+        snprintf(more, sizeof more, " what=%s", reported[i].what);
         const struct measure_series *one = cg_series(measure, options, cg_ours(0, options->threads),
                                                      "realtime", "sheet_150", more);
-        measure_value(measure, one, told[i].factor, told[i].unit, "%s", told[i].name);
+        measure_value(measure, one, reported[i].factor, reported[i].unit, "%s", reported[i].name);
     }
 }
 

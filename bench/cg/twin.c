@@ -48,9 +48,9 @@ static void start(const struct part *part)
         part->value[i] *= *(const volatile double *)&ONE;
     const struct solve_rows *y = &part->rows;
     solve_start(part->matrix.n, part->matrix.free, part->b, y->dv, y->r, y->p, y->q);
-    memset(part->copy_r, 0, part->n_copies * sizeof *part->copy_r);
-    memset(part->copy_p, 0, part->n_copies * sizeof *part->copy_p);
-    solve_pack(part->cut.n_rim, part->cut.rim, y->q, part->rim[0]);
+    memset(part->ghost_r, 0, part->n_ghosts * sizeof *part->ghost_r);
+    memset(part->ghost_p, 0, part->n_ghosts * sizeof *part->ghost_p);
+    solve_pack(part->cut.n_halo, part->cut.halo, y->q, part->halo[0]);
 }
 
 static void pass(const struct parts *parts, const struct part *part,
@@ -63,14 +63,14 @@ static void pass(const struct parts *parts, const struct part *part,
         return;
     }
     for (uint32_t p = 0; p < parts->n; p++) {
-        const uint32_t first = part->copies[p], n = part->copies[p + 1] - first;
+        const uint32_t first = part->ghosts[p], n = part->ghosts[p + 1] - first;
         if (n)
-            solve_advance_copies(n, now->alpha, now->beta, parts->part[p].rim[from],
-                                 part->at + first, part->copy_r + first, part->copy_p + first);
+            solve_advance_ghosts(n, now->alpha, now->beta, parts->part[p].halo[from],
+                                 part->at + first, part->ghost_r + first, part->ghost_p + first);
     }
-    solve_pass(&part->matrix, &part->cut, part->value, part->copy_p, now->alpha, now->beta, y,
+    solve_pass(&part->matrix, &part->cut, part->value, part->ghost_p, now->alpha, now->beta, y,
                dots);
-    solve_pack(part->cut.n_rim, part->cut.rim, y->q, part->rim[1 - from]);
+    solve_pack(part->cut.n_halo, part->cut.halo, y->q, part->halo[1 - from]);
 }
 
 /* What one thread does. Everyone works out the same factors. */
@@ -103,7 +103,7 @@ static int solve_part(const struct solve *s, uint32_t thread, uint32_t threads)
 
 static int solve(const struct twin *twin, uint32_t count)
 {
-    struct solve s = {.twin = twin, .stop = {.count = true, .most = count}};
+    struct solve s = {.twin = twin, .stop = {.count = true, .max = count}};
     const uint32_t n = twin->parts.n;
     int failed = 0;
     s.dots[0] = calloc(2 * (size_t)n, sizeof *s.dots[0]);

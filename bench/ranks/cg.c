@@ -72,7 +72,7 @@ static int check(struct flow_state *state, const struct sheet *sheet)
 /* Solves by so many iterations the system that the last step left. */
 static int solve(struct flow_state *state, struct sheet *sheet, uint32_t count, double *seconds)
 {
-    sheet->model.max_iterations = state->flow->told.max_iterations = count;
+    sheet->model.max_iterations = state->flow->received.max_iterations = count;
     int code = duite_wait(state->rt);
     const double start = serve_seconds();
     if (!code)

@@ -49,7 +49,7 @@ static int run(struct ranks_session *session, struct serve_request *request)
     struct sheet *sheet = &session->sheet;
     struct cloth_error error = {0};
     struct flow_report report;
-    const struct flow_progress progress = {.context = sheet, .dealt = forget_mesh};
+    const struct flow_progress progress = {.context = sheet, .distributed = forget_mesh};
     duite *rt = NULL;
     const uint32_t side = (uint32_t)serve_number(request, "side");
     sheet_model(sheet, side, (uint32_t)serve_number(request, "grain"));

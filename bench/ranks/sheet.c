@@ -18,9 +18,9 @@ size_t sheet_row(const struct sheet *sheet, uint32_t block)
     return sheet_tables(sheet)->block[block].first;
 }
 
-size_t sheet_rim(const struct sheet *sheet, uint32_t block)
+size_t sheet_halo(const struct sheet *sheet, uint32_t block)
 {
-    return 3 * sheet->rim_start[block];
+    return 3 * sheet->halo_start[block];
 }
 
 /* ---- Making ---- */
@@ -68,9 +68,9 @@ int sheet_flow(struct sheet *sheet)
     return code ? serve_fail("%s", error.text) : 0;
 }
 
-void sheet_wave(const struct flow_table *t, void *image)
+void sheet_wave(const struct flow_table *t, void *layout)
 {
-    const struct flow_image table = flow_table_image(t, image);
+    const struct flow_layout table = flow_table_layout(t, layout);
     for (uint32_t i = 0; i < t->n; i++) {
         const double x = table.position[i][0], z = table.position[i][2];
         table.position[i][1] += 0.01 * sin(9 * x) * cos(7 * z);
@@ -91,9 +91,9 @@ const duite_kernel sheet_wave_kernel = {.name = "sheet_wave",
                                         .access = {DUITE_RW},
                                         .args_size = sizeof(struct flow_args)};
 
-static size_t n_rim(const struct sheet *s)
+static size_t n_halo(const struct sheet *s)
 {
-    return s->rim_start[s->tables.n_blocks];
+    return s->halo_start[s->tables.n_blocks];
 }
 
 /* The tables of all blocks, waved, and where the parts of each begin in the arrays of all. */
@@ -103,25 +103,25 @@ static int make_tables(struct sheet *s, struct cloth_error *error)
     struct flow_tables *all = &s->tables;
     *all = (struct flow_tables){.n_blocks = n,
                                 .block = calloc(n, sizeof *all->block),
-                                .slot = s->source.neighbours.slot,
-                                .copy = s->source.neighbours.copy};
-    s->image = calloc(n, sizeof *s->image);
-    s->rim_start = calloc((size_t)n + 1, sizeof *s->rim_start);
+                                .neighbour = s->source.neighbours.neighbour,
+                                .ghost = s->source.neighbours.ghost};
+    s->layout = calloc(n, sizeof *s->layout);
+    s->halo_start = calloc((size_t)n + 1, sizeof *s->halo_start);
     s->value_start = calloc((size_t)n + 1, sizeof *s->value_start);
-    if (!all->block || !s->image || !s->rim_start || !s->value_start)
+    if (!all->block || !s->layout || !s->halo_start || !s->value_start)
         return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for tables");
     const int code = flow_source_gather(&s->source, 0, n, error);
     for (uint32_t b = 0; b < n && !code; b++) {
         struct flow_table *t = all->block + b;
         *t = s->source.shape[b];
-        s->rim_start[b + 1] = s->rim_start[b] + t->n_rim;
+        s->halo_start[b + 1] = s->halo_start[b] + t->n_halo;
         s->value_start[b + 1] = s->value_start[b] + t->n_inner + t->n_cut;
-        s->image[b] = aligned_alloc(64, flow_table_bytes(t));
-        if (!s->image[b])
+        s->layout[b] = aligned_alloc(64, flow_table_bytes(t));
+        if (!s->layout[b])
             return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for a table");
-        flow_source_table(&s->source, b, s->image[b]);
-        sheet_wave(t, s->image[b]);
-        flow_table_open(t, s->image[b]);
+        flow_source_table(&s->source, b, s->layout[b]);
+        sheet_wave(t, s->layout[b]);
+        flow_table_open(t, s->layout[b]);
         t->matrix.diagonal = t->mass; /* there is no drag */
     }
     return code;
@@ -137,31 +137,32 @@ static phys_vec *vectors(size_t n)
 
 static int allocate(struct sheet *s)
 {
-    const size_t rows = s->source.blocks.n_places, copies = s->source.neighbours.n_copies;
+    const size_t rows = s->source.blocks.n_places, ghosts = s->source.neighbours.n_ghosts;
     phys_vec **array[] = {&s->b, &s->dv, &s->r, &s->p, &s->q, &s->answer};
     bool has = true;
     for (size_t i = 0; i < sizeof array / sizeof *array; i++)
         has = (*array[i] = vectors(rows)) && has;
     has = (s->value = vectors(s->value_start[s->tables.n_blocks])) && has;
-    has = (s->copy_r = vectors(copies)) && has;
-    has = (s->copy_p = vectors(copies)) && has;
+    has = (s->ghost_r = vectors(ghosts)) && has;
+    has = (s->ghost_p = vectors(ghosts)) && has;
     for (int i = 0; i < 2; i++)
-        has = (s->rim[i] = calloc(3 * n_rim(s) + 1, sizeof(double))) && has;
+        has = (s->halo[i] = calloc(3 * n_halo(s) + 1, sizeof(double))) && has;
     return has ? 0 : serve_no_memory();
 }
 
 void sheet_free(struct sheet *s)
 {
-    phys_vec *array[] = {s->b, s->dv, s->r, s->p, s->q, s->answer, s->value, s->copy_r, s->copy_p};
+    phys_vec *array[] = {s->b,      s->dv,    s->r,       s->p,      s->q,
+                         s->answer, s->value, s->ghost_r, s->ghost_p};
     for (size_t i = 0; i < sizeof array / sizeof *array; i++)
         free(array[i]);
-    free(s->rim[0]);
-    free(s->rim[1]);
-    free(s->rim_start);
+    free(s->halo[0]);
+    free(s->halo[1]);
+    free(s->halo_start);
     free(s->value_start);
-    for (uint32_t b = 0; s->image && b < s->tables.n_blocks; b++)
-        free(s->image[b]);
-    free(s->image);
+    for (uint32_t b = 0; s->layout && b < s->tables.n_blocks; b++)
+        free(s->layout[b]);
+    free(s->layout);
     free(s->tables.block);
     flow_source_free(&s->source);
     flow_free(s->flow);
@@ -170,9 +171,9 @@ void sheet_free(struct sheet *s)
 }
 
 /* b and the matrix of a block, as the body of flow_system makes them; x and v of the
- * rims are in place of their objects. */
-static void make_block(struct sheet *s, const struct flow_table *t, const phys_vec *rim_x,
-                       const phys_vec *rim_v)
+ * halos are in place of their objects. */
+static void make_block(struct sheet *s, const struct flow_table *t, const phys_vec *halo_x,
+                       const phys_vec *halo_v)
 {
     const struct flow_tables *all = sheet_tables(s);
     const double h = s->model.h;
@@ -183,10 +184,10 @@ static void make_block(struct sheet *s, const struct flow_table *t, const phys_v
     for (uint32_t i = 0; i < t->n; i++)
         b[i] = h * b[i];
     phys_springs_system(&springs, h, h, x, v, b, value);
-    for (uint32_t i = 0; i < t->n_slots; i++) {
-        const size_t at = s->rim_start[t->slot[i]];
+    for (uint32_t i = 0; i < t->n_neighbours; i++) {
+        const size_t at = s->halo_start[t->neighbour[i]];
         springs = flow_table_cut(t, i);
-        phys_springs_system_cut(&springs, h, h, x, v, rim_x + at, rim_v + at, b,
+        phys_springs_system_cut(&springs, h, h, x, v, halo_x + at, halo_v + at, b,
                                 value + t->n_inner + t->cut[i]);
     }
 }
@@ -194,19 +195,19 @@ static void make_block(struct sheet *s, const struct flow_table *t, const phys_v
 static int make_system(struct sheet *s)
 {
     const struct flow_tables *all = sheet_tables(s);
-    phys_vec *rim_x = vectors(n_rim(s)), *rim_v = vectors(n_rim(s));
-    for (uint32_t b = 0; b < all->n_blocks && rim_x && rim_v; b++) {
+    phys_vec *halo_x = vectors(n_halo(s)), *halo_v = vectors(n_halo(s));
+    for (uint32_t b = 0; b < all->n_blocks && halo_x && halo_v; b++) {
         const struct flow_table *t = all->block + b;
-        for (uint32_t i = 0; i < t->n_rim; i++) {
-            rim_x[s->rim_start[b] + i] = t->position[t->rim[i]];
-            rim_v[s->rim_start[b] + i] = t->velocity[t->rim[i]];
+        for (uint32_t i = 0; i < t->n_halo; i++) {
+            halo_x[s->halo_start[b] + i] = t->position[t->halo[i]];
+            halo_v[s->halo_start[b] + i] = t->velocity[t->halo[i]];
         }
     }
-    const bool has = rim_x && rim_v;
+    const bool has = halo_x && halo_v;
     for (uint32_t b = 0; b < all->n_blocks && has; b++)
-        make_block(s, all->block + b, rim_x, rim_v);
-    free(rim_x);
-    free(rim_v);
+        make_block(s, all->block + b, halo_x, halo_v);
+    free(halo_x);
+    free(halo_v);
     return has ? 0 : serve_no_memory();
 }
 
@@ -229,12 +230,12 @@ int sheet_ready(struct sheet *sheet, uint32_t side, uint32_t grain)
 void sheet_start(struct sheet *s, uint32_t block)
 {
     const struct flow_table *t = sheet_tables(s)->block + block;
-    const size_t first = t->first, copies = (size_t)(t->copy - sheet_tables(s)->copy);
+    const size_t first = t->first, ghosts = (size_t)(t->ghost - sheet_tables(s)->ghost);
     solve_start(t->n, t->free, s->b + first, s->dv + first, s->r + first, s->p + first,
                 s->q + first);
-    memset(s->copy_r + copies, 0, t->n_copies * sizeof *s->copy_r);
-    memset(s->copy_p + copies, 0, t->n_copies * sizeof *s->copy_p);
-    solve_pack(t->n_rim, t->rim, s->q + first, s->rim[0] + sheet_rim(s, block));
+    memset(s->ghost_r + ghosts, 0, t->n_ghosts * sizeof *s->ghost_r);
+    memset(s->ghost_p + ghosts, 0, t->n_ghosts * sizeof *s->ghost_p);
+    solve_pack(t->n_halo, t->halo, s->q + first, s->halo[0] + sheet_halo(s, block));
 }
 
 void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *scalars, int from,
@@ -242,7 +243,7 @@ void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *sca
 {
     const struct flow_tables *all = sheet_tables(s);
     const struct flow_table *t = all->block + block;
-    const size_t first = t->first, copies = (size_t)(t->copy - all->copy);
+    const size_t first = t->first, ghosts = (size_t)(t->ghost - all->ghost);
     const phys_vec *value = s->value + s->value_start[block];
     const struct solve_cut cut = flow_table_cut_entries(t);
     const struct solve_rows rows =
@@ -251,13 +252,14 @@ void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *sca
         dots[SOLVE_RR] = solve_finish(t->n, scalars->alpha, rows.q, rows.p, rows.dv, rows.r);
     if (scalars->phase != SOLVE_ON)
         return;
-    for (uint32_t i = 0; i < t->n_slots; i++)
-        solve_advance_copies(t->copies[i + 1] - t->copies[i], scalars->alpha, scalars->beta,
-                             s->rim[from] + sheet_rim(s, t->slot[i]), t->copy + t->copies[i],
-                             s->copy_r + copies + t->copies[i], s->copy_p + copies + t->copies[i]);
-    solve_pass(&t->matrix, &cut, value, s->copy_p + copies, scalars->alpha, scalars->beta, &rows,
+    for (uint32_t i = 0; i < t->n_neighbours; i++)
+        solve_advance_ghosts(t->ghosts[i + 1] - t->ghosts[i], scalars->alpha, scalars->beta,
+                             s->halo[from] + sheet_halo(s, t->neighbour[i]),
+                             t->ghost + t->ghosts[i], s->ghost_r + ghosts + t->ghosts[i],
+                             s->ghost_p + ghosts + t->ghosts[i]);
+    solve_pass(&t->matrix, &cut, value, s->ghost_p + ghosts, scalars->alpha, scalars->beta, &rows,
                dots);
-    solve_pack(t->n_rim, t->rim, rows.q, s->rim[1 - from] + sheet_rim(s, block));
+    solve_pack(t->n_halo, t->halo, rows.q, s->halo[1 - from] + sheet_halo(s, block));
 }
 
 /* The runtime's tree over the sums of tasks first .. first + n - 1 (docs/design.md,
@@ -278,7 +280,7 @@ static void add_tree(double (*sum)[SOLVE_DOTS], size_t first, size_t n)
 int sheet_solve(struct sheet *s, uint32_t count)
 {
     const uint32_t n = sheet_tables(s)->n_blocks;
-    const struct solve_stop stop = {.count = true, .most = count};
+    const struct solve_stop stop = {.count = true, .max = count};
     struct solve_scalars scalars = solve_scalars_start(0, SOLVE_ON);
     if (s->answered == count)
         return 0;

@@ -15,13 +15,13 @@ struct sheet {
     struct flow *flow;         /* of the run that is on */
     uint32_t side;             /* vertices */
     struct flow_source source; /* blocks, and what the tables point into; */
-    struct flow_tables tables; /* of all blocks, on every rank, with their images */
-    void **image;
-    size_t *rim_start, *value_start; /* a block */
-    /* Block after block: rows by place, values by side of springs, r and then p of each copy, three
-     * numbers a rim row. */
-    phys_vec *b, *dv, *r, *p, *q, *value, *copy_r, *copy_p;
-    double *rim[2];
+    struct flow_tables tables; /* of all blocks, on every rank, with their layouts */
+    void **layout;
+    size_t *halo_start, *value_start; /* a block */
+    /* Block after block: rows by place, values by side of springs, r and then p of each ghost,
+     * three numbers a halo row. */
+    phys_vec *b, *dv, *r, *p, *q, *value, *ghost_r, *ghost_p;
+    double *halo[2];
     phys_vec *answer; /* dv after so many iterations; 0: of none */
     uint32_t answered;
     double square; /* r.r then */
@@ -39,16 +39,16 @@ int sheet_own_rank(void);
  * serve_fail returns. */
 int sheet_flow(struct sheet *sheet);
 /* Waves the start of a block in its table, and sets it moving; the same as a task: rw table. */
-void sheet_wave(const struct flow_table *table, void *image);
+void sheet_wave(const struct flow_table *table, void *layout);
 extern const duite_kernel sheet_wave_kernel;
 
 const struct flow_tables *sheet_tables(const struct sheet *sheet);
-/* The first row of a block, and the first number of its rim. */
+/* The first row of a block, and the first number of its halo. */
 size_t sheet_row(const struct sheet *sheet, uint32_t block);
-size_t sheet_rim(const struct sheet *sheet, uint32_t block);
+size_t sheet_halo(const struct sheet *sheet, uint32_t block);
 
 /* What a task of the cloth's solve does on a block: before the first pass; in a pass that reads
- * rim[from] of the neighbours and writes rim[1 - from]. */
+ * halo[from] of the neighbours and writes halo[1 - from]. */
 void sheet_start(struct sheet *sheet, uint32_t block);
 /* Of n blocks the i-th of a pass: passes go to and fro. */
 static inline uint32_t sheet_order(uint32_t n, uint32_t i, int from)

@@ -11,7 +11,7 @@
 
 enum { MOST_RANKS = 16 };
 
-/* What goes to another rank, or comes from it: where its rows lie in the rims, three numbers each.
+/* What goes to another rank, or comes from it: where its rows lie in the halos, three numbers each.
  */
 struct traffic {
     size_t n, *at;
@@ -44,14 +44,14 @@ static void share_blocks(struct twin *twin)
         twin->first[rank] = (uint32_t)(n * rank / ranks);
 }
 
-/* Rows of the blocks of rank `from` that blocks of rank `to` need, in the order of the rims. */
+/* Rows of the blocks of rank `from` that blocks of rank `to` need, in the order of the halos. */
 static int list_rows(struct twin *twin, int from, int to, struct traffic *traffic)
 {
     const struct sheet *sheet = twin->sheet;
     const struct flow_tables *all = sheet_tables(sheet);
-    const size_t begin = sheet_rim(sheet, twin->first[from]) / 3;
+    const size_t begin = sheet_halo(sheet, twin->first[from]) / 3;
     const uint32_t last = twin->first[from + 1] - 1;
-    const size_t end = sheet_rim(sheet, last) / 3 + all->block[last].n_rim;
+    const size_t end = sheet_halo(sheet, last) / 3 + all->block[last].n_halo;
     unsigned char *needed = calloc(end - begin + 1, 1);
     traffic->at = calloc(end - begin + 1, sizeof *traffic->at);
     traffic->packed = calloc(3 * (end - begin) + 1, sizeof *traffic->packed);
@@ -61,10 +61,10 @@ static int list_rows(struct twin *twin, int from, int to, struct traffic *traffi
     }
     for (uint32_t b = twin->first[to]; b < twin->first[to + 1]; b++) {
         const struct flow_table *t = all->block + b;
-        for (uint32_t s = 0; s < t->n_slots; s++)
-            for (uint32_t i = t->copies[s];
-                 i < t->copies[s + 1] && rank_of(twin, t->slot[s]) == from; i++)
-                needed[sheet_rim(sheet, t->slot[s]) / 3 + t->copy[i] - begin] = 1;
+        for (uint32_t s = 0; s < t->n_neighbours; s++)
+            for (uint32_t i = t->ghosts[s];
+                 i < t->ghosts[s + 1] && rank_of(twin, t->neighbour[s]) == from; i++)
+                needed[sheet_halo(sheet, t->neighbour[s]) / 3 + t->ghost[i] - begin] = 1;
     }
     for (size_t i = begin; i < end; i++)
         if (needed[i - begin])
@@ -77,8 +77,8 @@ static void mark_border(struct twin *twin)
 {
     const struct flow_tables *all = sheet_tables(twin->sheet);
     for (uint32_t b = 0; b < all->n_blocks; b++)
-        for (uint32_t s = 0; s < all->block[b].n_slots; s++)
-            twin->border[b] |= rank_of(twin, all->block[b].slot[s]) != rank_of(twin, b);
+        for (uint32_t s = 0; s < all->block[b].n_neighbours; s++)
+            twin->border[b] |= rank_of(twin, all->block[b].neighbour[s]) != rank_of(twin, b);
 }
 
 static int twin_make(struct twin *twin, struct sheet *sheet)
@@ -126,13 +126,13 @@ static int expect_rows(struct twin *twin)
     return code;
 }
 
-static int send_rows(struct twin *twin, const double *rim)
+static int send_rows(struct twin *twin, const double *halo)
 {
     int code = 0;
     for (int other = 0; other < twin->ranks && !code; other++) {
         struct traffic *out = &twin->out[other];
         for (size_t i = 0; i < out->n; i++)
-            memcpy(out->packed + 3 * i, rim + out->at[i], 3 * sizeof *rim);
+            memcpy(out->packed + 3 * i, halo + out->at[i], 3 * sizeof *halo);
         if (out->n)
             code = MPI_Isend(out->packed, (int)(3 * out->n), MPI_DOUBLE, other, 0, MPI_COMM_WORLD,
                              &twin->request[2 * other + 1]);
@@ -140,13 +140,13 @@ static int send_rows(struct twin *twin, const double *rim)
     return code;
 }
 
-static int take_rows(struct twin *twin, double *rim)
+static int take_rows(struct twin *twin, double *halo)
 {
     const int code = MPI_Waitall(2 * twin->ranks, twin->request, MPI_STATUSES_IGNORE);
     for (int other = 0; other < twin->ranks && !code; other++) {
         const struct traffic *in = &twin->in[other];
         for (size_t i = 0; i < in->n; i++)
-            memcpy(rim + in->at[i], in->packed + 3 * i, 3 * sizeof *rim);
+            memcpy(halo + in->at[i], in->packed + 3 * i, 3 * sizeof *halo);
     }
     return code;
 }
@@ -171,30 +171,30 @@ static int pass(struct twin *twin, const struct solve_scalars *now, int from,
                 double sum[SOLVE_DOTS])
 {
     double own[SOLVE_DOTS] = {0};
-    double *rim = twin->sheet->rim[1 - from];
+    double *halo = twin->sheet->halo[1 - from];
     const bool on = now->phase == SOLVE_ON;
     int code = on ? expect_rows(twin) : 0;
     pass_blocks(twin, true, now, from, own);
     if (on && !code)
-        code = send_rows(twin, rim);
+        code = send_rows(twin, halo);
     pass_blocks(twin, false, now, from, own);
     if (!code)
         code = MPI_Allreduce(own, sum, SOLVE_RZ, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
     sum[SOLVE_RZ] = sum[SOLVE_RR];
-    return on && !code ? take_rows(twin, rim) : code;
+    return on && !code ? take_rows(twin, halo) : code;
 }
 
 static int solve(struct twin *twin, uint32_t count, struct solve_scalars *scalars)
 {
-    const struct solve_stop stop = {.count = true, .most = count};
+    const struct solve_stop stop = {.count = true, .max = count};
     int code = expect_rows(twin);
     *scalars = solve_scalars_start(0, SOLVE_ON);
     for (uint32_t b = twin->first[twin->rank]; b < twin->first[twin->rank + 1]; b++)
         sheet_start(twin->sheet, b);
     if (!code)
-        code = send_rows(twin, twin->sheet->rim[0]);
+        code = send_rows(twin, twin->sheet->halo[0]);
     if (!code)
-        code = take_rows(twin, twin->sheet->rim[0]);
+        code = take_rows(twin, twin->sheet->halo[0]);
     for (int from = 0; scalars->phase != SOLVE_DONE && !code; from = 1 - from) {
         const struct solve_scalars now = *scalars;
         double sum[SOLVE_DOTS];

@@ -22,15 +22,15 @@ void *cloth_alloc(size_t n, size_t size, struct cloth_error *error)
 
 void *cloth_list_add(struct cloth_list *list, size_t size, size_t count, struct cloth_error *error)
 {
-    size_t most = SIZE_MAX / size;
-    if (count > most - list->n)
+    size_t max = SIZE_MAX / size;
+    if (count > max - list->n)
         return out_of_memory(count, size, error);
     size_t needed = list->n + count;
     if (needed > list->capacity || !list->items) {
         size_t capacity = needed < 16 ? 16 : needed;
-        if (list->capacity <= most / 2 && capacity < 2 * list->capacity)
+        if (list->capacity <= max / 2 && capacity < 2 * list->capacity)
             capacity = 2 * list->capacity;
-        void *items = capacity <= most ? realloc(list->items, capacity * size) : NULL;
+        void *items = capacity <= max ? realloc(list->items, capacity * size) : NULL;
         if (!items)
             return out_of_memory(capacity, size, error);
         list->items = items;

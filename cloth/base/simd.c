@@ -35,9 +35,9 @@ static int wanted(void)
 
 __attribute__((constructor)) static void choose(void)
 {
-    const enum cloth_simd most = widest();
+    const enum cloth_simd max = widest();
     const int asked = wanted();
-    cloth_simd = asked <= (int)most ? (enum cloth_simd)asked : most;
+    cloth_simd = asked <= (int)max ? (enum cloth_simd)asked : max;
 }
 
 const char *cloth_simd_name(void)

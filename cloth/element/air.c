@@ -25,28 +25,28 @@ static double air_limit(const struct model *model, double density, double speed)
 static void air_warn(const struct element_sheet *sheet, char *text, size_t size)
 {
     const struct model *model = sheet->model;
-    const double strongest = model_course_most(model, model->wind_course);
+    const double strongest = model_curve_max(model, model->wind_curve);
     double square = 0;
     for (int i = 0; i < 3; i++)
         square += pow(strongest * model->air.wind[i] - sheet->cloth->velocity[i], 2);
-    const double speed = sqrt(square), most = air_limit(model, sheet->density, speed);
+    const double speed = sqrt(square), max = air_limit(model, sheet->density, speed);
     *text = 0;
-    if (model->h > most)
+    if (model->h > max)
         snprintf(text, size,
                  "steps of %g s are beyond the limit of the air, which is not in the matrix, %g s: "
                  "its push on cloth '%.60s' can grow in each. It blows %g m in a step, vertices "
                  "are %g m apart; give shorter steps or less wind",
-                 model->h, most, sheet->cloth->name, speed * model->h, sheet->edge);
+                 model->h, max, sheet->cloth->name, speed * model->h, sheet->edge);
 }
 
 static void air_force(const struct element_list *list, const struct element_world *world,
                       const struct phys_sight *sight, phys_vec *f)
 {
     const struct model *model = world->model;
-    const double course = model_course_at(model, model->wind_course, world->time);
+    const double curve = model_curve_at(model, model->wind_curve, world->time);
     struct phys_air air = model->air;
     for (int i = 0; i < 3; i++)
-        air.wind[i] *= course;
+        air.wind[i] *= curve;
     phys_air_force(&air, list->n, (const uint32_t(*)[4])list->corner, sight, f);
 }
 

@@ -54,16 +54,16 @@ static double difference(const double *a, const double *b, const double *z, doub
  * opposite vertex comes to lie. */
 static void lay_beside(const double a[9], const double b[9], double x[3])
 {
-    double edge[3], arm[3], other[3], far[3], in = 0, out = 0;
+    double edge[3], arm[3], other[3], packed[3], in = 0, out = 0;
     const double square = difference(a, a + 3, NULL, edge);
     const double foot = difference(a, a + 6, edge, arm) / square;
     const double other_square = difference(b, b + 3, NULL, other);
-    const double other_foot = difference(b, b + 6, other, far) / other_square;
+    const double other_foot = difference(b, b + 6, other, packed) / other_square;
     for (int c = 0; c < 3; c++) {
         arm[c] -= foot * edge[c];
-        far[c] -= other_foot * other[c];
+        packed[c] -= other_foot * other[c];
         in += arm[c] * arm[c];
-        out += far[c] * far[c];
+        out += packed[c] * packed[c];
     }
     for (int c = 0; c < 3; c++)
         x[c] = a[c] + other_foot * edge[c] - sqrt(out / in) * arm[c];
@@ -288,41 +288,41 @@ static void quadratic_pack(const struct element_cloths *cloths, const struct ele
         list->vector[e][i] = sqrt(bend.stiffness) * bend.rest.weight[i];
 }
 
-static struct phys_folds folds_of(const struct element_list *list)
+static struct phys_quadratic quadratic_of(const struct element_list *list)
 {
-    return (struct phys_folds){list->n, (const uint32_t(*)[4])list->corner, list->vector};
+    return (struct phys_quadratic){list->n, (const uint32_t(*)[4])list->corner, list->vector};
 }
 
 static void quadratic_force(const struct element_list *list, const struct element_world *world,
                             const struct phys_sight *sight, phys_vec *f)
 {
-    const struct phys_folds folds = folds_of(list);
+    const struct phys_quadratic quadratic = quadratic_of(list);
     (void)world;
-    phys_folds_force(&folds, sight, f);
+    phys_quadratic_force(&quadratic, sight, f);
 }
 
 static void quadratic_matrix(const struct element_list *list, size_t from, size_t to,
                              const struct phys_step *step, const struct phys_sight *sight,
                              const uint32_t *at, struct phys_pair *pair)
 {
-    const struct phys_folds folds = folds_of(list);
+    const struct phys_quadratic quadratic = quadratic_of(list);
     (void)sight;
     (void)at; /* blocks are symmetric */
-    phys_folds_matrix(&folds, from, to, step->h, pair);
+    phys_quadratic_matrix(&quadratic, from, to, step->h, pair);
 }
 
 static void quadratic_stiffness(const struct element_list *list, int full, double scale,
                                 const struct phys_sight *sight, phys_vec *y)
 {
-    const struct phys_folds folds = folds_of(list);
+    const struct phys_quadratic quadratic = quadratic_of(list);
     (void)full;
-    phys_folds_stiffness(&folds, scale, sight, y);
+    phys_quadratic_stiffness(&quadratic, scale, sight, y);
 }
 
 static double quadratic_energy(const struct element_list *list, const struct phys_sight *sight)
 {
-    const struct phys_folds folds = folds_of(list);
-    return phys_folds_energy(&folds, sight);
+    const struct phys_quadratic quadratic = quadratic_of(list);
+    return phys_quadratic_energy(&quadratic, sight);
 }
 
 const struct element_kind element_quadratic = {

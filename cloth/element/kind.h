@@ -29,7 +29,7 @@ enum {
 /* The elements of one kind in a block, all that have a corner there, in the order of the mesh. */
 struct element_list {
     uint32_t n;
-    uint32_t (*corner)[4]; /* n: rows, then copies; spare ones: see pack */
+    uint32_t (*corner)[4]; /* n: rows, then ghosts; spare ones: see pack */
     uint32_t *at;          /* n x pairs: the entry of each, as solve_assemble_pairs wants it */
     phys_vec *vector;      /* n, or none */
     double *number[ELEMENT_NUMBERS]; /* n each; those of the kind come first */

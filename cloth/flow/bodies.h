@@ -32,23 +32,23 @@ static inline const struct flow_table *flow_shape_of(const duite_call *call)
 }
 
 /* The block with its table, the object of the field. */
-static inline struct flow_table flow_table_in(const duite_call *call, const unsigned char *image)
+static inline struct flow_table flow_table_in(const duite_call *call, const unsigned char *layout)
 {
     struct flow_table table = *flow_shape_of(call);
-    flow_table_open(&table, image);
+    flow_table_open(&table, layout);
     return table;
 }
 
-/* x and v as the task of a block sees them: its own rows, and the rims of its neighbours. Without
+/* x and v as the task of a block sees them: its own rows, and the halos of its neighbours. Without
  * velocities v is NULL. */
 struct flow_view {
     const phys_vec *x, *v;
-    const duite_param *rim_x, *rim_v;
+    const duite_param *halo_x, *halo_v;
 };
-/* That of a body whose kernel declares x, v, and the neighbours' rims of both. */
+/* That of a body whose kernel declares x, v, and the neighbours' halos of both. */
 #define FLOW_VIEW(on)                                                                              \
     {                                                                                              \
-        (on)->x, (on)->v, (on)->rim_x, (on)->rim_v                                                 \
+        (on)->x, (on)->v, (on)->halo_x, (on)->halo_v                                               \
     }
 
 /* Notes in the status that this rank is asked to stop, if it is. */
@@ -117,22 +117,23 @@ static inline phys_vec *flow_force_room(const duite_call *call)
     return flow->forces + call->worker * flow->n_forces;
 }
 
-/* Copies the rows that neighbours need. rim: n_rim rows; one, which nobody reads, if there are
+/* Copies the rows that neighbours need. halo: n_halo rows; one, which nobody reads, if there are
  * none. */
-static inline void flow_write_rim(const struct flow_table *table, const phys_vec *y, phys_vec *rim)
+static inline void flow_write_halo(const struct flow_table *table, const phys_vec *y,
+                                   phys_vec *halo)
 {
-    for (uint32_t i = 0; i < table->n_rim; i++)
-        rim[i] = y[table->rim[i]];
-    if (!table->n_rim)
-        rim[0] = (phys_vec){0};
+    for (uint32_t i = 0; i < table->n_halo; i++)
+        halo[i] = y[table->halo[i]];
+    if (!table->n_halo)
+        halo[0] = (phys_vec){0};
 }
 
-/* A rim of the solve: three numbers a row; one row, which nobody reads, if there are none. */
-static inline void flow_pack_rim(const struct flow_table *t, const phys_vec *y, double *rim)
+/* A halo of the solve: three numbers a row; one row, which nobody reads, if there are none. */
+static inline void flow_pack_halo(const struct flow_table *t, const phys_vec *y, double *halo)
 {
-    solve_pack(t->n_rim, t->rim, y, rim);
-    if (!t->n_rim)
-        rim[0] = rim[1] = rim[2] = 0;
+    solve_pack(t->n_halo, t->halo, y, halo);
+    if (!t->n_halo)
+        halo[0] = halo[1] = halo[2] = 0;
 }
 
 /* What a solve left of a block. */

@@ -9,17 +9,17 @@
 #define FLOW_KERNELS(X)                                                                            \
     X(table_make) X(table_keep)                                                                    \
     X(initial) X(keep) X(restore) X(status)                                                        \
-    X(force) X(force_free) X(drive) X(place)                                                       \
-    X(touch) X(contact) X(hold) X(collide)                                                         \
-    X(euler) X(euler_beside) X(verlet_first) X(verlet_second) X(runge)                             \
+    X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                                                       \
+    X(predict_contact) X(contact) X(constrain) X(collide)                                                         \
+    X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(runge)                             \
     X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)                    \
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \
-    X(basis) X(basis_copies) X(couple) X(factor_coarse)                                            \
+    X(basis) X(basis_ghosts) X(couple) X(factor_coarse)                                            \
     X(cg_begin) X(cg_begin_coarse) X(cg_start) X(cg_start_preconditioned) X(cg_guess)              \
     X(cg_pass) X(cg_pass_preconditioned)                                                           \
     X(cg_scalars) X(cg_scalars_of_parts) X(cg_scalars_coarse) X(piece_sums) X(piece_shift)         \
     X(stretch) X(energy) X(level) X(watch) X(probe) X(row) X(frame)                                \
-    X(collect) X(seconds) X(tell) X(system_part) X(system_save)
+    X(collect) X(seconds) X(broadcast) X(system_part) X(system_save)
 /* clang-format on */
 
 #define FLOW_KERNEL_NUMBER(name) FLOW_KERNEL_##name,
@@ -28,10 +28,10 @@ enum { FLOW_KERNELS(FLOW_KERNEL_NUMBER) FLOW_KERNELS_OF_ALL };
 FLOW_KERNELS(FLOW_KERNEL_EXTERN)
 
 /* Kernels of objects that are no fields. */
-extern const duite_kernel flow_tell_head; /* w head: on rank 0 */
+extern const duite_kernel flow_broadcast_head; /* w head: on rank 0 */
 extern const duite_kernel
-    flow_tell_shared; /* w shared: obstacles, motions, shapes, neighbours; on rank 0 */
+    flow_broadcast_shared; /* w shared: obstacles, motions, shapes, neighbours; on rank 0 */
 extern const duite_kernel flow_ready; /* cw ready: fails if this rank cannot begin */
-extern const duite_kernel flow_pack;  /* r rim of s, w far rim */
+extern const duite_kernel flow_pack;  /* r halo of s, w packed halo */
 
 #endif

@@ -5,7 +5,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/kernels.h \
     cloth/flow/run.c \
     cloth/flow/run.h \
-    cloth/flow/setup/deal.c \
+    cloth/flow/setup/distribute.c \
     cloth/flow/setup/joints.c \
     cloth/flow/setup/limit.c \
     cloth/flow/setup/loads.c \
@@ -44,7 +44,7 @@ libduite_cloth_la_SOURCES += \
     cloth/flow/step/forces.c \
     cloth/flow/step/grid.c \
     cloth/flow/step/grid.h \
-    cloth/flow/step/guides.h \
+    cloth/flow/step/sliders.h \
     cloth/flow/step/contact.c \
     cloth/flow/step/pins.c \
     cloth/flow/step/status.c \

@@ -25,22 +25,23 @@ double flow_now(void)
 const duite_kernel *const *flow_kernels(void)
 {
 #define TASK(name) &flow_kernel_##name.task,
-    static const duite_kernel *const all[] = {FLOW_KERNELS(TASK) & flow_tell_head,
-                                              &flow_tell_shared, &flow_ready, &flow_pack, NULL};
+    static const duite_kernel *const all[] = {FLOW_KERNELS(TASK) & flow_broadcast_head,
+                                              &flow_broadcast_shared, &flow_ready, &flow_pack,
+                                              NULL};
     return all;
 }
 
 /* ---- Preparing ---- */
 
 /* Keeps where the vertices are that no block has. */
-static int keep_rest(struct flow *flow, const struct flow_particles *particles,
-                     struct cloth_error *error)
+static int keep_unused(struct flow *flow, const struct flow_particles *particles,
+                       struct cloth_error *error)
 {
-    struct flow_rest *rest = &flow->rest;
+    struct flow_unused *unused = &flow->unused;
     const struct model *model = flow->model;
-    rest->vertex = cloth_alloc(particles->unused.n, sizeof *rest->vertex, error);
-    rest->position = cloth_alloc(particles->unused.n, sizeof *rest->position, error);
-    if (!rest->vertex || !rest->position)
+    unused->vertex = cloth_alloc(particles->unused.n, sizeof *unused->vertex, error);
+    unused->position = cloth_alloc(particles->unused.n, sizeof *unused->position, error);
+    if (!unused->vertex || !unused->position)
         return CLOTH_E_MEMORY;
     uint32_t first = 0;
     for (uint32_t c = 0; c < model->n_cloths; c++) {
@@ -48,9 +49,9 @@ static int keep_rest(struct flow *flow, const struct flow_particles *particles,
         for (uint32_t v = 0; v < mesh->n_vertices; v++) {
             if (particles->used[first + v])
                 continue;
-            rest->vertex[rest->n] = first + v;
-            memcpy(rest->position[rest->n++], mesh->position + 3 * (size_t)v,
-                   sizeof *rest->position);
+            unused->vertex[unused->n] = first + v;
+            memcpy(unused->position[unused->n++], mesh->position + 3 * (size_t)v,
+                   sizeof *unused->position);
         }
         first += mesh->n_vertices;
     }
@@ -70,7 +71,7 @@ static int build(struct flow *flow, int ranks, struct cloth_error *error)
     if (flow_watched_header(&flow->source.watched, flow->model, &flow->header, error) ||
         flow_warn(flow, error))
         return CLOTH_E_MEMORY;
-    return keep_rest(flow, &flow->source.particles, error);
+    return keep_unused(flow, &flow->source.particles, error);
 }
 
 int flow_join(struct flow **flow, struct cloth_error *error)
@@ -111,8 +112,8 @@ void flow_free(struct flow *flow)
     free(flow->shared);
     free(flow->vertex);
     free(flow->names.name);
-    free(flow->rest.vertex);
-    free(flow->rest.position);
+    free(flow->unused.vertex);
+    free(flow->unused.position);
     flow_watched_free(&flow->watched);
     free(flow->header);
     free(flow);
@@ -161,7 +162,7 @@ static int make(struct flow_state *state)
     flow_objects_make(state);
     if (model_is_implicit(state->flow->model))
         flow_halo_make(state);
-    int code = flow_deal(state);
+    int code = flow_distribute(state);
     if (!code)
         code = duite_count_all(state->rt, &state->before);
     return code;
@@ -186,9 +187,9 @@ int flow_run_begin(struct flow_state *state)
         code = flow_preconditioner_prepare(state);
     if (!code)
         code = make(state);
-    for (uint32_t i = 0; flow->room && i < flow->rest.n; i++)
-        memcpy(flow->room + 3 * (size_t)flow->rest.vertex[i], flow->rest.position[i],
-               sizeof flow->rest.position[i]);
+    for (uint32_t i = 0; flow->room && i < flow->unused.n; i++)
+        memcpy(flow->room + 3 * (size_t)flow->unused.vertex[i], flow->unused.position[i],
+               sizeof flow->unused.position[i]);
     state->begun = !code;
     return code;
 }

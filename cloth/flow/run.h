@@ -90,7 +90,7 @@ struct flow_progress {
     void *context;
     /* The meshes of the model are not read any more: all blocks have their tables. Called once,
      * before the first step. May be NULL. */
-    void (*dealt)(void *context);
+    void (*distributed)(void *context);
     /* step: how many of the steps of length h are over, or begun; after each shorter step, too.
      * cg_iterations: of this step. */
     void (*step)(void *context, uint64_t step, uint64_t steps, uint64_t cg_iterations);
@@ -116,8 +116,8 @@ struct flow_rows {
     const phys_vec *x, *v;  /* n: m, m/s, lanes 0 to 2; where the step begins */
     double time, h;         /* s: when the step ends; its length */
     phys_vec *filter; /* n: S of each row (solve_filter in cloth/solve/block.h), as contact and
-                       * guides of pins have it; solve_hold holds a row along a normal more; at a
-                       * point: all 0. Rows of pins are held in any case. */
+                       * sliders of pins have it; solve_constrain holds a row along a normal more;
+                       * at a point: all 0. Rows of pins are held in any case. */
 };
 struct flow_filter {
     void *context;
@@ -134,7 +134,8 @@ void flow_filter_by(struct flow *flow, struct flow_filter filter);
 /* On rank 0 of the run: cuts the model into blocks and makes ready what the tables are made from.
  * No runtime needed. Checks what a scene alone cannot: pins inside the mesh, masses, lengths of
  * springs, starts out of bounds, more ranks than blocks; errors begin with the place that the model
- * gives. The model must outlive the flow, its meshes until flow_progress.dealt is called. Local. */
+ * gives. The model must outlive the flow, its meshes until flow_progress.distributed is called.
+ * Local. */
 int flow_prepare(struct flow **flow, const struct model *model, int ranks,
                  struct cloth_error *error);
 
@@ -162,8 +163,8 @@ uint64_t flow_vertices(const struct flow *flow);
  * Lives as long as the flow. Local. */
 const char *flow_header(const struct flow *flow);
 
-/* What is odd about the model but no error: sentence i, counted from 0, with its place; NULL: there
- * are no more. Lives as long as the flow. Local. */
+/* What is unusual about the model but no error: sentence i, counted from 0, with its place; NULL:
+ * there are no more. Lives as long as the flow. Local. */
 const char *flow_warning(const struct flow *flow, size_t i);
 
 void flow_free(struct flow *flow);

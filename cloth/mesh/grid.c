@@ -20,10 +20,10 @@ static int check_size(double width, double height, uint32_t nx, uint32_t ny,
         return cloth_fail(error, CLOTH_E_INPUT,
                           "a grid of %u x %u vertices has no cell; both numbers must be at least 2",
                           nx, ny);
-    if ((uint64_t)nx * ny > MESH_MOST / 6)
+    if ((uint64_t)nx * ny > MESH_MAX / 6)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "a grid of %u x %u vertices is too large; at most %u vertices", nx, ny,
-                          MESH_MOST / 6);
+                          MESH_MAX / 6);
     return CLOTH_OK;
 }
 

@@ -11,10 +11,10 @@ static int check_input(uint32_t n_vertices, const double *vertices, uint32_t n_e
 {
     if (n_vertices == 0)
         return cloth_fail(error, CLOTH_E_INPUT, "the mesh has no vertices; it needs at least one");
-    if (n_vertices > MESH_MOST || n_triangles > MESH_MOST / 3 || n_edges > MESH_MOST / 2)
+    if (n_vertices > MESH_MAX || n_triangles > MESH_MAX / 3 || n_edges > MESH_MAX / 2)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "the mesh is too large: at most %u vertices, %u triangles and %u edges",
-                          MESH_MOST, MESH_MOST / 3, MESH_MOST / 2);
+                          MESH_MAX, MESH_MAX / 3, MESH_MAX / 2);
     for (size_t i = 0; i < 3 * (size_t)n_vertices; i++)
         if (!isfinite(vertices[i]))
             return cloth_fail(error, CLOTH_E_INPUT, "vertices[%zu]: %g is not a finite number",

@@ -27,17 +27,17 @@ struct obj {
 
 static int full(struct obj *obj, const struct cloth_list *list, const char *what)
 {
-    return list->n < MESH_MOST ? CLOTH_OK : FAIL(obj, "there are more than %u %s", MESH_MOST, what);
+    return list->n < MESH_MAX ? CLOTH_OK : FAIL(obj, "there are more than %u %s", MESH_MAX, what);
 }
 
 /* Up to `most` numbers, at least `least`; those left out are 0; what follows is not looked at. */
-static int read_numbers(struct obj *obj, const char *at, int least, int most, double *numbers)
+static int read_numbers(struct obj *obj, const char *at, int min, int max, double *numbers)
 {
-    for (int i = 0; i < most; i++) {
+    for (int i = 0; i < max; i++) {
         const char *word = mesh_word(at);
         numbers[i] = 0;
-        if (!word && i < least)
-            return FAIL(obj, "there are %d numbers; at least %d are needed", i, least);
+        if (!word && i < min)
+            return FAIL(obj, "there are %d numbers; at least %d are needed", i, min);
         if (!word)
             continue;
         if (!mesh_word_number(word, obj->c, &numbers[i]))
@@ -83,7 +83,7 @@ static int resolve(struct obj *obj, const char *word, long long number, size_t n
 {
     if (number == 0)
         return FAIL(obj, "there is no %s 0; they count from 1", what);
-    if (number > (long long)MESH_MOST || number < -(long long)MESH_MOST)
+    if (number > (long long)MESH_MAX || number < -(long long)MESH_MAX)
         return FAIL(obj, "there is no %s of the number in '%s'; %zu come before this line", what,
                     mesh_word_quote(word).text, n);
     if (number < 0 && -number > (long long)n)

@@ -69,9 +69,9 @@ void model_free(struct model *model)
     free(model->probes);
     free(model->motions);
     free(model->keys);
-    free(model->guides);
-    free(model->courses);
-    free(model->beats);
+    free(model->sliders);
+    free(model->curves);
+    free(model->curve_keys);
     free(model->materials);
     free(model->cloths);
     free(model->obstacles);
@@ -168,7 +168,7 @@ bool model_is_guarded(const struct model *model)
     const double *wind = model->air.wind;
     const bool blown = model_has_air(model) && (wind[0] != 0 || wind[1] != 0 || wind[2] != 0);
     return model_is_implicit(model) && model->energy_growth > 0 && !blown && !model->n_motions &&
-           !model->n_courses && !model->own_filter && !model_obstacles_move(model);
+           !model->n_curves && !model->own_filter && !model_obstacles_move(model);
 }
 
 bool model_is_coarse(const struct model *model)
@@ -178,42 +178,42 @@ bool model_is_coarse(const struct model *model)
 
 uint32_t model_patches(const struct model *model, uint32_t n_blocks)
 {
-    enum { MOST_IN_ALL = 256, LEAST_VERTICES = 100 };
-    uint32_t n = model->patches ? model->patches : SOLVE_MOST_PATCHES;
+    enum { MAX_IN_ALL = 256, LEAST_VERTICES = 100 };
+    uint32_t n = model->patches ? model->patches : SOLVE_MAX_PATCHES;
     if (!model_is_coarse(model))
         return 1;
     while (!model->patches && n > 1 &&
-           (n * n_blocks > MOST_IN_ALL || model->grain / n < LEAST_VERTICES))
+           (n * n_blocks > MAX_IN_ALL || model->grain / n < LEAST_VERTICES))
         n /= 2;
-    while (n > 1 && n * n_blocks > SOLVE_MOST_BLOCKS)
+    while (n > 1 && n * n_blocks > SOLVE_MAX_BLOCKS)
         n--;
     return n;
 }
 
-double model_course_at(const struct model *model, uint32_t course, double time)
+double model_curve_at(const struct model *model, uint32_t curve, double time)
 {
-    if (!course)
+    if (!curve)
         return 1;
-    const struct model_course *c = model->courses + course - 1;
-    return c->n ? phys_course_at(c->n, model->beats + c->first, time)
+    const struct model_curve *c = model->curves + curve - 1;
+    return c->n ? phys_curve_at(c->n, model->curve_keys + c->first, time)
                 : phys_sine(c->frequency * time + c->phase);
 }
 
-double model_course_most(const struct model *model, uint32_t course)
+double model_curve_max(const struct model *model, uint32_t curve)
 {
-    double most = 0;
-    if (!course || !model->courses[course - 1].n)
+    double max = 0;
+    if (!curve || !model->curves[curve - 1].n)
         return 1;
-    const struct model_course *c = model->courses + course - 1;
+    const struct model_curve *c = model->curves + curve - 1;
     for (uint32_t i = 0; i < c->n; i++)
-        most = fmax(most, fabs(model->beats[c->first + i].factor));
-    return most;
+        max = fmax(max, fabs(model->curve_keys[c->first + i].factor));
+    return max;
 }
 
-double model_course_end(const struct model *model, uint32_t course)
+double model_curve_end(const struct model *model, uint32_t curve)
 {
-    if (!course)
+    if (!curve)
         return 0;
-    const struct model_course *c = model->courses + course - 1;
-    return c->n ? model->beats[c->first + c->n - 1].time : INFINITY;
+    const struct model_curve *c = model->curves + curve - 1;
+    return c->n ? model->curve_keys[c->first + c->n - 1].time : INFINITY;
 }

@@ -6,7 +6,7 @@
 #include "cloth/mesh/elastic.h"
 #include "cloth/mesh/mesh.h"
 #include "cloth/physics/air.h"
-#include "cloth/physics/course.h"
+#include "cloth/physics/curve.h"
 #include "cloth/physics/motion.h"
 #include "cloth/physics/spring.h"
 #include "cloth/solve/format.h"
@@ -59,16 +59,16 @@ struct model_pick {
     char *place;
 };
 
-/* Holds vertices where they start, or moves them from there; or leaves them free along a guide. */
+/* Holds vertices where they start, or moves them from there; or leaves them free along a slider. */
 struct model_pin {
     struct model_pick pick;
     uint32_t
-        motion; /* number of the model's motion, from 1; 0: it does not move, or its guide does */
-    uint32_t guide; /* number of the model's guide, from 1; 0: it holds points */
+        motion; /* number of the model's motion, from 1; 0: it does not move, or its slider does */
+    uint32_t slider; /* number of the model's slider, from 1; 0: it holds points */
 };
 
 /* Through each vertex that it has, where it starts: a line, or a plane. */
-struct model_guide {
+struct model_slider {
     enum { MODEL_LINE, MODEL_PLANE } kind;
     uint32_t motion;     /* that it takes part in, from 1; 0: none */
     double direction[3]; /* of the line, or normal to the plane; of length 1 */
@@ -80,9 +80,9 @@ struct model_motion {
     double about[3];
 };
 
-/* How a load varies: by beats first .. first + n - 1 of the model's; n 0: as a sine of the
+/* How a load varies: by keys first .. first + n - 1 of the model's; n 0: as a sine of the
  * frequency (1/s) and phase (turns). */
-struct model_course {
+struct model_curve {
     uint32_t first, n;
     double frequency, phase;
 };
@@ -94,7 +94,7 @@ struct model_load {
     uint32_t n_edges;
     uint32_t (*edges)[2]; /* of the cloth's mesh */
     double force[3];
-    uint32_t course; /* that it is multiplied by, from 1; 0: it is constant */
+    uint32_t curve; /* that it is multiplied by, from 1; 0: it is constant */
 };
 
 /* More mass, on each of the picked vertices. */
@@ -121,14 +121,14 @@ struct model_start {
     struct model_wave wave;
 };
 
-enum { MODEL_MOST_REGIONS = 64 };
+enum { MODEL_MAX_REGIONS = 64 };
 
 struct model_cloth {
     char *name;
     struct mesh mesh;  /* transformed: rest lengths and masses are those of this shape, */
     struct mesh *rest; /* unless this is another, which shares all but the positions; or NULL */
     uint32_t material;
-    uint32_t n_regions; /* where there are others: at most MODEL_MOST_REGIONS */
+    uint32_t n_regions; /* where there are others: at most MODEL_MAX_REGIONS */
     uint32_t
         *region;    /* materials, which have model, diagonals and, if any, bending of the cloth's */
     uint64_t *mask; /* by vertex, which regions have it: mesh_region; NULL: there are none */
@@ -171,7 +171,7 @@ struct model_weld {
     double tolerance; /* m: they start at most so far from each other */
 };
 
-/* What is told of vertices after each step. */
+/* What is reported of vertices after each step. */
 struct model_probe {
     char *name;
     uint32_t cloth;
@@ -234,14 +234,14 @@ struct model {
     struct model_motion *motions;
     struct phys_key *keys; /* of each motion in ascending order, of pins and of obstacles; at time 0
                               that of a pin is no motion */
-    uint32_t n_guides;
-    struct model_guide *guides;
-    uint32_t n_courses, n_beats;
-    struct model_course *courses;
-    struct phys_beat *beats; /* of each course in ascending order */
-    double gravity[3];       /* m/s^2 */
+    uint32_t n_sliders;
+    struct model_slider *sliders;
+    uint32_t n_curves, n_curve_keys;
+    struct model_curve *curves;
+    struct phys_curve_key *curve_keys; /* of each curve in ascending order */
+    double gravity[3];                 /* m/s^2 */
     struct phys_air air;
-    uint32_t wind_course; /* that the wind is multiplied by, from 1; 0: it is constant */
+    uint32_t wind_curve; /* that the wind is multiplied by, from 1; 0: it is constant */
     enum model_contact contact;
 
     double h;                  /* s; time is an integer count of h/1024 */
@@ -261,7 +261,7 @@ struct model {
     uint32_t newton_steps;   /* at most, of a step of an implicit one; 0: as 1, one linear step */
     double newton_tolerance; /* |dv| of the last <= tolerance |change of v in the step|, by mass */
 
-    bool energy_steps; /* the report tells of energies after each step */
+    bool energy_steps; /* the report has energies after each step */
 
     enum model_stop stop; /* relative: |r| <= tolerance |b|; absolute: |r| <= tolerance (kg m/s);
                              count: no test; mass_norm: the error of dv <= tolerance |dv|;
@@ -280,7 +280,7 @@ struct model {
     uint32_t grain; /* vertices a block */
 
     uint32_t n_warnings;
-    char **warnings; /* what is odd about the scene but no error, each with its place */
+    char **warnings; /* what is unusual about the scene but no error, each with its place */
 };
 
 /* Whether its steps solve a linear system. */
@@ -296,11 +296,11 @@ static inline int model_solves_contact(const struct model *model)
            model->contact == MODEL_CONTACT_FILTER && model->n_obstacles;
 }
 
-/* Whether its solves are filtered by more than points: by contact, guides or the program. */
+/* Whether its solves are filtered by more than points: by contact, sliders or the program. */
 static inline int model_is_filtered(const struct model *model)
 {
     return model_solves_contact(model) ||
-           (model_is_implicit(model) && (model->n_guides || model->own_filter));
+           (model_is_implicit(model) && (model->n_sliders || model->own_filter));
 }
 
 /* Whether an obstacle moves. */
@@ -309,7 +309,7 @@ bool model_obstacles_move(const struct model *model);
 /* Whether pins have a part in the velocities that a step begins with. */
 static inline int model_is_driven(const struct model *model)
 {
-    return model->n_motions || model->n_guides;
+    return model->n_motions || model->n_sliders;
 }
 
 /* Whether its steps are judged by the energy that they gain: implicit ones, where nothing does work
@@ -411,11 +411,11 @@ static inline bool model_in_box(const double *x, const double box[2][3])
     return in;
 }
 
-/* The factor of a course, by number, at a time, s; of 0: 1. Its largest size at any time; and the
+/* The factor of a curve, by number, at a time, s; of 0: 1. Its largest size at any time; and the
  * time, s, from which on it is constant: INFINITY for a sine. */
-double model_course_at(const struct model *model, uint32_t course, double time);
-double model_course_most(const struct model *model, uint32_t course);
-double model_course_end(const struct model *model, uint32_t course);
+double model_curve_at(const struct model *model, uint32_t curve, double time);
+double model_curve_max(const struct model *model, uint32_t curve);
+double model_curve_end(const struct model *model, uint32_t curve);
 
 /* The first vertex of a cloth, of those of all cloths. */
 static inline uint32_t model_first(const struct model *model, uint32_t cloth)

@@ -22,15 +22,15 @@ struct holder {
     long process; /* 0: the lock names none */
 };
 
-enum { MOST = 4 };
-static char *_Atomic held[MOST]; /* paths of the locks of this process, for the signal handler */
+enum { MAX = 4 };
+static char *_Atomic held[MAX]; /* paths of the locks of this process, for the signal handler */
 
 /* ---- Signals ---- */
 
 /* Ends the process as the signal would have without a handler. */
 static void end_by(int number)
 {
-    for (int i = 0; i < MOST; i++) {
+    for (int i = 0; i < MAX; i++) {
         const char *path = held[i];
         if (path)
             unlink(path);
@@ -87,7 +87,7 @@ static bool is_ours(const struct holder *holder)
 {
     const struct holder self = this_process();
     bool holds = false;
-    for (int i = 0; i < MOST; i++)
+    for (int i = 0; i < MAX; i++)
         holds = holds || held[i];
     return holds && is_same(holder, &self);
 }
@@ -206,9 +206,9 @@ static void free_lock(struct output_lock *lock)
 /* Where it is not noted a signal leaves the lock, as SIGKILL does. */
 static void note_held(struct output_lock *lock)
 {
-    for (lock->number = 0; lock->number < MOST && held[lock->number];)
+    for (lock->number = 0; lock->number < MAX && held[lock->number];)
         lock->number++;
-    if (lock->number < MOST)
+    if (lock->number < MAX)
         held[lock->number] = lock->path;
 }
 
@@ -239,7 +239,7 @@ void output_lock_free(struct output_lock **lock)
     *lock = NULL;
     if (!gone)
         return;
-    if (gone->number < MOST)
+    if (gone->number < MAX)
         held[gone->number] = NULL;
     if (read_holder(gone->path, &holder) && is_same(&holder, &self))
         unlink(gone->path); /* else somebody removed it, and another run may have the folder */

@@ -83,7 +83,7 @@ static int write_renamed(const struct output_report *report, const char *path,
 
 /* ---- Where it goes ---- */
 
-enum { MOST_LINKS = 40 }; /* as the kernel follows */
+enum { MAX_LINKS = 40 }; /* as the kernel follows */
 
 /* The path with its last part replaced by what a link there holds. */
 static char *beside(const char *path, const char *link)
@@ -103,10 +103,10 @@ static char *follow(const char *path)
         if (n < 0)
             return now;
         link[n] = '\0';
-        char *next = links < MOST_LINKS ? beside(now, link) : NULL;
+        char *next = links < MAX_LINKS ? beside(now, link) : NULL;
         free(now);
         now = next;
-        if (links == MOST_LINKS)
+        if (links == MAX_LINKS)
             errno = ELOOP;
     }
     return NULL;

@@ -12,7 +12,7 @@ PHYS_INLINE struct corner corner_of(const struct phys_sight *sight, uint32_t i)
 {
     if (i < sight->n)
         return (struct corner){sight->x[i], sight->v[i]};
-    return (struct corner){sight->x_copy[i - sight->n], sight->v_copy[i - sight->n]};
+    return (struct corner){sight->x_ghost[i - sight->n], sight->v_ghost[i - sight->n]};
 }
 
 PHYS_INLINE double length_of(const phys_vec *a)

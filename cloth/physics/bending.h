@@ -30,7 +30,7 @@ struct phys_hinges {
     const double *rest;      /* n: s0 */
 };
 
-struct phys_folds {
+struct phys_quadratic {
     size_t n;
     const uint32_t (*corner)[4];
     const phys_vec *weight; /* n: w_0 .. w_3, sqrt(N/m); they sum to nothing */
@@ -62,11 +62,13 @@ void phys_hinges_matrix(const struct phys_hinges *hinges, size_t from, size_t to
                         const uint32_t *at, struct phys_pair *pair);
 double phys_hinges_energy(const struct phys_hinges *hinges, const struct phys_sight *sight);
 
-void phys_folds_force(const struct phys_folds *folds, const struct phys_sight *sight, phys_vec *f);
-void phys_folds_stiffness(const struct phys_folds *folds, double scale,
-                          const struct phys_sight *sight, phys_vec *y);
-void phys_folds_matrix(const struct phys_folds *folds, size_t from, size_t to, double h,
-                       struct phys_pair *pair);
-double phys_folds_energy(const struct phys_folds *folds, const struct phys_sight *sight);
+void phys_quadratic_force(const struct phys_quadratic *quadratic, const struct phys_sight *sight,
+                          phys_vec *f);
+void phys_quadratic_stiffness(const struct phys_quadratic *quadratic, double scale,
+                              const struct phys_sight *sight, phys_vec *y);
+void phys_quadratic_matrix(const struct phys_quadratic *quadratic, size_t from, size_t to, double h,
+                           struct phys_pair *pair);
+double phys_quadratic_energy(const struct phys_quadratic *quadratic,
+                             const struct phys_sight *sight);
 
 #endif

@@ -8,13 +8,13 @@
 
 /* What triangles and hinges have in common. An element joins three or four vertices of a block and
  * of its neighbours: corners 0 .. n - 1 are the block's own rows, corner n + i is row i of its
- * copies of others' rows. Every block that owns a corner works on the element and writes its own
+ * ghosts. Every block that owns a corner works on the element and writes its own
  * rows only; all find the same bits, since an element's numbers depend on its corners alone, in
  * their order. */
 struct phys_sight {
-    uint32_t n;                      /* rows of the block */
-    const phys_vec *x, *v;           /* n: m, m/s */
-    const phys_vec *x_copy, *v_copy; /* as many as corners name; NULL if none are */
+    uint32_t n;                        /* rows of the block */
+    const phys_vec *x, *v;             /* n: m, m/s */
+    const phys_vec *x_ghost, *v_ghost; /* as many as corners name; NULL if none are */
 };
 
 /* A corner that an element has not got. */

@@ -21,7 +21,7 @@ PHYS_KERNEL(phys_hinges_force,
         phys_gather_numbers(&four, hinges->damping, &damping);
         phys_gather_numbers(&four, hinges->rest, &rest);
         for (int i = 0; i < 4; i++) {
-            phys_gather(&four, hinges->corner, i, sight->n, sight->v, sight->v_copy, &v);
+            phys_gather(&four, hinges->corner, i, sight->n, sight->v, sight->v_ghost, &v);
             phys_wide_dot(h.slope + i, &v, &part);
             speed += part;
         }
@@ -69,7 +69,7 @@ PHYS_INLINE void stiffness(const struct phys_hinges *hinges, int full, double sc
         phys_hinge_make(&four, hinges->corner, sight, &h);
         factors_of(hinges, &four, &h, full, scale, 0, &factors);
         for (int i = 0; i < 4; i++) {
-            phys_gather(&four, hinges->corner, i, sight->n, sight->v, sight->v_copy, v + i);
+            phys_gather(&four, hinges->corner, i, sight->n, sight->v, sight->v_ghost, v + i);
             phys_wide_dot(h.slope + i, v + i, &part);
             speed += part;
         }
@@ -108,15 +108,15 @@ PHYS_INLINE void changes(const struct phys_hinge *h, int j, struct phys_wide cha
     }
 }
 
-/* The block of corners i and j, with a minus, turned where at says so. change: by moves of
+/* The block of corners i and j, with a minus, transposed where at says so. change: by moves of
  * corner j; NULL: left out. */
 PHYS_INLINE void write_block(const struct phys_four *four, const struct phys_hinge *h,
                              const struct factors *factors, struct phys_wide (*change)[4], int i,
                              int j, const uint32_t *at, struct phys_pair *pair)
 {
     phys_vec n[3][3], cyclic[3][3];
-    phys_mask turned;
-    phys_turned(four, at, PHYS_BEND_PAIRS, &turned);
+    phys_mask transposed;
+    phys_transposed(four, at, PHYS_BEND_PAIRS, &transposed);
     for (int c = 0; c < 3; c++) {
         const phys_vec pull = -factors->slope * h->slope[j].c[c];
         for (int r = 0; r < 3; r++) {
@@ -128,8 +128,8 @@ PHYS_INLINE void write_block(const struct phys_four *four, const struct phys_hin
     for (int r = 0; r < 3; r++) {
         const int c = (r + 1) % 3;
         cyclic[0][r] = n[r][r];
-        phys_choose(&turned, &n[c][r], &n[r][c], &cyclic[1][r]);
-        phys_choose(&turned, &n[r][c], &n[c][r], &cyclic[2][c]);
+        phys_choose(&transposed, &n[c][r], &n[r][c], &cyclic[1][r]);
+        phys_choose(&transposed, &n[r][c], &n[c][r], &cyclic[2][c]);
     }
     phys_write_pairs(four, cyclic, PHYS_BEND_PAIRS, pair);
 }
@@ -205,8 +205,8 @@ int phys_bend_rest(const double x[12], struct phys_bend_rest *rest)
     phys_hinge_make(&four, corner, &sight, &h);
     double high[2]; /* 1 / height */
     for (int i = 0; i < 2; i++)
-        high[i] = h.length[0] * h.wing[i].inverse[0];
-    const double length = h.length[0], f[2] = {h.wing[0].foot[0], h.wing[1].foot[0]};
+        high[i] = h.length[0] * h.hinge_face[i].inverse[0];
+    const double length = h.length[0], f[2] = {h.hinge_face[0].foot[0], h.hinge_face[1].foot[0]};
     rest->s = h.s[0];
     rest->shape = 2 * length / (1 / high[0] + 1 / high[1]);
     rest->weight[2] = -high[0];

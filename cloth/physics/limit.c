@@ -1,4 +1,4 @@
-/* Nothing here has a part in the motion: only in what a run is told about its step. */
+/* Nothing here has a part in the motion: only in what a run reports about its step. */
 #include "cloth/physics/limit.h"
 
 #include <complex.h>

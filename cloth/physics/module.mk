@@ -1,9 +1,9 @@
 libduite_cloth_la_SOURCES += \
     cloth/physics/air.c cloth/physics/air.h \
     cloth/physics/bending.h \
-    cloth/physics/course.c cloth/physics/course.h \
+    cloth/physics/curve.c cloth/physics/curve.h \
     cloth/physics/element.h \
-    cloth/physics/fold.c \
+    cloth/physics/quadratic.c \
     cloth/physics/hinge.c \
     cloth/physics/energy.c cloth/physics/energy.h \
     cloth/physics/implicit.c cloth/physics/implicit.h \

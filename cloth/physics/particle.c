@@ -26,13 +26,13 @@ PHYS_KERNEL(phys_advance, (size_t n, double scale, const phys_vec *d, phys_vec *
         y[i] += scale * d[i];
 }
 
-double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *most)
+double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *max)
 {
     double sum = 0;
     for (size_t i = 0; i < n; i++) {
         const double square = phys_dot(v + i, v + i);
         sum += 0.5 * mass[i] * square;
-        *most = square > *most ? square : *most;
+        *max = square > *max ? square : *max;
     }
     return sum;
 }
@@ -40,10 +40,10 @@ double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *mos
 PHYS_KERNEL_OF(size_t, phys_diverged, (size_t n, double bound, const phys_vec *y), (n, bound, y))
 {
     typedef int64_t mask __attribute__((vector_size(32)));
-    const phys_vec most = {bound, bound, bound, bound};
+    const phys_vec max = {bound, bound, bound, bound};
     mask well = {-1, -1, -1, -1};
     for (size_t i = 0; i < n; i++)
-        well &= (y[i] < most) & (y[i] > -most); /* NaN is neither */
+        well &= (y[i] < max) & (y[i] > -max); /* NaN is neither */
     if (well[0] & well[1] & well[2] & well[3])
         return n;
     for (size_t i = 0; i < n; i++)

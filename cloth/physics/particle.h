@@ -19,7 +19,7 @@ void phys_accelerate(size_t n, const double *mass, const double *free, phys_vec 
 void phys_advance(size_t n, double scale, const phys_vec *d, phys_vec *y);
 
 /* Sum of m v.v / 2 (J), rows in order; widens *most to the largest v.v (m^2/s^2). mass: kg. */
-double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *most);
+double phys_kinetic(size_t n, const double *mass, const phys_vec *v, double *max);
 
 /* The first row of which a component is not finite or not below `bound` in size; n if all are well.
  */

@@ -8,14 +8,14 @@ PHYS_KERNEL_OF(int, phys_euler,
                (n, h, ahead, bound, mass, free, f, x, v, x_next, v_next))
 {
     typedef int64_t mask __attribute__((vector_size(32)));
-    const phys_vec most = {bound, bound, bound, bound};
+    const phys_vec max = {bound, bound, bound, bound};
     mask well = {-1, -1, -1, -1};
     for (size_t i = 0; i < n; i++) {
         phys_fetch(mass + i, PHYS_FETCH, 0);
         phys_fetch(free + i, PHYS_FETCH, 0);
         const phys_vec a = free[i] * (f[i] / mass[i]), before = v[i], after = before + h * a;
         const phys_vec place = x[i] + h * (ahead ? after : before);
-        well &= (place < most) & (place > -most) & (after < most) & (after > -most);
+        well &= (place < max) & (place > -max) & (after < max) & (after > -max);
         x_next[i] = place;
         v_next[i] = after;
     }

@@ -15,8 +15,8 @@ PHYS_INLINE void edge_make(const struct phys_strain_limits *limits, const struct
 {
     struct phys_wide a, b;
     phys_vec square, length, inverse, limit;
-    phys_gather(four, limits->corner, 0, sight->n, sight->x, sight->x_copy, &a);
-    phys_gather(four, limits->corner, 1, sight->n, sight->x, sight->x_copy, &b);
+    phys_gather(four, limits->corner, 0, sight->n, sight->x, sight->x_ghost, &a);
+    phys_gather(four, limits->corner, 1, sight->n, sight->x, sight->x_ghost, &b);
     phys_gather_numbers(four, limits->stiffness, &edge->k);
     phys_gather_numbers(four, limits->length, &limit);
     phys_wide_from(&b, &a, &b);
@@ -82,8 +82,8 @@ PHYS_KERNEL(phys_strain_limits_stiffness,
         phys_four_from(first, limits->n, &four);
         edge_make(limits, &four, sight, &edge);
         factors_of(&edge, 0, &along, &across);
-        phys_gather(&four, limits->corner, 0, sight->n, sight->v, sight->v_copy, &a);
-        phys_gather(&four, limits->corner, 1, sight->n, sight->v, sight->v_copy, &b);
+        phys_gather(&four, limits->corner, 0, sight->n, sight->v, sight->v_ghost, &a);
+        phys_gather(&four, limits->corner, 1, sight->n, sight->v, sight->v_ghost, &b);
         phys_wide_from(&b, &a, &b);
         phys_wide_dot(&edge.u, &b, &speed);
         along *= scale * speed;

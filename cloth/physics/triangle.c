@@ -106,7 +106,7 @@ PHYS_KERNEL(phys_triangles_force,
         phys_vec w, c;
         phys_four_from(first, t->n, &four);
         phys_frame_make(t, &four, sight, &moduli, &frame);
-        phys_frame_slope(t, &four, &frame, sight->n, sight->v, sight->v_copy, &vu, &vv);
+        phys_frame_slope(t, &four, &frame, sight->n, sight->v, sight->v_ghost, &vu, &vv);
         phys_frame_inside(&frame, &vu, &vv, &d);
         phys_frame_change(&frame, &d, &w, &ds);
         phys_frame_strain(&frame, &e);

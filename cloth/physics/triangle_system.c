@@ -127,7 +127,7 @@ PHYS_INLINE void add_right_side(const struct phys_triangles *t, const struct phy
     struct phys_wide fu, fv;
     struct phys_plane2 d, q, dq;
     phys_vec nu, nv;
-    phys_frame_slope(t, four, f, sight->n, sight->v, sight->v_copy, &fu, &fv);
+    phys_frame_slope(t, four, f, sight->n, sight->v, sight->v_ghost, &fu, &fv);
     phys_frame_inside(f, &fu, &fv, &d);
     force_of(f, slope, &d, &q);
     slope_of(f, slope, full, a, 0, &d, &dq);
@@ -146,10 +146,11 @@ PHYS_INLINE void add_right_side(const struct phys_triangles *t, const struct phy
 
 /* A block of the matrix in the frame, -area times the slope of q g_i for D = . g_j, as
  *
- *     uu ru ru' + vv rv rv' + even (ru rv' + rv ru') + odd (ru rv' - rv ru') + along n n'
+ *     uu ru ru' + vv rv rv' + symmetric (ru rv' + rv ru') + antisymmetric (ru rv' - rv ru') + along
+ * n n'
  */
 struct block {
-    phys_vec uu, vv, even, odd, along;
+    phys_vec uu, vv, symmetric, antisymmetric, along;
 };
 
 /* -area times what q changes of D, a h^2 of the stiffness with h of the damping: as
@@ -184,8 +185,8 @@ PHYS_INLINE void block_reduced(const struct phys_frame *f, const struct stiff *s
     const phys_vec uv = f->gu[i] * f->gv[j], vu = f->gv[i] * f->gu[j];
     block->uu = stiff->c11 * uu + stiff->p * vv;
     block->vv = stiff->p * uu + stiff->c22 * vv;
-    block->even = 0.5 * (stiff->c12 + stiff->m) * (uv + vu);
-    block->odd = 0.5 * (stiff->c12 - stiff->m) * (uv - vu);
+    block->symmetric = 0.5 * (stiff->c12 + stiff->m) * (uv + vu);
+    block->antisymmetric = 0.5 * (stiff->c12 - stiff->m) * (uv - vu);
     block->along = stiff->nuu * uu + stiff->nvv * vv + stiff->nuv * (uv + vu);
 }
 
@@ -202,8 +203,8 @@ PHYS_INLINE void block_full(const struct phys_frame *f, const struct slope *slop
     const phys_vec uv = qv.uu * gu + qv.uv * gv, vu = qu.vu * gu + qu.vv * gv;
     block->uu = qu.uu * gu + qu.uv * gv;
     block->vv = qv.vu * gu + qv.vv * gv;
-    block->even = 0.5 * (uv + vu);
-    block->odd = 0.5 * (uv - vu);
+    block->symmetric = 0.5 * (uv + vu);
+    block->antisymmetric = 0.5 * (uv - vu);
 }
 
 /* What blocks are turned into the world with: components 00 11 22, 01 12 20 of ru ru', rv rv', ru
@@ -228,24 +229,24 @@ PHYS_INLINE void world_make(const struct phys_frame *f, struct world *world)
     }
 }
 
-/* Writes a block as that of one pair of the corners, turned where at says so. */
+/* Writes a block as that of one pair of the corners, transposed where at says so. */
 PHYS_INLINE void write_block(const struct phys_four *four, const struct phys_frame *f,
                              const struct world *world, const struct block *block,
                              const uint32_t *at, struct phys_pair *pair)
 {
     const phys_vec uu = block->uu - block->along, vv = block->vv - block->along;
-    phys_vec odd = block->odd, cyclic[3][3], even[6];
-    phys_mask turned;
-    phys_turned(four, at, 3, &turned);
-    phys_negate(&turned, &odd);
+    phys_vec antisymmetric = block->antisymmetric, cyclic[3][3], symmetric[6];
+    phys_mask transposed;
+    phys_transposed(four, at, 3, &transposed);
+    phys_negate(&transposed, &antisymmetric);
     PHYS_UNROLL
     for (int k = 0; k < 6; k++)
-        even[k] = uu * world->uu[k] + vv * world->vv[k] + block->even * world->uv[k];
+        symmetric[k] = uu * world->uu[k] + vv * world->vv[k] + block->symmetric * world->uv[k];
     PHYS_UNROLL
     for (int r = 0; r < 3; r++) {
-        cyclic[0][r] = even[r] + block->along;
-        cyclic[1][r] = even[3 + r] + odd * f->normal.c[(r + 2) % 3];
-        cyclic[2][r] = even[3 + (r + 2) % 3] - odd * f->normal.c[(r + 1) % 3];
+        cyclic[0][r] = symmetric[r] + block->along;
+        cyclic[1][r] = symmetric[3 + r] + antisymmetric * f->normal.c[(r + 2) % 3];
+        cyclic[2][r] = symmetric[3 + (r + 2) % 3] - antisymmetric * f->normal.c[(r + 1) % 3];
     }
     phys_write_pairs(four, cyclic, 3, pair);
 }

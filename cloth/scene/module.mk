@@ -26,7 +26,7 @@ libduite_cloth_la_SOURCES += \
 	cloth/scene/build/mesh.c \
 	cloth/scene/build/moduli.c \
 	cloth/scene/build/cloth.c \
-	cloth/scene/build/course.c \
+	cloth/scene/build/curve.c \
 	cloth/scene/build/idle.c \
 	cloth/scene/build/joint.c \
 	cloth/scene/build/load.c \

@@ -15,8 +15,8 @@ PHYS_KERNEL(solve_assemble_springs,
         struct phys_pair *sum = sums + at[i];
         solve_spring(value + i, &m);
         sum->cyclic[0] += m.diagonal;
-        sum->cyclic[1] += m.beside;
-        sum->cyclic[2] += SOLVE_ZXY(m.beside);
+        sum->cyclic[1] += m.off_diagonal;
+        sum->cyclic[2] += SOLVE_ZXY(m.off_diagonal);
     }
 }
 

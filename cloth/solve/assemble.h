@@ -10,14 +10,14 @@
  * of a cut entry are the same on both sides if both add in the same order. When all have been
  * added, the values are made of the sums. Pure functions. */
 
-/* Adds N to an entry whose first row is that of N, or, turned, whose second is. */
-static inline void solve_assemble(struct phys_pair *sum, bool turned, const double n[3][3])
+/* Adds N to an entry whose first row is that of N, or, transposed, whose second is. */
+static inline void solve_assemble(struct phys_pair *sum, bool transposed, const double n[3][3])
 {
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         sum->cyclic[0][i] += n[i][i];
-        sum->cyclic[1][i] += turned ? n[j][i] : n[i][j];
-        sum->cyclic[2][i] += turned ? n[k][i] : n[i][k];
+        sum->cyclic[1][i] += transposed ? n[j][i] : n[i][j];
+        sum->cyclic[2][i] += transposed ? n[k][i] : n[i][k];
     }
 }
 
@@ -26,8 +26,8 @@ void solve_assemble_springs(size_t n, const uint32_t *at, const phys_vec *value,
                             struct phys_pair *sums);
 
 /* Adds n pairs of elements. at: of each pair twice its entry, and one more where the entry's first
- * row is the pair's second: such a pair is there turned, as who makes pairs is told by the same
- * numbers; SOLVE_NO_ENTRY: none of the pair's rows is here. */
+ * row is the pair's second: such a pair stands there transposed, which its maker learns from the
+ * same numbers; SOLVE_NO_ENTRY: none of the pair's rows is here. */
 #define SOLVE_NO_ENTRY 0xffffffffu
 void solve_assemble_pairs(size_t n, const uint32_t *at, const struct phys_pair *pair,
                           struct phys_pair *sums);

@@ -1,6 +1,6 @@
-/* The order of every sum is given by the block: rows ascending, in the dots with q those of the rim
- * last. The fourth lane of q carries rubbish between a row's first entry and its end, and is zero
- * in every result.
+/* The order of every sum is given by the block: rows ascending, in the dots with q those of the
+ * halo last. The fourth lane of q carries rubbish between a row's first entry and its end, and is
+ * zero in every result.
  *
  * A pass is one sweep: its first half is as far before the product as the product's entries reach,
  * so that both work in the nearest cache. While the product computes, the rows and entries of the
@@ -114,34 +114,34 @@ PHYS_INLINE void end_row(const struct solve_block *block, enum solve_format form
         sum[SOLVE_QQ] += q * q;
 }
 
-/* The inner entries of rows from .. to - 1. Ends the rows but those of the rim, of which *met were
+/* The inner entries of rows from .. to - 1. Ends the rows but those of the halo, of which *met were
  * met before. */
 PHYS_INLINE void multiply(const struct solve_block *block, enum solve_format format,
                           bool preconditioned, const struct solve_cut *cut, size_t *met,
                           size_t from, size_t to, const struct solve_values *values,
                           const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
 {
-    size_t i = block->row[from], rim = *met < cut->n_rim ? cut->rim[*met] : block->n;
+    size_t i = block->row[from], halo = *met < cut->n_halo ? cut->halo[*met] : block->n;
     for (size_t a = from; a < to; a++) {
         const size_t end = block->row[a + 1];
         phys_vec total;
         fetch_row(format, values, i, a, rows);
         row(format, i, end, values->entry, block->column, a, rows->p, rows->q, &total);
         i = end;
-        if (a != rim) {
+        if (a != halo) {
             end_row(block, format, preconditioned, values, a, &total, rows, sum);
             continue;
         }
         rows->q[a] = total;
-        rim = ++*met < cut->n_rim ? cut->rim[*met] : block->n;
+        halo = ++*met < cut->n_halo ? cut->halo[*met] : block->n;
     }
 }
 
 /* The entries into other blocks, and the rows that waited for them. */
-PHYS_INLINE void end_rim(const struct solve_block *block, enum solve_format format,
-                         bool preconditioned, const struct solve_cut *cut,
-                         const struct solve_values *values, const phys_vec *p_other,
-                         const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
+PHYS_INLINE void end_halo(const struct solve_block *block, enum solve_format format,
+                          bool preconditioned, const struct solve_cut *cut,
+                          const struct solve_values *values, const phys_vec *p_other,
+                          const struct solve_rows *rows, phys_vec sum[SOLVE_DOTS])
 {
     const size_t inner = block->row[block->n];
     for (size_t i = 0; i < cut->n; i++) {
@@ -151,9 +151,9 @@ PHYS_INLINE void end_rim(const struct solve_block *block, enum solve_format form
         solve_entry_times(format, values->entry, inner + i, &d, &y, &other);
         rows->q[a] += y;
     }
-    for (size_t i = 0; i < cut->n_rim; i++) {
-        const phys_vec total = rows->q[cut->rim[i]];
-        end_row(block, format, preconditioned, values, cut->rim[i], &total, rows, sum);
+    for (size_t i = 0; i < cut->n_halo; i++) {
+        const phys_vec total = rows->q[cut->halo[i]];
+        end_row(block, format, preconditioned, values, cut->halo[i], &total, rows, sum);
     }
 }
 
@@ -174,7 +174,7 @@ PHYS_INLINE void pass(const struct solve_block *block, enum solve_format format,
         begun = next;
         multiply(block, format, preconditioned, cut, &met, from, to, &values, rows, sum);
     }
-    end_rim(block, format, preconditioned, cut, &values, p_other, rows, sum);
+    end_halo(block, format, preconditioned, cut, &values, p_other, rows, sum);
     dots[SOLVE_RR] = phys_lanes(sum + SOLVE_RR);
     dots[SOLVE_PQ] = phys_lanes(sum + SOLVE_PQ);
     dots[SOLVE_RQ] = phys_lanes(sum + SOLVE_RQ);

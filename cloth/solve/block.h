@@ -35,7 +35,7 @@ PHYS_INLINE void solve_filter(const phys_vec *filter, phys_vec *y)
 
 /* Holds a row along one more normal, of length 1: a free one in a plane, one in a plane on a line,
  * one on a line at a point. */
-PHYS_INLINE void solve_hold(const phys_vec *normal, phys_vec *filter)
+PHYS_INLINE void solve_constrain(const phys_vec *normal, phys_vec *filter)
 {
     const phys_vec three = {1, 1, 1, 0}, d = *filter * three;
     const phys_vec line = SOLVE_YZX(d) * SOLVE_ZXY(*normal) - SOLVE_ZXY(d) * SOLVE_YZX(*normal);
@@ -49,12 +49,12 @@ PHYS_INLINE void solve_hold(const phys_vec *normal, phys_vec *filter)
 }
 
 /* Entries into other blocks, whose values follow those of the inner ones: `own` the row here,
- * `other` the row in an array of copies. The rim is the rows that they end at here. */
+ * `other` the row in an array of ghosts. The halo is the rows that they end at here. */
 struct solve_cut {
     size_t n;
     const uint32_t (*end)[2]; /* n: own, other */
-    size_t n_rim;
-    const uint32_t *rim; /* n_rim: ascending */
+    size_t n_halo;
+    const uint32_t *halo; /* n_halo: ascending */
 };
 
 /* The vectors of a block, n rows each. z = M^-1 r and s = M^-1 q, M the preconditioner
@@ -72,19 +72,19 @@ static inline struct solve_rows solve_rows_plain(phys_vec *dv, phys_vec *r, phys
 
 /* A pass over a block (cloth/solve/cg.h): all of it but the factors, and but s and q.s where there
  * is a preconditioner: who applies it to the new q makes them. values: of the entries, as the
- * block's format has them. p_other: p of the copies, as it is after the first half of this pass. */
+ * block's format has them. p_other: p of the ghosts, as it is after the first half of this pass. */
 void solve_pass(const struct solve_block *block, const struct solve_cut *cut, const void *values,
                 const phys_vec *p_other, double alpha, double beta, const struct solve_rows *rows,
                 double dots[SOLVE_DOTS]);
 
-/* SOLVE_CHECK: r = S (b - A dv), of dv as it is; dv_other: that of the copies. p becomes dv, q
+/* SOLVE_CHECK: r = S (b - A dv), of dv as it is; dv_other: that of the ghosts. p becomes dv, q
  * becomes S A dv. Writes r.r, the drift, and the norms of both. */
 void solve_residual(const struct solve_block *block, const struct solve_cut *cut,
                     const void *values, const phys_vec *b, const phys_vec *dv_other,
                     const struct solve_rows *rows, double dots[SOLVE_DOTS]);
 
 /* SOLVE_OPEN, after solve_start_guess: p is the guess, q = S A p, dv = 0. guess_other: of the
- * copies. Writes r.r, p.q, and p.r as RQ. */
+ * ghosts. Writes r.r, p.q, and p.r as RQ. */
 void solve_open(const struct solve_block *block, const struct solve_cut *cut, const void *values,
                 const phys_vec *guess_other, const struct solve_rows *rows,
                 double dots[SOLVE_DOTS]);

@@ -27,7 +27,7 @@ static double wanted(const struct solve_stop *stop, double square)
     return stop->relative ? tolerance * square : tolerance;
 }
 
-/* Iterations that an error is told of at least afterwards, and their share of all. */
+/* Iterations that an error is reported of at least afterwards, and their share of all. */
 enum { WINDOW = 5, SHARE = 6 };
 
 /* Terms that do not fall tell nothing. */
@@ -119,17 +119,17 @@ static int fail(int code, struct solve_scalars *after)
 static int judge(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
                  struct solve_scalars *after)
 {
-    double left = dots[SOLVE_RR], most = ALIKE * after->wanted;
+    double left = dots[SOLVE_RR], max = ALIKE * after->wanted;
     if (stop->mass_norm) {
         left = dots[SOLVE_DRIFT];
-        most = stop->tolerance * stop->tolerance * dots[SOLVE_SIZE];
+        max = stop->tolerance * stop->tolerance * dots[SOLVE_SIZE];
     } else if (stop->normalised) {
         left = dots[SOLVE_BOUND];
-        most = ALIKE * normalised(stop, after);
+        max = ALIKE * normalised(stop, after);
     }
     after->drift = dots[SOLVE_DRIFT];
     after->phase = SOLVE_DONE;
-    if (small_enough(left, most))
+    if (small_enough(left, max))
         return SOLVE_OK;
     const bool helps = after->restarts == 0 || left < HELPS * after->refused;
     after->refused = left;
@@ -174,7 +174,7 @@ static bool ends(const struct solve_stop *stop, struct solve_scalars *after, int
         *code = arrive(stop, after);
         return true;
     }
-    if (solve_scalars_iterations(after) < stop->most)
+    if (solve_scalars_iterations(after) < stop->max)
         return false;
     *code = fail(stop->count ? SOLVE_OK : SOLVE_NOT_CONVERGED, after);
     return true;
@@ -188,7 +188,7 @@ static int iterate(const struct solve_stop *stop, const double dots[SOLVE_DOTS],
     if (ends(stop, after, &code))
         return code;
     after->iterations += 1;
-    after->phase = stop->count && after->iterations == stop->most ? SOLVE_LAST : SOLVE_ON;
+    after->phase = stop->count && after->iterations == stop->max ? SOLVE_LAST : SOLVE_ON;
     code = next_factors(dots, after);
     remember(after->alpha * dots[SOLVE_RZ], after);
     return fail(code, after);
@@ -301,7 +301,7 @@ PHYS_KERNEL(solve_again,
     memset(p, 0, n * sizeof *p);
 }
 
-PHYS_KERNEL(solve_advance_copies,
+PHYS_KERNEL(solve_advance_ghosts,
             (size_t n, double alpha, double beta, const double *restrict s,
              const uint32_t *restrict at, phys_vec *restrict z, phys_vec *restrict p),
             (n, alpha, beta, s, at, z, p))

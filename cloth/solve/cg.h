@@ -57,7 +57,7 @@ struct solve_stop {
     bool confirm; /* by the true residual, which may be twice as large as the tolerance says; with
                    * mass_norm its difference from r, in D^-1, may be as large as the error */
     double tolerance;
-    uint32_t most; /* a solve that needs more iterations has failed */
+    uint32_t max; /* a solve that needs more iterations has failed */
 };
 
 /* A residual of no unit (Zara 2001 asks for one that is normalised by time step, masses and
@@ -144,7 +144,7 @@ void solve_start(size_t n, const double *free, const phys_vec *b, phys_vec *dv, 
                  phys_vec *p, phys_vec *q);
 
 /* z -= alpha s, p = z + beta p of one row: the recurrence of the first half of a pass. Whoever has
- * a row or a copy of it takes it from here, so that all of them have the same bits. */
+ * a row or a ghost takes it from here, so that all of them have the same bits. */
 PHYS_INLINE void solve_advance(double alpha, double beta, const phys_vec *s, phys_vec *z,
                                phys_vec *p)
 {
@@ -170,9 +170,9 @@ void solve_start_guess(size_t n, const double *free, const phys_vec *filter, con
  * them, but for dv. */
 void solve_again(size_t n, phys_vec *r, phys_vec *p, phys_vec *q);
 
-/* z and p of copies of another block's rows: n rows, row i has its s in s[3 at[i]] and the two
+/* z and p of ghosts of another block's rows: n rows, row i has its s in s[3 at[i]] and the two
  * numbers behind it. */
-void solve_advance_copies(size_t n, double alpha, double beta, const double *s, const uint32_t *at,
+void solve_advance_ghosts(size_t n, double alpha, double beta, const double *s, const uint32_t *at,
                           phys_vec *z, phys_vec *p);
 
 /* Those rows alone: y[i] has the three numbers from packed[3 at[i]] on. */

@@ -71,19 +71,20 @@ static struct dense *entry_of(const struct solve_pattern *pattern, struct dense 
     return entry + i;
 }
 
-/* Copies a matrix by rows, or, turned, its transpose. */
-static void fill(const double *matrix, bool turned, struct dense *to)
+/* Copies a matrix by rows, or, transposed, its transpose. */
+static void fill(const double *matrix, bool transposed, struct dense *to)
 {
     for (int j = 0; j < N; j++) {
         double column[4 * WIDTH] = {0};
         for (int i = 0; i < N; i++)
-            column[i] = turned ? matrix[N * j + i] : matrix[N * i + j];
+            column[i] = transposed ? matrix[N * j + i] : matrix[N * i + j];
         memcpy(to->c[j], column, sizeof column);
     }
 }
 
 void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *first,
-                       const uint32_t *slot, uint32_t b, const double *coupling, double *factor)
+                       const uint32_t *neighbour, uint32_t b, const double *coupling,
+                       double *factor)
 {
     const struct parts parts = parts_of(pattern, factor);
     const uint32_t here = pattern->place[b];
@@ -91,9 +92,9 @@ void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *firs
     for (int i = 0; i < N; i++)
         parts.whole[(size_t)here * SOLVE_COARSE_STRIDE + (size_t)i] = coupling[(N + 1) * i];
     for (uint32_t i = first[b]; i < first[b + 1]; i++) {
-        if (slot[i] < b)
+        if (neighbour[i] < b)
             continue;
-        const uint32_t there = pattern->place[slot[i]];
+        const uint32_t there = pattern->place[neighbour[i]];
         coupling += SOLVE_COUPLING;
         if (there < here) /* rows of what comes later, columns of what comes first */
             fill(coupling, false, entry_of(pattern, parts.entry, there, here));

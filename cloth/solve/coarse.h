@@ -26,20 +26,20 @@ void solve_couple(const struct solve_block *block, size_t from, size_t to, const
                   const phys_vec *basis, double own[SOLVE_COUPLING]);
 
 /* Adds n entries, numbers at[] of the values, from rows of one set of columns to those of another:
- * to `own`, of the former, and to beside, those rows by the latter's columns. end: own row, row in
- * other_basis. */
+ * to `own`, of the former, and to off_diagonal, those rows by the latter's columns. end: own row,
+ * row in other_basis. */
 void solve_couple_cut(const struct solve_block *block, const void *values, size_t n,
                       const uint32_t *at, const uint32_t (*end)[2], const phys_vec *basis,
                       const phys_vec *other_basis, double own[SOLVE_COUPLING],
-                      double beside[SOLVE_COUPLING]);
+                      double off_diagonal[SOLVE_COUPLING]);
 
 /* P' y of a block; y += P x of a block. */
 void solve_restrict(size_t n, const phys_vec *basis, const phys_vec *y, double x[SOLVE_COARSE]);
 void solve_prolong(size_t n, const phys_vec *basis, const double x[SOLVE_COARSE], phys_vec *y);
 
-/* solve_advance_copies (cloth/solve/cg.h) for s that lacks P x still: of copies of rows of one
- * other block, whose x is given, to the bits that solve_prolong leaves there. */
-void solve_advance_copies_coarse(size_t n, double alpha, double beta, const double *s,
+/* solve_advance_ghosts (cloth/solve/cg.h) for s that lacks P x still: of ghosts of one other
+ * block, whose x is given, to the bits that solve_prolong leaves there. */
+void solve_advance_ghosts_coarse(size_t n, double alpha, double beta, const double *s,
                                  const uint32_t *at, const phys_vec *basis,
                                  const double x[SOLVE_COARSE], phys_vec *z, phys_vec *p);
 
@@ -54,23 +54,24 @@ struct solve_pattern {
 };
 
 /* Blocks that more would make are too many for one factor. */
-enum { SOLVE_MOST_BLOCKS = 4096 };
+enum { SOLVE_MAX_BLOCKS = 4096 };
 
-/* From the neighbours of each block: those of block b are slot[first[b]] .. slot[first[b + 1] - 1].
- * At most SOLVE_MOST_BLOCKS. Error: CLOTH_E_MEMORY. Local. */
+/* From the neighbours of each block: those of block b are neighbour[first[b]] .. neighbour[first[b
+ * + 1] - 1]. At most SOLVE_MAX_BLOCKS. Error: CLOTH_E_MEMORY. Local. */
 int solve_pattern_make(struct solve_pattern *pattern, uint32_t n, const uint32_t *first,
-                       const uint32_t *slot, struct cloth_error *error);
+                       const uint32_t *neighbour, struct cloth_error *error);
 void solve_pattern_free(struct solve_pattern *pattern);
 
 /* Doubles of a factor, aligned to 32 bytes. */
 size_t solve_coarse_doubles(const struct solve_pattern *pattern);
 
 /* Puts into the factor what block b adds: its diagonal block, then those beside it, one for each
- * neighbour with a higher number, ascending (first and slot as above). The factor is cleared once
- * before all blocks. */
+ * neighbour with a higher number, ascending (first and neighbour as above). The factor is cleared
+ * once before all blocks. */
 void solve_coarse_clear(const struct solve_pattern *pattern, double *factor);
 void solve_coarse_fill(const struct solve_pattern *pattern, const uint32_t *first,
-                       const uint32_t *slot, uint32_t b, const double *coupling, double *factor);
+                       const uint32_t *neighbour, uint32_t b, const double *coupling,
+                       double *factor);
 
 /* Factorises what was filled in. Returns how many columns were dropped. */
 uint32_t solve_coarse_factor(const struct solve_pattern *pattern, double *factor);

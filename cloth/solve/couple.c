@@ -72,7 +72,7 @@ void solve_basis_filter(size_t n, const phys_vec *filter, phys_vec *basis)
 PHYS_INLINE void add(struct solve_symmetric *to, double factor, const struct solve_symmetric *m)
 {
     to->diagonal += factor * m->diagonal;
-    to->beside += factor * m->beside;
+    to->off_diagonal += factor * m->off_diagonal;
 }
 
 /* Whether axis c of a row is in the space. */
@@ -157,7 +157,7 @@ static void put(const struct solve_symmetric *m, double sign, int k, int l, doub
     for (int c = 0; c < 3; c++)
         for (int d = 0; d < 3; d++)
             matrix[SOLVE_COARSE * (3 * k + c) + 3 * l + d] +=
-                sign * (c == d ? m->diagonal[c] : m->beside[pair[c][d]]);
+                sign * (c == d ? m->diagonal[c] : m->off_diagonal[pair[c][d]]);
 }
 
 static void put_squares(const struct solve_symmetric sum[6], double *matrix)
@@ -243,7 +243,7 @@ PHYS_KERNEL(solve_couple,
 /* The same for an entry between two sets of columns. */
 PHYS_INLINE void couple_cut_filtered(const phys_vec *a, const phys_vec *b,
                                      const struct solve_symmetric *m, const phys_vec *turn,
-                                     struct filtered *own, struct filtered *beside)
+                                     struct filtered *own, struct filtered *off_diagonal)
 {
     struct solve_columns columns;
     phys_vec ga[3], gb[3];
@@ -252,18 +252,18 @@ PHYS_INLINE void couple_cut_filtered(const phys_vec *a, const phys_vec *b,
     solve_columns_of(m, &columns);
     add_filtered(1, ga, &columns, ga, own);
     solve_entry_columns(m, turn, &columns);
-    add_filtered(-1, ga, &columns, gb, beside);
+    add_filtered(-1, ga, &columns, gb, off_diagonal);
 }
 
 PHYS_KERNEL(solve_couple_cut,
             (const struct solve_block *block, const void *values, size_t n, const uint32_t *at,
              const uint32_t (*end)[2], const phys_vec *basis, const phys_vec *other_basis,
-             double own[SOLVE_COUPLING], double beside[SOLVE_COUPLING]),
-            (block, values, n, at, end, basis, other_basis, own, beside))
+             double own[SOLVE_COUPLING], double off_diagonal[SOLVE_COUPLING]),
+            (block, values, n, at, end, basis, other_basis, own, off_diagonal))
 {
     const void *entry = solve_values_of(block->format, block->n, values).entry;
     struct solve_symmetric square[6] = {{{0}, {0}}}, sum[9] = {{{0}, {0}}};
-    struct filtered filtered = {{{{{0}}}}}, filtered_beside = {{{{{0}}}}};
+    struct filtered filtered = {{{{{0}}}}}, filtered_off_diagonal = {{{{{0}}}}};
     phys_vec turns[9] = {{0}};
     for (size_t i = 0; i < n; i++) {
         const phys_vec phi = basis[end[i][0]], other = other_basis[end[i][1]];
@@ -271,7 +271,7 @@ PHYS_KERNEL(solve_couple_cut,
         phys_vec w;
         solve_entry_of(block->format, entry, at[i], &m, &w);
         if (phi[3] + other[3] > 0) {
-            couple_cut_filtered(&phi, &other, &m, &w, &filtered, &filtered_beside);
+            couple_cut_filtered(&phi, &other, &m, &w, &filtered, &filtered_off_diagonal);
             continue;
         }
         add_square(square, &phi, &m);
@@ -283,11 +283,11 @@ PHYS_KERNEL(solve_couple_cut,
     }
     put_squares(square, own);
     put_filtered(&filtered, own);
-    put_filtered(&filtered_beside, beside);
+    put_filtered(&filtered_off_diagonal, off_diagonal);
     for (int k = 0; k < 3; k++)
         for (int l = 0; l < 3; l++) {
-            put(sum + 3 * k + l, -1, k, l, beside);
-            put_turn(turns + 3 * k + l, -1, k, l, beside);
+            put(sum + 3 * k + l, -1, k, l, off_diagonal);
+            put_turn(turns + 3 * k + l, -1, k, l, off_diagonal);
         }
 }
 
@@ -308,7 +308,7 @@ PHYS_KERNEL(solve_restrict,
             x[3 * k + c] = sum[k][c];
 }
 
-/* y += P x of one row, wherever a row or its copy is. */
+/* y += P x of one row, wherever a row or its ghost is. */
 PHYS_INLINE void lift(const phys_vec *basis, const phys_vec x[3], phys_vec *y)
 {
     phys_vec lifted = (*basis)[0] * x[0] + (*basis)[1] * x[1] + (*basis)[2] * x[2];
@@ -333,7 +333,7 @@ PHYS_KERNEL(solve_prolong,
         lift(basis + a, motion, y + a);
 }
 
-PHYS_KERNEL(solve_advance_copies_coarse,
+PHYS_KERNEL(solve_advance_ghosts_coarse,
             (size_t n, double alpha, double beta, const double *s, const uint32_t *at,
              const phys_vec *basis, const double x[SOLVE_COARSE], phys_vec *z, phys_vec *p),
             (n, alpha, beta, s, at, basis, x, z, p))

@@ -89,18 +89,18 @@ PHYS_INLINE void solve_spring_times(const phys_vec *value, const phys_vec *d, ph
 
 /* N d and N' d of one entry, of a d that is zero in lane 3. */
 PHYS_INLINE void solve_entry_times(enum solve_format format, const void *entry, size_t i,
-                                   const phys_vec *d, phys_vec *y, phys_vec *turned)
+                                   const phys_vec *d, phys_vec *y, phys_vec *transposed)
 {
     if (format == SOLVE_SPRINGS) {
         solve_spring_times((const phys_vec *)entry + i, d, y);
-        *turned = *y;
+        *transposed = *y;
         return;
     }
     struct solve_nine n;
     solve_nine_of(format, entry, i, &n);
     const phys_vec same = n.diagonal * *d, lower = n.lower * *d, upper = n.upper * *d;
     *y = same + n.upper * SOLVE_YZX(*d) + n.lower * SOLVE_ZXY(*d);
-    *turned = same + SOLVE_YZX(lower) + SOLVE_ZXY(upper);
+    *transposed = same + SOLVE_YZX(lower) + SOLVE_ZXY(upper);
 }
 
 /* N = symmetric + [turn]x of one entry. */
@@ -118,7 +118,7 @@ PHYS_INLINE void solve_entry_of(enum solve_format format, const void *entry, siz
     const phys_vec below = SOLVE_YZX(n.lower); /* n10 n21 n02 */
     const phys_vec z_x_y = 0.5 * (below - n.upper);
     symmetric->diagonal = three * n.diagonal;
-    symmetric->beside = 0.5 * three * (n.upper + below);
+    symmetric->off_diagonal = 0.5 * three * (n.upper + below);
     *turn = three * SOLVE_YZX(z_x_y);
 }
 

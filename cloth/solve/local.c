@@ -44,7 +44,7 @@ size_t solve_local_doubles(size_t n, size_t entries, enum solve_local kind)
 PHYS_INLINE void add(struct solve_symmetric *to, const struct solve_symmetric *m)
 {
     to->diagonal += m->diagonal;
-    to->beside += m->beside;
+    to->off_diagonal += m->off_diagonal;
 }
 
 /* m = S m. */
@@ -79,7 +79,7 @@ PHYS_INLINE void filter_diagonal(const phys_vec *filter, struct solve_symmetric 
     filter_right(filter, &columns);
     m->diagonal = (phys_vec){columns.c[0][0], columns.c[1][1], columns.c[2][2], 0} +
                   (phys_vec){across, across, across, 0} - along * d * d;
-    m->beside =
+    m->off_diagonal =
         (phys_vec){columns.c[1][0], columns.c[2][1], columns.c[0][2], 0} - along * d * SOLVE_YZX(d);
 }
 
@@ -153,7 +153,7 @@ PHYS_INLINE void spread(const struct solve_block *block, const void *values,
 /* t = t inverse. */
 PHYS_INLINE void scale(const struct solve_symmetric *inverse, struct solve_columns *t)
 {
-    const phys_vec *d = &inverse->diagonal, *e = &inverse->beside;
+    const phys_vec *d = &inverse->diagonal, *e = &inverse->off_diagonal;
     const phys_vec x = t->c[0], y = t->c[1], z = t->c[2];
     t->c[0] = (*d)[0] * x + (*e)[0] * y + (*e)[2] * z;
     t->c[1] = (*e)[0] * x + (*d)[1] * y + (*e)[1] * z;
@@ -166,7 +166,7 @@ PHYS_INLINE void reduce_diagonal(const struct solve_columns *t, const struct sol
 {
     const phys_vec x = w->c[0], y = w->c[1], z = w->c[2];
     b->diagonal -= t->c[0] * x + t->c[1] * y + t->c[2] * z;
-    b->beside -= t->c[0] * SOLVE_YZX(x) + t->c[1] * SOLVE_YZX(y) + t->c[2] * SOLVE_YZX(z);
+    b->off_diagonal -= t->c[0] * SOLVE_YZX(x) + t->c[1] * SOLVE_YZX(y) + t->c[2] * SOLVE_YZX(z);
 }
 
 /* Column k of W' T. */
@@ -178,9 +178,9 @@ PHYS_INLINE void reduce_column(const struct solve_columns *w, const struct solve
 
 /* The entry of (b, c), transposed, -= W' T, if it is in the pattern; W' is of (a, c), T' of (a, b).
  */
-PHYS_INLINE void reduce_beside(const struct solve_block *block, uint32_t b, uint32_t c,
-                               const struct solve_columns *w, const struct solve_columns *t,
-                               struct solve_columns *all)
+PHYS_INLINE void reduce_off_diagonal(const struct solve_block *block, uint32_t b, uint32_t c,
+                                     const struct solve_columns *w, const struct solve_columns *t,
+                                     struct solve_columns *all)
 {
     uint32_t i = block->row[b];
     while (i < block->row[b + 1] && block->column[i] < c)
@@ -201,7 +201,7 @@ PHYS_INLINE void eliminate(const struct solve_block *block, size_t a, struct fac
         scale(f->inverse + a, f->t + i);
         reduce_diagonal(f->t + i, &w, f->inverse + block->column[i]);
         for (uint32_t j = from; j < i; j++)
-            reduce_beside(block, block->column[j], block->column[i], &w, f->t + j, f->t);
+            reduce_off_diagonal(block, block->column[j], block->column[i], &w, f->t + j, f->t);
     }
 }
 

@@ -10,7 +10,7 @@
 
 /* A symmetric one: xx yy zz 0 and xy yz zx 0. */
 struct solve_symmetric {
-    phys_vec diagonal, beside;
+    phys_vec diagonal, off_diagonal;
 };
 
 /* Columns. */
@@ -30,13 +30,14 @@ PHYS_INLINE void solve_spring(const phys_vec *value, struct solve_symmetric *m)
     const phys_vec w = {(*value)[0], (*value)[1], (*value)[2], 0};
     const double alpha = (*value)[3];
     m->diagonal = w * w + (phys_vec){alpha, alpha, alpha, 0};
-    m->beside = w * SOLVE_YZX(w);
+    m->off_diagonal = w * SOLVE_YZX(w);
 }
 
 /* m v. */
 PHYS_INLINE void solve_times(const struct solve_symmetric *m, const phys_vec *v, phys_vec *y)
 {
-    *y = m->diagonal * *v + m->beside * SOLVE_YZX(*v) + SOLVE_ZXY(m->beside) * SOLVE_ZXY(*v);
+    *y = m->diagonal * *v + m->off_diagonal * SOLVE_YZX(*v) +
+         SOLVE_ZXY(m->off_diagonal) * SOLVE_ZXY(*v);
 }
 
 /* m v. */
@@ -61,9 +62,9 @@ PHYS_INLINE void solve_lanes_of(const phys_vec *a, const phys_vec *b, const phys
 /* The columns of a symmetric one. */
 PHYS_INLINE void solve_columns_of(const struct solve_symmetric *m, struct solve_columns *columns)
 {
-    columns->c[0] = (phys_vec){m->diagonal[0], m->beside[0], m->beside[2], 0};
-    columns->c[1] = (phys_vec){m->beside[0], m->diagonal[1], m->beside[1], 0};
-    columns->c[2] = (phys_vec){m->beside[2], m->beside[1], m->diagonal[2], 0};
+    columns->c[0] = (phys_vec){m->diagonal[0], m->off_diagonal[0], m->off_diagonal[2], 0};
+    columns->c[1] = (phys_vec){m->off_diagonal[0], m->diagonal[1], m->off_diagonal[1], 0};
+    columns->c[2] = (phys_vec){m->off_diagonal[2], m->off_diagonal[1], m->diagonal[2], 0};
 }
 
 /* The inverse, unless a pivot of m is not above `least` times the diagonal entries of `whole`. */
@@ -71,7 +72,7 @@ PHYS_INLINE bool solve_invert(const struct solve_symmetric *m, const phys_vec *w
                               struct solve_symmetric *inverse)
 {
     const double xx = m->diagonal[0], yy = m->diagonal[1], zz = m->diagonal[2];
-    const double xy = m->beside[0], yz = m->beside[1], zx = m->beside[2];
+    const double xy = m->off_diagonal[0], yz = m->off_diagonal[1], zx = m->off_diagonal[2];
     const double l10 = xy / xx, l20 = zx / xx;
     const double d1 = yy - l10 * xy, e = yz - l10 * zx, l21 = e / d1;
     const double d2 = zz - l20 * zx - l21 * e;
@@ -80,7 +81,7 @@ PHYS_INLINE bool solve_invert(const struct solve_symmetric *m, const phys_vec *w
     /* L^-1 has -l10, -l21 and k below its diagonal of ones. */
     const double k = l10 * l21 - l20, i0 = 1 / xx, i1 = 1 / d1, i2 = 1 / d2;
     inverse->diagonal = (phys_vec){i0 + l10 * l10 * i1 + k * k * i2, i1 + l21 * l21 * i2, i2, 0};
-    inverse->beside = (phys_vec){-l10 * i1 - k * l21 * i2, -l21 * i2, k * i2, 0};
+    inverse->off_diagonal = (phys_vec){-l10 * i1 - k * l21 * i2, -l21 * i2, k * i2, 0};
     return true;
 }
 

@@ -15,22 +15,22 @@ struct gathering {
     const struct solve_block *block;
     const void *values;
     const phys_vec *basis, *other_basis;
-    struct gathered pair[SOLVE_MOST_PATCHES][SOLVE_MOST_PATCHES];
-    struct solve_couplings *own, *beside;
+    struct gathered pair[SOLVE_MAX_PATCHES][SOLVE_MAX_PATCHES];
+    struct solve_couplings *own, *off_diagonal;
     bool inside; /* both ends are of this block */
 };
 
 /* The far end's own share, of an inner entry: what lies beside it then was added from here. */
 static void add_far(const struct gathering *all, const struct gathered *gathered, double *own)
 {
-    double beside[SOLVE_COUPLING] = {0};
+    double off_diagonal[SOLVE_COUPLING] = {0};
     uint32_t end[MANY][2];
     for (uint32_t i = 0; i < gathered->n; i++) {
         end[i][0] = gathered->end[i][1];
         end[i][1] = gathered->end[i][0];
     }
     solve_couple_cut(all->block, all->values, gathered->n, gathered->at, (const uint32_t(*)[2])end,
-                     all->other_basis, all->basis, own, beside);
+                     all->other_basis, all->basis, own, off_diagonal);
 }
 
 static void flush(struct gathering *all, uint32_t k, uint32_t l)
@@ -40,7 +40,7 @@ static void flush(struct gathering *all, uint32_t k, uint32_t l)
         return;
     solve_couple_cut(all->block, all->values, gathered->n, gathered->at,
                      (const uint32_t(*)[2])gathered->end, all->basis, all->other_basis,
-                     all->own->matrix[k][k], all->beside->matrix[k][l]);
+                     all->own->matrix[k][k], all->off_diagonal->matrix[k][l]);
     if (all->inside)
         add_far(all, gathered, all->own->matrix[l][l]);
     gathered->n = 0;
@@ -59,15 +59,15 @@ static void gather(struct gathering *all, uint32_t k, uint32_t l, uint32_t at, u
 
 static void flush_all(struct gathering *all)
 {
-    for (uint32_t k = 0; k < SOLVE_MOST_PATCHES; k++)
-        for (uint32_t l = 0; l < SOLVE_MOST_PATCHES; l++)
+    for (uint32_t k = 0; k < SOLVE_MAX_PATCHES; k++)
+        for (uint32_t l = 0; l < SOLVE_MAX_PATCHES; l++)
             flush(all, k, l);
 }
 
 static void begin(struct gathering *all)
 {
-    for (uint32_t k = 0; k < SOLVE_MOST_PATCHES; k++)
-        for (uint32_t l = 0; l < SOLVE_MOST_PATCHES; l++)
+    for (uint32_t k = 0; k < SOLVE_MAX_PATCHES; k++)
+        for (uint32_t l = 0; l < SOLVE_MAX_PATCHES; l++)
             all->pair[k][l].n = 0;
 }
 
@@ -79,7 +79,7 @@ void solve_couple_patches(const struct solve_block *block, const struct solve_pa
     all.block = block;
     all.values = values;
     all.basis = all.other_basis = basis;
-    all.own = all.beside = own;
+    all.own = all.off_diagonal = own;
     all.inside = true;
     memset(own, 0, sizeof *own);
     for (uint32_t k = 0; k < patches->n; k++)
@@ -100,7 +100,7 @@ void solve_couple_patches_cut(const struct solve_block *block, const struct solv
                               const void *values, size_t from, size_t n, const uint32_t (*end)[2],
                               const phys_vec *basis, const phys_vec *other_basis,
                               const struct solve_patches *other, struct solve_couplings *own,
-                              struct solve_couplings *beside)
+                              struct solve_couplings *off_diagonal)
 {
     struct gathering all;
     begin(&all);
@@ -109,9 +109,9 @@ void solve_couple_patches_cut(const struct solve_block *block, const struct solv
     all.basis = basis;
     all.other_basis = other_basis;
     all.own = own;
-    all.beside = beside;
+    all.off_diagonal = off_diagonal;
     all.inside = false;
-    memset(beside, 0, sizeof *beside);
+    memset(off_diagonal, 0, sizeof *off_diagonal);
     for (size_t i = 0; i < n; i++)
         gather(&all, solve_patch_of(patches, end[i][0]), solve_patch_of(other, end[i][1]),
                (uint32_t)(from + i), end[i][0], end[i][1]);

@@ -6,19 +6,19 @@
 /* The rows of a block may have several sets of columns of P (cloth/solve/coarse.h), one for each
  * patch: a run of rows, which the order of rows keeps together. What is said of blocks there goes
  * for patches. Pure functions. */
-enum { SOLVE_MOST_PATCHES = 4 };
+enum { SOLVE_MAX_PATCHES = 4 };
 
 /* Patch k has rows start[k] .. start[k + 1] - 1; behind the last one start is `rows`. */
 struct solve_patches {
     uint32_t n;
-    uint32_t start[SOLVE_MOST_PATCHES + 1];
+    uint32_t start[SOLVE_MAX_PATCHES + 1];
 };
 
-/* n patches, 1 .. SOLVE_MOST_PATCHES, of so many rows; some are empty if there are fewer rows. */
+/* n patches, 1 .. SOLVE_MAX_PATCHES, of so many rows; some are empty if there are fewer rows. */
 static inline struct solve_patches solve_patches_of(uint32_t rows, uint32_t n)
 {
     struct solve_patches patches = {.n = n};
-    for (uint32_t k = 0; k <= SOLVE_MOST_PATCHES; k++)
+    for (uint32_t k = 0; k <= SOLVE_MAX_PATCHES; k++)
         patches.start[k] = k < n ? (uint32_t)((uint64_t)rows * k / n) : rows;
     return patches;
 }
@@ -35,12 +35,12 @@ static inline uint32_t solve_patch_of(const struct solve_patches *patches, uint3
 /* Which patches anything joins, as bits: of patch k here with patch l there. */
 static inline uint32_t solve_patch_bit(uint32_t k, uint32_t l)
 {
-    return UINT32_C(1) << (SOLVE_MOST_PATCHES * k + l);
+    return UINT32_C(1) << (SOLVE_MAX_PATCHES * k + l);
 }
 
 /* Blocks of nine columns by nine, from patch k to patch l: matrix[k][l]. */
 struct solve_couplings {
-    double matrix[SOLVE_MOST_PATCHES][SOLVE_MOST_PATCHES][SOLVE_COUPLING];
+    double matrix[SOLVE_MAX_PATCHES][SOLVE_MAX_PATCHES][SOLVE_COUPLING];
 };
 
 /* What inner entries and the diagonal make: matrix[k][l] for k <= l. basis: of the block's rows. */
@@ -48,12 +48,12 @@ void solve_couple_patches(const struct solve_block *block, const struct solve_pa
                           const void *values, const phys_vec *basis, struct solve_couplings *own);
 
 /* Adds n entries into one other block, at `from` among the values, to the diagonal of `own`, and
- * sets beside, this block's patches by the other's. end: own row, row in other_basis, of which
- * `other` are the patches. */
+ * sets off_diagonal, this block's patches by the other's. end: own row, row in other_basis, of
+ * which `other` are the patches. */
 void solve_couple_patches_cut(const struct solve_block *block, const struct solve_patches *patches,
                               const void *values, size_t from, size_t n, const uint32_t (*end)[2],
                               const phys_vec *basis, const phys_vec *other_basis,
                               const struct solve_patches *other, struct solve_couplings *own,
-                              struct solve_couplings *beside);
+                              struct solve_couplings *off_diagonal);
 
 #endif

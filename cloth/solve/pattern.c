@@ -92,7 +92,7 @@ static void list(const struct graph *graph, struct solve_pattern *pattern)
 }
 
 int solve_pattern_make(struct solve_pattern *pattern, uint32_t n, const uint32_t *first,
-                       const uint32_t *slot, struct cloth_error *error)
+                       const uint32_t *neighbour, struct cloth_error *error)
 {
     struct graph graph = {.n = n, .words = n / 64 + 1};
     *pattern = (struct solve_pattern){.n = n};
@@ -105,7 +105,7 @@ int solve_pattern_make(struct solve_pattern *pattern, uint32_t n, const uint32_t
         goto done;
     for (uint32_t b = 0; b < n; b++) {
         for (uint32_t i = first[b]; i < first[b + 1]; i++)
-            row_of(&graph, b)[slot[i] / 64] |= UINT64_C(1) << slot[i] % 64;
+            row_of(&graph, b)[neighbour[i] / 64] |= UINT64_C(1) << neighbour[i] % 64;
         graph.degree[b] = count_bits(&graph, b);
     }
     order(&graph, pattern);

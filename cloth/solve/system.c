@@ -57,7 +57,7 @@ void solve_system_pair(const struct solve_system *system, size_t i, double n[3][
 struct entry {
     uint32_t end[2];
     size_t at;
-    int turned;
+    int transposed;
 };
 
 static int compare(const void *va, const void *vb)
@@ -107,7 +107,7 @@ int solve_system_sort(struct solve_system *system, struct cloth_error *error)
     move(entry, n, bytes, system->block ? (void *)system->block : system->value, room);
     for (size_t i = 0; i < n; i++) {
         memcpy(system->end[i], entry[i].end, sizeof system->end[i]);
-        if (system->block && entry[i].turned)
+        if (system->block && entry[i].transposed)
             transpose(system->block[i]);
     }
     free(entry);

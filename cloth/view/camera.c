@@ -32,7 +32,7 @@ void view_fit_start(struct view_fit *fit, double azimuth, double elevation, doub
     fit->tangent[1] = tan(radians(HALF_ANGLE)) * MARGIN;
     fit->tangent[0] = fit->tangent[1] * aspect;
     for (int i = 0; i < 4; i++)
-        fit->most[i] = -INFINITY;
+        fit->max[i] = -INFINITY;
     for (int i = 0; i < 3; i++) {
         fit->low[i] = INFINITY;
         fit->high[i] = -INFINITY;
@@ -49,8 +49,8 @@ static void show(struct view_fit *fit, const double p[3])
     double z = dot(fit->side[2], p);
     for (int i = 0; i < 2; i++) {
         double x = dot(fit->side[i], p), t = fit->tangent[i];
-        fit->most[2 * i] = fmax(fit->most[2 * i], x + t * z);
-        fit->most[2 * i + 1] = fmax(fit->most[2 * i + 1], t * z - x);
+        fit->max[2 * i] = fmax(fit->max[2 * i], x + t * z);
+        fit->max[2 * i + 1] = fmax(fit->max[2 * i + 1], t * z - x);
     }
     fit->near = fmax(fit->near, z);
     fit->far = fmin(fit->far, z);
@@ -70,10 +70,10 @@ void view_fit_add(struct view_fit *fit, size_t n, const double *position)
 
 static double extent(const struct view_fit *fit)
 {
-    double most = 0;
+    double max = 0;
     for (int i = 0; i < 3; i++)
-        most = fmax(most, fit->high[i] - fit->low[i]);
-    return most;
+        max = fmax(max, fit->high[i] - fit->low[i]);
+    return max;
 }
 
 /* A plane farther away than the points are wide would only push the camera back. */
@@ -112,8 +112,8 @@ static void place_eye(const struct view_fit *fit, double size, double eye[3])
 {
     eye[2] = fit->near + 0.1 * size; /* of a single point, or a chain along the line of sight */
     for (int i = 0; i < 2; i++) {
-        eye[i] = 0.5 * (fit->most[2 * i] - fit->most[2 * i + 1]);
-        double distance = (fit->most[2 * i] + fit->most[2 * i + 1]) / (2 * fit->tangent[i]);
+        eye[i] = 0.5 * (fit->max[2 * i] - fit->max[2 * i + 1]);
+        double distance = (fit->max[2 * i] + fit->max[2 * i + 1]) / (2 * fit->tangent[i]);
         eye[2] = fmax(eye[2], distance);
     }
 }

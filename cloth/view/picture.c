@@ -73,13 +73,13 @@ static int read_back(struct view_picture *picture, struct cloth_error *error)
 
 static int check_size(const struct view_picture *picture, struct cloth_error *error)
 {
-    GLint most = 0;
-    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
-    if (picture->width > 0 && picture->height > 0 && picture->width <= most &&
-        picture->height <= most)
+    GLint max = 0;
+    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &max);
+    if (picture->width > 0 && picture->height > 0 && picture->width <= max &&
+        picture->height <= max)
         return 0;
     return cloth_fail(error, CLOTH_E_INPUT,
-                      "a picture may be 1 x 1 to %d x %d pixels here, not %d x %d", most, most,
+                      "a picture may be 1 x 1 to %d x %d pixels here, not %d x %d", max, max,
                       picture->width, picture->height);
 }
 

@@ -81,16 +81,16 @@ static void cast(const void *context)
 static float lit_radius(const struct view_scene *scene)
 {
     const float *centre = scene->mesh.center, least = scene->mesh.radius;
-    float most = least;
+    float max = least;
     for (size_t v = 0; has_shapes(scene) && v < scene->shapes.n_vertices; v++) {
         float square = 0;
         for (size_t k = 0; k < 3; k++) {
             const float away = scene->shapes.vertex[6 * v + k] - centre[k];
             square += away * away;
         }
-        most = fmaxf(most, fminf(sqrtf(square), 2 * least));
+        max = fmaxf(max, fminf(sqrtf(square), 2 * least));
     }
-    return most;
+    return max;
 }
 
 int view_scene_move(struct view_scene *scene, const double *position, struct cloth_error *error)

@@ -44,7 +44,7 @@ struct view_fit {
     double tangent[2]; /* of half the angle of view that the points may fill, x and y */
     double aspect, zoom;
     double
-        most[4]; /* the largest x + tz, tz - x, y + tz, tz - y of the points, in the rows of side */
+        max[4]; /* the largest x + tz, tz - x, y + tz, tz - y of the points, in the rows of side */
     double low[3], high[3]; /* box of the points in the world */
     double near, far;       /* largest and smallest coordinate along back */
 };

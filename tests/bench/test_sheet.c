@@ -64,7 +64,7 @@ START_TEST(the_residual_is_what_is_left)
         s->q[i] = -s->answer[i]; /* r = p = dv after the first pass */
     for (uint32_t b = 0; b < tables->n_blocks; b++) {
         const struct flow_table *t = tables->block + b;
-        solve_pack(t->n_rim, t->rim, s->q + t->first, s->rim[0] + sheet_rim(s, b));
+        solve_pack(t->n_halo, t->halo, s->q + t->first, s->halo[0] + sheet_halo(s, b));
     }
     const struct solve_scalars scalars = solve_scalars_start(0, SOLVE_ON);
     for (uint32_t b = 0; b < tables->n_blocks; b++) {

@@ -177,11 +177,11 @@ static void check_some(struct checks *checks, bool few)
 
 /* ---- Pairs ---- */
 
-enum { RANKS, THREADS, SCHEDULER, MAPPING, BALANCE, FACTORS, MOST_VALUES = 16 };
+enum { RANKS, THREADS, SCHEDULER, MAPPING, BALANCE, FACTORS, MAX_VALUES = 16 };
 
 struct pairs {
     size_t values[FACTORS];
-    bool met[FACTORS][MOST_VALUES][FACTORS][MOST_VALUES];
+    bool met[FACTORS][MAX_VALUES][FACTORS][MAX_VALUES];
 };
 
 /* How many pairs of what is chosen and this value of factor f are not met yet. */

@@ -71,8 +71,8 @@ small "bdf2 with Newton steps" --set integrator=bdf2 --set newton.steps=3 --set 
 for integrator in symplectic_euler verlet rk4; do
     small "$integrator" --set integrator=$integrator --set obstacles=[] --set time.h=1e-5 --set time.end=1e-3 --set materials.cloth.damping.stiffness=1e-4
 done
-small "wind that swells, loads, a region, a pin that moves" --set 'air={wind: [3, 1, -2], course: {sine: {frequency: 5, phase: 0.1}}}' \
-    --set 'cloths[0].loads=[{vertices: [500], force: [0, 0.1, 0], course: {keys: [[0, 0], [0.01, 1]]}}]' \
+small "wind that swells, loads, a region, a pin that moves" --set 'air={wind: [3, 1, -2], curve: {sine: {frequency: 5, phase: 0.1}}}' \
+    --set 'cloths[0].loads=[{vertices: [500], force: [0, 0.1, 0], curve: {keys: [[0, 0], [0.01, 1]]}}]' \
     --set 'materials.hem={density: 0.4, stretch: 9000, shear: 100, diagonals: one}' \
     --set 'cloths[0].regions=[{box: [[-0.5, 0, 0.3], [0.5, 1, 0.5]], material: hem}]' \
     --set 'cloths[0].pins[2].motion={times: [0, 1], translate: [[0, 0, 0], [0, 1, 0]]}'

@@ -185,7 +185,7 @@ beyond() { # KEY=VALUE: forces beyond all numbers end the run soon, with a sente
     test $status = 1 && grep -q 'duite-cloth: step 1: conjugate gradients broke down .* beyond all measure' said.err
 }
 ok "a force beyond all measure" beyond 'cloths[0].loads=[{vertices: [3], force: [0, 1e300, 0]}]'
-ok "a course beyond all measure" beyond 'cloths[0].loads=[{vertices: [3], force: [0, 1, 0], course: {keys: [[0, 1e308]]}}]'
+ok "a curve beyond all measure" beyond 'cloths[0].loads=[{vertices: [3], force: [0, 1, 0], curve: {keys: [[0, 1e308]]}}]'
 ok "a scene without end" says 1 "/dev/zero: larger than 256 MiB; a large mesh belongs into a file of its own" /dev/zero
 
 

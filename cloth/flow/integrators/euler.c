@@ -5,7 +5,7 @@
 /* x and v by the forces at where they are. */
 struct euler_move {
     const phys_vec *from_x, *from_v;
-    phys_vec *x, *v, *rim_x, *rim_v;
+    phys_vec *x, *v, *halo_x, *halo_v;
     double *status;
 };
 
@@ -14,15 +14,15 @@ static int euler_move(const duite_call *call, const struct flow_table *t,
 {
     const bool ahead = flow_of(call)->model->integrator == MODEL_SYMPLECTIC_EULER;
     phys_vec *f = flow_force_room(call);
-    flow_fetch_own(t, m->rim_x);
-    flow_fetch_own(t, m->rim_v);
-    flow_fetch_rims(t, view);
+    flow_fetch_own(t, m->halo_x);
+    flow_fetch_own(t, m->halo_v);
+    flow_fetch_halos(t, view);
     flow_forces(call, t, view, f);
     flow_part_ends(call, FLOW_FORCE);
     const int well = phys_euler(t->n, flow_args_of(call)->h, ahead, FLOW_BOUND, t->mass, t->free, f,
                                 m->from_x, m->from_v, m->x, m->v);
-    flow_write_rim(t, m->x, m->rim_x);
-    flow_write_rim(t, m->v, m->rim_v);
+    flow_write_halo(t, m->x, m->halo_x);
+    flow_write_halo(t, m->v, m->halo_v);
     if (well)
         return 0;
     const int code =
@@ -34,8 +34,8 @@ static int euler_move(const duite_call *call, const struct flow_table *t,
 
 /* In place. */
 FLOW_KERNEL(euler, FLOW_VELOCITY, struct flow_args,
-            (R(table), RW(x), RW(v), W(spare_rim_x), W(spare_rim_v), SUM(status), NEIGHBOURS(rim_x),
-             NEIGHBOURS(rim_v)))
+            (R(table), RW(x), RW(v), W(spare_halo_x), W(spare_halo_v), SUM(status),
+             NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
 static int euler_body(const duite_call *call, const struct euler_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
@@ -44,17 +44,17 @@ static int euler_body(const duite_call *call, const struct euler_fields *on)
                                     .from_v = on->v,
                                     .x = on->x,
                                     .v = on->v,
-                                    .rim_x = on->spare_rim_x,
-                                    .rim_v = on->spare_rim_v,
+                                    .halo_x = on->spare_halo_x,
+                                    .halo_v = on->spare_halo_v,
                                     .status = on->status};
     return euler_move(call, &table, &view, &move);
 }
 
 /* Beside the state, which stays as it is. */
-FLOW_KERNEL(euler_beside, FLOW_VELOCITY, struct flow_args,
-            (R(table), R(x), R(v), W(kept_x), W(kept_v), W(spare_rim_x), W(spare_rim_v),
-             SUM(status), NEIGHBOURS(rim_x), NEIGHBOURS(rim_v)))
-static int euler_beside_body(const duite_call *call, const struct euler_beside_fields *on)
+FLOW_KERNEL(euler_next, FLOW_VELOCITY, struct flow_args,
+            (R(table), R(x), R(v), W(kept_x), W(kept_v), W(spare_halo_x), W(spare_halo_v),
+             SUM(status), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
+static int euler_next_body(const duite_call *call, const struct euler_next_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct flow_view view = FLOW_VIEW(on);
@@ -62,8 +62,8 @@ static int euler_beside_body(const duite_call *call, const struct euler_beside_f
                                     .from_v = on->v,
                                     .x = on->kept_x,
                                     .v = on->kept_v,
-                                    .rim_x = on->spare_rim_x,
-                                    .rim_v = on->spare_rim_v,
+                                    .halo_x = on->spare_halo_x,
+                                    .halo_v = on->spare_halo_v,
                                     .status = on->status};
     return euler_move(call, &table, &view, &move);
 }
@@ -83,7 +83,7 @@ static void swap_kept(struct flow_state *state)
 void flow_euler_restore(struct flow_state *state)
 {
     swap_kept(state);
-    flow_swap_rims(state);
+    flow_swap_halos(state);
 }
 
 int flow_euler_end(struct flow_state *state)
@@ -91,8 +91,8 @@ int flow_euler_end(struct flow_state *state)
     const bool keeps = flow_euler_keeps(state->flow->model);
     struct flow_args args = flow_explicit_args(state, 0);
     const int code =
-        flow_fork_each(state, keeps ? &flow_kernel_euler_beside : &flow_kernel_euler, &args);
-    flow_swap_rims(state);
+        flow_fork_each(state, keeps ? &flow_kernel_euler_next : &flow_kernel_euler, &args);
+    flow_swap_halos(state);
     if (keeps)
         swap_kept(state);
     return code;

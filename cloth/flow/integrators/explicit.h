@@ -2,28 +2,28 @@
 #define CLOTH_FLOW_INTEGRATORS_EXPLICIT_H
 
 #include "cloth/flow/integrators/integrator.h"
-#include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/sliders.h"
 #include "cloth/flow/step/step.h"
 #include "cloth/physics/particle.h"
 #include "cloth/physics/stage.h"
 
 /* What explicit integrators share: they solve nothing (cloth/physics/stage.h). Each step begins and
- * ends with x, v and their rims; what else an integrator keeps from step to step is said with it. A
- * task that finds forces reads its neighbours' rims and moves its own rows at once: what the
- * neighbours are to read next goes to spare rims, which are the rims when all such tasks are
+ * ends with x, v and their halos; what else an integrator keeps from step to step is said with it.
+ * A task that finds forces reads its neighbours' halos and moves its own rows at once: what the
+ * neighbours are to read next goes to spare halos, which are the halos when all such tasks are
  * forked. So no block waits for its neighbours to have seen it, and forces do not leave the
  * caches. */
 
-/* What a task wrote to the spare rims is what neighbours read next: when all tasks are forked. */
-static inline void flow_swap_rims_v(struct flow_state *state)
+/* What a task wrote to the spare halos is what neighbours read next: when all tasks are forked. */
+static inline void flow_swap_halos_v(struct flow_state *state)
 {
-    flow_fields_swap(state, FLOW_FIELD_rim_v, FLOW_FIELD_spare_rim_v);
+    flow_fields_swap(state, FLOW_FIELD_halo_v, FLOW_FIELD_spare_halo_v);
 }
 
-static inline void flow_swap_rims(struct flow_state *state)
+static inline void flow_swap_halos(struct flow_state *state)
 {
-    flow_fields_swap(state, FLOW_FIELD_rim_x, FLOW_FIELD_spare_rim_x);
-    flow_swap_rims_v(state);
+    flow_fields_swap(state, FLOW_FIELD_halo_x, FLOW_FIELD_spare_halo_x);
+    flow_swap_halos_v(state);
 }
 
 /* Arguments of a task that finds forces when so much of the step is over. */
@@ -35,21 +35,21 @@ static inline struct flow_args flow_explicit_args(const struct flow_state *state
 }
 
 /* Asks memory for what a task comes to when its long loops, which ask for themselves, are done:
- * a rim of its own that it writes, and rows of the neighbours' rims. */
-static inline void flow_fetch_own(const struct flow_table *t, const phys_vec *rim)
+ * a halo of its own that it writes, and rows of the neighbours' halos. */
+static inline void flow_fetch_own(const struct flow_table *t, const phys_vec *halo)
 {
     enum { ROWS = 2 }; /* a cache line */
-    for (uint32_t i = 0; i < t->n_rim; i += ROWS)
-        phys_fetch(rim + i, 0, 1);
+    for (uint32_t i = 0; i < t->n_halo; i += ROWS)
+        phys_fetch(halo + i, 0, 1);
 }
 
-static inline void flow_fetch_rims(const struct flow_table *t, const struct flow_view *view)
+static inline void flow_fetch_halos(const struct flow_table *t, const struct flow_view *view)
 {
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        const phys_vec *x = flow_rows_of(view->rim_x, s), *v = flow_rows_of(view->rim_v, s);
-        for (uint32_t i = t->copies[s]; i < t->copies[s + 1]; i++) {
-            phys_fetch(x + t->copy[i], 0, 0);
-            phys_fetch(v + t->copy[i], 0, 0);
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
+        const phys_vec *x = flow_rows_of(view->halo_x, s), *v = flow_rows_of(view->halo_v, s);
+        for (uint32_t i = t->ghosts[s]; i < t->ghosts[s + 1]; i++) {
+            phys_fetch(x + t->ghost[i], 0, 0);
+            phys_fetch(v + t->ghost[i], 0, 0);
         }
     }
 }

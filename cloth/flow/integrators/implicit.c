@@ -4,7 +4,7 @@
  * The recorded round of conjugate gradients serves all solves. */
 #include "cloth/flow/integrators/integrator.h"
 #include "cloth/flow/solver/solve.h"
-#include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/sliders.h"
 #include "cloth/flow/step/step.h"
 
 #include "cloth/physics/implicit.h"
@@ -12,7 +12,7 @@
 
 static const double OVERSHOT = 0.5; /* of the slope at the begin of a Newton step, and uphill */
 static const double LEAST_CUT = 0.1;
-enum { MOST_CUTS = 8 };
+enum { MAX_CUTS = 8 };
 
 static bool searches(const struct flow_state *state)
 {
@@ -31,7 +31,7 @@ static int fork_system(struct flow_state *state, struct flow_args args)
 {
     int code = flow_fork_each(state, &flow_kernel_matrix, &args);
     if (!code && model_is_filtered(state->flow->model))
-        code = flow_contact_hold(state, args);
+        code = flow_contact_constrain(state, args);
     return code ? code : flow_cg_start(state);
 }
 
@@ -49,7 +49,7 @@ static int assemble_held(struct flow_state *state, struct flow_args args)
         code = fork_filter(state, args);
     if (!code)
         code = flow_fork_each(state, &flow_kernel_system_of_forces, &args);
-    return code ? code : flow_contact_hold(state, args);
+    return code ? code : flow_contact_constrain(state, args);
 }
 
 int flow_assemble(struct flow_state *state)
@@ -100,7 +100,7 @@ void flow_note_solve(const duite_call *call, const struct flow_table *t,
 /* v += dv, and what the solve took and lost of the momentum. A solve that failed in a step that
  * must not leaves no scalars: then this does not run. */
 FLOW_KERNEL(velocity_implicit, FLOW_VELOCITY, struct flow_args,
-            (R(table), R(f), R(a), R(dv), R(r), RW(v), W(rim_v), R(scalars), SUM(status)))
+            (R(table), R(f), R(a), R(dv), R(r), RW(v), W(halo_v), R(scalars), SUM(status)))
 static int velocity_implicit_body(const duite_call *call, const struct velocity_implicit_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -111,17 +111,17 @@ static int velocity_implicit_body(const duite_call *call, const struct velocity_
                                        .scalars = on->scalars};
     flow_note_solve(call, t, &solved, on->status);
     phys_advance(t->n, 1, on->dv, on->v);
-    flow_write_rim(t, on->v, on->rim_v);
+    flow_write_halo(t, on->v, on->halo_v);
     return flow_check(call, t, on->v, "velocity", on->status);
 }
 
 FLOW_KERNEL(position, FLOW_POSITION, struct flow_args,
-            (R(table), R(v), RW(x), W(rim_x), SUM(status)))
+            (R(table), R(v), RW(x), W(halo_x), SUM(status)))
 static int position_body(const duite_call *call, const struct position_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     phys_advance(t->n, on->args->h, on->v, on->x);
-    flow_write_rim(t, on->x, on->rim_x);
+    flow_write_halo(t, on->x, on->halo_x);
     return flow_check(call, t, on->x, "position", on->status);
 }
 
@@ -165,7 +165,7 @@ static int get_slope(struct flow_state *state, struct flow_args args, double *sl
 /* A block moves by a part of dv, its bases where it began. */
 struct newton_move {
     const phys_vec *dv, *base_x;
-    phys_vec *v, *x, *rim_v, *rim_x;
+    phys_vec *v, *x, *halo_v, *halo_x;
 };
 
 static void newton_move(const struct flow_table *t, double h, double part,
@@ -173,17 +173,17 @@ static void newton_move(const struct flow_table *t, double h, double part,
 {
     phys_advance(t->n, part, m->dv, m->v);
     phys_place(t->n, h, m->base_x, m->v, m->x);
-    flow_write_rim(t, m->v, m->rim_v);
-    flow_write_rim(t, m->x, m->rim_x);
+    flow_write_halo(t, m->v, m->halo_v);
+    flow_write_halo(t, m->x, m->halo_x);
 }
 
 /* args.part of dv more. */
 FLOW_KERNEL(shift, FLOW_VELOCITY, struct flow_args,
-            (R(table), R(dv), R(base_x), RW(v), W(x), W(rim_v), W(rim_x)))
+            (R(table), R(dv), R(base_x), RW(v), W(x), W(halo_v), W(halo_x)))
 static int shift_body(const duite_call *call, const struct shift_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
-    const struct newton_move move = {on->dv, on->base_x, on->v, on->x, on->rim_v, on->rim_x};
+    const struct newton_move move = {on->dv, on->base_x, on->v, on->x, on->halo_v, on->halo_x};
     newton_move(&table, on->args->h, on->args->part, &move);
     return 0;
 }
@@ -193,7 +193,7 @@ static int search(struct flow_state *state, struct flow_args args, double first)
 {
     double slope, length = 1;
     int code = get_slope(state, args, &slope);
-    for (int i = 0; i < MOST_CUTS && !code && !(slope >= -OVERSHOT * first); i++) {
+    for (int i = 0; i < MAX_CUTS && !code && !(slope >= -OVERSHOT * first); i++) {
         double cut = first / (first - slope);
         cut = cut >= LEAST_CUT ? cut : LEAST_CUT; /* not a number: the same */
         args.part = (cut - 1) * length;
@@ -207,8 +207,8 @@ static int search(struct flow_state *state, struct flow_args args, double first)
 
 /* The whole of dv. */
 FLOW_KERNEL(correct, FLOW_VELOCITY, struct flow_args,
-            (R(table), R(f), R(a), R(dv), R(r), R(base_x), R(base_v), RW(v), W(x), W(rim_v),
-             W(rim_x), R(scalars), SUM(status)))
+            (R(table), R(f), R(a), R(dv), R(r), R(base_x), R(base_v), RW(v), W(x), W(halo_v),
+             W(halo_x), R(scalars), SUM(status)))
 static int correct_body(const duite_call *call, const struct correct_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -217,7 +217,7 @@ static int correct_body(const duite_call *call, const struct correct_fields *on)
                                        .dv = on->dv,
                                        .r = on->r,
                                        .scalars = on->scalars};
-    const struct newton_move move = {on->dv, on->base_x, on->v, on->x, on->rim_v, on->rim_x};
+    const struct newton_move move = {on->dv, on->base_x, on->v, on->x, on->halo_v, on->halo_x};
     flow_note_solve(call, t, &solved, on->status);
     on->status[FLOW_SLOPE] = phys_slope(t->n, t->free, on->dv, on->f);
     newton_move(t, on->args->h, 1, &move);
@@ -227,14 +227,15 @@ static int correct_body(const duite_call *call, const struct correct_fields *on)
     return code ? code : flow_check(call, t, on->x, "position", on->status);
 }
 
-/* v and x by all of dv; what is told of the solve goes to the status, or to one in its place. */
+/* v and x by all of dv; what is reported of the solve goes to the status, or to one in its place.
+ */
 static int fork_correct(struct flow_state *state, struct flow_args args, const struct flow_as *as)
 {
     const int code = flow_cg_iterate(state);
     return code ? code : flow_fork_each_as(state, &flow_kernel_correct, &args, as);
 }
 
-/* One Newton step. *sums: what it told. */
+/* One Newton step. *sums: what it reported. */
 static int newton_step(struct flow_state *state, struct flow_args args, double sums[FLOW_STATUS])
 {
     int code = duite_set(state->rt, state->run.trial, NULL);
@@ -257,20 +258,20 @@ static int newton(struct flow_state *state, struct flow_args args)
 {
     const struct model *model = state->flow->model;
     const double small = model->newton_tolerance * model->newton_tolerance;
-    struct flow_newton *told = &state->newton;
-    *told = (struct flow_newton){0};
+    struct flow_newton *newton = &state->newton;
+    *newton = (struct flow_newton){0};
     while (true) {
         double last[FLOW_STATUS];
         int code = newton_step(state, args, last);
         if (code)
             return code;
-        sum_up(told->status, last);
-        told->steps++;
-        told->converged = last[FLOW_CHANGE] <= small * last[FLOW_WHOLE];
-        if (told->converged || last[FLOW_FAILED] + last[FLOW_BEYOND] > 0)
+        sum_up(newton->status, last);
+        newton->steps++;
+        newton->converged = last[FLOW_CHANGE] <= small * last[FLOW_WHOLE];
+        if (newton->converged || last[FLOW_FAILED] + last[FLOW_BEYOND] > 0)
             return DUITE_OK;
         code = search(state, args, last[FLOW_SLOPE]);
-        if (code || told->steps == model->newton_steps)
+        if (code || newton->steps == model->newton_steps)
             return code;
         code = fork_system(state, args);
         if (code)
@@ -307,24 +308,24 @@ int flow_implicit_euler_end(struct flow_state *state)
 
 /* ---- BDF2 ---- */
 
-/* Along what a guide holds a row goes where its v says, as one that is held whole does. */
-static void hold_bases(const duite_call *call, const struct flow_table *t,
-                       const struct phys_states *s)
+/* Along what a slider holds a row goes where its v says, as one that is held whole does. */
+static void constrain_bases(const duite_call *call, const struct flow_table *t,
+                            const struct phys_states *s)
 {
     struct flow_pins pins;
-    struct flow_guide guide;
+    struct flow_slider slider;
     flow_pins_begin(call, t, &pins);
-    for (uint32_t i = 0; i < t->n_guided; i++) {
-        const uint32_t row = t->guided[i][0];
+    for (uint32_t i = 0; i < t->n_sliding; i++) {
+        const uint32_t row = t->sliding[i][0];
         const phys_vec held = s->x[row] + flow_args_of(call)->h / 2 * s->v[row];
-        flow_pins_guide(&pins, i, &guide);
-        flow_guide_keep(&guide, &held, s->base_x + row);
+        flow_pins_slider(&pins, i, &slider);
+        flow_slider_keep(&slider, &held, s->base_x + row);
     }
 }
 
 /* Its bases, and x where v would lead. */
 FLOW_KERNEL(predict, FLOW_POSITION, struct flow_args,
-            (R(table), RW(x), R(v), RW(last_x), RW(last_v), W(base_x), W(base_v), W(rim_x)))
+            (R(table), RW(x), R(v), RW(last_x), RW(last_v), W(base_x), W(base_v), W(halo_x)))
 static int predict_body(const duite_call *call, const struct predict_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -336,9 +337,9 @@ static int predict_body(const duite_call *call, const struct predict_fields *on)
                                        .base_x = on->base_x,
                                        .base_v = on->base_v};
     phys_bdf2_bases(t->n, h, t->free, &states);
-    hold_bases(call, t, &states);
+    constrain_bases(call, t, &states);
     phys_place(t->n, h, states.base_x, states.v, on->x);
-    flow_write_rim(t, on->x, on->rim_x);
+    flow_write_halo(t, on->x, on->halo_x);
     return 0;
 }
 

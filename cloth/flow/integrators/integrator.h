@@ -7,7 +7,7 @@
 struct flow_integrator {
     /* Forks what of a step leaves x and v as they are; NULL: nothing. */
     int (*begin)(struct flow_state *state);
-    /* Forks the rest, which ends with the new x and v and their rims; contact comes after it. */
+    /* Forks the rest, which ends with the new x and v and their halos; contact comes after it. */
     int (*end)(struct flow_state *state);
     /* Whether its steps leave the state before them as what is kept, then what makes that the state
      * again; NULL: it is copied before a step. */

@@ -2,8 +2,8 @@
 #include "cloth/flow/integrators/explicit.h"
 
 FLOW_KERNEL(runge, FLOW_POSITION, struct flow_args,
-            (R(table), RW(x), RW(v), RW(x0), RW(v0), RW(sum_x), RW(sum_v), W(spare_rim_x),
-             W(spare_rim_v), SUM(status), NEIGHBOURS(rim_x), NEIGHBOURS(rim_v)))
+            (R(table), RW(x), RW(v), RW(x0), RW(v0), RW(sum_x), RW(sum_v), W(spare_halo_x),
+             W(spare_halo_v), SUM(status), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
 static int runge_body(const duite_call *call, const struct runge_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -11,17 +11,17 @@ static int runge_body(const duite_call *call, const struct runge_fields *on)
     const struct phys_runge runge = {
         .x0 = on->x0, .v0 = on->v0, .sum_x = on->sum_x, .sum_v = on->sum_v};
     phys_vec *a = flow_force_room(call);
-    flow_fetch_own(t, on->spare_rim_x);
-    flow_fetch_own(t, on->spare_rim_v);
-    flow_fetch_rims(t, &view);
+    flow_fetch_own(t, on->spare_halo_x);
+    flow_fetch_own(t, on->spare_halo_v);
+    flow_fetch_halos(t, &view);
     flow_forces(call, t, &view, a);
     flow_part_ends(call, FLOW_FORCE);
     phys_accelerate(t->n, t->mass, t->free, a);
-    flow_guides_filter(call, t, a);
+    flow_sliders_filter(call, t, a);
     flow_part_ends(call, FLOW_ACCELERATION);
     phys_runge_stage(t->n, on->args->h, (int)on->args->stage, a, &runge, on->x, on->v);
-    flow_write_rim(t, on->x, on->spare_rim_x);
-    flow_write_rim(t, on->v, on->spare_rim_v);
+    flow_write_halo(t, on->x, on->spare_halo_x);
+    flow_write_halo(t, on->v, on->spare_halo_v);
     const int code = flow_check(call, t, on->x, "position", on->status);
     return code ? code : flow_check(call, t, on->v, "velocity", on->status);
 }
@@ -34,7 +34,7 @@ int flow_runge_end(struct flow_state *state)
         struct flow_args args = flow_explicit_args(state, when[stage]);
         args.stage = stage;
         code = flow_fork_each(state, &flow_kernel_runge, &args);
-        flow_swap_rims(state);
+        flow_swap_halos(state);
     }
     return code;
 }

@@ -10,36 +10,36 @@ int flow_verlet_begin(struct flow_state *state)
 
 /* v becomes a guess of the velocity at the end of the step, for forces that depend on it. */
 FLOW_KERNEL(verlet_first, FLOW_POSITION, struct flow_args,
-            (R(table), RW(x), RW(v), R(f), W(v0), W(rim_x), W(rim_v), SUM(status)))
+            (R(table), RW(x), RW(v), R(f), W(v0), W(halo_x), W(halo_v), SUM(status)))
 static int verlet_first_body(const duite_call *call, const struct verlet_first_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const double h = on->args->h, half = 0.5 * h;
     phys_kick(t->n, half, 1, t->mass, t->drag, t->free, on->f, on->v, on->v0);
-    flow_guides_keep(call, t, on->v, on->v0);
+    flow_sliders_keep(call, t, on->v, on->v0);
     phys_kick(t->n, half, 0, t->mass, t->drag, t->free, on->f, on->v0, on->v);
-    flow_guides_keep(call, t, on->v0, on->v);
-    flow_write_rim(t, on->v, on->rim_v);
+    flow_sliders_keep(call, t, on->v0, on->v);
+    flow_write_halo(t, on->v, on->halo_v);
     flow_part_ends(call, FLOW_VELOCITY);
     phys_advance(t->n, h, on->v0, on->x);
-    flow_write_rim(t, on->x, on->rim_x);
+    flow_write_halo(t, on->x, on->halo_x);
     return flow_check(call, t, on->x, "position", on->status);
 }
 
 FLOW_KERNEL(verlet_second, FLOW_VELOCITY, struct flow_args,
-            (R(table), R(x), RW(v), W(f), R(v0), W(spare_rim_v), SUM(status), NEIGHBOURS(rim_x),
-             NEIGHBOURS(rim_v)))
+            (R(table), R(x), RW(v), W(f), R(v0), W(spare_halo_v), SUM(status), NEIGHBOURS(halo_x),
+             NEIGHBOURS(halo_v)))
 static int verlet_second_body(const duite_call *call, const struct verlet_second_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const struct flow_view view = FLOW_VIEW(on);
-    flow_fetch_own(t, on->spare_rim_v);
-    flow_fetch_rims(t, &view);
+    flow_fetch_own(t, on->spare_halo_v);
+    flow_fetch_halos(t, &view);
     flow_forces_free(call, t, &view, on->f);
     flow_part_ends(call, FLOW_FORCE);
     phys_kick(t->n, 0.5 * on->args->h, 0, t->mass, t->drag, t->free, on->f, on->v0, on->v);
-    flow_guides_keep(call, t, on->v0, on->v);
-    flow_write_rim(t, on->v, on->spare_rim_v);
+    flow_sliders_keep(call, t, on->v0, on->v);
+    flow_write_halo(t, on->v, on->spare_halo_v);
     return flow_check(call, t, on->v, "velocity", on->status);
 }
 
@@ -50,7 +50,7 @@ int flow_verlet_end(struct flow_state *state)
     int code = flow_fork_each(state, &flow_kernel_verlet_first, &args);
     if (!code)
         code = flow_fork_each(state, &flow_kernel_verlet_second, &args);
-    flow_swap_rims_v(state);
+    flow_swap_halos_v(state);
     state->settled_forces = !model->n_obstacles && !model_is_driven(model);
     return code;
 }

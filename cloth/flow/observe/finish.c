@@ -1,5 +1,5 @@
 /* What a report needs of the whole state, gathered when the last step is done. The hash is made on
- * rank 0 and told to all. */
+ * rank 0 and broadcast to all. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/setup/setup.h"
@@ -62,8 +62,8 @@ enum { AT_ONCE = 32 };
 uint32_t flow_hash_part(const struct flow *flow)
 {
     const uint32_t least = 1 << 16, part = flow->n_vertices / 16 + 1;
-    const uint32_t most = part > least ? part : least;
-    return most < flow->n_vertices ? most : flow->n_vertices;
+    const uint32_t max = part > least ? part : least;
+    return max < flow->n_vertices ? max : flow->n_vertices;
 }
 
 /* Vertices of the input, from .. to - 1. */
@@ -146,14 +146,14 @@ static int collect_part(struct flow_state *state, enum flow_field_id vector,
 }
 
 /* Vertices that no face or edge uses are at their start, at rest. */
-static void place_rest(struct flow_state *state, bool at_rest, const struct part *part)
+static void place_unused(struct flow_state *state, bool at_rest, const struct part *part)
 {
-    const struct flow_rest *rest = &state->flow->rest;
-    for (uint32_t i = 0; i < rest->n; i++) {
-        const uint32_t v = rest->vertex[i];
+    const struct flow_unused *unused = &state->flow->unused;
+    for (uint32_t i = 0; i < unused->n; i++) {
+        const uint32_t v = unused->vertex[i];
         unsigned char *to = state->bytes + FLOW_VERTEX_BYTES * (size_t)(v - part->from);
         for (size_t c = 0; v >= part->from && v < part->to && c < 3; c++)
-            flow_put_double(to + 8 * c, at_rest ? 0 : rest->position[i][c]);
+            flow_put_double(to + 8 * c, at_rest ? 0 : unused->position[i][c]);
     }
 }
 
@@ -165,7 +165,7 @@ static int hash_vectors(struct flow_state *state, enum flow_field_id vector, boo
     for (struct part part = {0}; part.from < n && !code; part.from = part.to) {
         part.to = n - part.from > step ? part.from + step : n;
         if (hash)
-            place_rest(state, at_rest, &part);
+            place_unused(state, at_rest, &part);
         code = collect_part(state, vector, &part);
         if (hash && !code)
             XXH64_update(hash, state->bytes, FLOW_VERTEX_BYTES * (size_t)(part.to - part.from));
@@ -186,42 +186,43 @@ static int hash_state(struct flow_state *state)
     return code;
 }
 
-FLOW_KERNEL(tell, FLOW_NO_PART, struct flow_args, (W(told)))
-static int tell_body(const duite_call *call, const struct tell_fields *on)
+FLOW_KERNEL(broadcast, FLOW_NO_PART, struct flow_args, (W(broadcast)))
+static int broadcast_body(const duite_call *call, const struct broadcast_fields *on)
 {
-    on->told[FLOW_TELL_FRAMES] = flow_of(call)->frames;
-    on->told[FLOW_TELL_HASH] = flow_of(call)->hash;
+    on->broadcast[FLOW_BROADCAST_FRAMES] = flow_of(call)->frames;
+    on->broadcast[FLOW_BROADCAST_HASH] = flow_of(call)->hash;
     return 0;
 }
 
-static int tell(struct flow_state *state, uint64_t told[FLOW_TELL])
+static int broadcast_result(struct flow_state *state, uint64_t broadcast[FLOW_BROADCAST])
 {
     const struct flow_args args = {0};
-    int code = flow_fork_at(state, 0, &flow_kernel_tell, &args, NULL);
+    int code = flow_fork_at(state, 0, &flow_kernel_broadcast, &args, NULL);
     if (!code)
-        code = duite_get(state->rt, state->run.told, told);
+        code = duite_get(state->rt, state->run.broadcast, broadcast);
     return code;
 }
 
 static int hash_all(struct flow_state *state)
 {
-    uint64_t told[FLOW_TELL];
+    uint64_t broadcast[FLOW_BROADCAST];
     int code = hash_state(state);
     if (!code)
-        code = tell(state, told);
+        code = broadcast_result(state, broadcast);
     if (!code)
-        state->report->state_hash = told[FLOW_TELL_HASH];
+        state->report->state_hash = broadcast[FLOW_BROADCAST_HASH];
     return code;
 }
 
 int flow_last_frame(struct flow_state *state)
 {
-    uint64_t told[FLOW_TELL] = {[FLOW_TELL_FRAMES] = state->next_frame};
-    const int code = flow_shows(state) ? tell(state, told) : DUITE_OK;
+    uint64_t broadcast[FLOW_BROADCAST] = {[FLOW_BROADCAST_FRAMES] = state->next_frame};
+    const int code = flow_shows(state) ? broadcast_result(state, broadcast) : DUITE_OK;
     if (code)
         return code;
-    state->report->frames = told[FLOW_TELL_FRAMES];
-    state->report->last_frame = told[FLOW_TELL_FRAMES] ? told[FLOW_TELL_FRAMES] - 1 : 0;
+    state->report->frames = broadcast[FLOW_BROADCAST_FRAMES];
+    state->report->last_frame =
+        broadcast[FLOW_BROADCAST_FRAMES] ? broadcast[FLOW_BROADCAST_FRAMES] - 1 : 0;
     return DUITE_OK;
 }
 

@@ -2,7 +2,7 @@
  * rows and what is reported of them; rank 0 writes a row, one after the other as frames are: each
  * row's task holds the token. */
 #include "cloth/flow/observe/observe.h"
-#include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/sliders.h"
 
 /* ---- Of a block ---- */
 
@@ -17,11 +17,12 @@ static void reaction_of_held(const duite_call *call, const struct flow_table *t,
     *pull = t->mass[row] * a - *force;
 }
 
-FLOW_KERNEL(probe, FLOW_OUTPUT, struct flow_args, (R(table), R(x), R(v), R(felt), W(seen)))
+FLOW_KERNEL(probe, FLOW_OUTPUT, struct flow_args,
+            (R(table), R(x), R(v), R(probe_force), W(probe_values)))
 
-/* (I - S) (m a - f) of one that a guide leaves free in part; else nothing. */
-static void reaction_of_guided(const duite_call *call, const struct flow_table *t, uint32_t row,
-                               const struct probe_fields *on, phys_vec *pull)
+/* (I - S) (m a - f) of one that a slider leaves free in part; else nothing. */
+static void reaction_of_sliding(const duite_call *call, const struct flow_table *t, uint32_t row,
+                                const struct probe_fields *on, phys_vec *pull)
 {
     struct flow_pins pins;
     flow_pins_begin(call, t, &pins);
@@ -30,8 +31,8 @@ static void reaction_of_guided(const duite_call *call, const struct flow_table *
     if (!filter)
         return;
     phys_vec a, along;
-    flow_guide_acceleration(call, t->guided[pins.next][1], on->x + row, on->v + row, &a);
-    *pull = along = t->mass[row] * a - on->felt[row];
+    flow_slider_acceleration(call, t->sliding[pins.next][1], on->x + row, on->v + row, &a);
+    *pull = along = t->mass[row] * a - on->probe_force[row];
     solve_filter(filter, &along);
     *pull -= along;
 }
@@ -39,14 +40,14 @@ static void reaction_of_guided(const duite_call *call, const struct flow_table *
 static int probe_body(const duite_call *call, const struct probe_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    double *to = on->seen;
-    for (uint32_t i = 0; i < t->n_watched; i++, to += FLOW_SEEN) {
+    double *to = on->probe_values;
+    for (uint32_t i = 0; i < t->n_watched; i++, to += FLOW_PROBE_VALUES) {
         const uint32_t row = t->watched[i];
         phys_vec pull;
         if (t->free[row] != 0)
-            reaction_of_guided(call, t, row, on, &pull);
+            reaction_of_sliding(call, t, row, on, &pull);
         else
-            reaction_of_held(call, t, row, on->felt + row, &pull);
+            reaction_of_held(call, t, row, on->probe_force + row, &pull);
         for (int c = 0; c < 3; c++) {
             to[c] = on->x[row][c];
             to[3 + c] = on->v[row][c];
@@ -58,7 +59,8 @@ static int probe_body(const duite_call *call, const struct probe_fields *on)
 
 static int fork_probe(struct flow_state *state, const struct flow_args *args)
 {
-    const int code = flow_fork_one_as(state, &flow_kernel_force, args, FLOW_AS(FLOW_FOR(f, felt)));
+    const int code =
+        flow_fork_one_as(state, &flow_kernel_force, args, FLOW_AS(FLOW_FOR(f, probe_force)));
     return code ? code : flow_fork_one(state, &flow_kernel_probe, args);
 }
 
@@ -71,14 +73,14 @@ static double *put(double *to, bool wanted, const double *three)
     return to;
 }
 
-static void fill_probes(const struct flow *flow, const double *seen, double *to)
+static void fill_probes(const struct flow *flow, const double *probe_values, double *to)
 {
     const struct flow_watched *watched = &flow->watched;
     for (uint32_t p = 0; p < flow->model->n_probes; p++) {
         const struct model_probe *probe = flow->model->probes + p;
         double sum[3] = {0};
         for (uint32_t i = watched->first[p]; i < watched->first[p + 1]; i++) {
-            const double *vertex = seen + FLOW_SEEN * (size_t)watched->entry[i];
+            const double *vertex = probe_values + FLOW_PROBE_VALUES * (size_t)watched->entry[i];
             to = put(to, probe->position, vertex);
             to = put(to, probe->velocity, vertex + 3);
             to = put(to, probe->reaction, vertex + 6);
@@ -90,20 +92,21 @@ static void fill_probes(const struct flow *flow, const double *seen, double *to)
 }
 
 FLOW_KERNEL_WITH(row, FLOW_OUTPUT, struct flow_args,
-                 (RW(token), R(status), R(peaks), R(energy), ALL(seen)), .side_effects = 1)
+                 (RW(token), R(status), R(peaks), R(energy), ALL(probe_values)), .side_effects = 1)
 static int row_body(const duite_call *call, const struct row_fields *on)
 {
     struct flow *flow = flow_of(call);
-    double *to = flow->row, *seen = flow->seen;
-    for (const duite_param *block = on->seen; block < call->param + call->n_params; block++) {
-        memcpy(seen, block->data, block->count * sizeof *seen);
-        seen += block->count;
+    double *to = flow->row, *probe_values = flow->probe_values;
+    for (const duite_param *block = on->probe_values; block < call->param + call->n_params;
+         block++) {
+        memcpy(probe_values, block->data, block->count * sizeof *probe_values);
+        probe_values += block->count;
     }
     to[FLOW_COLUMN_ITERATIONS] = on->status[FLOW_ITERATIONS];
     to[FLOW_COLUMN_LONGEST] = on->peaks[FLOW_PEAK_LONGEST];
     to[FLOW_COLUMN_SHORTEST] = -on->peaks[FLOW_PEAK_SHORTEST];
     memcpy(to + FLOW_COLUMN_ENERGY, on->energy, FLOW_ENERGIES * sizeof *to);
-    fill_probes(flow, flow->seen, to + FLOW_RUN_COLUMNS);
+    fill_probes(flow, flow->probe_values, to + FLOW_RUN_COLUMNS);
     if (flow->output->row(flow->output->context, on->args->frame, on->args->time,
                           flow->watched.n_columns, flow->row, &flow->trouble))
         return duite_fail(call, FLOW_NOT_WRITTEN, "%s", flow->trouble.text);

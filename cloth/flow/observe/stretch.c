@@ -3,19 +3,19 @@
 #include "cloth/flow/observe/observe.h"
 
 FLOW_KERNEL(stretch, FLOW_NO_PART, struct flow_block_args,
-            (R(table), R(x), MAX(stretch), NEIGHBOURS(rim_x)))
+            (R(table), R(x), MAX(stretch), NEIGHBOURS(halo_x)))
 static int stretch_body(const duite_call *call, const struct stretch_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     struct phys_springs springs = flow_table_inner(t);
-    double most = phys_springs_stretch(&springs, t->stretch, on->x, on->x);
-    for (uint32_t s = 0; s < t->n_slots; s++) {
+    double max = phys_springs_stretch(&springs, t->stretch, on->x, on->x);
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
         springs = flow_table_cut(t, s);
         const double there = phys_springs_stretch(&springs, t->stretch + t->n_inner + t->cut[s],
-                                                  on->x, flow_rows_of(on->rim_x, s));
-        most = there > most ? there : most;
+                                                  on->x, flow_rows_of(on->halo_x, s));
+        max = there > max ? there : max;
     }
-    *on->stretch = most;
+    *on->stretch = max;
     return 0;
 }
 

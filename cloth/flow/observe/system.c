@@ -1,16 +1,16 @@
 /* The system of the last step, brought together on rank 0: each block says its part of it, in
  * numbers, and one task on rank 0 makes plain arrays of all parts. An entry between two blocks is
- * told by both; the lower block's word counts. */
+ * reported by both; the lower block's word counts. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/step/step.h"
 
 #include "cloth/solve/system.h"
 
-/* A part: rows, entries, rows of the rim. Of a row: its vertex, mass, diagonal, free, then vectors;
- * of an entry: its row here, the block of its other end, or less than 0 where there is no entry any
- * more, and the row there (in another block: its place in the rim there), then its values: those of
- * a spring, or N by rows. */
+/* A part: rows, entries, rows of the halo. Of a row: its vertex, mass, diagonal, free, then
+ * vectors; of an entry: its row here, the block of its other end, or less than 0 where there is no
+ * entry any more, and the row there (in another block: its place in the halo there), then its
+ * values: those of a spring, or N by rows. */
 enum { VERTEX, MASS, DIAGONAL, FREE, B, DV = B + 3, X = DV + 3, V = X + 3, ROW = V + 3 };
 enum { HERE, BLOCK, THERE, VALUE, SPRING = VALUE + 4, PAIR = VALUE + SOLVE_NINE };
 
@@ -24,7 +24,7 @@ static size_t entries_at(const struct flow_table *t)
     return (size_t)ROW * t->n;
 }
 
-static size_t rim_at(const struct flow_table *t)
+static size_t halo_at(const struct flow_table *t)
 {
     return entries_at(t) + entry_doubles(t) * (t->n_entries + t->n_cut_entries);
 }
@@ -85,9 +85,10 @@ static double *put_entries(const struct flow_table *t, uint32_t block,
     for (uint32_t a = 0; a < t->n; a++)
         for (uint32_t i = m->row[a]; i < m->row[a + 1]; i++)
             to = put_entry(t, values, i, (const uint32_t[]){a, block, m->column[i]}, to);
-    for (uint32_t s = 0; s < t->n_slots; s++)
+    for (uint32_t s = 0; s < t->n_neighbours; s++)
         for (uint32_t i = t->cut_entry[s]; i < t->cut_entry[s + 1]; i++) {
-            const uint32_t place[] = {t->copy_end[i][0], t->slot[s], t->copy[t->copy_end[i][1]]};
+            const uint32_t place[] = {t->ghost_end[i][0], t->neighbour[s],
+                                      t->ghost[t->ghost_end[i][1]]};
             to = put_entry(t, values, m->row[t->n] + (size_t)i, place, to);
         }
     return to;
@@ -101,12 +102,12 @@ static int system_part_body(const duite_call *call, const struct system_part_fie
     double *part = on->saved, *to = part + entries_at(t);
     put_rows(t, on, part);
     to = put_entries(t, on->args->block, &values, to);
-    for (; to < part + rim_at(t); to += entry_doubles(t)) {
+    for (; to < part + halo_at(t); to += entry_doubles(t)) {
         memset(to, 0, entry_doubles(t) * sizeof *to);
         to[BLOCK] = -1;
     }
-    for (uint32_t i = 0; i < t->n_rim; i++)
-        *to++ = t->rim[i];
+    for (uint32_t i = 0; i < t->n_halo; i++)
+        *to++ = t->halo[i];
     return 0;
 }
 /* ---- On rank 0 ---- */
@@ -141,13 +142,13 @@ static void take_entries(struct solve_system *system, const duite_call *call,
 {
     const struct flow_table *tables = flow_of(call)->tables.block, *t = tables + b;
     const double *own = flow_numbers_of(parts, b), *entry = own + entries_at(t);
-    for (; entry < own + rim_at(t); entry += entry_doubles(t)) {
+    for (; entry < own + halo_at(t); entry += entry_doubles(t)) {
         if (entry[BLOCK] < b)
             continue;
         const uint32_t other = (uint32_t)entry[BLOCK];
         const double *there = flow_numbers_of(parts, other);
         const double row =
-            other == b ? entry[THERE] : there[rim_at(tables + other) + (size_t)entry[THERE]];
+            other == b ? entry[THERE] : there[halo_at(tables + other) + (size_t)entry[THERE]];
         const size_t at = system->n_pairs++;
         system->end[at][0] = vertex_of(own, entry[HERE]);
         system->end[at][1] = vertex_of(there, row);
@@ -196,7 +197,7 @@ static int system_save_body(const duite_call *call, const struct system_save_fie
 
 size_t flow_system_doubles(const struct flow_table *t)
 {
-    return rim_at(t) + t->n_rim;
+    return halo_at(t) + t->n_halo;
 }
 
 int flow_system(struct flow_state *state)

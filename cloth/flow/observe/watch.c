@@ -1,5 +1,5 @@
 /* The state after a step is watched when the step has been forked whole; when it is accepted,
- * probes tell of it, and the main program may find that the run rests. What is watched of a state
+ * probes report it, and the main program may find that the run rests. What is watched of a state
  * waits where the next but one is watched, as the status of a step does. Nothing here changes the
  * state, nor is it forked for a run that has neither probes nor rest. */
 #include "cloth/flow/bodies.h"
@@ -14,20 +14,20 @@ static bool may_rest(const struct flow_state *state)
 }
 
 FLOW_KERNEL(watch, FLOW_OUTPUT, struct flow_args,
-            (R(table), R(x), R(v), MAX(peaks), NEIGHBOURS(rim_x)))
+            (R(table), R(x), R(v), MAX(peaks), NEIGHBOURS(halo_x)))
 static int watch_body(const duite_call *call, const struct watch_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    double range[2] = {INFINITY, -INFINITY}, most = 0;
-    phys_kinetic(t->n, t->mass, on->v, &most);
+    double range[2] = {INFINITY, -INFINITY}, max = 0;
+    phys_kinetic(t->n, t->mass, on->v, &max);
     struct phys_springs springs = flow_table_inner(t);
     phys_springs_range(&springs, t->stretch, on->x, on->x, range);
-    for (uint32_t s = 0; s < t->n_slots; s++) {
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
         springs = flow_table_cut(t, s);
         phys_springs_range(&springs, t->stretch + t->n_inner + t->cut[s], on->x,
-                           flow_rows_of(on->rim_x, s), range);
+                           flow_rows_of(on->halo_x, s), range);
     }
-    on->peaks[FLOW_PEAK_SPEED] = most;
+    on->peaks[FLOW_PEAK_SPEED] = max;
     on->peaks[FLOW_PEAK_LONGEST] = range[1];
     on->peaks[FLOW_PEAK_SHORTEST] = -range[0];
     return 0;
@@ -35,14 +35,14 @@ static int watch_body(const duite_call *call, const struct watch_fields *on)
 
 int flow_watch(struct flow_state *state)
 {
-    if (!flow_tells(state) && !may_rest(state))
+    if (!flow_writes_probes(state) && !may_rest(state))
         return DUITE_OK;
     const double none[FLOW_PEAKS] = {0, -INFINITY, -INFINITY};
     struct flow_args args = flow_attempt_args(state);
     int code = duite_set(state->rt, flow_field_object(state, FLOW_FIELD_peaks, 0), none);
     if (!code)
         code = flow_fork_each(state, &flow_kernel_watch, &args);
-    if (!code && flow_tells(state))
+    if (!code && flow_writes_probes(state))
         code = flow_energies(state, flow_attempt_args(state), FLOW_FIELD_energy);
     return code;
 }
@@ -61,8 +61,8 @@ static int find_rest(struct flow_state *state)
     for (uint32_t i = 0; i < model->n_keys; i++)
         if (model->keys[i].time > time)
             state->moved = time; /* a pin or an obstacle will move yet */
-    for (uint32_t course = 1; course <= model->n_courses; course++)
-        if (model_course_end(model, course) > time)
+    for (uint32_t curve = 1; curve <= model->n_curves; curve++)
+        if (model_curve_end(model, curve) > time)
             state->moved = time; /* a load will vary yet */
     if (!(sqrt(peaks[FLOW_PEAK_SPEED]) <= model->rest.speed))
         state->moved = time;
@@ -74,6 +74,6 @@ static int find_rest(struct flow_state *state)
 
 int flow_watched(struct flow_state *state)
 {
-    const int code = flow_tells(state) ? flow_probes_row(state) : DUITE_OK;
+    const int code = flow_writes_probes(state) ? flow_probes_row(state) : DUITE_OK;
     return code ? code : find_rest(state);
 }

@@ -13,7 +13,7 @@ struct loader {
     uint32_t first; /* vertex of the cloth */
     const struct model_cloth *cloth;
     const char *place;
-    uint32_t course;
+    uint32_t curve;
     phys_vec force; /* N */
     bool failed;    /* there was no memory */
 };
@@ -43,7 +43,7 @@ static void add_varying(struct loader *loader, uint32_t vertex)
         return;
     }
     struct flow_varying *to = p->varying + p->n_varying;
-    *to = (struct flow_varying){.at = vertex, .course = loader->course, .number = p->n_varying};
+    *to = (struct flow_varying){.at = vertex, .curve = loader->curve, .number = p->n_varying};
     for (int c = 0; c < 3; c++)
         to->force[c] = loader->force[c];
     p->n_varying++;
@@ -55,8 +55,8 @@ static void add_load(void *to, uint32_t vertex)
     struct flow_particles *p = loader->particles;
     const uint32_t v = loader->first + vertex;
     if (!p->used[v])
-        flow_odd_note(&p->loaded, loader->cloth, vertex, loader->place);
-    if (loader->course)
+        flow_unusual_note(&p->loaded, loader->cloth, vertex, loader->place);
+    if (loader->curve)
         add_varying(loader, v);
     else
         p->load[flow_root(&p->welds, v)] += loader->force;
@@ -93,7 +93,7 @@ int flow_loads_make(struct flow_particles *p, uint32_t first, const struct model
                                 .first = first,
                                 .cloth = cloth,
                                 .place = load->pick.place,
-                                .course = load->course};
+                                .curve = load->curve};
         const struct flow_picking picking = {.pick = &load->pick,
                                              .cloth = cloth,
                                              .used = p->used + first,

@@ -10,7 +10,7 @@
 
 /* h w, w the fastest vibration, from which on the solves of implicit steps are expected to fail:
  * the matrix is its square times the masses, and rounding leaves of dv's error that times 1e-16. */
-static const double MOST_TURN = 1e4;
+static const double MAX_TURN = 1e4;
 
 static const char *place_of(const struct model *model)
 {
@@ -22,35 +22,35 @@ static void warn_explicit(struct flow *flow, const struct flow_limit *limit)
 {
     const struct model *model = flow->model;
     const char *name = model_integrator_name(model->integrator), *place = place_of(model);
-    const double most = flow_limit_of(limit, model->integrator), turn = model->h * limit->omega;
+    const double max = flow_limit_of(limit, model->integrator), turn = model->h * limit->omega;
     const size_t size = sizeof flow->warning[4];
-    if (!(most > 0))
+    if (!(max > 0))
         snprintf(
             flow->warning[4], size,
             "%.200s: no step is short enough for %s without damping: the fastest vibration "
             "(up to %g rad/s, at vertex %u of cloth '%.60s') can grow %g times in each of %g s",
             place, name, limit->omega, limit->vertex, limit->cloth->name, sqrt(1 + turn * turn),
             model->h);
-    else if (model->h > most)
+    else if (model->h > max)
         snprintf(
             flow->warning[4], size,
             "%.200s: steps of %g s are beyond the limit of %s, %g s: the fastest vibration (up "
             "to %g rad/s, at vertex %u of cloth '%.60s') can grow in each",
-            place, model->h, name, most, limit->omega, limit->vertex, limit->cloth->name);
+            place, model->h, name, max, limit->omega, limit->vertex, limit->cloth->name);
 }
 
 static void warn_implicit(struct flow *flow, const struct flow_limit *limit)
 {
     const struct model *model = flow->model;
     const double turn = model->h * limit->omega;
-    if (turn > MOST_TURN)
+    if (turn > MAX_TURN)
         snprintf(flow->warning[4], sizeof flow->warning[4],
                  "%.200s: in steps of %g s the cloth is %.1e times stiffer than its mass (vertex "
                  "%u of cloth '%.60s'): solves can fail, and the run can take up to 1024 times as "
                  "many steps; give a density or mass %.1e times as large, or steps of at most %.1e "
                  "s",
                  place_of(model), model->h, turn * turn, limit->vertex, limit->cloth->name,
-                 turn * turn / (MOST_TURN * MOST_TURN), MOST_TURN / limit->omega);
+                 turn * turn / (MAX_TURN * MAX_TURN), MAX_TURN / limit->omega);
 }
 
 /* The smallest mass of an area, kg/m^2, of a cloth; infinite: it has no triangles. *edge: the mean

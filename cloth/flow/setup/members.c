@@ -150,7 +150,7 @@ int flow_source_collect(struct flow_source *source, uint32_t from, uint32_t to,
 
 /* ---- The table ---- */
 
-/* Row of the block or, from n on, n and the number of the copy. */
+/* Row of the block or, from n on, n and the number of the ghost. */
 static uint32_t local_of(const struct flow_source *source, const struct flow_table *t,
                          uint32_t vertex)
 {
@@ -159,35 +159,35 @@ static uint32_t local_of(const struct flow_source *source, const struct flow_tab
         return place - t->first;
     const uint32_t block = flow_source_block(&source->blocks, place, 0);
     uint32_t s = 0;
-    while (t->slot[s] != block)
+    while (t->neighbour[s] != block)
         s++;
-    return t->n + flow_table_copy(t, s, source->rim[place]);
+    return t->n + flow_table_ghost(t, s, source->halo[place]);
 }
 
 /* The entry of two rows, one of which at least is here, as solve_assemble_pairs wants it. */
-static uint32_t entry_of(const struct flow_table *t, const struct flow_image *image, uint32_t a,
+static uint32_t entry_of(const struct flow_table *t, const struct flow_layout *layout, uint32_t a,
                          uint32_t b)
 {
-    const uint32_t turned = b < a, low = turned ? b : a, high = turned ? a : b;
+    const uint32_t transposed = b < a, low = transposed ? b : a, high = transposed ? a : b;
     if (low >= t->n)
         return SOLVE_NO_ENTRY;
     if (high < t->n) {
-        uint32_t i = image->row[low];
-        while (image->column[i] != high)
+        uint32_t i = layout->row[low];
+        while (layout->column[i] != high)
             i++;
-        return 2 * i + turned;
+        return 2 * i + transposed;
     }
     uint32_t s = 0, i;
-    while (t->copies[s + 1] <= high - t->n)
+    while (t->ghosts[s + 1] <= high - t->n)
         s++;
-    for (i = image->cut_entry[s];
-         image->copy_end[i][0] != low || image->copy_end[i][1] != high - t->n;)
+    for (i = layout->cut_entry[s];
+         layout->ghost_end[i][0] != low || layout->ghost_end[i][1] != high - t->n;)
         i++;
-    return 2 * (image->row[t->n] + i) + turned;
+    return 2 * (layout->row[t->n] + i) + transposed;
 }
 
 static void fill_corners(const struct flow_source *source, const struct flow_table *t,
-                         const struct flow_image *image, const struct element *element,
+                         const struct flow_layout *layout, const struct element *element,
                          uint32_t corner[4], uint32_t *at)
 {
     for (uint32_t i = 0; i < ELEMENT_CORNERS; i++)
@@ -195,21 +195,21 @@ static void fill_corners(const struct flow_source *source, const struct flow_tab
                                          : PHYS_NO_CORNER;
     for (uint32_t j = 1; element_kinds[element->kind]->pairs && j < element->corners; j++)
         for (uint32_t i = 0; i < j; i++)
-            *at++ = entry_of(t, image, corner[i], corner[j]);
+            *at++ = entry_of(t, layout, corner[i], corner[j]);
 }
 
 void flow_source_members(const struct flow_source *source, uint32_t block,
-                         const struct flow_image *image)
+                         const struct flow_layout *layout)
 {
     const struct flow_table *t = source->shape + block;
     for (uint32_t i = 0; i < ELEMENT_KINDS; i++) {
         const struct element_kind *kind = element_kinds[i];
-        const struct element_list *list = image->list + i;
+        const struct element_list *list = layout->list + i;
         const struct element *element = source->member + *list_of(source, block, i);
         if (list->n)
             element_materials(kind, source->model, list->material);
         for (uint32_t e = 0; e < list->n; e++, element++) {
-            fill_corners(source, t, image, element, list->corner[e],
+            fill_corners(source, t, layout, element, list->corner[e],
                          list->at + (size_t)kind->pairs * e);
             if (kind->pack)
                 kind->pack(&source->elements, element, list, e);

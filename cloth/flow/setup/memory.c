@@ -21,10 +21,12 @@ static void take_room(struct flow_state *state)
     struct flow *flow = state->flow;
     if (flow_shows(state))
         flow->room = cloth_alloc(flow->n_vertices, 3 * sizeof *flow->room, &flow->trouble);
-    const struct flow_watched *watched = &flow->source.watched; /* the tables are not dealt yet */
+    const struct flow_watched *watched =
+        &flow->source.watched; /* the tables are not distributed yet */
     if (state->output && state->output->row && watched->n_columns) {
         flow->row = cloth_alloc(watched->n_columns, sizeof *flow->row, &flow->trouble);
-        flow->seen = cloth_alloc(watched->n, FLOW_SEEN * sizeof *flow->seen, &flow->trouble);
+        flow->probe_values =
+            cloth_alloc(watched->n, FLOW_PROBE_VALUES * sizeof *flow->probe_values, &flow->trouble);
     }
     state->bytes = cloth_alloc(flow_hash_part(flow), FLOW_VERTEX_BYTES, &flow->trouble);
     state->hash = XXH64_createState();
@@ -51,24 +53,24 @@ static void take(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     const struct flow_head *head = &state->head;
-    const size_t refs = larger(head->n_blocks, 2 * (size_t)head->most_slots) + DUITE_MAX_ACCESS;
+    const size_t refs = larger(head->n_blocks, 2 * (size_t)head->max_neighbours) + DUITE_MAX_ACCESS;
     flow->n_clocks = duite_threads(state->rt);
     flow->clock = aligned_alloc(sizeof *flow->clock, flow->n_clocks * sizeof *flow->clock);
     if (flow->clock)
         memset(flow->clock, 0, flow->n_clocks * sizeof *flow->clock);
     else
         cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for %u clocks", flow->n_clocks);
-    flow->n_sums = head->most_entries;
-    if (flow->model->format != SOLVE_SPRINGS && head->most_entries)
+    flow->n_sums = head->max_entries;
+    if (flow->model->format != SOLVE_SPRINGS && head->max_entries)
         take_sums(flow);
-    flow->n_copies = 2 * ((size_t)head->most_copies + 1);
+    flow->n_ghosts = 2 * ((size_t)head->max_ghosts + 1);
     if (head->n_elements) {
-        flow->copies = aligned_alloc(sizeof *flow->copies,
-                                     flow->n_clocks * flow->n_copies * sizeof *flow->copies);
-        if (!flow->copies)
-            cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for copies of vertices");
+        flow->ghosts = aligned_alloc(sizeof *flow->ghosts,
+                                     flow->n_clocks * flow->n_ghosts * sizeof *flow->ghosts);
+        if (!flow->ghosts)
+            cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for ghosts");
     }
-    flow->n_forces = 2 * ((size_t)head->most_rows / 2 + 1); /* whole cache lines */
+    flow->n_forces = 2 * ((size_t)head->max_rows / 2 + 1); /* whole cache lines */
     if (!model_is_implicit(flow->model))
         take_forces(flow);
     flow->shared = cloth_alloc(head->shared_bytes, 1, &flow->trouble);
@@ -76,7 +78,7 @@ static void take(struct flow_state *state)
     flow->tables.n_blocks = head->n_blocks;
     state->block = cloth_alloc(head->n_blocks, sizeof *state->block, &flow->trouble);
     state->refs = cloth_alloc(refs, sizeof *state->refs, &flow->trouble);
-    state->rows = cloth_alloc(larger(4 * (size_t)head->most_rows, head->most_slots),
+    state->rows = cloth_alloc(larger(4 * (size_t)head->max_rows, head->max_neighbours),
                               sizeof *state->rows, &flow->trouble);
     flow_halo_take(state);
     if (duite_rank(state->rt) == 0)
@@ -119,11 +121,11 @@ void flow_memory_free(struct flow_state *state)
     flow_preconditioner_free(flow);
     free(flow->clock);
     free(flow->sums);
-    free(flow->copies);
+    free(flow->ghosts);
     free(flow->forces);
     free(flow->room);
     free(flow->row);
-    free(flow->seen);
+    free(flow->probe_values);
     free(state->block);
     free(state->refs);
     free(state->rows);
@@ -132,8 +134,8 @@ void flow_memory_free(struct flow_state *state)
     XXH64_freeState(state->hash);
     flow->clock = NULL;
     flow->sums = NULL;
-    flow->copies = flow->forces = NULL;
-    flow->room = flow->row = flow->seen = NULL;
+    flow->ghosts = flow->forces = NULL;
+    flow->room = flow->row = flow->probe_values = NULL;
     state->block = NULL;
     state->bytes = NULL;
     state->hash = NULL;

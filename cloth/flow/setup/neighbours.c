@@ -1,5 +1,5 @@
 /* A spring between two blocks makes each read the other's row: sorted by reader, block and row, and
- * each once, these are the copies; the blocks among them are the slots. */
+ * each once, these are the ghosts; the blocks among them are the neighbours. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -32,7 +32,7 @@ static void add_need(struct finder *finder, uint32_t reader, uint32_t other, uin
                      uint32_t patch)
 {
     struct need *need = cloth_list_add(&finder->needs, sizeof *need, 1, finder->error);
-    finder->source->rim[place] = 1;
+    finder->source->halo[place] = 1;
     if (need)
         *need = (struct need){reader, other, place, UINT32_C(1) << patch};
     else
@@ -83,16 +83,16 @@ static void find(void *to, const struct flow_spring *spring)
 }
 
 /* Numbers the rows that other blocks need, which are marked. */
-static void number_rim(const struct flow_source *source, struct flow_table *shape)
+static void number_halo(const struct flow_source *source, struct flow_table *shape)
 {
-    uint32_t *rim = source->rim + shape->first;
+    uint32_t *halo = source->halo + shape->first;
     const struct solve_patches patches = solve_patches_of(shape->n, source->patches);
-    for (uint32_t k = 0; k < SOLVE_MOST_PATCHES; k++) {
-        shape->rim_start[k] = shape->n_rim;
+    for (uint32_t k = 0; k < SOLVE_MAX_PATCHES; k++) {
+        shape->halo_start[k] = shape->n_halo;
         for (uint32_t i = patches.start[k]; i < patches.start[k + 1]; i++)
-            rim[i] = rim[i] ? shape->n_rim++ : MESH_NO_PLACE;
+            halo[i] = halo[i] ? shape->n_halo++ : MESH_NO_PLACE;
     }
-    shape->rim_start[SOLVE_MOST_PATCHES] = shape->n_rim;
+    shape->halo_start[SOLVE_MAX_PATCHES] = shape->n_halo;
 }
 
 static int compare_u32(uint32_t a, uint32_t b)
@@ -109,7 +109,7 @@ static int compare_needs(const void *va, const void *vb)
     return order ? order : compare_u32(a->place, b->place);
 }
 
-/* Of sorted needs: keeps each once, counts slots and copies. Returns how many are left. */
+/* Of sorted needs: keeps each once, counts neighbours and ghosts. Returns how many are left. */
 static size_t count(struct flow_source *source, struct need *need, size_t n)
 {
     size_t kept = 0;
@@ -121,8 +121,8 @@ static size_t count(struct flow_source *source, struct need *need, size_t n)
         }
         struct flow_table *shape = source->shape + need[i].reader;
         if (!last || last->reader != need[i].reader || last->other != need[i].other)
-            shape->n_slots++;
-        shape->n_copies++;
+            shape->n_neighbours++;
+        shape->n_ghosts++;
         need[kept++] = need[i];
     }
     return kept;
@@ -141,32 +141,32 @@ static uint32_t joins_of(const struct flow_source *source, const struct need *ne
 /* Fills the arrays, and lets the shapes point into them. */
 static void fill(struct flow_source *source, const struct need *need)
 {
-    uint32_t *slot = source->neighbours.slot, *copies = source->neighbours.copies;
-    uint32_t *copy = source->neighbours.copy, *joins = source->neighbours.joins;
+    uint32_t *neighbour = source->neighbours.neighbour, *ghosts = source->neighbours.ghosts;
+    uint32_t *ghost = source->neighbours.ghost, *joins = source->neighbours.joins;
     size_t first = 0; /* of the block's needs; there may be none at all */
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         struct flow_table *shape = source->shape + b;
         uint32_t s = 0;
-        shape->slot = slot;
-        shape->copies = copies;
-        shape->copy = copy;
+        shape->neighbour = neighbour;
+        shape->ghosts = ghosts;
+        shape->ghost = ghost;
         shape->joins = joins;
-        for (uint32_t i = 0; i < shape->n_copies; i++) {
+        for (uint32_t i = 0; i < shape->n_ghosts; i++) {
             const struct need *one = &need[first + i];
             if (i == 0 || one->other != one[-1].other) {
-                copies[s] = i;
+                ghosts[s] = i;
                 joins[s] = 0;
-                slot[s++] = one->other;
+                neighbour[s++] = one->other;
             }
             joins[s - 1] |= joins_of(source, one);
-            copy[i] = source->rim[one->place];
+            ghost[i] = source->halo[one->place];
         }
-        copies[s] = shape->n_copies;
-        slot += s;
+        ghosts[s] = shape->n_ghosts;
+        neighbour += s;
         joins += s;
-        copies += s + 1;
-        copy += shape->n_copies;
-        first += shape->n_copies;
+        ghosts += s + 1;
+        ghost += shape->n_ghosts;
+        first += shape->n_ghosts;
     }
 }
 
@@ -176,14 +176,14 @@ static int make(struct flow_source *source, struct cloth_list *needs, struct clo
     const uint32_t n_blocks = source->blocks.n_blocks;
     if (needs->n)
         qsort(needs->items, needs->n, sizeof(struct need), compare_needs);
-    all->n_copies = (uint32_t)count(source, needs->items, needs->n);
+    all->n_ghosts = (uint32_t)count(source, needs->items, needs->n);
     for (uint32_t b = 0; b < n_blocks; b++)
-        all->n_slots += source->shape[b].n_slots;
-    all->slot = cloth_alloc(all->n_slots, sizeof *all->slot, error);
-    all->copies = cloth_alloc((size_t)all->n_slots + n_blocks, sizeof *all->copies, error);
-    all->copy = cloth_alloc(all->n_copies, sizeof *all->copy, error);
-    all->joins = cloth_alloc(all->n_slots, sizeof *all->joins, error);
-    if (!all->slot || !all->joins || !all->copies || !all->copy)
+        all->n_neighbours += source->shape[b].n_neighbours;
+    all->neighbour = cloth_alloc(all->n_neighbours, sizeof *all->neighbour, error);
+    all->ghosts = cloth_alloc((size_t)all->n_neighbours + n_blocks, sizeof *all->ghosts, error);
+    all->ghost = cloth_alloc(all->n_ghosts, sizeof *all->ghost, error);
+    all->joins = cloth_alloc(all->n_neighbours, sizeof *all->joins, error);
+    if (!all->neighbour || !all->joins || !all->ghosts || !all->ghost)
         return CLOTH_E_MEMORY;
     fill(source, needs->items);
     return CLOTH_OK;
@@ -195,7 +195,7 @@ int flow_source_meet(struct flow_source *source, struct cloth_error *error)
     source->patches = model_patches(source->model, source->blocks.n_blocks);
     flow_springs_each(&source->springs, find, &finder);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++)
-        number_rim(source, source->shape + b);
+        number_halo(source, source->shape + b);
     if (!finder.code)
         finder.code = make(source, &finder.needs, error);
     free(finder.needs.items);

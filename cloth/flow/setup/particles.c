@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* kg of a vertex: squares of momenta beyond these would be nothing, or infinite. */
-static const double LEAST_MASS = 1e-30, MOST_MASS = 1e30;
+static const double MIN_MASS = 1e-30, MAX_MASS = 1e30;
 
 PHYS_INLINE void to_vector(const double *x, phys_vec *y)
 {
@@ -27,12 +27,12 @@ struct holder {
     uint32_t torn; /* a vertex that another pin moves in another way, or holds; UINT32_MAX: none */
 };
 
-/* Whether two guides, by number, hold alike; both may be none. */
-static bool alike(const struct model_guide *guides, uint32_t a, uint32_t b)
+/* Whether two sliders, by number, hold alike; both may be none. */
+static bool alike(const struct model_slider *sliders, uint32_t a, uint32_t b)
 {
     if (a == b || !a || !b)
         return a == b;
-    const struct model_guide *one = guides + a - 1, *other = guides + b - 1;
+    const struct model_slider *one = sliders + a - 1, *other = sliders + b - 1;
     bool same = one->kind == other->kind && one->motion == other->motion;
     for (int i = 0; i < 3; i++)
         same = same && one->direction[i] - other->direction[i] == 0;
@@ -44,18 +44,18 @@ static void hold(void *to, uint32_t vertex)
     struct holder *holder = to;
     struct flow_particles *p = holder->particles;
     const uint32_t v = flow_root(&p->welds, holder->first + vertex), motion = holder->pin->motion;
-    const uint32_t guide = holder->pin->guide, guided = p->guide ? p->guide[v] : 0;
-    const bool held = p->free[v] == 0 || guided;
+    const uint32_t slider = holder->pin->slider, sliding = p->slider ? p->slider[v] : 0;
+    const bool held = p->free[v] == 0 || sliding;
     if (!p->used[v] && !held)
-        flow_odd_note(&p->pinned, holder->cloth, vertex, holder->pin->pick.place);
+        flow_unusual_note(&p->pinned, holder->cloth, vertex, holder->pin->pick.place);
     if (held &&
-        ((p->motion && p->motion[v] != motion) || !alike(holder->model->guides, guided, guide)))
+        ((p->motion && p->motion[v] != motion) || !alike(holder->model->sliders, sliding, slider)))
         holder->torn = vertex;
     if (p->motion)
         p->motion[v] = motion;
-    if (p->guide)
-        p->guide[v] = guide;
-    p->free[v] = guide ? 1 : 0;
+    if (p->slider)
+        p->slider[v] = slider;
+    p->free[v] = slider ? 1 : 0;
 }
 
 static int pins(struct flow_particles *p, uint32_t first, const struct model *model,
@@ -165,11 +165,11 @@ static int weights(struct flow_particles *p, uint32_t first, const struct model 
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
         const uint32_t v = first + i;
         const double mass = p->mass[flow_root(&p->welds, v)];
-        if (p->used[v] && mass > 0 && !(mass >= LEAST_MASS && mass <= MOST_MASS))
+        if (p->used[v] && mass > 0 && !(mass >= MIN_MASS && mass <= MAX_MASS))
             return model_fail(
                 cloth->place, error,
                 "vertex %u of cloth '%.60s' has a mass of %g kg; %g to %g is expected", i,
-                cloth->name, mass, LEAST_MASS, MOST_MASS);
+                cloth->name, mass, MIN_MASS, MAX_MASS);
         if (p->used[v] && !(mass > 0))
             return no_mass(cloth, i, error);
         if (p->load)
@@ -207,7 +207,7 @@ static int cloth_particles(struct flow_particles *p, uint32_t first, const struc
     for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
         p->free[first + i] = 1;
         if (!p->used[first + i])
-            flow_odd_note(&p->unused, cloth, i, cloth->mesh_place);
+            flow_unusual_note(&p->unused, cloth, i, cloth->mesh_place);
     }
     int code = check_start(cloth, error);
     if (!code)
@@ -245,16 +245,16 @@ static int each_cloth(struct flow_particles *p, const struct model *model,
 static int allocate(struct flow_particles *p, uint32_t n, bool loaded, const struct model *model,
                     struct cloth_error *error)
 {
-    const bool moved = model->n_motions, guided = model->n_guides;
+    const bool moved = model->n_motions, sliding = model->n_sliders;
     p->n = n;
     p->used = cloth_alloc(n, 1, error);
     p->free = cloth_alloc(n, 1, error);
     p->mass = cloth_alloc(n, sizeof *p->mass, error);
     p->motion = moved ? cloth_alloc(n, sizeof *p->motion, error) : NULL;
-    p->guide = guided ? cloth_alloc(n, sizeof *p->guide, error) : NULL;
+    p->slider = sliding ? cloth_alloc(n, sizeof *p->slider, error) : NULL;
     p->own = model->n_welds ? cloth_alloc(n, sizeof *p->own, error) : NULL;
     p->drag = model->n_welds ? cloth_alloc(n, sizeof *p->drag, error) : NULL;
-    if (!p->used || !p->free || !p->mass || (moved && !p->motion) || (guided && !p->guide) ||
+    if (!p->used || !p->free || !p->mass || (moved && !p->motion) || (sliding && !p->slider) ||
         (model->n_welds && (!p->own || !p->drag)))
         return CLOTH_E_MEMORY;
     if (!loaded)
@@ -311,12 +311,12 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
     return code;
 }
 
-/* What a guide leaves of a velocity. */
-static void hold_velocity(const struct model_guide *guide, phys_vec *v)
+/* What a slider leaves of a velocity. */
+static void constrain_velocity(const struct model_slider *slider, phys_vec *v)
 {
     phys_vec filter;
-    to_vector(guide->direction, &filter);
-    filter[3] = guide->kind == MODEL_PLANE;
+    to_vector(slider->direction, &filter);
+    filter[3] = slider->kind == MODEL_PLANE;
     solve_filter(&filter, v);
 }
 
@@ -339,8 +339,8 @@ void flow_particle_of(const struct flow_particles *particles, const struct model
         to_vector(start, &particle->position);
         to_vector(moves ? start + 3 : (const double[3]){0}, &particle->velocity);
     }
-    if (particles->guide && particles->guide[vertex])
-        hold_velocity(model->guides + particles->guide[vertex] - 1, &particle->velocity);
+    if (particles->slider && particles->slider[vertex])
+        constrain_velocity(model->sliders + particles->slider[vertex] - 1, &particle->velocity);
     to_vector(model->gravity, &particle->load);
     particle->load *= particle->mass;
     if (particles->load)
@@ -392,7 +392,7 @@ void flow_particles_free(struct flow_particles *particles)
     flow_welds_free(&particles->welds);
     free(particles->motion);
     free(particles->varying);
-    free(particles->guide);
+    free(particles->slider);
     free(particles->piece);
     free(particles->load);
     free(particles->start);

@@ -50,7 +50,7 @@ int flow_pieces_make(struct flow_source *source, struct cloth_error *error)
     for (uint32_t i = 0; made && i < p->welds.n; i++)
         join(parent, &(struct flow_spring){.a = p->welds.name[i][0], .b = p->welds.name[i][1]});
     for (uint32_t v = 0; made && v < p->n; v++)
-        if (!p->free[v] || (p->guide && p->guide[v]))
+        if (!p->free[v] || (p->slider && p->slider[v]))
             held[root_of(parent, v)] = 1;
     if (made)
         p->n_pieces = number(p, parent, held);

@@ -12,13 +12,13 @@ int flow_warn(struct flow *flow, struct cloth_error *error);
  * turns into a sentence. */
 /* All of the below: the run is ready for its first task. To be ended as flow_run does. */
 int flow_run_begin(struct flow_state *state);
-/* Tells all ranks how much there is to be told. */
+/* Broadcasts how much there is to be broadcast. */
 int flow_share_head(struct flow_state *state);
-/* Tells them the shapes of all blocks; fills flow->tables. */
+/* Broadcasts the shapes of all blocks; fills flow->tables. */
 int flow_share(struct flow_state *state);
 /* Brings the tables, made one by one on rank 0, to the ranks that keep their blocks. Objects are
  * made. Rank 0 has freed its source then. */
-int flow_deal(struct flow_state *state);
+int flow_distribute(struct flow_state *state);
 
 /* Vertices whose positions or velocities are hashed at once. */
 uint32_t flow_hash_part(const struct flow *flow);

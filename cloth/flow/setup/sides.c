@@ -113,24 +113,24 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
 
 /* What belongs to a vertex, and the rows that other blocks need. */
 static void fill_rows(const struct flow_source *source, const struct flow_table *t,
-                      const struct flow_image *image)
+                      const struct flow_layout *layout)
 {
     const struct model *model = source->model;
     struct flow_cloths at = {0};
     for (uint32_t i = 0; i < t->n; i++) {
-        const uint32_t v = source->blocks.vertex[t->first + i], rim = source->rim[t->first + i];
+        const uint32_t v = source->blocks.vertex[t->first + i], halo = source->halo[t->first + i];
         struct flow_particle p;
         flow_source_cloth(&at, model, v);
         flow_particle_of(&source->particles, model, model->cloths + at.cloth, at.first, v, &p);
-        image->vertex[i] = v;
-        image->mass[i] = p.mass;
-        image->drag[i] = p.drag;
-        image->free[i] = p.free;
-        image->load[i] = p.load;
-        image->position[i] = p.position;
-        image->velocity[i] = p.velocity;
-        if (rim != MESH_NO_PLACE)
-            image->rim[rim] = i;
+        layout->vertex[i] = v;
+        layout->mass[i] = p.mass;
+        layout->drag[i] = p.drag;
+        layout->free[i] = p.free;
+        layout->load[i] = p.load;
+        layout->position[i] = p.position;
+        layout->velocity[i] = p.velocity;
+        if (halo != MESH_NO_PLACE)
+            layout->halo[halo] = i;
     }
 }
 
@@ -148,7 +148,7 @@ static void fill_numbered(const struct flow_source *source, const struct flow_ta
 }
 
 static void fill_watched(const struct flow_source *source, const struct flow_table *t,
-                         const struct flow_image *image)
+                         const struct flow_layout *layout)
 {
     const struct flow_watched *watched = &source->watched;
     uint32_t low = 0, high = watched->n; /* the first at or after the block's first place */
@@ -160,20 +160,20 @@ static void fill_watched(const struct flow_source *source, const struct flow_tab
             high = middle;
     }
     for (uint32_t i = 0; i < t->n_watched; i++)
-        image->watched[i] = watched->place[low + i] - t->first;
+        layout->watched[i] = watched->place[low + i] - t->first;
 }
 
 static void fill_varying(const struct flow_source *source, const struct flow_table *t,
-                         const struct flow_image *image)
+                         const struct flow_layout *layout)
 {
     if (!t->n_varying)
         return;
     const struct flow_varying *load =
         source->particles.varying + flow_varying_from(source, t->first);
     for (uint32_t i = 0; i < t->n_varying; i++, load++) {
-        image->varying[i][0] = load->at - t->first;
-        image->varying[i][1] = load->course;
-        image->varying_force[i] = (phys_vec){load->force[0], load->force[1], load->force[2], 0};
+        layout->varying[i][0] = load->at - t->first;
+        layout->varying[i][1] = load->curve;
+        layout->varying_force[i] = (phys_vec){load->force[0], load->force[1], load->force[2], 0};
     }
 }
 
@@ -189,40 +189,41 @@ static bool opens(const struct flow_table *t, const struct flow_side *side, uint
 
 /* The inner entries come first, in order: rows of the matrix. Returns how many they are. */
 static uint32_t fill_inner(const struct flow_table *t, const struct flow_side *side,
-                           const struct flow_image *image)
+                           const struct flow_layout *layout)
 {
     uint32_t i = 0, entries = 0;
     for (uint32_t a = 0; a < t->n; a++) {
-        image->row[a] = entries;
+        layout->row[a] = entries;
         for (; i < t->n_inner && side[i].here - t->first == a; i++)
             if (opens(t, side, i))
-                image->column[entries++] = side[i].there - t->first;
+                layout->column[entries++] = side[i].there - t->first;
     }
-    image->row[t->n] = entries;
+    layout->row[t->n] = entries;
     return entries;
 }
 
 /* The cut springs and entries follow, neighbour after neighbour. */
 static void fill_cut(const struct flow_source *source, const struct flow_table *t,
-                     const struct flow_side *side, const struct flow_image *image)
+                     const struct flow_side *side, const struct flow_layout *layout)
 {
-    uint32_t slots = 0, entries = 0;
+    uint32_t neighbours = 0, entries = 0;
     for (uint32_t i = 0; i < t->n_cut; i++) {
         if (i == 0 || side[i].other != side[i - 1].other) {
-            image->cut[slots] = i;
-            image->cut_entry[slots++] = entries;
+            layout->cut[neighbours] = i;
+            layout->cut_entry[neighbours++] = entries;
         }
         if (!opens(t, side, i))
             continue;
-        image->copy_end[entries][0] = side[i].here - t->first;
-        image->copy_end[entries++][1] = flow_table_copy(t, slots - 1, source->rim[side[i].there]);
+        layout->ghost_end[entries][0] = side[i].here - t->first;
+        layout->ghost_end[entries++][1] =
+            flow_table_ghost(t, neighbours - 1, source->halo[side[i].there]);
     }
-    image->cut[slots] = t->n_cut;
-    image->cut_entry[slots] = entries;
+    layout->cut[neighbours] = t->n_cut;
+    layout->cut_entry[neighbours] = entries;
 }
 
 static void fill_sides(const struct flow_source *source, const struct flow_table *t,
-                       const struct flow_side *side, const struct flow_image *image)
+                       const struct flow_side *side, const struct flow_layout *layout)
 {
     const uint32_t *vertex = source->blocks.vertex;
     uint32_t held = 0, entries = 0;
@@ -230,37 +231,37 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
         const bool first = opens(t, side, i);
         entries += first;
         if (t->format != SOLVE_SPRINGS)
-            image->at[i] = entries - 1;
+            layout->at[i] = entries - 1;
         const uint32_t here = side[i].here - t->first;
         const uint32_t there =
-            side[i].other ? source->rim[side[i].there] : side[i].there - t->first;
+            side[i].other ? source->halo[side[i].there] : side[i].there - t->first;
         const bool free_here = source->particles.free[vertex[side[i].here]];
         const bool free_there = source->particles.free[vertex[side[i].there]];
-        image->end[i][0] = here;
-        image->end[i][1] = there;
-        image->stiffness[i] = side[i].stiffness;
-        image->damping[i] = side[i].damping;
-        image->length[i] = side[i].length;
-        image->stretch[i] = side[i].stretch;
+        layout->end[i][0] = here;
+        layout->end[i][1] = there;
+        layout->stiffness[i] = side[i].stiffness;
+        layout->damping[i] = side[i].damping;
+        layout->length[i] = side[i].length;
+        layout->stretch[i] = side[i].stretch;
         if (!first || free_here == free_there || (side[i].other && !free_here))
             continue; /* neither end is held, or the free row is the neighbour's */
-        image->held[held][0] = free_here ? here : there;
-        image->held[held++][1] = entries - 1;
+        layout->held[held][0] = free_here ? here : there;
+        layout->held[held++][1] = entries - 1;
     }
-    *image->n_held = held;
+    *layout->n_held = held;
 }
 
-void flow_source_table(const struct flow_source *source, uint32_t block, void *image)
+void flow_source_table(const struct flow_source *source, uint32_t block, void *layout)
 {
     const struct flow_table *t = source->shape + block;
     struct flow_side *side = source->side + source->start[block - source->from];
-    const struct flow_image arrays = flow_table_image(t, image);
-    memset(image, 0, flow_table_bytes(t));
+    const struct flow_layout arrays = flow_table_layout(t, layout);
+    memset(layout, 0, flow_table_bytes(t));
     qsort(side, (size_t)t->n_inner + t->n_cut, sizeof *side, compare_sides);
     fill_rows(source, t, &arrays);
     fill_watched(source, t, &arrays);
     fill_numbered(source, t, source->particles.motion, t->n_moved, arrays.moved);
-    fill_numbered(source, t, source->particles.guide, t->n_guided, arrays.guided);
+    fill_numbered(source, t, source->particles.slider, t->n_sliding, arrays.sliding);
     fill_numbered(source, t, source->particles.piece, t->n_loose, arrays.loose);
     fill_varying(source, t, &arrays);
     fill_inner(t, side, &arrays);

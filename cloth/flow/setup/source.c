@@ -110,7 +110,7 @@ static void count_watched(struct flow_source *source)
     }
 }
 
-/* How many vertices of a block have a number: that of a motion, or of a guide. */
+/* How many vertices of a block have a number: that of a motion, or of a slider. */
 static uint32_t count_numbered(const struct flow_source *source, const struct flow_table *shape,
                                const uint32_t *number)
 {
@@ -123,9 +123,9 @@ static uint32_t count_numbered(const struct flow_source *source, const struct fl
 static int find_shapes(struct flow_source *source, struct cloth_error *error)
 {
     const struct mesh_blocks *blocks = &source->blocks;
-    source->rim = cloth_alloc(blocks->n_places, sizeof *source->rim, error);
+    source->halo = cloth_alloc(blocks->n_places, sizeof *source->halo, error);
     source->shape = cloth_alloc(blocks->n_blocks, sizeof *source->shape, error);
-    if (!source->rim || !source->shape)
+    if (!source->halo || !source->shape)
         return CLOTH_E_MEMORY;
     flow_varying_settle(source);
     for (uint32_t b = 0; b < blocks->n_blocks; b++) {
@@ -135,7 +135,7 @@ static int find_shapes(struct flow_source *source, struct cloth_error *error)
         shape->n = blocks->start[b + 1] - blocks->start[b];
         find_range(source, shape);
         shape->n_moved = count_numbered(source, shape, source->particles.motion);
-        shape->n_guided = count_numbered(source, shape, source->particles.guide);
+        shape->n_sliding = count_numbered(source, shape, source->particles.slider);
         shape->n_loose = count_numbered(source, shape, source->particles.piece);
         shape->n_varying = flow_varying_from(source, shape->first + shape->n) -
                            flow_varying_from(source, shape->first);
@@ -179,14 +179,14 @@ int flow_source_make(struct flow_source *source, const struct model *model, int 
 void flow_source_free(struct flow_source *source)
 {
     flow_source_forget(source);
-    free(source->neighbours.slot);
-    free(source->neighbours.copies);
-    free(source->neighbours.copy);
+    free(source->neighbours.neighbour);
+    free(source->neighbours.ghosts);
+    free(source->neighbours.ghost);
     free(source->neighbours.joins);
     flow_watched_free(&source->watched);
     free(source->names.name);
     free(source->shape);
-    free(source->rim);
+    free(source->halo);
     mesh_blocks_free(&source->blocks);
     flow_springs_free(&source->springs);
     element_cloths_free(&source->elements);

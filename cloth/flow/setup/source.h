@@ -13,25 +13,25 @@
 /* What rank 0 makes the tables from. It never has all of them, nor all springs, at once: springs
  * are gone through again for each group of blocks, and a table is made when it is wanted. */
 
-/* How many vertices are odd, and the first of them: in the numbering of its cloth's mesh. */
-struct flow_odd {
+/* How many vertices are unusual, and the first of them: in the numbering of its cloth's mesh. */
+struct flow_unusual {
     uint32_t n, vertex;
     const struct model_cloth *cloth;
     const char *place; /* of the mesh, pin or load that names it */
 };
-static inline void flow_odd_note(struct flow_odd *odd, const struct model_cloth *cloth,
-                                 uint32_t vertex, const char *place)
+static inline void flow_unusual_note(struct flow_unusual *unusual, const struct model_cloth *cloth,
+                                     uint32_t vertex, const char *place)
 {
-    if (odd->n++ == 0)
-        *odd = (struct flow_odd){1, vertex, cloth, place};
+    if (unusual->n++ == 0)
+        *unusual = (struct flow_unusual){1, vertex, cloth, place};
 }
 
 /* A load that varies, on one vertex. */
 struct flow_varying {
     uint32_t at;     /* its vertex, of all cloths; when blocks are there, its place */
-    uint32_t course; /* of the model, from 1 */
+    uint32_t curve;  /* of the model, from 1 */
     uint32_t number; /* in the scene's order */
-    double force[3]; /* N, times the course */
+    double force[3]; /* N, times the curve */
 };
 
 /* Vertices that welds make one. Each of them is a name of it; the lowest, the root, stands for all:
@@ -48,10 +48,10 @@ static inline uint32_t flow_root(const struct flow_welds *welds, uint32_t vertex
 /* Particles by vertex. Arrays of n. */
 struct flow_particles {
     uint32_t n;
-    struct flow_odd unused, pinned, loaded; /* that no face or edge uses: all; pinned; loaded */
-    unsigned char *used, *free;             /* free: 0 where a pin holds */
-    uint32_t *motion, *guide;               /* number from 1, 0: none; NULL: there are none */
-    uint32_t n_pieces, *piece;              /* free ones: the same */
+    struct flow_unusual unused, pinned, loaded; /* that no face or edge uses: all; pinned; loaded */
+    unsigned char *used, *free;                 /* free: 0 where a pin holds */
+    uint32_t *motion, *slider;                  /* number from 1, 0: none; NULL: there are none */
+    uint32_t n_pieces, *piece;                  /* free ones: the same */
     struct flow_welds welds;
     double *mass;       /* kg */
     double *own, *drag; /* kg, of each name alone; kg/s; NULL: there are no welds */
@@ -197,12 +197,12 @@ int flow_joints_use(const struct model *model, unsigned char *used, struct cloth
 
 /* Who reads what of whom: neighbours of all blocks, block after block, as every rank knows them. */
 struct flow_neighbours {
-    uint32_t n_slots, n_copies;
-    uint32_t *slot;  /* n_slots: blocks, ascending in a block, */
-    uint32_t *joins; /* and which patches are joined with theirs */
-    uint32_t
-        *copies;    /* n_slots + blocks: of a block, where each slot's copies begin, and the end */
-    uint32_t *copy; /* n_copies: places in the rim of the slot's block, ascending */
+    uint32_t n_neighbours, n_ghosts;
+    uint32_t *neighbour; /* n_neighbours: blocks, ascending in a block, */
+    uint32_t *joins;     /* and which patches are joined with theirs */
+    uint32_t *ghosts; /* n_neighbours + blocks: of a block, where each neighbour's ghosts begin, and
+                         the end */
+    uint32_t *ghost;  /* n_ghosts: places in the halo of the neighbour's block, ascending */
 };
 
 /* The vertices that probes are at. A row of the table of probes has step and time, then n_columns
@@ -236,7 +236,7 @@ struct flow_source {
     struct mesh_blocks blocks; /* place: of other names, too */
     struct flow_names names;
     uint32_t patches; /* of a block */
-    uint32_t *rim;    /* by place: its number in the rim of its block */
+    uint32_t *halo;   /* by place: its number in the halo of its block */
     struct flow_neighbours neighbours;
     struct flow_watched watched;
     struct flow_table *shape; /* a block: shapes, which point into the neighbours */
@@ -259,7 +259,7 @@ void flow_source_count(struct flow_source *source);
 int flow_source_collect(struct flow_source *source, uint32_t from, uint32_t to,
                         struct cloth_error *error);
 void flow_source_members(const struct flow_source *source, uint32_t block,
-                         const struct flow_image *image);
+                         const struct flow_layout *layout);
 
 /* Gathers the sides of the springs, and the elements, of the blocks from .. to - 1, in place of
  * those before. Error: CLOTH_E_MEMORY. Local. */
@@ -268,12 +268,12 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
 
 void flow_source_forget(struct flow_source *source);
 
-/* Makes the table of a block of the group: writes every byte of the image. Of different blocks by
+/* Makes the table of a block of the group: writes every byte of the layout. Of different blocks by
  * several threads at once. Local. */
-void flow_source_table(const struct flow_source *source, uint32_t block, void *image);
+void flow_source_table(const struct flow_source *source, uint32_t block, void *layout);
 
-/* Finds the neighbours, and the numbers of rows in rims (source->rim), when blocks and springs are
- * there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */
+/* Finds the neighbours, and the numbers of rows in halos (source->halo), when blocks and springs
+ * are there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */
 int flow_source_meet(struct flow_source *source, struct cloth_error *error);
 
 /* Numbers the pieces of the model that no pin holds, when springs are there: vertices that springs

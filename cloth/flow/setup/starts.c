@@ -2,7 +2,7 @@
  * velocity. Rest shapes and masses do not see it. */
 #include "cloth/flow/setup/source.h"
 
-#include "cloth/physics/course.h"
+#include "cloth/physics/curve.h"
 #include "cloth/physics/particle.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* What is odd about a model but no error. Each kind of warning has its place in flow->warning, and
- * says at most one thing. */
+/* What is unusual about a model but no error. Each kind of warning has its place in flow->warning,
+ * and says at most one thing. */
 #include "cloth/flow/setup/long_steps.h"
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/state/state.h"
@@ -7,28 +7,28 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double LEAST_EXTENT = 0.01, MOST_EXTENT = 10; /* m: of a garment */
+static const double LEAST_EXTENT = 0.01, MAX_EXTENT = 10; /* m: of a garment */
 
-static void describe_odd(char *text, size_t size, const char *what, const struct flow_odd *odd,
-                         const char *effect)
+static void describe_unusual(char *text, size_t size, const char *what,
+                             const struct flow_unusual *unusual, const char *effect)
 {
-    if (odd->n)
+    if (unusual->n)
         snprintf(text, size,
                  "%.200s%s%s that no face or edge uses: %u, the first is vertex %u of cloth "
                  "'%.60s'; %s",
-                 odd->place ? odd->place : "", odd->place ? ": " : "", what, odd->n, odd->vertex,
-                 odd->cloth->name, effect);
+                 unusual->place ? unusual->place : "", unusual->place ? ": " : "", what, unusual->n,
+                 unusual->vertex, unusual->cloth->name, effect);
 }
 
 static void warn(struct flow *flow, const struct flow_particles *particles)
 {
     const size_t size = sizeof flow->warning[0];
-    describe_odd(flow->warning[0], size, "vertices", &particles->unused,
-                 "they are kept and stay where they are");
-    describe_odd(flow->warning[1], size, "pinned vertices", &particles->pinned,
-                 "they stay where they are without a pin");
-    describe_odd(flow->warning[2], size, "loads on vertices", &particles->loaded,
-                 "they move nothing");
+    describe_unusual(flow->warning[0], size, "vertices", &particles->unused,
+                     "they are kept and stay where they are");
+    describe_unusual(flow->warning[1], size, "pinned vertices", &particles->pinned,
+                     "they stay where they are without a pin");
+    describe_unusual(flow->warning[2], size, "loads on vertices", &particles->loaded,
+                     "they move nothing");
 }
 
 /* What a material says that its cloth has nothing for; NULL: nothing. A chain beside a grid may
@@ -98,12 +98,12 @@ static double extent_of(const struct mesh *mesh)
 {
     double extent = 0;
     for (size_t i = 0; i < 3; i++) {
-        double least = INFINITY, most = -INFINITY;
+        double min = INFINITY, max = -INFINITY;
         for (size_t v = 0; v < mesh->n_vertices; v++) {
-            least = fmin(least, mesh->position[3 * v + i]);
-            most = fmax(most, mesh->position[3 * v + i]);
+            min = fmin(min, mesh->position[3 * v + i]);
+            max = fmax(max, mesh->position[3 * v + i]);
         }
-        extent = fmax(extent, most - least);
+        extent = fmax(extent, max - min);
     }
     return extent;
 }
@@ -116,14 +116,14 @@ static void warn_of_extent(struct flow *flow)
     for (uint32_t c = 0; c < model->n_cloths && !flow->warning[7][0]; c++) {
         const struct model_cloth *cloth = model->cloths + c;
         const double extent = extent_of(&cloth->mesh);
-        if (!cloth->mesh.n_triangles || (extent >= LEAST_EXTENT && extent <= MOST_EXTENT))
+        if (!cloth->mesh.n_triangles || (extent >= LEAST_EXTENT && extent <= MAX_EXTENT))
             continue;
         snprintf(flow->warning[7], sizeof flow->warning[7],
                  "%.200s%scloth '%.60s' is %g m long in its largest extent, %s than %g m: is its "
                  "mesh in metres? transform.scale changes that (0.01 for centimetres)",
                  cloth->mesh_place ? cloth->mesh_place : "", cloth->mesh_place ? ": " : "",
-                 cloth->name ? cloth->name : "", extent, extent > MOST_EXTENT ? "more" : "less",
-                 extent > MOST_EXTENT ? MOST_EXTENT : LEAST_EXTENT);
+                 cloth->name ? cloth->name : "", extent, extent > MAX_EXTENT ? "more" : "less",
+                 extent > MAX_EXTENT ? MAX_EXTENT : LEAST_EXTENT);
     }
 }
 

@@ -160,17 +160,17 @@ void flow_welds_free(struct flow_welds *welds)
 /* ---- What a welded vertex is ---- */
 
 static int check_distance(const struct flow_particles *p, const struct model *model,
-                          const struct flow_pair *pair, double most, struct cloth_error *error)
+                          const struct flow_pair *pair, double max, struct cloth_error *error)
 {
     const double *a = p->start[pair->vertex[0]], *b = p->start[pair->vertex[1]];
     const phys_vec d = {b[0] - a[0], b[1] - a[1], b[2] - a[2], 0};
     const double distance = sqrt(phys_dot(&d, &d));
     char why[200];
-    if (distance <= most)
+    if (distance <= max)
         return CLOTH_OK;
     snprintf(why, sizeof why,
              "which start %g m from each other; at most %g m are expected (tolerance)", distance,
-             most);
+             max);
     return flow_pair_fail(model, pair, "a weld", why, error);
 }
 

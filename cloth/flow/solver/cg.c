@@ -1,8 +1,8 @@
 /* Conjugate gradients by tasks (Zara 2001), recorded once a run and replayed in each step until
- * their scalars say that they are done. A round is two passes (pass.c), which read the rims of s in
- * turn: the one that others still read is not the one that is written. A small task on every rank
- * makes the factors of the next pass of what all blocks summed; they are a shared object, so every
- * body reads the same bits and does the same. When the solve is done with the first pass of a
+ * their scalars say that they are done. A round is two passes (pass.c), which read the halos of s
+ * in turn: the one that others still read is not the one that is written. A small task on every
+ * rank makes the factors of the next pass of what all blocks summed; they are a shared object, so
+ * every body reads the same bits and does the same. When the solve is done with the first pass of a
  * round, the second one does nothing.
  *
  * In reading order: a solve, its recorded round, the scalars. */
@@ -130,7 +130,7 @@ static struct solve_stop stop_of(const struct model *model)
                                .mass_norm = model->stop == MODEL_STOP_MASS_NORM,
                                .normalised = model->stop == MODEL_STOP_NORMALISED,
                                .tolerance = model->tolerance,
-                               .most = model->max_iterations};
+                               .max = model->max_iterations};
 }
 
 static int not_converged(const duite_call *call, const struct solve_scalars *now)

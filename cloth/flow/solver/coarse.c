@@ -2,7 +2,7 @@
  * blocks (cloth/solve/patches.h). A block's task makes what its patches add to C; one task on every
  * rank puts it together. A pass leaves the right side P' q of its patches; the task of the scalars
  * solves for the motion of all patches. The next pass adds P times it to its own rows and to its
- * copies alike.
+ * ghosts alike.
  *
  * In reading order: the pattern of C, once a run; the space P, once a run or, with
  * contact in the solve, in each step; C and its factor, in each step; what a pass and its scalars
@@ -34,45 +34,47 @@ static uint32_t *add_neighbours(const struct flow *flow, uint32_t b, uint32_t k,
     const struct flow_table *t = flow->tables.block + b;
     const uint32_t itself = solve_patch_bit(k, k);
     uint32_t s = 0;
-    for (; s < t->n_slots && t->slot[s] < b; s++)
-        to = add_joined(flow, t->joins[s], k, t->slot[s], to);
+    for (; s < t->n_neighbours && t->neighbour[s] < b; s++)
+        to = add_joined(flow, t->joins[s], k, t->neighbour[s], to);
     to = add_joined(flow, t->joined & ~itself, k, b, to);
-    for (; s < t->n_slots; s++)
-        to = add_joined(flow, t->joins[s], k, t->slot[s], to);
+    for (; s < t->n_neighbours; s++)
+        to = add_joined(flow, t->joins[s], k, t->neighbour[s], to);
     return to;
 }
 
 /* How many neighbours all patches can have. */
-static size_t most_beside(const struct flow *flow)
+static size_t max_patch_neighbours(const struct flow *flow)
 {
-    size_t slots = 0;
+    size_t neighbours = 0;
     for (uint32_t b = 0; b < flow->tables.n_blocks; b++)
-        slots += 1 + (size_t)flow->tables.block[b].n_slots;
-    return slots * flow->patches * flow->patches;
+        neighbours += 1 + (size_t)flow->tables.block[b].n_neighbours;
+    return neighbours * flow->patches * flow->patches;
 }
 
 static void make_pattern(struct flow *flow)
 {
     const uint32_t n_blocks = flow->tables.n_blocks, n = flow->patches * n_blocks;
     struct cloth_error *trouble = &flow->trouble;
-    flow->first_beside = cloth_alloc((size_t)n + 1, sizeof *flow->first_beside, trouble);
-    flow->beside = cloth_alloc(most_beside(flow), sizeof *flow->beside, trouble);
-    if (!flow->first_beside || !flow->beside)
+    flow->patch_first = cloth_alloc((size_t)n + 1, sizeof *flow->patch_first, trouble);
+    flow->patch_neighbour =
+        cloth_alloc(max_patch_neighbours(flow), sizeof *flow->patch_neighbour, trouble);
+    if (!flow->patch_first || !flow->patch_neighbour)
         return;
     for (uint32_t b = 0; b < n_blocks; b++)
         for (uint32_t k = 0; k < flow->patches; k++) {
-            uint32_t *first = flow->first_beside + flow->patches * b + k;
-            first[1] = (uint32_t)(add_neighbours(flow, b, k, flow->beside + *first) - flow->beside);
+            uint32_t *first = flow->patch_first + flow->patches * b + k;
+            first[1] = (uint32_t)(add_neighbours(flow, b, k, flow->patch_neighbour + *first) -
+                                  flow->patch_neighbour);
         }
-    solve_pattern_make(&flow->pattern, n, flow->first_beside, flow->beside, trouble);
+    solve_pattern_make(&flow->pattern, n, flow->patch_first, flow->patch_neighbour, trouble);
 }
 
 /* How many neighbours of patch p are behind it and before `end`. */
 static size_t count_later(const struct flow *flow, uint32_t p, uint32_t end)
 {
     size_t count = 0;
-    for (uint32_t i = flow->first_beside[p]; i < flow->first_beside[p + 1]; i++)
-        count += flow->beside[i] > p && flow->beside[i] < end;
+    for (uint32_t i = flow->patch_first[p]; i < flow->patch_first[p + 1]; i++)
+        count += flow->patch_neighbour[i] > p && flow->patch_neighbour[i] < end;
     return count;
 }
 
@@ -93,15 +95,15 @@ int flow_coarse_prepare(struct flow_state *state)
 void flow_coarse_free(struct flow *flow)
 {
     solve_pattern_free(&flow->pattern);
-    free(flow->first_beside);
-    free(flow->beside);
-    flow->first_beside = flow->beside = NULL;
+    free(flow->patch_first);
+    free(flow->patch_neighbour);
+    flow->patch_first = flow->patch_neighbour = NULL;
 }
 
 /* ---- The space P ---- */
 
 FLOW_KERNEL(basis, FLOW_NO_PART, struct flow_args,
-            (R(table), W(basis), W(rim_basis), IF_MADE(filter)))
+            (R(table), W(basis), W(halo_basis), IF_MADE(filter)))
 static int basis_body(const duite_call *call, const struct basis_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -112,20 +114,20 @@ static int basis_body(const duite_call *call, const struct basis_fields *on)
     }
     if (on->filter)
         solve_basis_filter(t->n, on->filter, on->basis);
-    flow_write_rim(t, on->basis, on->rim_basis);
+    flow_write_halo(t, on->basis, on->halo_basis);
     return 0;
 }
 
-FLOW_KERNEL(basis_copies, FLOW_NO_PART, struct flow_args,
-            (R(table), W(basis_copies), NEIGHBOURS(rim_basis)))
-static int basis_copies_body(const duite_call *call, const struct basis_copies_fields *on)
+FLOW_KERNEL(basis_ghosts, FLOW_NO_PART, struct flow_args,
+            (R(table), W(basis_ghosts), NEIGHBOURS(halo_basis)))
+static int basis_ghosts_body(const duite_call *call, const struct basis_ghosts_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
-    on->basis_copies[0] = (phys_vec){0};
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        const phys_vec *rim = flow_rows_of(on->rim_basis, s);
-        for (uint32_t i = t->copies[s]; i < t->copies[s + 1]; i++)
-            on->basis_copies[i] = rim[t->copy[i]];
+    on->basis_ghosts[0] = (phys_vec){0};
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
+        const phys_vec *halo = flow_rows_of(on->halo_basis, s);
+        for (uint32_t i = t->ghosts[s]; i < t->ghosts[s + 1]; i++)
+            on->basis_ghosts[i] = halo[t->ghost[i]];
     }
     return 0;
 }
@@ -136,7 +138,7 @@ int flow_coarse_initialise(struct flow_state *state)
     if (!flow_is_coarse(state->flow))
         return DUITE_OK;
     const int code = flow_fork_each(state, &flow_kernel_basis, &args);
-    return code ? code : flow_fork_each(state, &flow_kernel_basis_copies, &args);
+    return code ? code : flow_fork_each(state, &flow_kernel_basis_ghosts, &args);
 }
 
 /* ---- The matrix C and its factor ---- */
@@ -147,22 +149,22 @@ static void put(const struct flow *flow, uint32_t p, uint32_t q, const double *m
                 double *coupling)
 {
     bool joined = p == q;
-    for (uint32_t i = flow->first_beside[p]; i < flow->first_beside[p + 1]; i++)
-        joined = joined || flow->beside[i] == q;
+    for (uint32_t i = flow->patch_first[p]; i < flow->patch_first[p + 1]; i++)
+        joined = joined || flow->patch_neighbour[i] == q;
     if (joined)
         memcpy(coupling + SOLVE_COUPLING * flow_coupling_at(flow, p, q), matrix,
                SOLVE_COUPLING * sizeof *matrix);
 }
 
-/* The patches of a neighbour by its copies here. */
-static struct solve_patches patches_of_slot(const struct flow *flow, const struct flow_table *t,
-                                            uint32_t slot)
+/* The patches of a neighbour by its ghosts here. */
+static struct solve_patches patches_of_neighbour(const struct flow *flow,
+                                                 const struct flow_table *t, uint32_t neighbour)
 {
-    const struct flow_table *other = flow->tables.block + t->slot[slot];
+    const struct flow_table *other = flow->tables.block + t->neighbour[neighbour];
     struct solve_patches patches = {.n = flow->patches};
-    uint32_t i = t->copies[slot];
-    for (uint32_t k = 0; k <= SOLVE_MOST_PATCHES; k++) {
-        while (i < t->copies[slot + 1] && t->copy[i] < other->rim_start[k])
+    uint32_t i = t->ghosts[neighbour];
+    for (uint32_t k = 0; k <= SOLVE_MAX_PATCHES; k++) {
+        while (i < t->ghosts[neighbour + 1] && t->ghost[i] < other->halo_start[k])
             i++;
         patches.start[k] = i;
     }
@@ -170,7 +172,7 @@ static struct solve_patches patches_of_slot(const struct flow *flow, const struc
 }
 
 FLOW_KERNEL(couple, FLOW_CG, struct flow_args,
-            (R(table), R(a), R(basis), R(basis_copies), W(coupling)))
+            (R(table), R(a), R(basis), R(basis_ghosts), W(coupling)))
 static int couple_body(const duite_call *call, const struct couple_fields *on)
 {
     const struct flow *flow = flow_of(call);
@@ -178,17 +180,18 @@ static int couple_body(const duite_call *call, const struct couple_fields *on)
     const phys_vec *values = flow_matrix_in(call, t, on->a);
     const struct solve_patches patches = solve_patches_of(t->n, flow->patches);
     const uint32_t block = on->args->block, first = patches.n * block;
-    struct solve_couplings own, beside;
+    struct solve_couplings own, patch_neighbour;
     solve_couple_patches(&t->matrix, &patches, values, on->basis, &own);
-    for (uint32_t s = 0; s < t->n_slots; s++) {
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
         const uint32_t from = t->cut_entry[s], n = t->cut_entry[s + 1] - from;
-        const struct solve_patches others = patches_of_slot(flow, t, s);
+        const struct solve_patches others = patches_of_neighbour(flow, t, s);
         solve_couple_patches_cut(&t->matrix, &patches, values, t->matrix.row[t->n] + from, n,
-                                 t->copy_end + from, on->basis, on->basis_copies, &others, &own,
-                                 &beside);
-        for (uint32_t k = 0; k < patches.n && t->slot[s] > block; k++)
+                                 t->ghost_end + from, on->basis, on->basis_ghosts, &others, &own,
+                                 &patch_neighbour);
+        for (uint32_t k = 0; k < patches.n && t->neighbour[s] > block; k++)
             for (uint32_t l = 0; l < patches.n; l++)
-                put(flow, first + k, patches.n * t->slot[s] + l, beside.matrix[k][l], on->coupling);
+                put(flow, first + k, patches.n * t->neighbour[s] + l, patch_neighbour.matrix[k][l],
+                    on->coupling);
     }
     for (uint32_t k = 0; k < patches.n; k++)
         for (uint32_t l = k; l < patches.n; l++)
@@ -203,7 +206,7 @@ static int factor_coarse_body(const duite_call *call, const struct factor_coarse
     const struct flow *flow = flow_of(call);
     solve_coarse_clear(&flow->pattern, on->coarse);
     for (uint32_t p = 0; p < flow->pattern.n; p++)
-        solve_coarse_fill(&flow->pattern, flow->first_beside, flow->beside, p,
+        solve_coarse_fill(&flow->pattern, flow->patch_first, flow->patch_neighbour, p,
                           flow_numbers_of(on->coupling, p / flow->patches) +
                               SOLVE_COUPLING * flow_coupling_at(flow, p, p),
                           on->coarse);
@@ -254,20 +257,20 @@ void flow_coarse_prolong(const struct flow_preconditioner *m, phys_vec *s)
     }
 }
 
-/* Copies of a neighbour are those of its patches one after the other. */
-void flow_coarse_advance_copies(const struct flow_preconditioner *m, uint32_t slot,
-                                const struct solve_scalars *scalars, const double *rim,
+/* Ghosts of a neighbour are those of its patches one after the other. */
+void flow_coarse_advance_ghosts(const struct flow_preconditioner *m, uint32_t neighbour,
+                                const struct solve_scalars *scalars, const double *halo,
                                 const uint32_t *at, phys_vec *z, phys_vec *p)
 {
-    const struct flow_table *t = m->table, *other = m->flow->tables.block + t->slot[slot];
-    const uint32_t first = t->copies[slot], end = t->copies[slot + 1];
+    const struct flow_table *t = m->table, *other = m->flow->tables.block + t->neighbour[neighbour];
+    const uint32_t first = t->ghosts[neighbour], end = t->ghosts[neighbour + 1];
     for (uint32_t k = 0, i = first; k < m->flow->patches; k++) {
         const uint32_t from = i;
-        while (i < end && t->copy[i] < other->rim_start[k + 1])
+        while (i < end && t->ghost[i] < other->halo_start[k + 1])
             i++;
-        solve_advance_copies_coarse(i - from, scalars->alpha, scalars->beta, rim,
-                                    at + (from - first), m->basis_copies + from,
-                                    motion_of(m, t->slot[slot], k), z + (from - first),
+        solve_advance_ghosts_coarse(i - from, scalars->alpha, scalars->beta, halo,
+                                    at + (from - first), m->basis_ghosts + from,
+                                    motion_of(m, t->neighbour[neighbour], k), z + (from - first),
                                     p + (from - first));
     }
 }

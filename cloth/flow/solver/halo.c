@@ -1,8 +1,9 @@
-/* A pass of a solve reads q of its block's neighbours: their rims as they are where the neighbour
- * lives on the same rank; else a far rim, one for each block and rank that reads it, with the rows
- * that any block there needs: so a message holds nothing else. A task of its own packs it, since
- * the neighbours' passes still read its other half. Which it is depends on the homes that the
- * blocks have when a run begins and changes no result. All ranks know the rows of all far rims. */
+/* A pass of a solve reads q of its block's neighbours: their halos as they are where the neighbour
+ * lives on the same rank; else a packed halo, one for each block and rank that reads it, with the
+ * rows that any block there needs: so a message holds nothing else. A task of its own packs it,
+ * since the neighbours' passes still read its other half. Which it is depends on the homes that the
+ * blocks have when a run begins and changes no result. All ranks know the rows of all packed halos.
+ */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/solver/solve.h"
 
@@ -15,39 +16,39 @@ void flow_halo_take(struct flow_state *state)
 {
     const struct flow_head *head = &state->head;
     struct cloth_error *trouble = &state->flow->trouble;
-    struct flow_far *far = &state->far;
-    const size_t slots = head->n_slots, copies = head->n_copies, rim = head->most_rim;
+    struct flow_packed *packed = &state->packed;
+    const size_t neighbours = head->n_neighbours, ghosts = head->n_ghosts, halo = head->max_halo;
     for (int i = 0; i < 2; i++)
-        far->read[i] = cloth_alloc(slots, sizeof *far->read[i], trouble);
-    far->rim = cloth_alloc(slots, sizeof *far->rim, trouble);
-    far->first = cloth_alloc((size_t)head->n_blocks + 1, sizeof *far->first, trouble);
-    far->home = cloth_alloc(head->n_blocks, sizeof *far->home, trouble);
-    far->number = cloth_alloc(rim, sizeof *far->number, trouble);
-    state->flow->at = cloth_alloc(copies, sizeof *state->flow->at, trouble);
-    state->flow->far_row = cloth_alloc(copies, sizeof *state->flow->far_row, trouble);
-    state->flow->far_rim = cloth_alloc(slots, sizeof *state->flow->far_rim, trouble);
+        packed->read[i] = cloth_alloc(neighbours, sizeof *packed->read[i], trouble);
+    packed->halo = cloth_alloc(neighbours, sizeof *packed->halo, trouble);
+    packed->first = cloth_alloc((size_t)head->n_blocks + 1, sizeof *packed->first, trouble);
+    packed->home = cloth_alloc(head->n_blocks, sizeof *packed->home, trouble);
+    packed->number = cloth_alloc(halo, sizeof *packed->number, trouble);
+    state->flow->at = cloth_alloc(ghosts, sizeof *state->flow->at, trouble);
+    state->flow->packed_row = cloth_alloc(ghosts, sizeof *state->flow->packed_row, trouble);
+    state->flow->packed_halo = cloth_alloc(neighbours, sizeof *state->flow->packed_halo, trouble);
 }
 
 void flow_halo_free(struct flow_state *state)
 {
-    struct flow_far *far = &state->far;
+    struct flow_packed *packed = &state->packed;
     for (int i = 0; i < 2; i++)
-        free(far->read[i]);
-    free(far->rim);
-    free(far->first);
-    free(far->home);
-    free(far->number);
+        free(packed->read[i]);
+    free(packed->halo);
+    free(packed->first);
+    free(packed->home);
+    free(packed->number);
     free(state->flow->at);
-    free(state->flow->far_row);
-    free(state->flow->far_rim);
-    *far = (struct flow_far){0};
-    state->flow->at = state->flow->far_row = NULL;
-    state->flow->far_rim = NULL;
+    free(state->flow->packed_row);
+    free(state->flow->packed_halo);
+    *packed = (struct flow_packed){0};
+    state->flow->at = state->flow->packed_row = NULL;
+    state->flow->packed_halo = NULL;
 }
 
-/* Neighbour slot s of block b, for who reads: the slot's place among all, its rows. */
+/* Neighbour s of block b, for who reads: the neighbour's place among all, its rows. */
 struct reader {
-    size_t slot;
+    size_t neighbour;
     const uint32_t *row;
     uint32_t *at;
     size_t n;
@@ -58,77 +59,77 @@ static struct reader reader_of(struct flow_state *state, uint32_t b, uint32_t ne
     const struct flow_tables *tables = &state->flow->tables;
     const struct flow_table *t = tables->block + b;
     uint32_t s = 0;
-    while (t->slot[s] != neighbour)
+    while (t->neighbour[s] != neighbour)
         s++;
-    const uint32_t *row = t->copy + t->copies[s];
-    return (struct reader){.slot = (size_t)(t->slot - tables->slot) + s,
+    const uint32_t *row = t->ghost + t->ghosts[s];
+    return (struct reader){.neighbour = (size_t)(t->neighbour - tables->neighbour) + s,
                            .row = row,
-                           .at = state->flow->at + (row - tables->copy),
-                           .n = t->copies[s + 1] - t->copies[s]};
+                           .at = state->flow->at + (row - tables->ghost),
+                           .n = t->ghosts[s + 1] - t->ghosts[s]};
 }
 
-/* Numbers the rows of block b that blocks of this home read, and lists their places in its rim in
+/* Numbers the rows of block b that blocks of this home read, and lists their places in its halo in
  * `row`, which has room for them. Returns how many there are. */
 static uint32_t number_rows(struct flow_state *state, uint32_t b, int home, uint32_t *row)
 {
     const struct flow_table *t = state->flow->tables.block + b;
-    struct flow_far *far = &state->far;
-    memset(far->number, 0, t->n_rim * sizeof *far->number);
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        if (far->home[t->slot[s]] != home)
+    struct flow_packed *packed = &state->packed;
+    memset(packed->number, 0, t->n_halo * sizeof *packed->number);
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
+        if (packed->home[t->neighbour[s]] != home)
             continue;
-        const struct reader reader = reader_of(state, t->slot[s], b);
+        const struct reader reader = reader_of(state, t->neighbour[s], b);
         for (size_t i = 0; i < reader.n; i++)
-            far->number[reader.row[i]] = 1;
+            packed->number[reader.row[i]] = 1;
     }
     uint32_t n = 0;
-    for (uint32_t i = 0; i < t->n_rim; i++) {
-        if (!far->number[i])
+    for (uint32_t i = 0; i < t->n_halo; i++) {
+        if (!packed->number[i])
             continue;
         row[n] = i;
-        far->number[i] = n++;
+        packed->number[i] = n++;
     }
     return n;
 }
 
-/* The rim of block b that blocks of this home read. */
-static void make_rim(struct flow_state *state, uint32_t b, int home)
+/* The halo of block b that blocks of this home read. */
+static void make_halo(struct flow_state *state, uint32_t b, int home)
 {
     const struct flow_table *t = state->flow->tables.block + b;
-    struct flow_far *far = &state->far;
-    struct flow_far_rim *rim = state->flow->far_rim + far->n;
-    duite_object *object = far->rim[far->n++].object;
-    rim->row = state->flow->far_row + far->n_rows;
-    rim->n = number_rows(state, b, home, state->flow->far_row + far->n_rows);
-    far->n_rows += rim->n;
+    struct flow_packed *packed = &state->packed;
+    struct flow_packed_halo *halo = state->flow->packed_halo + packed->n;
+    duite_object *object = packed->halo[packed->n++].object;
+    halo->row = state->flow->packed_row + packed->n_rows;
+    halo->n = number_rows(state, b, home, state->flow->packed_row + packed->n_rows);
+    packed->n_rows += halo->n;
     for (int i = 0; i < 2; i++) {
-        duite_new(state->rt, DUITE_F64, 3 * (size_t)rim->n, object + i);
+        duite_new(state->rt, DUITE_F64, 3 * (size_t)halo->n, object + i);
         duite_colocate(state->rt, object[i], state->block[b].x);
     }
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        if (far->home[t->slot[s]] != home)
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
+        if (packed->home[t->neighbour[s]] != home)
             continue;
-        const struct reader reader = reader_of(state, t->slot[s], b);
+        const struct reader reader = reader_of(state, t->neighbour[s], b);
         for (size_t i = 0; i < reader.n; i++)
-            reader.at[i] = far->number[reader.row[i]];
-        far->read[0][reader.slot] = object[0];
-        far->read[1][reader.slot] = object[1];
+            reader.at[i] = packed->number[reader.row[i]];
+        packed->read[0][reader.neighbour] = object[0];
+        packed->read[1][reader.neighbour] = object[1];
     }
 }
 
-static void read_rims(struct flow_state *state, uint32_t b, uint32_t neighbour)
+static void read_halos(struct flow_state *state, uint32_t b, uint32_t neighbour)
 {
     const struct reader reader = reader_of(state, neighbour, b);
     memcpy(reader.at, reader.row, reader.n * sizeof *reader.at);
     for (int i = 0; i < 2; i++)
-        state->far.read[i][reader.slot] = state->block[b].rim_q[i];
+        state->packed.read[i][reader.neighbour] = state->block[b].halo_q[i];
 }
 
-/* Whether slot s of a block is the first one with its home. */
-static bool is_first(const struct flow_far *far, const struct flow_table *t, uint32_t s)
+/* Whether neighbour s of a block is the first one with its home. */
+static bool is_first(const struct flow_packed *packed, const struct flow_table *t, uint32_t s)
 {
     for (uint32_t i = 0; i < s; i++)
-        if (far->home[t->slot[i]] == far->home[t->slot[s]])
+        if (packed->home[t->neighbour[i]] == packed->home[t->neighbour[s]])
             return false;
     return true;
 }
@@ -136,41 +137,41 @@ static bool is_first(const struct flow_far *far, const struct flow_table *t, uin
 void flow_halo_make(struct flow_state *state)
 {
     const struct flow_tables *tables = &state->flow->tables;
-    struct flow_far *far = &state->far;
+    struct flow_packed *packed = &state->packed;
     for (uint32_t b = 0; b < tables->n_blocks; b++)
-        far->home[b] = duite_home(state->rt, state->block[b].x);
+        packed->home[b] = duite_home(state->rt, state->block[b].x);
     for (uint32_t b = 0; b < tables->n_blocks; b++) {
         const struct flow_table *t = tables->block + b;
-        far->first[b] = far->n;
-        for (uint32_t s = 0; s < t->n_slots; s++) {
-            const int home = far->home[t->slot[s]];
-            if (home == far->home[b])
-                read_rims(state, b, t->slot[s]);
-            else if (is_first(far, t, s))
-                make_rim(state, b, home);
+        packed->first[b] = packed->n;
+        for (uint32_t s = 0; s < t->n_neighbours; s++) {
+            const int home = packed->home[t->neighbour[s]];
+            if (home == packed->home[b])
+                read_halos(state, b, t->neighbour[s]);
+            else if (is_first(packed, t, s))
+                make_halo(state, b, home);
         }
     }
-    far->first[tables->n_blocks] = far->n;
+    packed->first[tables->n_blocks] = packed->n;
 }
 
 int flow_halo_pack(struct flow_state *state, uint32_t b, int to)
 {
-    const struct flow_far *far = &state->far;
+    const struct flow_packed *packed = &state->packed;
     int code = DUITE_OK;
-    for (uint32_t i = far->first[b]; i < far->first[b + 1] && !code; i++)
-        code = DUITE_FORK(state->rt, &flow_pack, &i, state->block[b].rim_q[to],
-                          far->rim[i].object[to]);
+    for (uint32_t i = packed->first[b]; i < packed->first[b + 1] && !code; i++)
+        code = DUITE_FORK(state->rt, &flow_pack, &i, state->block[b].halo_q[to],
+                          packed->halo[i].object[to]);
     return code;
 }
 
 static int pack_rows(const duite_call *call)
 {
     const uint32_t *i = call->args;
-    const struct flow_far_rim *rim = flow_of(call)->far_rim + *i;
+    const struct flow_packed_halo *halo = flow_of(call)->packed_halo + *i;
     const double *from = duite_in(call, 0, double);
     double *to = duite_out(call, 1, double);
-    for (uint32_t k = 0; k < rim->n; k++, to += 3)
-        memcpy(to, from + 3 * (size_t)rim->row[k], 3 * sizeof *to);
+    for (uint32_t k = 0; k < halo->n; k++, to += 3)
+        memcpy(to, from + 3 * (size_t)halo->row[k], 3 * sizeof *to);
     return 0;
 }
 

@@ -1,5 +1,5 @@
 /* A pass of conjugate gradients over a block (cloth/solve/cg.h): one body, with a preconditioner or
- * without, where z is r and s is q. A block keeps copies of z and p of the rows that its cut
+ * without, where z is r and s is q. A block keeps ghosts of z and p of the rows that its cut
  * entries end at, and changes them as their owner does: of a neighbour it reads rows of s only.
  * What a pass sums is its part: without a preconditioner a contribution to the sums of all blocks;
  * with one the block's own, with the coarse right side P' q behind the dots.
@@ -18,9 +18,9 @@ struct pass {
     const void *values; /* of the matrix */
     const phys_vec *b;
     struct solve_rows rows;
-    phys_vec *z_copies, *p_copies;
-    double *rim, *part;
-    const duite_param *rims; /* of the neighbours */
+    phys_vec *z_ghosts, *p_ghosts;
+    double *halo, *part;
+    const duite_param *halos; /* of the neighbours */
     struct flow_preconditioner m;
 };
 
@@ -31,19 +31,19 @@ static void show_product(struct pass *pass, double dots[SOLVE_DOTS])
     if (pass->m.factor)
         dots[SOLVE_QQ] =
             flow_precondition(&pass->m, rows->q, rows->s, pass->part + FLOW_PART_COARSE);
-    flow_pack_rim(&pass->table, rows->s, pass->rim);
+    flow_pack_halo(&pass->table, rows->s, pass->halo);
 }
 
 /* ---- What a solve begins with ---- */
 
 /* Its vectors, and what neighbours read of them. */
-static void begin(struct pass *pass, double *copies, size_t n_copies)
+static void begin(struct pass *pass, double *ghosts, size_t n_ghosts)
 {
     const struct flow_table *t = &pass->table;
     const struct solve_rows *rows = &pass->rows;
     double dots[SOLVE_DOTS] = {0};
     solve_start(t->n, t->free, pass->b, rows->dv, rows->r, rows->p, rows->q);
-    memset(copies, 0, n_copies * sizeof *copies);
+    memset(ghosts, 0, n_ghosts * sizeof *ghosts);
     if (pass->m.factor) {
         memset(rows->z, 0, t->n * sizeof *rows->z);
         memset(pass->part, 0, flow_part_doubles(flow_of(pass->call)) * sizeof *pass->part);
@@ -54,20 +54,20 @@ static void begin(struct pass *pass, double *copies, size_t n_copies)
 }
 
 FLOW_KERNEL(cg_start, FLOW_CG, struct flow_args,
-            (R(table), R(f), W(dv), W(r), W(p), W(q), W(copies), W(rim_q)))
+            (R(table), R(f), W(dv), W(r), W(p), W(q), W(ghosts), W(halo_q)))
 static int cg_start_body(const duite_call *call, const struct cg_start_fields *on)
 {
     struct pass pass = {.call = call,
                         .table = flow_table_in(call, on->table),
                         .b = on->f,
                         .rows = solve_rows_plain(on->dv, on->r, on->p, on->q),
-                        .rim = on->rim_q};
-    begin(&pass, (double *)on->copies, duite_count(call, FLOW_INDEX_OF(cg_start, copies)));
+                        .halo = on->halo_q};
+    begin(&pass, (double *)on->ghosts, duite_count(call, FLOW_INDEX_OF(cg_start, ghosts)));
     return 0;
 }
 
 FLOW_KERNEL(cg_start_preconditioned, FLOW_CG, struct flow_args,
-            (R(table), R(f), W(dv), W(r), W(p), W(q), W(copies), W(rim_q), W(part), W(z), W(s),
+            (R(table), R(f), W(dv), W(r), W(p), W(q), W(ghosts), W(halo_q), W(part), W(z), W(s),
              R(factor), IF_MADE(basis)))
 static int cg_start_preconditioned_body(const duite_call *call,
                                         const struct cg_start_preconditioned_fields *on)
@@ -76,58 +76,59 @@ static int cg_start_preconditioned_body(const duite_call *call,
                         .table = flow_table_in(call, on->table),
                         .b = on->f,
                         .rows = {on->dv, on->r, on->p, on->q, on->z, on->s},
-                        .rim = on->rim_q,
+                        .halo = on->halo_q,
                         .part = on->part,
                         .m = {.flow = flow_of(call),
                               .block = on->args->block,
                               .factor = on->factor,
                               .basis = on->basis}};
     pass.m.table = &pass.table;
-    begin(&pass, (double *)on->copies,
-          duite_count(call, FLOW_INDEX_OF(cg_start_preconditioned, copies)));
+    begin(&pass, (double *)on->ghosts,
+          duite_count(call, FLOW_INDEX_OF(cg_start_preconditioned, ghosts)));
     return 0;
 }
 
 /* With a guess: the first pass multiplies by it, and a later one begins again. */
 FLOW_KERNEL(cg_guess, FLOW_CG, struct flow_args,
-            (R(table), R(f), R(a), RW(dv), W(r), W(p), W(q), W(rim_q)))
+            (R(table), R(f), R(a), RW(dv), W(r), W(p), W(q), W(halo_q)))
 static int cg_guess_body(const duite_call *call, const struct cg_guess_fields *on)
 {
     struct flow_table table = flow_table_in(call, on->table), *t = &table;
     flow_matrix_in(call, t, on->a);
     solve_start_guess(t->n, t->free, t->matrix.filter, on->f, on->args->guess, on->dv, on->r, on->p,
                       on->q);
-    flow_pack_rim(t, on->dv, on->rim_q);
+    flow_pack_halo(t, on->dv, on->halo_q);
     return 0;
 }
 
 /* ---- A pass, by its phases ---- */
 
-/* Where copies of slot s are in what this block reads of the neighbour. */
+/* Where ghosts of neighbour s are in what this block reads of the neighbour. */
 static const uint32_t *places_of(const struct pass *pass, uint32_t s)
 {
     const struct flow *flow = flow_of(pass->call);
     const struct flow_table *t = &pass->table;
-    return flow->at + (t->copy - flow->tables.copy) + t->copies[s];
+    return flow->at + (t->ghost - flow->tables.ghost) + t->ghosts[s];
 }
 
-static const double *rim_of(const struct pass *pass, uint32_t s)
+static const double *halo_of(const struct pass *pass, uint32_t s)
 {
-    return flow_numbers_of(pass->rims, s);
+    return flow_numbers_of(pass->halos, s);
 }
 
-/* The first half of a pass for the copies: they change as the rows of their owners do. */
-static void advance_copies(const struct pass *pass)
+/* The first half of a pass for the ghosts: they change as the rows of their owners do. */
+static void advance_ghosts(const struct pass *pass)
 {
     const struct flow_table *t = &pass->table;
     const struct solve_scalars *now = pass->scalars;
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        const uint32_t from = t->copies[s], n = t->copies[s + 1] - from;
-        phys_vec *z = pass->z_copies + from, *p = pass->p_copies + from;
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
+        const uint32_t from = t->ghosts[s], n = t->ghosts[s + 1] - from;
+        phys_vec *z = pass->z_ghosts + from, *p = pass->p_ghosts + from;
         if (pass->m.motion)
-            flow_coarse_advance_copies(&pass->m, s, now, rim_of(pass, s), places_of(pass, s), z, p);
+            flow_coarse_advance_ghosts(&pass->m, s, now, halo_of(pass, s), places_of(pass, s), z,
+                                       p);
         else
-            solve_advance_copies(n, now->alpha, now->beta, rim_of(pass, s), places_of(pass, s), z,
+            solve_advance_ghosts(n, now->alpha, now->beta, halo_of(pass, s), places_of(pass, s), z,
                                  p);
     }
 }
@@ -151,8 +152,8 @@ static void iterate(struct pass *pass, double dots[SOLVE_DOTS])
     const struct solve_cut cut = flow_table_cut_entries(t);
     if (pass->m.motion)
         flow_coarse_prolong(&pass->m, pass->rows.s);
-    advance_copies(pass);
-    solve_pass(&t->matrix, &cut, pass->values, pass->p_copies, pass->scalars->alpha,
+    advance_ghosts(pass);
+    solve_pass(&t->matrix, &cut, pass->values, pass->p_ghosts, pass->scalars->alpha,
                pass->scalars->beta, &pass->rows, dots);
     show_product(pass, dots);
     add_norms(pass, dots);
@@ -171,10 +172,10 @@ static void multiply(struct pass *pass, double dots[SOLVE_DOTS])
 {
     const struct flow_table *t = &pass->table;
     const struct solve_cut cut = flow_table_cut_entries(t);
-    phys_vec *shown = pass->p_copies;
-    for (uint32_t s = 0; s < t->n_slots; s++)
-        solve_unpack(t->copies[s + 1] - t->copies[s], rim_of(pass, s), places_of(pass, s),
-                     shown + t->copies[s]);
+    phys_vec *shown = pass->p_ghosts;
+    for (uint32_t s = 0; s < t->n_neighbours; s++)
+        solve_unpack(t->ghosts[s + 1] - t->ghosts[s], halo_of(pass, s), places_of(pass, s),
+                     shown + t->ghosts[s]);
     if (pass->scalars->phase == SOLVE_OPEN)
         solve_open(&t->matrix, &cut, pass->values, shown, &pass->rows, dots);
     else
@@ -188,7 +189,7 @@ static void begin_again(struct pass *pass, double dots[SOLVE_DOTS])
     const struct solve_rows *rows = &pass->rows;
     finish(pass);
     solve_again(pass->table.n, rows->r, rows->p, rows->q);
-    memset(pass->z_copies, 0, 2 * (size_t)pass->table.n_copies * sizeof *pass->z_copies);
+    memset(pass->z_ghosts, 0, 2 * (size_t)pass->table.n_ghosts * sizeof *pass->z_ghosts);
     if (pass->m.factor)
         memset(rows->z, 0, pass->table.n * sizeof *rows->z);
     show_product(pass, dots);
@@ -203,7 +204,7 @@ static void run_phase(struct pass *pass)
     else if (phase == SOLVE_LAST)
         dots[SOLVE_RR] = finish(pass);
     else if (phase == SOLVE_SHOW)
-        flow_pack_rim(&pass->table, pass->rows.dv, pass->rim);
+        flow_pack_halo(&pass->table, pass->rows.dv, pass->halo);
     else if (phase == SOLVE_CHECK || phase == SOLVE_OPEN)
         multiply(pass, dots);
     else if (phase == SOLVE_AGAIN)
@@ -214,8 +215,8 @@ static void run_phase(struct pass *pass)
 /* ---- Its kernels ---- */
 
 FLOW_KERNEL(cg_pass, FLOW_CG, struct flow_args,
-            (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(copies),
-             RW(rim_q_next), SUM(sums), NEIGHBOURS(rim_q)))
+            (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
+             RW(halo_q_next), SUM(sums), NEIGHBOURS(halo_q)))
 
 static void open_pass(const duite_call *call, const struct cg_pass_fields *on, struct pass *pass)
 {
@@ -226,11 +227,11 @@ static void open_pass(const duite_call *call, const struct cg_pass_fields *on, s
     pass->values = flow_matrix_in(call, &pass->table, on->a);
     pass->b = on->f;
     pass->rows = solve_rows_plain(on->dv, on->r, on->p, on->q);
-    pass->z_copies = on->copies;
-    pass->p_copies = on->copies + pass->table.n_copies;
-    pass->rim = on->rim_q_next;
+    pass->z_ghosts = on->ghosts;
+    pass->p_ghosts = on->ghosts + pass->table.n_ghosts;
+    pass->halo = on->halo_q_next;
     pass->part = on->sums;
-    pass->rims = on->rim_q;
+    pass->halos = on->halo_q;
     pass->m = (struct flow_preconditioner){
         .flow = flow_of(call), .table = &pass->table, .block = on->args->block};
 }
@@ -244,9 +245,9 @@ static int cg_pass_body(const duite_call *call, const struct cg_pass_fields *on)
 }
 
 FLOW_KERNEL(cg_pass_preconditioned, FLOW_CG, struct flow_args,
-            (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(copies),
-             RW(rim_q_next), RW(part), RW(z), RW(s), R(factor), NEIGHBOURS(rim_q), IF_MADE(basis),
-             IF_MADE(basis_copies), IF_MADE(motion)))
+            (R(table), R(scalars), R(a), R(f), RW(dv), RW(r), RW(p), RW(q), RW(ghosts),
+             RW(halo_q_next), RW(part), RW(z), RW(s), R(factor), NEIGHBOURS(halo_q), IF_MADE(basis),
+             IF_MADE(basis_ghosts), IF_MADE(motion)))
 static int cg_pass_preconditioned_body(const duite_call *call,
                                        const struct cg_pass_preconditioned_fields *on)
 {
@@ -260,10 +261,10 @@ static int cg_pass_preconditioned_body(const duite_call *call,
         .r = on->r,
         .p = on->p,
         .q = on->q,
-        .copies = on->copies,
-        .rim_q_next = on->rim_q_next,
+        .ghosts = on->ghosts,
+        .halo_q_next = on->halo_q_next,
         .sums = on->part,
-        .rim_q = on->rim_q,
+        .halo_q = on->halo_q,
     };
     struct pass pass;
     open_pass(call, &plain, &pass);
@@ -271,7 +272,7 @@ static int cg_pass_preconditioned_body(const duite_call *call,
     pass.rows.s = on->s;
     pass.m.factor = on->factor;
     pass.m.basis = on->basis;
-    pass.m.basis_copies = on->basis_copies;
+    pass.m.basis_ghosts = on->basis_ghosts;
     pass.m.motion = on->motion;
     run_phase(&pass);
     return 0;
@@ -288,17 +289,18 @@ int flow_pass_start(struct flow_state *state, const struct flow_args *args)
     return code ? code : flow_halo_pack(state, args->block, 0);
 }
 
-/* What it reads of the neighbours are their rims or far ones (halo.c). */
+/* What it reads of the neighbours are their halos or packed ones (halo.c). */
 static int fork_block(struct flow_state *state, const struct flow_args *args)
 {
     const struct flow_table *t = state->flow->tables.block + args->block;
     const bool preconditioned = flow_is_preconditioned(state->flow);
     const struct flow_kernel *kernel =
         preconditioned ? &flow_kernel_cg_pass_preconditioned : &flow_kernel_cg_pass;
-    const size_t rims = preconditioned ? cg_pass_preconditioned_at_end : cg_pass_at_end;
+    const size_t halos = preconditioned ? cg_pass_preconditioned_at_end : cg_pass_at_end;
     const size_t n = flow_kernel_objects(state, kernel, args->block, NULL);
-    const duite_object *read = state->far.read[state->pass] + (t->slot - state->flow->tables.slot);
-    memcpy(state->refs + rims, read, t->n_slots * sizeof *read);
+    const duite_object *read =
+        state->packed.read[state->pass] + (t->neighbour - state->flow->tables.neighbour);
+    memcpy(state->refs + halos, read, t->n_neighbours * sizeof *read);
     return duite_fork(state->rt, &kernel->task, args, n, state->refs);
 }
 

@@ -19,14 +19,14 @@ int flow_cg(struct flow_state *state);
 
 /* What a solve reads of neighbours: memory, a part of flow_memory_take; which objects these are,
  * when the others are made (a failure is returned by the next get); forks of the tasks that pack
- * the far rims of a block, for even passes or odd ones. */
+ * the packed halos of a block, for even passes or odd ones. */
 void flow_halo_take(struct flow_state *state);
 void flow_halo_free(struct flow_state *state);
 void flow_halo_make(struct flow_state *state); /* flow_run_begin does */
 int flow_halo_pack(struct flow_state *state, uint32_t block, int to);
 
 /* Decides on the preconditioner of a run: the model's, but no coarse part of more than
- * SOLVE_MOST_BLOCKS blocks; and on patches. Local. */
+ * SOLVE_MAX_BLOCKS blocks; and on patches. Local. */
 void flow_preconditioner_choose(struct flow *flow, uint32_t n_blocks);
 /* That once more on all ranks, and the pattern of the coarse factor, if there is one. */
 int flow_preconditioner_prepare(struct flow_state *state);

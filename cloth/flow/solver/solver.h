@@ -38,7 +38,7 @@ struct flow_preconditioner {
     const struct flow_table *table;
     uint32_t block;
     const double *factor;                 /* NULL: there is no preconditioner */
-    const phys_vec *basis, *basis_copies; /* of rows, copies; NULL: there is no coarse part */
+    const phys_vec *basis, *basis_ghosts; /* of rows, ghosts; NULL: there is no coarse part */
     const double *motion;                 /* of all patches: the coarse part of s */
 };
 
@@ -47,12 +47,12 @@ struct flow_preconditioner {
 double flow_precondition(const struct flow_preconditioner *m, const phys_vec *q, phys_vec *s,
                          double *right);
 
-/* Adds the coarse part to s. The first half of a pass (solve_advance) for the copies of one
- * neighbour, with that part; rim: of its s. `at`: of all copies of the block, places in what is
+/* Adds the coarse part to s. The first half of a pass (solve_advance) for the ghosts of one
+ * neighbour, with that part; halo: of its s. `at`: of all ghosts of the block, places in what is
  * read. (coarse.c) */
 void flow_coarse_prolong(const struct flow_preconditioner *m, phys_vec *s);
-void flow_coarse_advance_copies(const struct flow_preconditioner *m, uint32_t slot,
-                                const struct solve_scalars *scalars, const double *rim,
+void flow_coarse_advance_ghosts(const struct flow_preconditioner *m, uint32_t neighbour,
+                                const struct solve_scalars *scalars, const double *halo,
                                 const uint32_t *at, phys_vec *z, phys_vec *p);
 /* P' q of each patch. */
 void flow_coarse_restrict(const struct flow_preconditioner *m, const phys_vec *q, double *right);

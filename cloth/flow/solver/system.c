@@ -20,7 +20,7 @@ struct making {
 };
 
 /* Writes the diagonal of the matrix and a filter that lets all pass until the one of
- * the step comes (flow_hold); what follows is for the values. */
+ * the step comes (flow_constrain); what follows is for the values. */
 static void *begin_matrix(const duite_call *call, const struct flow_table *t, phys_vec *matrix)
 {
     const double h = flow_args_of(call)->h;
@@ -38,19 +38,20 @@ static void *begin_matrix(const duite_call *call, const struct flow_table *t, ph
 
 /* ---- Springs ---- */
 
-/* The springs of a block, or some of them, into values. Those into slot s; UINT32_MAX: inner. */
+/* The springs of a block, or some of them, into values. Those into neighbour s; UINT32_MAX: inner.
+ */
 static void some_springs(const struct making *m, const struct phys_springs *springs, uint32_t s,
                          phys_vec *value)
 {
     const bool inner = s == UINT32_MAX;
-    const phys_vec *x = m->view.x, *x_other = inner ? x : flow_rows_of(m->view.rim_x, s);
+    const phys_vec *x = m->view.x, *x_other = inner ? x : flow_rows_of(m->view.halo_x, s);
     if (!m->b)
         phys_springs_matrix(springs, m->h, x, x_other, value);
     else if (inner)
         phys_springs_system(springs, m->h, m->push, x, m->view.v, m->b, value);
     else
         phys_springs_system_cut(springs, m->h, m->push, x, m->view.v, x_other,
-                                flow_rows_of(m->view.rim_v, s), m->b, value);
+                                flow_rows_of(m->view.halo_v, s), m->b, value);
 }
 
 /* Springs from .. to - 1; in half storage so many at once that they stay in the nearest cache. */
@@ -75,7 +76,7 @@ static void all_springs(const struct making *m)
     if (!t->n_stiff && m->sums)
         return;
     springs_from(m, 0, t->n_inner, UINT32_MAX);
-    for (uint32_t s = 0; s < t->n_slots; s++)
+    for (uint32_t s = 0; s < t->n_neighbours; s++)
         springs_from(m, t->n_inner + t->cut[s], t->n_inner + t->cut[s + 1], s);
 }
 
@@ -150,7 +151,7 @@ static void make_system(const duite_call *call, const struct flow_table *t, doub
 }
 
 FLOW_KERNEL(system, FLOW_MATRIX, struct flow_args,
-            (R(table), R(x), R(v), W(f), W(a), NEIGHBOURS(rim_x), NEIGHBOURS(rim_v)))
+            (R(table), R(x), R(v), W(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
 static int system_body(const duite_call *call, const struct system_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
@@ -161,7 +162,7 @@ static int system_body(const duite_call *call, const struct system_fields *on)
 
 /* Where f has the forces. */
 FLOW_KERNEL(system_of_forces, FLOW_MATRIX, struct flow_args,
-            (R(table), R(x), R(v), RW(f), W(a), NEIGHBOURS(rim_x), NEIGHBOURS(rim_v)))
+            (R(table), R(x), R(v), RW(f), W(a), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
 static int system_of_forces_body(const duite_call *call, const struct system_of_forces_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
@@ -171,11 +172,11 @@ static int system_of_forces_body(const duite_call *call, const struct system_of_
 }
 
 /* The matrix alone. */
-FLOW_KERNEL(matrix, FLOW_MATRIX, struct flow_args, (R(table), R(x), W(a), NEIGHBOURS(rim_x)))
+FLOW_KERNEL(matrix, FLOW_MATRIX, struct flow_args, (R(table), R(x), W(a), NEIGHBOURS(halo_x)))
 static int matrix_body(const duite_call *call, const struct matrix_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
-    const struct flow_view view = {.x = on->x, .rim_x = on->rim_x};
+    const struct flow_view view = {.x = on->x, .halo_x = on->halo_x};
     make_system(call, &table, 0, &view, NULL, on->a);
     return 0;
 }

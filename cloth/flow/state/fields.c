@@ -24,12 +24,12 @@ static size_t rows(const struct flow_state *state, uint32_t block)
 
 static size_t halo(const struct flow_state *state, uint32_t block)
 {
-    return table_of(state, block)->n_rim;
+    return table_of(state, block)->n_halo;
 }
 
 static size_t ghosts(const struct flow_state *state, uint32_t block)
 {
-    return table_of(state, block)->n_copies;
+    return table_of(state, block)->n_ghosts;
 }
 
 static size_t watched(const struct flow_state *state, uint32_t block)
@@ -164,7 +164,7 @@ static bool coarse_run(const struct flow_state *state, uint32_t block)
 
 static bool probed(const struct flow_state *state, uint32_t block)
 {
-    return flow_tells(state) && table_of(state, block)->n_watched;
+    return flow_writes_probes(state) && table_of(state, block)->n_watched;
 }
 
 static bool saves(const struct flow_state *state, uint32_t block)

@@ -27,15 +27,15 @@
     X(x,            ONE,     phys_vec,      4, rows,         always,       is_state)               \
     X(v,            ONE,     phys_vec,      4, rows,         always,       is_state)               \
     X(f,            ONE,     phys_vec,      4, rows,         always,       is_state_of_verlet)     \
-    X(rim_x,        ONE,     phys_vec,      4, halo,         always,       is_derived)             \
-    X(rim_v,        ONE,     phys_vec,      4, halo,         always,       is_derived)             \
+    X(halo_x,        ONE,     phys_vec,      4, halo,         always,       is_derived)             \
+    X(halo_v,        ONE,     phys_vec,      4, halo,         always,       is_derived)             \
     X(table,        ONE,     unsigned char, 1, table_bytes,  always,       is_derived)             \
     /* before a step that may be given up */                                                       \
     X(kept_x,       ONE,     phys_vec,      4, rows,         kept,         is_work)                \
     X(kept_v,       ONE,     phys_vec,      4, rows,         kept,         is_work)                \
     /* explicit integrators (explicit.h); v0: RK4's, or Verlet's of the half step */               \
-    X(spare_rim_x,  ONE,     phys_vec,      4, halo,         explicit_run, is_work)                \
-    X(spare_rim_v,  ONE,     phys_vec,      4, halo,         explicit_run, is_work)                \
+    X(spare_halo_x,  ONE,     phys_vec,      4, halo,         explicit_run, is_work)                \
+    X(spare_halo_v,  ONE,     phys_vec,      4, halo,         explicit_run, is_work)                \
     X(v0,           ONE,     phys_vec,      4, rows,         staged,       is_work)                \
     X(x0,           ONE,     phys_vec,      4, rows,         runge,        is_work)                \
     X(sum_x,        ONE,     phys_vec,      4, rows,         runge,        is_work)                \
@@ -53,8 +53,8 @@
     X(p,            ONE,     phys_vec,      4, rows,         implicit_run, is_work)                \
     X(q,            ONE,     phys_vec,      4, rows,         implicit_run, is_work)                \
     /* r (with a preconditioner z) of the ghosts, then p; what neighbours read of q (of s) */      \
-    X(copies,       ONE,     phys_vec,      8, ghosts,       implicit_run, is_work)                \
-    X(rim_q,        BY_PASS, double,        3, halo,         implicit_run, is_work)                \
+    X(ghosts,       ONE,     phys_vec,      8, ghosts,       implicit_run, is_work)                \
+    X(halo_q,        BY_PASS, double,        3, halo,         implicit_run, is_work)                \
     /* a preconditioner; part: sums of a pass and the coarse right side */                         \
     X(z,            ONE,     phys_vec,      4, rows,         conditioned,  is_work)                \
     X(s,            ONE,     phys_vec,      4, rows,         conditioned,  is_work)                \
@@ -62,12 +62,12 @@
     X(part,         ONE,     double,        1, part,         conditioned,  is_work)                \
     /* its coarse part */                                                                          \
     X(basis,        ONE,     phys_vec,      4, rows,         coarse_run,   is_derived)             \
-    X(rim_basis,    ONE,     phys_vec,      4, halo,         coarse_run,   is_derived)             \
-    X(basis_copies, ONE,     phys_vec,      4, ghosts,       coarse_run,   is_derived)             \
+    X(halo_basis,    ONE,     phys_vec,      4, halo,         coarse_run,   is_derived)             \
+    X(basis_ghosts, ONE,     phys_vec,      4, ghosts,       coarse_run,   is_derived)             \
     X(coupling,     ONE,     double,        1, couplings,    coarse_run,   is_work)                \
     /* where probes are: the force on each row; what is reported of them */                        \
-    X(felt,         ONE,     phys_vec,      4, rows,         probed,       is_work)                \
-    X(seen,         ONE,     double, FLOW_SEEN, watched,     probed,       is_work)                \
+    X(probe_force,         ONE,     phys_vec,      4, rows,         probed,       is_work)                \
+    X(probe_values,         ONE,     double, FLOW_PROBE_VALUES, watched,     probed,       is_work)                \
     /* what travels to rank 0 on its own, empty in between; what is saved of the system of a step */ \
     X(parcel,       SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows, always, is_work)              \
     X(saved,        ONE,     double,        1, saved,        saves,        is_work)
@@ -91,7 +91,7 @@
     X(token,        ONE,     int64_t,       1, one,          always,       is_work)                \
     X(seconds,      ONE,     double, FLOW_PARTS, one,        always,       is_work)                \
     X(energy,       ONE,     double, FLOW_SUMS, one,         always,       is_work)                \
-    X(told,         ONE,     uint64_t, FLOW_TELL, one,       always,       is_work)
+    X(broadcast,         ONE,     uint64_t, FLOW_BROADCAST, one,       always,       is_work)
 /* clang-format on */
 
 #define FLOW_FIELDS(X) FLOW_BLOCK_FIELDS(X) FLOW_RUN_FIELDS(X)

@@ -41,35 +41,35 @@ enum {
     FLOW_NO_FILTER
 };
 
-/* Rows of a block's rim that blocks on one other rank read. */
-struct flow_far_rim {
+/* Rows of a block's halo that blocks on one other rank read. */
+struct flow_packed_halo {
     uint32_t n;
-    const uint32_t *row; /* n: places in the rim, ascending */
+    const uint32_t *row; /* n: places in the halo, ascending */
 };
 
 /* Vertices that no face or edge uses: n of them, ascending, with their places. */
-struct flow_rest {
+struct flow_unused {
     uint32_t n, *vertex;
     double (*position)[3];
 };
 
-/* On rank 0 as flow_prepare left it; elsewhere what rank 0 told. */
+/* On rank 0 as flow_prepare left it; elsewhere what it received from rank 0. */
 struct flow {
-    const struct model *model; /* rank 0: the program's; else &told */
-    struct model told;         /* without names, materials, cloths */
+    const struct model *model; /* rank 0: the program's; else &received */
+    struct model received;     /* without names, materials, cloths */
     uint32_t n_vertices, n_triangles;
     uint64_t n_steps, partition_hash;
     double inertia, release;   /* kg m^2, J: flow_source_inertia, flow_source_release */
     struct flow_tables tables; /* shapes */
-    void *shared;              /* obstacles, key frames, slots and copies that the above point to */
+    void *shared; /* obstacles, key frames, neighbours and ghosts that the above point to */
 
     /* Rank 0 only. */
     char warning[9][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
                              extents, shear; empty: none */
-    struct flow_source source; /* until the tables are dealt */
+    struct flow_source source; /* until the tables are distributed */
     uint32_t *vertex;          /* by place; from then on */
     struct flow_names names;   /* from then on */
-    struct flow_rest rest;
+    struct flow_unused unused;
     struct flow_watched watched;
     char *header; /* of the table of probes; NULL: none */
 
@@ -79,32 +79,32 @@ struct flow {
     const struct flow_progress *progress; /* tasks ask it whether to stop; NULL: nobody is asked */
     unsigned n_clocks;
     struct flow_clock *clock; /* a worker */
-    struct phys_pair *sums;   /* a worker, most_entries: room for a matrix while it is assembled in
+    struct phys_pair *sums;   /* a worker, max_entries: room for a matrix while it is assembled in
                                * half storage; else NULL */
     size_t n_sums;            /* of a worker */
-    phys_vec *copies; /* a worker, two for each of most_copies: what elements see of neighbours
+    phys_vec *ghosts; /* a worker, two for each of max_ghosts: what elements see of neighbours
                        * while a task works on them; NULL: there are no elements */
-    size_t n_copies;  /* of a worker */
-    phys_vec *forces; /* a worker, most_rows: those that an explicit step needs for itself alone;
+    size_t n_ghosts;  /* of a worker */
+    phys_vec *forces; /* a worker, max_rows: those that an explicit step needs for itself alone;
                        * NULL: the run is implicit */
     size_t n_forces;  /* of a worker */
-    uint32_t *at; /* of each copy of all blocks: its place in what a pass reads of the neighbour */
-    struct flow_far_rim *far_rim; /* of halo.c */
-    uint32_t *far_row;
+    uint32_t *at; /* of each ghost of all blocks: its place in what a pass reads of the neighbour */
+    struct flow_packed_halo *packed_halo; /* of halo.c */
+    uint32_t *packed_row;
     enum model_preconditioner preconditioner;
     uint32_t patches;             /* of a block; patch k of block b is number patches * b + k */
     struct solve_pattern pattern; /* of the coarse factor, if there is one: of patches */
-    uint32_t *first_beside;       /* then: pattern.n + 1, of each patch's neighbours among all */
-    uint32_t *beside;             /* of all patches, patch after patch, ascending in each */
+    uint32_t *patch_first;        /* then: pattern.n + 1, of each patch's neighbours among all */
+    uint32_t *patch_neighbour;    /* of all patches, patch after patch, ascending in each */
     struct cloth_error trouble;   /* of this rank: why it cannot begin, why a frame was not written;
                                    * changed by the main thread when no task runs, and by `frame` */
     /* On rank 0: written by the tasks `frame`, one at a time, and by the main thread when no task
      * runs. */
     const struct flow_output *output;
-    double *room;    /* n_vertices x 3: positions of a frame; NULL: there is no output */
-    double *row;     /* of the table of probes; NULL: it is not written */
-    double *seen;    /* watched x FLOW_SEEN */
-    uint64_t frames; /* written */
+    double *room;         /* n_vertices x 3: positions of a frame; NULL: there is no output */
+    double *row;          /* of the table of probes; NULL: it is not written */
+    double *probe_values; /* watched x FLOW_PROBE_VALUES */
+    uint64_t frames;      /* written */
     uint64_t hash;
 };
 

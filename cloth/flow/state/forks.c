@@ -20,8 +20,8 @@ static duite_object *add_parameter(const struct flow_state *state, uint32_t bloc
     const struct flow_table *t = tables->block + block;
     switch (whose) {
     case FLOW_OF_NEIGHBOURS:
-        for (uint32_t s = 0; s < t->n_slots; s++)
-            *refs++ = flow_field_object(state, field, t->slot[s]);
+        for (uint32_t s = 0; s < t->n_neighbours; s++)
+            *refs++ = flow_field_object(state, field, t->neighbour[s]);
         return refs;
     case FLOW_OF_ALL:
         for (uint32_t b = 0; b < tables->n_blocks; b++)

@@ -7,7 +7,7 @@
  * once, above its body:
  *
  *     FLOW_KERNEL(velocity, FLOW_VELOCITY, struct flow_args,
- *                 (R(table), R(dv), RW(v), W(rim_v), SUM(status)))
+ *                 (R(table), R(dv), RW(v), W(halo_v), SUM(status)))
  *     static int velocity_body(const duite_call *call, const struct velocity_fields *on)
  *     {
  *         const struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -23,7 +23,7 @@
  *
  *     R W RW     reads, overwrites, changes: a field of the task's block or of the run
  *     SUM MAX    contributes to it, added up, or the largest counts
- *     NEIGHBOURS reads this field of each neighbour, in the order of slots
+ *     NEIGHBOURS reads this field of each neighbour, in the order of neighbours
  *     ALL        reads this field of every block that has it
  *     IF_MADE    reads it if it exists in the run; else the pointer is NULL. Either all fields of a
  *                kernel with this word exist or none
@@ -58,14 +58,14 @@ struct flow_parameter {
     enum flow_field_id field;
 };
 
-enum { FLOW_MOST_PARAMETERS = 24 }; /* as many as FLOW_EACH takes */
+enum { FLOW_MAX_PARAMETERS = 24 }; /* as many as FLOW_EACH takes */
 
 struct flow_kernel {
     duite_kernel task;
-    struct flow_parameter parameter[FLOW_MOST_PARAMETERS + 1]; /* ended by FLOW_NOBODY */
+    struct flow_parameter parameter[FLOW_MAX_PARAMETERS + 1]; /* ended by FLOW_NOBODY */
 };
 
-/* FLOW_EACH(f, k, (a, b)) is f(k, a) f(k, b); at most FLOW_MOST_PARAMETERS. */
+/* FLOW_EACH(f, k, (a, b)) is f(k, a) f(k, b); at most FLOW_MAX_PARAMETERS. */
 #define FLOW_EACH(f, k, list) FLOW_EACH_OF(f, k, FLOW_LISTED list)
 #define FLOW_LISTED(...)      __VA_ARGS__
 #define FLOW_EACH_OF(...)     FLOW_EACH_IN(__VA_ARGS__)
@@ -145,7 +145,7 @@ struct flow_kernel {
 #define FLOW_OPEN_MAX(k, field)        FLOW_OPEN_R(k, field)
 #define FLOW_OPEN_NEIGHBOURS(k, field)                                                             \
     on.field = call->param + next;                                                                 \
-    next += flow_shape_of(call)->n_slots;
+    next += flow_shape_of(call)->n_neighbours;
 #define FLOW_OPEN_ALL(k, field)                                                                    \
     on.field = call->param + next;                                                                 \
     next += flow_of(call)->tables.n_blocks;
@@ -256,7 +256,7 @@ int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *k
 size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *kernel,
                            uint32_t block, const struct flow_as *as);
 
-/* In a body: the rows, or the numbers, of the neighbour in slot s, or of block s. */
+/* In a body: the rows, or the numbers, of the neighbour in neighbour s, or of block s. */
 static inline const phys_vec *flow_rows_of(const duite_param *field, size_t s)
 {
     return field[s].data;

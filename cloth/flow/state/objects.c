@@ -1,6 +1,6 @@
 /* Objects of fields are made, freed, found and swapped by loops over their table (fields.h). A
  * block's objects live where its positions live; the graph that mappings see is the one of the
- * blocks: a block weighs its vertices, and two blocks exchange what each has copies of. */
+ * blocks: a block weighs its vertices, and two blocks exchange what each has as ghosts. */
 #include "cloth/flow/bodies.h"
 
 #include <stddef.h>
@@ -25,11 +25,11 @@ static void hint_block(struct flow_state *state, uint32_t b)
     double *bytes = state->rows;
     const struct flow_tables *tables = &state->flow->tables;
     const struct flow_table *t = tables->block + b;
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        state->refs[s] = state->block[t->slot[s]].x;
-        bytes[s] = 3.0 * sizeof(double) * (t->copies[s + 1] - t->copies[s]);
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
+        state->refs[s] = state->block[t->neighbour[s]].x;
+        bytes[s] = 3.0 * sizeof(double) * (t->ghosts[s + 1] - t->ghosts[s]);
     }
-    duite_hint(state->rt, state->block[b].x, t->n, t->n_slots, state->refs, bytes);
+    duite_hint(state->rt, state->block[b].x, t->n, t->n_neighbours, state->refs, bytes);
 }
 
 void flow_objects_make(struct flow_state *state)
@@ -59,8 +59,8 @@ static int free_objects(duite *rt, size_t n, const duite_object *object)
 int flow_objects_free(struct flow_state *state)
 {
     int code = state->solve.generation ? duite_graph_free(state->rt, state->solve) : DUITE_OK;
-    for (uint32_t i = 0; i < state->far.n; i++) {
-        const int failed = free_objects(state->rt, 2, state->far.rim[i].object);
+    for (uint32_t i = 0; i < state->packed.n; i++) {
+        const int failed = free_objects(state->rt, 2, state->packed.halo[i].object);
         code = code ? code : failed;
     }
     for (uint32_t b = 0; state->block && b < state->flow->tables.n_blocks; b++) {

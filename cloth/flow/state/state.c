@@ -1,4 +1,4 @@
-/* The state of a run, x and v with their rims: its start, and the copy that is kept of it until a
+/* The state of a run, x and v with their halos: its start, and the copy that is kept of it until a
  * step is accepted. Restoring the copy makes the step undone. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/integrators/integrator.h"
@@ -6,7 +6,7 @@
 #include "cloth/flow/step/step.h"
 
 FLOW_KERNEL(initial, FLOW_NO_PART, struct flow_block_args,
-            (R(table), W(x), W(v), W(rim_x), W(rim_v)))
+            (R(table), W(x), W(v), W(halo_x), W(halo_v)))
 static int initial_body(const duite_call *call, const struct initial_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -14,8 +14,8 @@ static int initial_body(const duite_call *call, const struct initial_fields *on)
         on->x[i] = t->position[i];
         on->v[i] = t->velocity[i];
     }
-    flow_write_rim(t, on->x, on->rim_x);
-    flow_write_rim(t, on->v, on->rim_v);
+    flow_write_halo(t, on->x, on->halo_x);
+    flow_write_halo(t, on->v, on->halo_v);
     return 0;
 }
 
@@ -47,14 +47,14 @@ int flow_keep(struct flow_state *state)
 }
 
 FLOW_KERNEL(restore, FLOW_POSITION, struct flow_block_args,
-            (R(table), R(kept_x), R(kept_v), W(x), W(v), W(rim_x), W(rim_v)))
+            (R(table), R(kept_x), R(kept_v), W(x), W(v), W(halo_x), W(halo_v)))
 static int restore_body(const duite_call *call, const struct restore_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     memcpy(on->x, on->kept_x, duite_count(call, FLOW_INDEX_OF(restore, x)) * sizeof(double));
     memcpy(on->v, on->kept_v, duite_count(call, FLOW_INDEX_OF(restore, v)) * sizeof(double));
-    flow_write_rim(&table, on->kept_x, on->rim_x);
-    flow_write_rim(&table, on->kept_v, on->rim_v);
+    flow_write_halo(&table, on->kept_x, on->halo_x);
+    flow_write_halo(&table, on->kept_v, on->halo_v);
     return 0;
 }
 

@@ -54,7 +54,7 @@ enum {
  * the speed, l / L of the springs that count for it, and minus that. */
 enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
 /* Numbers of a watched vertex: position, velocity, reaction; sums of a free piece. */
-enum { FLOW_SEEN = 9, FLOW_PIECE_SUMS = 8 };
+enum { FLOW_PROBE_VALUES = 9, FLOW_PIECE_SUMS = 8 };
 /* Energies, J, and after them the torque that uncorrected triangles leave, N m (kernels_energy.c).
  */
 enum {
@@ -66,35 +66,35 @@ enum {
     FLOW_TORQUE = FLOW_ENERGIES,
     FLOW_SUMS = FLOW_TORQUE + 3
 };
-/* Indices into what rank 0 tells, I64 x 2. */
-enum { FLOW_TELL_FRAMES, FLOW_TELL_HASH, FLOW_TELL };
+/* Indices into what rank 0 broadcasts, I64 x 2. */
+enum { FLOW_BROADCAST_FRAMES, FLOW_BROADCAST_HASH, FLOW_BROADCAST };
 
 /* A position or velocity as it is hashed: little-endian doubles x y z. */
 enum { FLOW_VERTEX_BYTES = 24 };
 
-/* What all ranks are told before anything else. */
+/* What rank 0 broadcasts before anything else. */
 struct flow_head {
     uint64_t n_steps, partition_hash;
     double inertia, release;
-    uint64_t shared_bytes;                                         /* of what they are told next */
-    uint32_t n_vertices, n_triangles, n_blocks, n_slots, n_copies; /* of all blocks */
-    uint32_t most_rows, most_slots, most_rim, most_entries;        /* of any block */
-    uint32_t most_copies, n_pieces;
+    uint64_t shared_bytes;                                              /* of the next broadcast */
+    uint32_t n_vertices, n_triangles, n_blocks, n_neighbours, n_ghosts; /* of all blocks */
+    uint32_t max_rows, max_neighbours, max_halo, max_entries;           /* of any block */
+    uint32_t max_ghosts, n_pieces;
     uint64_t n_elements; /* of all blocks */
     struct model model;  /* pointers mean nothing elsewhere */
 };
 
-/* What passes read of their neighbours' rims of s (halo.c). */
-struct flow_far {
+/* What passes read of their neighbours' halos of s (halo.c). */
+struct flow_packed {
     duite_object *read[2]; /* a neighbour of each block, block after block: of even passes, odd */
     struct {
         duite_object object[2];
-    } * rim;         /* n far rims, block after block; three numbers a row */
+    } * halo;        /* n packed halos, block after block; three numbers a row */
     uint32_t *first; /* a block, and one more: its first one */
     uint32_t n;
     size_t n_rows;
     int *home;        /* a block */
-    uint32_t *number; /* room for the rows of any rim */
+    uint32_t *number; /* room for the rows of any halo */
 };
 
 /* A step that is under way. */
@@ -120,7 +120,7 @@ struct flow_state {
     struct flow_report *report;
     struct cloth_error *error;
     struct flow_objects *block;
-    struct flow_far far;
+    struct flow_packed packed;
     duite_graph solve; /* a round of conjugate gradients */
     struct flow_run_objects run;
     unsigned pass; /* of a round that is recorded: 0 or 1; else 0 */
@@ -158,7 +158,7 @@ static inline bool flow_shows(const struct flow_state *state)
 }
 
 /* Whether rows of probes are wanted. */
-static inline bool flow_tells(const struct flow_state *state)
+static inline bool flow_writes_probes(const struct flow_state *state)
 {
     return state->flow->model->n_probes && state->output && state->output->row;
 }
@@ -171,7 +171,7 @@ static inline double flow_time(const struct flow_state *state)
 
 /* ---- state.c: forks. Collective; they return what the runtime does ---- */
 
-/* Forks the start of all blocks; what copies x and v to what is kept, or to two others in its
+/* Forks the start of all blocks; what ghosts x and v to what is kept, or to two others in its
  * place; what makes it the state again. */
 int flow_initialise(struct flow_state *state);
 int flow_keep(struct flow_state *state);

@@ -34,71 +34,71 @@ static void lay_list(const struct flow_table *t, int i, struct room *room,
     list->material = next(room, n_materials * kind->material_bytes);
 }
 
-static void lay(const struct flow_table *t, struct room *room, struct flow_image *image)
+static void lay(const struct flow_table *t, struct room *room, struct flow_layout *layout)
 {
     const size_t n = t->n, sides = (size_t)t->n_inner + t->n_cut;
-    const size_t slots = (size_t)t->n_slots + 1;
-    image->load = next(room, n * sizeof *image->load);
-    image->position = next(room, n * sizeof *image->position);
-    image->velocity = next(room, n * sizeof *image->velocity);
-    image->mass = next(room, n * sizeof *image->mass);
-    image->drag = next(room, n * sizeof *image->drag);
-    image->free = next(room, n * sizeof *image->free);
-    image->stiffness = next(room, sides * sizeof *image->stiffness);
-    image->damping = next(room, sides * sizeof *image->damping);
-    image->length = next(room, sides * sizeof *image->length);
-    image->end = next(room, sides * sizeof *image->end);
-    image->copy_end = next(room, t->n_cut_entries * sizeof *image->copy_end);
-    image->held = next(room, t->n_held * sizeof *image->held);
-    image->vertex = next(room, n * sizeof *image->vertex);
-    image->row = next(room, (n + 1) * sizeof *image->row);
-    image->column = next(room, t->n_entries * sizeof *image->column);
-    image->rim = next(room, t->n_rim * sizeof *image->rim);
-    image->cut = next(room, slots * sizeof *image->cut);
-    image->cut_entry = next(room, slots * sizeof *image->cut_entry);
-    image->at = next(room, t->format == SOLVE_SPRINGS ? 0 : sides * sizeof *image->at);
-    image->n_held = next(room, sizeof *image->n_held);
-    image->moved = next(room, t->n_moved * sizeof *image->moved);
-    image->guided = next(room, t->n_guided * sizeof *image->guided);
-    image->loose = next(room, t->n_loose * sizeof *image->loose);
-    image->varying = next(room, t->n_varying * sizeof *image->varying);
-    image->varying_force = next(room, t->n_varying * sizeof *image->varying_force);
-    image->watched = next(room, t->n_watched * sizeof *image->watched);
-    image->stretch = next(room, sides);
+    const size_t neighbours = (size_t)t->n_neighbours + 1;
+    layout->load = next(room, n * sizeof *layout->load);
+    layout->position = next(room, n * sizeof *layout->position);
+    layout->velocity = next(room, n * sizeof *layout->velocity);
+    layout->mass = next(room, n * sizeof *layout->mass);
+    layout->drag = next(room, n * sizeof *layout->drag);
+    layout->free = next(room, n * sizeof *layout->free);
+    layout->stiffness = next(room, sides * sizeof *layout->stiffness);
+    layout->damping = next(room, sides * sizeof *layout->damping);
+    layout->length = next(room, sides * sizeof *layout->length);
+    layout->end = next(room, sides * sizeof *layout->end);
+    layout->ghost_end = next(room, t->n_cut_entries * sizeof *layout->ghost_end);
+    layout->held = next(room, t->n_held * sizeof *layout->held);
+    layout->vertex = next(room, n * sizeof *layout->vertex);
+    layout->row = next(room, (n + 1) * sizeof *layout->row);
+    layout->column = next(room, t->n_entries * sizeof *layout->column);
+    layout->halo = next(room, t->n_halo * sizeof *layout->halo);
+    layout->cut = next(room, neighbours * sizeof *layout->cut);
+    layout->cut_entry = next(room, neighbours * sizeof *layout->cut_entry);
+    layout->at = next(room, t->format == SOLVE_SPRINGS ? 0 : sides * sizeof *layout->at);
+    layout->n_held = next(room, sizeof *layout->n_held);
+    layout->moved = next(room, t->n_moved * sizeof *layout->moved);
+    layout->sliding = next(room, t->n_sliding * sizeof *layout->sliding);
+    layout->loose = next(room, t->n_loose * sizeof *layout->loose);
+    layout->varying = next(room, t->n_varying * sizeof *layout->varying);
+    layout->varying_force = next(room, t->n_varying * sizeof *layout->varying_force);
+    layout->watched = next(room, t->n_watched * sizeof *layout->watched);
+    layout->stretch = next(room, sides);
     for (int i = 0; i < ELEMENT_KINDS; i++)
-        lay_list(t, i, room, image->list + i);
+        lay_list(t, i, room, layout->list + i);
 }
 
 size_t flow_table_bytes(const struct flow_table *table)
 {
     struct room room = {0};
-    struct flow_image image;
-    lay(table, &room, &image);
+    struct flow_layout layout;
+    lay(table, &room, &layout);
     return room.used;
 }
 
-struct flow_image flow_table_image(const struct flow_table *table, void *image)
+struct flow_layout flow_table_layout(const struct flow_table *table, void *layout)
 {
-    struct room room = {.base = image};
-    struct flow_image arrays;
+    struct room room = {.base = layout};
+    struct flow_layout arrays;
     lay(table, &room, &arrays);
     return arrays;
 }
 
-void flow_table_open(struct flow_table *t, const void *image)
+void flow_table_open(struct flow_table *t, const void *layout)
 {
-    const struct flow_image arrays = flow_table_image(t, (void *)image); /* it is only read */
+    const struct flow_layout arrays = flow_table_layout(t, (void *)layout); /* it is only read */
     t->vertex = arrays.vertex;
     t->cut = arrays.cut;
-    t->rim = arrays.rim;
+    t->halo = arrays.halo;
     t->watched = arrays.watched;
     t->moved = (const uint32_t(*)[2])arrays.moved;
-    t->guided = (const uint32_t(*)[2])arrays.guided;
+    t->sliding = (const uint32_t(*)[2])arrays.sliding;
     t->loose = (const uint32_t(*)[2])arrays.loose;
     t->varying = (const uint32_t(*)[2])arrays.varying;
     t->varying_force = arrays.varying_force;
     t->end = (const uint32_t(*)[2])arrays.end;
-    t->copy_end = (const uint32_t(*)[2])arrays.copy_end;
+    t->ghost_end = (const uint32_t(*)[2])arrays.ghost_end;
     t->stiffness = arrays.stiffness;
     t->damping = arrays.damping;
     t->length = arrays.length;
@@ -117,12 +117,12 @@ void flow_table_open(struct flow_table *t, const void *image)
     memcpy(t->list, arrays.list, sizeof t->list);
 }
 
-uint32_t flow_table_copy(const struct flow_table *t, uint32_t s, uint32_t row)
+uint32_t flow_table_ghost(const struct flow_table *t, uint32_t s, uint32_t row)
 {
-    uint32_t low = t->copies[s], high = t->copies[s + 1];
+    uint32_t low = t->ghosts[s], high = t->ghosts[s + 1];
     while (high - low > 1) {
         const uint32_t middle = low + (high - low) / 2;
-        if (t->copy[middle] <= row)
+        if (t->ghost[middle] <= row)
             low = middle;
         else
             high = middle;

@@ -28,37 +28,39 @@ struct flow_table {
     uint32_t n_elements[ELEMENT_KINDS], n_materials; /* of a kind; of the model */
     uint32_t n_entries, n_cut_entries; /* of the matrix: what is counted here may be one entry */
     enum solve_format format;
-    uint32_t n_rim;           /* rows that any neighbour needs */
+    uint32_t n_halo;          /* rows that any neighbour needs */
     uint32_t n_held;          /* springs from free rows here to held ends: entries at most */
     uint32_t n_watched;       /* rows that probes are at */
     uint32_t n_moved;         /* rows that pins move */
-    uint32_t n_guided;        /* rows that pins leave free along a guide */
+    uint32_t n_sliding;       /* rows that pins leave free along a slider */
     uint32_t n_loose;         /* rows of pieces that no pin holds */
     uint32_t n_varying;       /* loads that vary */
     uint32_t lowest, highest; /* of its vertices */
-    uint32_t n_slots;         /* neighbours */
-    uint32_t n_copies;        /* rows that the cut springs end at, neighbour after neighbour */
+    uint32_t n_neighbours;    /* neighbours */
+    uint32_t n_ghosts;        /* rows that the cut springs end at, neighbour after neighbour */
     uint32_t joined;          /* which of its patches are (cloth/solve/patches.h) */
-    uint32_t rim_start[SOLVE_MOST_PATCHES + 1]; /* places in the rim where patches begin */
+    uint32_t halo_start[SOLVE_MAX_PATCHES + 1]; /* places in the halo where patches begin */
     /* Not owned: */
-    const uint32_t *slot;   /* n_slots: blocks, ascending */
-    const uint32_t *copies; /* n_slots + 1: those of slot s are copies[s] .. */
-    const uint32_t *joins;  /* n_slots: which patches here and there */
-    const uint32_t *copy;   /* n_copies: places in the neighbour's rim, ascending in a slot */
-    /* The table itself, in an image that is not owned; NULL but where one is open. */
-    const uint32_t *vertex;       /* n: of the input */
-    const uint32_t *cut;          /* n_slots + 1: the springs into slot s are n_inner + cut[s] .. */
-    const uint32_t *rim;          /* n_rim: ascending */
-    const uint32_t *watched;      /* n_watched: rows, ascending */
-    const uint32_t (*moved)[2];   /* n_moved: row, ascending; number of its motion, from 1 */
-    const uint32_t (*guided)[2];  /* n_guided: row, ascending; number of its guide, from 1 */
-    const uint32_t (*loose)[2];   /* n_loose: row, ascending; number of its piece, from 1 */
-    const uint32_t (*varying)[2]; /* n_varying: row, ascending; number of its course, from 1 */
-    const phys_vec *varying_force; /* n_varying: N, times the course */
-    const uint32_t (*end)[2];      /* inner: rows; cut: row here, place in the neighbour's rim */
-    const uint32_t (*copy_end)[2]; /* cut entries: row here, number of the copy */
-    const uint32_t *cut_entry; /* n_slots + 1: the cut entries into slot s are cut_entry[s] .. */
-    const uint32_t *at;        /* half storage: of each spring, its entry */
+    const uint32_t *neighbour; /* n_neighbours: blocks, ascending */
+    const uint32_t *ghosts;    /* n_neighbours + 1: those of neighbour s are ghosts[s] .. */
+    const uint32_t *joins;     /* n_neighbours: which patches here and there */
+    const uint32_t *ghost; /* n_ghosts: places in the neighbour's halo, ascending in a neighbour */
+    /* The table itself, in a layout that is not owned; NULL but where one is open. */
+    const uint32_t *vertex; /* n: of the input */
+    const uint32_t
+        *cut; /* n_neighbours + 1: the springs into neighbour s are n_inner + cut[s] .. */
+    const uint32_t *halo;           /* n_halo: ascending */
+    const uint32_t *watched;        /* n_watched: rows, ascending */
+    const uint32_t (*moved)[2];     /* n_moved: row, ascending; number of its motion, from 1 */
+    const uint32_t (*sliding)[2];   /* n_sliding: row, ascending; number of its slider, from 1 */
+    const uint32_t (*loose)[2];     /* n_loose: row, ascending; number of its piece, from 1 */
+    const uint32_t (*varying)[2];   /* n_varying: row, ascending; number of its curve, from 1 */
+    const phys_vec *varying_force;  /* n_varying: N, times the curve */
+    const uint32_t (*end)[2];       /* inner: rows; cut: row here, place in the neighbour's halo */
+    const uint32_t (*ghost_end)[2]; /* cut entries: row here, number of the ghost */
+    const uint32_t
+        *cut_entry;     /* n_neighbours + 1: the cut entries into neighbour s are cut_entry[s] .. */
+    const uint32_t *at; /* half storage: of each spring, its entry */
     const double *stiffness, *damping, *length;
     const unsigned char *stretch; /* counts for the largest stretch */
     struct element_list list[ELEMENT_KINDS];
@@ -70,25 +72,25 @@ struct flow_table {
 
 struct flow_tables {
     uint32_t n_blocks;
-    struct flow_table *block;    /* shapes, unless somebody opens the tables; not owned */
-    const uint32_t *slot, *copy; /* of all blocks, block after block; not owned */
+    struct flow_table *block;          /* shapes, unless somebody opens the tables; not owned */
+    const uint32_t *neighbour, *ghost; /* of all blocks, block after block; not owned */
 };
 
-/* The arrays of a table as they lie in its image, one piece of memory, for who makes it. */
-struct flow_image {
+/* The arrays of a table as they lie in its layout, one piece of memory, for who makes it. */
+struct flow_layout {
     phys_vec *load, *position, *velocity; /* n */
     double *mass, *drag, *free;           /* n */
     double *stiffness, *damping, *length; /* n_inner + n_cut */
     uint32_t (*end)[2];                   /* n_inner + n_cut */
-    uint32_t (*copy_end)[2];              /* n_cut_entries */
+    uint32_t (*ghost_end)[2];             /* n_cut_entries */
     uint32_t (*held)[2];                  /* n_held */
     uint32_t (*moved)[2];                 /* n_moved */
-    uint32_t (*guided)[2];                /* n_guided */
+    uint32_t (*sliding)[2];               /* n_sliding */
     uint32_t (*loose)[2];                 /* n_loose */
     uint32_t (*varying)[2];               /* n_varying */
     phys_vec *varying_force;              /* n_varying */
-    uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_entries */, *rim;
-    uint32_t *cut, *cut_entry; /* n_slots + 1 */
+    uint32_t *vertex /* n */, *row /* n + 1 */, *column /* n_entries */, *halo;
+    uint32_t *cut, *cut_entry; /* n_neighbours + 1 */
     uint32_t *watched;         /* n_watched */
     uint32_t *at;              /* n_inner + n_cut; of springs as entries: none */
     uint32_t *n_held;          /* 1: held entries */
@@ -96,18 +98,19 @@ struct flow_image {
     struct element_list list[ELEMENT_KINDS];
 };
 
-/* Bytes of an image, which its shape decides; and where its arrays are. image: aligned to 64 bytes.
+/* Bytes of a layout, which its shape decides; and where its arrays are. layout: aligned to 64
+ * bytes.
  */
 size_t flow_table_bytes(const struct flow_table *table);
-struct flow_image flow_table_image(const struct flow_table *table, void *image);
+struct flow_layout flow_table_layout(const struct flow_table *table, void *layout);
 
-/* Lets the arrays of a table that has its shape point into the image. */
-void flow_table_open(struct flow_table *table, const void *image);
+/* Lets the arrays of a table that has its shape point into the layout. */
+void flow_table_open(struct flow_table *table, const void *layout);
 
-/* Where a row of the rim of slot s is among the block's copies. */
-uint32_t flow_table_copy(const struct flow_table *table, uint32_t s, uint32_t row);
+/* Where a row of the halo of neighbour s is among the block's ghosts. */
+uint32_t flow_table_ghost(const struct flow_table *table, uint32_t s, uint32_t row);
 
-/* The inner springs of a block; those into neighbour slot s. */
+/* The inner springs of a block; those into neighbour s. */
 static inline struct phys_springs flow_table_springs(const struct flow_table *t, uint32_t from,
                                                      uint32_t to)
 {
@@ -126,7 +129,7 @@ static inline struct phys_springs flow_table_cut(const struct flow_table *t, uin
 /* The cut entries, and the doubles of the values of all. */
 static inline struct solve_cut flow_table_cut_entries(const struct flow_table *t)
 {
-    return (struct solve_cut){t->cut_entry[t->n_slots], t->copy_end, t->n_rim, t->rim};
+    return (struct solve_cut){t->cut_entry[t->n_neighbours], t->ghost_end, t->n_halo, t->halo};
 }
 static inline size_t flow_table_doubles(const struct flow_table *t)
 {

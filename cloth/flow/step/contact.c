@@ -1,11 +1,11 @@
-/* Guides and contact in the solve. A row that a guide holds is filtered by it. A vertex that lies
- * on an obstacle, or comes to it in the step by the velocity it has, is held along the normal by
- * the filter of the solve. Before the forces its velocity along the normal is made the one that
- * ends the step on the surface, so that they and the right side see it (b - A z of Ascher &
- * Boxerman 2003, with the change z made beforehand, as for pins). One that lies there is let go
- * when the forces on it pull it off. */
+/* Slider constraints and contact in the solve. A row that a slider holds is filtered by it. A
+ * vertex that lies on an obstacle, or comes to it in the step by the velocity it has, is held along
+ * the normal by the filter of the solve. Before the forces its velocity along the normal is made
+ * the one that ends the step on the surface, so that they and the right side see it (b - A z of
+ * Ascher & Boxerman 2003, with the change z made beforehand, as for pins). One that lies there is
+ * let go when the forces on it pull it off. */
 #include "cloth/contact/meet.h"
-#include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/sliders.h"
 #include "cloth/flow/step/step.h"
 
 /* Whether a row can leave an obstacle with the normal *way, which becomes the way along which it
@@ -14,12 +14,12 @@
 static bool can_leave(struct flow_pins *pins, uint32_t row, phys_vec *way)
 {
     const phys_vec *filter = flow_pins_filter(pins, row);
-    return pins->table->free[row] != 0 && (!filter || flow_guide_way(filter, way));
+    return pins->table->free[row] != 0 && (!filter || flow_slider_way(filter, way));
 }
 
 /* Gives rows the velocity that ends the step on the obstacle. */
-static void touch_obstacle(const duite_call *call, const struct flow_table *t,
-                           const struct contact_shape *obstacle, const phys_vec *x, phys_vec *v)
+static void predict_obstacle(const duite_call *call, const struct flow_table *t,
+                             const struct contact_shape *obstacle, const phys_vec *x, phys_vec *v)
 {
     struct contact_pose pose;
     struct flow_pins pins;
@@ -36,21 +36,21 @@ static void touch_obstacle(const duite_call *call, const struct flow_table *t,
     }
 }
 
-FLOW_KERNEL(touch, FLOW_COLLIDE, struct flow_args, (R(table), R(x), RW(v), W(rim_v)))
-static int touch_body(const duite_call *call, const struct touch_fields *on)
+FLOW_KERNEL(predict_contact, FLOW_COLLIDE, struct flow_args, (R(table), R(x), RW(v), W(halo_v)))
+static int predict_contact_body(const duite_call *call, const struct predict_contact_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
     const struct model *model = flow_of(call)->model;
     for (uint32_t p = 0; p < model->n_obstacles; p++)
-        touch_obstacle(call, &table, model->obstacles + p, on->x, on->v);
-    flow_write_rim(&table, on->v, on->rim_v);
+        predict_obstacle(call, &table, model->obstacles + p, on->x, on->v);
+    flow_write_halo(&table, on->v, on->halo_v);
     return 0;
 }
 
-int flow_contact_touch(struct flow_state *state)
+int flow_contact_predict(struct flow_state *state)
 {
     struct flow_args args = flow_attempt_args(state);
-    return flow_fork_each(state, &flow_kernel_touch, &args);
+    return flow_fork_each(state, &flow_kernel_predict_contact, &args);
 }
 
 /* ---- The filter of the solve ---- */
@@ -58,8 +58,8 @@ int flow_contact_touch(struct flow_state *state)
 FLOW_KERNEL(contact, FLOW_COLLIDE, struct flow_args, (R(table), R(x), R(v), R(f), W(filter)))
 
 /* Holds the rows that an obstacle holds. */
-static void hold_rows(const duite_call *call, const struct flow_table *t,
-                      const struct contact_shape *obstacle, const struct contact_fields *on)
+static void constrain_rows(const duite_call *call, const struct flow_table *t,
+                           const struct contact_shape *obstacle, const struct contact_fields *on)
 {
     struct contact_pose pose;
     struct flow_pins pins;
@@ -75,7 +75,7 @@ static void hold_rows(const duite_call *call, const struct flow_table *t,
         const enum contact_meeting how =
             contact_meet(&hit, flow_args_of(call)->h, on->v + i, &speed, &due);
         if (how == CONTACT_LANDS || (how == CONTACT_LIES && phys_dot(on->f + i, &way) <= 0))
-            solve_hold(&hit.normal, on->filter + i);
+            solve_constrain(&hit.normal, on->filter + i);
     }
 }
 
@@ -105,16 +105,16 @@ static int contact_body(const duite_call *call, const struct contact_fields *on)
     const struct model *model = flow_of(call)->model;
     phys_vec *filter = on->filter;
     struct flow_pins pins;
-    struct flow_guide guide;
+    struct flow_slider slider;
     flow_pins_begin(call, t, &pins);
     for (uint32_t i = 0; i < t->n; i++)
         filter[i] = (phys_vec){0, 0, 0, 1};
-    for (uint32_t i = 0; i < t->n_guided; i++) {
-        flow_pins_guide(&pins, i, &guide);
-        filter[t->guided[i][0]] = guide.filter;
+    for (uint32_t i = 0; i < t->n_sliding; i++) {
+        flow_pins_slider(&pins, i, &slider);
+        filter[t->sliding[i][0]] = slider.filter;
     }
     for (uint32_t p = 0; model_solves_contact(model) && p < model->n_obstacles; p++)
-        hold_rows(call, t, model->obstacles + p, on);
+        constrain_rows(call, t, model->obstacles + p, on);
     return model->own_filter ? filter_own(call, t, on) : 0;
 }
 
@@ -124,8 +124,8 @@ int flow_contact_filter(struct flow_state *state, struct flow_args args)
 }
 
 /* Filters the right side, and gives the matrix its filter. */
-FLOW_KERNEL(hold, FLOW_COLLIDE, struct flow_args, (R(table), R(filter), RW(f), RW(a)))
-static int hold_body(const duite_call *call, const struct hold_fields *on)
+FLOW_KERNEL(constrain, FLOW_COLLIDE, struct flow_args, (R(table), R(filter), RW(f), RW(a)))
+static int constrain_body(const duite_call *call, const struct constrain_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     for (uint32_t i = 0; i < t->n; i++) {
@@ -136,33 +136,34 @@ static int hold_body(const duite_call *call, const struct hold_fields *on)
     return 0;
 }
 
-int flow_contact_hold(struct flow_state *state, struct flow_args args)
+int flow_contact_constrain(struct flow_state *state, struct flow_args args)
 {
-    return flow_fork_each(state, &flow_kernel_hold, &args);
+    return flow_fork_each(state, &flow_kernel_constrain, &args);
 }
 
 /* ---- After a step: what is inside an obstacle is put on it ---- */
 
-/* Rows that a guide holds leave an obstacle along it. Returns how many rows of the block met it. */
+/* Rows that a slider holds leave an obstacle along it. Returns how many rows of the block met it.
+ */
 static size_t obstacle_meets(const duite_call *call, const struct flow_table *t,
                              const struct contact_shape *obstacle, phys_vec *x, phys_vec *v)
 {
     struct contact_pose pose;
     struct contact_hit hit;
     struct flow_pins pins;
-    struct flow_guide guide;
+    struct flow_slider slider;
     uint32_t from = 0;
     size_t touched = 0;
     flow_obstacle_pose(call, obstacle, &pose);
     flow_pins_begin(call, t, &pins);
-    for (uint32_t i = 0; i < t->n_guided; i++) {
-        const uint32_t row = t->guided[i][0];
+    for (uint32_t i = 0; i < t->n_sliding; i++) {
+        const uint32_t row = t->sliding[i][0];
         touched += contact_project(obstacle, &pose, row - from, t->free + from, x + from, v + from);
         from = row + 1;
         contact_closest(obstacle, &pose, 1, x + row, &hit);
-        flow_pins_guide(&pins, i, &guide);
+        flow_pins_slider(&pins, i, &slider);
         phys_vec way = hit.normal;
-        if (flow_guide_way(&guide.filter, &way))
+        if (flow_slider_way(&slider.filter, &way))
             touched += contact_leave(&hit, &way, x + row, v + row);
     }
     return touched +
@@ -170,7 +171,7 @@ static size_t obstacle_meets(const duite_call *call, const struct flow_table *t,
 }
 
 FLOW_KERNEL(collide, FLOW_COLLIDE, struct flow_args,
-            (R(table), RW(x), RW(v), W(rim_x), W(rim_v), SUM(status)))
+            (R(table), RW(x), RW(v), W(halo_x), W(halo_v), SUM(status)))
 static int collide_body(const duite_call *call, const struct collide_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
@@ -178,8 +179,8 @@ static int collide_body(const duite_call *call, const struct collide_fields *on)
     for (uint32_t i = 0; i < model->n_obstacles; i++)
         on->status[FLOW_TOUCHED] +=
             (double)obstacle_meets(call, t, model->obstacles + i, on->x, on->v);
-    flow_write_rim(t, on->x, on->rim_x);
-    flow_write_rim(t, on->v, on->rim_v);
+    flow_write_halo(t, on->x, on->halo_x);
+    flow_write_halo(t, on->v, on->halo_v);
     return flow_check(call, t, on->x, "position", on->status);
 }
 

@@ -1,4 +1,4 @@
-/* Elements see rows of neighbours as copies, which a task takes from the rims where it runs; each
+/* Elements see rows of neighbours as ghosts, which a task takes from the halos where it runs; each
  * worker has room for those of one block. Kinds are worked on in their order, each in that of its
  * list. */
 #include "cloth/flow/bodies.h"
@@ -13,28 +13,29 @@ bool flow_has_elements(const struct flow_table *t)
     return has;
 }
 
-/* The rows that the block copies, of the vector whose rims these are. */
-static const phys_vec *copy_rims(const struct flow_table *t, const duite_param *rims,
-                                 phys_vec *copy)
+/* The ghosts of the block, of the vector whose halos these are. */
+static const phys_vec *copy_halos(const struct flow_table *t, const duite_param *halos,
+                                  phys_vec *ghost)
 {
-    for (uint32_t s = 0; s < t->n_slots; s++) {
-        const phys_vec *rim = flow_rows_of(rims, s);
-        for (uint32_t i = t->copies[s]; i < t->copies[s + 1]; i++)
-            copy[i] = rim[t->copy[i]];
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
+        const phys_vec *halo = flow_rows_of(halos, s);
+        for (uint32_t i = t->ghosts[s]; i < t->ghosts[s + 1]; i++)
+            ghost[i] = halo[t->ghost[i]];
     }
-    return copy;
+    return ghost;
 }
 
 struct phys_sight flow_elements_see(const duite_call *call, const struct flow_table *t,
                                     const struct flow_view *view)
 {
     const struct flow *flow = flow_of(call);
-    phys_vec *room = flow->copies + call->worker * flow->n_copies;
-    struct phys_sight sight = {.n = t->n, .x = view->x, .x_copy = copy_rims(t, view->rim_x, room)};
+    phys_vec *room = flow->ghosts + call->worker * flow->n_ghosts;
+    struct phys_sight sight = {
+        .n = t->n, .x = view->x, .x_ghost = copy_halos(t, view->halo_x, room)};
     if (!view->v)
         return sight;
     sight.v = view->v;
-    sight.v_copy = copy_rims(t, view->rim_v, room + t->n_copies);
+    sight.v_ghost = copy_halos(t, view->halo_v, room + t->n_ghosts);
     return sight;
 }
 

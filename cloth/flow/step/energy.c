@@ -1,31 +1,31 @@
 /* Energies are of the state that the tasks forked so far leave, and change nothing of it. A spring
  * between two blocks gives half of its own to each. Sums are contributions, so that they are the
  * same for any ranks and threads. */
-#include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/sliders.h"
 #include "cloth/flow/step/step.h"
 
 #include "cloth/physics/energy.h"
 #include "cloth/physics/particle.h"
 
 FLOW_KERNEL(energy, FLOW_NO_PART, struct flow_args,
-            (R(table), R(x), R(v), SUM(energies), NEIGHBOURS(rim_x)))
+            (R(table), R(x), R(v), SUM(energies), NEIGHBOURS(halo_x)))
 static int energy_body(const duite_call *call, const struct energy_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const double *gravity = flow_of(call)->model->gravity;
     double *sums = on->energies, fastest = 0;
     struct phys_springs springs = flow_table_inner(t);
-    const struct flow_view view = {.x = on->x, .rim_x = on->rim_x};
+    const struct flow_view view = {.x = on->x, .halo_x = on->halo_x};
     sums[FLOW_ENERGY_MOTION] = phys_kinetic(t->n, t->mass, on->v, &fastest);
     sums[FLOW_ENERGY_GRAVITY] = phys_energy_weight(t->n, t->mass, gravity, on->x);
     sums[FLOW_ENERGY_LOADS] = phys_energy_load(t->n, t->mass, gravity, t->load, on->x) +
                               flow_varying_energy(call, t, on->x);
     sums[FLOW_ENERGY_ELASTIC] = flow_elements_energy(call, t, &view, sums + FLOW_TORQUE) +
                                 phys_energy_springs(&springs, on->x, on->x);
-    for (uint32_t s = 0; s < t->n_slots; s++) {
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
         springs = flow_table_cut(t, s);
         sums[FLOW_ENERGY_ELASTIC] +=
-            0.5 * phys_energy_springs(&springs, on->x, flow_rows_of(on->rim_x, s));
+            0.5 * phys_energy_springs(&springs, on->x, flow_rows_of(on->halo_x, s));
     }
     return 0;
 }
@@ -37,7 +37,7 @@ static int level_body(const duite_call *call, const struct level_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     phys_accelerate(t->n, t->mass, t->free, on->f);
-    flow_guides_filter(call, t, on->f);
+    flow_sliders_filter(call, t, on->f);
     for (uint32_t i = 0; i < t->n; i++)
         on->f[i] = on->v[i] + 0.5 * on->args->h * on->f[i];
     return 0;
@@ -97,7 +97,7 @@ bool flow_energy_gained(const struct flow_state *state, bool touched)
     const struct model *model = state->flow->model;
     const struct flow_guard *guard = &state->guard;
     return model_is_guarded(model) && !guard->off && !touched &&
-           guard->sum - guard->lowest > model->energy_growth * fmax(guard->most, guard->moving);
+           guard->sum - guard->lowest > model->energy_growth * fmax(guard->max, guard->moving);
 }
 
 /* The guard is on from the second step without contact on: what the first one begins with was not
@@ -111,7 +111,7 @@ static void note_guard(struct flow_state *state, bool touched)
         return;
     }
     guard->lowest = flow_energy_gained(state, false) ? guard->sum : fmin(guard->lowest, guard->sum);
-    guard->most = fmax(guard->most, guard->moving);
+    guard->max = fmax(guard->max, guard->moving);
 }
 
 void flow_energy_note(struct flow_state *state, bool touched)
@@ -133,11 +133,11 @@ static void begin(struct flow_state *state)
     struct flow_report *report = state->report;
     const struct flow_energy *start = &report->start;
     const double total = start->kinetic + start->elastic + start->gravity + start->loads;
-    const bool told = state->flow->model->energy_steps;
+    const bool reported = state->flow->model->energy_steps;
     state->guard = (struct flow_guard){
-        .lowest = total, .most = fmax(start->kinetic + start->elastic, state->flow->release)};
-    report->energy_lowest = report->energy_highest = told ? total : NAN;
-    report->energy_gained = told ? 0 : NAN;
+        .lowest = total, .max = fmax(start->kinetic + start->elastic, state->flow->release)};
+    report->energy_lowest = report->energy_highest = reported ? total : NAN;
+    report->energy_gained = reported ? 0 : NAN;
 }
 
 int flow_energy_get(struct flow_state *state, struct flow_energy *energy)

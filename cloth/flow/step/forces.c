@@ -1,5 +1,5 @@
 /* All forces on the rows of a block, in an order that its table gives. What a body needs of
- * neighbours it finds in their rims. */
+ * neighbours it finds in their halos. */
 #include "cloth/flow/bodies.h"
 
 #include "cloth/physics/particle.h"
@@ -16,10 +16,10 @@ static void add_inner(const duite_call *call, const struct flow_table *t,
     if (!t->n_stiff)
         return;
     phys_springs_force(&springs, view->x, view->v, f);
-    for (uint32_t s = 0; s < t->n_slots; s++) {
+    for (uint32_t s = 0; s < t->n_neighbours; s++) {
         springs = flow_table_cut(t, s);
-        phys_springs_force_cut(&springs, view->x, view->v, flow_rows_of(view->rim_x, s),
-                               flow_rows_of(view->rim_v, s), f);
+        phys_springs_force_cut(&springs, view->x, view->v, flow_rows_of(view->halo_x, s),
+                               flow_rows_of(view->halo_v, s), f);
     }
 }
 
@@ -40,7 +40,7 @@ void flow_forces_free(const duite_call *call, const struct flow_table *t,
 }
 
 FLOW_KERNEL(force, FLOW_FORCE, struct flow_args,
-            (R(table), R(x), R(v), W(f), NEIGHBOURS(rim_x), NEIGHBOURS(rim_v)))
+            (R(table), R(x), R(v), W(f), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
 static int force_body(const duite_call *call, const struct force_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);
@@ -51,7 +51,7 @@ static int force_body(const duite_call *call, const struct force_fields *on)
 
 /* Without the drag. */
 FLOW_KERNEL(force_free, FLOW_FORCE, struct flow_args,
-            (R(table), R(x), R(v), W(f), NEIGHBOURS(rim_x), NEIGHBOURS(rim_v)))
+            (R(table), R(x), R(v), W(f), NEIGHBOURS(halo_x), NEIGHBOURS(halo_v)))
 static int force_free_body(const duite_call *call, const struct force_free_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table);

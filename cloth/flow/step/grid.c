@@ -33,7 +33,7 @@ bool flow_verdict_refuses(const struct flow_verdict *verdict)
     const double growth = verdict->after - verdict->before;
     if (verdict->failed || !isfinite(verdict->after))
         return true;
-    return (verdict->most > 0 && verdict->after > verdict->most && growth > 0) ||
+    return (verdict->max > 0 && verdict->after > verdict->max && growth > 0) ||
            (verdict->growth > 0 && growth > verdict->growth);
 }
 
@@ -41,5 +41,5 @@ bool flow_verdict_calm(const struct flow_verdict *verdict)
 {
     const double growth = verdict->after - verdict->before;
     return !(verdict->growth > 0 && growth > verdict->growth / 2) &&
-           !(verdict->most > 0 && growth > 0 && verdict->after + 2 * growth > verdict->most);
+           !(verdict->max > 0 && growth > 0 && verdict->after + 2 * growth > verdict->max);
 }

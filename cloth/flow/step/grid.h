@@ -29,7 +29,7 @@ void flow_grid_accept(struct flow_grid *grid, bool calm);
 /* What a step of a run changed, and what it may. */
 struct flow_verdict {
     double before, after; /* largest stretch at its begin and end; NaN: something is none */
-    double most, growth;  /* the limit of the stretch and of its growth in a step; 0: none */
+    double max, growth;   /* the limit of the stretch and of its growth in a step; 0: none */
     bool failed;          /* the solve failed, or a number is beyond all measure */
 };
 

@@ -1,10 +1,10 @@
-/* Pins that move, and those that leave their vertices free along guides: lines or planes. Before a
+/* Pins that move, and those that leave their vertices free along sliders: lines or planes. Before a
  * step the vertices get, as far as they are held, the velocity that brings them, in the step, to
  * where they are due: forces and the solve then see it as that of any other vertex, and a row that
  * is held keeps it (b - A z of Ascher & Boxerman 2003, with the change z made beforehand). After
- * the step they are put exactly there, so that nothing adds up. In the step a guide is where it is
+ * the step they are put exactly there, so that nothing adds up. In the step a slider is where it is
  * at its end. */
-#include "cloth/flow/step/guides.h"
+#include "cloth/flow/step/sliders.h"
 #include "cloth/flow/step/step.h"
 
 #include "cloth/physics/motion.h"
@@ -25,53 +25,53 @@ static const struct phys_pose *pose_of(struct flow_pins *pins, uint32_t motion)
     return &pins->pose;
 }
 
-void flow_pins_guide(struct flow_pins *pins, uint32_t i, struct flow_guide *guide)
+void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *slider)
 {
-    const uint32_t *row = pins->table->guided[i];
-    const struct model_guide *is = pins->model->guides + row[1] - 1;
+    const uint32_t *row = pins->table->sliding[i];
+    const struct model_slider *is = pins->model->sliders + row[1] - 1;
     phys_vec d = {is->direction[0], is->direction[1], is->direction[2], 0};
-    guide->at = pins->table->position[row[0]];
+    slider->at = pins->table->position[row[0]];
     if (is->motion) {
         const struct phys_pose *pose = pose_of(pins, is->motion);
-        phys_pose_point(pose, &guide->at, &guide->at);
+        phys_pose_point(pose, &slider->at, &slider->at);
         phys_pose_direction(pose, &d, &d);
     }
-    guide->filter = d;
-    guide->filter[3] = is->kind == MODEL_PLANE;
+    slider->filter = d;
+    slider->filter[3] = is->kind == MODEL_PLANE;
 }
 
 const phys_vec *flow_pins_filter(struct flow_pins *pins, uint32_t row)
 {
     const struct flow_table *t = pins->table;
-    while (pins->next < t->n_guided && t->guided[pins->next][0] < row)
+    while (pins->next < t->n_sliding && t->sliding[pins->next][0] < row)
         pins->next++;
-    if (pins->next == t->n_guided || t->guided[pins->next][0] != row)
+    if (pins->next == t->n_sliding || t->sliding[pins->next][0] != row)
         return NULL;
-    flow_pins_guide(pins, pins->next, &pins->guide);
-    return &pins->guide.filter;
+    flow_pins_slider(pins, pins->next, &pins->slider);
+    return &pins->slider.filter;
 }
 
-void flow_guides_filter(const duite_call *call, const struct flow_table *t, phys_vec *y)
+void flow_sliders_filter(const duite_call *call, const struct flow_table *t, phys_vec *y)
 {
     struct flow_pins pins;
-    struct flow_guide guide;
+    struct flow_slider slider;
     flow_pins_begin(call, t, &pins);
-    for (uint32_t i = 0; i < t->n_guided; i++) {
-        flow_pins_guide(&pins, i, &guide);
-        solve_filter(&guide.filter, y + t->guided[i][0]);
+    for (uint32_t i = 0; i < t->n_sliding; i++) {
+        flow_pins_slider(&pins, i, &slider);
+        solve_filter(&slider.filter, y + t->sliding[i][0]);
     }
 }
 
-void flow_guides_keep(const duite_call *call, const struct flow_table *t, const phys_vec *before,
-                      phys_vec *y)
+void flow_sliders_keep(const duite_call *call, const struct flow_table *t, const phys_vec *before,
+                       phys_vec *y)
 {
     struct flow_pins pins;
-    struct flow_guide guide;
+    struct flow_slider slider;
     flow_pins_begin(call, t, &pins);
-    for (uint32_t i = 0; i < t->n_guided; i++) {
-        const uint32_t row = t->guided[i][0];
-        flow_pins_guide(&pins, i, &guide);
-        flow_guide_keep(&guide, before + row, y + row);
+    for (uint32_t i = 0; i < t->n_sliding; i++) {
+        const uint32_t row = t->sliding[i][0];
+        flow_pins_slider(&pins, i, &slider);
+        flow_slider_keep(&slider, before + row, y + row);
     }
 }
 
@@ -84,21 +84,22 @@ static int fork_moved(struct flow_state *state, const struct flow_kernel *kernel
     int code = DUITE_OK;
     for (; args.block < state->flow->tables.n_blocks && !code; args.block++) {
         const struct flow_table *t = state->flow->tables.block + args.block;
-        if (t->n_moved || t->n_guided)
+        if (t->n_moved || t->n_sliding)
             code = flow_fork_one(state, kernel, &args);
     }
     return code;
 }
 
-FLOW_KERNEL(drive, FLOW_VELOCITY, struct flow_args, (R(table), R(x), RW(v), W(rim_v)))
-static int drive_body(const duite_call *call, const struct drive_fields *on)
+FLOW_KERNEL(prescribe_velocity, FLOW_VELOCITY, struct flow_args, (R(table), R(x), RW(v), W(halo_v)))
+static int prescribe_velocity_body(const duite_call *call,
+                                   const struct prescribe_velocity_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     const double h = on->args->h;
     const phys_vec *x = on->x;
     phys_vec *v = on->v;
     struct flow_pins pins;
-    struct flow_guide guide;
+    struct flow_slider slider;
     flow_pins_begin(call, t, &pins);
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
@@ -106,44 +107,45 @@ static int drive_body(const duite_call *call, const struct drive_fields *on)
         phys_pose_point(pose_of(&pins, t->moved[i][1]), t->position + row, &to);
         v[row] = (to - x[row]) / h;
     }
-    for (uint32_t i = 0; i < t->n_guided; i++) {
-        const uint32_t row = t->guided[i][0];
-        flow_pins_guide(&pins, i, &guide);
-        const phys_vec due = (guide.at - x[row]) / h;
-        flow_guide_keep(&guide, &due, v + row);
+    for (uint32_t i = 0; i < t->n_sliding; i++) {
+        const uint32_t row = t->sliding[i][0];
+        flow_pins_slider(&pins, i, &slider);
+        const phys_vec due = (slider.at - x[row]) / h;
+        flow_slider_keep(&slider, &due, v + row);
     }
-    flow_write_rim(t, v, on->rim_v);
+    flow_write_halo(t, v, on->halo_v);
     return 0;
 }
 
-int flow_pins_drive(struct flow_state *state)
+int flow_pins_prescribe_velocity(struct flow_state *state)
 {
-    return fork_moved(state, &flow_kernel_drive);
+    return fork_moved(state, &flow_kernel_prescribe_velocity);
 }
 
-FLOW_KERNEL(place, FLOW_POSITION, struct flow_args, (R(table), RW(x), W(rim_x)))
-static int place_body(const duite_call *call, const struct place_fields *on)
+FLOW_KERNEL(prescribe_position, FLOW_POSITION, struct flow_args, (R(table), RW(x), W(halo_x)))
+static int prescribe_position_body(const duite_call *call,
+                                   const struct prescribe_position_fields *on)
 {
     const struct flow_table table = flow_table_in(call, on->table), *t = &table;
     phys_vec *x = on->x;
     struct flow_pins pins;
-    struct flow_guide guide;
+    struct flow_slider slider;
     flow_pins_begin(call, t, &pins);
     for (uint32_t i = 0; i < t->n_moved; i++) {
         const uint32_t row = t->moved[i][0];
         phys_pose_point(pose_of(&pins, t->moved[i][1]), t->position + row, x + row);
     }
-    for (uint32_t i = 0; i < t->n_guided; i++) {
-        flow_pins_guide(&pins, i, &guide);
-        flow_guide_keep(&guide, &guide.at, x + t->guided[i][0]);
+    for (uint32_t i = 0; i < t->n_sliding; i++) {
+        flow_pins_slider(&pins, i, &slider);
+        flow_slider_keep(&slider, &slider.at, x + t->sliding[i][0]);
     }
-    flow_write_rim(t, x, on->rim_x);
+    flow_write_halo(t, x, on->halo_x);
     return 0;
 }
 
-int flow_pins_place(struct flow_state *state)
+int flow_pins_prescribe_position(struct flow_state *state)
 {
-    return fork_moved(state, &flow_kernel_place);
+    return fork_moved(state, &flow_kernel_prescribe_position);
 }
 
 /* ---- Accelerations, for reactions ---- */
@@ -177,14 +179,14 @@ void flow_due_acceleration(const duite_call *call, uint32_t motion, const phys_v
     second_difference(args, x, a);
 }
 
-/* With R the guide's rotation: of the point of the guide where the vertex is, and twice dR/dt RT on
- * its velocity along the guide (Coriolis). */
-void flow_guide_acceleration(const duite_call *call, uint32_t guide, const phys_vec *x,
-                             const phys_vec *v, phys_vec *a)
+/* With R the slider's rotation: of the point of the slider where the vertex is, and twice dR/dt RT
+ * on its velocity along the slider (Coriolis). */
+void flow_slider_acceleration(const duite_call *call, uint32_t slider, const phys_vec *x,
+                              const phys_vec *v, phys_vec *a)
 {
     const struct flow_args *args = flow_args_of(call);
     const struct model *model = flow_of(call)->model;
-    const uint32_t motion = model->guides[guide - 1].motion;
+    const uint32_t motion = model->sliders[slider - 1].motion;
     struct phys_pose pose[3];
     phys_vec at[3], turned[2], own, along;
     *a = (phys_vec){0};

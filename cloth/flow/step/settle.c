@@ -17,7 +17,7 @@ enum { LEAST_GUARDED = FLOW_TICKS / 16 };
 enum { CALM_AFTER_GAIN = 8 * FLOW_TICKS };
 
 /* Shows a finished step to the program; on rank 0. */
-static void tell_progress(struct flow_state *state, uint64_t iterations)
+static void report_progress(struct flow_state *state, uint64_t iterations)
 {
     const struct flow_progress *progress = state->flow->progress;
     if (!progress || !progress->step || duite_rank(state->rt))
@@ -45,19 +45,19 @@ static void note(struct flow_state *state, const double status[FLOW_STATUS])
     report->cg_restarts += (uint64_t)status[FLOW_RESTARTS];
     report->factors_shifted += (uint64_t)status[FLOW_SHIFTED];
     state->stopping = state->stopping || status[FLOW_STOP] > 0;
-    tell_progress(state, iterations);
+    report_progress(state, iterations);
 }
 
 /* No step is short enough. */
 static int give_up(struct flow_state *state, const struct flow_verdict *verdict)
 {
     const struct flow_args args = flow_attempt_args(state);
-    const bool above = verdict->most > 0 && verdict->after > verdict->most;
+    const bool above = verdict->max > 0 && verdict->after > verdict->max;
     snprintf(state->reason, sizeof state->reason,
              "step %llu: in %g s the largest stretch of an edge grows from %g to %g times its "
              "length at rest, %s %g is allowed at most (%s)",
              (unsigned long long)(state->attempt.begin / FLOW_TICKS + 1), args.h, verdict->before,
-             verdict->after, above ? "up to" : "by", above ? verdict->most : verdict->growth,
+             verdict->after, above ? "up to" : "by", above ? verdict->max : verdict->growth,
              above ? "time.stretch_limit" : "time.stretch_growth");
     return FLOW_STRETCHED;
 }
@@ -114,7 +114,7 @@ static int await(struct flow_state *state, double status[FLOW_STATUS], struct fl
     const unsigned parity = state->attempt.parity;
     *verdict = (struct flow_verdict){.before = state->longest,
                                      .after = state->longest,
-                                     .most = model->stretch_limit,
+                                     .max = model->stretch_limit,
                                      .growth = model->stretch_growth};
     int code = duite_get(state->rt, state->run.status[parity], status);
     if (!code && flow_is_judged(model))
@@ -177,7 +177,7 @@ static struct flow_attempt next_attempt(const struct flow_state *state)
 
 /* Settles what is under way while `next` begins. A step that follows a shorter one does not begin
  * before: its length is not known. *begun: next has begun and follows what was accepted. */
-static int settle_beside(struct flow_state *state, bool *begun)
+static int settle_overlapped(struct flow_state *state, bool *begun)
 {
     const struct flow_attempt before = state->attempt;
     const struct flow_attempt next = next_attempt(state);
@@ -240,7 +240,7 @@ int flow_steps(struct flow_state *state)
     while (!code && (state->grid.now < state->grid.end)) {
         const uint64_t frame = state->next_frame;
         bool begun;
-        code = settle_beside(state, &begun);
+        code = settle_overlapped(state, &begun);
         if (!code && begun)
             code = flow_step_end(state);
         else if (!code && state->grid.now < state->grid.end) {

@@ -84,12 +84,12 @@ struct stage {
 /* In order, also of their parts. A new stage is a row. */
 static const struct stage stages[] = {
     {"keep", PREDICT, keeps_first, flow_keep},
-    {"drive pins", PREDICT, is_driven, flow_pins_drive},
-    {"touch obstacles", PREDICT, is_touched, flow_contact_touch},
+    {"prescribe velocities", PREDICT, is_driven, flow_pins_prescribe_velocity},
+    {"predict contact", PREDICT, is_touched, flow_contact_predict},
     {"constrain and solve: begin", SOLVE, always, fork_begin},
     {"keep", CORRECT, keeps_late, flow_keep},
     {"solve and move", CORRECT, always, fork_end},
-    {"place pins", CORRECT, is_driven, flow_pins_place},
+    {"prescribe positions", CORRECT, is_driven, flow_pins_prescribe_position},
     {"leave obstacles", CORRECT, meets_obstacles, flow_contact_project},
     {"stretch", OBSERVE, flow_is_judged, flow_stretch_fork},
     {"watch", OBSERVE, always, flow_watch},

@@ -26,15 +26,15 @@ int flow_steps(struct flow_state *state);
 int flow_status_fork(struct flow_state *state);
 
 /* Fork what moves the pins of a step: before its forces, and when x has moved. */
-int flow_pins_drive(struct flow_state *state);
-int flow_pins_place(struct flow_state *state);
+int flow_pins_prescribe_velocity(struct flow_state *state);
+int flow_pins_prescribe_position(struct flow_state *state);
 
 /* Fork contact (contact.c): before the forces, velocities that end the step on an obstacle; what
  * the solves of a step are filtered by, from x, v and f; the filter on the right side and in the
  * matrix; after the step, what puts vertices out of obstacles. */
-int flow_contact_touch(struct flow_state *state);
+int flow_contact_predict(struct flow_state *state);
 int flow_contact_filter(struct flow_state *state, struct flow_args args);
-int flow_contact_hold(struct flow_state *state, struct flow_args args);
+int flow_contact_constrain(struct flow_state *state, struct flow_args args);
 int flow_contact_project(struct flow_state *state);
 
 #endif

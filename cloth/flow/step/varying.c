@@ -5,12 +5,12 @@
 void flow_varying_add(const duite_call *call, const struct flow_table *t, phys_vec *f)
 {
     const struct model *model = flow_of(call)->model;
-    uint32_t course = 0; /* that the factor is of */
+    uint32_t curve = 0; /* that the factor is of */
     double factor = 1;
     for (uint32_t i = 0; i < t->n_varying; i++) {
-        if (course != t->varying[i][1])
-            factor = model_course_at(model, t->varying[i][1], flow_args_of(call)->now);
-        course = t->varying[i][1];
+        if (curve != t->varying[i][1])
+            factor = model_curve_at(model, t->varying[i][1], flow_args_of(call)->now);
+        curve = t->varying[i][1];
         f[t->varying[i][0]] += factor * t->varying_force[i];
     }
 }
@@ -20,7 +20,7 @@ double flow_varying_energy(const duite_call *call, const struct flow_table *t, c
     const struct model *model = flow_of(call)->model;
     double sum = 0;
     for (uint32_t i = 0; i < t->n_varying; i++)
-        sum -= model_course_at(model, t->varying[i][1], flow_args_of(call)->now) *
+        sum -= model_curve_at(model, t->varying[i][1], flow_args_of(call)->now) *
                phys_dot(t->varying_force + i, x + t->varying[i][0]);
     return sum;
 }

@@ -16,8 +16,8 @@ struct place {
 
 const char *mesh_path_shown(const char *path)
 {
-    size_t length = strlen(path), most = 600;
-    return length > most ? path + (length - most) : path;
+    size_t length = strlen(path), max = 600;
+    return length > max ? path + (length - max) : path;
 }
 
 static struct place place_of(const struct mesh_source *source, const char *array,
@@ -99,7 +99,7 @@ static int refuse_polygon(const struct mesh *mesh, const struct mesh_source *sou
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%s: the face is not convex and has %u corners; at most %d can be cut "
                           "into triangles",
-                          place.text, n, MESH_MOST_CORNERS);
+                          place.text, n, MESH_MAX_CORNERS);
     if (fault->kind == MESH_POLYGON_NO_AREA)
         return cloth_fail(error, CLOTH_E_INPUT,
                           "%s: the face has no area: its corners lie on a line, or it crosses "

@@ -10,7 +10,7 @@ struct mesh_source {
     const size_t *edge_line; /* and of each lone edge */
 };
 
-#define MESH_MOST 0x80000000u /* vertices and corners a mesh may have at most */
+#define MESH_MAX 0x80000000u /* vertices and corners a mesh may have at most */
 
 /* The end of a path that is too long for a sentence, so that the reason is never cut off. */
 const char *mesh_path_shown(const char *path);

@@ -21,8 +21,8 @@ static const char *metis_text(int code)
 
 static int fits(const struct mesh_graph *graph, struct cloth_error *error)
 {
-    const uint64_t most = IDX_MAX;
-    if (graph->n_nodes < most && graph->start[graph->n_nodes] <= most)
+    const uint64_t max = IDX_MAX;
+    if (graph->n_nodes < max && graph->start[graph->n_nodes] <= max)
         return CLOTH_OK;
     return cloth_fail(error, CLOTH_E_LIBRARY,
                       "a graph of %u vertices and %u neighbours is too large for METIS with "

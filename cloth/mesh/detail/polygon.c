@@ -225,7 +225,7 @@ int mesh_polygon_cut(const double *position, uint32_t n, const uint32_t *corner,
         return CLOTH_E_INPUT;
     const bool convex = is_convex(&p);
     fault->kind = MESH_POLYGON_TOO_LARGE;
-    if (!convex && n > MESH_MOST_CORNERS)
+    if (!convex && n > MESH_MAX_CORNERS)
         return CLOTH_E_INPUT;
     fault->kind = MESH_POLYGON_CROSSES;
     if (!convex && !is_simple(&p, fault->side))

@@ -5,14 +5,14 @@
 
 #include <stdint.h>
 
-enum { MESH_MOST_CORNERS = 10000 }; /* of a polygon that is not convex: it takes n^2 or more */
+enum { MESH_MAX_CORNERS = 10000 }; /* of a polygon that is not convex: it takes n^2 or more */
 
 /* What is wrong with a polygon. */
 struct mesh_polygon_fault {
     enum {
         MESH_POLYGON_NO_AREA, /* its corners are on one line, or its parts cancel */
         MESH_POLYGON_CROSSES, /* two of its sides meet where they are no neighbours, or fold back */
-        MESH_POLYGON_TOO_LARGE /* more than MESH_MOST_CORNERS corners, and not convex */
+        MESH_POLYGON_TOO_LARGE /* more than MESH_MAX_CORNERS corners, and not convex */
     } kind;
     uint32_t side[2]; /* that cross: from these corners on to the next ones, from 0 */
 };

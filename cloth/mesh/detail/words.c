@@ -47,7 +47,7 @@ bool mesh_word_number(const char *word, locale_t c, double *number)
 /* Reads a whole number and moves on behind it; false if there is none. */
 static bool whole_number(const char **at, long long *number)
 {
-    const long long most = (long long)MESH_MOST + 1;
+    const long long max = (long long)MESH_MAX + 1;
     const char *p = *at;
     bool negative = *p == '-';
     if (*p == '-' || *p == '+')
@@ -56,8 +56,8 @@ static bool whole_number(const char **at, long long *number)
         return false;
     long long n = 0;
     for (; *p >= '0' && *p <= '9'; p++)
-        n = n >= most ? most : n * 10 + (*p - '0');
-    n = n > most ? most : n;
+        n = n >= max ? max : n * 10 + (*p - '0');
+    n = n > max ? max : n;
     *number = negative ? -n : n;
     *at = p;
     return true;
@@ -85,10 +85,10 @@ bool mesh_word_corner(const char *word, struct mesh_corner *corner)
 struct mesh_quote mesh_word_quote(const char *word)
 {
     struct mesh_quote quote = {""};
-    size_t length = (size_t)(mesh_word_end(word) - word), most = sizeof quote.text - 4;
-    for (size_t i = 0; i < length && i < most; i++)
+    size_t length = (size_t)(mesh_word_end(word) - word), max = sizeof quote.text - 4;
+    for (size_t i = 0; i < length && i < max; i++)
         quote.text[i] = word[i] > ' ' && word[i] < 127 ? word[i] : '?';
-    if (length > most)
-        memcpy(quote.text + most, "...", 4);
+    if (length > max)
+        memcpy(quote.text + max, "...", 4);
     return quote;
 }

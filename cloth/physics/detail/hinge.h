@@ -7,7 +7,7 @@
 /* Four hinges at once. Everything is inlined and written for registers. */
 
 /* A triangle at the edge: its normal N = e x r or r x e, r from corner 0 to its third corner. */
-struct phys_wing {
+struct phys_hinge_face {
     struct phys_wide r, normal; /* m; of length 1 */
     struct phys_wide slope;     /* normal / height: theta's slope for the third corner, 1/m */
     phys_vec inverse;           /* 1 / |N| */
@@ -17,33 +17,34 @@ struct phys_wing {
 struct phys_hinge {
     struct phys_wide e, along; /* the edge from corner 0 to 1, of length 1 */
     phys_vec length, square;   /* of the edge, and 1 / length^2 */
-    struct phys_wing wing[2];
+    struct phys_hinge_face hinge_face[2];
     phys_vec s, cosine;        /* 2 sin(theta / 2), cos(theta / 2) */
     struct phys_wide slope[4]; /* of theta, 1/m */
 };
 
-PHYS_INLINE void phys_wing_make(const struct phys_hinge *h, int second, struct phys_wing *wing)
+PHYS_INLINE void phys_hinge_face_make(const struct phys_hinge *h, int second,
+                                      struct phys_hinge_face *hinge_face)
 {
     phys_vec square, size, along;
     struct phys_wide across;
     if (second)
-        phys_wide_cross(&wing->r, &h->e, &across);
+        phys_wide_cross(&hinge_face->r, &h->e, &across);
     else
-        phys_wide_cross(&h->e, &wing->r, &across);
+        phys_wide_cross(&h->e, &hinge_face->r, &across);
     phys_wide_dot(&across, &across, &square);
     phys_sqrt(&square, &size);
-    phys_inverse(&size, &wing->inverse);
-    phys_wide_scale(&wing->inverse, &across, &wing->normal);
-    const phys_vec height = h->length * wing->inverse; /* 1 / height */
-    phys_wide_scale(&height, &wing->normal, &wing->slope);
-    phys_wide_dot(&wing->r, &h->e, &along);
-    wing->foot = along * h->square;
+    phys_inverse(&size, &hinge_face->inverse);
+    phys_wide_scale(&hinge_face->inverse, &across, &hinge_face->normal);
+    const phys_vec height = h->length * hinge_face->inverse; /* 1 / height */
+    phys_wide_scale(&height, &hinge_face->normal, &hinge_face->slope);
+    phys_wide_dot(&hinge_face->r, &h->e, &along);
+    hinge_face->foot = along * h->square;
 }
 
 /* s and cos(theta / 2) of the two normals. */
 PHYS_INLINE void phys_hinge_angle(struct phys_hinge *h)
 {
-    const struct phys_wide *a = &h->wing[0].normal, *b = &h->wing[1].normal;
+    const struct phys_wide *a = &h->hinge_face[0].normal, *b = &h->hinge_face[1].normal;
     struct phys_wide less, more, across;
     phys_vec square, turned, minus;
     const phys_vec zero = {0};
@@ -69,20 +70,20 @@ PHYS_INLINE void phys_hinge_make(const struct phys_four *four, const uint32_t (*
     struct phys_wide x[4];
     phys_vec inverse, square;
     for (int k = 0; k < 4; k++)
-        phys_gather(four, corner, k, sight->n, sight->x, sight->x_copy, x + k);
+        phys_gather(four, corner, k, sight->n, sight->x, sight->x_ghost, x + k);
     phys_wide_from(x + 1, x, &h->e);
-    phys_wide_from(x + 2, x, &h->wing[0].r);
-    phys_wide_from(x + 3, x, &h->wing[1].r);
+    phys_wide_from(x + 2, x, &h->hinge_face[0].r);
+    phys_wide_from(x + 3, x, &h->hinge_face[1].r);
     phys_wide_dot(&h->e, &h->e, &square);
     phys_sqrt(&square, &h->length);
     phys_inverse(&h->length, &inverse);
     phys_inverse(&square, &h->square);
     phys_wide_scale(&inverse, &h->e, &h->along);
-    phys_wing_make(h, 0, h->wing);
-    phys_wing_make(h, 1, h->wing + 1);
+    phys_hinge_face_make(h, 0, h->hinge_face);
+    phys_hinge_face_make(h, 1, h->hinge_face + 1);
     phys_hinge_angle(h);
-    const struct phys_wide *a = &h->wing[0].slope, *b = &h->wing[1].slope;
-    const phys_vec fa = h->wing[0].foot, fb = h->wing[1].foot;
+    const struct phys_wide *a = &h->hinge_face[0].slope, *b = &h->hinge_face[1].slope;
+    const phys_vec fa = h->hinge_face[0].foot, fb = h->hinge_face[1].foot;
     for (int i = 0; i < 3; i++) {
         h->slope[2].c[i] = -a->c[i];
         h->slope[3].c[i] = -b->c[i];
@@ -91,33 +92,33 @@ PHYS_INLINE void phys_hinge_make(const struct phys_four *four, const uint32_t (*
     }
 }
 
-/* What moves de of the edge and dr of its third corner, both from corner 0, change of a wing's
- * slope and foot. */
-PHYS_INLINE void phys_wing_change(const struct phys_hinge *h, int second,
-                                  const struct phys_wing *wing, const struct phys_wide *de,
-                                  const struct phys_wide *dr, struct phys_wide *slope,
-                                  phys_vec *foot)
+/* What moves de of the edge and dr of its third corner, both from corner 0, change of a hinge
+ * face's slope and foot. */
+PHYS_INLINE void phys_hinge_face_change(const struct phys_hinge *h, int second,
+                                        const struct phys_hinge_face *hinge_face,
+                                        const struct phys_wide *de, const struct phys_wide *dr,
+                                        struct phys_wide *slope, phys_vec *foot)
 {
     struct phys_wide one, two;
     phys_vec part, longer, a, b, c;
     if (second) {
         phys_wide_cross(dr, &h->e, &one);
-        phys_wide_cross(&wing->r, de, &two);
+        phys_wide_cross(&hinge_face->r, de, &two);
     } else {
-        phys_wide_cross(de, &wing->r, &one);
+        phys_wide_cross(de, &hinge_face->r, &one);
         phys_wide_cross(&h->e, dr, &two);
     }
     for (int i = 0; i < 3; i++)
         one.c[i] += two.c[i];
-    phys_wide_dot(&wing->normal, &one, &part);
+    phys_wide_dot(&hinge_face->normal, &one, &part);
     phys_wide_dot(&h->along, de, &longer);
-    const phys_vec scale = h->length * wing->inverse * wing->inverse;
-    const phys_vec along = longer * wing->inverse - 2 * part * scale;
-    phys_wide_mix(&scale, &one, &along, &wing->normal, slope);
+    const phys_vec scale = h->length * hinge_face->inverse * hinge_face->inverse;
+    const phys_vec along = longer * hinge_face->inverse - 2 * part * scale;
+    phys_wide_mix(&scale, &one, &along, &hinge_face->normal, slope);
     phys_wide_dot(dr, &h->e, &a);
-    phys_wide_dot(&wing->r, de, &b);
+    phys_wide_dot(&hinge_face->r, de, &b);
     phys_wide_dot(&h->e, de, &c);
-    *foot = (a + b - 2 * wing->foot * c) * h->square;
+    *foot = (a + b - 2 * hinge_face->foot * c) * h->square;
 }
 
 /* What moves d of the corners change of the slopes of theta. */
@@ -126,12 +127,12 @@ PHYS_INLINE void phys_hinge_change(const struct phys_hinge *h, const struct phys
 {
     struct phys_wide de, dr, a, b;
     phys_vec fa, fb;
-    const struct phys_wing *one = h->wing, *two = h->wing + 1;
+    const struct phys_hinge_face *one = h->hinge_face, *two = h->hinge_face + 1;
     phys_wide_from(d + 1, d, &de);
     phys_wide_from(d + 2, d, &dr);
-    phys_wing_change(h, 0, one, &de, &dr, &a, &fa);
+    phys_hinge_face_change(h, 0, one, &de, &dr, &a, &fa);
     phys_wide_from(d + 3, d, &dr);
-    phys_wing_change(h, 1, two, &de, &dr, &b, &fb);
+    phys_hinge_face_change(h, 1, two, &de, &dr, &b, &fb);
     for (int i = 0; i < 3; i++) {
         change[2].c[i] = -a.c[i];
         change[3].c[i] = -b.c[i];

@@ -105,10 +105,10 @@ PHYS_INLINE void phys_turn(const phys_vec row[PHYS_WIDE], phys_vec column[PHYS_W
 }
 
 /* The row that a corner means. */
-PHYS_INLINE const phys_vec *phys_at(uint32_t n, const phys_vec *own, const phys_vec *copy,
+PHYS_INLINE const phys_vec *phys_at(uint32_t n, const phys_vec *own, const phys_vec *ghost,
                                     uint32_t corner)
 {
-    return corner < n ? own + corner : copy + (corner - n);
+    return corner < n ? own + corner : ghost + (corner - n);
 }
 
 /* Which four elements are worked on: `valid` of them, the first is `first`. */
@@ -127,13 +127,13 @@ PHYS_INLINE void phys_four_from(size_t first, size_t end, struct phys_four *four
 
 /* Corner k of the four elements. */
 PHYS_INLINE void phys_gather(const struct phys_four *four, const uint32_t (*corner)[4], int k,
-                             uint32_t n, const phys_vec *own, const phys_vec *copy,
+                             uint32_t n, const phys_vec *own, const phys_vec *ghost,
                              struct phys_wide *y)
 {
     phys_vec row[PHYS_WIDE], column[PHYS_WIDE];
     PHYS_UNROLL
     for (int i = 0; i < PHYS_WIDE; i++)
-        row[i] = *phys_at(n, own, copy, corner[four->at[i]][k]);
+        row[i] = *phys_at(n, own, ghost, corner[four->at[i]][k]);
     phys_turn(row, column);
     PHYS_UNROLL
     for (int i = 0; i < 3; i++)
@@ -182,15 +182,15 @@ PHYS_INLINE void phys_scatter(const struct phys_four *four, const uint32_t (*cor
             y[corner[four->at[i]][k]] += row[i];
 }
 
-/* Which pairs are wanted turned: bit 0 of at[stride * i]. at NULL: none. */
-PHYS_INLINE void phys_turned(const struct phys_four *four, const uint32_t *at, size_t stride,
-                             phys_mask *turned)
+/* Which pairs are wanted transposed: bit 0 of at[stride * i]. at NULL: none. */
+PHYS_INLINE void phys_transposed(const struct phys_four *four, const uint32_t *at, size_t stride,
+                                 phys_mask *transposed)
 {
     uint32_t bit[PHYS_WIDE] = {0};
     PHYS_UNROLL
     for (size_t i = 0; at && i < PHYS_WIDE; i++)
         bit[i] = at[stride * (four->at[i] - four->at[0])] & 1;
-    *turned = -(phys_mask){bit[0], bit[1], bit[2], bit[3]};
+    *transposed = -(phys_mask){bit[0], bit[1], bit[2], bit[3]};
 }
 
 /* -a where the mask is set. */

@@ -62,12 +62,12 @@ PHYS_INLINE void phys_moduli_take(const struct phys_triangles *t, const struct p
 /* F_u and F_v of rows of the corners: of positions, velocities or anything else. */
 PHYS_INLINE void phys_frame_slope(const struct phys_triangles *t, const struct phys_four *four,
                                   const struct phys_frame *frame, uint32_t n, const phys_vec *own,
-                                  const phys_vec *copy, struct phys_wide *fu, struct phys_wide *fv)
+                                  const phys_vec *ghost, struct phys_wide *fu, struct phys_wide *fv)
 {
     struct phys_wide a, b, c;
-    phys_gather(four, t->corner, 0, n, own, copy, &a);
-    phys_gather(four, t->corner, 1, n, own, copy, &b);
-    phys_gather(four, t->corner, 2, n, own, copy, &c);
+    phys_gather(four, t->corner, 0, n, own, ghost, &a);
+    phys_gather(four, t->corner, 1, n, own, ghost, &b);
+    phys_gather(four, t->corner, 2, n, own, ghost, &c);
     phys_wide_from(&b, &a, &b);
     phys_wide_from(&c, &a, &c);
     phys_wide_mix(frame->gu + 1, &b, frame->gu + 2, &c, fu);
@@ -121,7 +121,7 @@ PHYS_INLINE void phys_frame_make(const struct phys_triangles *t, const struct ph
     phys_take_numbers(four, t->area, &frame->area);
     phys_moduli_take(t, four, moduli);
     frame->of = moduli;
-    phys_frame_slope(t, four, frame, sight->n, sight->x, sight->x_copy, &fu, &fv);
+    phys_frame_slope(t, four, frame, sight->n, sight->x, sight->x_ghost, &fu, &fv);
     phys_frame_polar(&fu, &fv, frame);
 }
 

@@ -70,12 +70,12 @@ int scene_build_once(const struct model_pick *pick, const struct scene_tree *tre
 int scene_build_no_vertex(uint32_t vertex, const struct model_cloth *cloth,
                           const struct scene_tree *tree, int node, struct cloth_error *error);
 
-/* The key course of a map, if it has one: of a load, or of the air. *number: the model's new one;
+/* The key curve of a map, if it has one: of a load, or of the air. *number: the model's new one;
  * 0: there is none. After the time. */
-int scene_build_course(struct model *model, uint32_t *number, const struct scene_tree *tree,
-                       int node, struct cloth_error *error);
+int scene_build_curve(struct model *model, uint32_t *number, const struct scene_tree *tree,
+                      int node, struct cloth_error *error);
 
-/* The loads of a cloth that has its mesh and name; their courses are added to the model's. */
+/* The loads of a cloth that has its mesh and name; their curves are added to the model's. */
 int scene_build_loads(struct model *model, struct model_cloth *cloth, const struct scene_tree *tree,
                       int node, struct cloth_error *error);
 
@@ -87,10 +87,10 @@ int scene_build_starts(struct model_cloth *cloth, const struct scene_tree *tree,
 int scene_build_check_turn(const struct mesh_transform *transform, const struct scene_tree *tree,
                            int node, struct cloth_error *error);
 
-/* What a pin holds its vertices to, and how it moves: motions and guides are added to the model's.
+/* What a pin holds its vertices to, and how it moves: motions and sliders are added to the model's.
  */
-int scene_build_hold(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
-                     int node, struct cloth_error *error);
+int scene_build_constraint(struct model *model, struct model_pin *pin,
+                           const struct scene_tree *tree, int node, struct cloth_error *error);
 
 /* A motion by key frames, whose keys become the model's last. */
 int scene_build_motion(struct model *model, struct model_motion *motion,

@@ -92,7 +92,7 @@ static int build_pins(struct model *model, struct model_cloth *cloth, const stru
         const int pin = scene_tree_item(tree, list, i);
         code = scene_build_pick(&cloth->pins[i].pick, tree, pin, cloth, error);
         if (!code)
-            code = scene_build_hold(model, &cloth->pins[i], tree, pin, error);
+            code = scene_build_constraint(model, &cloth->pins[i], tree, pin, error);
     }
     return code;
 }

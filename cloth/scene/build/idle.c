@@ -108,8 +108,8 @@ static bool is_unguarded(const struct model *model)
 static bool never_rests(const struct model *model)
 {
     bool sine = false;
-    for (uint32_t i = 0; i < model->n_courses; i++)
-        sine = sine || !model->courses[i].n;
+    for (uint32_t i = 0; i < model->n_curves; i++)
+        sine = sine || !model->curves[i].n;
     return model->rest.speed > 0 && sine;
 }
 
@@ -141,7 +141,7 @@ static const struct {
     {NULL, "solver", is_explicit, "means nothing: explicit steps solve no system"},
     {NULL, "newton", is_explicit, "means nothing: explicit steps solve no system"},
     {NULL, "air", blows_nothing, "means nothing: it blows on triangles, and no cloth has any"},
-    {"air", "course", has_no_wind,
+    {"air", "curve", has_no_wind,
      "means nothing: it is what the wind is multiplied by, which is 0"},
     {"newton", "tolerance", takes_one_newton_step,
      "means nothing: it spares Newton steps, and newton.steps is 1"},
@@ -158,7 +158,7 @@ static const struct {
      "means nothing: it asks for shorter steps, and halving is off"},
     {"time", "energy_growth", is_unguarded,
      "means nothing: it judges implicit steps where nothing does work on the cloth (no wind, no "
-     "course, no pin or obstacle that moves)"},
+     "curve, no pin or obstacle that moves)"},
     {"time", "rest", never_rests, "means nothing: a load or wind with a sine never ends"},
 };
 

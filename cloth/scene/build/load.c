@@ -52,7 +52,7 @@ int scene_build_loads(struct model *model, struct model_cloth *cloth, const stru
         const int item = scene_tree_item(tree, list, i);
         code = build_load(load, tree, item, cloth, seen, i + 1, error);
         if (!code)
-            code = scene_build_course(model, &load->course, tree, item, error);
+            code = scene_build_curve(model, &load->curve, tree, item, error);
     }
     free(seen);
     return code;

@@ -1,5 +1,5 @@
 /* Motions by key frames; what pins hold to, and how they move. Keys of all motions stand in one
- * array of the model, obstacles first, then in the order of the pins; so do guides. */
+ * array of the model, obstacles first, then in the order of the pins; so do sliders. */
 #include "cloth/scene/build/build.h"
 #include "cloth/scene/schema/rules.h"
 #include "cloth/scene/yaml/scalar.h"
@@ -163,11 +163,11 @@ int scene_build_direction(double direction[3], const char *what, const struct sc
     return CLOTH_OK;
 }
 
-/* A guide has one of these, a point neither. */
+/* A slider has one of these, a point neither. */
 static const char *const hold_keys[] = {[SCENE_LINE] = "direction", [SCENE_PLANE] = "normal"};
 
-static int check_hold(enum scene_hold hold, const struct scene_tree *tree, int node,
-                      struct cloth_error *error)
+static int check_constraint(enum scene_constraint hold, const struct scene_tree *tree, int node,
+                            struct cloth_error *error)
 {
     const char *to = scene_holds[hold].word;
     for (int i = SCENE_LINE; i <= SCENE_PLANE; i++) {
@@ -187,34 +187,36 @@ static int check_hold(enum scene_hold hold, const struct scene_tree *tree, int n
     return CLOTH_OK;
 }
 
-static int build_guide(struct model *model, struct model_pin *pin, enum scene_hold hold,
-                       const struct scene_tree *tree, int node, struct cloth_error *error)
+static int build_slider(struct model *model, struct model_pin *pin, enum scene_constraint hold,
+                        const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     const bool line = hold == SCENE_LINE;
-    struct model_guide *guides = realloc(model->guides, (model->n_guides + 1) * sizeof *guides);
-    if (!guides)
+    struct model_slider *sliders =
+        realloc(model->sliders, (model->n_sliders + 1) * sizeof *sliders);
+    if (!sliders)
         return cloth_fail(error, CLOTH_E_MEMORY, "out of memory while the scene is read");
-    model->guides = guides;
-    struct model_guide *guide = guides + model->n_guides;
-    *guide = (struct model_guide){.kind = line ? MODEL_LINE : MODEL_PLANE, .motion = pin->motion};
+    model->sliders = sliders;
+    struct model_slider *slider = sliders + model->n_sliders;
+    *slider = (struct model_slider){.kind = line ? MODEL_LINE : MODEL_PLANE, .motion = pin->motion};
     pin->motion = 0;
-    pin->guide = ++model->n_guides;
-    return scene_build_direction(guide->direction,
+    pin->slider = ++model->n_sliders;
+    return scene_build_direction(slider->direction,
                                  line ? "the direction of a pin" : "the normal of a pin", tree,
                                  scene_tree_get(tree, node, hold_keys[hold]), error);
 }
 
-int scene_build_hold(struct model *model, struct model_pin *pin, const struct scene_tree *tree,
-                     int node, struct cloth_error *error)
+int scene_build_constraint(struct model *model, struct model_pin *pin,
+                           const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     const char *to = scene_tree_text(tree, node, "to");
-    const enum scene_hold hold = (enum scene_hold)scene_word_value(scene_holds, to, NULL);
+    const enum scene_constraint hold =
+        (enum scene_constraint)scene_word_value(scene_holds, to, NULL);
     const int motion = scene_tree_get(tree, node, "motion");
-    int code = check_hold(hold, tree, node, error);
+    int code = check_constraint(hold, tree, node, error);
     if (!code && motion)
         code = build_pin_motion(model, tree, motion, error);
     if (code)
         return code;
     pin->motion = motion ? model->n_motions : 0;
-    return hold == SCENE_POINT ? CLOTH_OK : build_guide(model, pin, hold, tree, node, error);
+    return hold == SCENE_POINT ? CLOTH_OK : build_slider(model, pin, hold, tree, node, error);
 }

@@ -101,13 +101,13 @@ static double surround(const struct mesh *mesh, double middle[3])
 {
     double square = 0;
     for (size_t i = 0; i < 3; i++) {
-        double least = INFINITY, most = -INFINITY;
+        double min = INFINITY, max = -INFINITY;
         for (size_t v = 0; v < mesh->n_vertices; v++) {
-            least = fmin(least, mesh->position[3 * v + i]);
-            most = fmax(most, mesh->position[3 * v + i]);
+            min = fmin(min, mesh->position[3 * v + i]);
+            max = fmax(max, mesh->position[3 * v + i]);
         }
-        middle[i] = (least + most) / 2;
-        square += (most - least) * (most - least) / 4;
+        middle[i] = (min + max) / 2;
+        square += (max - min) * (max - min) / 4;
     }
     return sqrt(square);
 }

@@ -70,10 +70,10 @@ int scene_build_probes(struct model *model, const struct scene_tree *tree,
 {
     int list = scene_tree_get(tree, 1, "probes"), code = CLOTH_OK;
     const uint32_t n = model->n_probes;
-    uint32_t most = 0;
+    uint32_t max = 0;
     for (uint32_t c = 0; c < model->n_cloths; c++)
-        most = model->cloths[c].mesh.n_vertices > most ? model->cloths[c].mesh.n_vertices : most;
-    uint32_t *seen = scene_build_array(n ? most : 0, sizeof *seen, error);
+        max = model->cloths[c].mesh.n_vertices > max ? model->cloths[c].mesh.n_vertices : max;
+    uint32_t *seen = scene_build_array(n ? max : 0, sizeof *seen, error);
     if (!seen)
         return error->code;
     for (uint32_t i = 0; !code && i < n; i++)

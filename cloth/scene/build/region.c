@@ -85,10 +85,10 @@ int scene_build_regions(struct model_cloth *cloth, const struct model *model,
     const size_t n = scene_tree_length(tree, list);
     if (!n)
         return CLOTH_OK;
-    if (n > MODEL_MOST_REGIONS)
+    if (n > MODEL_MAX_REGIONS)
         return scene_tree_fail(tree, list, error,
                                "cloth '%.60s' has %zu regions; at most %d are possible",
-                               cloth->name, n, MODEL_MOST_REGIONS);
+                               cloth->name, n, MODEL_MAX_REGIONS);
     cloth->mask = scene_build_array(cloth->mesh.n_vertices, sizeof *cloth->mask, error);
     cloth->region = scene_build_array(n, sizeof *cloth->region, error);
     int code = cloth->mask && cloth->region ? CLOTH_OK : error->code;

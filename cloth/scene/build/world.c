@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double MOST_STEPS = 4294967294;  /* of a run: steps are counted in 32 bits */
-static const double MOST_FRAMES = 2147483647; /* of a run: as many as PC2 can count */
+static const double MAX_STEPS = 4294967294;  /* of a run: steps are counted in 32 bits */
+static const double MAX_FRAMES = 2147483647; /* of a run: as many as PC2 can count */
 
 static void out_of_memory(struct cloth_error *error)
 {
@@ -122,14 +122,14 @@ static int build_time(struct model *model, const struct scene_tree *tree, struct
                                "time.end is %g, less than half a step; at least time.h = %g is "
                                "expected",
                                model->end, model->h);
-    if (!(steps <= MOST_STEPS))
+    if (!(steps <= MAX_STEPS))
         return scene_tree_fail(tree, end, error,
                                "time.end / time.h is %g steps; at most %.0f are possible", steps,
-                               MOST_STEPS);
-    if (!(model->fps * model->end <= MOST_FRAMES))
+                               MAX_STEPS);
+    if (!(model->fps * model->end <= MAX_FRAMES))
         return scene_tree_fail(tree, fps, error,
                                "time.fps * time.end is %g frames; at most %.0f are possible",
-                               model->fps * model->end, MOST_FRAMES);
+                               model->fps * model->end, MAX_FRAMES);
     return CLOTH_OK;
 }
 
@@ -138,7 +138,7 @@ static int build_air(struct model *model, const struct scene_tree *tree, struct 
     const int air = scene_tree_get(tree, 1, "air");
     if (!air)
         return CLOTH_OK;
-    return scene_build_course(model, &model->wind_course, tree, air, error);
+    return scene_build_curve(model, &model->wind_curve, tree, air, error);
 }
 
 /* The default of max_iterations comes after what the scene says, so after the count. */

@@ -77,13 +77,15 @@ static const struct scene_rule *rule_of(const struct scene_rule *keys, const cha
     return NULL;
 }
 
-enum { MOST_KEYS = 32 }; /* of a map, in sentences */
+enum { MAX_KEYS = 32 }; /* of a map, in sentences */
 
 /* Keys that were, and what is in their place. map: the key of the map, or of the list of maps, that
  * had them. */
 static const struct {
     const char *map, *key, *now;
 } gone[] = {{"solver", "form", "conjugate gradients have one form, with one sum an iteration"},
+            {"loads", "course", "its name is curve"},
+            {"air", "course", "its name is curve"},
             {"cloths", "cost",
              "uneven work to try balancers on is of duite-bench ranks (migrate) and bench/compare "
              "(irregular)"}};
@@ -101,9 +103,9 @@ static const char *gone_of(const struct place *at, const char *key)
 static int unknown(struct walk *walk, const struct place *at, const struct scene_rule *keys,
                    int node)
 {
-    const char *names[MOST_KEYS];
+    const char *names[MAX_KEYS];
     size_t n = 0;
-    for (const struct scene_rule *key = keys; key->key && n < MOST_KEYS; key++)
+    for (const struct scene_rule *key = keys; key->key && n < MAX_KEYS; key++)
         names[n++] = key->key;
     char path[200], is[100], allowed[400];
     path_of(at, path, sizeof path);
@@ -194,9 +196,9 @@ static int add_missing(struct walk *walk, const struct place *at, const struct s
 static int check_choice(struct walk *walk, const struct place *at, const struct scene_rule *keys,
                         int map)
 {
-    const char *names[MOST_KEYS], *first = NULL;
+    const char *names[MAX_KEYS], *first = NULL;
     size_t n = 0;
-    for (const struct scene_rule *key = keys; key->key && n < MOST_KEYS; key++)
+    for (const struct scene_rule *key = keys; key->key && n < MAX_KEYS; key++)
         if (key->choice)
             names[n++] = key->key;
     char path[200], allowed[300] = "";
@@ -310,8 +312,8 @@ static bool number_fits(const struct scene_rule *rule, const char *text)
 static bool integer_fits(const struct scene_rule *rule, const char *text)
 {
     uint32_t value;
-    return scene_scalar_integer(text, &value) && value >= rule->least &&
-           (rule->most <= 0 || value <= rule->most);
+    return scene_scalar_integer(text, &value) && value >= rule->min &&
+           (rule->max <= 0 || value <= rule->max);
 }
 
 static bool is_word(const struct scene_rule *rule, const char *text)

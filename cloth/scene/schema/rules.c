@@ -128,7 +128,7 @@ static const struct scene_rule air_keys[] = {
      INTO(struct phys_air, density), .about = "of the air"},
     {"wind", SCENE_LIST, "m/s", .fallback = "[0, 0, 0]", .length = 3, .inside = &number,
      INTO(struct phys_air, wind), .about = "the same everywhere"},
-    {"course", SCENE_ONE_OF, .inside = scene_course_kinds,
+    {"curve", SCENE_ONE_OF, .inside = scene_curve_kinds,
      .about = "what the wind is multiplied by in time; else it is constant"},
     {"normal", SCENE_NUMBER, .fallback = "1.2", .range = SCENE_NOT_NEGATIVE,
      INTO(struct phys_air, normal), .about = "coefficient of the drag across a triangle"},
@@ -178,7 +178,7 @@ static const struct scene_rule stop_kinds[] = {
     {"normalised", SCENE_NUMBER, .range = SCENE_POSITIVE, INTO(struct model, tolerance),
      MEANS(struct model, stop, MODEL_STOP_NORMALISED),
      .about = "distance that the residual moves vertices in the step, against that of neighbours"},
-    {"count", SCENE_INTEGER, .least = 1, INTO(struct model, max_iterations),
+    {"count", SCENE_INTEGER, .min = 1, INTO(struct model, max_iterations),
      MEANS(struct model, stop, MODEL_STOP_COUNT), .about = "so many iterations, no test"},
     {0}};
 static const struct scene_rule solver_keys[] = {
@@ -192,7 +192,7 @@ static const struct scene_rule solver_keys[] = {
      WORDS({"none", MODEL_PLAIN}, {"jacobi", MODEL_JACOBI}, {"ic0", MODEL_IC0},
            {"coarse", MODEL_COARSE}, {"ic0_coarse", MODEL_IC0_COARSE}),
      .about = "of conjugate gradients"},
-    {"patches", SCENE_INTEGER, .least = 1, .most = 4, INTO(struct model, patches),
+    {"patches", SCENE_INTEGER, .min = 1, .max = 4, INTO(struct model, patches),
      .about = "of a block, each with motions of its own in the coarse space; else as many as pay"},
     {"format", SCENE_CHOICE, .fallback = "springs", INTO(struct model, format),
      WORDS({"springs", SOLVE_SPRINGS}, {"half", SOLVE_HALF}, {"half_float", SOLVE_HALF_FLOAT}),
@@ -202,12 +202,12 @@ static const struct scene_rule solver_keys[] = {
      WORDS({"definite", PHYS_DEFINITE}, {"full", PHYS_FULL}, {"absolute", PHYS_ABSOLUTE}),
      .about = "definite: without what could make the matrix indefinite; full: the whole slope; "
               "absolute: of compressed springs its absolute value"},
-    {"max_iterations", SCENE_INTEGER, .fallback = "10000", .least = 1,
+    {"max_iterations", SCENE_INTEGER, .fallback = "10000", .min = 1,
      INTO(struct model, max_iterations), .about = "a solve that needs more fails"},
     {0}};
 
 static const struct scene_rule newton_keys[] = {
-    {"steps", SCENE_INTEGER, .fallback = "1", .least = 1, .most = 100,
+    {"steps", SCENE_INTEGER, .fallback = "1", .min = 1, .max = 100,
      INTO(struct model, newton_steps), .about = "at most; 1: one linear step"},
     {"tolerance", SCENE_NUMBER, .fallback = "1e-4", .range = SCENE_FRACTION,
      INTO(struct model, newton_tolerance),
@@ -250,7 +250,7 @@ static const struct scene_rule joint = {
     .type = SCENE_MAP, .inside = joint_keys, PLACE(struct model_joint, pairs.place)};
 
 static const struct scene_rule scene_keys[] = {
-    {"schema", SCENE_INTEGER, .required = true, .least = 1, .most = 1,
+    {"schema", SCENE_INTEGER, .required = true, .min = 1, .max = 1,
      .about = "version of these rules"},
     {"name", SCENE_TEXT, INTO(struct model, name), .about = "of the scene; else the file's name"},
     {"gravity", SCENE_LIST, "m/s^2", .fallback = "[0, -9.81, 0]", .length = 3, .inside = &number,
@@ -277,12 +277,12 @@ static const struct scene_rule scene_keys[] = {
      .about = "Newton steps, with a line search, of implicit steps"},
     {"solver", SCENE_MAP, .fallback = "{}", .inside = solver_keys, .about = "of implicit steps"},
     {"probes", SCENE_LIST, .fallback = "[]", .inside = &scene_probe,
-     ARRAY(struct model, probes, n_probes), .about = "what probes.csv tells after each step"},
+     ARRAY(struct model, probes, n_probes), .about = "what probes.csv reports after each step"},
     {"joints", SCENE_LIST, .fallback = "[]", .inside = &joint,
      ARRAY(struct model, joints, n_joints), .about = "springs between any two vertices"},
     {"welds", SCENE_LIST, .fallback = "[]", .inside = &weld, ARRAY(struct model, welds, n_welds),
      .about = "vertices of any cloths that are one"},
-    {"grain", SCENE_INTEGER, .fallback = "1000", .least = 1, INTO(struct model, grain),
+    {"grain", SCENE_INTEGER, .fallback = "1000", .min = 1, INTO(struct model, grain),
      .about = "vertices a block"},
     {0}};
 /* clang-format on */

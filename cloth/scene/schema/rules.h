@@ -16,7 +16,7 @@ enum scene_type {
     SCENE_NAMED,          /* a map with keys of the user's choice; inside: their one rule */
     SCENE_LIST,           /* inside: the rule of its items */
     SCENE_NUMBER,         /* finite, in `range` */
-    SCENE_INTEGER,        /* least <= value <= most */
+    SCENE_INTEGER,        /* min <= value <= max */
     SCENE_NUMBER_OR_LIST, /* a number in `range`, or a list like SCENE_LIST */
     SCENE_NUMBER_OR_WORD, /* a number in `range`, or one of the words `words` */
     SCENE_TEXT,           /* not empty */
@@ -41,7 +41,7 @@ struct scene_rule {
     bool required;        /* without a default: whether the key must be there */
     bool choice;          /* of the keys of a map that are choices one must be there, and no more */
     enum scene_range range;
-    double least, most;             /* of integers; most 0: 2^32 - 1 */
+    double min, max;                /* of integers; max 0: 2^32 - 1 */
     size_t length;                  /* of lists; 0: any */
     bool filled;                    /* lists: at least one entry */
     const struct model_word *words; /* choices, ended by one without a word */
@@ -81,8 +81,8 @@ extern const struct scene_rule scene_transform; /* a struct mesh_transform */
 extern const struct scene_rule scene_region;    /* a struct model_pick */
 
 /* Words of choices that no field takes as they are. */
-enum scene_hold { SCENE_POINT, SCENE_LINE, SCENE_PLANE };
-extern const struct model_word scene_holds[];        /* enum scene_hold, in its order */
+enum scene_constraint { SCENE_POINT, SCENE_LINE, SCENE_PLANE };
+extern const struct model_word scene_holds[];        /* enum scene_constraint, in its order */
 extern const struct model_word scene_rests[];        /* whether by uv */
 extern const struct model_word scene_probe_values[]; /* offsets of flags in a struct model_probe */
 

@@ -18,9 +18,9 @@ static const struct scene_rule grid_keys[] = {
      INTO(struct scene_grid, width), .about = "along x"},
     {"height", SCENE_NUMBER, "m", .range = SCENE_POSITIVE, INTO(struct scene_grid, height),
      .about = "along z; left out where cells are equilateral, of which it follows"},
-    {"nx", SCENE_INTEGER, .required = true, .least = 2, INTO(struct scene_grid, nx),
+    {"nx", SCENE_INTEGER, .required = true, .min = 2, INTO(struct scene_grid, nx),
      .about = "vertices along x"},
-    {"ny", SCENE_INTEGER, .required = true, .least = 2, INTO(struct scene_grid, ny),
+    {"ny", SCENE_INTEGER, .required = true, .min = 2, INTO(struct scene_grid, ny),
      .about = "vertices along z"},
     {"cells", SCENE_CHOICE, .fallback = "mirrored", INTO(struct scene_grid, cells),
      WORDS({"mirrored", MESH_MIRRORED}, {"alternate", MESH_ALTERNATE}, {"same", MESH_SAME},
@@ -125,14 +125,14 @@ static const struct scene_rule probe_keys[] = {
 const struct scene_rule scene_probe = {
     .type = SCENE_MAP, .inside = probe_keys, PLACE(struct model_probe, pick.place)};
 
-static const struct scene_rule beat = {.type = SCENE_LIST, .length = 2, .inside = &number};
+static const struct scene_rule curve_key = {.type = SCENE_LIST, .length = 2, .inside = &number};
 static const struct scene_rule sine_keys[] = {
     {"frequency", SCENE_NUMBER, "1/s", .required = true, .range = SCENE_POSITIVE,
      .about = "turns a second"},
     {"phase", SCENE_NUMBER, .fallback = "0", .about = "turns at time 0; 0.25: a cosine"},
     {0}};
-const struct scene_rule scene_course_kinds[] = {
-    {"keys", SCENE_LIST, .filled = true, .inside = &beat,
+const struct scene_rule scene_curve_kinds[] = {
+    {"keys", SCENE_LIST, .filled = true, .inside = &curve_key,
      .about = "[time in s, factor], times ascending; linear in between"},
     {"sine", SCENE_MAP, .inside = sine_keys, .about = "sin 2 pi (frequency t + phase)"},
     {0}};
@@ -144,7 +144,7 @@ static const struct scene_rule load_keys[] = {
      .about = "pairs of vertices: the force is along them, in N/m of their length at rest"},
     {"force", SCENE_LIST, "N", .required = true, .length = 3, .inside = &number,
      INTO(struct model_load, force), .about = "on each of the vertices"},
-    {"course", SCENE_ONE_OF, .inside = scene_course_kinds,
+    {"curve", SCENE_ONE_OF, .inside = scene_curve_kinds,
      .about = "what the force is multiplied by in time; else it is constant"},
     {0}};
 static const struct scene_rule load = {

@@ -93,11 +93,11 @@ static void append_keys(char *text, size_t size, const struct scene_rule *keys)
 
 static void integer_expected(const struct scene_rule *rule, char *text, size_t size)
 {
-    if (rule->most > 0 && rule->least >= rule->most)
-        snprintf(text, size, "%.0f", rule->most);
+    if (rule->max > 0 && rule->min >= rule->max)
+        snprintf(text, size, "%.0f", rule->max);
     else
-        snprintf(text, size, "a whole number from %.0f to %.0f", rule->least,
-                 rule->most > 0 ? rule->most : (double)UINT32_MAX);
+        snprintf(text, size, "a whole number from %.0f to %.0f", rule->min,
+                 rule->max > 0 ? rule->max : (double)UINT32_MAX);
 }
 
 static void list_expected(const struct scene_rule *rule, char *text, size_t size)

@@ -8,13 +8,13 @@
 #include <string.h>
 
 /* No scene is larger; a device that never ends stops here. */
-static const size_t MOST_BYTES = (size_t)256 << 20;
+static const size_t MAX_BYTES = (size_t)256 << 20;
 
 static int read_all(FILE *file, char **bytes, size_t *size)
 {
     size_t room = 0, n = 0;
     for (size_t got = 1; got; n += got) {
-        if (n > MOST_BYTES)
+        if (n > MAX_BYTES)
             return CLOTH_E_INPUT;
         if (n == room) {
             room = room ? 2 * room : 65536;
@@ -51,7 +51,7 @@ static int read_file(const char *path, char **bytes, size_t *size, struct cloth_
 
 /* The parser takes the square of the depth: brackets that open this often without closing are no
  * scene, wherever they stand. */
-enum { MOST_DEPTH = 1000 };
+enum { MAX_DEPTH = 1000 };
 
 static int check_depth(const char *path, const char *bytes, size_t size, struct cloth_error *error)
 {
@@ -61,11 +61,11 @@ static int check_depth(const char *path, const char *bytes, size_t size, struct 
         line += bytes[i] == '\n';
         depth += bytes[i] == '[' || bytes[i] == '{';
         depth -= closes && depth > 0;
-        if (depth > MOST_DEPTH)
+        if (depth > MAX_DEPTH)
             return cloth_fail(error, CLOTH_E_INPUT,
                               "%s:%zu: more than %d brackets [ and { are open here; a scene needs "
                               "a few",
-                              path, line, MOST_DEPTH);
+                              path, line, MAX_DEPTH);
     }
     return CLOTH_OK;
 }

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_OF_SET = 200 }; /* bytes of a set that a message repeats: what is wrong must fit too */
+enum { MAX_OF_SET = 200 }; /* bytes of a set that a message repeats: what is wrong must fit too */
 
 yaml_node_t *scene_tree_node(const struct scene_tree *tree, int node)
 {
@@ -80,8 +80,8 @@ char *scene_tree_mark_place(const struct scene_tree *tree, const yaml_mark_t *ma
         n = asprintf(&place, "%s", tree->sets[mark->line].option);
     } else {
         const char *text = tree->sets[mark->line].text;
-        n = asprintf(&place, "--set %.*s%s", MOST_OF_SET, text,
-                     strlen(text) > (size_t)MOST_OF_SET ? "..." : "");
+        n = asprintf(&place, "--set %.*s%s", MAX_OF_SET, text,
+                     strlen(text) > (size_t)MAX_OF_SET ? "..." : "");
     }
     return n < 0 ? NULL : place;
 }

@@ -155,18 +155,18 @@ static void free_scene(struct scene *s)
 
 /* ---- Lists ---- */
 
-enum { MOST = ELEMENTS_MOST };
+enum { MAX = ELEMENTS_MAX };
 
 /* The elements of one kind in a cloth. */
 struct sample {
     const struct scene *scene;
     uint32_t kind, cloth;
-    struct element element[MOST];
+    struct element element[MAX];
     struct element_world world;
     struct element_list list;
-    uint32_t corner[MOST][4];
-    phys_vec vector[MOST], material[64];
-    double number[ELEMENT_NUMBERS][MOST];
+    uint32_t corner[MAX][4];
+    phys_vec vector[MAX], material[64];
+    double number[ELEMENT_NUMBERS][MAX];
 };
 
 static void collect(void *to, const struct element *element)
@@ -174,7 +174,7 @@ static void collect(void *to, const struct element *element)
     struct sample *s = to;
     if (element->kind != s->kind || element->cloth != s->cloth)
         return;
-    ck_assert_uint_lt(s->list.n, MOST);
+    ck_assert_uint_lt(s->list.n, MAX);
     s->element[s->list.n++] = *element;
 }
 
@@ -233,7 +233,7 @@ static void stiffness(const void *of, int full, double scale, const struct phys_
 {
     const struct sample *s = of;
     const struct phys_step step = {sqrt(scale), full};
-    struct phys_pair pair[ELEMENT_PAIRS * MOST];
+    struct phys_pair pair[ELEMENT_PAIRS * MAX];
     if (kind_of(s)->stiffness)
         kind_of(s)->stiffness(&s->list, full, scale, sight, y);
     else
@@ -341,7 +341,7 @@ static void check_system(const struct sample *s)
     const double push = 0.3;
     const struct phys_step step = {0.5, 1};
     struct elements_state state;
-    struct phys_pair pair[2][ELEMENT_PAIRS * MOST];
+    struct phys_pair pair[2][ELEMENT_PAIRS * MAX];
     phys_vec b[VERTICES] = {{0}}, f[VERTICES] = {{0}}, y[VERTICES] = {{0}};
     start(&state, s);
     elements_shake(&state, 0.2, 3);
@@ -367,8 +367,8 @@ END_TEST
 
 /* Rows that no two elements share, and what elements do to them. */
 struct apart {
-    phys_vec x[4 * MOST], v[4 * MOST], f[4 * MOST];
-    struct phys_pair pair[ELEMENT_PAIRS * MOST];
+    phys_vec x[4 * MAX], v[4 * MAX], f[4 * MAX];
+    struct phys_pair pair[ELEMENT_PAIRS * MAX];
 };
 
 /* Pairs, forces and energy of one element alone are those that it has in its list, in any lane, bit
@@ -378,11 +378,11 @@ static void check_alone(const struct sample *s, const struct apart *all, uint32_
     const struct element_kind *kind = kind_of(s);
     const struct phys_step step = {0.5, 1};
     const struct phys_sight sight = {4, all->x + 4 * e, all->v + 4 * e, NULL, NULL};
-    struct sample copy = *s; /* its material alone, which lists do not own */
+    struct sample ghost = *s; /* its material alone, which lists do not own */
     struct element_one one;
     struct phys_pair pair[ELEMENT_PAIRS];
     phys_vec f[4] = {{0}};
-    element_alone(&s->scene->cloths, s->element + e, copy.material, &one);
+    element_alone(&s->scene->cloths, s->element + e, ghost.material, &one);
     kind->force(&one.list, &s->world, &sight, f);
     ck_assert_mem_eq(f, all->f + 4 * e, sizeof f);
     if (!kind->pairs)
@@ -446,7 +446,7 @@ static void find_links(void *to, const struct element *element)
                           element_kinds[element->kind]->name);
 }
 
-/* Neighbours, copies and entries of the matrix are found for springs alone. */
+/* Neighbours, ghosts and entries of the matrix are found for springs alone. */
 START_TEST(corners_are_joined)
 {
     struct scene scene;

@@ -3,21 +3,21 @@
 #include "cloth/flow/bodies.h"
 
 #if WRONG == 1 /* a misspelt field */
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(rim_y)))
+FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(halo_y)))
 #elif WRONG == 2 /* a field twice */
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(rim_x), R(x)))
+FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(halo_x), R(x)))
 #elif WRONG == 3 /* a kernel that is in no list */
-FLOW_KERNEL(somewhere, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(rim_x)))
+FLOW_KERNEL(somewhere, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(halo_x)))
 #elif WRONG == 4 /* a word that is no mode */
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), WR(x), W(rim_x)))
+FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), WR(x), W(halo_x)))
 #elif WRONG == 5 /* arguments that do not begin with the block */
 struct other {
     double h;
     uint32_t block;
 };
-FLOW_KERNEL(position, FLOW_POSITION, struct other, (R(table), R(v), RW(x), W(rim_x)))
+FLOW_KERNEL(position, FLOW_POSITION, struct other, (R(table), R(v), RW(x), W(halo_x)))
 #else
-FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(rim_x)))
+FLOW_KERNEL(position, FLOW_POSITION, struct flow_args, (R(table), R(v), RW(x), W(halo_x)))
 #endif
 
 #if WRONG == 3
@@ -36,10 +36,10 @@ static int BODY(const duite_call *call, const struct FIELDS *on)
 #elif WRONG == 7 /* not declared */
     on->x[0] = on->dv[0];
 #elif WRONG == 8 /* of another type */
-    double *rim = on->rim_x;
-    rim[0] = 0;
+    double *halo = on->halo_x;
+    halo[0] = 0;
 #endif
     on->x[0] += on->v[0];
-    on->rim_x[0] = on->x[0];
+    on->halo_x[0] = on->x[0];
     return 0;
 }

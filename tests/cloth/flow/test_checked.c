@@ -20,7 +20,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { MOST_SETS = 6, MOST_KERNELS = 128 };
+enum { MAX_SETS = 6, MAX_KERNELS = 128 };
 
 static const char *const base =
     "schema: 1\n"
@@ -50,7 +50,7 @@ static const char *const base =
 
 /* ---- Which kernels ran ---- */
 
-static unsigned char *ran; /* of MOST_KERNELS; shared with the processes of the cases */
+static unsigned char *ran; /* of MAX_KERNELS; shared with the processes of the cases */
 
 int __real_check_call(struct check *check, const struct check_task *task, duite_call *call);
 int __wrap_check_call(struct check *check, const struct check_task *task, duite_call *call);
@@ -86,7 +86,7 @@ static int take_system(void *context, const struct solve_system *system, struct 
     return CLOTH_OK;
 }
 
-static void hold_some(void *context, const struct flow_rows *rows)
+static void constrain_some(void *context, const struct flow_rows *rows)
 {
     (void)context;
     for (size_t i = 0; i < rows->n; i += 3)
@@ -111,7 +111,7 @@ static void run_checked(struct how *how, struct flow *flow, struct cloth_error *
     options.bind = 0;
     options.check = 1;
     ck_assert_msg(!duite_start(&rt, &options), "%s", duite_message());
-    flow_filter_by(flow, (struct flow_filter){.rows = hold_some});
+    flow_filter_by(flow, (struct flow_filter){.rows = constrain_some});
     flow_run(flow, rt, &output, NULL, &how->report, error);
     ck_assert_msg(!duite_stop(&rt), "%s", duite_message());
 }
@@ -138,14 +138,14 @@ static bool left_out(void)
 
 /* The base with these sets, of which those that are NULL are none. Returns whether it was run.
  * Collective. */
-static bool run_how(struct how *how, const char *const sets[MOST_SETS])
+static bool run_how(struct how *how, const char *const sets[MAX_SETS])
 {
     if (left_out())
         return false;
-    struct scene_set some[MOST_SETS];
+    struct scene_set some[MAX_SETS];
     char name[1024] = "";
     size_t n = 0;
-    for (size_t i = 0; i < MOST_SETS; i++)
+    for (size_t i = 0; i < MAX_SETS; i++)
         if (sets[i]) {
             some[n++] = (struct scene_set){.text = sets[i]};
             snprintf(name + strlen(name), sizeof name - strlen(name), " %s", sets[i]);
@@ -172,9 +172,9 @@ static bool run_how(struct how *how, const char *const sets[MOST_SETS])
     return true;
 }
 
-#define SETS(...) ((const char *const[MOST_SETS]){__VA_ARGS__})
+#define SETS(...) ((const char *const[MAX_SETS]){__VA_ARGS__})
 
-static void run(const char *const sets[MOST_SETS])
+static void run(const char *const sets[MAX_SETS])
 {
     run_how(&(struct how){0}, sets);
 }
@@ -303,15 +303,15 @@ END_TEST
 
 START_TEST(outside)
 {
-    static const char *const load = "cloths[0].loads=[{vertices: [20], force: [0, 1, 0], course: "
+    static const char *const load = "cloths[0].loads=[{vertices: [20], force: [0, 1, 0], curve: "
                                     "{sine: {frequency: 5}}}, {edges: [[0, 1]], force: [1, 0, 0], "
-                                    "course: {keys: [[0, 0], [1, 1]]}}, {vertices: [9], force: [0, "
+                                    "curve: {keys: [[0, 0], [1, 1]]}}, {vertices: [9], force: [0, "
                                     "0, 1]}]";
     for (size_t i = 0; i < INTEGRATORS; i++) {
         if (paired(i, INTEGRATORS, 0, 2))
             run(SETS(integrators[i], load));
         if (paired(i, INTEGRATORS, 1, 2))
-            run(SETS(integrators[i], load, "air={wind: [1, 2, 3], course: {sine: {frequency: 1}}}",
+            run(SETS(integrators[i], load, "air={wind: [1, 2, 3], curve: {sine: {frequency: 1}}}",
                      "cloths[0].material=triangles"));
     }
 }
@@ -389,9 +389,9 @@ START_TEST(every_kernel_was_run)
     char names[1024] = "";
     int rank, ranks;
     record_mpi(&rank, &ranks);
-    MPI_Allreduce(MPI_IN_PLACE, ran, MOST_KERNELS, MPI_UNSIGNED_CHAR, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, ran, MAX_KERNELS, MPI_UNSIGNED_CHAR, MPI_MAX, MPI_COMM_WORLD);
     for (size_t i = 0; all[i]; i++) {
-        ck_assert_uint_lt(i, MOST_KERNELS);
+        ck_assert_uint_lt(i, MAX_KERNELS);
         const bool between_ranks = all[i] == &flow_pack;
         if (!ran[i] && (ranks > 1 || !between_ranks))
             snprintf(names + strlen(names), sizeof names - strlen(names), " %s", all[i]->name);
@@ -404,7 +404,7 @@ int main(int argc, char **argv)
 {
     whole = argc > 1 && !strcmp(argv[1], "long");
     quick = !whole && (argc > 1 || unit_quick());
-    ran = mmap(NULL, MOST_KERNELS, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    ran = mmap(NULL, MAX_KERNELS, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (ran == MAP_FAILED)
         return 99;
     Suite *suite = suite_create("checking mode");

@@ -142,26 +142,26 @@ static void setup_fall(struct setup *setup, uint32_t n)
  * vertices are put onto the floor after the step. */
 START_TEST(lands)
 {
-    double most[2];
+    double max[2];
     for (int filter = 0; filter < 2; filter++) {
         struct setup setup;
         struct record record = {0};
         setup_fall(&setup, 12);
         setup.model.contact = filter ? MODEL_CONTACT_FILTER : MODEL_CONTACT_PROJECT;
         runs(&record, &setup.model);
-        most[filter] = 0;
+        max[filter] = 0;
         for (size_t k = 0; k < record.frames; k++)
             for (size_t v = 0; v < 144; v++) {
                 ck_assert_double_ge(record_at(&record, k, v, 1), -1e-12);
                 double square = 0;
                 for (size_t c = 0; c < 3 && v % 12; c++)
                     square += pow(record_at(&record, k, v, c) - record_at(&record, k, v - 1, c), 2);
-                most[filter] = fmax(most[filter], sqrt(square) * 11);
+                max[filter] = fmax(max[filter], sqrt(square) * 11);
             }
         record_free(&record);
         setup_free(&setup);
     }
-    ck_assert_double_lt(most[1], most[0]);
+    ck_assert_double_lt(max[1], max[0]);
 }
 END_TEST
 
@@ -190,7 +190,7 @@ END_TEST
 /* A program's filter: holds vertex 0 at a point, vertex 20 in the plane across (0.6, 0.8, 0), and
  * vertex 40 on a line, by two normals. */
 static int mark;
-static void hold_three(void *context, const struct flow_rows *rows)
+static void constrain_three(void *context, const struct flow_rows *rows)
 {
     const phys_vec askew = {0.6, 0.8, 0, 0}, along = {0, 0, 1, 0};
     ck_assert(context == &mark && rows->h > 0 && rows->time >= rows->h);
@@ -198,9 +198,9 @@ static void hold_three(void *context, const struct flow_rows *rows)
         if (rows->vertex[i] == 0)
             rows->filter[i] = (phys_vec){0};
         if (rows->vertex[i] == 20 || rows->vertex[i] == 40)
-            solve_hold(&askew, rows->filter + i);
+            solve_constrain(&askew, rows->filter + i);
         if (rows->vertex[i] == 40)
-            solve_hold(&along, rows->filter + i);
+            solve_constrain(&along, rows->filter + i);
     }
 }
 
@@ -209,7 +209,7 @@ START_TEST(a_program_filters)
 {
     for (int contact = 0; contact < 2; contact++) {
         struct setup setup;
-        struct record record = {.threads = 2, .filter = {&mark, hold_three}};
+        struct record record = {.threads = 2, .filter = {&mark, constrain_three}};
         setup_floor(&setup, 8);
         setup.plane.value[1] = contact ? -1e-4 : -1;
         setup.model.own_filter = true;

@@ -75,7 +75,7 @@ END_TEST
 
 START_TEST(what_is_refused)
 {
-    const struct flow_verdict fine = {.before = 1.2, .after = 1.25, .most = 1.4, .growth = 0.1};
+    const struct flow_verdict fine = {.before = 1.2, .after = 1.25, .max = 1.4, .growth = 0.1};
     struct flow_verdict v = fine;
     ck_assert(!flow_verdict_refuses(&v));
     v.failed = true;
@@ -91,7 +91,7 @@ START_TEST(what_is_refused)
     ck_assert(flow_verdict_refuses(&v));
     v.before = 1.5; /* on its way back */
     ck_assert(!flow_verdict_refuses(&v));
-    v.most = 0;
+    v.max = 0;
     v.before = 1;
     ck_assert(!flow_verdict_refuses(&v));
 }
@@ -103,9 +103,9 @@ START_TEST(what_is_calm)
     ck_assert(flow_verdict_calm(&v));
     v.after = 1.26;
     ck_assert(!flow_verdict_calm(&v));
-    v = (struct flow_verdict){.before = 1.2, .after = 1.3, .most = 1.51};
+    v = (struct flow_verdict){.before = 1.2, .after = 1.3, .max = 1.51};
     ck_assert(flow_verdict_calm(&v));
-    v.most = 1.49;
+    v.max = 1.49;
     ck_assert(!flow_verdict_calm(&v));
     v.after = 1.1;
     ck_assert(flow_verdict_calm(&v));

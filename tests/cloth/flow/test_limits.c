@@ -103,7 +103,7 @@ static double moved(enum model_integrator integrator, double h)
 {
     struct setup setup;
     struct record record = {0};
-    double most = 0;
+    double max = 0;
     chain(&setup, 1e-6);
     setup.model.integrator = integrator;
     setup.model.h = h;
@@ -111,12 +111,12 @@ static double moved(enum model_integrator integrator, double h)
     setup.model.fps = 1 / setup.model.end;
     record_run(&record, &setup.model);
     for (size_t v = 0; !record.code && v <= LINKS; v++)
-        most = fmax(most, fabs(record_at(&record, 1, v, 0) - 0.1 * (double)v));
+        max = fmax(max, fabs(record_at(&record, 1, v, 0) - 0.1 * (double)v));
     if (record.code)
-        most = INFINITY;
+        max = INFINITY;
     record_free(&record);
     chain_free(&setup);
-    return most;
+    return max;
 }
 
 START_TEST(limits_are_where_runs_break)

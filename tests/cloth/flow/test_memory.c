@@ -165,7 +165,7 @@ START_TEST(each_fails_once_in_a_run)
 END_TEST
 
 /* Rank 0 has no room to gather what tables are made of. */
-START_TEST(each_fails_once_in_dealing)
+START_TEST(each_fails_once_in_distributing)
 {
     struct setup setup;
     setup_sheet(&setup, 6);
@@ -184,7 +184,7 @@ int main(void)
     tcase_add_test(cases, each_fails_once_in_prepare);
     tcase_add_test(cases, each_fails_once_with_welds);
     tcase_add_test(cases, each_fails_once_in_a_run);
-    tcase_add_test(cases, each_fails_once_in_dealing);
+    tcase_add_test(cases, each_fails_once_in_distributing);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

@@ -113,7 +113,7 @@ START_TEST(momentum_changes_by_forces_alone)
     const double h = 0.01;
     struct setup setup;
     struct record record = {0};
-    double mass[100] = {0}, before[3] = {0}, most = 0;
+    double mass[100] = {0}, before[3] = {0}, max = 0;
     setup_sheet(&setup, 10);
     setup.model.h = h;
     setup.model.end = 20 * h;
@@ -133,9 +133,9 @@ START_TEST(momentum_changes_by_forces_alone)
             square += lost * lost;
             before[c] = now[c];
         }
-        most = sqrt(square) > most ? sqrt(square) : most;
+        max = sqrt(square) > max ? sqrt(square) : max;
     }
-    ck_assert_double_lt(most, 1e-13);
+    ck_assert_double_lt(max, 1e-13);
     ck_assert_double_lt(record.report.momentum_lost, 1e-13);
     ck_assert_double_gt(record.report.mass_norm_error, 1e-6);
     record_free(&record);
@@ -158,7 +158,7 @@ START_TEST(no_momentum_is_lost_by_an_exact_solve)
 }
 END_TEST
 
-/* A pinned cloth in many blocks moves as the same cloth in one: rims and cut springs are complete.
+/* A pinned cloth in many blocks moves as the same cloth in one: halos and cut springs are complete.
  */
 static void compare_grains(enum model_integrator integrator)
 {

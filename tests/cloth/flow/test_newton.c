@@ -69,15 +69,15 @@ static double at(const struct record *r, size_t frame, size_t back, size_t i, si
  * weight: M (x2 - 2 x1 + x0) / h^2 = f(x2). */
 static double missing_euler(const struct record *r, double h)
 {
-    double most = 0;
+    double max = 0;
     for (size_t n = 1; n < r->frames; n++)
         for (size_t i = 1; i <= LINKS; i++)
             for (size_t c = 0; c < 3; c++) {
                 const double a =
                     (at(r, n, 0, i, c) - 2 * at(r, n, 1, i, c) + at(r, n, 2, i, c)) / (h * h);
-                most = fmax(most, fabs(M * a - force(r, n, i, c)) / (M * G));
+                max = fmax(max, fabs(M * a - force(r, n, i, c)) / (M * G));
             }
-    return most;
+    return max;
 }
 
 START_TEST(euler_solves_its_equations)
@@ -111,7 +111,7 @@ START_TEST(bdf2_solves_its_equations)
     const double h = 0.02;
     struct setup setup;
     struct record r = {0};
-    double most = 0;
+    double max = 0;
     chain(&setup, h, 50);
     setup.model.integrator = MODEL_BDF2;
     setup.model.newton_steps = 20;
@@ -125,10 +125,10 @@ START_TEST(bdf2_solves_its_equations)
                             at(&r, n, k + 2, i, c)) /
                            (2 * h);
                 const double a = (3 * v[0] - 4 * v[1] + v[2]) / (2 * h);
-                most = fmax(most, fabs(M * a - force(&r, n, i, c)) / (M * G));
+                max = fmax(max, fabs(M * a - force(&r, n, i, c)) / (M * G));
             }
-    printf("# chain, h = %g s: missing in BDF2's equations, of the weight: %.3e\n", h, most);
-    ck_assert_double_lt(most, 1e-7);
+    printf("# chain, h = %g s: missing in BDF2's equations, of the weight: %.3e\n", h, max);
+    ck_assert_double_lt(max, 1e-7);
     record_free(&r);
     setup_free(&setup);
 }
@@ -169,9 +169,9 @@ START_TEST(order_of_a_swing)
         end_of(&r, rows[_i].integrator, rows[_i].newton, 0.0004 / (1 << i), x[i]);
     for (int i = 0; i < 2; i++)
         change[i] = hypot(x[i + 1][0] - x[i][0], x[i + 1][1] - x[i][1]);
-    const double seen = log2(change[0] / change[1]);
-    printf("# chain, %s: order %.3f\n", rows[_i].name, seen);
-    ck_assert_double_eq_tol(seen, rows[_i].order, 0.15);
+    const double probe_values = log2(change[0] / change[1]);
+    printf("# chain, %s: order %.3f\n", rows[_i].name, probe_values);
+    ck_assert_double_eq_tol(probe_values, rows[_i].order, 0.15);
 }
 END_TEST
 
@@ -201,11 +201,11 @@ START_TEST(line_search)
         else
             high = u;
     }
-    const double seen = -record_at(&r, 1, 1, 1);
+    const double probe_values = -record_at(&r, 1, 1, 1);
     printf("# a wire catches a weight: %.6f m after two Newton steps, %.6f is due, %.6f without "
            "the wire\n",
-           seen, low, h * h * G);
-    ck_assert_double_eq_tol(seen, low, 0.5 * low);
+           probe_values, low, h * h * G);
+    ck_assert_double_eq_tol(probe_values, low, 0.5 * low);
     ck_assert_double_gt(h * h * G, 20 * low);
     ck_assert_uint_eq(r.report.newton_unconverged, 1);
     record_free(&r);
@@ -280,7 +280,7 @@ START_TEST(energy_is_not_gained)
         const char *name;
         enum model_integrator integrator;
         uint32_t newton;
-        double h, most;   /* of the fall */
+        double h, max;    /* of the fall */
         uint64_t retaken; /* at least, by BDF2 where it may gain half a percent a step */
     } rows[] = {{"implicit Euler, converged", MODEL_IMPLICIT_EULER, 50, 0.001, 1e-9, 0},
                 {"implicit Euler, converged", MODEL_IMPLICIT_EULER, 50, 0.02, 1e-9, 0},
@@ -301,7 +301,7 @@ START_TEST(energy_is_not_gained)
     const double gained = r.report.energy_gained / fall();
     printf("# chain, %s, h = %g s: gains %.2e of its fall in 1 s, loses %.4f\n", rows[_i].name,
            rows[_i].h, gained, (0 - r.report.energy_lowest) / fall());
-    ck_assert_double_le(gained, rows[_i].most);
+    ck_assert_double_le(gained, rows[_i].max);
     ck_assert_uint_ge(r.report.steps_retaken, rows[_i].retaken);
     ck_assert_uint_le(r.report.steps_retaken, rows[_i].retaken ? 8 : 0);
     ck_assert_uint_eq(r.report.steps_halved, 0);
@@ -341,7 +341,7 @@ START_TEST(energy_wavers_in_a_band)
 }
 END_TEST
 
-START_TEST(energies_are_told_when_asked)
+START_TEST(energies_are_reported_when_asked)
 {
     struct setup setup;
     struct record r = {0};
@@ -365,7 +365,7 @@ int main(void)
     tcase_add_test(cases, bdf2_after_contact);
     tcase_add_loop_test(cases, energy_is_not_gained, 0, 8);
     tcase_add_loop_test(cases, energy_wavers_in_a_band, 0, 2);
-    tcase_add_test(cases, energies_are_told_when_asked);
+    tcase_add_test(cases, energies_are_reported_when_asked);
     suite_add_tcase(suite, cases);
     TCase *alone = tcase_create("alone");
     tcase_add_loop_test(alone, order_of_a_swing, 0, 4);

@@ -67,7 +67,7 @@ static const struct way {
     enum model_contact contact;
     enum model_integrator integrator;
     double h;
-    double least, most; /* how much of its sinking in a step the lowest spring bears */
+    double least, max; /* how much of its sinking in a step the lowest spring bears */
 } WAYS[] = {{MODEL_CONTACT_PROJECT, MODEL_IMPLICIT_EULER, 0.01, 1, 1},
             {MODEL_CONTACT_FILTER, MODEL_IMPLICIT_EULER, 0.01, 0, 0},
             {MODEL_CONTACT_PROJECT, MODEL_BDF2, 0.01, 1, 1},
@@ -106,7 +106,7 @@ START_TEST(carries_a_row)
         const double more = EA / GAP * (1 + row.setup.material.damping_stiffness / way->h) * sinks;
         const double force = EA / GAP * pressed, slack = 1e-6 * weight;
         ck_assert_double_ge(force, weight + way->least * more - slack);
-        ck_assert_double_le(force, weight + way->most * more + slack);
+        ck_assert_double_le(force, weight + way->max * more + slack);
     }
     ck_assert_double_eq_tol(momentum, MASSES * MASS * SPEED, 1e-6);
     /* It lies on the shape, less what a step falls before it is put back. */

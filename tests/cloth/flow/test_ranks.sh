@@ -4,7 +4,7 @@
 # motion, too: that two ranks move a cloth like one, to the bit, is what test_same_hash.sh says.
 . "${srcdir:-.}/tests/support/tap.sh"
 programs="test_run test_failures test_memory"
-if test "${DUITE_LONG:-}" = 1; then programs="test_halving test_contact test_guides test_solvers"; fi
+if test "${DUITE_LONG:-}" = 1; then programs="test_halving test_contact test_sliders test_solvers"; fi
 for program in $programs test_motion test_integrators test_checked test_late; do
     skip_unless "tests/cloth/flow/$program"
 done

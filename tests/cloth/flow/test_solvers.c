@@ -23,12 +23,12 @@ static void setup_stiff(struct setup *setup, uint32_t n)
 
 static double farthest(const struct record *a, const struct record *b)
 {
-    double most = 0;
+    double max = 0;
     ck_assert_uint_eq(a->frames, b->frames);
     ck_assert_uint_eq(a->vertices, b->vertices);
     for (size_t i = 0; i < 3 * a->frames * a->vertices; i++)
-        most = fmax(most, fabs(a->position[i] - b->position[i]));
-    return most;
+        max = fmax(max, fabs(a->position[i] - b->position[i]));
+    return max;
 }
 
 /* Runs the model without a preconditioner and with each: the same within 1e-6 m. Returns the

@@ -6,10 +6,10 @@
 #include <math.h>
 #include <stdbool.h>
 
-enum { MOST = 200 };
+enum { MAX = 200 };
 struct polygon {
     size_t n;
-    double x[MOST][2];
+    double x[MAX][2];
 };
 
 static const struct polygon POLYGONS[] = {
@@ -72,7 +72,7 @@ static double shoelace(const struct polygon *p)
 static struct mesh read_polygon(const struct polygon *p, const double u[3], const double v[3],
                                 size_t first, bool backwards)
 {
-    static char text[MOST * 100];
+    static char text[MAX * 100];
     size_t n = 0;
     for (size_t i = 0; i < p->n; i++)
         n += (size_t)sprintf(
@@ -164,15 +164,15 @@ END_TEST
 /* A comb of many teeth, whose ears are far from the corners where the search begins. */
 START_TEST(a_large_one_is_tiled)
 {
-    struct polygon p = {.n = MOST};
-    for (size_t i = 0; i < MOST - 2; i++) {
+    struct polygon p = {.n = MAX};
+    for (size_t i = 0; i < MAX - 2; i++) {
         p.x[i][0] = (double)i;
         p.x[i][1] = i % 2 ? 0.1 : 5 + 0.001 * (double)i;
     }
-    p.x[MOST - 2][0] = MOST;
-    p.x[MOST - 2][1] = -1;
-    p.x[MOST - 1][0] = -1;
-    p.x[MOST - 1][1] = -1;
+    p.x[MAX - 2][0] = MAX;
+    p.x[MAX - 2][1] = -1;
+    p.x[MAX - 1][0] = -1;
+    p.x[MAX - 1][1] = -1;
     tiles(&p, PLANES[3][0], PLANES[3][1], 0, false);
     tiles(&p, PLANES[4][0], PLANES[4][1], 77, true);
 }

@@ -30,11 +30,11 @@ void elements_shake(struct elements_state *state, double size, unsigned seed)
 
 static double largest(const phys_vec *y, uint32_t n)
 {
-    double most = 0;
+    double max = 0;
     for (uint32_t i = 0; i < n; i++)
         for (int c = 0; c < 3; c++)
-            most = fmax(most, fabs(y[i][c]));
-    return most;
+            max = fmax(max, fabs(y[i][c]));
+    return max;
 }
 
 /* Largest error of the forces against differences of the energy over 2 e. */
@@ -42,7 +42,7 @@ static double force_error(const struct elements *model, const struct elements_st
                           double e)
 {
     struct elements_state s = *state;
-    phys_vec f[ELEMENTS_MOST] = {{0}};
+    phys_vec f[ELEMENTS_MAX] = {{0}};
     memset(s.v, 0, sizeof s.v);
     const struct phys_sight sight = look(&s);
     model->force(model->of, &sight, f);
@@ -59,15 +59,15 @@ static double force_error(const struct elements *model, const struct elements_st
 }
 
 void elements_check_gradient(const struct elements *model, const struct elements_state *state,
-                             double most)
+                             double max)
 {
     const double error = force_error(model, state, 1e-5);
     printf("# forces against differences of the energy over 2e-5 m: off by %.2e N\n", error);
-    ck_assert_double_le(error, most);
+    ck_assert_double_le(error, max);
 }
 
 void elements_check_force(const struct elements *model, const struct elements_state *state,
-                          double most)
+                          double max)
 {
     const double coarse = force_error(model, state, 2e-3), fine = force_error(model, state, 1e-3);
     printf("# forces against differences of the energy over 4e-3 and 2e-3 m: off by %.2e, %.2e N: "
@@ -75,7 +75,7 @@ void elements_check_force(const struct elements *model, const struct elements_st
            coarse, fine, log2(coarse / fine));
     ck_assert_double_ge(coarse / fine, 3.7);
     ck_assert_double_le(coarse / fine, 4.3);
-    elements_check_gradient(model, state, most);
+    elements_check_gradient(model, state, max);
 }
 
 /* y = A p of the pairs. */
@@ -98,19 +98,19 @@ static void apply(const struct elements *model, const struct phys_pair *pair, co
         }
 }
 
-enum { MOST_PAIRS = 6 * ELEMENTS_MOST };
+enum { MAX_PAIRS = 6 * ELEMENTS_MAX };
 
 /* Rows of h^2 K + h C against differences of the forces. */
 static void check_columns(const struct elements *model, const struct elements_state *state,
                           const struct phys_pair *still, const struct phys_pair *moving, double h,
-                          double most)
+                          double max)
 {
     const double e = 1e-6;
     double worst = 0;
     for (uint32_t j = 0; j < state->n; j++)
         for (int c = 0; c < 3; c++) {
-            phys_vec f[4][ELEMENTS_MOST] = {{{0}}}, p[ELEMENTS_MOST] = {{0}}, y[ELEMENTS_MOST],
-                     z[ELEMENTS_MOST];
+            phys_vec f[4][ELEMENTS_MAX] = {{{0}}}, p[ELEMENTS_MAX] = {{0}}, y[ELEMENTS_MAX],
+                     z[ELEMENTS_MAX];
             for (int side = 0; side < 2; side++) {
                 struct elements_state s = *state, m = *state;
                 const struct phys_sight at = look(&s), with = look(&m);
@@ -130,17 +130,17 @@ static void check_columns(const struct elements *model, const struct elements_st
             worst = fmax(worst, fmax(largest(y, state->n), largest(z, state->n)));
         }
     printf("# whole matrix against differences of the forces: off by %.1e N/m\n", worst);
-    ck_assert_double_le(worst, most);
+    ck_assert_double_le(worst, max);
 }
 
 /* K v against the matrix, of which C goes by the difference of two steps:
  * (2 h)^2 K + 2 h C - 2 (h^2 K + h C) = 2 h^2 K. */
 static void check_product(const struct elements *model, const struct elements_state *state,
-                          int full, double most)
+                          int full, double max)
 {
     const struct phys_sight sight = look(state);
-    struct phys_pair pair[2][MOST_PAIRS];
-    phys_vec y[2][ELEMENTS_MOST], product[ELEMENTS_MOST] = {{0}};
+    struct phys_pair pair[2][MAX_PAIRS];
+    phys_vec y[2][ELEMENTS_MAX], product[ELEMENTS_MAX] = {{0}};
     for (int i = 0; i < 2; i++) {
         const struct phys_step step = {i ? 2 : 1, full};
         model->matrix(model->of, &step, &sight, pair[i]);
@@ -153,16 +153,16 @@ static void check_product(const struct elements *model, const struct elements_st
         power += phys_dot(&kv, state->v + i);
         product[i] += 0.5 * kv;
     }
-    ck_assert_double_le(largest(product, state->n), most);
+    ck_assert_double_le(largest(product, state->n), max);
     if (!full)
-        ck_assert_double_ge(power, -most);
+        ck_assert_double_ge(power, -max);
 }
 
 void elements_check_matrix(const struct elements *model, const struct elements_state *state,
-                           double most)
+                           double max)
 {
     const double h = 0.5;
-    struct phys_pair pair[MOST_PAIRS], still[MOST_PAIRS], twice[MOST_PAIRS];
+    struct phys_pair pair[MAX_PAIRS], still[MAX_PAIRS], twice[MAX_PAIRS];
     const struct phys_sight sight = look(state);
     const struct phys_step one = {h, 1}, two = {2 * h, 1};
     model->matrix(model->of, &one, &sight, pair);
@@ -170,9 +170,9 @@ void elements_check_matrix(const struct elements *model, const struct elements_s
     for (size_t i = 0; i < model->n * model->n_pairs; i++)
         for (int c = 0; c < 3; c++)
             still[i].cyclic[c] = 0.5 * (twice[i].cyclic[c] - 2 * pair[i].cyclic[c]);
-    check_columns(model, state, still, pair, h, most);
-    check_product(model, state, 0, most);
-    check_product(model, state, 1, most);
+    check_columns(model, state, still, pair, h, max);
+    check_product(model, state, 0, max);
+    check_product(model, state, 1, max);
 }
 
 static void cross(const phys_vec *a, const phys_vec *b, phys_vec *y)
@@ -182,9 +182,9 @@ static void cross(const phys_vec *a, const phys_vec *b, phys_vec *y)
 }
 
 void elements_check_momentum(const struct elements *model, const struct elements_state *state,
-                             double most)
+                             double max)
 {
-    phys_vec f[ELEMENTS_MOST] = {{0}}, y[ELEMENTS_MOST] = {{0}}, sum[3] = {{0}};
+    phys_vec f[ELEMENTS_MAX] = {{0}}, y[ELEMENTS_MAX] = {{0}}, sum[3] = {{0}};
     const struct phys_sight sight = look(state);
     model->force(model->of, &sight, f);
     model->stiffness(model->of, 0, 1, &sight, y);
@@ -197,8 +197,8 @@ void elements_check_momentum(const struct elements *model, const struct elements
     }
     printf("# internal forces up to %.2g N: their sum %.1e N, their torque %.1e N m\n",
            largest(f, state->n), largest(sum, 1), largest(sum + 1, 1));
-    ck_assert_double_gt(largest(f, state->n), 1e3 * most);
-    ck_assert_double_le(largest(sum, 3), most);
+    ck_assert_double_gt(largest(f, state->n), 1e3 * max);
+    ck_assert_double_le(largest(sum, 3), max);
 }
 
 /* A turn (a quaternion that is not of length 1) and a move. */
@@ -214,11 +214,11 @@ static void move(const phys_vec *x, phys_vec *y)
 }
 
 void elements_check_rigid(const struct elements *model, const struct elements_state *rest,
-                          double most)
+                          double max)
 {
     struct elements_state s = *rest;
     const phys_vec spin = {0.3, -0.8, 0.5, 0};
-    phys_vec f[ELEMENTS_MOST] = {{0}};
+    phys_vec f[ELEMENTS_MAX] = {{0}};
     for (uint32_t i = 0; i < s.n; i++) {
         move(rest->x + i, s.x + i);
         cross(&spin, s.x + i, s.v + i);
@@ -226,17 +226,17 @@ void elements_check_rigid(const struct elements *model, const struct elements_st
     const struct phys_sight sight = look(&s);
     model->force(model->of, &sight, f);
     printf("# turned, moved and spinning as a whole: forces %.1e N\n", largest(f, s.n));
-    ck_assert_double_le(largest(f, s.n), most);
+    ck_assert_double_le(largest(f, s.n), max);
 }
 
 void elements_check_split(const struct elements *model, const struct elements_state *state,
                           uint32_t split)
 {
     struct elements_state s = *state;
-    phys_vec f[ELEMENTS_MOST] = {{0}}, y[ELEMENTS_MOST] = {{0}};
+    phys_vec f[ELEMENTS_MAX] = {{0}}, y[ELEMENTS_MAX] = {{0}};
     const struct phys_sight whole = look(&s);
     const struct phys_sight low = {split, s.x, s.v, s.x + split, s.v + split};
-    phys_vec g[ELEMENTS_MOST + 1] = {{0}}, z[ELEMENTS_MOST + 1] = {{0}};
+    phys_vec g[ELEMENTS_MAX + 1] = {{0}}, z[ELEMENTS_MAX + 1] = {{0}};
     model->force(model->of, &whole, f);
     model->stiffness(model->of, 0, 1, &whole, y);
     model->force(model->of, &low, g);

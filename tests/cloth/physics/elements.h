@@ -18,12 +18,12 @@ struct elements {
                    struct phys_pair *pair);
 };
 
-enum { ELEMENTS_MOST = 32 }; /* vertices, and elements */
+enum { ELEMENTS_MAX = 32 }; /* vertices, and elements */
 
 /* A state of n vertices that elements with damping, if any, are looked at in. */
 struct elements_state {
     uint32_t n;
-    phys_vec x[ELEMENTS_MOST], v[ELEMENTS_MOST];
+    phys_vec x[ELEMENTS_MAX], v[ELEMENTS_MAX];
 };
 
 /* Vertices off their places by up to `size` along each axis, and speeds of up to 1: the same for
@@ -33,24 +33,24 @@ void elements_shake(struct elements_state *state, double size, unsigned seed);
 /* Forces (without speeds) are minus the slope of the energy: central differences over 2e-5 m miss
  * them by no more than `most`; the other: and by an error that falls as the square of the step. */
 void elements_check_gradient(const struct elements *model, const struct elements_state *state,
-                             double most);
+                             double max);
 void elements_check_force(const struct elements *model, const struct elements_state *state,
-                          double most);
+                          double max);
 
 /* The full matrix is the slope of forces against positions and speeds, by differences to within
  * `most`; K v is that of the same matrix; both of the reduced one agree, which is nowhere negative.
  */
 void elements_check_matrix(const struct elements *model, const struct elements_state *state,
-                           double most);
+                           double max);
 
 /* Forces, with those of speeds, and K v sum to nothing, and forces have no torque. */
 void elements_check_momentum(const struct elements *model, const struct elements_state *state,
-                             double most);
+                             double max);
 
 /* No forces at the rest places `rest`, turned and moved anyhow, at a speed that belongs to a turn:
  * `most` N. */
 void elements_check_rigid(const struct elements *model, const struct elements_state *rest,
-                          double most);
+                          double max);
 
 /* Vertices split in two blocks, from `split` on: each finds the rows of the whole, bit for bit. */
 void elements_check_split(const struct elements *model, const struct elements_state *state,

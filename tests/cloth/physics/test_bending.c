@@ -1,4 +1,4 @@
-/* Hinges and folds against what they are derived from, and against a cylinder. */
+/* Hinges and quadratic bending against what they are derived from, and against a cylinder. */
 #include "cloth/physics/bending.h"
 #include "tests/cloth/physics/elements.h"
 #include "tests/support/unit.h"
@@ -10,7 +10,7 @@
 /* ---- Angles ---- */
 
 /* Two triangles of different heights and feet, folded by theta about an edge that lies askew. */
-static void fold(double theta, double x[12])
+static void quadratic(double theta, double x[12])
 {
     const double c = cos(theta), s = sin(theta);
     const double flat[4][3] = {{0, 0, 0}, {1.3, 0, 0}, {0.4, 0.7, 0}, {0.9, -1.1 * c, -1.1 * s}};
@@ -27,7 +27,7 @@ START_TEST(s_is_twice_the_sine_of_half_the_angle)
     for (double theta = -3.1; theta < 3.14; theta += 0.1) {
         double x[12];
         struct phys_bend_rest rest;
-        fold(theta, x);
+        quadratic(theta, x);
         ck_assert_int_eq(phys_bend_rest(x, &rest), 0);
         ck_assert_double_eq_tol(rest.s, 2 * sin(theta / 2), 1e-14);
         ck_assert_double_eq_tol(rest.shape, 1.3 * 1.3 / (0.5 * 1.3 * (0.7 + 1.1)), 1e-14);
@@ -70,7 +70,7 @@ struct strip {
     double stiffness[BENDS], damping[BENDS], rest[BENDS];
     phys_vec weight[BENDS];
     struct phys_hinges hinges;
-    struct phys_folds folds;
+    struct phys_quadratic quadratic;
 };
 
 static void start(struct elements_state *state)
@@ -95,7 +95,7 @@ static void make_strip(struct strip *s, const struct elements_state *state, doub
         s->weight[e] = (phys_vec){rest.weight[0], rest.weight[1], rest.weight[2], rest.weight[3]};
     }
     s->hinges = (struct phys_hinges){BENDS, corner, s->stiffness, s->damping, s->rest};
-    s->folds = (struct phys_folds){BENDS, corner, s->weight};
+    s->quadratic = (struct phys_quadratic){BENDS, corner, s->weight};
 }
 
 static double hinge_energy(const void *of, const struct phys_sight *sight)
@@ -117,45 +117,46 @@ static void hinge_matrix(const void *of, const struct phys_step *step,
     phys_hinges_matrix(of, 0, 1, step, sight, NULL, pair);
     phys_hinges_matrix(of, 1, BENDS, step, sight, NULL, pair + PHYS_BEND_PAIRS);
 }
-static double fold_energy(const void *of, const struct phys_sight *sight)
+static double quadratic_energy(const void *of, const struct phys_sight *sight)
 {
-    return phys_folds_energy(of, sight);
+    return phys_quadratic_energy(of, sight);
 }
-static void fold_force(const void *of, const struct phys_sight *sight, phys_vec *f)
+static void quadratic_force(const void *of, const struct phys_sight *sight, phys_vec *f)
 {
-    phys_folds_force(of, sight, f);
+    phys_quadratic_force(of, sight, f);
 }
-static void fold_stiffness(const void *of, int full, double scale, const struct phys_sight *sight,
-                           phys_vec *y)
+static void quadratic_stiffness(const void *of, int full, double scale,
+                                const struct phys_sight *sight, phys_vec *y)
 {
     (void)full;
-    phys_folds_stiffness(of, scale, sight, y);
+    phys_quadratic_stiffness(of, scale, sight, y);
 }
-static void fold_matrix(const void *of, const struct phys_step *step,
-                        const struct phys_sight *sight, struct phys_pair *pair)
+static void quadratic_matrix(const void *of, const struct phys_step *step,
+                             const struct phys_sight *sight, struct phys_pair *pair)
 {
     (void)sight;
-    phys_folds_matrix(of, 0, 3, step->h, pair);
-    phys_folds_matrix(of, 3, BENDS, step->h, pair + 3 * PHYS_BEND_PAIRS);
+    phys_quadratic_matrix(of, 0, 3, step->h, pair);
+    phys_quadratic_matrix(of, 3, BENDS, step->h, pair + 3 * PHYS_BEND_PAIRS);
 }
 
-static struct elements model_of(const struct strip *s, int folds)
+static struct elements model_of(const struct strip *s, int quadratic)
 {
     static const int pair[PHYS_BEND_PAIRS][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};
-    if (folds)
-        return (struct elements){&s->folds,   BENDS,      PHYS_BEND_PAIRS, corner,     pair,
-                                 fold_energy, fold_force, fold_stiffness,  fold_matrix};
+    if (quadratic)
+        return (struct elements){
+            &s->quadratic,    BENDS,           PHYS_BEND_PAIRS,     corner,          pair,
+            quadratic_energy, quadratic_force, quadratic_stiffness, quadratic_matrix};
     return (struct elements){&s->hinges,   BENDS,       PHYS_BEND_PAIRS, corner,      pair,
                              hinge_energy, hinge_force, hinge_stiffness, hinge_matrix};
 }
 
-/* _i: 0 hinges, 1 folds. */
+/* _i: 0 hinges, 1 quadratic bending. */
 START_TEST(force_is_the_slope_of_the_energy)
 {
     struct elements_state state;
     struct strip s;
     start(&state);
-    elements_shake(&state, _i ? 0 : 0.1, 5); /* folds have a flat rest shape */
+    elements_shake(&state, _i ? 0 : 0.1, 5); /* quadratic bending has a flat rest shape */
     make_strip(&s, &state, 0);
     elements_shake(&state, 0.2, 3);
     const struct elements model = model_of(&s, _i);
@@ -163,12 +164,12 @@ START_TEST(force_is_the_slope_of_the_energy)
         struct phys_sight sight = {state.n, state.x, state.v, NULL, NULL};
         phys_vec f[VERTICES] = {{0}};
         memset(state.v, 0, sizeof state.v);
-        phys_folds_force(&s.folds, &sight, f);
+        phys_quadratic_force(&s.quadratic, &sight, f);
         for (int i = 0; i < 3 * VERTICES; i++) {
             double w[2];
             for (int side = 0; side < 2; side++) {
                 state.x[i / 3][i % 3] += side ? -0.2 : 0.1;
-                w[side] = phys_folds_energy(&s.folds, &sight);
+                w[side] = phys_quadratic_energy(&s.quadratic, &sight);
             }
             state.x[i / 3][i % 3] += 0.1;
             ck_assert_double_eq_tol(f[i / 3][i % 3], -(w[0] - w[1]) / 0.2, 1e-12);
@@ -239,7 +240,7 @@ START_TEST(angles_up_to_half_a_turn)
     for (int side = -1; side < 2; side += 2) {
         double x[12];
         phys_vec row[4], f[4] = {{0}}, v[4] = {{0}};
-        fold(side * 3.0, x);
+        quadratic(side * 3.0, x);
         for (int i = 0; i < 4; i++)
             row[i] = (phys_vec){x[3 * i], x[3 * i + 1], x[3 * i + 2], 0};
         const struct phys_sight sight = {4, row, v, NULL, NULL};

@@ -48,7 +48,7 @@ static double energy(const struct phys_springs *s, const phys_vec *x)
 static double force_error(double e)
 {
     const struct phys_springs s = tangle(slack, shorter);
-    double most = 0;
+    double max = 0;
     phys_vec x[N], f[N] = {{0}};
     memcpy(x, places, sizeof x);
     phys_springs_force(&s, x, speeds, f);
@@ -59,11 +59,11 @@ static double force_error(double e)
             x[i][c] = places[i][c] - e;
             const double less = energy(&s, x);
             x[i][c] = places[i][c];
-            most = fmax(most, fabs(f[i][c] + (more - less) / (2 * e)));
+            max = fmax(max, fabs(f[i][c] + (more - less) / (2 * e)));
         }
     for (int i = 0; i < N; i++)
         ck_assert_double_eq(f[i][3], 0);
-    return most;
+    return max;
 }
 
 START_TEST(force_is_the_slope_of_the_energy)

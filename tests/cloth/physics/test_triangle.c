@@ -285,16 +285,16 @@ START_TEST(patch)
         make_sheet(&s, 0);
         place(&s, map[m], map[m] + 1, &state);
         forces(&s, &state, f);
-        double inner = 0, most = 0;
+        double inner = 0, max = 0;
         for (int i = 0; i < VERTICES; i++) {
             const double size = sqrt(phys_dot(f + i, f + i));
-            most = fmax(most, size);
+            max = fmax(max, size);
             if (is_inner(i))
                 inner = fmax(inner, size);
         }
-        printf("# patch test: inner forces %.1e of the largest, %.3g N\n", inner / most, most);
-        ck_assert_double_le(inner, 1e-12 * most);
-        ck_assert_double_gt(most, 1);
+        printf("# patch test: inner forces %.1e of the largest, %.3g N\n", inner / max, max);
+        ck_assert_double_le(inner, 1e-12 * max);
+        ck_assert_double_gt(max, 1);
     }
 }
 END_TEST

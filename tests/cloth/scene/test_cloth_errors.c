@@ -212,39 +212,41 @@ START_TEST(loads_that_cannot_be_made)
 }
 END_TEST
 
-#define MORE(text)   "material: cotton", "material: cotton\n    " text
-#define COURSE(text) "force: [0, 1, 0]", "force: [0, 1, 0], course: {" text "}"
+#define MORE(text)  "material: cotton", "material: cotton\n    " text
+#define CURVE(text) "force: [0, 1, 0]", "force: [0, 1, 0], curve: {" text "}"
 
-START_TEST(courses_that_cannot_be_made)
+START_TEST(curves_that_cannot_be_made)
 {
     EXPECT(
-        {COURSE("keys: [[0, 1], [2, 1], [2, 0]]"),
-         .error = ":8:81: the time of course.keys[2] is 2, which does not come after 2, that of "
+        {CURVE("keys: [[0, 1], [2, 1], [2, 0]]"),
+         .error = ":8:80: the time of curve.keys[2] is 2, which does not come after 2, that of "
                   "the one before it; times in ascending order are expected"},
-        {COURSE("keys: [[0, 1, 2]]"),
-         .error = ":8:64: cloths[0].loads[0].course.keys[0] is a list of 3; a list of 2 numbers "
+        {CURVE("keys: [[0, 1, 2]]"),
+         .error = ":8:63: cloths[0].loads[0].curve.keys[0] is a list of 3; a list of 2 numbers "
                   "is expected"},
-        {COURSE("keys: []"),
+        {CURVE("keys: []"),
          .error =
-             ":8:63: cloths[0].loads[0].course.keys is an empty list; a non-empty list of lists is "
+             ":8:62: cloths[0].loads[0].curve.keys is an empty list; a non-empty list of lists is "
              "expected"},
-        {COURSE("keys: [[0, .inf]]"),
-         .error = ":8:68: cloths[0].loads[0].course.keys[0][1] is .inf; a finite number is "
+        {CURVE("keys: [[0, .inf]]"),
+         .error = ":8:67: cloths[0].loads[0].curve.keys[0][1] is .inf; a finite number is "
                   "expected"},
-        {COURSE("sine: {frequency: 500}"),
-         .error = ":8:75: course.sine.frequency is 500, but steps of time.h = 0.001 s can "
+        {CURVE("sine: {frequency: 500}"),
+         .error = ":8:74: curve.sine.frequency is 500, but steps of time.h = 0.001 s can "
                   "follow less than 500 turns a second; fewer, or shorter steps, are expected"},
-        {COURSE("sine: {frequency: 0}"),
-         .error = ":8:75: cloths[0].loads[0].course.sine.frequency is 0; a finite number > 0 "
+        {CURVE("sine: {frequency: 0}"),
+         .error = ":8:74: cloths[0].loads[0].curve.sine.frequency is 0; a finite number > 0 "
                   "(1/s) is expected"},
-        {COURSE("sine: {frequency: 1, phas: 0}"),
-         .error = ":8:78: phas is not a key of cloths[0].loads[0].course.sine; did you mean "
+        {CURVE("sine: {frequency: 1, phas: 0}"),
+         .error = ":8:77: phas is not a key of cloths[0].loads[0].curve.sine; did you mean "
                   "'phase'? Allowed: frequency, phase"},
-        {COURSE("cosine: {frequency: 1}"),
-         .error = ":8:57: cosine is not a key of cloths[0].loads[0].course; did you mean "
+        {CURVE("cosine: {frequency: 1}"),
+         .error = ":8:56: cosine is not a key of cloths[0].loads[0].curve; did you mean "
                   "'sine'? Allowed: keys, sine"},
-        {"gravity: [0, -9.81, 0]", "air: {course: {keys: [[0, 1], [0, 1]]}}",
-         .error = ":2:32: the time of course.keys[1] is 0, which does not come after 0, that of "
+        {"gravity: [0, -9.81, 0]", "air: {course: {keys: [[0, 1]]}}",
+         .error = ":2:7: course is no longer a key of air: its name is curve"},
+        {"gravity: [0, -9.81, 0]", "air: {curve: {keys: [[0, 1], [0, 1]]}}",
+         .error = ":2:31: the time of curve.keys[1] is 0, which does not come after 0, that of "
                   "the one before it; times in ascending order are expected"});
 }
 END_TEST
@@ -460,7 +462,7 @@ int main(void)
     tcase_add_test(cases, grids_larger_than_the_machine);
     tcase_add_test(cases, names_and_indices);
     tcase_add_test(cases, loads_that_cannot_be_made);
-    tcase_add_test(cases, courses_that_cannot_be_made);
+    tcase_add_test(cases, curves_that_cannot_be_made);
     tcase_add_test(cases, regions_that_cannot_be_made);
     tcase_add_test(cases, starts_and_masses_that_cannot_be_made);
     tcase_add_test(cases, motions_that_cannot_be_made);

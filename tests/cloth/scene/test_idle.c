@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SETS = 4 };
+enum { MAX_SETS = 4 };
 
 /* Sets, of which the last one but for NULLs is that of the idle key, and what it is told; NULL:
  * there is no warning. */
 static const struct {
-    const char *set[MOST_SETS], *warning;
+    const char *set[MAX_SETS], *warning;
 } cases[] = {
     {{"contact=filter"}, NULL},
     {{"contact=project", "integrator=bdf2"}, NULL},
@@ -47,11 +47,11 @@ static const struct {
     {{"integrator=rk4", "time.energy_growth=0"}, NULL},
     {{"integrator=rk4", "time.energy_growth=0.2"}, "time.energy_growth means nothing"},
     {{"air={wind: [1, 0, 0]}", "time.energy_growth=0.2"}, "time.energy_growth means nothing"},
-    {{"time.rest={}", "cloths[0].loads[0].course.keys=[[0, 1]]"}, NULL},
-    {{"cloths[0].loads[0].course.sine.frequency=1", "time.rest={}"}, "time.rest means nothing"},
+    {{"time.rest={}", "cloths[0].loads[0].curve.keys=[[0, 1]]"}, NULL},
+    {{"cloths[0].loads[0].curve.sine.frequency=1", "time.rest={}"}, "time.rest means nothing"},
     {{"air={}"}, NULL},
-    {{"air={wind: [0, 0, 1], course: {keys: [[0, 1]]}}"}, NULL},
-    {{"air={course: {keys: [[0, 1]]}}"}, "air.course means nothing"},
+    {{"air={wind: [0, 0, 1], curve: {keys: [[0, 1]]}}"}, NULL},
+    {{"air={curve: {keys: [[0, 1]]}}"}, "air.curve means nothing"},
     {{"cloths[0]={mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0]], edges: [[0, 1]]}}, material: "
       "cotton}",
       "materials.cotton.ea=1", "air={}"},
@@ -71,9 +71,9 @@ static const struct {
 
 START_TEST(idle_keys_are_warned_of)
 {
-    struct scene_set sets[MOST_SETS];
+    struct scene_set sets[MAX_SETS];
     size_t n = 0;
-    while (n < MOST_SETS && cases[_i].set[n]) {
+    while (n < MAX_SETS && cases[_i].set[n]) {
         sets[n] = (struct scene_set){.text = cases[_i].set[n]};
         n++;
     }

@@ -178,13 +178,13 @@ void system_filter(struct system *s, bool oblique)
 static uint32_t copy_of(const struct system_block *b, uint32_t row)
 {
     uint32_t i = 0;
-    while (b->copy[i] != row)
+    while (b->ghost[i] != row)
         i++;
     return i;
 }
 
 /* Adds spring i of the whole to entry `at`, of which the second end may be here. */
-static void add_entry(const struct system *s, uint32_t i, uint32_t at, bool turned,
+static void add_entry(const struct system *s, uint32_t i, uint32_t at, bool transposed,
                       struct system_block *b, struct phys_pair *sums)
 {
     if (s->format == SOLVE_SPRINGS) {
@@ -194,7 +194,7 @@ static void add_entry(const struct system *s, uint32_t i, uint32_t at, bool turn
     const phys_vec *t = s->turn + i;
     double turn[3][3] = {{0, -(*t)[2], (*t)[1]}, {(*t)[2], 0, -(*t)[0]}, {-(*t)[1], (*t)[0], 0}};
     solve_assemble_springs(1, &at, s->value + i, sums);
-    solve_assemble(sums + at, turned, (const double(*)[3])turn);
+    solve_assemble(sums + at, transposed, (const double(*)[3])turn);
 }
 
 /* Entries between rows of the block and of others, behind the inner ones. */
@@ -214,7 +214,7 @@ static void cut_entries(struct system *s, struct system_block *b, uint32_t n,
 /* Inner springs, then those cut, of the rows first .. first + n - 1. */
 static void cut_block(struct system *s, struct system_block *b, uint32_t first, uint32_t n)
 {
-    bool seen[SYSTEM_ROWS] = {0}, rim[SYSTEM_ROWS] = {0};
+    bool seen[SYSTEM_ROWS] = {0}, halo[SYSTEM_ROWS] = {0};
     struct phys_pair sums[SYSTEM_SPRINGS] = {{{{0}}}};
     uint32_t inner = 0;
     *b = (struct system_block){.first = first};
@@ -229,22 +229,22 @@ static void cut_block(struct system *s, struct system_block *b, uint32_t first, 
             b->row[x + 1] = inner;
         } else if (x < n || y < n) {
             seen[(x < n ? y : x) + first] = true;
-            rim[x < n ? x : y] = true;
+            halo[x < n ? x : y] = true;
         }
     }
     for (uint32_t a = 0; a < n; a++) {
         b->row[a + 1] = b->row[a + 1] > b->row[a] ? b->row[a + 1] : b->row[a];
-        if (rim[a])
-            b->rim[b->cut.n_rim++] = a;
+        if (halo[a])
+            b->halo[b->cut.n_halo++] = a;
     }
     for (uint32_t a = 0; a < s->n; a++)
         if (seen[a])
-            b->copy[b->n_copies++] = a;
+            b->ghost[b->n_ghosts++] = a;
     cut_entries(s, b, n, sums);
     b->matrix = (struct solve_block){n, b->diagonal, b->free, b->row, b->column, s->format, NULL};
     b->matrix.filter = s->filtered ? s->filter + first : NULL;
     b->cut.end = (const uint32_t(*)[2])b->end;
-    b->cut.rim = b->rim;
+    b->cut.halo = b->halo;
     if (s->format != SOLVE_SPRINGS)
         solve_assembled(&b->matrix, &b->cut, sums, (double *)(void *)b->value);
 }

@@ -11,12 +11,12 @@ enum { SYSTEM_ROWS = 64, SYSTEM_SPRINGS = 256, SYSTEM_BLOCKS = 8 };
 
 struct system_block {
     struct solve_block matrix;
-    struct solve_cut cut; /* end: own row, number of the copy */
+    struct solve_cut cut; /* end: own row, number of the ghost */
     uint32_t first;       /* row 0 in the whole */
     double diagonal[SYSTEM_ROWS], free[SYSTEM_ROWS];
     uint32_t row[SYSTEM_ROWS + 1], column[SYSTEM_SPRINGS], end[SYSTEM_SPRINGS][2];
-    uint32_t rim[SYSTEM_ROWS];
-    uint32_t n_copies, copy[SYSTEM_SPRINGS];          /* rows in the whole, ascending */
+    uint32_t halo[SYSTEM_ROWS];
+    uint32_t n_ghosts, ghost[SYSTEM_SPRINGS];         /* rows in the whole, ascending */
     phys_vec value[3 * SYSTEM_SPRINGS + SYSTEM_ROWS]; /* of the entries, as the format has them */
     phys_vec position[SYSTEM_ROWS];
 };

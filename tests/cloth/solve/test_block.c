@@ -8,14 +8,14 @@
 #include <string.h>
 
 /* Ten particles, two blocks of five; springs between all pairs but some. Every particle is in a
- * rim. */
+ * halo. */
 enum { ROWS = 5, N = 2 * ROWS, DOFS = 3 * N };
 
 struct half {
-    uint32_t row[ROWS + 1], column[ROWS * ROWS], end[ROWS * ROWS][2], rim[ROWS], held[ROWS * N][2];
+    uint32_t row[ROWS + 1], column[ROWS * ROWS], end[ROWS * ROWS][2], halo[ROWS], held[ROWS * N][2];
     double diagonal[ROWS], free[ROWS];
     phys_vec value[2 * ROWS * ROWS];
-    uint32_t n_inner, n_cut, n_rim;
+    uint32_t n_inner, n_cut, n_halo;
     struct solve_block block;
     struct solve_cut cut;
     struct solve_held hold;
@@ -97,21 +97,21 @@ static void build(void)
                     h->end[h->n_cut++][1] = (uint32_t)b;
                 }
             if (h->n_cut > before)
-                h->rim[h->n_rim++] = (uint32_t)a;
+                h->halo[h->n_halo++] = (uint32_t)a;
         }
         h->block = (struct solve_block){ROWS,      h->diagonal,   h->free, h->row,
                                         h->column, SOLVE_SPRINGS, NULL};
-        h->cut = (struct solve_cut){h->n_cut, (const uint32_t(*)[2])h->end, h->n_rim, h->rim};
+        h->cut = (struct solve_cut){h->n_cut, (const uint32_t(*)[2])h->end, h->n_halo, h->halo};
         h->hold.at = (const uint32_t(*)[2])h->held;
     }
 }
 
-/* Vectors of both halves, and copies: of half s those of the rows of the other one. */
+/* Vectors of both halves, and ghosts: of half s those of the rows of the other one. */
 struct vectors {
-    phys_vec dv[N], r[N], p[N], q[N], copy_r[N], copy_p[N];
+    phys_vec dv[N], r[N], p[N], q[N], ghost_r[N], ghost_p[N];
 };
 
-/* A pass over both halves, each with its copies of the other; the dots are added up. */
+/* A pass over both halves, each with its ghosts of the other; the dots are added up. */
 static void pass(struct vectors *x, double alpha, double beta, double dots[SOLVE_DOTS])
 {
     static const uint32_t all[ROWS] = {0, 1, 2, 3, 4};
@@ -125,22 +125,23 @@ static void pass(struct vectors *x, double alpha, double beta, double dots[SOLVE
         const struct solve_rows rows =
             solve_rows_plain(x->dv + at, x->r + at, x->p + at, x->q + at);
         double part[SOLVE_DOTS];
-        solve_advance_copies(ROWS, alpha, beta, packed[1 - s], all, x->copy_r + at, x->copy_p + at);
-        solve_pass(&h->block, &h->cut, h->value, x->copy_p + at, alpha, beta, &rows, part);
+        solve_advance_ghosts(ROWS, alpha, beta, packed[1 - s], all, x->ghost_r + at,
+                             x->ghost_p + at);
+        solve_pass(&h->block, &h->cut, h->value, x->ghost_p + at, alpha, beta, &rows, part);
         for (int i = 0; i < SOLVE_DOTS; i++)
             dots[i] += part[i];
     }
     for (int i = 0; i < N; i++) {
-        ck_assert_int_eq(memcmp(x->copy_r + i, x->r + (i + ROWS) % N, sizeof *x->r), 0);
-        ck_assert_int_eq(memcmp(x->copy_p + i, x->p + (i + ROWS) % N, sizeof *x->p), 0);
+        ck_assert_int_eq(memcmp(x->ghost_r + i, x->r + (i + ROWS) % N, sizeof *x->r), 0);
+        ck_assert_int_eq(memcmp(x->ghost_p + i, x->p + (i + ROWS) % N, sizeof *x->p), 0);
     }
 }
 
 static void copy_rows(struct vectors *x)
 {
     for (int i = 0; i < N; i++) {
-        x->copy_r[i] = x->r[(i + ROWS) % N];
-        x->copy_p[i] = x->p[(i + ROWS) % N];
+        x->ghost_r[i] = x->r[(i + ROWS) % N];
+        x->ghost_p[i] = x->p[(i + ROWS) % N];
     }
 }
 
@@ -265,7 +266,7 @@ static double iterate(const phys_vec *b, phys_vec *dv, uint32_t count)
 {
     struct vectors x;
     double dots[SOLVE_DOTS] = {0};
-    const struct solve_stop stop = {.count = true, .most = count};
+    const struct solve_stop stop = {.count = true, .max = count};
     struct solve_scalars scalars = solve_scalars_start(0, SOLVE_ON);
     memset(&x, 0x55, sizeof x);
     for (int at = 0; at < N; at += ROWS)

@@ -28,10 +28,10 @@ START_TEST(the_last_pass_at_every_size)
 END_TEST
 
 /* What a neighbour sees of some rows, through packed numbers in another order, has their bits. */
-START_TEST(copies_keep_the_bits)
+START_TEST(ghosts_keep_the_bits)
 {
-    static const uint32_t rim[] = {1, 4, 5, 7}, at[] = {3, 0, 2};
-    phys_vec p[8], q[8], r[8], copy_r[3], copy_p[3];
+    static const uint32_t halo[] = {1, 4, 5, 7}, at[] = {3, 0, 2};
+    phys_vec p[8], q[8], r[8], ghost_r[3], ghost_p[3];
     double packed[12];
     for (int i = 0; i < 8; i++) {
         p[i] = (phys_vec){sqrt(i + 2), 1.0 / (i + 3), 0.1 * i, 0};
@@ -39,16 +39,16 @@ START_TEST(copies_keep_the_bits)
         r[i] = (phys_vec){0.3, -i / 7.0, sqrt(3 * i), 0};
     }
     for (int i = 0; i < 3; i++) {
-        copy_r[i] = r[rim[at[i]]];
-        copy_p[i] = p[rim[at[i]]];
+        ghost_r[i] = r[halo[at[i]]];
+        ghost_p[i] = p[halo[at[i]]];
     }
-    solve_pack(4, rim, q, packed);
-    solve_advance_copies(3, 0.123, 0.77, packed, at, copy_r, copy_p);
+    solve_pack(4, halo, q, packed);
+    solve_advance_ghosts(3, 0.123, 0.77, packed, at, ghost_r, ghost_p);
     for (int i = 0; i < 8; i++)
         solve_advance(0.123, 0.77, q + i, r + i, p + i);
     for (int i = 0; i < 3; i++) {
-        ck_assert_int_eq(memcmp(copy_r + i, r + rim[at[i]], sizeof *r), 0);
-        ck_assert_int_eq(memcmp(copy_p + i, p + rim[at[i]], sizeof *p), 0);
+        ck_assert_int_eq(memcmp(ghost_r + i, r + halo[at[i]], sizeof *r), 0);
+        ck_assert_int_eq(memcmp(ghost_p + i, p + halo[at[i]], sizeof *p), 0);
     }
 }
 END_TEST
@@ -134,7 +134,7 @@ static int solve(struct run *run, const struct solve_stop *stop, double size)
         phase = run->scalars.phase;
         code = pass(run, stop, 1);
     }
-    ck_assert_double_eq(phase, stop->count && stop->most ? SOLVE_LAST : SOLVE_ON);
+    ck_assert_double_eq(phase, stop->count && stop->max ? SOLVE_LAST : SOLVE_ON);
     ck_assert_double_eq(run->scalars.iterations + 1, passes);
     ck_assert_double_eq(run->scalars.step, 11);
     return code;
@@ -144,7 +144,7 @@ static int solve(struct run *run, const struct solve_stop *stop, double size)
 START_TEST(factors_are_those_of_two_reductions)
 {
     struct run run;
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-8, .most = 100};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-8, .max = 100};
     start(&run, 1);
     ck_assert_int_eq(pass(&run, &stop, 1), SOLVE_OK);
     for (int k = 0; k < 12; k++) {
@@ -160,7 +160,7 @@ END_TEST
 START_TEST(the_residual_is_true)
 {
     struct run run;
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-13, .most = 1000};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-13, .max = 1000};
     ck_assert_int_eq(solve(&run, &stop, 1), SOLVE_OK);
     ck_assert_double_le(run.scalars.square, run.scalars.wanted);
     for (int i = 0; i < N; i++) {
@@ -175,20 +175,20 @@ END_TEST
 START_TEST(every_way_to_stop)
 {
     struct run run, other;
-    struct solve_stop stop = {.count = true, .most = 5};
+    struct solve_stop stop = {.count = true, .max = 5};
     ck_assert_int_eq(solve(&run, &stop, 1), SOLVE_OK);
     ck_assert_double_eq(run.scalars.iterations, 5);
-    stop = (struct solve_stop){.tolerance = sqrt(run.scalars.square) * (1 + 1e-12), .most = 5};
+    stop = (struct solve_stop){.tolerance = sqrt(run.scalars.square) * (1 + 1e-12), .max = 5};
     ck_assert_int_eq(solve(&other, &stop, 1), SOLVE_OK); /* absolute, just reached */
     ck_assert_double_eq(other.scalars.iterations, 5);
     ck_assert_int_eq(memcmp(run.dv, other.dv, sizeof run.dv), 0);
-    stop.most = 4;
+    stop.max = 4;
     ck_assert_int_eq(solve(&other, &stop, 1), SOLVE_NOT_CONVERGED);
     ck_assert_double_eq(other.scalars.iterations, 4);
-    stop = (struct solve_stop){.count = true, .most = 0};
+    stop = (struct solve_stop){.count = true, .max = 0};
     ck_assert_int_eq(solve(&other, &stop, 1), SOLVE_OK);
     ck_assert_double_eq(other.dv[1][0], 0);
-    stop = (struct solve_stop){.count = true, .most = 1};
+    stop = (struct solve_stop){.count = true, .max = 1};
     ck_assert_int_eq(solve(&other, &stop, 1), SOLVE_OK);
     ck_assert_double_ne(other.dv[1][0], 0);
 }
@@ -211,9 +211,9 @@ static int lie(struct run *run, const struct solve_stop *stop, int at)
 }
 
 static const struct solve_stop CONFIRMED[] = {
-    {.relative = true, .confirm = true, .tolerance = 1e-6, .most = 100},
-    {.confirm = true, .tolerance = 1e-6, .most = 100},
-    {.mass_norm = true, .confirm = true, .tolerance = 1e-3, .most = 100}};
+    {.relative = true, .confirm = true, .tolerance = 1e-6, .max = 100},
+    {.confirm = true, .tolerance = 1e-6, .max = 100},
+    {.mass_norm = true, .confirm = true, .tolerance = 1e-3, .max = 100}};
 
 /* Two passes more, the same dv, and the true residual in r. */
 START_TEST(what_is_right_is_confirmed)
@@ -247,7 +247,7 @@ START_TEST(what_is_wrong_is_found)
     ck_assert_int_eq(lie(&run, &stop, 3), SOLVE_OK);
     ck_assert_double_gt(fabs(entry(7) * run.dv[7][1] - sin(7)), 0.4);
     stop.confirm = true;
-    stop.most = (uint32_t)run.scalars.iterations;
+    stop.max = (uint32_t)run.scalars.iterations;
     ck_assert_int_eq(lie(&run, &stop, 3), SOLVE_NOT_CONVERGED);
 }
 END_TEST
@@ -296,7 +296,7 @@ START_TEST(nothing_to_solve)
     static const double sizes[] = {0, 1e-150, 1e-170};
     for (int i = 0; i < 3; i++) {
         struct run run;
-        struct solve_stop stop = {.relative = true, .most = 9};
+        struct solve_stop stop = {.relative = true, .max = 9};
         ck_assert_int_eq(solve(&run, &stop, sizes[i]), SOLVE_OK);
         ck_assert_double_eq(run.scalars.iterations, 0);
         stop.count = true;
@@ -310,7 +310,7 @@ END_TEST
 /* A matrix that is negative, and one beyond all numbers. */
 START_TEST(breakdowns)
 {
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-3, .most = 9};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-3, .max = 9};
     struct run run;
     start(&run, 1);
     ck_assert_int_eq(pass(&run, &stop, -1), SOLVE_BREAKDOWN);
@@ -327,7 +327,7 @@ END_TEST
  * more than that is one. */
 START_TEST(little_left_of_a_guess)
 {
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-20, .most = 9};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-20, .max = 9};
     const double left[] = {1e-30, 1e-20};
     for (int i = 0; i < 2; i++) {
         struct solve_scalars now[4] = {solve_scalars_start(0, SOLVE_OPEN)};
@@ -346,7 +346,7 @@ END_TEST
 /* A number that is infinite, or a step that is none, would stay so for all iterations. */
 START_TEST(nothing_moves)
 {
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-3, .most = 9};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-3, .max = 9};
     const double product[] = {1, INFINITY, 1e-200}, curvature[] = {INFINITY, 1, 1e200};
     for (int i = 0; i < 3; i++) {
         const struct solve_scalars before = solve_scalars_start(0, SOLVE_ON);
@@ -363,7 +363,7 @@ int main(void)
     Suite *suite = suite_create("cg");
     TCase *cases = tcase_create("cg");
     tcase_add_test(cases, the_last_pass_at_every_size);
-    tcase_add_test(cases, copies_keep_the_bits);
+    tcase_add_test(cases, ghosts_keep_the_bits);
     tcase_add_test(cases, factors_are_those_of_two_reductions);
     tcase_add_test(cases, the_residual_is_true);
     tcase_add_test(cases, every_way_to_stop);

@@ -57,8 +57,8 @@ START_TEST(matrix_is_of_the_filtered_system)
             check_coupling(b, b, level.coupling[b][0]);
             uint32_t later = 1;
             for (uint32_t s = level.first[b]; s < level.first[b + 1]; s++)
-                if (level.slot[s] > b)
-                    check_coupling(b, level.slot[s], level.coupling[b][later++]);
+                if (level.neighbour[s] > b)
+                    check_coupling(b, level.neighbour[s], level.coupling[b][later++]);
         }
         two_level_free(&level);
     }
@@ -166,7 +166,7 @@ END_TEST
 
 enum { BLOCKS = 70 };
 static double coupling[BLOCKS][8][SOLVE_COUPLING];
-static uint32_t first[BLOCKS + 1], slot[8 * BLOCKS];
+static uint32_t first[BLOCKS + 1], neighbour[8 * BLOCKS];
 
 /* A graph of blocks in which each meets some of those with near numbers, both ways. */
 static void draw_graph(uint32_t n, int share)
@@ -180,7 +180,7 @@ static void draw_graph(uint32_t n, int share)
     for (uint32_t a = 0; a < n; a++) {
         for (uint32_t b = 0; b < n; b++)
             if (meets[a][b])
-                slot[count++] = b;
+                neighbour[count++] = b;
         first[a + 1] = count;
     }
 }
@@ -217,8 +217,8 @@ static void multiply(uint32_t n, const double *x, double *y)
         uint32_t later = 1;
         add_product(coupling[b][0], b, b, x, y);
         for (uint32_t s = first[b]; s < first[b + 1]; s++)
-            if (slot[s] > b)
-                add_product(coupling[b][later++], b, slot[s], x, y);
+            if (neighbour[s] > b)
+                add_product(coupling[b][later++], b, neighbour[s], x, y);
     }
 }
 
@@ -228,7 +228,7 @@ static void check_factor(uint32_t n)
     static _Alignas(32) double back[SOLVE_COARSE_STRIDE * BLOCKS];
     struct solve_pattern pattern;
     struct cloth_error error = {0};
-    ck_assert_int_eq(solve_pattern_make(&pattern, n, first, slot, &error), 0);
+    ck_assert_int_eq(solve_pattern_make(&pattern, n, first, neighbour, &error), 0);
     double *factor = aligned_alloc(32, solve_coarse_doubles(&pattern) * sizeof *factor);
     ck_assert(factor != NULL);
     for (uint32_t i = 0; i < SOLVE_COARSE * n; i++)
@@ -237,7 +237,7 @@ static void check_factor(uint32_t n)
     memset(back, 0, sizeof back);
     solve_coarse_clear(&pattern, factor);
     for (uint32_t b = 0; b < n; b++) {
-        solve_coarse_fill(&pattern, first, slot, b, coupling[b][0], factor);
+        solve_coarse_fill(&pattern, first, neighbour, b, coupling[b][0], factor);
         memcpy(back + solve_coarse_at(&pattern, b), y + SOLVE_COARSE * b, SOLVE_COARSE * sizeof *y);
     }
     ck_assert_uint_eq(solve_coarse_factor(&pattern, factor), 0);

@@ -27,14 +27,14 @@ static void multiply(const phys_vec *x, phys_vec *q)
     for (uint32_t b = 0; b < sys.n_blocks; b++) {
         const struct system_block *block = sys.block + b;
         phys_vec dv[SYSTEM_ROWS] = {{0}}, r[SYSTEM_ROWS], p[SYSTEM_ROWS] = {{0}};
-        phys_vec copies[SYSTEM_SPRINGS];
+        phys_vec ghosts[SYSTEM_SPRINGS];
         const struct solve_rows rows = solve_rows_plain(dv, r, p, q + block->first);
         double dots[SOLVE_DOTS];
         memcpy(r, x + block->first, block->matrix.n * sizeof *r);
         memset(q + block->first, 0, block->matrix.n * sizeof *q);
-        for (uint32_t i = 0; i < block->n_copies; i++)
-            copies[i] = x[block->copy[i]];
-        solve_pass(&block->matrix, &block->cut, block->value, copies, 0, 0, &rows, dots);
+        for (uint32_t i = 0; i < block->n_ghosts; i++)
+            ghosts[i] = x[block->ghost[i]];
+        solve_pass(&block->matrix, &block->cut, block->value, ghosts, 0, 0, &rows, dots);
     }
 }
 
@@ -103,7 +103,7 @@ static uint32_t find_held(const struct system_block *block, uint32_t (*held)[2])
                 held[n++][1] = i;
             }
     for (uint32_t i = 0; i < block->cut.n; i++)
-        if (m->free[block->end[i][0]] > 0 && sys.free[block->copy[block->end[i][1]]] <= 0) {
+        if (m->free[block->end[i][0]] > 0 && sys.free[block->ghost[block->end[i][1]]] <= 0) {
             held[n][0] = block->end[i][0];
             held[n++][1] = m->row[m->n] + i;
         }
@@ -167,13 +167,13 @@ START_TEST(assembly_from_both_sides)
     for (int k = 0; k < SOLVE_NINE; k++)
         ck_assert_double_eq(sum.cyclic[k / 3][k % 3], there[k]);
     const phys_vec d = {1, -2, 0.5, 0};
-    phys_vec y, turned;
+    phys_vec y, transposed;
     double memory[SOLVE_NINE + 1] = {0};
     memcpy(memory, here, sizeof here);
-    solve_entry_times(SOLVE_HALF, memory, 0, &d, &y, &turned);
+    solve_entry_times(SOLVE_HALF, memory, 0, &d, &y, &transposed);
     for (int c = 0; c < 3; c++) {
         ck_assert_double_eq(y[c], n[c][0] - 2 * n[c][1] + 0.5 * n[c][2]);
-        ck_assert_double_eq(turned[c], n[0][c] - 2 * n[1][c] + 0.5 * n[2][c]);
+        ck_assert_double_eq(transposed[c], n[0][c] - 2 * n[1][c] + 0.5 * n[2][c]);
     }
 }
 END_TEST

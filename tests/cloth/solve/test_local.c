@@ -259,13 +259,13 @@ START_TEST(ssor_is_the_last_resort)
     system_draw_rows(&sys, x);
     apply(SOLVE_IC0, x, s);
     over_relaxed(s, q);
-    double most = 0; /* (I + T)^-1 of such a matrix is large, and T in float */
+    double max = 0; /* (I + T)^-1 of such a matrix is large, and T in float */
     for (uint32_t a = 0; a < sys.n; a++)
         for (int c = 0; c < 3; c++)
-            most = fmax(most, fabs(s[a][c]));
+            max = fmax(max, fabs(s[a][c]));
     for (uint32_t a = 0; a < sys.n; a++)
         for (int c = 0; c < 3; c++)
-            ck_assert_double_eq_tol(q[a][c], x[a][c], FLOAT * most);
+            ck_assert_double_eq_tol(q[a][c], x[a][c], FLOAT * max);
 }
 END_TEST
 

@@ -1,5 +1,5 @@
 /* A pass over a block of several stretches against the same sums one after the other: springs that
- * end near and far, rows without any, and rims of every kind. */
+ * end near and far, rows without any, and halos of every kind. */
 #include "cloth/solve/block.h"
 #include "tests/support/unit.h"
 
@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 300, DEGREE = 5, COPIES = 20 };
+enum { MAX = 300, DEGREE = 5, GHOSTS = 20 };
 
 struct whole {
     size_t n;
-    uint32_t row[MOST + 1], column[DEGREE * MOST], end[MOST][2], rim[MOST];
-    double diagonal[MOST], free[MOST];
-    phys_vec value[(DEGREE + 1) * MOST], other[COPIES];
-    phys_vec dv[MOST], r[MOST], p[MOST], q[MOST];
+    uint32_t row[MAX + 1], column[DEGREE * MAX], end[MAX][2], halo[MAX];
+    double diagonal[MAX], free[MAX];
+    phys_vec value[(DEGREE + 1) * MAX], other[GHOSTS];
+    phys_vec dv[MAX], r[MAX], p[MAX], q[MAX];
     struct solve_cut cut;
 };
 
@@ -42,8 +42,8 @@ static uint32_t draw_springs(struct whole *w, uint32_t a, uint32_t far, uint32_t
     return i;
 }
 
-/* rim: how many rows of a hundred have a spring into another block. */
-static void make(struct whole *w, size_t n, uint32_t far, int rim)
+/* halo: how many rows of a hundred have a spring into another block. */
+static void make(struct whole *w, size_t n, uint32_t far, int halo)
 {
     memset(w, 0, sizeof *w);
     w->n = n;
@@ -56,22 +56,22 @@ static void make(struct whole *w, size_t n, uint32_t far, int rim)
         draw_vector(w->p + a, w->free[a]);
         draw_vector(w->q + a, w->free[a]);
     }
-    for (int i = 0; i < COPIES; i++)
+    for (int i = 0; i < GHOSTS; i++)
         draw_vector(w->other + i, 1);
     for (uint32_t a = 0; a < n; a++) {
-        if (rand() % 100 >= rim)
+        if (rand() % 100 >= halo)
             continue;
         w->value[w->row[n] + w->cut.n] = (phys_vec){draw(), draw(), draw(), 1 + draw()};
         w->end[w->cut.n][0] = a;
-        w->end[w->cut.n++][1] = (uint32_t)rand() % COPIES;
-        w->rim[w->cut.n_rim++] = a;
+        w->end[w->cut.n++][1] = (uint32_t)rand() % GHOSTS;
+        w->halo[w->cut.n_halo++] = a;
     }
     w->cut.end = (const uint32_t(*)[2])w->end;
-    w->cut.rim = w->rim;
+    w->cut.halo = w->halo;
 }
 
 static void add_spring(const struct whole *w, uint32_t i, uint32_t a, const phys_vec *other,
-                       double sum[MOST][3])
+                       double sum[MAX][3])
 {
     double dot = 0;
     for (int c = 0; c < 3; c++)
@@ -83,7 +83,7 @@ static void add_spring(const struct whole *w, uint32_t i, uint32_t a, const phys
 /* The pass in plain sums. */
 static void expect(struct whole *w, double alpha, double beta, double dots[SOLVE_DOTS])
 {
-    static double sum[MOST][3];
+    static double sum[MAX][3];
     memset(sum, 0, sizeof sum);
     for (uint32_t a = 0; a < w->n; a++) {
         w->dv[a] += alpha * w->p[a];
@@ -119,11 +119,11 @@ static void compare(const char *what, const phys_vec *got, const phys_vec *wante
                           wanted[a][c]);
 }
 
-static void check(size_t n, uint32_t far, int rim)
+static void check(size_t n, uint32_t far, int halo)
 {
     static struct whole wanted;
     double dots[SOLVE_DOTS] = {0}, right[SOLVE_DOTS];
-    make(&whole, n, far, rim);
+    make(&whole, n, far, halo);
     wanted = whole;
     expect(&wanted, 0.3, 0.7, right);
     const struct solve_block block = {
@@ -140,7 +140,7 @@ static void check(size_t n, uint32_t far, int rim)
 
 START_TEST(pass_of_every_size)
 {
-    static const size_t n[] = {1, 2, 63, 64, 65, 127, 128, 129, 200, MOST};
+    static const size_t n[] = {1, 2, 63, 64, 65, 127, 128, 129, 200, MAX};
     srand(11);
     for (size_t i = 0; i < sizeof n / sizeof *n; i++)
         check(n[i], 20, 10);
@@ -150,19 +150,19 @@ END_TEST
 /* Springs that end beyond the next stretch, or nowhere but beside. */
 START_TEST(pass_of_every_reach)
 {
-    static const uint32_t far[] = {3, 30, 100, MOST};
+    static const uint32_t far[] = {3, 30, 100, MAX};
     srand(12);
     for (size_t i = 0; i < sizeof far / sizeof *far; i++)
-        check(MOST, far[i], 10);
+        check(MAX, far[i], 10);
 }
 END_TEST
 
-START_TEST(pass_of_every_rim)
+START_TEST(pass_of_every_halo)
 {
-    static const int rim[] = {0, 1, 50, 100};
+    static const int halo[] = {0, 1, 50, 100};
     srand(13);
-    for (size_t i = 0; i < sizeof rim / sizeof *rim; i++)
-        check(MOST, 20, rim[i]);
+    for (size_t i = 0; i < sizeof halo / sizeof *halo; i++)
+        check(MAX, 20, halo[i]);
 }
 END_TEST
 
@@ -171,14 +171,14 @@ END_TEST
 START_TEST(identity_is_none)
 {
     static struct whole other;
-    static phys_vec z[MOST], s[MOST];
+    static phys_vec z[MAX], s[MAX];
     double none[SOLVE_DOTS] = {0}, identity[SOLVE_DOTS] = {0};
     srand(14);
-    make(&whole, MOST, 20, 10);
+    make(&whole, MAX, 20, 10);
     other = whole;
     memcpy(z, other.r, sizeof z);
     memcpy(s, other.q, sizeof s);
-    const struct solve_block block = {MOST,         whole.diagonal, whole.free, whole.row,
+    const struct solve_block block = {MAX,          whole.diagonal, whole.free, whole.row,
                                       whole.column, SOLVE_SPRINGS,  NULL};
     const struct solve_rows plain = solve_rows_plain(whole.dv, whole.r, whole.p, whole.q);
     const struct solve_rows rows = {other.dv, other.r, other.p, other.q, z, s};
@@ -200,7 +200,7 @@ int main(void)
     TCase *cases = tcase_create("pass");
     tcase_add_test(cases, pass_of_every_size);
     tcase_add_test(cases, pass_of_every_reach);
-    tcase_add_test(cases, pass_of_every_rim);
+    tcase_add_test(cases, pass_of_every_halo);
     tcase_add_test(cases, identity_is_none);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

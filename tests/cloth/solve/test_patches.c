@@ -75,44 +75,44 @@ static void check(const struct patch *here, const struct patch *there, const dou
 
 /* The entries of a block into the one behind it: strips meet no other. */
 static void couple_next(uint32_t b, uint32_t n, struct solve_couplings *own,
-                        struct solve_couplings *beside)
+                        struct solve_couplings *off_diagonal)
 {
     const struct system_block *block = sys.block + b, *next = block + 1;
     const struct solve_patches patches = patches_of(b, n);
     struct solve_patches others = patches_of(b + 1, n);
     uint32_t end[SYSTEM_SPRINGS][2], from = UINT32_MAX, count = 0;
     for (uint32_t i = 0; i < block->cut.n; i++) {
-        const uint32_t other = block->copy[block->cut.end[i][1]];
+        const uint32_t other = block->ghost[block->cut.end[i][1]];
         if (other < next->first)
             continue;
         from = from < i ? from : i;
         end[count][0] = block->cut.end[i][0];
         end[count++][1] = other;
     }
-    for (uint32_t k = 0; k <= SOLVE_MOST_PATCHES; k++)
+    for (uint32_t k = 0; k <= SOLVE_MAX_PATCHES; k++)
         others.start[k] += next->first;
     solve_couple_patches_cut(&block->matrix, &patches, block->value,
                              block->row[block->matrix.n] + from, count, (const uint32_t(*)[2])end,
-                             basis + block->first, basis, &others, own, beside);
+                             basis + block->first, basis, &others, own, off_diagonal);
 }
 
 START_TEST(matrix_of_patches)
 {
-    static struct solve_couplings own, beside;
+    static struct solve_couplings own, off_diagonal;
     srand(1);
     sys.format = (enum solve_format)(_i % 3);
     sys.filtered = _i > 2;
-    for (uint32_t n = 1; n <= SOLVE_MOST_PATCHES; n++) {
+    for (uint32_t n = 1; n <= SOLVE_MAX_PATCHES; n++) {
         make(2, n);
         const struct solve_patches patches = patches_of(0, n);
         solve_couple_patches(&sys.block[0].matrix, &patches, sys.block[0].value, basis, &own);
-        couple_next(0, n, &own, &beside);
+        couple_next(0, n, &own, &off_diagonal);
         for (uint32_t k = 0; k < n; k++)
             for (uint32_t l = 0; l < n; l++) {
                 const struct patch here = {0, k, n}, there = {0, l, n}, other = {1, l, n};
                 if (k <= l)
                     check(&here, &there, own.matrix[k][l]);
-                check(&here, &other, beside.matrix[k][l]);
+                check(&here, &other, off_diagonal.matrix[k][l]);
             }
     }
 }
@@ -146,10 +146,10 @@ END_TEST
 START_TEST(rows_of_patches)
 {
     for (uint32_t rows = 0; rows < 10; rows++)
-        for (uint32_t n = 1; n <= SOLVE_MOST_PATCHES; n++) {
+        for (uint32_t n = 1; n <= SOLVE_MAX_PATCHES; n++) {
             const struct solve_patches patches = solve_patches_of(rows, n);
             ck_assert_uint_eq(patches.start[0], 0);
-            for (uint32_t k = n; k <= SOLVE_MOST_PATCHES; k++)
+            for (uint32_t k = n; k <= SOLVE_MAX_PATCHES; k++)
                 ck_assert_uint_eq(patches.start[k], rows);
             for (uint32_t a = 0; a < rows; a++) {
                 const uint32_t k = solve_patch_of(&patches, a);

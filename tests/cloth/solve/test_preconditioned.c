@@ -47,11 +47,11 @@ static double turn(enum kind kind, const phys_vec *q, phys_vec *s)
 }
 
 /* What a block's pass reads of others is p as it will be. */
-static void copies_of(const struct run *run, enum kind kind, const struct system_block *block,
+static void ghosts_of(const struct run *run, enum kind kind, const struct system_block *block,
                       phys_vec *p)
 {
-    for (uint32_t i = 0; i < block->n_copies; i++) {
-        const uint32_t a = block->copy[i];
+    for (uint32_t i = 0; i < block->n_ghosts; i++) {
+        const uint32_t a = block->ghost[i];
         phys_vec r = kind == NONE ? run->r[a] : run->z[a];
         p[i] = run->p[a];
         solve_advance(run->scalars.alpha, run->scalars.beta, (kind == NONE ? run->q : run->s) + a,
@@ -66,14 +66,14 @@ static void pass_block(struct run *run, const struct run *before, enum kind kind
     const uint32_t at = block->first;
     const double alpha = before->scalars.alpha, beta = before->scalars.beta;
     struct solve_rows rows = solve_rows_plain(run->dv + at, run->r + at, run->p + at, run->q + at);
-    phys_vec copies[SYSTEM_SPRINGS];
+    phys_vec ghosts[SYSTEM_SPRINGS];
     double own[SOLVE_DOTS];
-    copies_of(before, kind, block, copies);
+    ghosts_of(before, kind, block, ghosts);
     if (kind != NONE) {
         rows.z = run->z + at;
         rows.s = run->s + at;
     }
-    solve_pass(&block->matrix, &block->cut, block->value, copies, alpha, beta, &rows, own);
+    solve_pass(&block->matrix, &block->cut, block->value, ghosts, alpha, beta, &rows, own);
     const struct solve_norms norms = solve_norms(block->matrix.n, block->diagonal, rows.dv, rows.r);
     own[SOLVE_SIZE] = norms.size;
     own[SOLVE_BOUND] = norms.bound;
@@ -98,7 +98,7 @@ static void open(struct run *run, const phys_vec *b, const phys_vec *guess,
                  const struct solve_stop *stop)
 {
     double dots[SOLVE_DOTS] = {0}, own[SOLVE_DOTS];
-    phys_vec copies[SYSTEM_SPRINGS], whole[SYSTEM_ROWS];
+    phys_vec ghosts[SYSTEM_SPRINGS], whole[SYSTEM_ROWS];
     memcpy(run->dv, guess, sys.n * sizeof *guess);
     solve_start_guess(sys.n, sys.free, sys.filtered ? sys.filter : NULL, b, -0.5, run->dv, run->r,
                       run->p, run->q);
@@ -108,9 +108,9 @@ static void open(struct run *run, const phys_vec *b, const phys_vec *guess,
         const uint32_t at = block->first;
         const struct solve_rows rows =
             solve_rows_plain(run->dv + at, run->r + at, run->p + at, run->q + at);
-        for (uint32_t i = 0; i < block->n_copies; i++)
-            copies[i] = whole[block->copy[i]];
-        solve_open(&block->matrix, &block->cut, block->value, copies, &rows, own);
+        for (uint32_t i = 0; i < block->n_ghosts; i++)
+            ghosts[i] = whole[block->ghost[i]];
+        solve_open(&block->matrix, &block->cut, block->value, ghosts, &rows, own);
         for (int i = 0; i < SOLVE_DOTS; i++)
             dots[i] += own[i];
     }
@@ -150,16 +150,16 @@ static int solve(struct run *run, enum kind kind, const phys_vec *b, const struc
 
 static double distance(const phys_vec *x, const phys_vec *y)
 {
-    double most = 0;
+    double max = 0;
     for (uint32_t a = 0; a < sys.n; a++)
         for (int c = 0; c < 3; c++)
-            most = fmax(most, fabs(x[a][c] - y[a][c]));
-    return most;
+            max = fmax(max, fabs(x[a][c] - y[a][c]));
+    return max;
 }
 
 static void check_all(double stiffness, uint32_t n_blocks, int hold)
 {
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-10, .most = 2000};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-10, .max = 2000};
     phys_vec b[SYSTEM_ROWS], x[SYSTEM_ROWS];
     static struct run run;
     double iterations[KINDS];
@@ -197,7 +197,7 @@ END_TEST
 /* A chain in one block: IC(0) is exact but for its T in float. */
 START_TEST(a_chain_at_once)
 {
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-5, .most = 1};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-5, .max = 1};
     phys_vec b[SYSTEM_ROWS];
     static struct run run;
     srand(2);
@@ -213,7 +213,7 @@ END_TEST
  * has. */
 START_TEST(rigid_and_affine_motion)
 {
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-6, .most = 2000};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-6, .max = 2000};
     static struct run run;
     srand(3);
     system_sheet(&sys, 8, 8, 1e6);
@@ -237,7 +237,7 @@ START_TEST(error_in_the_mass_norm)
 {
     srand(4);
     for (int k = 0; k < 30; k++) {
-        const struct solve_stop stop = {.mass_norm = true, .tolerance = 0.01, .most = 2000};
+        const struct solve_stop stop = {.mass_norm = true, .tolerance = 0.01, .max = 2000};
         phys_vec b[SYSTEM_ROWS], x[SYSTEM_ROWS], e[SYSTEM_ROWS], guess[SYSTEM_ROWS];
         static struct run run;
         system_sheet(&sys, 8, 8, pow(10, k % 6));
@@ -265,7 +265,7 @@ END_TEST
  * right, and in a filtered system it is filtered. */
 START_TEST(guesses)
 {
-    const struct solve_stop stop = {.relative = true, .tolerance = 1e-9, .most = 2000};
+    const struct solve_stop stop = {.relative = true, .tolerance = 1e-9, .max = 2000};
     static const double factor_of[] = {1, -3, 0};
     phys_vec b[SYSTEM_ROWS], x[SYSTEM_ROWS], e[SYSTEM_ROWS], guess[SYSTEM_ROWS];
     static struct run run;
@@ -294,7 +294,7 @@ END_TEST
 /* So many iterations of what was solved long before leave it as it is. */
 START_TEST(on_and_on)
 {
-    const struct solve_stop stop = {.count = true, .most = 200};
+    const struct solve_stop stop = {.count = true, .max = 200};
     phys_vec b[SYSTEM_ROWS], x[SYSTEM_ROWS];
     static struct run run;
     srand(5);
@@ -313,8 +313,8 @@ END_TEST
 
 START_TEST(nothing_to_solve)
 {
-    const struct solve_stop stops[] = {{.relative = true, .tolerance = 1e-3, .most = 9},
-                                       {.mass_norm = true, .tolerance = 0.01, .most = 9}};
+    const struct solve_stop stops[] = {{.relative = true, .tolerance = 1e-3, .max = 9},
+                                       {.mass_norm = true, .tolerance = 0.01, .max = 9}};
     const phys_vec b[SYSTEM_ROWS] = {{0}};
     static struct run run;
     srand(6);

@@ -1,4 +1,4 @@
-/* Blocks know each other by the copies that they have. */
+/* Blocks know each other by their ghosts. */
 #include "tests/cloth/solve/two_level.h"
 #include "tests/support/unit.h"
 
@@ -19,10 +19,10 @@ static void find_neighbours(struct two_level *level)
     uint32_t n = 0;
     for (uint32_t b = 0; b < s->n_blocks; b++) {
         level->first[b] = n;
-        for (uint32_t i = 0; i < s->block[b].n_copies; i++) {
-            const uint32_t other = block_of(s, s->block[b].copy[i]);
-            if (n == level->first[b] || level->slot[n - 1] != other)
-                level->slot[n++] = other;
+        for (uint32_t i = 0; i < s->block[b].n_ghosts; i++) {
+            const uint32_t other = block_of(s, s->block[b].ghost[i]);
+            if (n == level->first[b] || level->neighbour[n - 1] != other)
+                level->neighbour[n++] = other;
         }
     }
     level->first[s->n_blocks] = n;
@@ -37,19 +37,19 @@ static void couple(struct two_level *level, uint32_t b)
     uint32_t later = 1;
     for (uint32_t s = level->first[b]; s < level->first[b + 1]; s++) {
         uint32_t at[SYSTEM_SPRINGS], end[SYSTEM_SPRINGS][2], n = 0;
-        double beside[SOLVE_COUPLING] = {0};
+        double off_diagonal[SOLVE_COUPLING] = {0};
         for (size_t i = 0; i < block->cut.n; i++) {
-            const uint32_t other = block->copy[block->cut.end[i][1]];
-            if (block_of(level->system, other) != level->slot[s])
+            const uint32_t other = block->ghost[block->cut.end[i][1]];
+            if (block_of(level->system, other) != level->neighbour[s])
                 continue;
             at[n] = block->row[block->matrix.n] + (uint32_t)i;
             end[n][0] = block->cut.end[i][0];
             end[n++][1] = other;
         }
         solve_couple_cut(&block->matrix, block->value, n, at, (const uint32_t(*)[2])end, basis,
-                         level->basis, coupling[0], beside);
-        if (level->slot[s] > b)
-            memcpy(coupling[later++], beside, sizeof beside);
+                         level->basis, coupling[0], off_diagonal);
+        if (level->neighbour[s] > b)
+            memcpy(coupling[later++], off_diagonal, sizeof off_diagonal);
     }
 }
 
@@ -66,15 +66,15 @@ void two_level_make(struct two_level *level, const struct system *system)
     }
     for (uint32_t b = 0; b < system->n_blocks; b++)
         couple(level, b);
-    ck_assert_int_eq(
-        solve_pattern_make(&level->pattern, system->n_blocks, level->first, level->slot, &error),
-        0);
+    ck_assert_int_eq(solve_pattern_make(&level->pattern, system->n_blocks, level->first,
+                                        level->neighbour, &error),
+                     0);
     level->factor =
         aligned_alloc(32, solve_coarse_doubles(&level->pattern) * sizeof *level->factor);
     ck_assert(level->factor != NULL);
     solve_coarse_clear(&level->pattern, level->factor);
     for (uint32_t b = 0; b < system->n_blocks; b++)
-        solve_coarse_fill(&level->pattern, level->first, level->slot, b, level->coupling[b][0],
+        solve_coarse_fill(&level->pattern, level->first, level->neighbour, b, level->coupling[b][0],
                           level->factor);
     level->dropped = solve_coarse_factor(&level->pattern, level->factor);
 }

@@ -8,7 +8,7 @@
  * together. */
 struct two_level {
     const struct system *system;
-    uint32_t first[SYSTEM_BLOCKS + 1], slot[SYSTEM_BLOCKS * SYSTEM_BLOCKS];
+    uint32_t first[SYSTEM_BLOCKS + 1], neighbour[SYSTEM_BLOCKS * SYSTEM_BLOCKS];
     phys_vec basis[SYSTEM_ROWS];                                   /* of all rows */
     double coupling[SYSTEM_BLOCKS][SYSTEM_BLOCKS][SOLVE_COUPLING]; /* own, later neighbours */
     struct solve_pattern pattern;

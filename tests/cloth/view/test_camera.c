@@ -65,12 +65,12 @@ START_TEST(fits_tightly)
     double low[3], high[3];
     fit_cloud(37 * _i, 25 * (_i - 2), _i % 2 ? 1.778 : 0.4, 1, &camera);
     cloud_bounds(&camera, low, high);
-    double most = 0;
+    double max = 0;
     for (int i = 0; i < 2; i++) {
-        most = fmax(most, fmin(high[i], -low[i])); /* it touches both margins of one direction */
+        max = fmax(max, fmin(high[i], -low[i])); /* it touches both margins of one direction */
         ck_assert(high[i] <= MARGIN + 1e-4 && low[i] >= -MARGIN - 1e-4);
     }
-    ck_assert_double_eq_tol(most, MARGIN, 1e-4);
+    ck_assert_double_eq_tol(max, MARGIN, 1e-4);
     ck_assert(low[2] > -1 && high[2] < 1);
 }
 END_TEST

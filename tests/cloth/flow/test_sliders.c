@@ -1,6 +1,6 @@
-/* Pins to lines and planes against closed forms: where all vertices have the same guide, their
- * centre moves as a free particle under the part of the forces that the guide leaves, whatever is
- * between them; none leaves its guide, at rest, on the move or on the floor. */
+/* Pins to lines and planes against closed forms: where all vertices have the same slider, their
+ * centre moves as a free particle under the part of the forces that the slider leaves, whatever is
+ * between them; none leaves its slider, at rest, on the move or on the floor. */
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
@@ -8,24 +8,24 @@
 
 enum { N = 6, VERTICES = N * N, STEPS = 10 };
 
-/* A sheet of which every vertex has the guide, in blocks of eight. */
-struct guided {
+/* A sheet of which every vertex has the slider, in blocks of eight. */
+struct sliding {
     struct setup setup;
-    struct model_guide guide;
+    struct model_slider slider;
 };
 
-static void setup_guided(struct guided *g, int kind, double x, double y, double z)
+static void setup_sliding(struct sliding *g, int kind, double x, double y, double z)
 {
     uint32_t all[VERTICES];
     for (uint32_t v = 0; v < VERTICES; v++)
         all[v] = v;
     setup_sheet(&g->setup, N);
     setup_pin(&g->setup, VERTICES, all);
-    g->guide = (struct model_guide){.direction = {x, y, z}};
-    g->guide.kind = kind == MODEL_LINE ? MODEL_LINE : MODEL_PLANE;
-    g->setup.pin.guide = 1;
-    g->setup.model.guides = &g->guide;
-    g->setup.model.n_guides = 1;
+    g->slider = (struct model_slider){.direction = {x, y, z}};
+    g->slider.kind = kind == MODEL_LINE ? MODEL_LINE : MODEL_PLANE;
+    g->setup.pin.slider = 1;
+    g->setup.model.sliders = &g->slider;
+    g->setup.model.n_sliders = 1;
     g->setup.model.tolerance = 1e-13;
 }
 
@@ -51,30 +51,30 @@ static double way(enum model_integrator integrator, double n)
     }
 }
 
-/* y = S y of a guide. */
-static void filter(const struct model_guide *guide, double y[3])
+/* y = S y of a slider. */
+static void filter(const struct model_slider *slider, double y[3])
 {
     double dot = 0;
     for (int i = 0; i < 3; i++)
-        dot += guide->direction[i] * y[i];
+        dot += slider->direction[i] * y[i];
     for (int i = 0; i < 3; i++)
-        y[i] = (guide->kind == MODEL_LINE ? 0 : y[i]) +
-               (guide->kind == MODEL_LINE ? 1 : -1) * dot * guide->direction[i];
+        y[i] = (slider->kind == MODEL_LINE ? 0 : y[i]) +
+               (slider->kind == MODEL_LINE ? 1 : -1) * dot * slider->direction[i];
 }
 
-/* The centre falls as it should, and every vertex is on its guide, which moved by `shift`. */
-static void check_fall(const struct guided *g, const struct record *r, const double shift[3])
+/* The centre falls as it should, and every vertex is on its slider, which moved by `shift`. */
+static void check_fall(const struct sliding *g, const struct record *r, const double shift[3])
 {
     const struct model *model = &g->setup.model;
     double mass[VERTICES] = {0}, centre[3] = {0}, total = 0;
     double due[3] = {0.5 * g->setup.cloth.n_loads, -9.81 + 0.25 * g->setup.cloth.n_loads, 0};
     setup_masses(&g->setup, mass);
-    filter(&g->guide, due);
+    filter(&g->slider, due);
     for (size_t v = 0; v < VERTICES; v++) {
         double moved[3], along[3];
         for (size_t c = 0; c < 3; c++)
             along[c] = moved[c] = record_at(r, STEPS, v, c) - record_at(r, 0, v, c) - shift[c];
-        filter(&g->guide, along);
+        filter(&g->slider, along);
         for (size_t c = 0; c < 3; c++) {
             ck_assert_double_eq_tol(moved[c], along[c], 5e-16);
             centre[c] += mass[v] * along[c];
@@ -93,9 +93,9 @@ static void fall(int kind)
     for (int i = 0; i < MODEL_INTEGRATORS; i++)
         for (int way = 0; way < (i < MODEL_IMPLICIT_EULER ? 1 : 6); way++) {
             static const double none[3] = {0};
-            struct guided g;
+            struct sliding g;
             struct record record = {0};
-            setup_guided(&g, kind, 0.48, 0.64, -0.6);
+            setup_sliding(&g, kind, 0.48, 0.64, -0.6);
             g.setup.model.integrator = (enum model_integrator)i;
             g.setup.model.preconditioner = (enum model_preconditioner)(way % 5);
             g.setup.model.newton_steps = way == 5 ? 20 : 1;
@@ -120,26 +120,26 @@ START_TEST(falls_in_a_plane)
 }
 END_TEST
 
-/* Guides that move by 0.3 m/s across themselves take their vertices along and do not slow them. */
-START_TEST(guides_that_move)
+/* Sliders that move by 0.3 m/s across themselves take their vertices along and do not slow them. */
+START_TEST(sliders_that_move)
 {
     for (int i = 0; i < 2 * MODEL_INTEGRATORS; i++) {
         static struct phys_key keys[] = {{.rotate = {1}},
                                          {.time = 1, .translate = {0.3}, .rotate = {1}}};
         static struct model_motion motion = {.n = 2};
         static const double shift[3] = {0.3 * 0.01};
-        struct guided g;
+        struct sliding g;
         struct record record = {0};
         if (i % 2)
-            setup_guided(&g, MODEL_LINE, 0, 1, 0);
+            setup_sliding(&g, MODEL_LINE, 0, 1, 0);
         else
-            setup_guided(&g, MODEL_PLANE, 1, 0, 0);
+            setup_sliding(&g, MODEL_PLANE, 1, 0, 0);
         g.setup.model.integrator = (enum model_integrator)(i / 2);
         g.setup.model.n_motions = 1;
         g.setup.model.motions = &motion;
         g.setup.model.n_keys = 2;
         g.setup.model.keys = keys;
-        g.guide.motion = 1;
+        g.slider.motion = 1;
         runs(&record, &g.setup.model);
         check_fall(&g, &record, shift);
         record_free(&record);
@@ -149,12 +149,12 @@ START_TEST(guides_that_move)
 END_TEST
 
 /* The side of the sheet that is on the floor cannot go on along its lines, the others do. */
-START_TEST(guides_meet_the_floor)
+START_TEST(sliders_meet_the_floor)
 {
     for (int i = 0; i <= MODEL_INTEGRATORS; i++) {
-        struct guided g;
+        struct sliding g;
         struct record record = {0};
-        setup_guided(&g, MODEL_LINE, 0.6, -0.8, 0);
+        setup_sliding(&g, MODEL_LINE, 0.6, -0.8, 0);
         g.setup.model.integrator = (enum model_integrator)(i < MODEL_INTEGRATORS ? i : 4);
         if (i == MODEL_INTEGRATORS)
             g.setup.model.contact = MODEL_CONTACT_FILTER;
@@ -183,17 +183,17 @@ END_TEST
 START_TEST(two_pins_on_a_vertex)
 {
     for (int i = 0; i < 4; i++) {
-        struct guided g;
+        struct sliding g;
         struct record record = {0};
-        struct model_guide guides[2];
-        setup_guided(&g, MODEL_LINE, 0, 1, 0);
+        struct model_slider sliders[2];
+        setup_sliding(&g, MODEL_LINE, 0, 1, 0);
         struct model_pin pins[2] = {g.setup.pin, g.setup.pin};
-        guides[0] = guides[1] = g.guide;
-        pins[1].guide = i == 3 ? 0 : 2;
-        guides[1].kind = i == 1 ? MODEL_PLANE : MODEL_LINE;
-        guides[1].direction[2] = i == 2 ? 0.1 : 0;
-        g.setup.model.n_guides = 2;
-        g.setup.model.guides = guides;
+        sliders[0] = sliders[1] = g.slider;
+        pins[1].slider = i == 3 ? 0 : 2;
+        sliders[1].kind = i == 1 ? MODEL_PLANE : MODEL_LINE;
+        sliders[1].direction[2] = i == 2 ? 0.1 : 0;
+        g.setup.model.n_sliders = 2;
+        g.setup.model.sliders = sliders;
         g.setup.cloth.pins = pins;
         g.setup.cloth.n_pins = 2;
         record_run(&record, &g.setup.model);
@@ -210,12 +210,12 @@ END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("guides");
-    TCase *cases = tcase_create("guides");
+    Suite *suite = suite_create("sliders");
+    TCase *cases = tcase_create("sliders");
     tcase_add_test(cases, falls_along_a_line);
     tcase_add_test(cases, falls_in_a_plane);
-    tcase_add_test(cases, guides_that_move);
-    tcase_add_test(cases, guides_meet_the_floor);
+    tcase_add_test(cases, sliders_that_move);
+    tcase_add_test(cases, sliders_meet_the_floor);
     tcase_add_test(cases, two_pins_on_a_vertex);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -1,22 +1,22 @@
 /* No function of the C library but floor, which is exact. */
-#include "cloth/physics/course.h"
+#include "cloth/physics/curve.h"
 
 #include <math.h>
 
-double phys_course_at(size_t n, const struct phys_beat *beat, double time)
+double phys_curve_at(size_t n, const struct phys_curve_key *curve_key, double time)
 {
     size_t low = 0, high = n;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
-        if (beat[middle].time <= time)
+        if (curve_key[middle].time <= time)
             low = middle;
         else
             high = middle;
     }
-    if (high == n || time <= beat[low].time)
-        return beat[low].factor;
-    const double part = (time - beat[low].time) / (beat[high].time - beat[low].time);
-    return (1 - part) * beat[low].factor + part * beat[high].factor;
+    if (high == n || time <= curve_key[low].time)
+        return curve_key[low].factor;
+    const double part = (time - curve_key[low].time) / (curve_key[high].time - curve_key[low].time);
+    return (1 - part) * curve_key[low].factor + part * curve_key[high].factor;
 }
 
 double phys_sine(double turns)

@@ -18,8 +18,8 @@ cloths:
     mass_per_vertex: 0.1
     pins: [{vertices: [0]}]
     loads:
-      - {vertices: [1], force: [0.2, 0, 0], course: {sine: {frequency: 3.183098861837907}}}
-      - {vertices: [0], force: [0, 0.3, 0], course: {sine: {frequency: 1, phase: 0.25}}}
+      - {vertices: [1], force: [0.2, 0, 0], curve: {sine: {frequency: 3.183098861837907}}}
+      - {vertices: [0], force: [0, 0.3, 0], curve: {sine: {frequency: 1, phase: 0.25}}}
 materials: {wire: {density: 1, ea: 40}}
 time: {h: 1e-3, end: 2}
 integrator: rk4
@@ -27,7 +27,7 @@ solver: {stop: {relative: 1e-12}}
 probes: [{name: p, vertices: [0, 1]}]
 END
 driven() { # RATIO of W to 20 rad/s, but 1
-    run driven.yaml --set "cloths[0].loads[0].course.sine.frequency=$(awk -v r="$1" 'BEGIN { printf "%.16g", r * 10 / 3.141592653589793 }')" || return 1
+    run driven.yaml --set "cloths[0].loads[0].curve.sine.frequency=$(awk -v r="$1" 'BEGIN { printf "%.16g", r * 10 / 3.141592653589793 }')" || return 1
     below "weight driven at $1 of its frequency, of its static deflection" \
         "$(largest "(c(\"p.1.x\") - 1) / 0.005 - (sin(20 * $1 * c(\"time\")) - $1 * sin(20 * c(\"time\"))) / (1 - $1 ^ 2)")" 1e-6
 }
@@ -63,7 +63,7 @@ ok "probes of varying loads" told
 
 # A load that grows to F in T and stays: x = F/k (t/T - sin(w t)/(w T)), then F/k (1 + (sin(w (t - T)) - sin(w t))/(w T)).
 keys() {
-    run driven.yaml --set 'cloths[0].loads[0].course={keys: [[0, 0], [0.5, 1]]}' || return 1
+    run driven.yaml --set 'cloths[0].loads[0].curve={keys: [[0, 0], [0.5, 1]]}' || return 1
     below "a weight under a load that grows" \
         "$(largest '(c("p.1.x") - 1) / 0.005 + sin(20 * c("time")) / 10 - (c("time") > 0.5 ? 1 + sin(20 * (c("time") - 0.5)) / 10 : 2 * c("time"))')" 1e-6
 }
@@ -73,7 +73,7 @@ ok "a load by key frames" keys
 cat > gust.yaml << 'END'
 schema: 1
 gravity: [0, 0, 0]
-air: {wind: [0, 8, 0], course: {keys: [[0, 0], [0.1, 1], [0.3, 0.5]]}}
+air: {wind: [0, 8, 0], curve: {keys: [[0, 0], [0.1, 1], [0.3, 0.5]]}}
 cloths:
   - mesh: {grid: {width: 2, height: 1, nx: 5, ny: 4}}
     material: silk
@@ -92,7 +92,7 @@ ok "a gust" gust
 # A run does not rest while a load may vary yet.
 rests() {
     run driven.yaml --set 'time.rest={speed: 1, hold: 0.01}' --report report \
-        --set 'cloths[0].loads=[{vertices: [1], force: [1e-6, 0, 0], course: {keys: [[0, 0], [0.3, 0], [0.4, 1]]}}]' || return 1
+        --set 'cloths[0].loads=[{vertices: [1], force: [1e-6, 0, 0], curve: {keys: [[0, 0], [0.3, 0], [0.4, 1]]}}]' || return 1
     near "when a run rests whose load grows for 0.4 s" "$(sed -n 's/^ *"rest_seconds": *\([^,]*\).*/\1/p' report)" 0.409 3e-3
 }
 ok "a run does not rest before its loads do" rests
@@ -105,8 +105,8 @@ cloths:
     material: silk
     pins: [{vertices: [0, 5]}]
     loads:
-      - {box: [[-1, -1, -1], [0, 1, 1]], force: [0, 0.01, 0], course: {sine: {frequency: 20, phase: 0.125}}}
-      - {edges: [[34, 35], [33, 34]], force: [0, 0, 2], course: {keys: [[0, 0], [0.01, 1]]}}
+      - {box: [[-1, -1, -1], [0, 1, 1]], force: [0, 0.01, 0], curve: {sine: {frequency: 20, phase: 0.125}}}
+      - {edges: [[34, 35], [33, 34]], force: [0, 0, 2], curve: {keys: [[0, 0], [0.01, 1]]}}
       - {vertices: [35], force: [0, 0.01, 0]}
 time: {h: 0.01, end: 0.05, stretch_growth: 0.002}
 grain: 7

@@ -1,5 +1,5 @@
-#ifndef CLOTH_FLOW_STEP_GUIDES_H
-#define CLOTH_FLOW_STEP_GUIDES_H
+#ifndef CLOTH_FLOW_STEP_SLIDERS_H
+#define CLOTH_FLOW_STEP_SLIDERS_H
 
 #include "cloth/contact/shape.h"
 #include "cloth/flow/bodies.h"
@@ -9,21 +9,22 @@
  * Local functions. */
 
 /* Of a row: its part of S (solve_filter) and a point of the line or plane. */
-struct flow_guide {
+struct flow_slider {
     phys_vec filter, at;
 };
 
-/* y becomes `from` but for what the guide leaves free: from + S (y - from). */
-PHYS_INLINE void flow_guide_keep(const struct flow_guide *guide, const phys_vec *from, phys_vec *y)
+/* y becomes `from` but for what the slider leaves free: from + S (y - from). */
+PHYS_INLINE void flow_slider_keep(const struct flow_slider *slider, const phys_vec *from,
+                                  phys_vec *y)
 {
     phys_vec free = *y - *from;
-    solve_filter(&guide->filter, &free);
+    solve_filter(&slider->filter, &free);
     *y = *from + free;
 }
 
 /* up, of length 1, becomes the way along which a row leaves a plane with this normal at the same
  * pace: that of S up. Returns false where it cannot. */
-PHYS_INLINE bool flow_guide_way(const phys_vec *filter, phys_vec *up)
+PHYS_INLINE bool flow_slider_way(const phys_vec *filter, phys_vec *up)
 {
     phys_vec way = *up;
     solve_filter(filter, &way);
@@ -39,14 +40,14 @@ struct flow_pins {
     double time;
     uint32_t motion; /* that the pose is of; 0: none yet */
     struct phys_pose pose;
-    uint32_t next; /* guided row */
-    struct flow_guide guide;
+    uint32_t next; /* sliding row */
+    struct flow_slider slider;
 };
 /* At the end of the task's step. */
 void flow_pins_begin(const duite_call *call, const struct flow_table *t, struct flow_pins *pins);
-/* That of guided row i. */
-void flow_pins_guide(struct flow_pins *pins, uint32_t i, struct flow_guide *guide);
-/* The part of S of a row, NULL where no guide is; for rows in ascending order. Good until the next
+/* That of sliding row i. */
+void flow_pins_slider(struct flow_pins *pins, uint32_t i, struct flow_slider *slider);
+/* The part of S of a row, NULL where no slider is; for rows in ascending order. Good until the next
  * call. */
 const phys_vec *flow_pins_filter(struct flow_pins *pins, uint32_t row);
 
@@ -59,17 +60,17 @@ static inline void flow_obstacle_pose(const duite_call *call, const struct conta
     contact_pose_over(obstacle, model->keys, args->begin * model->h / FLOW_TICKS, args->time, pose);
 }
 
-/* y = S y of the guided rows; y = before + S (y - before) of them. */
-void flow_guides_filter(const duite_call *call, const struct flow_table *t, phys_vec *y);
-void flow_guides_keep(const duite_call *call, const struct flow_table *t, const phys_vec *before,
-                      phys_vec *y);
+/* y = S y of the sliding rows; y = before + S (y - before) of them. */
+void flow_sliders_filter(const duite_call *call, const struct flow_table *t, phys_vec *y);
+void flow_sliders_keep(const duite_call *call, const struct flow_table *t, const phys_vec *before,
+                       phys_vec *y);
 
 /* The acceleration that a motion gives a vertex that starts there: the change of its mean velocity
  * from the step before to this one over the length of this one. */
 void flow_due_acceleration(const duite_call *call, uint32_t motion, const phys_vec *start,
                            phys_vec *a);
-/* That which a guide gives a vertex at x, v; only its part that S takes away means anything. */
-void flow_guide_acceleration(const duite_call *call, uint32_t guide, const phys_vec *x,
-                             const phys_vec *v, phys_vec *a);
+/* That which a slider gives a vertex at x, v; only its part that S takes away means anything. */
+void flow_slider_acceleration(const duite_call *call, uint32_t slider, const phys_vec *x,
+                              const phys_vec *v, phys_vec *a);
 
 #endif

@@ -1,7 +1,7 @@
-/* Rank 0 alone knows the model. It tells all ranks the little that all need, and deals the tables
- * of the blocks to the ranks that keep them: each is made when its turn comes, and is gone from
- * rank 0 when a task where its block lives has taken it over. A few are on their way at any time,
- * so that rank 0 never holds more than its own and those. */
+/* Rank 0 alone knows the model. It broadcasts to all ranks the little that all need, and
+ * distributes the tables of the blocks to the ranks that keep them: each is made when its turn
+ * comes, and is gone from rank 0 when a task where its block lives has taken it over. A few are on
+ * their way at any time, so that rank 0 never holds more than its own and those. */
 #include "cloth/flow/bodies.h"
 #include "cloth/flow/observe/observe.h"
 #include "cloth/flow/setup/setup.h"
@@ -15,22 +15,22 @@ enum {
     KEYS = sizeof(struct flow_args)
 };
 
-/* What is told of a block; the neighbours of all blocks follow. */
+/* What is broadcast of a block; the neighbours of all blocks follow. */
 struct shape {
-    uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_rim, n_held, lowest, highest;
-    uint32_t joined, rim_start[SOLVE_MOST_PATCHES + 1];
-    uint32_t n_watched, n_moved, n_guided, n_loose, n_varying, n_slots, n_copies, n_stiff,
+    uint32_t n, n_inner, n_cut, n_entries, n_cut_entries, n_halo, n_held, lowest, highest;
+    uint32_t joined, halo_start[SOLVE_MAX_PATCHES + 1];
+    uint32_t n_watched, n_moved, n_sliding, n_loose, n_varying, n_neighbours, n_ghosts, n_stiff,
         n_elements[ELEMENT_KINDS], n_materials;
 };
 
-/* ---- Telling ---- */
+/* ---- Broadcasts ---- */
 
 static uint32_t larger(uint32_t a, uint32_t b)
 {
     return a > b ? a : b;
 }
 
-static int tell_head(const duite_call *call)
+static int broadcast_head(const duite_call *call)
 {
     const struct flow *flow = flow_of(call);
     const struct flow_source *source = &flow->source;
@@ -45,30 +45,30 @@ static int tell_head(const duite_call *call)
     head->n_pieces = source->particles.n_pieces;
     head->n_triangles = flow->n_triangles;
     head->n_blocks = source->blocks.n_blocks;
-    head->n_slots = source->neighbours.n_slots;
-    head->n_copies = source->neighbours.n_copies;
+    head->n_neighbours = source->neighbours.n_neighbours;
+    head->n_ghosts = source->neighbours.n_ghosts;
     head->shared_bytes = flow->model->n_obstacles * sizeof *flow->model->obstacles +
                          flow->model->n_keys * sizeof *flow->model->keys +
                          flow->model->n_motions * sizeof *flow->model->motions +
-                         flow->model->n_guides * sizeof *flow->model->guides +
-                         flow->model->n_beats * sizeof *flow->model->beats +
-                         flow->model->n_courses * sizeof *flow->model->courses +
+                         flow->model->n_sliders * sizeof *flow->model->sliders +
+                         flow->model->n_curve_keys * sizeof *flow->model->curve_keys +
+                         flow->model->n_curves * sizeof *flow->model->curves +
                          head->n_blocks * (sizeof(struct shape) + sizeof(uint32_t)) +
-                         (3 * (uint64_t)head->n_slots + head->n_copies) * sizeof(uint32_t);
+                         (3 * (uint64_t)head->n_neighbours + head->n_ghosts) * sizeof(uint32_t);
     for (uint32_t b = 0; b < head->n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
-        head->most_rows = larger(t->n, head->most_rows);
-        head->most_slots = larger(t->n_slots, head->most_slots);
-        head->most_rim = larger(t->n_rim, head->most_rim);
-        head->most_copies = larger(t->n_copies, head->most_copies);
+        head->max_rows = larger(t->n, head->max_rows);
+        head->max_neighbours = larger(t->n_neighbours, head->max_neighbours);
+        head->max_halo = larger(t->n_halo, head->max_halo);
+        head->max_ghosts = larger(t->n_ghosts, head->max_ghosts);
         for (int kind = 0; kind < ELEMENT_KINDS; kind++)
             head->n_elements += t->n_elements[kind];
-        head->most_entries = larger(t->n_entries + t->n_cut_entries, head->most_entries);
+        head->max_entries = larger(t->n_entries + t->n_cut_entries, head->max_entries);
     }
     return 0;
 }
-const duite_kernel flow_tell_head = {
-    .name = "tell_head", .body = tell_head, .access = {DUITE_W}, .args_size = KEYS};
+const duite_kernel flow_broadcast_head = {
+    .name = "broadcast_head", .body = broadcast_head, .access = {DUITE_W}, .args_size = KEYS};
 
 static char *put(char *to, const void *from, size_t bytes)
 {
@@ -77,7 +77,7 @@ static char *put(char *to, const void *from, size_t bytes)
     return to + bytes;
 }
 
-static int tell_shared(const duite_call *call)
+static int broadcast_shared(const duite_call *call)
 {
     const struct flow *flow = flow_of(call);
     const struct flow_source *source = &flow->source;
@@ -85,9 +85,9 @@ static int tell_shared(const duite_call *call)
     const struct model *model = flow->model;
     to = put(to, model->obstacles, model->n_obstacles * sizeof *model->obstacles);
     to = put(to, model->keys, model->n_keys * sizeof *model->keys);
-    to = put(to, model->guides, model->n_guides * sizeof *model->guides);
-    to = put(to, model->beats, model->n_beats * sizeof *model->beats);
-    to = put(to, model->courses, model->n_courses * sizeof *model->courses);
+    to = put(to, model->sliders, model->n_sliders * sizeof *model->sliders);
+    to = put(to, model->curve_keys, model->n_curve_keys * sizeof *model->curve_keys);
+    to = put(to, model->curves, model->n_curves * sizeof *model->curves);
     to = put(to, model->motions, model->n_motions * sizeof *model->motions);
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         const struct flow_table *t = source->shape + b;
@@ -96,37 +96,38 @@ static int tell_shared(const duite_call *call)
                               .n_cut = t->n_cut,
                               .n_entries = t->n_entries,
                               .n_cut_entries = t->n_cut_entries,
-                              .n_rim = t->n_rim,
+                              .n_halo = t->n_halo,
                               .n_held = t->n_held,
                               .n_watched = t->n_watched,
                               .n_moved = t->n_moved,
-                              .n_guided = t->n_guided,
+                              .n_sliding = t->n_sliding,
                               .n_loose = t->n_loose,
                               .n_varying = t->n_varying,
                               .lowest = t->lowest,
                               .highest = t->highest,
-                              .n_slots = t->n_slots,
-                              .n_copies = t->n_copies,
+                              .n_neighbours = t->n_neighbours,
+                              .n_ghosts = t->n_ghosts,
                               .n_stiff = t->n_stiff,
                               .n_materials = t->n_materials,
                               .joined = t->joined};
         memcpy(shape.n_elements, t->n_elements, sizeof shape.n_elements);
-        memcpy(shape.rim_start, t->rim_start, sizeof shape.rim_start);
+        memcpy(shape.halo_start, t->halo_start, sizeof shape.halo_start);
         to = put(to, &shape, sizeof shape);
     }
     const struct flow_neighbours *all = &source->neighbours;
-    to = put(to, all->slot, all->n_slots * sizeof *all->slot);
-    to = put(to, all->copies,
-             ((size_t)all->n_slots + source->blocks.n_blocks) * sizeof *all->copies);
-    to = put(to, all->copy, all->n_copies * sizeof *all->copy);
-    put(to, all->joins, all->n_slots * sizeof *all->joins);
+    to = put(to, all->neighbour, all->n_neighbours * sizeof *all->neighbour);
+    to = put(to, all->ghosts,
+             ((size_t)all->n_neighbours + source->blocks.n_blocks) * sizeof *all->ghosts);
+    to = put(to, all->ghost, all->n_ghosts * sizeof *all->ghost);
+    put(to, all->joins, all->n_neighbours * sizeof *all->joins);
     return 0;
 }
-const duite_kernel flow_tell_shared = {
-    .name = "tell_shared", .body = tell_shared, .access = {DUITE_W}, .args_size = KEYS};
+const duite_kernel flow_broadcast_shared = {
+    .name = "broadcast_shared", .body = broadcast_shared, .access = {DUITE_W}, .args_size = KEYS};
 
 /* What a task on rank 0 writes into an object of so many bytes, to all ranks. */
-static int tell_all(struct flow_state *state, const duite_kernel *kernel, size_t bytes, void *told)
+static int broadcast_all(struct flow_state *state, const duite_kernel *kernel, size_t bytes,
+                         void *received)
 {
     const struct flow_args args = {0};
     duite_object object;
@@ -134,7 +135,7 @@ static int tell_all(struct flow_state *state, const duite_kernel *kernel, size_t
     if (!code)
         code = duite_fork_at(state->rt, 0, kernel, &args, 1, &object);
     if (!code)
-        code = duite_get(state->rt, object, told);
+        code = duite_get(state->rt, object, received);
     const int freed = object.generation ? duite_free(state->rt, object) : DUITE_OK;
     return code ? code : freed;
 }
@@ -143,25 +144,25 @@ int flow_share_head(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     const struct flow_head *head = &state->head;
-    const int code = tell_all(state, &flow_tell_head, sizeof *head, &state->head);
+    const int code = broadcast_all(state, &flow_broadcast_head, sizeof *head, &state->head);
     if (code || duite_rank(state->rt) == 0)
         return code;
-    flow->told = head->model;
-    flow->told.name = flow->told.h_place = flow->told.fps_place = NULL;
-    flow->told.n_materials = flow->told.n_cloths = 0;
-    flow->told.n_joints = flow->told.n_welds = 0;
-    flow->told.materials = NULL;
-    flow->told.cloths = NULL;
-    flow->told.obstacles = NULL;
-    flow->told.joints = NULL;
-    flow->told.welds = NULL;
-    flow->told.probes = NULL;
-    flow->told.keys = NULL;
-    flow->told.motions = NULL;
-    flow->told.guides = NULL;
-    flow->told.beats = NULL;
-    flow->told.courses = NULL;
-    flow->model = &flow->told;
+    flow->received = head->model;
+    flow->received.name = flow->received.h_place = flow->received.fps_place = NULL;
+    flow->received.n_materials = flow->received.n_cloths = 0;
+    flow->received.n_joints = flow->received.n_welds = 0;
+    flow->received.materials = NULL;
+    flow->received.cloths = NULL;
+    flow->received.obstacles = NULL;
+    flow->received.joints = NULL;
+    flow->received.welds = NULL;
+    flow->received.probes = NULL;
+    flow->received.keys = NULL;
+    flow->received.motions = NULL;
+    flow->received.sliders = NULL;
+    flow->received.curve_keys = NULL;
+    flow->received.curves = NULL;
+    flow->model = &flow->received;
     flow->n_steps = head->n_steps;
     flow->inertia = head->inertia;
     flow->release = head->release;
@@ -175,20 +176,20 @@ static void unpack(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     struct flow_tables *tables = &flow->tables;
-    flow->told.obstacles = flow->shared;
-    flow->told.keys = (void *)(flow->told.obstacles + flow->model->n_obstacles);
-    flow->told.guides = (void *)(flow->told.keys + flow->model->n_keys);
-    flow->told.beats = (void *)(flow->told.guides + flow->model->n_guides);
-    flow->told.courses = (void *)(flow->told.beats + flow->model->n_beats);
-    flow->told.motions = (void *)(flow->told.courses + flow->model->n_courses);
-    const struct shape *shape = (const void *)(flow->told.motions + flow->model->n_motions);
-    const uint32_t *slot = (const void *)(shape + tables->n_blocks);
-    const uint32_t *copies = slot + state->head.n_slots;
-    const uint32_t *copy = copies + state->head.n_slots + tables->n_blocks;
-    const uint32_t *joins = copy + state->head.n_copies;
+    flow->received.obstacles = flow->shared;
+    flow->received.keys = (void *)(flow->received.obstacles + flow->model->n_obstacles);
+    flow->received.sliders = (void *)(flow->received.keys + flow->model->n_keys);
+    flow->received.curve_keys = (void *)(flow->received.sliders + flow->model->n_sliders);
+    flow->received.curves = (void *)(flow->received.curve_keys + flow->model->n_curve_keys);
+    flow->received.motions = (void *)(flow->received.curves + flow->model->n_curves);
+    const struct shape *shape = (const void *)(flow->received.motions + flow->model->n_motions);
+    const uint32_t *neighbour = (const void *)(shape + tables->n_blocks);
+    const uint32_t *ghosts = neighbour + state->head.n_neighbours;
+    const uint32_t *ghost = ghosts + state->head.n_neighbours + tables->n_blocks;
+    const uint32_t *joins = ghost + state->head.n_ghosts;
     uint32_t first = 0;
-    tables->slot = slot;
-    tables->copy = copy;
+    tables->neighbour = neighbour;
+    tables->ghost = ghost;
     for (uint32_t b = 0; b < tables->n_blocks; b++, shape++) {
         tables->block[b] = (struct flow_table){.n = shape->n,
                                                .first = first,
@@ -197,38 +198,38 @@ static void unpack(struct flow_state *state)
                                                .n_entries = shape->n_entries,
                                                .n_cut_entries = shape->n_cut_entries,
                                                .format = flow->model->format,
-                                               .n_rim = shape->n_rim,
+                                               .n_halo = shape->n_halo,
                                                .n_held = shape->n_held,
                                                .n_watched = shape->n_watched,
                                                .n_moved = shape->n_moved,
-                                               .n_guided = shape->n_guided,
+                                               .n_sliding = shape->n_sliding,
                                                .n_loose = shape->n_loose,
                                                .n_varying = shape->n_varying,
                                                .lowest = shape->lowest,
                                                .highest = shape->highest,
-                                               .n_slots = shape->n_slots,
-                                               .n_copies = shape->n_copies,
+                                               .n_neighbours = shape->n_neighbours,
+                                               .n_ghosts = shape->n_ghosts,
                                                .n_stiff = shape->n_stiff,
                                                .n_materials = shape->n_materials,
                                                .joined = shape->joined,
                                                .joins = joins,
-                                               .slot = slot,
-                                               .copies = copies,
-                                               .copy = copy};
+                                               .neighbour = neighbour,
+                                               .ghosts = ghosts,
+                                               .ghost = ghost};
         memcpy(tables->block[b].n_elements, shape->n_elements, sizeof shape->n_elements);
-        memcpy(tables->block[b].rim_start, shape->rim_start, sizeof shape->rim_start);
-        joins += shape->n_slots;
+        memcpy(tables->block[b].halo_start, shape->halo_start, sizeof shape->halo_start);
+        joins += shape->n_neighbours;
         first += shape->n;
-        slot += shape->n_slots;
-        copies += shape->n_slots + 1;
-        copy += shape->n_copies;
+        neighbour += shape->n_neighbours;
+        ghosts += shape->n_neighbours + 1;
+        ghost += shape->n_ghosts;
     }
 }
 
 int flow_share(struct flow_state *state)
 {
     const int code =
-        tell_all(state, &flow_tell_shared, state->head.shared_bytes, state->flow->shared);
+        broadcast_all(state, &flow_broadcast_shared, state->head.shared_bytes, state->flow->shared);
     if (!code)
         unpack(state);
     return code;
@@ -254,7 +255,7 @@ static int table_keep_body(const duite_call *call, const struct table_keep_field
     return 0;
 }
 
-static int deal(struct flow_state *state, uint32_t from, uint32_t to)
+static int distribute(struct flow_state *state, uint32_t from, uint32_t to)
 {
     struct flow_args args = {.block = from};
     int code = DUITE_OK;
@@ -283,11 +284,11 @@ static void forget_source(struct flow_state *state)
     flow->source.watched = (struct flow_watched){0};
     flow_source_free(&flow->source);
     const struct flow_progress *progress = state->flow->progress;
-    if (progress && progress->dealt)
-        progress->dealt(progress->context);
+    if (progress && progress->distributed)
+        progress->distributed(progress->context);
 }
 
-int flow_deal(struct flow_state *state)
+int flow_distribute(struct flow_state *state)
 {
     struct flow *flow = state->flow;
     const uint32_t n = flow->tables.n_blocks, part = n / GROUPS + 1;
@@ -299,7 +300,7 @@ int flow_deal(struct flow_state *state)
         if (makes) /* what fails here, the tasks say */
             flow_source_gather(&flow->source, from, to, &flow->trouble);
         for (uint32_t b = from; b < to && !code; b += TRAVEL)
-            code = deal(state, b, b + smaller(TRAVEL, to - b));
+            code = distribute(state, b, b + smaller(TRAVEL, to - b));
     }
     if (makes)
         forget_source(state);

@@ -1,16 +1,16 @@
-#ifndef CLOTH_PHYSICS_COURSE_H
-#define CLOTH_PHYSICS_COURSE_H
+#ifndef CLOTH_PHYSICS_CURVE_H
+#define CLOTH_PHYSICS_CURVE_H
 
 #include <stddef.h>
 
 /* How something varies in time: factors without unit. Pure functions of + - * / alone, so that they
  * have the same bits everywhere; nothing is allocated. */
-struct phys_beat {
+struct phys_curve_key {
     double time, factor; /* s, ascending; 1 */
 };
 
 /* By n > 0 key frames: linear between two, constant before the first and after the last. */
-double phys_course_at(size_t n, const struct phys_beat *beat, double time);
+double phys_curve_at(size_t n, const struct phys_curve_key *curve_key, double time);
 
 /* sin(2 pi turns), to 2e-16. turns: less than 2^51. */
 double phys_sine(double turns);

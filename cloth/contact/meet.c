@@ -18,6 +18,14 @@ bool contact_leave(const struct contact_hit *hit, const phys_vec *way, phys_vec 
     return true;
 }
 
+/* Whether none of the points is on or in the shape, if that is known at little cost. */
+static bool are_apart(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
+                      const phys_vec *x)
+{
+    const struct contact_kind *kind = contact_kinds[shape->kind];
+    return !pose->moves && kind->apart && kind->apart(shape->value, n, x);
+}
+
 size_t contact_project(const struct contact_shape *shape, const struct contact_pose *pose, size_t n,
                        const double *free, phys_vec *x, phys_vec *v)
 {
@@ -25,6 +33,8 @@ size_t contact_project(const struct contact_shape *shape, const struct contact_p
     size_t touched = 0;
     for (size_t from = 0; from < n; from += AT_ONCE) {
         const size_t some = n - from < AT_ONCE ? n - from : AT_ONCE;
+        if (are_apart(shape, pose, some, x + from))
+            continue;
         contact_closest(shape, pose, some, x + from, hit);
         for (size_t i = 0; i < some; i++)
             if (free[from + i] != 0)

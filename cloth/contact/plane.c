@@ -14,7 +14,19 @@ static void plane_closest(const double *value, size_t n, const phys_vec *x, stru
     }
 }
 
+static bool plane_apart(const double *value, size_t n, const phys_vec *x)
+{
+    const phys_vec origin = {value[POINT], value[POINT + 1], value[POINT + 2], 0};
+    const phys_vec up = {value[NORMAL], value[NORMAL + 1], value[NORMAL + 2], 0};
+    size_t above = 0;
+    for (size_t i = 0; i < n; i++) {
+        const phys_vec from = x[i] - origin;
+        above += phys_dot(&from, &up) > 0;
+    }
+    return above == n;
+}
+
 static const struct contact_parameter parameters[] = {
     {"point", CONTACT_POINT}, {"normal", CONTACT_DIRECTION}, {NULL, 0}};
 const struct contact_kind contact_plane = {
-    .name = "plane", .parameter = parameters, .closest = plane_closest};
+    .name = "plane", .parameter = parameters, .closest = plane_closest, .apart = plane_apart};

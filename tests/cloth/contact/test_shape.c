@@ -289,6 +289,29 @@ START_TEST(keys_say_the_velocity)
 }
 END_TEST
 
+/* Of a kind that says so: points are apart where each has a gap. */
+START_TEST(apart)
+{
+    struct contact_shape shape;
+    struct phys_key keys[2];
+    size_t n_apart = 0;
+    for (int i = 0; contact_kinds[_i]->apart && i < POINTS; i++) {
+        phys_vec x[3];
+        struct contact_hit hit[3];
+        make((uint32_t)_i, &shape, keys);
+        for (int k = 0; k < 3; k++)
+            pick_point(2, x + k);
+        contact_kinds[_i]->closest(shape.value, 3, x, hit);
+        const bool is = contact_kinds[_i]->apart(shape.value, 3, x);
+        ck_assert(is == (hit[0].gap > 0 && hit[1].gap > 0 && hit[2].gap > 0));
+        n_apart += is;
+        x[1][0] = NAN;
+        ck_assert(!contact_kinds[_i]->apart(shape.value, 3, x));
+    }
+    ck_assert(!contact_kinds[_i]->apart || (n_apart > 0 && n_apart < POINTS));
+}
+END_TEST
+
 /* For pictures: points of the surface with their normals, triangles seen from outside. */
 START_TEST(surfaces)
 {
@@ -331,6 +354,7 @@ int main(void)
     tcase_add_loop_test(cases, the_slope_is_the_normal, 0, n);
     tcase_add_loop_test(cases, the_surface_has_its_velocity, 0, n);
     tcase_add_loop_test(cases, keys_say_the_velocity, 0, n);
+    tcase_add_loop_test(cases, apart, 0, n);
     tcase_add_loop_test(cases, surfaces, 0, n);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

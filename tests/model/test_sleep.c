@@ -156,9 +156,9 @@ void comm_count(struct comm *comm, uint64_t *messages, uint64_t *bytes)
     *messages = *bytes = comm != NULL;
 }
 
-void comm_tell(struct comm *comm, comm_told *tell)
+void comm_set_report(struct comm *comm, comm_report *report)
 {
-    (void)comm, (void)tell;
+    (void)comm, (void)report;
 }
 
 uint64_t comm_awaited_ticks(const struct comm *comm)

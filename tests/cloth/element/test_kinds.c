@@ -450,11 +450,12 @@ static void find_links(void *to, const struct element *element)
 START_TEST(corners_are_joined)
 {
     struct scene scene;
+    const struct flow_welds welds = {0};
     struct flow_springs springs;
     struct cloth_error error = {0};
     struct links links = {.kind = (uint32_t)_i};
     make_scene(&scene);
-    ck_assert_msg(!flow_springs_make(&springs, &scene.model, &scene.cloths, &error), "%s",
+    ck_assert_msg(!flow_springs_make(&springs, &scene.model, &welds, &scene.cloths, &error), "%s",
                   error.text);
     flow_springs_each(&springs, join, &links);
     element_each(&scene.cloths, find_links, &links);

@@ -9,9 +9,9 @@
 #define FLOW_KERNELS(X)                                                                            \
     X(table_make) X(table_keep)                                                                    \
     X(initial) X(keep) X(restore) X(status)                                                        \
-    X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                                                       \
-    X(predict_contact) X(contact) X(constrain) X(collide)                                                         \
-    X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(runge)                             \
+    X(force) X(force_free) X(prescribe_velocity) X(prescribe_position)                             \
+    X(predict_contact) X(contact) X(constrain) X(collide)                                          \
+    X(euler) X(euler_next) X(verlet_first) X(verlet_second) X(runge)                               \
     X(velocity_implicit) X(position) X(predict) X(correct) X(shift) X(residual)                    \
     X(system) X(system_of_forces) X(matrix) X(factor)                                              \
     X(basis) X(basis_ghosts) X(couple) X(factor_coarse)                                            \

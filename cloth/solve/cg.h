@@ -50,7 +50,7 @@ enum { SOLVE_DRIFT = SOLVE_PQ };
 
 /* When to stop. */
 struct solve_stop {
-    bool count;      /* after exactly `most` iterations, without a look at the residual */
+    bool count;      /* after exactly `max` iterations, without a look at the residual */
     bool relative;   /* tolerance is against |S b|, else absolute (kg m/s) */
     bool normalised; /* tolerance is against sqrt(r.D^-1 r / unit), below */
     bool mass_norm;  /* tolerance is of the error against dv, both in the mass norm */

@@ -180,17 +180,17 @@ static int couple_body(const duite_call *call, const struct couple_fields *on)
     const phys_vec *values = flow_matrix_in(call, t, on->a);
     const struct solve_patches patches = solve_patches_of(t->n, flow->patches);
     const uint32_t block = on->args->block, first = patches.n * block;
-    struct solve_couplings own, patch_neighbour;
+    struct solve_couplings own, cut;
     solve_couple_patches(&t->matrix, &patches, values, on->basis, &own);
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
         const uint32_t from = t->cut_entry[s], n = t->cut_entry[s + 1] - from;
         const struct solve_patches others = patches_of_neighbour(flow, t, s);
         solve_couple_patches_cut(&t->matrix, &patches, values, t->matrix.row[t->n] + from, n,
                                  t->ghost_end + from, on->basis, on->basis_ghosts, &others, &own,
-                                 &patch_neighbour);
+                                 &cut);
         for (uint32_t k = 0; k < patches.n && t->neighbour[s] > block; k++)
             for (uint32_t l = 0; l < patches.n; l++)
-                put(flow, first + k, patches.n * t->neighbour[s] + l, patch_neighbour.matrix[k][l],
+                put(flow, first + k, patches.n * t->neighbour[s] + l, cut.matrix[k][l],
                     on->coupling);
     }
     for (uint32_t k = 0; k < patches.n; k++)

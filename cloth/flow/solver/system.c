@@ -20,7 +20,7 @@ struct making {
 };
 
 /* Writes the diagonal of the matrix and a filter that lets all pass until the one of
- * the step comes (flow_constrain); what follows is for the values. */
+ * the step comes (flow_contact_constrain); what follows is for the values. */
 static void *begin_matrix(const duite_call *call, const struct flow_table *t, phys_vec *matrix)
 {
     const double h = flow_args_of(call)->h;

@@ -198,16 +198,25 @@ static enum flow_life is_work(const struct model *model)
     return FLOW_WORK;
 }
 
-/* Verlet begins a step with the forces that ended the one before, which saw another velocity. */
-static enum flow_life is_state_of_verlet(const struct model *model)
+/* With contact in the solve the filter, and so the basis, is another in each step. */
+static enum flow_life is_derived_once(const struct model *model)
 {
-    return model->integrator == MODEL_VERLET ? FLOW_STATE_FIELD : FLOW_WORK;
+    return model_is_filtered(model) ? FLOW_WORK : FLOW_DERIVED;
 }
 
-/* A solve may begin with dv of the step before. */
+/* Verlet begins a step with the forces that ended the one before, which saw another velocity,
+ * unless obstacles or pins may have moved something since (verlet.c). */
+static enum flow_life is_state_of_verlet(const struct model *model)
+{
+    const bool settled = !model->n_obstacles && !model_is_driven(model);
+    return model->integrator == MODEL_VERLET && settled ? FLOW_STATE_FIELD : FLOW_WORK;
+}
+
+/* A linear step of implicit Euler may begin its solve with dv of the step before. */
 static enum flow_life is_state_of_guess(const struct model *model)
 {
-    return model->guess == MODEL_GUESS_ZERO ? FLOW_WORK : FLOW_STATE_FIELD;
+    const bool linear = model->integrator == MODEL_IMPLICIT_EULER && model->newton_steps <= 1;
+    return linear && model->guess != MODEL_GUESS_ZERO ? FLOW_STATE_FIELD : FLOW_WORK;
 }
 
 /* ---- The table ---- */

@@ -13,8 +13,9 @@
  * of a field its name, how many objects it has, the type of its numbers in C, numbers a row, how
  * many rows (at least one is made), when it exists, and what becomes of it between two steps
  * (enum flow_life). The words in the last three columns are functions of fields.c. Objects are
- * made, freed and colocated by loops over the list (objects.c), kernels name them (kernel.h), and
- * the list of a checkpoint follows from the last column. A new field is one row.
+ * made, freed and colocated by loops over the list (objects.c), and kernels name them (kernel.h).
+ * The last column says what a checkpoint must have; test_fields.c holds runs to it. A new field is
+ * one row.
  *
  * ONE: one object. SIZED: one that changes its size, up to this many rows. BY_STEP, BY_PASS: two
  * objects that take turns, name and name_next. By step, `name` is that of the step under way; by
@@ -24,74 +25,74 @@
 /* clang-format off */
 #define FLOW_BLOCK_FIELDS(X)                                                                       \
     /* the state, and what neighbours read of it */                                                \
-    X(x,            ONE,     phys_vec,      4, rows,         always,       is_state)               \
-    X(v,            ONE,     phys_vec,      4, rows,         always,       is_state)               \
-    X(f,            ONE,     phys_vec,      4, rows,         always,       is_state_of_verlet)     \
-    X(halo_x,        ONE,     phys_vec,      4, halo,         always,       is_derived)             \
-    X(halo_v,        ONE,     phys_vec,      4, halo,         always,       is_derived)             \
-    X(table,        ONE,     unsigned char, 1, table_bytes,  always,       is_derived)             \
+    X(x,            ONE,     phys_vec,      4, rows,          always,       is_state)              \
+    X(v,            ONE,     phys_vec,      4, rows,          always,       is_state)              \
+    X(f,            ONE,     phys_vec,      4, rows,          always,       is_state_of_verlet)    \
+    X(halo_x,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
+    X(halo_v,       ONE,     phys_vec,      4, halo,          always,       is_derived)            \
+    X(table,        ONE,     unsigned char, 1, table_bytes,   always,       is_derived)            \
     /* before a step that may be given up */                                                       \
-    X(kept_x,       ONE,     phys_vec,      4, rows,         kept,         is_work)                \
-    X(kept_v,       ONE,     phys_vec,      4, rows,         kept,         is_work)                \
+    X(kept_x,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
+    X(kept_v,       ONE,     phys_vec,      4, rows,          kept,         is_work)               \
     /* explicit integrators (explicit.h); v0: RK4's, or Verlet's of the half step */               \
-    X(spare_halo_x,  ONE,     phys_vec,      4, halo,         explicit_run, is_work)                \
-    X(spare_halo_v,  ONE,     phys_vec,      4, halo,         explicit_run, is_work)                \
-    X(v0,           ONE,     phys_vec,      4, rows,         staged,       is_work)                \
-    X(x0,           ONE,     phys_vec,      4, rows,         runge,        is_work)                \
-    X(sum_x,        ONE,     phys_vec,      4, rows,         runge,        is_work)                \
-    X(sum_v,        ONE,     phys_vec,      4, rows,         runge,        is_work)                \
+    X(spare_halo_x, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
+    X(spare_halo_v, ONE,     phys_vec,      4, halo,          explicit_run, is_work)               \
+    X(v0,           ONE,     phys_vec,      4, rows,          staged,       is_work)               \
+    X(x0,           ONE,     phys_vec,      4, rows,          runge,        is_work)               \
+    X(sum_x,        ONE,     phys_vec,      4, rows,          runge,        is_work)               \
+    X(sum_v,        ONE,     phys_vec,      4, rows,          runge,        is_work)               \
     /* implicit integrators: struct phys_states */                                                 \
-    X(base_x,       ONE,     phys_vec,      4, rows,         based,        is_work)                \
-    X(base_v,       ONE,     phys_vec,      4, rows,         based,        is_work)                \
-    X(last_x,       ONE,     phys_vec,      4, rows,         bdf2,         is_state)               \
-    X(last_v,       ONE,     phys_vec,      4, rows,         bdf2,         is_state)               \
+    X(base_x,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
+    X(base_v,       ONE,     phys_vec,      4, rows,          based,        is_work)               \
+    X(last_x,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
+    X(last_v,       ONE,     phys_vec,      4, rows,          bdf2,         is_state)              \
     /* the system of a step: matrix (flow_matrix_in), its filter with contact; its solve */        \
-    X(a,            ONE,     phys_vec,      1, matrix,       implicit_run, is_work)                \
-    X(filter,       ONE,     phys_vec,      4, rows,         filtered,     is_work)                \
-    X(dv,           ONE,     phys_vec,      4, rows,         implicit_run, is_state_of_guess)      \
-    X(r,            ONE,     phys_vec,      4, rows,         implicit_run, is_work)                \
-    X(p,            ONE,     phys_vec,      4, rows,         implicit_run, is_work)                \
-    X(q,            ONE,     phys_vec,      4, rows,         implicit_run, is_work)                \
+    X(a,            ONE,     phys_vec,      1, matrix,        implicit_run, is_work)               \
+    X(filter,       ONE,     phys_vec,      4, rows,          filtered,     is_work)               \
+    X(dv,           ONE,     phys_vec,      4, rows,          implicit_run, is_state_of_guess)     \
+    X(r,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
+    X(p,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
+    X(q,            ONE,     phys_vec,      4, rows,          implicit_run, is_work)               \
     /* r (with a preconditioner z) of the ghosts, then p; what neighbours read of q (of s) */      \
-    X(ghosts,       ONE,     phys_vec,      8, ghosts,       implicit_run, is_work)                \
-    X(halo_q,        BY_PASS, double,        3, halo,         implicit_run, is_work)                \
+    X(ghosts,       ONE,     phys_vec,      8, ghosts,        implicit_run, is_work)               \
+    X(halo_q,       BY_PASS, double,        3, halo,          implicit_run, is_work)               \
     /* a preconditioner; part: sums of a pass and the coarse right side */                         \
-    X(z,            ONE,     phys_vec,      4, rows,         conditioned,  is_work)                \
-    X(s,            ONE,     phys_vec,      4, rows,         conditioned,  is_work)                \
-    X(factor,       ONE,     double,        1, factor,       conditioned,  is_work)                \
-    X(part,         ONE,     double,        1, part,         conditioned,  is_work)                \
+    X(z,            ONE,     phys_vec,      4, rows,          conditioned,  is_work)               \
+    X(s,            ONE,     phys_vec,      4, rows,          conditioned,  is_work)               \
+    X(factor,       ONE,     double,        1, factor,        conditioned,  is_work)               \
+    X(part,         ONE,     double,        1, part,          conditioned,  is_work)               \
     /* its coarse part */                                                                          \
-    X(basis,        ONE,     phys_vec,      4, rows,         coarse_run,   is_derived)             \
-    X(halo_basis,    ONE,     phys_vec,      4, halo,         coarse_run,   is_derived)             \
-    X(basis_ghosts, ONE,     phys_vec,      4, ghosts,       coarse_run,   is_derived)             \
-    X(coupling,     ONE,     double,        1, couplings,    coarse_run,   is_work)                \
+    X(basis,        ONE,     phys_vec,      4, rows,          coarse_run,   is_derived_once)       \
+    X(halo_basis,   ONE,     phys_vec,      4, halo,          coarse_run,   is_derived_once)       \
+    X(basis_ghosts, ONE,     phys_vec,      4, ghosts,        coarse_run,   is_derived_once)       \
+    X(coupling,     ONE,     double,        1, couplings,     coarse_run,   is_work)               \
     /* where probes are: the force on each row; what is reported of them */                        \
-    X(probe_force,         ONE,     phys_vec,      4, rows,         probed,       is_work)                \
-    X(probe_values,         ONE,     double, FLOW_PROBE_VALUES, watched,     probed,       is_work)                \
-    /* what travels to rank 0 on its own, empty in between; what is saved of the system of a step */ \
-    X(parcel,       SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows, always, is_work)              \
-    X(saved,        ONE,     double,        1, saved,        saves,        is_work)
+    X(probe_force,  ONE,     phys_vec,      4, rows,          probed,       is_work)               \
+    X(probe_values, ONE,     double,        FLOW_PROBE_VALUES, watched,       probed,       is_work) \
+    /* what travels to rank 0 on its own, empty in between; saved: of the system of a step */      \
+    X(parcel,       SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows,          always,       is_work) \
+    X(saved,        ONE,     double,        1, saved,         saves,        is_work)
 
 /* Of the whole run; they live where the first block lives. */
 #define FLOW_RUN_FIELDS(X)                                                                         \
     /* sums of a step; trial, slope: of a Newton step */                                           \
-    X(status,       BY_STEP, double, FLOW_STATUS, one,       always,       is_work)                \
-    X(stretch,      BY_STEP, double,        1, one,          always,       is_work)                \
-    X(peaks,        BY_STEP, double, FLOW_PEAKS, one,        always,       is_work)                \
-    X(energies,     BY_STEP, double, FLOW_SUMS, one,         always,       is_work)                \
-    X(trial,        ONE,     double, FLOW_STATUS, one,       always,       is_work)                \
-    X(slope,        ONE,     double,        1, one,          always,       is_work)                \
+    X(status,       BY_STEP, double,        FLOW_STATUS, one,           always,       is_work)     \
+    X(stretch,      BY_STEP, double,        1, one,           always,       is_work)               \
+    X(peaks,        BY_STEP, double,        FLOW_PEAKS, one,           always,       is_work)      \
+    X(energies,     BY_STEP, double,        FLOW_SUMS, one,           always,       is_work)       \
+    X(trial,        ONE,     double,        FLOW_STATUS, one,           always,       is_work)     \
+    X(slope,        ONE,     double,        1, one,           always,       is_work)               \
     /* a solve; pieces: what it left of free pieces; coarse, motion: factor, and its part of s */  \
-    X(sums,         BY_PASS, double,        1, dots,         always,       is_work)                \
-    X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one, always, is_work)            \
-    X(coarse,       ONE,     double,        1, coarse_factor, coarse_run,  is_work)                \
-    X(motion,       BY_PASS, double,        1, motion,       coarse_run,   is_work)                \
-    X(pieces,       ONE,     double, FLOW_PIECE_SUMS, pieces, in_pieces,   is_work)                \
+    X(sums,         BY_PASS, double,        1, dots,          always,       is_work)               \
+    X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one,           always,       is_work) \
+    X(coarse,       ONE,     double,        1, coarse_factor, coarse_run,   is_work)               \
+    X(motion,       BY_PASS, double,        1, motion,        coarse_run,   is_work)               \
+    X(pieces,       ONE,     double,        FLOW_PIECE_SUMS, pieces,        in_pieces,    is_work) \
     /* reports; who holds the token writes a frame or a row */                                     \
-    X(token,        ONE,     int64_t,       1, one,          always,       is_work)                \
-    X(seconds,      ONE,     double, FLOW_PARTS, one,        always,       is_work)                \
-    X(energy,       ONE,     double, FLOW_SUMS, one,         always,       is_work)                \
-    X(broadcast,         ONE,     uint64_t, FLOW_BROADCAST, one,       always,       is_work)
+    X(token,        ONE,     int64_t,       1, one,           always,       is_work)               \
+    X(seconds,      ONE,     double,        FLOW_PARTS, one,           always,       is_work)      \
+    X(energy,       ONE,     double,        FLOW_SUMS, one,           always,       is_work)       \
+    X(broadcast,    ONE,     uint64_t,      FLOW_BROADCAST, one,           always,       is_work)
 /* clang-format on */
 
 #define FLOW_FIELDS(X) FLOW_BLOCK_FIELDS(X) FLOW_RUN_FIELDS(X)
@@ -137,7 +138,7 @@ struct flow_run_objects {
 
 /* What a field is between two steps. */
 enum flow_life {
-    FLOW_STATE_FIELD, /* the next step reads it: a checkpoint has it */
+    FLOW_STATE_FIELD, /* the next step reads it */
     FLOW_DERIVED, /* the next step reads it, and a restart can make it from the state and model */
     FLOW_WORK     /* the next step writes it before it reads it */
 };

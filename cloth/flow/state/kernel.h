@@ -24,7 +24,7 @@
  *     R W RW     reads, overwrites, changes: a field of the task's block or of the run
  *     SUM MAX    contributes to it, added up, or the largest counts
  *     NEIGHBOURS reads this field of each neighbour, in the order of neighbours
- *     ALL        reads this field of every block that has it
+ *     ALL        reads this field of every block that has it; the last parameter of a kernel
  *     IF_MADE    reads it if it exists in the run; else the pointer is NULL. Either all fields of a
  *                kernel with this word exist or none
  *
@@ -256,7 +256,7 @@ int flow_fork_at(struct flow_state *state, int rank, const struct flow_kernel *k
 size_t flow_kernel_objects(struct flow_state *state, const struct flow_kernel *kernel,
                            uint32_t block, const struct flow_as *as);
 
-/* In a body: the rows, or the numbers, of the neighbour in neighbour s, or of block s. */
+/* In a body: the rows, or the numbers, of neighbour s; of the s-th block that has the field. */
 static inline const phys_vec *flow_rows_of(const duite_param *field, size_t s)
 {
     return field[s].data;

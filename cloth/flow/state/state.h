@@ -55,7 +55,7 @@ enum {
 enum { FLOW_PEAK_SPEED, FLOW_PEAK_LONGEST, FLOW_PEAK_SHORTEST, FLOW_PEAKS };
 /* Numbers of a watched vertex: position, velocity, reaction; sums of a free piece. */
 enum { FLOW_PROBE_VALUES = 9, FLOW_PIECE_SUMS = 8 };
-/* Energies, J, and after them the torque that uncorrected triangles leave, N m (kernels_energy.c).
+/* Energies, J, and after them the torque that uncorrected triangles leave, N m (step/energy.c).
  */
 enum {
     FLOW_ENERGY_MOTION,
@@ -171,7 +171,7 @@ static inline double flow_time(const struct flow_state *state)
 
 /* ---- state.c: forks. Collective; they return what the runtime does ---- */
 
-/* Forks the start of all blocks; what ghosts x and v to what is kept, or to two others in its
+/* Forks the start of all blocks; what copies x and v to what is kept, or to two others in its
  * place; what makes it the state again. */
 int flow_initialise(struct flow_state *state);
 int flow_keep(struct flow_state *state);

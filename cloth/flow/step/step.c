@@ -70,7 +70,7 @@ static int fork_end(struct flow_state *state)
     return flow_integrators[state->flow->model->integrator].end(state);
 }
 
-/* What a stage is for. PREDICT, CONSTRAIN, SOLVE: a step's begin, which leaves x and v as they are,
+/* What a stage is for. PREDICT, SOLVE: a step's begin, which leaves x and v as they are,
  * unless velocities change first (flow_step_is_driven). */
 enum stage_part { PREDICT, SOLVE, CORRECT, OBSERVE };
 

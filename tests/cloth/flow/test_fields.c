@@ -1,6 +1,7 @@
 /* The table of fields against runs: what exists is made in the size that the table says, and freed;
  * what a step does with a field between two steps is what the table calls it. Work fields may be
  * anything when a step begins; a state field may not. */
+#include "cloth/flow/kernels.h"
 #include "cloth/flow/setup/setup.h"
 #include "cloth/flow/solver/solve.h"
 #include "cloth/flow/step/step.h"
@@ -281,6 +282,23 @@ START_TEST(work_is_written_before_it_is_read)
 }
 END_TEST
 
+/* A body's pointers are counted on from the last object of the task's own: behind those come the
+ * ones of neighbours, then those that may not be there; behind those of all blocks comes nothing.
+ */
+START_TEST(parameters_stand_in_order)
+{
+#define ADDRESS(name) &flow_kernel_##name,
+    const struct flow_kernel *const all[] = {FLOW_KERNELS(ADDRESS)};
+    const struct flow_parameter *p = all[_i]->parameter;
+    for (; p->whose != FLOW_NOBODY && p[1].whose != FLOW_NOBODY; p++) {
+        ck_assert_msg(p->whose <= p[1].whose, "%s: parameter %d", all[_i]->task.name,
+                      (int)(p - all[_i]->parameter) + 1);
+        ck_assert_msg(p->whose != FLOW_OF_ALL, "%s: parameter %d", all[_i]->task.name,
+                      (int)(p - all[_i]->parameter));
+    }
+}
+END_TEST
+
 /* dv: these steps begin without a guess. */
 START_TEST(state_lasts)
 {
@@ -308,6 +326,7 @@ int main(void)
     tcase_add_loop_test(tcase, all_is_freed, 0, KINDS);
     tcase_add_test(tcase, every_field_has_a_run);
     tcase_add_loop_test(tcase, work_is_written_before_it_is_read, 0, KINDS);
+    tcase_add_loop_test(tcase, parameters_stand_in_order, 0, FLOW_KERNELS_OF_ALL);
     tcase_add_loop_test(tcase, state_lasts, 0, KINDS);
     suite_add_tcase(suite, tcase);
     return unit_run(suite);

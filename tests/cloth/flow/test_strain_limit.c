@@ -44,7 +44,7 @@ static double elongation(double tension)
 }
 
 /* _i: linear steps, Newton steps, Newton steps of BDF2. */
-START_TEST(a_chain_hangs_as_packed_as_both_springs_let_it)
+START_TEST(a_chain_hangs_as_far_as_both_springs_let_it)
 {
     struct setup setup;
     struct record record = {0};
@@ -150,7 +150,7 @@ END_TEST
 
 /* Thrown down at 5 m/s, the weight comes in one step of 20 ms far over a limit that the matrix of
  * this step has not: 100 times its energy. The step is made anew until the matrix has it. */
-START_TEST(steps_packed_over_a_limit_are_halved)
+START_TEST(steps_far_over_a_limit_are_halved)
 {
     struct setup setup;
     struct record record = {0};
@@ -211,11 +211,11 @@ int main(void)
 {
     Suite *suite = suite_create("strain_limit");
     TCase *cases = tcase_create("limits");
-    tcase_add_loop_test(cases, a_chain_hangs_as_packed_as_both_springs_let_it, 0, 3);
+    tcase_add_loop_test(cases, a_chain_hangs_as_far_as_both_springs_let_it, 0, 3);
     tcase_add_test(cases, below_its_limit_an_edge_is_free);
     tcase_add_test(cases, a_free_chain_keeps_its_momentum);
     tcase_add_test(cases, the_longest_step_counts_limits);
-    tcase_add_test(cases, steps_packed_over_a_limit_are_halved);
+    tcase_add_test(cases, steps_far_over_a_limit_are_halved);
     tcase_add_test(cases, edges_of_a_grid);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -162,6 +162,7 @@ void work_starved(struct work_pool *pool, const char *what)
 
 #include "runtime/comm/collective.c"
 #include "runtime/comm/comm.c"
+#include "runtime/comm/requests.c"
 #include "runtime/comm/transport.c"
 
 /* ---- The threads ---- */
@@ -253,7 +254,7 @@ static const struct explore_case three = {.name = "three post",
 int main(int argc, char **argv)
 {
     const struct explore_plant no_fence = {"comm_left_to_us", "fence", EXPLORE_DROP},
-                               no_look = {"comm_posted", "&comm->posts", EXPLORE_DROP};
+                               no_look = {"comm_has_posts", "&comm->posts", EXPLORE_DROP};
     explore_begin(argc, argv);
     explore_passes(&two);
     explore_passes(&more);

@@ -17,7 +17,7 @@ cloths:
     mesh: {grid: {width: 1, height: 1, nx: 9, ny: 9, cells: same}}
     material: m
     pins: [{vertices: [0, 36]}]
-    loads: [{vertices: [40], force: [0, 0.1, 0]}, {vertices: [41], force: [0, 0.1, 0], course: {sine: {frequency: 3}}}]
+    loads: [{vertices: [40], force: [0, 0.1, 0]}, {vertices: [41], force: [0, 0.1, 0], curve: {sine: {frequency: 3}}}]
     masses: [{vertices: [40], mass: 0.01}]
 materials: {m: {$1}}
 time: {h: 0.002, end: 0.1}
@@ -36,7 +36,7 @@ cloths:
     transform: {translate: [0, 0, 0.25]}
     material: m
     pins: [{vertices: [0]}]
-    loads: [{vertices: [4], force: [0, 0.1, 0]}, {vertices: [5], force: [0, 0.1, 0], course: {sine: {frequency: 3}}}]
+    loads: [{vertices: [4], force: [0, 0.1, 0]}, {vertices: [5], force: [0, 0.1, 0], curve: {sine: {frequency: 3}}}]
     masses: [{vertices: [4], mass: 0.01}]
 welds:
   - {from: {cloth: a, vertices: [36, 37, 38, 39, 40, 41, 42, 43, 44]}, to: {cloth: b, vertices: [0, 1, 2, 3, 4, 5, 6, 7, 8]}}

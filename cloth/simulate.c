@@ -377,7 +377,8 @@ static int conclude(const struct run *run)
         if (run->model.rest.speed > 0 && !run->report.stopped && isnan(run->report.rest_seconds))
             fprintf(stderr,
                     "duite-cloth: warning: the cloth is not at rest at time.end, %g s: some vertex "
-                    "was faster than %g m/s in the last %g s\n",
+                    "was faster than %g m/s in the last %g s, or something was still to move or "
+                    "vary\n",
                     run->model.end, run->model.rest.speed, run->model.rest.hold);
         if (run->options->report)
             summary_write(&summary, run->options->report, &error);

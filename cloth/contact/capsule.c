@@ -15,7 +15,7 @@ static void find_aside(const phys_vec *axis, phys_vec *aside)
         least = fabs((*axis)[c]) < fabs((*axis)[least]) ? c : least;
     *aside = (phys_vec){0};
     (*aside)[least] = 1;
-    if (square > 0)
+    if (square > CONTACT_TINY * CONTACT_TINY)
         *aside -= (*axis)[least] / square * *axis;
     *aside /= sqrt(phys_dot(aside, aside));
 }
@@ -34,7 +34,7 @@ static void capsule_closest(const double *value, size_t n, const phys_vec *x,
         away -= (along < 0 ? 0 : along > 1 ? 1 : along) * axis;
         const double length = sqrt(phys_dot(&away, &away));
         hit[i].gap = length - value[RADIUS];
-        hit[i].normal = length > 0 ? away / length : aside;
+        hit[i].normal = length > CONTACT_TINY ? away / length : aside;
     }
 }
 

@@ -8,8 +8,8 @@ static const double SLOWER = 1e-9; /* of the speed due: so much rounding may tak
 
 bool contact_leave(const struct contact_hit *hit, const phys_vec *way, phys_vec *x, phys_vec *v)
 {
-    if (hit->gap > 0)
-        return false;
+    if (!(hit->gap <= 0))
+        return false; /* so is NaN */
     *x -= hit->gap * *way;
     const phys_vec relative = *v - hit->velocity;
     const double speed = phys_dot(&relative, &hit->normal);

@@ -14,6 +14,9 @@
 
 enum { CONTACT_VALUES = 12 };
 
+/* m: squares of shorter lengths lose digits or vanish, so that no direction follows from them. */
+#define CONTACT_TINY 1e-150
+
 struct contact_shape {
     uint32_t kind;     /* row of contact_kinds */
     uint32_t first, n; /* key frames of its motion, among those of the scene; n 0: it is still */

@@ -14,7 +14,7 @@ static void sphere_closest(const double *value, size_t n, const phys_vec *x,
         const phys_vec from = x[i] - centre;
         const double length = sqrt(phys_dot(&from, &from));
         hit[i].gap = length - value[RADIUS];
-        hit[i].normal = length > 0 ? from / length : up;
+        hit[i].normal = length > CONTACT_TINY ? from / length : up;
     }
 }
 

@@ -155,11 +155,45 @@ int model_fail(const char *place, struct cloth_error *error, const char *format,
     return cloth_fail(error, CLOTH_E_INPUT, "%s%s%s", place ? place : "", place ? ": " : "", text);
 }
 
-bool model_obstacles_move(const struct model *model)
+static bool key_differs(const struct phys_key *a, const struct phys_key *b)
+{
+    bool differs = false;
+    for (int i = 0; i < 3; i++)
+        differs = differs || a->translate[i] != b->translate[i];
+    for (int i = 0; i < 4; i++)
+        differs = differs || a->rotate[i] != b->rotate[i];
+    return differs;
+}
+
+/* Whether n keys move anything after a time. */
+static bool keys_move(const struct phys_key *keys, uint32_t n, double time)
+{
+    bool moves = false;
+    for (uint32_t i = 1; i < n; i++)
+        moves = moves || (keys[i].time > time && key_differs(keys + i, keys + i - 1));
+    return moves;
+}
+
+static bool obstacles_move_after(const struct model *model, double time)
 {
     bool moves = false;
     for (uint32_t i = 0; i < model->n_obstacles; i++)
-        moves = moves || model->obstacles[i].n > 0;
+        moves = moves ||
+                keys_move(model->keys + model->obstacles[i].first, model->obstacles[i].n, time);
+    return moves;
+}
+
+bool model_obstacles_move(const struct model *model)
+{
+    return obstacles_move_after(model, -INFINITY);
+}
+
+bool model_moves_after(const struct model *model, double time)
+{
+    bool moves = obstacles_move_after(model, time);
+    for (uint32_t i = 0; i < model->n_motions; i++)
+        moves =
+            moves || keys_move(model->keys + model->motions[i].first, model->motions[i].n, time);
     return moves;
 }
 

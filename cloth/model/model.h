@@ -303,8 +303,10 @@ static inline int model_is_filtered(const struct model *model)
            (model_is_implicit(model) && (model->n_sliders || model->own_filter));
 }
 
-/* Whether an obstacle moves. */
+/* Whether an obstacle moves: two key frames of it differ. */
 bool model_obstacles_move(const struct model *model);
+/* Whether a pin or an obstacle moves after a time, s. */
+bool model_moves_after(const struct model *model, double time);
 
 /* Whether pins have a part in the velocities that a step begins with. */
 static inline int model_is_driven(const struct model *model)

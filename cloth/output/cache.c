@@ -49,7 +49,10 @@ static void parse_scene(struct output_cache *cache, struct output_json *json)
     cache->fps = output_json_double(json);
     output_json_expect(json, ',');
     if (!output_json_key(json, "obstacles"))
-        output_json_fail(json, "\"obstacles\"");
+        output_json_fail(json, output_json_key(json, "planes")
+                                   ? "\"obstacles\" in place of \"planes\", which an earlier "
+                                     "duite-cloth wrote: run the scene again"
+                                   : "\"obstacles\"");
     output_obstacles_read(cache, json);
     output_json_expect(json, '}');
     output_json_expect(json, '\0');

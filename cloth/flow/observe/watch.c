@@ -58,9 +58,8 @@ static int find_rest(struct flow_state *state)
     if (code)
         return code;
     const double time = flow_time(state);
-    for (uint32_t i = 0; i < model->n_keys; i++)
-        if (model->keys[i].time > time)
-            state->moved = time; /* a pin or an obstacle will move yet */
+    if (model_moves_after(model, time))
+        state->moved = time;
     for (uint32_t curve = 1; curve <= model->n_curves; curve++)
         if (model_curve_end(model, curve) > time)
             state->moved = time; /* a load will vary yet */

@@ -124,14 +124,3 @@ double output_json_double(struct output_json *json)
     json->next = end;
     return value;
 }
-
-void output_json_vector(struct output_json *json, double vector[3])
-{
-    output_json_expect(json, '[');
-    for (int i = 0; i < 3; i++) {
-        if (i > 0)
-            output_json_expect(json, ',');
-        vector[i] = output_json_double(json);
-    }
-    output_json_expect(json, ']');
-}

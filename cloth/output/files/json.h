@@ -30,8 +30,6 @@ bool output_json_expect(struct output_json *json, char c);
 /* Takes "name" and the colon after it, if they come next. */
 bool output_json_key(struct output_json *json, const char *name);
 double output_json_double(struct output_json *json);
-/* [x, y, z] */
-void output_json_vector(struct output_json *json, double vector[3]);
 /* Fails with "expected WHAT". */
 void output_json_fail(struct output_json *json, const char *what);
 

@@ -215,10 +215,11 @@ static int warn_of_start(const struct idle_scene *scene, int start)
     return code;
 }
 
-static int warn_of_pin(const struct idle_scene *scene, int pin)
+/* That of a pin or an obstacle. */
+static int warn_of_motion(const struct idle_scene *scene, int owner)
 {
     static const char *const moves[] = {"translate", "rotate", NULL};
-    const int motion = scene_tree_get(scene->tree, pin, "motion");
+    const int motion = scene_tree_get(scene->tree, owner, "motion");
     const int point = scene_tree_get(scene->tree, motion, "about");
     if (!motion)
         return CLOTH_OK;
@@ -229,11 +230,16 @@ static int warn_of_pin(const struct idle_scene *scene, int pin)
     return CLOTH_OK;
 }
 
-/* Of each entry of the list `key` of a cloth. */
-static int warn_of_list(const struct idle_scene *scene, int cloth, const char *key,
+static int warn_of_obstacle(const struct idle_scene *scene, int obstacle)
+{
+    return warn_of_motion(scene, scene_tree_pair(scene->tree, obstacle, 0).value);
+}
+
+/* Of each entry of the list `key` of a map. */
+static int warn_of_list(const struct idle_scene *scene, int map, const char *key,
                         int (*warn_of)(const struct idle_scene *scene, int item))
 {
-    const int list = scene_tree_get(scene->tree, cloth, key);
+    const int list = scene_tree_get(scene->tree, map, key);
     int code = CLOTH_OK;
     for (size_t i = 0; i < scene_tree_length(scene->tree, list) && !code; i++)
         code = warn_of(scene, scene_tree_item(scene->tree, list, i));
@@ -251,7 +257,7 @@ int scene_build_idle(struct model *model, const struct scene_tree *tree, struct 
         const int cloth = scene_tree_item(tree, cloths, i);
         code = warn_of_list(&scene, cloth, "start", warn_of_start);
         if (!code)
-            code = warn_of_list(&scene, cloth, "pins", warn_of_pin);
+            code = warn_of_list(&scene, cloth, "pins", warn_of_motion);
     }
-    return code;
+    return code ? code : warn_of_list(&scene, 1, "obstacles", warn_of_obstacle);
 }

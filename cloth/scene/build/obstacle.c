@@ -7,6 +7,20 @@
 #include <string.h>
 
 static const double TOUCH = 1e-9; /* m: planes that overlap by less touch */
+static const double BOUND = 1e6;  /* m: beyond it there is no cloth either */
+
+/* Whether the numbers of a list, or a number, are those of a scene. what: "the radius of a sphere".
+ */
+static int check_bound(const double *value, size_t n, const char *what,
+                       const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!(fabs(value[i]) < BOUND))
+            return scene_tree_fail(tree, n > 1 ? scene_tree_item(tree, node, i) : node, error,
+                                   "%s is %g m; a magnitude of less than %g m is expected", what,
+                                   value[i], BOUND);
+    return CLOTH_OK;
+}
 
 /* The numbers of a parameter; its range is that of the schema, which also has its default. */
 static int build_parameter(double *value, const struct contact_kind *kind,
@@ -19,19 +33,33 @@ static int build_parameter(double *value, const struct contact_kind *kind,
         return scene_build_direction(value, what, tree, node, error);
     if (parameter->role == CONTACT_ROTATION)
         return scene_build_rotation(value, what, tree, node, error);
-    if (parameter->role == CONTACT_LENGTH) {
+    const size_t n = contact_role_size(parameter->role);
+    if (parameter->role == CONTACT_LENGTH)
         scene_scalar_number(scene_tree_scalar(tree, node), value);
-        return CLOTH_OK;
-    }
-    scene_tree_vector(tree, node, contact_role_size(parameter->role), value);
-    return CLOTH_OK;
+    else
+        scene_tree_vector(tree, node, n, value);
+    return check_bound(value, n, what, tree, node, error);
+}
+
+static int check_motion(const struct phys_key *keys, const struct model_motion *motion,
+                        const struct scene_tree *tree, int node, struct cloth_error *error)
+{
+    const int translate = scene_tree_get(tree, node, "translate");
+    int code = check_bound(motion->about, 3, "the about of a motion", tree,
+                           scene_tree_get(tree, node, "about"), error);
+    for (uint32_t k = 0; translate && k < motion->n && !code; k++)
+        code = check_bound(keys[k].translate, 3, "a translate of a motion", tree,
+                           scene_tree_item(tree, translate, k), error);
+    return code;
 }
 
 static int build_shape_motion(struct model *model, struct contact_shape *shape,
                               const struct scene_tree *tree, int node, struct cloth_error *error)
 {
     struct model_motion motion;
-    const int code = scene_build_motion(model, &motion, tree, node, error);
+    int code = scene_build_motion(model, &motion, tree, node, error);
+    if (!code)
+        code = check_motion(model->keys + motion.first, &motion, tree, node, error);
     if (code)
         return code;
     shape->first = motion.first;

@@ -4,18 +4,11 @@
 
 #include <string.h>
 
-/* Which set gave a node, from 1; 0: none did. */
-static size_t set_of(const struct scene_tree *tree, int node)
-{
-    const yaml_mark_t mark = scene_tree_node(tree, node)->start_mark;
-    return mark.index == SCENE_BY_SET ? mark.line + 1 : 0;
-}
-
-/* Which set was the last to give a key or its value. */
+/* The last set that gave a key or anything below it, from 1; 0: none did. */
 static size_t set_of_pair(const struct scene_tree *tree, yaml_node_pair_t pair)
 {
-    const size_t key = set_of(tree, pair.key), value = set_of(tree, pair.value);
-    return key > value ? key : value;
+    const yaml_mark_t mark = scene_tree_node(tree, pair.key)->start_mark;
+    return mark.index == SCENE_BY_SET ? mark.line + 1 : 0;
 }
 
 static bool is_choice(const struct scene_tree *tree, const struct scene_rule *keys, bool all,

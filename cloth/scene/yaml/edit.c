@@ -1,6 +1,7 @@
 /* Additions to a tree. New nodes carry their origin in their mark (tree.h). A node on the path of a
  * set is a copy that only its parent knows, but for the root, which has no parent; so writing
- * through it changes one place. */
+ * through it changes one place. Its key is new, so that the mark of a key names the last set that
+ * changed anything below it. */
 #include "cloth/scene/yaml/edit.h"
 
 #include <stdio.h>
@@ -163,14 +164,10 @@ static int put_key(struct edit *edit, int node)
     }
     edit->at = name + length;
     int value = put(edit, i < n ? scene_tree_pair(tree, map, i).value : 0);
-    if (!value)
-        return 0;
-    if (i < n) {
-        scene_tree_node(tree, map)->data.mapping.pairs.start[i].value = value;
-        return map;
-    }
-    int key = add_key(edit, name, length);
-    if (key && !yaml_document_append_mapping_pair(&tree->document, map, key, value))
+    int key = value ? add_key(edit, name, length) : 0;
+    if (key && i < n)
+        scene_tree_node(tree, map)->data.mapping.pairs.start[i] = (yaml_node_pair_t){key, value};
+    else if (key && !yaml_document_append_mapping_pair(&tree->document, map, key, value))
         key = out_of_memory(edit->error);
     return key ? map : 0;
 }

@@ -2,6 +2,8 @@
 #include "cloth/contact/meet.h"
 #include "tests/support/unit.h"
 
+#include <math.h>
+
 static void same(const phys_vec *a, double x, double y, double z)
 {
     ck_assert_double_eq((*a)[0], x);
@@ -48,12 +50,24 @@ START_TEST(plane_on_a_slope)
 }
 END_TEST
 
+/* What is nowhere is not put anywhere. */
+START_TEST(nowhere)
+{
+    const struct contact_hit hit = {.normal = {0, 1, 0, 0}, .gap = NAN};
+    phys_vec x = {1, 2, 3, 0}, v = {4, 5, 6, 0};
+    ck_assert(!contact_leave(&hit, &hit.normal, &x, &v));
+    same(&x, 1, 2, 3);
+    same(&v, 4, 5, 6);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("meet");
     TCase *cases = tcase_create("meet");
     tcase_add_test(cases, plane_lifts_and_stops);
     tcase_add_test(cases, plane_on_a_slope);
+    tcase_add_test(cases, nowhere);
     suite_add_tcase(suite, cases);
     return unit_run(suite);
 }

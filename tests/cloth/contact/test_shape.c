@@ -312,6 +312,24 @@ START_TEST(apart)
 }
 END_TEST
 
+/* So near to the middle of a ball or a rod that squares of distances vanish. */
+START_TEST(normals_in_the_middle)
+{
+    struct contact_shape shape;
+    struct phys_key keys[2];
+    make((uint32_t)_i, &shape, keys);
+    for (int k = 0; k < 6; k++)
+        shape.value[k] = k == 3 ? 1 : 0;
+    for (double away = 1; away > 0; away /= 8) {
+        struct contact_hit hit;
+        const phys_vec x = {0, away, away / 2, 0};
+        contact_kinds[_i]->closest(shape.value, 1, &x, &hit);
+        if (contact_kinds[_i] == &contact_sphere || contact_kinds[_i] == &contact_capsule)
+            ck_assert_double_eq_tol(length(&hit.normal), 1, 1e-12);
+    }
+}
+END_TEST
+
 /* For pictures: points of the surface with their normals, triangles seen from outside. */
 START_TEST(surfaces)
 {
@@ -355,6 +373,7 @@ int main(void)
     tcase_add_loop_test(cases, the_surface_has_its_velocity, 0, n);
     tcase_add_loop_test(cases, keys_say_the_velocity, 0, n);
     tcase_add_loop_test(cases, apart, 0, n);
+    tcase_add_loop_test(cases, normals_in_the_middle, 0, n);
     tcase_add_loop_test(cases, surfaces, 0, n);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

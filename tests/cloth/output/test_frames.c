@@ -248,7 +248,9 @@ static const struct damage {
     {"frames.csv", -1, "frame,time\n0,0\n1,nan\n", "frames.csv:3:"},
     {"frames.csv", -1, "frame,times\n0,0\n1,0\n", "frames.csv:1:"},
     {"scene.json", -1, "", "scene.json:1: expected '{'"},
-    {"scene.json", -1, "{\"fps\": 25,\n\"planes\": []}", "scene.json:2: expected \"obstacles\""},
+    {"scene.json", -1, "{\"fps\": 25,\n\"planes\": []}",
+     "scene.json:2: expected \"obstacles\" in place of \"planes\", which an earlier duite-cloth "
+     "wrote: run the scene again"},
     {"scene.json", -1, "{\"fps\": inf, \"obstacles\": []}", "expected a number"},
     {"scene.json", -1, "{\"fps\": 0x10, \"obstacles\": []}", "expected a number"},
     {"scene.json", -1, "{\"fps\": 25, \"obstacles\": []} x", "expected the end"},

@@ -73,6 +73,18 @@ START_TEST(obstacles)
                   "expected"},
         {plane, "ball: {centre: [0, -1, 0], radius: 1}",
          .error = ":11:14: ball is not a key of obstacles[0]; allowed: plane, ..."},
+        {plane, "capsule: {from: [0, -1, 0], to: [0, -1e160, 0], radius: 0.1}",
+         .error = ":11:50: the to of a capsule is -1e+160 m; a magnitude of less than 1e+06 m is "
+                  "expected"},
+        {plane, "sphere: {centre: [0, -1, 0], radius: 1e6}",
+         .error = ":11:51: the radius of a sphere is 1e+06 m; a magnitude of less than 1e+06 m is "
+                  "expected"},
+        {plane, SPHERE "{times: [0, 1], translate: [[0, 0, 0], [0, 1e99, 0]]}}",
+         .error = ":11:108: a translate of a motion is 1e+99 m; a magnitude of less than 1e+06 m "
+                  "is expected"},
+        {plane, SPHERE "{times: [0], translate: [[0, 0, 0]], about: [0, 0, 1e7]}}",
+         .error = ":11:118: the about of a motion is 1e+07 m; a magnitude of less than 1e+06 m is "
+                  "expected"},
         {plane, SPHERE "{times: [0, 1, 1], translate: [[0, 0, 0], [0, 1, 0], [0, 2, 0]]}}",
          .error = ":11:79: motion.times[2] is 1, which does not come after 1, the one before it; "
                   "times in ascending order are expected"},

@@ -67,6 +67,10 @@ static const struct {
     {{"cloths[0].pins[0].motion={times: [0]}"}, "a motion has neither translate nor rotate"},
     {{"cloths[0].pins[0].motion={times: [0], translate: [[0, 0, 0]], about: [1, 0, 0]}"},
      "about means nothing: the motion does not rotate"},
+    {{"obstacles[0].plane.motion={times: [0], translate: [[0, 1, 0]]}"}, NULL},
+    {{"obstacles[0].plane.motion={times: [0, 1]}"}, "a motion has neither translate nor rotate"},
+    {{"obstacles[0].plane.motion={times: [0], translate: [[0, 1, 0]], about: [1, 0, 0]}"},
+     "about means nothing: the motion does not rotate"},
 };
 
 START_TEST(idle_keys_are_warned_of)

@@ -109,6 +109,26 @@ START_TEST(a_choice_replaces_a_choice)
 }
 END_TEST
 
+/* Also one inside what the file or an earlier set has. */
+START_TEST(the_last_choice_is_inside)
+{
+    char *text = scene_changed(scene_right, "plane: {point: [0, -1, 0], normal: [0, 3, 4]}",
+                               "sphere: {centre: [0, -1, 0], radius: 0.5}");
+    const struct scene_set sets[] = {
+        {.text = "obstacles[0].box={centre: [0, 0, 0], size: [1, 1, 1]}"},
+        {.text = "obstacles[0].sphere.radius=0.1"},
+        {.text = "obstacles[0].box.size[1]=2"}};
+    static const char *const kind[] = {"box", "sphere", "box"};
+    for (size_t n = 1; n <= 3; n++) {
+        struct model model = scene_read_right(text, n, sets);
+        ck_assert_str_eq(contact_kinds[model.obstacles[0].kind]->name, kind[n - 1]);
+        ck_assert_double_eq(model.obstacles[0].value[4], n == 2 ? 0 : n == 3 ? 2 : 1);
+        model_free(&model);
+    }
+    free(text);
+}
+END_TEST
+
 START_TEST(sets_leave_aliases_alone)
 {
     char *text =
@@ -134,6 +154,7 @@ int main(void)
     tcase_add_test(cases, sets_change_values);
     tcase_add_test(cases, sets_make_and_append);
     tcase_add_test(cases, a_choice_replaces_a_choice);
+    tcase_add_test(cases, the_last_choice_is_inside);
     tcase_add_test(cases, sets_leave_aliases_alone);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -80,6 +80,30 @@ START_TEST(obstacles)
     ck_assert_double_eq(model.keys[ball->first + 1].time, 2);
     same_vector(model.keys[ball->first + 1].translate, 0, 0, 8);
     ck_assert(model_obstacles_move(&model) && !model_is_driven(&model));
+    ck_assert(model_moves_after(&model, 1.5) && !model_moves_after(&model, 2));
+    model_free(&model);
+}
+END_TEST
+
+/* Key frames that are all the same move nothing, so that the energy is guarded. */
+START_TEST(still_motions)
+{
+    static const char *const sets[] = {
+        "obstacles[0].plane.motion={times: [0, 2], translate: [[0, 1, 0], [0, 1, 0]]}",
+        "obstacles[0].plane.motion={times: [0, 2], translate: [[0, 1, 0], [0, 1, 1]]}",
+        "obstacles[0].plane.motion={times: [0, 2], rotate: [[1, 0, 0, 0], [1, 0, 0, 0]]}",
+        "obstacles[0].plane.motion={times: [0, 2], rotate: [[1, 0, 0, 0], [1, 0, 1, 0]]}"};
+    for (int i = 0; i < 4; i++) {
+        struct model model = scene_read_set(sets[i]);
+        ck_assert_int_eq(model_obstacles_move(&model), i % 2);
+        ck_assert_int_eq(model_moves_after(&model, 1), i % 2);
+        ck_assert_int_eq(model_is_guarded(&model), 1 - i % 2);
+        model_free(&model);
+    }
+    struct model model = scene_read_set(
+        "cloths[0].pins[0].motion={times: [0, 1, 2], translate: [[0, 0, 0], [0, 1, 0], [0, 1, "
+        "0]]}");
+    ck_assert(model_moves_after(&model, 0.5) && !model_moves_after(&model, 1));
     model_free(&model);
 }
 END_TEST
@@ -410,6 +434,7 @@ int main(void)
     TCase *cases = tcase_create("values");
     tcase_add_test(cases, world_and_time);
     tcase_add_test(cases, obstacles);
+    tcase_add_test(cases, still_motions);
     tcase_add_test(cases, cloth_and_material);
     tcase_add_test(cases, named_fabrics);
     tcase_add_test(cases, mass_without_density);

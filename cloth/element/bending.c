@@ -69,20 +69,36 @@ static void lay_beside(const double a[9], const double b[9], double x[3])
         x[c] = a[c] + other_foot * edge[c] - sqrt(out / in) * arm[c];
 }
 
+/* Whether both sides of a seam, ends of the edge first, have it at one place. Then the second is
+ * moved onto the first, by nothing where they are equal. */
+static bool seam_meets(const struct element_seam *seam, const double a[9], double b[9])
+{
+    const double rounding = 1e-6, most = 1e-2; /* of the length of the edge */
+    double edge[3], apart[2][3];
+    const double square = difference(a, a + 3, NULL, edge), tolerance = seam->tolerance;
+    const double limit =
+        fmax(rounding * rounding * square, fmin(tolerance * tolerance, most * most * square));
+    for (int i = 0; i < 2; i++)
+        if (!(difference(b + 3 * i, a + 3 * i, NULL, apart[i]) <= limit))
+            return false;
+    for (int c = 0; c < 3; c++)
+        b[6 + c] += (apart[0][c] + apart[1][c]) / 2;
+    return true;
+}
+
 /* Across a seam: as the meshes lie where both have the edge at one place; else flat. */
 static int seam_rest(const struct element_cloths *cloths, const struct element_seam *seam,
                      struct phys_bend_rest *rest)
 {
     double x[2][12];
-    bool one = true, flat = false;
+    bool flat = false;
     for (int k = 0; k < 2; k++) {
         const struct element_side *side = seam->side + k;
         for (int i = 0; i < 3; i++)
             element_rest_position(cloths, side->cloth, side->corner[i], x[k] + 3 * i);
         flat = flat || cloths->model->cloths[side->cloth].rest;
     }
-    for (int i = 0; i < 6; i++)
-        one = one && x[0][i] - x[1][i] == 0;
+    const bool one = seam_meets(seam, x[0], x[1]);
     memcpy(x[0] + 9, x[1] + 6, 3 * sizeof **x);
     if (!one)
         lay_beside(x[0], x[1], x[0] + 9);

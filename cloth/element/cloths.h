@@ -15,6 +15,7 @@ struct element_side {
 };
 struct element_seam {
     struct element_side side[2];
+    double tolerance; /* m: how far apart welds let the sides' ends start */
 };
 
 struct element {

@@ -67,11 +67,14 @@ static int make_all(struct flow_springs *springs, const struct flow_particles *p
     springs->joint = cloth_alloc(list->n, sizeof *springs->joint, error);
     if (!springs->joint)
         return CLOTH_E_MEMORY;
-    const struct flow_pair *pair = list->items;
+    struct flow_pair *pair = list->items;
     for (uint32_t j = 0, k = 0; j < model->n_joints; j++)
         for (uint32_t i = 0; i < model->joints[j].pairs.end[0].n && !code; i++, k++)
             code = make_joint(springs->joint + k, particles, model, model->joints + j, pair + k,
                               error);
+    for (size_t i = 0; i < list->n; i++) /* whichever names stand for them, vertices are the same */
+        for (int end = 0; end < 2; end++)
+            pair[i].vertex[end] = flow_root(&particles->welds, pair[i].vertex[end]);
     springs->n_joints = (uint32_t)list->n;
     return code ? code : flow_pairs_once(list, model, "a joint", error);
 }

@@ -361,6 +361,8 @@ static double release(const struct flow_particles *p, const struct model *model,
         centre += at.mass * at.position;
         mass += at.mass;
     }
+    if (!(mass > 0)) /* all are other names of welded vertices, which have it */
+        return 0;
     for (uint32_t v = first; v < first + cloth->mesh.n_vertices; v++) {
         if (!p->used[v] || !p->free[v])
             continue;

@@ -2,6 +2,9 @@
  * that both share is a hinge as inner edges are. */
 #include "cloth/flow/setup/source.h"
 
+#include "cloth/base/memory.h"
+
+#include <math.h>
 #include <stdlib.h>
 
 /* An edge at the border of its mesh, both of whose ends are welded. */
@@ -71,8 +74,27 @@ static bool is_shared(const struct border *a, const struct border *b)
     return a->root[0] == b->root[0] && a->root[1] == b->root[1];
 }
 
+/* The tolerance, m, of the welds of each root: the largest. The caller frees it; NULL: no memory.
+ */
+static double *tolerances_of(const struct model *model, const struct flow_welds *welds,
+                             struct cloth_error *error)
+{
+    const uint32_t n = model_first(model, model->n_cloths);
+    double *tolerance = cloth_alloc(n, sizeof *tolerance, error);
+    for (uint32_t w = 0; w < model->n_welds && tolerance; w++) {
+        const struct model_pairs *pairs = &model->welds[w].pairs;
+        const uint32_t *root = welds->root + model_first(model, pairs->end[0].cloth);
+        for (uint32_t i = 0; i < pairs->end[0].n; i++) {
+            double *most = tolerance + root[pairs->end[0].vertices[i]];
+            *most = fmax(*most, model->welds[w].tolerance);
+        }
+    }
+    return tolerance;
+}
+
+/* tolerance: by root. */
 static void add_seam(struct element_cloths *elements, const struct flow_welds *welds,
-                     const struct border *border)
+                     const double *tolerance, const struct border *border)
 {
     struct element_seam *seam = elements->seam + elements->n_seams;
     uint32_t opposite[2];
@@ -83,6 +105,7 @@ static void add_seam(struct element_cloths *elements, const struct flow_welds *w
         seam->side[k].first = model_first(elements->model, border[k].cloth);
         opposite[k] = welds->root[seam->side[k].first + border[k].corner[2]];
     }
+    seam->tolerance = fmax(tolerance[border->root[0]], tolerance[border->root[1]]);
     elements->n_seams += opposite[0] != opposite[1]; /* else one lies on the other */
 }
 
@@ -94,14 +117,16 @@ static int make_seams(struct element_cloths *elements, const struct flow_welds *
         return CLOTH_OK;
     qsort(list->items, list->n, sizeof *border, compare_borders);
     elements->seam = cloth_alloc(list->n, sizeof *elements->seam, error);
-    if (!elements->seam)
+    double *tolerance = elements->seam ? tolerances_of(elements->model, welds, error) : NULL;
+    if (!tolerance)
         return CLOTH_E_MEMORY;
     for (size_t i = 0, end; i < list->n; i = end) {
         for (end = i + 1; end < list->n && is_shared(border + i, border + end);)
             end++;
         if (end == i + 2)
-            add_seam(elements, welds, border + i);
+            add_seam(elements, welds, tolerance, border + i);
     }
+    free(tolerance);
     return element_seams_check(elements, error);
 }
 

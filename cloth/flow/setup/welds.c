@@ -142,7 +142,8 @@ int flow_welds_check(const struct flow_welds *welds, const struct element_cloths
     int code = CLOTH_OK;
     for (uint32_t c = 0; c < model->n_cloths && root && !code; c++) {
         const struct mesh_edges *edges = elements->edges + c;
-        for (uint32_t e = 0; e < edges->n && !code; e++)
+        const bool bends = element_parts(model, model->cloths + c) & 1u << ELEMENT_HINGES;
+        for (uint32_t e = 0; e < edges->n && bends && !code; e++)
             if (element_is_hinge(edges->edge + e))
                 code = check_apart(model, c, root, edges->edge[e].opposite, 2, "a fold", error);
         root += model->cloths[c].mesh.n_vertices;

@@ -1,5 +1,6 @@
 /* The bound of the fastest vibration against a chain's, whose frequencies are known; what a run
- * says of a step that is too long; and that such a step is, on the chain, just too long. */
+ * says of a step that is too long; and that such a step is, on the chain, just too long. The scale
+ * of energies that steps may gain. */
 #include "cloth/flow/setup/source.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
@@ -183,6 +184,37 @@ START_TEST(warnings)
 }
 END_TEST
 
+/* All vertices of a cloth are other names of a sheet's, which has their masses. */
+START_TEST(a_doubled_layer_has_a_scale_of_energy)
+{
+    static const uint32_t edge[] = {0, 1};
+    uint32_t names[] = {0, 1};
+    struct model_weld weld = {.pairs = {.end = {{0, 2, names}, {1, 2, names}}}, .tolerance = 1e-6};
+    struct setup setup;
+    struct flow_source source;
+    struct cloth_error error = {0};
+    double release[2];
+    setup_sheet(&setup, 3);
+    struct model_cloth cloths[2] = {setup.cloth, setup.cloth};
+    ck_assert_int_eq(
+        mesh_inline(&cloths[1].mesh, 2, cloths[0].mesh.position, 1, edge, 0, NULL, &error), 0);
+    cloths[1].mass_per_vertex = 1e-15;
+    setup.model.cloths = cloths;
+    setup.model.welds = &weld;
+    for (uint32_t i = 0; i < 2; i++) {
+        setup.model.n_cloths = 1 + i;
+        setup.model.n_welds = i;
+        ck_assert_msg(!flow_source_make(&source, &setup.model, 1, &error), "%s", error.text);
+        release[i] = flow_source_release(&source);
+        flow_source_free(&source);
+    }
+    ck_assert_double_gt(release[0], 0);
+    ck_assert_double_eq_tol(release[1], release[0], 1e-9 * release[0]);
+    mesh_free(&cloths[1].mesh);
+    setup_free(&setup);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("limits");
@@ -190,6 +222,7 @@ int main(void)
     tcase_add_test(cases, bound_of_a_chain);
     tcase_add_test(cases, bound_of_a_sheet);
     tcase_add_test(cases, warnings);
+    tcase_add_test(cases, a_doubled_layer_has_a_scale_of_energy);
     tcase_add_loop_test(cases, limits_are_where_runs_break, 0, 3);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

@@ -236,8 +236,10 @@ void view_scene_draw(const struct view_scene *scene, const struct view_camera *c
     if (has_shapes(scene)) {
         glPolygonOffset(0, behind(scene, camera));
         glEnable(GL_POLYGON_OFFSET_FILL);
+        glEnable(GL_CULL_FACE); /* a shape around the eye would hide everything */
         glUniform3fv(glGetUniformLocation(surface, "paint"), 2, STONE[0]);
         draw_mesh_draw(&scene->shapes);
+        glDisable(GL_CULL_FACE);
         glDisable(GL_POLYGON_OFFSET_FILL);
     }
     glUniform3fv(glGetUniformLocation(surface, "paint"), 2, CLOTH[0]);

@@ -1,6 +1,7 @@
 /* Keys that a scene gives and that do nothing beside its other keys draw a warning each. A key that
  * stands there by default draws none. */
 #include "cloth/scene/build/build.h"
+#include "cloth/scene/yaml/scalar.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -162,6 +163,15 @@ static const struct {
     {"time", "rest", never_rests, "means nothing: a load or wind with a sine never ends"},
 };
 
+/* A bound of 0 asks for nothing, so nothing of it is missed. */
+static bool is_off(const struct scene_tree *tree, int node, const char *key)
+{
+    double value = 1;
+    if (!strcmp(key, "stretch_growth"))
+        scene_scalar_number(scene_tree_scalar(tree, node), &value);
+    return value <= 0;
+}
+
 static int warn_of_keys(const struct idle_scene *scene)
 {
     int code = CLOTH_OK;
@@ -169,7 +179,8 @@ static int warn_of_keys(const struct idle_scene *scene)
         const char *map = idle_keys[i].map, *key = idle_keys[i].key;
         const int in = map ? scene_tree_get(scene->tree, 1, map) : 1;
         const int node = in ? scene_tree_get(scene->tree, in, key) : 0;
-        if (is_given(scene->tree, node) && idle_keys[i].idle(scene->model))
+        if (is_given(scene->tree, node) && !is_off(scene->tree, node, key) &&
+            idle_keys[i].idle(scene->model))
             code = warn(scene, node, "%s%s%s %s", map ? map : "", map ? "." : "", key,
                         idle_keys[i].what);
     }

@@ -292,8 +292,10 @@ static int check_list(struct walk *walk, const struct place *at, const struct sc
         return wrong(walk, at, rule, node);
     char *items = items_of(walk, rule, node, base, &step);
     int code = walk->error->code;
+    struct scene_rule inside = *rule->inside;
+    inside.unit = rule->unit; /* that of a list is of its numbers */
     for (size_t i = 0; !code && i < n; i++)
-        code = check(walk, &(struct place){at, NULL, i}, rule->inside,
+        code = check(walk, &(struct place){at, NULL, i}, &inside,
                      scene_tree_item(walk->tree, node, i), items ? items + i * step : NULL);
     return code;
 }

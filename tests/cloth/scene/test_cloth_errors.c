@@ -67,7 +67,7 @@ START_TEST(obstacles)
         {plane, "sphere: {centre: [0, -1, 0], radius: 1, size: [1, 1, 1]}",
          .error = ":11:54: size is not a key of obstacles[0].sphere; allowed: centre, ..."},
         {plane, "box: {centre: [0, -1, 0], size: [1, -2, 1]}",
-         .error = ":11:50: obstacles[0].box.size[1] is -2; a finite number > 0 is expected"},
+         .error = ":11:50: obstacles[0].box.size[1] is -2; a finite number > 0 (m) is expected"},
         {plane, "box: {centre: [0, -1, 0], size: [1, 2, 1], rotate: [0, 0, 0, 0]}",
          .error = ":11:65: the rotate of a box is zero; a quaternion [w, x, y, z] that is not is "
                   "expected"},
@@ -80,10 +80,10 @@ START_TEST(obstacles)
          .error = ":11:51: the radius of a sphere is 1e+06 m; a magnitude of less than 1e+06 m is "
                   "expected"},
         {plane, SPHERE "{times: [0, 1], translate: [[0, 0, 0], [0, 1e99, 0]]}}",
-         .error = ":11:108: a translate of a motion is 1e+99 m; a magnitude of less than 1e+06 m "
+         .error = ":11:107: a translate of a motion is 1e+99 m; a magnitude of less than 1e+06 m "
                   "is expected"},
         {plane, SPHERE "{times: [0], translate: [[0, 0, 0]], about: [0, 0, 1e7]}}",
-         .error = ":11:118: the about of a motion is 1e+07 m; a magnitude of less than 1e+06 m is "
+         .error = ":11:115: the about of a motion is 1e+07 m; a magnitude of less than 1e+06 m is "
                   "expected"},
         {plane, SPHERE "{times: [0, 1, 1], translate: [[0, 0, 0], [0, 1, 0], [0, 2, 0]]}}",
          .error = ":11:79: motion.times[2] is 1, which does not come after 1, the one before it; "
@@ -102,7 +102,8 @@ START_TEST(triangles_out_of_range)
 {
     EXPECT(
         {"stretch: 50", "stretch: [50, -1], model: triangles",
-         .error = ":10:40: materials.cotton.stretch[1] is -1; a finite number >= 0 is expected"},
+         .error = ":10:40: materials.cotton.stretch[1] is -1; a finite number >= 0 (N/m) is "
+                  "expected"},
         {"stretch: 50", "stretch: [50], model: triangles",
          .error = ":10:35: materials.cotton.stretch is a list of 1; a finite number >= 0 or a list "
                   "of 2 of them (N/m) is expected"},
@@ -117,8 +118,9 @@ START_TEST(triangles_out_of_range)
          .error = ":10:70: materials.cotton.poisson is 0.5, but stretch is 0 along the warp; 0 is "
                   "expected here"},
         {"stretch: 50", "stretch: 50, bending: {rigidity: [1, .nan]}",
-         .error = ":10:63: materials.cotton.bending.rigidity[1] is .nan; a finite number >= 0 is "
-                  "expected"},
+         .error =
+             ":10:63: materials.cotton.bending.rigidity[1] is .nan; a finite number >= 0 (N m) is "
+             "expected"},
         {"mesh: {grid: {width: 1, height: 2, nx: 4, ny: 3}}",
          "rest: uv\n    mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], triangles: "
          "[[0, 1, 2]]}}",
@@ -315,7 +317,8 @@ START_TEST(starts_and_masses_that_cannot_be_made)
                 ":7:35: cloths[0].start[0].wave.vector is missing; a list of 3 numbers (1/m) is "
                 "expected"},
            {MORE("start: [{vertices: [1], spin: [0, .nan, 0]}]"),
-            .error = ":7:39: cloths[0].start[0].spin[1] is .nan; a finite number is expected"});
+            .error =
+                ":7:39: cloths[0].start[0].spin[1] is .nan; a finite number (rad/s) is expected"});
 }
 END_TEST
 

@@ -67,7 +67,7 @@ START_TEST(wrong_kinds)
         {"gravity: [0, -9.81, 0]", "gravity: [0, 1]",
          .error = ":2:10: gravity is a list of 2; a list of 3 numbers (m/s^2) is expected"},
         {"gravity: [0, -9.81, 0]", "gravity: [0, {a: 1}, 0]",
-         .error = ":2:14: gravity[1] is a map of 1; a finite number is expected"},
+         .error = ":2:14: gravity[1] is a map of 1; a finite number (m/s^2) is expected"},
         {"time: {h: 0.001, end: 0.1}", "time: 3", .error = ":12:7: time is 3; a map of h, ..."},
         {"name: sheet", "name: ''",
          .error = ":4:11: cloths[0].name is the text ''; a text is expected"},

@@ -43,6 +43,7 @@ static const struct {
      "solver.format springs holds springs alone"},
     {{"time.stretch_growth=0.2"}, NULL},
     {{"time.halving=off", "time.stretch_growth=0.2"}, "time.stretch_growth means nothing"},
+    {{"time.halving=off", "time.stretch_growth=0"}, NULL},
     {{"time.energy_growth=0.2"}, NULL},
     {{"integrator=rk4", "time.energy_growth=0"}, NULL},
     {{"integrator=rk4", "time.energy_growth=0.2"}, "time.energy_growth means nothing"},

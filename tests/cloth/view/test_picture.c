@@ -41,10 +41,10 @@ static void make_sheet(void)
         }
 }
 
-static void draw(double elevation, size_t n_planes)
+static void draw_beside(double elevation, size_t n, const struct contact_shape *beside)
 {
     struct cloth_error error = {0};
-    ck_assert_int_eq(view_obstacles_make(&obstacles, n_planes, &PLANE, NULL, &error), 0);
+    ck_assert_int_eq(view_obstacles_make(&obstacles, n, beside, NULL, &error), 0);
     struct view_shape shape = {.n_vertices = N * N,
                                .n_triangles = 2 * (N - 1) * (N - 1),
                                .triangle = triangle,
@@ -52,12 +52,17 @@ static void draw(double elevation, size_t n_planes)
     struct view_fit fit;
     view_fit_start(&fit, 30, elevation, (double)WIDTH / HEIGHT, 1);
     view_fit_add(&fit, N * N, position);
-    view_fit_planes(&fit, n_planes, (const double(*)[6])obstacles.plane);
+    view_fit_planes(&fit, obstacles.n_planes, (const double(*)[6])obstacles.plane);
     view_fit_camera(&fit, &camera);
     ck_assert_msg(view_scene_new(&scene, &shape, &error) == 0, "%s", error.text);
     ck_assert_msg(view_scene_move(scene, position, &error) == 0, "%s", error.text);
     picture = (struct view_picture){WIDTH, HEIGHT, NULL};
     ck_assert_msg(view_picture_draw(&picture, scene, &camera, &error) == 0, "%s", error.text);
+}
+
+static void draw(double elevation, size_t n_planes)
+{
+    draw_beside(elevation, n_planes, &PLANE);
 }
 
 static void start(void)
@@ -183,6 +188,29 @@ START_TEST(shadows_are_smooth)
 }
 END_TEST
 
+static void forget_picture(void)
+{
+    view_picture_free(&picture);
+    view_scene_free(scene);
+    view_obstacles_free(&obstacles);
+    scene = NULL;
+}
+
+/* Sides that are seen from inside are not drawn. */
+START_TEST(a_box_around_the_eye)
+{
+    struct contact_shape box = {.kind = 2, .value = {0, 0, 0, 1, 1, 1, 1, 0, 0, 0}};
+    double at[2];
+    draw(30, 0);
+    for (int k = 0; k < 3; k++)
+        box.value[k] = (double)camera.eye[k];
+    forget_picture();
+    draw_beside(30, 1, &box);
+    pixel_of(position + 3 * (N * N / 2 + N / 2), at);
+    ck_assert(is_cloth((int)at[0], (int)at[1]));
+}
+END_TEST
+
 START_TEST(front_and_back_differ)
 {
     unsigned char seen[2][3];
@@ -191,10 +219,7 @@ START_TEST(front_and_back_differ)
         draw(i ? -40 : 40, 0);
         pixel_of(position + 3 * (N * N / 2 + N / 2), at);
         memcpy(seen[i], pixel((int)at[0], (int)at[1]), 3);
-        view_picture_free(&picture);
-        view_scene_free(scene);
-        view_obstacles_free(&obstacles);
-        scene = NULL;
+        forget_picture();
     }
     double hue[2] = {(double)seen[0][1] / seen[0][0], (double)seen[1][1] / seen[1][0]};
     ck_assert_msg(hue[1] > hue[0] + 0.1, "green to red is %g, %g", hue[0], hue[1]);
@@ -287,6 +312,7 @@ int main(void)
     tcase_add_loop_test(c, cloth_is_where_the_camera_says, 0, 2);
     tcase_add_test(c, throws_a_shadow);
     tcase_add_test(c, shadows_are_smooth);
+    tcase_add_test(c, a_box_around_the_eye);
     tcase_add_test(c, front_and_back_differ);
     tcase_add_test(c, draws_lines);
     tcase_add_test(c, png_holds_the_picture);

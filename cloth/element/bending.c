@@ -25,6 +25,13 @@ static bool damps_bending(const struct model *model, const struct model_cloth *c
     return false;
 }
 
+bool element_bend_alike(const struct model *model, uint32_t a, uint32_t b)
+{
+    const struct model_material *one = bending_of(model, model->cloths + a);
+    const struct model_material *other = bending_of(model, model->cloths + b);
+    return one && other && one->bending == other->bending;
+}
+
 /* ---- Rest shapes ---- */
 
 static int bend_rest(const struct element_cloths *cloths, uint32_t cloth, const uint32_t corner[4],

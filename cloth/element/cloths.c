@@ -126,7 +126,8 @@ static void walk_edges(struct walk *walk)
     }
 }
 
-/* Across seams, both of whose cloths have elements of the kind. */
+/* Across seams, both of whose cloths bend by the same model and have elements of the kind: that
+ * they have is not enough, as hinges damp a quadratic energy, too. */
 static void walk_seams(struct walk *walk)
 {
     const struct element_cloths *cloths = walk->cloths;
@@ -135,7 +136,8 @@ static void walk_seams(struct walk *walk)
         const struct element_seam *seam = cloths->seam + s;
         const struct element_side *one = seam->side, *two = seam->side + 1;
         const uint32_t other = two->first - one->first + two->corner[2];
-        if (!kind->has(cloths->model, cloths->model->cloths + one->cloth) ||
+        if (!element_bend_alike(cloths->model, one->cloth, two->cloth) ||
+            !kind->has(cloths->model, cloths->model->cloths + one->cloth) ||
             !kind->has(cloths->model, cloths->model->cloths + two->cloth))
             continue;
         const struct element element = {

@@ -74,6 +74,9 @@ static inline uint32_t element_material(const struct element_cloths *cloths,
     return model_material_of(cloths->model->cloths + element->cloth, n, element->corner);
 }
 
+/* Whether both cloths bend, by the same model. */
+bool element_bend_alike(const struct model *model, uint32_t a, uint32_t b);
+
 /* Whether an edge is a hinge. */
 static inline bool element_is_hinge(const struct mesh_edge *edge)
 {

@@ -247,9 +247,9 @@ unused() {
     sed 's|grid: {.*}}|file: one.obj}|; s|\[0, 7\]|[3]|' scene.yaml > unused.yaml
     prints run unused.yaml --end 0.002 --set 'cloths[0].loads=[{vertices: [3, 1], force: [0, 1, 0]}]' &&
         cat complained && test "$(wc -l < complained)" = 3 &&
-        grep -q '^duite-cloth: warning: unused.yaml:4:18: vertices that no face or edge uses: 1, ' complained &&
-        grep -q '^duite-cloth: warning: unused.yaml:6:12: pinned vertices that no face or edge uses: 1, ' complained &&
-        grep -q '^duite-cloth: warning: --set .*\]: loads on vertices that no face or edge uses: 1, ' complained
+        grep -q '^duite-cloth: warning: unused.yaml:4:18: vertices that no face, edge or joint uses: 1, ' complained &&
+        grep -q '^duite-cloth: warning: unused.yaml:6:12: pinned vertices that no face, edge or joint uses: 1, ' complained &&
+        grep -q '^duite-cloth: warning: --set .*\]: loads on vertices that no face, edge or joint uses: 1, ' complained
 }
 ok "vertices that nothing uses are warned about, with their pins and loads" unused
 
@@ -269,6 +269,8 @@ ok "EA of a sheet" idle "ea is of edges without triangles" scene.yaml --set mate
 side='cloths[0]={mesh: {inline: {vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], edges: [[0, 1]], triangles: [[0, 1, 2]]}}, material: cotton}'
 ok "EA of an edge that is a triangle's side" idle "ea is of edges without triangles" scene.yaml --set "$side" --set materials.cotton.ea=1
 ok "an edge that is a triangle's side needs none" "$DUITE_CLOTH" scene.yaml --end 0.01 --quiet --set "$side"
+ok "a limit of vertices without edges" idle "strain_limit is of edges, and it has none" scene.yaml --set "$(echo "$chain" | sed 's/, edges: [^}]*//')" \
+    --set 'materials.cotton={strain_limit: {at: 0.1, stiffness: 5}}' --set 'joints=[{from: {vertex: 0}, to: {vertex: 1}, stiffness: 5}]'
 ok "bend of a chain" idle "bend and bending are of triangles" scene.yaml --set "$chain" --set 'materials.cotton={ea: 1, bend: 1}'
 ok "damping of bending that is none" idle "damping.bending is of bending" scene.yaml --set materials.cotton.damping.bending=1
 shears() { # triangles without shear say so, with it nothing

@@ -100,6 +100,29 @@ END
 ok "a seam keeps the angle that the panels have" eval 'bent 0.192 1e-6 && below "energy, J" "$elastic" 1e-20'
 ok "also where they are as close as the weld's tolerance" eval 'bent 0.1920001 1e-6 && below "energy, J" "$elastic" 1e-9'
 ok "or as a tolerance of the user's own" eval 'bent 0.19201 2e-5 && below "energy, J" "$elastic" 1e-6'
+# Two panels, flat at rest and folded along their seam at the start: the energy is the seam's, which bends only where both bend by one model.
+folds() { # BENDING of the second panel
+    cat > folds.yaml << END
+schema: 1
+gravity: [0, 0, 0]
+cloths:
+  - {name: a, mesh: {grid: {width: 0.3, height: 0.3, nx: 4, ny: 4}}, material: m}
+  - name: b
+    mesh: {grid: {width: 0.3, height: 0.3, nx: 4, ny: 4}}
+    material: n
+    transform: {translate: [0, 0, 0.3]}
+    start: [{box: $all, about: [0, 0, 0.15], rotate: [0.8, 0.6, 0, 0]}]
+welds: [{from: {cloth: a, vertices: [12, 13, 14, 15]}, to: {cloth: b, vertices: [0, 1, 2, 3]}}]
+materials:
+  m: {model: triangles, density: 0.2, stretch: 200, shear: 50, bending: {rigidity: 1.0}}
+  n: {model: triangles, density: 0.2, stretch: 200, shear: 50, damping: {stiffness: 0.01}, bending: {$1}}
+time: {h: 1.0e-4, end: 1.0e-4}
+probes: [{name: p, cloth: b, vertices: [12]}]
+END
+    run folds.yaml && elastic=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "elastic [J]") at = i } NR == 2 { print $at }' out/probes.csv)
+}
+ok "a seam of two models does not bend" eval 'folds "model: quadratic, rigidity: 1.0" && below "energy, J" "$elastic" 1e-20'
+ok "but one of one model does" eval 'folds "rigidity: 1.0" && ! below "energy, J" "$elastic" 0.1'
 
 # ---- Frames and hash name every vertex: those of a weld are at one place ----
 frames() {

@@ -1,5 +1,5 @@
 /* Particles carry what a vertex is on its own: mass, drag, load, whether a pin holds it. Vertices
- * that no face or edge uses stay where they are, at rest, and are never asked for a mass. */
+ * that no face, edge or joint uses stay where they are, at rest, and are never asked for a mass. */
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
@@ -305,7 +305,7 @@ int flow_particles_make(struct flow_particles *particles, const struct model *mo
         code = each_cloth(particles, model, cloth_forces, error);
     if (!code && particles->unused.n == particles->n)
         code = model_fail(model->n_cloths ? model->cloths[0].mesh_place : NULL, error,
-                          "nothing to simulate: no vertex is used by a face or an edge");
+                          "nothing to simulate: no face, edge or joint uses a vertex");
     if (code)
         flow_particles_free(particles);
     return code;

@@ -77,9 +77,10 @@ static int pick_box(const struct flow_picking *picking, struct cloth_error *erro
     }
     if (inside)
         return CLOTH_OK;
-    return model_fail(picking->pick->place, error,
-                      "the box of %s of cloth '%.60s' holds no vertex that a face or an edge uses",
-                      picking->what, picking->cloth->name);
+    return model_fail(
+        picking->pick->place, error,
+        "the box of %s of cloth '%.60s' holds no vertex that a face, edge or joint uses",
+        picking->what, picking->cloth->name);
 }
 
 int flow_pick(const struct flow_picking *picking, struct cloth_error *error)

@@ -14,7 +14,7 @@ static void describe_unusual(char *text, size_t size, const char *what,
 {
     if (unusual->n)
         snprintf(text, size,
-                 "%.200s%s%s that no face or edge uses: %u, the first is vertex %u of cloth "
+                 "%.200s%s%s that no face, edge or joint uses: %u, the first is vertex %u of cloth "
                  "'%.60s'; %s",
                  unusual->place ? unusual->place : "", unusual->place ? ": " : "", what, unusual->n,
                  unusual->vertex, unusual->cloth->name, effect);
@@ -40,6 +40,8 @@ static const char *idle_key(const struct model *model, const struct model_materi
     model_parts(model, (uint32_t)(material - model->materials), &triangles, &edges);
     if (material->ea > 0 && !edges)
         return "ea is of edges without triangles";
+    if (material->limit_stiffness > 0 && !triangles && !edges)
+        return "strain_limit is of edges, and it has none";
     if (material->stretch > 0 && !triangles)
         return "stretch is of triangles and threads; edges without triangles have ea";
     if ((material->bend > 0 || material->bending != MODEL_NO_BENDING) && !triangles)

@@ -190,12 +190,13 @@ static int check_distances(const struct flow_particles *p, const struct model *m
     return code;
 }
 
-static const struct model_material *material_of(const struct model *model, uint32_t vertex)
+/* at: where the cloth is looked for from; zeroed at first. */
+static const struct model_material *material_of(const struct model *model, uint32_t vertex,
+                                                struct flow_cloths *at)
 {
-    struct flow_cloths at = {0};
-    flow_source_cloth(&at, model, vertex);
-    const uint32_t own = vertex - at.first;
-    return model->materials + model_material_of(model->cloths + at.cloth, 1, &own);
+    flow_source_cloth(at, model, vertex);
+    const uint32_t own = vertex - at->first;
+    return model->materials + model_material_of(model->cloths + at->cloth, 1, &own);
 }
 
 /* Of a root and n other names: drag by viscous damping, of which a vertex has one, the largest; by
@@ -204,11 +205,12 @@ static const struct model_material *material_of(const struct model *model, uint3
 static double drag_of(const struct flow_particles *p, const struct model *model, uint32_t root,
                       const uint32_t (*name)[2], uint32_t n)
 {
-    const struct model_material *first = material_of(model, root);
+    struct flow_cloths at = {0};
+    const struct model_material *first = material_of(model, root, &at);
     double viscous = first->damping_viscous, sum = first->damping_mass * p->own[root];
     bool alike = true;
     for (uint32_t i = 0; i < n; i++) {
-        const struct model_material *material = material_of(model, name[i][1]);
+        const struct model_material *material = material_of(model, name[i][1], &at);
         viscous = fmax(viscous, material->damping_viscous);
         sum += material->damping_mass * p->own[name[i][1]];
         alike = alike && !(material->damping_mass < first->damping_mass) &&
@@ -243,10 +245,7 @@ int flow_welds_settle(struct flow_particles *p, const struct model *model,
     const int code = check_distances(p, model, error);
     struct flow_cloths at = {0};
     for (uint32_t v = 0; v < p->n && !code; v++) {
-        flow_source_cloth(&at, model, v);
-        const uint32_t own = v - at.first;
-        const struct model_material *material =
-            model->materials + model_material_of(model->cloths + at.cloth, 1, &own);
+        const struct model_material *material = material_of(model, v, &at);
         p->drag[v] = material->damping_viscous + material->damping_mass * p->mass[v];
     }
     for (uint32_t i = 0, n; i < welds->n && !code; i += n) {

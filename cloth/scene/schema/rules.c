@@ -36,7 +36,7 @@ static const struct scene_rule bending_keys[] = {
 static const struct scene_rule limit_keys[] = {
     {"at", SCENE_NUMBER, .required = true, .range = SCENE_NOT_NEGATIVE,
      INTO(struct model_material, limit_strain), .about = "strain from which on it acts"},
-    {"stiffness", SCENE_NUMBER, "N/m", .required = true, .range = SCENE_NOT_NEGATIVE,
+    {"stiffness", SCENE_NUMBER, "N/m", .required = true, .range = SCENE_POSITIVE,
      INTO(struct model_material, limit_stiffness), .about = "of each edge beyond it"},
     {0}};
 

@@ -369,12 +369,15 @@ START_TEST(vertices_without_faces)
         if (n) {
             ck_assert_uint_eq(flow_vertices(flow), 4);
             warns(flow, 0,
-                  "a.yaml:4:9: vertices that no face or edge uses: 1, the first is vertex 3 "
+                  "a.yaml:4:9: vertices that no face, edge or joint uses: 1, the first is vertex 3 "
                   "of cloth 'test'; ");
             ck_assert_ptr_null(flow_warning(flow, 1));
         } else {
-            ck_assert_msg(strstr(error.text, "a.yaml:4:9: nothing to simulate") != NULL, "%s",
-                          error.text);
+            ck_assert_msg(
+                strstr(error.text,
+                       "a.yaml:4:9: nothing to simulate: no face, edge or joint uses a vertex") !=
+                    NULL,
+                "%s", error.text);
         }
         flow_free(flow);
         setup_free(&setup);
@@ -399,11 +402,13 @@ START_TEST(pins_and_loads_that_move_nothing)
     setup_load(&setup, 3, 0, 1, 0);
     setup.load.pick.place = (char[]){"a.yaml:6:9"};
     ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);
-    warns(flow, 0, "vertices that no face or edge uses: 2, the first is vertex 3 ");
-    warns(flow, 1,
-          "a.yaml:5:9: pinned vertices that no face or edge uses: 2, the first is vertex 4 ");
+    warns(flow, 0, "vertices that no face, edge or joint uses: 2, the first is vertex 3 ");
+    warns(
+        flow, 1,
+        "a.yaml:5:9: pinned vertices that no face, edge or joint uses: 2, the first is vertex 4 ");
     warns(flow, 2,
-          "a.yaml:6:9: loads on vertices that no face or edge uses: 1, the first is vertex 3 ");
+          "a.yaml:6:9: loads on vertices that no face, edge or joint uses: 1, the first is vertex "
+          "3 ");
     ck_assert_ptr_null(flow_warning(flow, 3));
     flow_free(flow);
     setup_free(&setup);

@@ -117,6 +117,9 @@ START_TEST(triangles_out_of_range)
         {"stretch: 50", "stretch: [0, 5], model: triangles, poisson: 0.5",
          .error = ":10:70: materials.cotton.poisson is 0.5, but stretch is 0 along the warp; 0 is "
                   "expected here"},
+        {"stretch: 50", "stretch: 50, strain_limit: {at: 0.1, stiffness: 0}",
+         .error = ":10:74: materials.cotton.strain_limit.stiffness is 0; a finite number > 0 (N/m) "
+                  "is expected"},
         {"stretch: 50", "stretch: 50, bending: {rigidity: [1, .nan]}",
          .error =
              ":10:63: materials.cotton.bending.rigidity[1] is .nan; a finite number >= 0 (N m) is "

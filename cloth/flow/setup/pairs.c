@@ -3,6 +3,7 @@
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 
 #include <stdlib.h>
 
@@ -49,18 +50,13 @@ static uint32_t high(const struct flow_pair *pair)
     return pair->vertex[pair->vertex[1] > pair->vertex[0]];
 }
 
-static int compare_u32(uint32_t a, uint32_t b)
-{
-    return (a > b) - (a < b);
-}
-
 static int compare_pairs(const void *va, const void *vb)
 {
     const struct flow_pair *a = va, *b = vb;
-    int order = compare_u32(low(a), low(b));
+    int order = cloth_compare_u32(low(a), low(b));
     if (!order)
-        order = compare_u32(high(a), high(b));
-    return order ? order : compare_u32(a->number, b->number);
+        order = cloth_compare_u32(high(a), high(b));
+    return order ? order : cloth_compare_u32(a->number, b->number);
 }
 
 int flow_pairs_once(struct cloth_list *list, const struct model *model, const char *what,

@@ -3,6 +3,7 @@
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,20 +15,15 @@ struct border {
     uint32_t corner[3]; /* of the mesh: ends, in the order of their roots; the vertex opposite */
 };
 
-static int compare_u32(uint32_t a, uint32_t b)
-{
-    return (a > b) - (a < b);
-}
-
 static int compare_borders(const void *va, const void *vb)
 {
     const struct border *a = va, *b = vb;
-    int order = compare_u32(a->root[0], b->root[0]);
+    int order = cloth_compare_u32(a->root[0], b->root[0]);
     if (!order)
-        order = compare_u32(a->root[1], b->root[1]);
+        order = cloth_compare_u32(a->root[1], b->root[1]);
     if (!order)
-        order = compare_u32(a->cloth, b->cloth);
-    return order ? order : compare_u32(a->edge, b->edge);
+        order = cloth_compare_u32(a->cloth, b->cloth);
+    return order ? order : cloth_compare_u32(a->edge, b->edge);
 }
 
 /* Whether a vertex has several names. */

@@ -4,6 +4,7 @@
 #include "cloth/flow/setup/source.h"
 
 #include "cloth/base/memory.h"
+#include "cloth/base/order.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -37,8 +38,8 @@ static int list_pairs(struct cloth_list *list, const struct model *model, const 
 static int compare_names(const void *va, const void *vb)
 {
     const uint32_t *a = va, *b = vb;
-    const int order = (a[0] > b[0]) - (a[0] < b[0]);
-    return order ? order : (a[1] > b[1]) - (a[1] < b[1]);
+    const int order = cloth_compare_u32(a[0], b[0]);
+    return order ? order : cloth_compare_u32(a[1], b[1]);
 }
 
 /* The root of each vertex, and the list of all other names. */
@@ -333,9 +334,9 @@ static void find(void *to, const struct flow_spring *s)
 
 static int compare_kinds(const struct candidate *a, const struct candidate *b)
 {
-    int order = (a->a > b->a) - (a->a < b->a);
+    int order = cloth_compare_u32(a->a, b->a);
     if (!order)
-        order = (a->b > b->b) - (a->b < b->b);
+        order = cloth_compare_u32(a->b, b->b);
     if (!order)
         order = (a->stretch > b->stretch) - (a->stretch < b->stretch);
     return order ? order : (a->length > b->length) - (a->length < b->length);

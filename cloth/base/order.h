@@ -1,0 +1,12 @@
+#ifndef CLOTH_BASE_ORDER_H
+#define CLOTH_BASE_ORDER_H
+
+#include <stdint.h>
+
+/* How two numbers are ordered, as qsort asks: below 0, 0 or above 0. Their difference is none. */
+static inline int cloth_compare_u32(uint32_t a, uint32_t b)
+{
+    return (a > b) - (a < b);
+}
+
+#endif

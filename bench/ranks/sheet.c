@@ -68,9 +68,9 @@ int sheet_flow(struct sheet *sheet)
     return code ? serve_fail("%s", error.text) : 0;
 }
 
-void sheet_wave(const struct flow_table *t, void *layout)
+void sheet_wave(const struct flow_table *t, void *memory)
 {
-    const struct flow_layout table = flow_table_layout(t, layout);
+    const struct flow_layout table = flow_table_layout(t, memory);
     for (uint32_t i = 0; i < t->n; i++) {
         const double x = table.position[i][0], z = table.position[i][2];
         table.position[i][1] += 0.01 * sin(9 * x) * cos(7 * z);
@@ -105,10 +105,10 @@ static int make_tables(struct sheet *s, struct cloth_error *error)
                                 .block = calloc(n, sizeof *all->block),
                                 .neighbour = s->source.neighbours.neighbour,
                                 .ghost = s->source.neighbours.ghost};
-    s->layout = calloc(n, sizeof *s->layout);
+    s->memory = calloc(n, sizeof *s->memory);
     s->halo_start = calloc((size_t)n + 1, sizeof *s->halo_start);
     s->value_start = calloc((size_t)n + 1, sizeof *s->value_start);
-    if (!all->block || !s->layout || !s->halo_start || !s->value_start)
+    if (!all->block || !s->memory || !s->halo_start || !s->value_start)
         return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for tables");
     const int code = flow_source_gather(&s->source, 0, n, error);
     for (uint32_t b = 0; b < n && !code; b++) {
@@ -116,12 +116,12 @@ static int make_tables(struct sheet *s, struct cloth_error *error)
         *t = s->source.shape[b];
         s->halo_start[b + 1] = s->halo_start[b] + t->n_halo;
         s->value_start[b + 1] = s->value_start[b] + t->n_inner + t->n_cut;
-        s->layout[b] = aligned_alloc(64, flow_table_bytes(t));
-        if (!s->layout[b])
+        s->memory[b] = aligned_alloc(64, flow_table_bytes(t));
+        if (!s->memory[b])
             return cloth_fail(error, CLOTH_E_MEMORY, "out of memory for a table");
-        flow_source_table(&s->source, b, s->layout[b]);
-        sheet_wave(t, s->layout[b]);
-        flow_table_open(t, s->layout[b]);
+        flow_source_table(&s->source, b, s->memory[b]);
+        sheet_wave(t, s->memory[b]);
+        flow_table_open(t, s->memory[b]);
         t->matrix.diagonal = t->mass; /* there is no drag */
     }
     return code;
@@ -160,9 +160,9 @@ void sheet_free(struct sheet *s)
     free(s->halo[1]);
     free(s->halo_start);
     free(s->value_start);
-    for (uint32_t b = 0; s->layout && b < s->tables.n_blocks; b++)
-        free(s->layout[b]);
-    free(s->layout);
+    for (uint32_t b = 0; s->memory && b < s->tables.n_blocks; b++)
+        free(s->memory[b]);
+    free(s->memory);
     free(s->tables.block);
     flow_source_free(&s->source);
     flow_free(s->flow);
@@ -253,10 +253,10 @@ void sheet_pass(struct sheet *s, uint32_t block, const struct solve_scalars *sca
     if (scalars->phase != SOLVE_ON)
         return;
     for (uint32_t i = 0; i < t->n_neighbours; i++)
-        solve_advance_ghosts(t->ghosts[i + 1] - t->ghosts[i], scalars->alpha, scalars->beta,
-                             s->halo[from] + sheet_halo(s, t->neighbour[i]),
-                             t->ghost + t->ghosts[i], s->ghost_r + ghosts + t->ghosts[i],
-                             s->ghost_p + ghosts + t->ghosts[i]);
+        solve_advance_ghosts(t->ghost_start[i + 1] - t->ghost_start[i], scalars->alpha,
+                             scalars->beta, s->halo[from] + sheet_halo(s, t->neighbour[i]),
+                             t->ghost + t->ghost_start[i], s->ghost_r + ghosts + t->ghost_start[i],
+                             s->ghost_p + ghosts + t->ghost_start[i]);
     solve_pass(&t->matrix, &cut, value, s->ghost_p + ghosts, scalars->alpha, scalars->beta, &rows,
                dots);
     solve_pack(t->n_halo, t->halo, rows.q, s->halo[1 - from] + sheet_halo(s, block));

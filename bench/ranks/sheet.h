@@ -15,8 +15,8 @@ struct sheet {
     struct flow *flow;         /* of the run that is on */
     uint32_t side;             /* vertices */
     struct flow_source source; /* blocks, and what the tables point into; */
-    struct flow_tables tables; /* of all blocks, on every rank, with their layouts */
-    void **layout;
+    struct flow_tables tables; /* of all blocks, on every rank, with their memory */
+    void **memory;
     size_t *halo_start, *value_start; /* a block */
     /* Block after block: rows by place, values by side of springs, r and then p of each ghost,
      * three numbers a halo row. */
@@ -39,7 +39,7 @@ int sheet_own_rank(void);
  * serve_fail returns. */
 int sheet_flow(struct sheet *sheet);
 /* Waves the start of a block in its table, and sets it moving; the same as a task: rw table. */
-void sheet_wave(const struct flow_table *table, void *layout);
+void sheet_wave(const struct flow_table *table, void *memory);
 extern const duite_kernel sheet_wave_kernel;
 
 const struct flow_tables *sheet_tables(const struct sheet *sheet);

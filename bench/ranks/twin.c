@@ -62,8 +62,8 @@ static int list_rows(struct twin *twin, int from, int to, struct traffic *traffi
     for (uint32_t b = twin->first[to]; b < twin->first[to + 1]; b++) {
         const struct flow_table *t = all->block + b;
         for (uint32_t s = 0; s < t->n_neighbours; s++)
-            for (uint32_t i = t->ghosts[s];
-                 i < t->ghosts[s + 1] && rank_of(twin, t->neighbour[s]) == from; i++)
+            for (uint32_t i = t->ghost_start[s];
+                 i < t->ghost_start[s + 1] && rank_of(twin, t->neighbour[s]) == from; i++)
                 needed[sheet_halo(sheet, t->neighbour[s]) / 3 + t->ghost[i] - begin] = 1;
     }
     for (size_t i = begin; i < end; i++)

@@ -47,7 +47,7 @@ static inline void flow_fetch_halos(const struct flow_table *t, const struct flo
 {
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
         const phys_vec *x = flow_rows_of(view->halo_x, s), *v = flow_rows_of(view->halo_v, s);
-        for (uint32_t i = t->ghosts[s]; i < t->ghosts[s + 1]; i++) {
+        for (uint32_t i = t->ghost_start[s]; i < t->ghost_start[s + 1]; i++) {
             phys_fetch(x + t->ghost[i], 0, 0);
             phys_fetch(v + t->ghost[i], 0, 0);
         }

@@ -62,8 +62,8 @@ enum { AT_ONCE = 32 };
 uint32_t flow_hash_part(const struct flow *flow)
 {
     const uint32_t least = 1 << 16, part = flow->n_vertices / 16 + 1;
-    const uint32_t max = part > least ? part : least;
-    return max < flow->n_vertices ? max : flow->n_vertices;
+    const uint32_t size = part > least ? part : least;
+    return size < flow->n_vertices ? size : flow->n_vertices;
 }
 
 /* Vertices of the input, from .. to - 1. */

@@ -116,8 +116,8 @@ static int broadcast_shared(const duite_call *call)
     }
     const struct flow_neighbours *all = &source->neighbours;
     to = put(to, all->neighbour, all->n_neighbours * sizeof *all->neighbour);
-    to = put(to, all->ghosts,
-             ((size_t)all->n_neighbours + source->blocks.n_blocks) * sizeof *all->ghosts);
+    to = put(to, all->ghost_start,
+             ((size_t)all->n_neighbours + source->blocks.n_blocks) * sizeof *all->ghost_start);
     to = put(to, all->ghost, all->n_ghosts * sizeof *all->ghost);
     put(to, all->joins, all->n_neighbours * sizeof *all->joins);
     return 0;
@@ -184,8 +184,8 @@ static void unpack(struct flow_state *state)
     flow->received.motions = (void *)(flow->received.curves + flow->model->n_curves);
     const struct shape *shape = (const void *)(flow->received.motions + flow->model->n_motions);
     const uint32_t *neighbour = (const void *)(shape + tables->n_blocks);
-    const uint32_t *ghosts = neighbour + state->head.n_neighbours;
-    const uint32_t *ghost = ghosts + state->head.n_neighbours + tables->n_blocks;
+    const uint32_t *ghost_start = neighbour + state->head.n_neighbours;
+    const uint32_t *ghost = ghost_start + state->head.n_neighbours + tables->n_blocks;
     const uint32_t *joins = ghost + state->head.n_ghosts;
     uint32_t first = 0;
     tables->neighbour = neighbour;
@@ -214,14 +214,14 @@ static void unpack(struct flow_state *state)
                                                .joined = shape->joined,
                                                .joins = joins,
                                                .neighbour = neighbour,
-                                               .ghosts = ghosts,
+                                               .ghost_start = ghost_start,
                                                .ghost = ghost};
         memcpy(tables->block[b].n_elements, shape->n_elements, sizeof shape->n_elements);
         memcpy(tables->block[b].halo_start, shape->halo_start, sizeof shape->halo_start);
         joins += shape->n_neighbours;
         first += shape->n;
         neighbour += shape->n_neighbours;
-        ghosts += shape->n_neighbours + 1;
+        ghost_start += shape->n_neighbours + 1;
         ghost += shape->n_ghosts;
     }
 }

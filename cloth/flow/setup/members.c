@@ -178,7 +178,7 @@ static uint32_t entry_of(const struct flow_table *t, const struct flow_layout *l
         return 2 * i + transposed;
     }
     uint32_t s = 0, i;
-    while (t->ghosts[s + 1] <= high - t->n)
+    while (t->ghost_start[s + 1] <= high - t->n)
         s++;
     for (i = layout->cut_entry[s];
          layout->ghost_end[i][0] != low || layout->ghost_end[i][1] != high - t->n;)

@@ -65,9 +65,9 @@ static void take(struct flow_state *state)
         take_sums(flow);
     flow->n_ghosts = 2 * ((size_t)head->max_ghosts + 1);
     if (head->n_elements) {
-        flow->ghosts = aligned_alloc(sizeof *flow->ghosts,
-                                     flow->n_clocks * flow->n_ghosts * sizeof *flow->ghosts);
-        if (!flow->ghosts)
+        flow->ghost_room = aligned_alloc(sizeof *flow->ghost_room, flow->n_clocks * flow->n_ghosts *
+                                                                       sizeof *flow->ghost_room);
+        if (!flow->ghost_room)
             cloth_fail(&flow->trouble, CLOTH_E_MEMORY, "out of memory for ghosts");
     }
     flow->n_forces = 2 * ((size_t)head->max_rows / 2 + 1); /* whole cache lines */
@@ -121,7 +121,7 @@ void flow_memory_free(struct flow_state *state)
     flow_preconditioner_free(flow);
     free(flow->clock);
     free(flow->sums);
-    free(flow->ghosts);
+    free(flow->ghost_room);
     free(flow->forces);
     free(flow->room);
     free(flow->row);
@@ -134,7 +134,7 @@ void flow_memory_free(struct flow_state *state)
     XXH64_freeState(state->hash);
     flow->clock = NULL;
     flow->sums = NULL;
-    flow->ghosts = flow->forces = NULL;
+    flow->ghost_room = flow->forces = NULL;
     flow->room = flow->row = flow->probe_values = NULL;
     state->block = NULL;
     state->bytes = NULL;

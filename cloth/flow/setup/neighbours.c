@@ -141,30 +141,31 @@ static uint32_t joins_of(const struct flow_source *source, const struct need *ne
 /* Fills the arrays, and lets the shapes point into them. */
 static void fill(struct flow_source *source, const struct need *need)
 {
-    uint32_t *neighbour = source->neighbours.neighbour, *ghosts = source->neighbours.ghosts;
+    uint32_t *neighbour = source->neighbours.neighbour,
+             *ghost_start = source->neighbours.ghost_start;
     uint32_t *ghost = source->neighbours.ghost, *joins = source->neighbours.joins;
     size_t first = 0; /* of the block's needs; there may be none at all */
     for (uint32_t b = 0; b < source->blocks.n_blocks; b++) {
         struct flow_table *shape = source->shape + b;
         uint32_t s = 0;
         shape->neighbour = neighbour;
-        shape->ghosts = ghosts;
+        shape->ghost_start = ghost_start;
         shape->ghost = ghost;
         shape->joins = joins;
         for (uint32_t i = 0; i < shape->n_ghosts; i++) {
             const struct need *one = &need[first + i];
             if (i == 0 || one->other != one[-1].other) {
-                ghosts[s] = i;
+                ghost_start[s] = i;
                 joins[s] = 0;
                 neighbour[s++] = one->other;
             }
             joins[s - 1] |= joins_of(source, one);
             ghost[i] = source->halo[one->place];
         }
-        ghosts[s] = shape->n_ghosts;
+        ghost_start[s] = shape->n_ghosts;
         neighbour += s;
         joins += s;
-        ghosts += s + 1;
+        ghost_start += s + 1;
         ghost += shape->n_ghosts;
         first += shape->n_ghosts;
     }
@@ -180,10 +181,11 @@ static int make(struct flow_source *source, struct cloth_list *needs, struct clo
     for (uint32_t b = 0; b < n_blocks; b++)
         all->n_neighbours += source->shape[b].n_neighbours;
     all->neighbour = cloth_alloc(all->n_neighbours, sizeof *all->neighbour, error);
-    all->ghosts = cloth_alloc((size_t)all->n_neighbours + n_blocks, sizeof *all->ghosts, error);
+    all->ghost_start =
+        cloth_alloc((size_t)all->n_neighbours + n_blocks, sizeof *all->ghost_start, error);
     all->ghost = cloth_alloc(all->n_ghosts, sizeof *all->ghost, error);
     all->joins = cloth_alloc(all->n_neighbours, sizeof *all->joins, error);
-    if (!all->neighbour || !all->joins || !all->ghosts || !all->ghost)
+    if (!all->neighbour || !all->joins || !all->ghost_start || !all->ghost)
         return CLOTH_E_MEMORY;
     fill(source, needs->items);
     return CLOTH_OK;

@@ -12,7 +12,7 @@ int flow_warn(struct flow *flow, struct cloth_error *error);
  * turns into a sentence. */
 /* All of the below: the run is ready for its first task. To be ended as flow_run does. */
 int flow_run_begin(struct flow_state *state);
-/* Broadcasts how much there is to be broadcast. */
+/* Broadcasts the sizes of what follows (struct flow_head). */
 int flow_share_head(struct flow_state *state);
 /* Broadcasts the shapes of all blocks; fills flow->tables. */
 int flow_share(struct flow_state *state);

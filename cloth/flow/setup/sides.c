@@ -251,12 +251,12 @@ static void fill_sides(const struct flow_source *source, const struct flow_table
     *layout->n_held = held;
 }
 
-void flow_source_table(const struct flow_source *source, uint32_t block, void *layout)
+void flow_source_table(const struct flow_source *source, uint32_t block, void *memory)
 {
     const struct flow_table *t = source->shape + block;
     struct flow_side *side = source->side + source->start[block - source->from];
-    const struct flow_layout arrays = flow_table_layout(t, layout);
-    memset(layout, 0, flow_table_bytes(t));
+    const struct flow_layout arrays = flow_table_layout(t, memory);
+    memset(memory, 0, flow_table_bytes(t));
     qsort(side, (size_t)t->n_inner + t->n_cut, sizeof *side, compare_sides);
     fill_rows(source, t, &arrays);
     fill_watched(source, t, &arrays);

@@ -180,7 +180,7 @@ void flow_source_free(struct flow_source *source)
 {
     flow_source_forget(source);
     free(source->neighbours.neighbour);
-    free(source->neighbours.ghosts);
+    free(source->neighbours.ghost_start);
     free(source->neighbours.ghost);
     free(source->neighbours.joins);
     flow_watched_free(&source->watched);

@@ -198,11 +198,11 @@ int flow_joints_use(const struct model *model, unsigned char *used, struct cloth
 /* Who reads what of whom: neighbours of all blocks, block after block, as every rank knows them. */
 struct flow_neighbours {
     uint32_t n_neighbours, n_ghosts;
-    uint32_t *neighbour; /* n_neighbours: blocks, ascending in a block, */
-    uint32_t *joins;     /* and which patches are joined with theirs */
-    uint32_t *ghosts; /* n_neighbours + blocks: of a block, where each neighbour's ghosts begin, and
-                         the end */
-    uint32_t *ghost;  /* n_ghosts: places in the halo of the neighbour's block, ascending */
+    uint32_t *neighbour;   /* n_neighbours: blocks, ascending in a block, */
+    uint32_t *joins;       /* and which patches are joined with theirs */
+    uint32_t *ghost_start; /* n_neighbours + blocks: of a block, where each neighbour's ghosts
+                         begin, and the end */
+    uint32_t *ghost;       /* n_ghosts: places in the halo of the neighbour's block, ascending */
 };
 
 /* The vertices that probes are at. A row of the table of probes has step and time, then n_columns
@@ -268,9 +268,9 @@ int flow_source_gather(struct flow_source *source, uint32_t from, uint32_t to,
 
 void flow_source_forget(struct flow_source *source);
 
-/* Makes the table of a block of the group: writes every byte of the layout. Of different blocks by
+/* Makes the table of a block of the group: writes every byte of its memory. Of different blocks by
  * several threads at once. Local. */
-void flow_source_table(const struct flow_source *source, uint32_t block, void *layout);
+void flow_source_table(const struct flow_source *source, uint32_t block, void *memory);
 
 /* Finds the neighbours, and the numbers of rows in halos (source->halo), when blocks and springs
  * are there. Adds both to the shapes. Error: CLOTH_E_MEMORY. Local. */

@@ -126,7 +126,7 @@ static int basis_ghosts_body(const duite_call *call, const struct basis_ghosts_f
     on->basis_ghosts[0] = (phys_vec){0};
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
         const phys_vec *halo = flow_rows_of(on->halo_basis, s);
-        for (uint32_t i = t->ghosts[s]; i < t->ghosts[s + 1]; i++)
+        for (uint32_t i = t->ghost_start[s]; i < t->ghost_start[s + 1]; i++)
             on->basis_ghosts[i] = halo[t->ghost[i]];
     }
     return 0;
@@ -162,9 +162,9 @@ static struct solve_patches patches_of_neighbour(const struct flow *flow,
 {
     const struct flow_table *other = flow->tables.block + t->neighbour[neighbour];
     struct solve_patches patches = {.n = flow->patches};
-    uint32_t i = t->ghosts[neighbour];
+    uint32_t i = t->ghost_start[neighbour];
     for (uint32_t k = 0; k <= SOLVE_MAX_PATCHES; k++) {
-        while (i < t->ghosts[neighbour + 1] && t->ghost[i] < other->halo_start[k])
+        while (i < t->ghost_start[neighbour + 1] && t->ghost[i] < other->halo_start[k])
             i++;
         patches.start[k] = i;
     }
@@ -263,7 +263,7 @@ void flow_coarse_advance_ghosts(const struct flow_preconditioner *m, uint32_t ne
                                 const uint32_t *at, phys_vec *z, phys_vec *p)
 {
     const struct flow_table *t = m->table, *other = m->flow->tables.block + t->neighbour[neighbour];
-    const uint32_t first = t->ghosts[neighbour], end = t->ghosts[neighbour + 1];
+    const uint32_t first = t->ghost_start[neighbour], end = t->ghost_start[neighbour + 1];
     for (uint32_t k = 0, i = first; k < m->flow->patches; k++) {
         const uint32_t from = i;
         while (i < end && t->ghost[i] < other->halo_start[k + 1])

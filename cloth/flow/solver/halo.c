@@ -61,11 +61,11 @@ static struct reader reader_of(struct flow_state *state, uint32_t b, uint32_t ne
     uint32_t s = 0;
     while (t->neighbour[s] != neighbour)
         s++;
-    const uint32_t *row = t->ghost + t->ghosts[s];
+    const uint32_t *row = t->ghost + t->ghost_start[s];
     return (struct reader){.neighbour = (size_t)(t->neighbour - tables->neighbour) + s,
                            .row = row,
                            .at = state->flow->at + (row - tables->ghost),
-                           .n = t->ghosts[s + 1] - t->ghosts[s]};
+                           .n = t->ghost_start[s + 1] - t->ghost_start[s]};
 }
 
 /* Numbers the rows of block b that blocks of this home read, and lists their places in its halo in

@@ -1,8 +1,8 @@
 /* A pass of conjugate gradients over a block (cloth/solve/cg.h): one body, with a preconditioner or
- * without, where z is r and s is q. A block keeps ghosts of z and p of the rows that its cut
- * entries end at, and changes them as their owner does: of a neighbour it reads rows of s only.
- * What a pass sums is its part: without a preconditioner a contribution to the sums of all blocks;
- * with one the block's own, with the coarse right side P' q behind the dots.
+ * without, where z is r and s is q. A block keeps z and p of its ghosts, the rows of others that
+ * its cut entries end at, and changes them as their owner does: of a neighbour it reads rows of s
+ * only. What a pass sums is its part: without a preconditioner a contribution to the sums of all
+ * blocks; with one the block's own, with the coarse right side P' q behind the dots.
  *
  * In reading order: what a solve begins with, a pass by its phases, its kernels, the forks. */
 #include "cloth/flow/solver/solve.h"
@@ -108,7 +108,7 @@ static const uint32_t *places_of(const struct pass *pass, uint32_t s)
 {
     const struct flow *flow = flow_of(pass->call);
     const struct flow_table *t = &pass->table;
-    return flow->at + (t->ghost - flow->tables.ghost) + t->ghosts[s];
+    return flow->at + (t->ghost - flow->tables.ghost) + t->ghost_start[s];
 }
 
 static const double *halo_of(const struct pass *pass, uint32_t s)
@@ -122,7 +122,7 @@ static void advance_ghosts(const struct pass *pass)
     const struct flow_table *t = &pass->table;
     const struct solve_scalars *now = pass->scalars;
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
-        const uint32_t from = t->ghosts[s], n = t->ghosts[s + 1] - from;
+        const uint32_t from = t->ghost_start[s], n = t->ghost_start[s + 1] - from;
         phys_vec *z = pass->z_ghosts + from, *p = pass->p_ghosts + from;
         if (pass->m.motion)
             flow_coarse_advance_ghosts(&pass->m, s, now, halo_of(pass, s), places_of(pass, s), z,
@@ -174,8 +174,8 @@ static void multiply(struct pass *pass, double dots[SOLVE_DOTS])
     const struct solve_cut cut = flow_table_cut_entries(t);
     phys_vec *shown = pass->p_ghosts;
     for (uint32_t s = 0; s < t->n_neighbours; s++)
-        solve_unpack(t->ghosts[s + 1] - t->ghosts[s], halo_of(pass, s), places_of(pass, s),
-                     shown + t->ghosts[s]);
+        solve_unpack(t->ghost_start[s + 1] - t->ghost_start[s], halo_of(pass, s),
+                     places_of(pass, s), shown + t->ghost_start[s]);
     if (pass->scalars->phase == SOLVE_OPEN)
         solve_open(&t->matrix, &cut, pass->values, shown, &pass->rows, dots);
     else

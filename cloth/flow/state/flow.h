@@ -82,12 +82,12 @@ struct flow {
     struct phys_pair *sums;   /* a worker, max_entries: room for a matrix while it is assembled in
                                * half storage; else NULL */
     size_t n_sums;            /* of a worker */
-    phys_vec *ghosts; /* a worker, two for each of max_ghosts: what elements see of neighbours
-                       * while a task works on them; NULL: there are no elements */
-    size_t n_ghosts;  /* of a worker */
-    phys_vec *forces; /* a worker, max_rows: those that an explicit step needs for itself alone;
-                       * NULL: the run is implicit */
-    size_t n_forces;  /* of a worker */
+    phys_vec *ghost_room; /* a worker, two for each of max_ghosts: what elements see of neighbours
+                           * while a task works on them; NULL: there are no elements */
+    size_t n_ghosts;      /* of a worker */
+    phys_vec *forces;     /* a worker, max_rows: those that an explicit step needs for itself alone;
+                           * NULL: the run is implicit */
+    size_t n_forces;      /* of a worker */
     uint32_t *at; /* of each ghost of all blocks: its place in what a pass reads of the neighbour */
     struct flow_packed_halo *packed_halo; /* of halo.c */
     uint32_t *packed_row;

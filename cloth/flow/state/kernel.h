@@ -23,7 +23,7 @@
  *
  *     R W RW     reads, overwrites, changes: a field of the task's block or of the run
  *     SUM MAX    contributes to it, added up, or the largest counts
- *     NEIGHBOURS reads this field of each neighbour, in the order of neighbours
+ *     NEIGHBOURS reads this field of each neighbour, ascending by block
  *     ALL        reads this field of every block that has it; the last parameter of a kernel
  *     IF_MADE    reads it if it exists in the run; else the pointer is NULL. Either all fields of a
  *                kernel with this word exist or none

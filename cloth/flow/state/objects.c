@@ -27,7 +27,7 @@ static void hint_block(struct flow_state *state, uint32_t b)
     const struct flow_table *t = tables->block + b;
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
         state->refs[s] = state->block[t->neighbour[s]].x;
-        bytes[s] = 3.0 * sizeof(double) * (t->ghosts[s + 1] - t->ghosts[s]);
+        bytes[s] = 3.0 * sizeof(double) * (t->ghost_start[s + 1] - t->ghost_start[s]);
     }
     duite_hint(state->rt, state->block[b].x, t->n, t->n_neighbours, state->refs, bytes);
 }

@@ -77,17 +77,17 @@ size_t flow_table_bytes(const struct flow_table *table)
     return room.used;
 }
 
-struct flow_layout flow_table_layout(const struct flow_table *table, void *layout)
+struct flow_layout flow_table_layout(const struct flow_table *table, void *memory)
 {
-    struct room room = {.base = layout};
+    struct room room = {.base = memory};
     struct flow_layout arrays;
     lay(table, &room, &arrays);
     return arrays;
 }
 
-void flow_table_open(struct flow_table *t, const void *layout)
+void flow_table_open(struct flow_table *t, const void *memory)
 {
-    const struct flow_layout arrays = flow_table_layout(t, (void *)layout); /* it is only read */
+    const struct flow_layout arrays = flow_table_layout(t, (void *)memory); /* it is only read */
     t->vertex = arrays.vertex;
     t->cut = arrays.cut;
     t->halo = arrays.halo;
@@ -119,7 +119,7 @@ void flow_table_open(struct flow_table *t, const void *layout)
 
 uint32_t flow_table_ghost(const struct flow_table *t, uint32_t s, uint32_t row)
 {
-    uint32_t low = t->ghosts[s], high = t->ghosts[s + 1];
+    uint32_t low = t->ghost_start[s], high = t->ghost_start[s + 1];
     while (high - low > 1) {
         const uint32_t middle = low + (high - low) / 2;
         if (t->ghost[middle] <= row)

@@ -36,16 +36,16 @@ struct flow_table {
     uint32_t n_loose;         /* rows of pieces that no pin holds */
     uint32_t n_varying;       /* loads that vary */
     uint32_t lowest, highest; /* of its vertices */
-    uint32_t n_neighbours;    /* neighbours */
+    uint32_t n_neighbours;    /* blocks that it is joined to */
     uint32_t n_ghosts;        /* rows that the cut springs end at, neighbour after neighbour */
     uint32_t joined;          /* which of its patches are (cloth/solve/patches.h) */
     uint32_t halo_start[SOLVE_MAX_PATCHES + 1]; /* places in the halo where patches begin */
     /* Not owned: */
-    const uint32_t *neighbour; /* n_neighbours: blocks, ascending */
-    const uint32_t *ghosts;    /* n_neighbours + 1: those of neighbour s are ghosts[s] .. */
-    const uint32_t *joins;     /* n_neighbours: which patches here and there */
+    const uint32_t *neighbour;   /* n_neighbours: blocks, ascending */
+    const uint32_t *ghost_start; /* n_neighbours + 1: those of neighbour s are ghost_start[s] .. */
+    const uint32_t *joins;       /* n_neighbours: which patches here and there */
     const uint32_t *ghost; /* n_ghosts: places in the neighbour's halo, ascending in a neighbour */
-    /* The table itself, in a layout that is not owned; NULL but where one is open. */
+    /* The table itself, in memory that is not owned; NULL but where one is open. */
     const uint32_t *vertex; /* n: of the input */
     const uint32_t
         *cut; /* n_neighbours + 1: the springs into neighbour s are n_inner + cut[s] .. */
@@ -76,7 +76,7 @@ struct flow_tables {
     const uint32_t *neighbour, *ghost; /* of all blocks, block after block; not owned */
 };
 
-/* The arrays of a table as they lie in its layout, one piece of memory, for who makes it. */
+/* The arrays of a table as they lie in its memory, one piece, for who makes it. */
 struct flow_layout {
     phys_vec *load, *position, *velocity; /* n */
     double *mass, *drag, *free;           /* n */
@@ -98,14 +98,13 @@ struct flow_layout {
     struct element_list list[ELEMENT_KINDS];
 };
 
-/* Bytes of a layout, which its shape decides; and where its arrays are. layout: aligned to 64
- * bytes.
- */
+/* Bytes of a table's memory, which its shape decides; and where its arrays are. memory: aligned to
+ * 64 bytes. */
 size_t flow_table_bytes(const struct flow_table *table);
-struct flow_layout flow_table_layout(const struct flow_table *table, void *layout);
+struct flow_layout flow_table_layout(const struct flow_table *table, void *memory);
 
-/* Lets the arrays of a table that has its shape point into the layout. */
-void flow_table_open(struct flow_table *table, const void *layout);
+/* Lets the arrays of a table that has its shape point into its memory. */
+void flow_table_open(struct flow_table *table, const void *memory);
 
 /* Where a row of the halo of neighbour s is among the block's ghosts. */
 uint32_t flow_table_ghost(const struct flow_table *table, uint32_t s, uint32_t row);

@@ -19,7 +19,7 @@ static const phys_vec *copy_halos(const struct flow_table *t, const duite_param 
 {
     for (uint32_t s = 0; s < t->n_neighbours; s++) {
         const phys_vec *halo = flow_rows_of(halos, s);
-        for (uint32_t i = t->ghosts[s]; i < t->ghosts[s + 1]; i++)
+        for (uint32_t i = t->ghost_start[s]; i < t->ghost_start[s + 1]; i++)
             ghost[i] = halo[t->ghost[i]];
     }
     return ghost;
@@ -29,7 +29,7 @@ struct phys_sight flow_elements_see(const duite_call *call, const struct flow_ta
                                     const struct flow_view *view)
 {
     const struct flow *flow = flow_of(call);
-    phys_vec *room = flow->ghosts + call->worker * flow->n_ghosts;
+    phys_vec *room = flow->ghost_room + call->worker * flow->n_ghosts;
     struct phys_sight sight = {
         .n = t->n, .x = view->x, .x_ghost = copy_halos(t, view->halo_x, room)};
     if (!view->v)

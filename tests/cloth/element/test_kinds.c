@@ -378,11 +378,11 @@ static void check_alone(const struct sample *s, const struct apart *all, uint32_
     const struct element_kind *kind = kind_of(s);
     const struct phys_step step = {0.5, 1};
     const struct phys_sight sight = {4, all->x + 4 * e, all->v + 4 * e, NULL, NULL};
-    struct sample ghost = *s; /* its material alone, which lists do not own */
+    struct sample copy = *s; /* its material alone, which lists do not own */
     struct element_one one;
     struct phys_pair pair[ELEMENT_PAIRS];
     phys_vec f[4] = {{0}};
-    element_alone(&s->scene->cloths, s->element + e, ghost.material, &one);
+    element_alone(&s->scene->cloths, s->element + e, copy.material, &one);
     kind->force(&one.list, &s->world, &sight, f);
     ck_assert_mem_eq(f, all->f + 4 * e, sizeof f);
     if (!kind->pairs)

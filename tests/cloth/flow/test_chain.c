@@ -103,7 +103,7 @@ static void hang(struct setup *s, const double *swing)
 
 /* From three frames a quarter of a swing and more apart: x1 = cos(w t) x0 + ..., by crossings of
  * zero. */
-static double probe_values(const struct record *r)
+static double frequency_seen(const struct record *r)
 {
     double first = 0, last = 0;
     int crossings = 0;
@@ -144,7 +144,7 @@ START_TEST(frequencies)
     setup.model.fps = 250;
     record_run(&r, &setup.model);
     ck_assert_msg(r.code == 0, "%s", r.error.text);
-    const double rope = zero[n] / 2 * sqrt(G / (LINKS * LENGTH)), now = probe_values(&r);
+    const double rope = zero[n] / 2 * sqrt(G / (LINKS * LENGTH)), now = frequency_seen(&r);
     printf(
         "# hanging chain, mode %zu, %s, h = %g s: %.6f rad/s, %.6f of its links, %.6f of a rope\n",
         n + 1, model_integrator_name(rows[_i].integrator), rows[_i].h, now, omega[n], rope);

@@ -149,12 +149,12 @@ START_TEST(decay_and_frequency)
     struct record record = {0};
     weigh(&record, &setup, scheme, scheme->h, 100 * scheme->h);
     const double h = scheme->h, e = damping(&setup);
-    const struct map probe_values = map_seen(&record), wanted = map_of(scheme->integrator, h, e);
+    const struct map measured = map_seen(&record), wanted = map_of(scheme->integrator, h, e);
     const double rate = e / (2 * M), omega = sqrt(K / M - rate * rate);
     printf("# %s, h = %g s: decay %.6f 1/s (%.6f is exact), frequency %.6f rad/s (%.6f)\n",
-           scheme->name, h, decay(&probe_values, h), rate, frequency(&probe_values, h), omega);
-    ck_assert_double_eq_tol(probe_values.trace, wanted.trace, 1e-10);
-    ck_assert_double_eq_tol(probe_values.determinant, wanted.determinant, 1e-10);
+           scheme->name, h, decay(&measured, h), rate, frequency(&measured, h), omega);
+    ck_assert_double_eq_tol(measured.trace, wanted.trace, 1e-10);
+    ck_assert_double_eq_tol(measured.determinant, wanted.determinant, 1e-10);
     for (size_t n = 0; n < record.frames; n++) {
         ck_assert_double_eq(record_at(&record, n, 1, 0), 0);
         ck_assert_double_eq(record_at(&record, n, 0, 1), 0); /* the pin */
@@ -185,10 +185,10 @@ START_TEST(order)
     scheme.along = 0.002; /* forces that depend on the velocity count, too */
     const double h = scheme.order == 4 ? 0.01 : 0.001;
     const double coarse = error_at(&scheme, h), fine = error_at(&scheme, h / 2);
-    const double probe_values = log2(coarse / fine);
+    const double measured = log2(coarse / fine);
     printf("# %s: error %.3e m at h = %g s, %.3e at half of it: order %.3f\n", scheme.name, coarse,
-           h, fine, probe_values);
-    ck_assert_double_eq_tol(probe_values, scheme.order, 0.1);
+           h, fine, measured);
+    ck_assert_double_eq_tol(measured, scheme.order, 0.1);
 }
 END_TEST
 

@@ -169,9 +169,9 @@ START_TEST(order_of_a_swing)
         end_of(&r, rows[_i].integrator, rows[_i].newton, 0.0004 / (1 << i), x[i]);
     for (int i = 0; i < 2; i++)
         change[i] = hypot(x[i + 1][0] - x[i][0], x[i + 1][1] - x[i][1]);
-    const double probe_values = log2(change[0] / change[1]);
-    printf("# chain, %s: order %.3f\n", rows[_i].name, probe_values);
-    ck_assert_double_eq_tol(probe_values, rows[_i].order, 0.15);
+    const double measured = log2(change[0] / change[1]);
+    printf("# chain, %s: order %.3f\n", rows[_i].name, measured);
+    ck_assert_double_eq_tol(measured, rows[_i].order, 0.15);
 }
 END_TEST
 
@@ -201,11 +201,11 @@ START_TEST(line_search)
         else
             high = u;
     }
-    const double probe_values = -record_at(&r, 1, 1, 1);
+    const double measured = -record_at(&r, 1, 1, 1);
     printf("# a wire catches a weight: %.6f m after two Newton steps, %.6f is due, %.6f without "
            "the wire\n",
-           probe_values, low, h * h * G);
-    ck_assert_double_eq_tol(probe_values, low, 0.5 * low);
+           measured, low, h * h * G);
+    ck_assert_double_eq_tol(measured, low, 0.5 * low);
     ck_assert_double_gt(h * h * G, 20 * low);
     ck_assert_uint_eq(r.report.newton_unconverged, 1);
     record_free(&r);

@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 static const double LEAST_EXTENT = 0.01, MAX_EXTENT = 10; /* m: of a garment */
+static const double DEEP = 1e-6; /* m: what lies on a surface is less deep in it */
 
 static void describe_unusual(char *text, size_t size, const char *what,
                              const struct flow_unusual *unusual, const char *effect)
@@ -129,11 +130,58 @@ static void warn_of_extent(struct flow *flow)
     }
 }
 
+/* The vertex of a cloth that starts deepest in a shape, of those that are free. first: the number
+ * of the cloth's first vertex. Returns its gap, m; infinite: none is free. */
+static double find_deepest(const struct flow *flow, const struct contact_shape *shape,
+                           const struct model_cloth *cloth, uint32_t first, uint32_t *deepest)
+{
+    const struct flow_particles *particles = &flow->source.particles;
+    struct contact_pose pose;
+    double gap = INFINITY;
+    contact_pose_over(shape, flow->model->keys, 0, 0, &pose);
+    for (uint32_t i = 0; i < cloth->mesh.n_vertices; i++) {
+        const double *start =
+            particles->start ? particles->start[first + i] : cloth->mesh.position + 3 * (size_t)i;
+        const phys_vec x = {start[0], start[1], start[2], 0};
+        struct contact_hit hit;
+        if (!particles->used[first + i] || !particles->free[first + i])
+            continue;
+        contact_closest(shape, &pose, 1, &x, &hit);
+        if (hit.gap < gap) {
+            gap = hit.gap;
+            *deepest = i;
+        }
+    }
+    return gap;
+}
+
+/* The first step puts it out at once, by the nearest way, which may be none that was meant. */
+static void warn_of_inside(struct flow *flow)
+{
+    const struct model *model = flow->model;
+    const size_t size = sizeof flow->warning[9];
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < model->n_cloths; first += model->cloths[c++].mesh.n_vertices)
+        for (uint32_t i = 0; i < model->n_obstacles && !flow->warning[9][0]; i++) {
+            const struct model_cloth *cloth = model->cloths + c;
+            uint32_t deepest = 0;
+            const double gap = find_deepest(flow, model->obstacles + i, cloth, first, &deepest);
+            if (gap < -DEEP)
+                snprintf(flow->warning[9], size,
+                         "%.200s%scloth '%.60s' starts inside obstacles[%u], a %s: vertex %u is %g "
+                         "m deep in it; the first step puts it out by the nearest way",
+                         cloth->place ? cloth->place : "", cloth->place ? ": " : "",
+                         cloth->name ? cloth->name : "", i,
+                         contact_kinds[model->obstacles[i].kind]->name, deepest, -gap);
+        }
+}
+
 int flow_warn(struct flow *flow, struct cloth_error *error)
 {
     warn(flow, &flow->source.particles);
     warn_of_moduli(flow);
     warn_of_shear(flow);
     warn_of_extent(flow);
+    warn_of_inside(flow);
     return flow_warn_of_steps(flow, error);
 }

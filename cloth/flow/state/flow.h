@@ -64,8 +64,8 @@ struct flow {
     void *shared; /* obstacles, key frames, neighbours and ghosts that the above point to */
 
     /* Rank 0 only. */
-    char warning[9][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
-                             extents, shear; empty: none */
+    char warning[10][512]; /* of all vertices, pinned ones, loaded ones, the solver, h, air, moduli,
+                             extents, shear, what starts inside; empty: none */
     struct flow_source source; /* until the tables are distributed */
     uint32_t *vertex;          /* by place; from then on */
     struct flow_names names;   /* from then on */

@@ -415,6 +415,39 @@ START_TEST(pins_and_loads_that_move_nothing)
 }
 END_TEST
 
+/* The deepest vertex that no pin holds. */
+START_TEST(a_start_inside_an_obstacle)
+{
+    static const struct phys_key keys[] = {{.translate = {0, 9, 0}, .rotate = {1, 0, 0, 0}}};
+    struct contact_shape shapes[] = {{.value = {0, 0, 0, 0, 1, 0}},
+                                     {.kind = 1, .value = {0, 0, 0, 0.6}}};
+    struct setup setup;
+    for (int i = 0; i < 4; i++) {
+        struct cloth_error error = {0};
+        struct flow *flow = NULL;
+        setup_sheet(&setup, 3);
+        setup.cloth.place = (char[]){"a.yaml:4:9"};
+        setup.model.obstacles = shapes;
+        setup.model.n_obstacles = i ? 2 : 1; /* 0: it lies on the plane */
+        setup.model.keys = (struct phys_key *)keys;
+        shapes[1].n = i == 1; /* 1: the ball is elsewhere at time 0 */
+        if (i == 3)
+            setup_pin(&setup, 1, (const uint32_t[]){4});
+        ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), CLOTH_OK);
+        if (i < 2)
+            ck_assert_ptr_null(flow_warning(flow, 0));
+        else
+            warns(flow, 0,
+                  i == 2 ? "a.yaml:4:9: cloth 'test' starts inside obstacles[1], a sphere: vertex "
+                           "4 is 0.6 m deep in it"
+                         : "a.yaml:4:9: cloth 'test' starts inside obstacles[1], a sphere: vertex "
+                           "1 is 0.1 m deep in it");
+        flow_free(flow);
+        setup_free(&setup);
+    }
+}
+END_TEST
+
 START_TEST(more_ranks_than_blocks)
 {
     struct setup setup;
@@ -451,6 +484,7 @@ int main(void)
     tcase_add_test(cases, bending_that_does_not_suit);
     tcase_add_test(cases, starts_out_of_bounds);
     tcase_add_test(cases, vertices_without_faces);
+    tcase_add_test(cases, a_start_inside_an_obstacle);
     tcase_add_test(cases, pins_and_loads_that_move_nothing);
     tcase_add_test(cases, more_ranks_than_blocks);
     suite_add_tcase(suite, cases);

@@ -165,12 +165,14 @@ static bool key_differs(const struct phys_key *a, const struct phys_key *b)
     return differs;
 }
 
-/* Whether n keys move anything after a time. */
-static bool keys_move(const struct phys_key *keys, uint32_t n, double time)
+/* Whether the model's n keys from `first` on move anything after a time. */
+static bool keys_move(const struct model *model, uint32_t first, uint32_t n, double time)
 {
     bool moves = false;
-    for (uint32_t i = 1; i < n; i++)
-        moves = moves || (keys[i].time > time && key_differs(keys + i, keys + i - 1));
+    for (uint32_t i = 1; i < n; i++) {
+        const struct phys_key *key = model->keys + first + i;
+        moves = moves || (key->time > time && key_differs(key, key - 1));
+    }
     return moves;
 }
 
@@ -178,8 +180,7 @@ static bool obstacles_move_after(const struct model *model, double time)
 {
     bool moves = false;
     for (uint32_t i = 0; i < model->n_obstacles; i++)
-        moves = moves ||
-                keys_move(model->keys + model->obstacles[i].first, model->obstacles[i].n, time);
+        moves = moves || keys_move(model, model->obstacles[i].first, model->obstacles[i].n, time);
     return moves;
 }
 
@@ -192,8 +193,7 @@ bool model_moves_after(const struct model *model, double time)
 {
     bool moves = obstacles_move_after(model, time);
     for (uint32_t i = 0; i < model->n_motions; i++)
-        moves =
-            moves || keys_move(model->keys + model->motions[i].first, model->motions[i].n, time);
+        moves = moves || keys_move(model, model->motions[i].first, model->motions[i].n, time);
     return moves;
 }
 

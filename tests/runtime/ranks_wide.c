@@ -42,6 +42,13 @@ static int add_one_body(const duite_call *call)
     return 0;
 }
 
+static int last_body(const duite_call *call)
+{
+    for (size_t i = 0; i + 1 < DUITE_MAX_ACCESS; i++)
+        *duite_out(call, DUITE_MAX_ACCESS - 1, int64_t) += *duite_in(call, i, int64_t);
+    return 0;
+}
+
 #define READ_5  DUITE_R, DUITE_R, DUITE_R, DUITE_R, DUITE_R
 #define READ_37 READ_5, READ_5, READ_5, READ_5, READ_5, READ_5, READ_5, DUITE_R, DUITE_R
 
@@ -57,6 +64,12 @@ static const duite_kernel FULL = {
     .name = "full",
     .body = plain_body,
     .access = {READ_37, READ_5, READ_5, READ_5, READ_5, READ_5, DUITE_R, DUITE_R}};
+
+/* The last mode that can be listed: bits and places behind the 63 others. */
+static const duite_kernel LAST = {
+    .name = "last",
+    .body = last_body,
+    .access = {READ_37, READ_5, READ_5, READ_5, READ_5, READ_5, DUITE_R, DUITE_RW}};
 
 struct wide {
     duite_object object[WIDTH], other; /* `other` is written in place of WRITE by PLAIN */
@@ -167,9 +180,26 @@ static void wide_run(duite *rt, int together)
     wide_free(rt, &w);
 }
 
+/* A task of as many objects as can be listed, on all ranks alike. */
+static void full_run(duite *rt)
+{
+    duite_object object[DUITE_MAX_ACCESS];
+    int64_t expected = 0;
+    for (int64_t i = 0; i < DUITE_MAX_ACCESS; i++) {
+        const int64_t value = i * i + 1;
+        duite_new(rt, DUITE_I64, 1, object + i);
+        duite_set(rt, object[i], &value);
+        expected += value;
+    }
+    tap_case(!duite_fork(rt, &LAST, NULL, DUITE_MAX_ACCESS, object), "a fork of 64 objects");
+    tap_case(value_of(rt, object[DUITE_MAX_ACCESS - 1]) == expected, "its last one is written");
+    for (int i = 0; i < DUITE_MAX_ACCESS; i++)
+        duite_free(rt, object[i]);
+}
+
 int main(int argc, char **argv)
 {
-    const duite_kernel *const list[] = {&WIDE, &PLAIN, &FULL, &CLEAR, &ADD_ONE, NULL};
+    const duite_kernel *const list[] = {&WIDE, &PLAIN, &FULL, &LAST, &CLEAR, &ADD_ONE, NULL};
     duite *rt;
 
     misuse_mpi();
@@ -182,6 +212,7 @@ int main(int argc, char **argv)
     }
     wide_run(rt, 0);
     wide_run(rt, 1);
+    full_run(rt);
     tap_case(duite_stop(&rt) == DUITE_OK, "stop");
     return tap_done();
 }

@@ -156,6 +156,11 @@ static bool conditioned(const struct flow_state *state, uint32_t block)
     return flow_is_preconditioned(state->flow);
 }
 
+static bool plain_solve(const struct flow_state *state, uint32_t block)
+{
+    return implicit_run(state, block) && !conditioned(state, block);
+}
+
 static bool coarse_run(const struct flow_state *state, uint32_t block)
 {
     (void)block;

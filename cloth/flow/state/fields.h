@@ -70,7 +70,7 @@
     X(probe_force,  ONE,     phys_vec,      4, rows,          probed,       is_work)               \
     X(probe_values, ONE,     double,        FLOW_PROBE_VALUES, watched,       probed,       is_work) \
     /* what travels to rank 0 on its own, empty in between; saved: of the system of a step */      \
-    X(parcel,       SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows,          always,       is_work) \
+    X(gathered,     SIZED,   unsigned char, FLOW_VERTEX_BYTES, rows,          always,       is_work) \
     X(saved,        ONE,     double,        1, saved,         saves,        is_work)
 
 /* Of the whole run; they live where the first block lives. */
@@ -80,11 +80,11 @@
     X(stretch,      BY_STEP, double,        1, one,           always,       is_work)               \
     X(peaks,        BY_STEP, double,        FLOW_PEAKS, one,           always,       is_work)      \
     X(energies,     BY_STEP, double,        FLOW_SUMS, one,           always,       is_work)       \
-    X(trial,        ONE,     double,        FLOW_STATUS, one,           always,       is_work)     \
-    X(slope,        ONE,     double,        1, one,           always,       is_work)               \
+    X(trial,        ONE,     double,        FLOW_STATUS, one,           implicit_run, is_work)     \
+    X(slope,        ONE,     double,        1, one,           implicit_run, is_work)               \
     /* a solve; pieces: what it left of free pieces; coarse, motion: factor, and its part of s */  \
-    X(sums,         BY_PASS, double,        1, dots,          always,       is_work)               \
-    X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one,           always,       is_work) \
+    X(sums,         BY_PASS, double,        1, dots,          plain_solve,  is_work)               \
+    X(scalars,      BY_PASS, struct solve_scalars, SOLVE_SCALARS, one,           implicit_run, is_work) \
     X(coarse,       ONE,     double,        1, coarse_factor, coarse_run,   is_work)               \
     X(motion,       BY_PASS, double,        1, motion,        coarse_run,   is_work)               \
     X(pieces,       ONE,     double,        FLOW_PIECE_SUMS, pieces,        in_pieces,    is_work) \

@@ -1,6 +1,7 @@
 /* A failure of the machinery (memory, MPI) ends the test program at once: no case is about it. */
 #include "tests/cloth/flow/models.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,6 +63,30 @@ void setup_weight(struct setup *s)
     if (mesh_inline(&s->cloth.mesh, 2, vertices, 1, edge, 0, NULL, &error))
         die(error.text);
     setup_pin(s, 1, (const uint32_t[]){0});
+}
+
+void setup_chain(struct setup *s, uint32_t links, double x, double y, double mass, double stiffness)
+{
+    double *vertices = calloc(3 * ((size_t)links + 1), sizeof *vertices);
+    uint32_t *edges = calloc(2 * (size_t)links, sizeof *edges);
+    struct cloth_error error = {0};
+    if (!vertices || !edges)
+        die("out of memory");
+    setup_weight(s);
+    mesh_free(&s->cloth.mesh);
+    for (uint32_t i = 0; i <= links; i++) {
+        vertices[3 * i] = x * i;
+        vertices[3 * i + 1] = y * i;
+    }
+    for (uint32_t i = 0; i < 2 * links; i++)
+        edges[i] = (i + 1) / 2;
+    if (mesh_inline(&s->cloth.mesh, links + 1, vertices, links, edges, 0, NULL, &error))
+        die(error.text);
+    s->cloth.mass_per_vertex = mass;
+    s->material.ea = stiffness * hypot(x, y);
+    s->material.damping_stiffness = 0;
+    free(vertices);
+    free(edges);
 }
 
 void setup_masses(const struct setup *s, double *mass)

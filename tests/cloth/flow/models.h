@@ -29,6 +29,12 @@ void setup_sheet(struct setup *setup, uint32_t n);
  * the spring. */
 void setup_weight(struct setup *setup);
 
+/* setup_weight with a chain of edges in its place, from the pin at the origin on: links + 1
+ * vertices of `mass` kg, each (x, y, 0) m after the one before it, whose springs have `stiffness`
+ * N/m and no damping. */
+void setup_chain(struct setup *setup, uint32_t links, double x, double y, double mass,
+                 double stiffness);
+
 /* Adds the masses (kg) that the vertices of a sheet of springs have: a quarter of each cell's. */
 void setup_masses(const struct setup *s, double *mass);
 void setup_pin(struct setup *setup, uint32_t n, const uint32_t *vertices);

@@ -68,6 +68,10 @@ tests_cloth_flow_test_checked_SOURCES = tests/cloth/flow/test_checked.c $(FLOW_T
 tests_cloth_flow_test_checked_LDADD = $(CLOTH_TEST_LIBS)
 tests_cloth_flow_test_checked_LDFLAGS = $(AM_LDFLAGS) -Wl,--wrap=check_call
 TESTS += tests/cloth/flow/test_checked
+check_PROGRAMS += tests/cloth/flow/test_warnings
+tests_cloth_flow_test_warnings_SOURCES = tests/cloth/flow/test_warnings.c $(FLOW_TEST_MODELS)
+tests_cloth_flow_test_warnings_LDADD = $(CLOTH_TEST_LIBS)
+TESTS += tests/cloth/flow/test_warnings
 check_PROGRAMS += tests/cloth/flow/test_fields
 tests_cloth_flow_test_fields_SOURCES = tests/cloth/flow/test_fields.c $(FLOW_TEST_MODELS)
 tests_cloth_flow_test_fields_LDADD = $(CLOTH_TEST_LIBS)

@@ -74,29 +74,14 @@ static double mode(size_t n, double modes[][LINKS + 1])
 
 static void hang(struct setup *s, const double *swing)
 {
-    double vertices[3 * (LINKS + 1)] = {0}, *start;
-    uint32_t edges[2 * LINKS];
-    struct cloth_error error = {0};
-    setup_weight(s);
-    mesh_free(&s->cloth.mesh);
-    for (uint32_t i = 0; i <= LINKS; i++)
-        vertices[3 * i + 1] = -LENGTH * i;
-    for (uint32_t i = 0; i < LINKS; i++) {
-        edges[2 * i] = i;
-        edges[2 * i + 1] = i + 1;
-    }
-    ck_assert_int_eq(
-        mesh_inline(&s->cloth.mesh, LINKS + 1, vertices, LINKS, edges, 0, NULL, &error), 0);
-    start = calloc(6 * (LINKS + 1), sizeof *start);
+    setup_chain(s, LINKS, 0, -LENGTH, M, K);
+    double *start = calloc(6 * (LINKS + 1), sizeof *start);
     ck_assert_ptr_nonnull(start);
     for (size_t i = 1; i <= LINKS; i++) {
         start[6 * i] = 1e-4 * swing[i];
         start[6 * i + 1] = start[6 * i - 5] - hangs(i);
     }
     s->cloth.start = start;
-    s->cloth.mass_per_vertex = M;
-    s->material.ea = K * LENGTH;
-    s->material.damping_stiffness = 0;
     s->model.grain = 100;
     s->model.tolerance = 1e-12;
 }

@@ -343,111 +343,6 @@ START_TEST(starts_out_of_bounds)
 }
 END_TEST
 
-static void warns(const struct flow *flow, size_t i, const char *text)
-{
-    const char *warning = flow_warning(flow, i);
-    ck_assert_msg(warning && strncmp(warning, text, strlen(text)) == 0, "%s",
-                  warning ? warning : "no warning");
-}
-
-START_TEST(vertices_without_faces)
-{
-    static const double vertices[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {5, 5, 5}};
-    static const uint32_t triangle[] = {0, 1, 2};
-    struct setup setup;
-    for (uint32_t n = 0; n < 2; n++) {
-        struct cloth_error error = {0};
-        struct flow *flow = NULL;
-        setup_sheet(&setup, 2);
-        setup_free(&setup);
-        setup.material.shear = 0; /* of grids alone */
-        setup.cloth.mesh_place = (char[]){"a.yaml:4:9"};
-        ck_assert_int_eq(
-            mesh_inline(&setup.cloth.mesh, 4, vertices[0], 0, NULL, n, triangle, &error), 0);
-        ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error),
-                         n ? CLOTH_OK : CLOTH_E_INPUT);
-        if (n) {
-            ck_assert_uint_eq(flow_vertices(flow), 4);
-            warns(flow, 0,
-                  "a.yaml:4:9: vertices that no face, edge or joint uses: 1, the first is vertex 3 "
-                  "of cloth 'test'; ");
-            ck_assert_ptr_null(flow_warning(flow, 1));
-        } else {
-            ck_assert_msg(
-                strstr(error.text,
-                       "a.yaml:4:9: nothing to simulate: no face, edge or joint uses a vertex") !=
-                    NULL,
-                "%s", error.text);
-        }
-        flow_free(flow);
-        setup_free(&setup);
-    }
-}
-END_TEST
-
-START_TEST(pins_and_loads_that_move_nothing)
-{
-    static const double vertices[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {5, 5, 5}, {6, 6, 6}};
-    static const uint32_t triangle[] = {0, 1, 2};
-    struct setup setup;
-    struct cloth_error error = {0};
-    struct flow *flow = NULL;
-    setup_sheet(&setup, 2);
-    setup_free(&setup);
-    setup.material.shear = 0; /* of grids alone */
-    ck_assert_int_eq(mesh_inline(&setup.cloth.mesh, 5, vertices[0], 0, NULL, 1, triangle, &error),
-                     0);
-    setup_pin(&setup, 4, (const uint32_t[]){0, 4, 4, 3});
-    setup.pin.pick.place = (char[]){"a.yaml:5:9"};
-    setup_load(&setup, 3, 0, 1, 0);
-    setup.load.pick.place = (char[]){"a.yaml:6:9"};
-    ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), 0);
-    warns(flow, 0, "vertices that no face, edge or joint uses: 2, the first is vertex 3 ");
-    warns(
-        flow, 1,
-        "a.yaml:5:9: pinned vertices that no face, edge or joint uses: 2, the first is vertex 4 ");
-    warns(flow, 2,
-          "a.yaml:6:9: loads on vertices that no face, edge or joint uses: 1, the first is vertex "
-          "3 ");
-    ck_assert_ptr_null(flow_warning(flow, 3));
-    flow_free(flow);
-    setup_free(&setup);
-}
-END_TEST
-
-/* The deepest vertex that no pin holds. */
-START_TEST(a_start_inside_an_obstacle)
-{
-    static const struct phys_key keys[] = {{.translate = {0, 9, 0}, .rotate = {1, 0, 0, 0}}};
-    struct contact_shape shapes[] = {{.value = {0, 0, 0, 0, 1, 0}},
-                                     {.kind = 1, .value = {0, 0, 0, 0.6}}};
-    struct setup setup;
-    for (int i = 0; i < 4; i++) {
-        struct cloth_error error = {0};
-        struct flow *flow = NULL;
-        setup_sheet(&setup, 3);
-        setup.cloth.place = (char[]){"a.yaml:4:9"};
-        setup.model.obstacles = shapes;
-        setup.model.n_obstacles = i ? 2 : 1; /* 0: it lies on the plane */
-        setup.model.keys = (struct phys_key *)keys;
-        shapes[1].n = i == 1; /* 1: the ball is elsewhere at time 0 */
-        if (i == 3)
-            setup_pin(&setup, 1, (const uint32_t[]){4});
-        ck_assert_int_eq(flow_prepare(&flow, &setup.model, 1, &error), CLOTH_OK);
-        if (i < 2)
-            ck_assert_ptr_null(flow_warning(flow, 0));
-        else
-            warns(flow, 0,
-                  i == 2 ? "a.yaml:4:9: cloth 'test' starts inside obstacles[1], a sphere: vertex "
-                           "4 is 0.6 m deep in it"
-                         : "a.yaml:4:9: cloth 'test' starts inside obstacles[1], a sphere: vertex "
-                           "1 is 0.1 m deep in it");
-        flow_free(flow);
-        setup_free(&setup);
-    }
-}
-END_TEST
-
 START_TEST(more_ranks_than_blocks)
 {
     struct setup setup;
@@ -483,9 +378,6 @@ int main(void)
     tcase_add_test(cases, elements_of_no_area);
     tcase_add_test(cases, bending_that_does_not_suit);
     tcase_add_test(cases, starts_out_of_bounds);
-    tcase_add_test(cases, vertices_without_faces);
-    tcase_add_test(cases, a_start_inside_an_obstacle);
-    tcase_add_test(cases, pins_and_loads_that_move_nothing);
     tcase_add_test(cases, more_ranks_than_blocks);
     suite_add_tcase(suite, cases);
     return unit_run(suite);

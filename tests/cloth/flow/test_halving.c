@@ -1,4 +1,4 @@
-/* Steps that are given up and made anew with half the length: that the run goes on from the state
+/* Steps that are given up and made again with half the length: that the run goes on from the state
  * before them, grows back, says how often, shows frames at the right times; and what it says where
  * no step is short enough. */
 #include "tests/cloth/flow/models.h"

@@ -1,6 +1,6 @@
 /* Newton steps and BDF2 on a chain that swings far: the equations of the step are solved, by one
  * step nearly, by several to the tolerance; energy is what the scheme promises; a floor and shorter
- * steps start BDF2 anew. */
+ * steps start BDF2 again. */
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
 
@@ -13,22 +13,7 @@ static const double M = 0.02, K = 300, G = 9.81, LENGTH = 0.2;
 /* Level, held at its first vertex, and let go. A frame a step. */
 static void chain(struct setup *s, double h, size_t steps)
 {
-    double vertices[3 * (LINKS + 1)] = {0};
-    uint32_t edges[2 * LINKS];
-    struct cloth_error error = {0};
-    setup_weight(s);
-    mesh_free(&s->cloth.mesh);
-    for (uint32_t i = 0; i <= LINKS; i++)
-        vertices[3 * i] = LENGTH * i;
-    for (uint32_t i = 0; i < LINKS; i++) {
-        edges[2 * i] = i;
-        edges[2 * i + 1] = i + 1;
-    }
-    ck_assert_int_eq(
-        mesh_inline(&s->cloth.mesh, LINKS + 1, vertices, LINKS, edges, 0, NULL, &error), 0);
-    s->cloth.mass_per_vertex = M;
-    s->material.ea = K * LENGTH;
-    s->material.damping_stiffness = 0;
+    setup_chain(s, LINKS, LENGTH, 0, M, K);
     s->model.h = h;
     s->model.end = h * (double)steps;
     s->model.fps = 1 / h;

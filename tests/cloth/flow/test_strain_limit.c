@@ -1,5 +1,5 @@
 /* Limits of strain in runs, against closed forms: how far a chain hangs, the fastest vibration, and
- * that a step that goes far over a limit is made anew. */
+ * that a step that goes far over a limit is made again. */
 #include "cloth/flow/setup/source.h"
 #include "tests/cloth/flow/models.h"
 #include "tests/support/unit.h"
@@ -15,21 +15,8 @@ static const double M = 0.002, K = 40, LIMIT = 400, AT = 0.01, LENGTH = 0.1;
 /* Hangs down from vertex 0; in blocks of 3. */
 static void chain(struct setup *s)
 {
-    double vertices[3 * (LINKS + 1)] = {0};
-    uint32_t edges[2 * LINKS];
-    struct cloth_error error = {0};
-    setup_weight(s);
-    mesh_free(&s->cloth.mesh);
-    for (uint32_t i = 0; i <= LINKS; i++)
-        vertices[3 * i + 1] = -LENGTH * i;
-    for (uint32_t i = 0; i < LINKS; i++) {
-        edges[2 * i] = i;
-        edges[2 * i + 1] = i + 1;
-    }
-    ck_assert_int_eq(
-        mesh_inline(&s->cloth.mesh, LINKS + 1, vertices, LINKS, edges, 0, NULL, &error), 0);
-    s->cloth.mass_per_vertex = M;
-    s->material.ea = K * LENGTH;
+    setup_chain(s, LINKS, 0, -LENGTH, M, K);
+    s->material.damping_stiffness = 0.002;
     s->material.limit_strain = AT;
     s->material.limit_stiffness = LIMIT;
     s->model.format = SOLVE_HALF;
@@ -149,7 +136,7 @@ START_TEST(the_longest_step_counts_limits)
 END_TEST
 
 /* Thrown down at 5 m/s, the weight comes in one step of 20 ms far over a limit that the matrix of
- * this step has not: 100 times its energy. The step is made anew until the matrix has it. */
+ * this step has not: 100 times its energy. The step is made again until the matrix has it. */
 START_TEST(steps_far_over_a_limit_are_halved)
 {
     struct setup setup;

@@ -1,6 +1,6 @@
 /* Springs against what they are derived from: the force is the slope of the energy, the matrix the
  * slope of the force, and the two sides of a cut spring are exact opposites. The energy is written
- * here anew, in the test's own words. */
+ * here again, in the test's own words. */
 #include "cloth/physics/particle.h"
 #include "cloth/physics/spring.h"
 #include "tests/support/unit.h"

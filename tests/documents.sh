@@ -141,6 +141,15 @@ tours() { # DOCUMENT
     done < "$scratch/stops"
 }
 
+stages() { # the stages of a step stand in the document's table in their order
+    sed -n 's/^    {"\([^"]*\)", [A-Z]*,.*/\1/p' "$srcdir/cloth/flow/step/step.c" | tr '\n' ',' > "$scratch/stages"
+    sed -n '/^| part | stage | it |/,/^$/p' "$1" | awk -F '|' 'NR > 2 && NF { gsub(/^ +| +$/, "", $3); gsub(/, /, ",", $3); printf "%s,", $3 }' \
+        > "$scratch/listed"
+    echo "step.c: $(cat "$scratch/stages")"
+    echo "document: $(cat "$scratch/listed")"
+    test -s "$scratch/stages" && cmp -s "$scratch/stages" "$scratch/listed"
+}
+
 plan_later
 ok "docs/runtime.md quotes the examples as they are" quotes "$document"
 ok "a quotation that differs is seen" sees 's/ += x\[i\] \* y\[i\];/ += x[i] - y[i];/'
@@ -155,6 +164,7 @@ ok "no document names what is not there" page_invents_nothing
 ok "duite.3 formats without warnings" formats
 ok "every public function has a comment before it" commented
 ok "guided tours stop at functions that are there" tours "$srcdir/docs/design.md"
+ok "docs/design.md lists the stages of a step" stages "$srcdir/docs/design.md"
 for program in duite-cloth duite-view duite-trace duite-predict bench/duite-bench bench/compare bench/graph-run; do
     if test -x $program; then
         ok "every option in --help of $program says what it is by itself" stands_alone ./$program

@@ -81,16 +81,16 @@ struct stage {
     int (*fork)(struct flow_state *state);
 };
 
-/* In order, also of their parts. A new stage is a row. */
+/* In order, also of their parts; docs/design.md lists them by name. A new stage is a row. */
 static const struct stage stages[] = {
     {"keep", PREDICT, keeps_first, flow_keep},
     {"prescribe velocities", PREDICT, is_driven, flow_pins_prescribe_velocity},
     {"predict contact", PREDICT, is_touched, flow_contact_predict},
-    {"constrain and solve: begin", SOLVE, always, fork_begin},
+    {"begin", SOLVE, always, fork_begin},
     {"keep", CORRECT, keeps_late, flow_keep},
-    {"solve and move", CORRECT, always, fork_end},
+    {"integrate", CORRECT, always, fork_end},
     {"prescribe positions", CORRECT, is_driven, flow_pins_prescribe_position},
-    {"leave obstacles", CORRECT, meets_obstacles, flow_contact_project},
+    {"project", CORRECT, meets_obstacles, flow_contact_project},
     {"stretch", OBSERVE, flow_is_judged, flow_stretch_fork},
     {"watch", OBSERVE, always, flow_watch},
     {"energy", OBSERVE, always, flow_energy_fork},

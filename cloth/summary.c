@@ -117,7 +117,8 @@ void summary_print(FILE *file, const struct summary *summary)
     if (report->steps_halved)
         print_halved(file, summary);
     if (report->steps_retaken)
-        fprintf(file, "  gained energy    %" PRIu64 " steps by bdf2, made anew by implicit_euler\n",
+        fprintf(file,
+                "  gained energy    %" PRIu64 " steps by bdf2, made again by implicit_euler\n",
                 report->steps_retaken);
     fprintf(file, "  wall time        %.3f s, %.6f s a step\n", report->wall_seconds,
             ratio(report->wall_seconds, (double)report->steps));

@@ -116,7 +116,7 @@ static int try_out(const struct session *session, const struct system *s, double
     return 0;
 }
 
-/* Makes the system that is fastest among some formats. It is made anew when all others are gone:
+/* Makes the system that is fastest among some formats. It is made again when all others are gone:
  * one that lies where others lay before it can take twice the time. */
 static int choose(struct session *session, enum format formats, struct system *best)
 {

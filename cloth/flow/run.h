@@ -36,7 +36,7 @@ struct flow_report {
                                                   was not small enough; 0 where there is but one */
     uint64_t steps_halved; /* how often a step was given up and begun again with half the length, */
     uint64_t halved_by[FLOW_CAUSES]; /* and why */
-    uint64_t steps_retaken; /* how often one by BDF2 gained energy and was made anew by implicit
+    uint64_t steps_retaken; /* how often one by BDF2 gained energy and was made again by implicit
                                Euler */
     uint64_t frames, cg_iterations_total, cg_iterations_max; /* iterations: of the steps made */
     double shortest_step;                                    /* s */
@@ -122,7 +122,7 @@ struct flow_rows {
 struct flow_filter {
     void *context;
     /* Called from tasks, of several blocks at once, on the rank that has the block; again where a
-     * step is made anew. What it writes must come of the rows, and of what is alike on all ranks,
+     * step is made again. What it writes must come of the rows, and of what is alike on all ranks,
      * alone: blocks are on any rank. + - * / and sqrt, for results that are the same everywhere. */
     void (*rows)(void *context, const struct flow_rows *rows);
 };

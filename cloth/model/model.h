@@ -248,7 +248,7 @@ struct model {
     char *h_place, *fps_place; /* where fps is the default: that of end */
     double end;                /* s; N = round(end / h) steps */
     double fps;   /* frames a second; frame k follows the step that ends nearest to k / fps */
-    bool halving; /* a step that fails is made anew with half the length, to h/1024; */
+    bool halving; /* a step that fails is made again with half the length, to h/1024; */
     double stretch_growth; /* so is one in which the largest length / rest length of stretch springs
                               grows by more, */
     double stretch_limit;  /* or that ends with a larger one; 0: no limit */
@@ -318,7 +318,7 @@ static inline int model_is_driven(const struct model *model)
  * on the cloth. */
 bool model_is_guarded(const struct model *model);
 
-/* Whether a step may be made anew, from a copy of the state before it. */
+/* Whether a step may be made again, from a copy of the state before it. */
 static inline bool model_keeps(const struct model *model)
 {
     return model->halving || (model->integrator == MODEL_BDF2 && model_is_guarded(model));

@@ -42,7 +42,7 @@ other_step() {
     head -c 64 "$scratch/states/quick/$1.state" > "$scratch/other" && printf '\173\024\256\107\341\172\204\077' >> "$scratch/other" && # 0.01
         tail -c +73 "$scratch/states/quick/$1.state" >> "$scratch/other" && mv "$scratch/other" "$scratch/states/quick/$1.state"
 }
-kept() { # nothing is made anew; what is damaged, or of another step, is
+kept() { # nothing is made again; what is damaged, or of another step, is
     : > "$scratch/states/quick/falling_h8.state"
     other_step crumpled_h20 || return 1
     bench_cg --quick --repeats 1 --only spring_150 --threads 3 > "$scratch/again" 2> "$scratch/said" || return 1

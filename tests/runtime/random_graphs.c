@@ -1,6 +1,6 @@
 /* Graphs in random programs: recorded in the program like operations of their own, which only
  * replays carry out. Objects that a graph uses are freed like any others; a graph is then recorded
- * anew, from what its last PROG_GRAPH_AGAIN says, or cannot be replayed. */
+ * again, from what its last PROG_GRAPH_AGAIN says, or cannot be replayed. */
 
 #include "tests/runtime/random_make.h"
 

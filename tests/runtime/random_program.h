@@ -32,7 +32,7 @@ enum prog_kind {
     PROG_GRAPH, /* records what follows it: `n` operations of the next two kinds */
     PROG_GRAPH_FORK,
     PROG_GRAPH_SET,
-    PROG_GRAPH_AGAIN,  /* what follows it is recorded, should the graph have to be recorded anew */
+    PROG_GRAPH_AGAIN,  /* what follows it is recorded, should the graph have to be recorded again */
     PROG_REPLAY,       /* `count` rounds */
     PROG_REPLAY_WHILE, /* while `object` holds, at most `count` rounds */
     PROG_ROUNDS,

@@ -31,7 +31,7 @@ static int mean(const duite_call *call)
     return 0;
 }
 
-/* scale = scale / 2 + sum; the sum begins anew, and the flag counts down. */
+/* scale = scale / 2 + sum; the sum begins again, and the flag counts down. */
 static int judge(const duite_call *call)
 {
     duite_out(call, 1, double)[0] =

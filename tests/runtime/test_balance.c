@@ -256,7 +256,7 @@ START_TEST(dear_looks)
 }
 END_TEST
 
-/* Scattered blocks are mapped anew, since no small change makes them even with few bytes. */
+/* Scattered blocks are mapped again, since no small change makes them even with few bytes. */
 START_TEST(ragged)
 {
     make(RANKS);

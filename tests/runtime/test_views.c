@@ -420,7 +420,7 @@ START_TEST(freed)
     ck_assert_int_eq(duite_replay(m.rt, graph, 100), 0);
     ck_assert_int_eq(duite_free(m.rt, m.view), 0);
     ck_assert_int_eq(duite_view(m.rt, m.a, N, INDEX, &m.view), 0);
-    ck_assert_int_eq(duite_replay(m.rt, graph, 1), 0); /* recorded anew */
+    ck_assert_int_eq(duite_replay(m.rt, graph, 1), 0); /* recorded again */
     holds(&m, 24, 15, 18);
     ck_assert_int_eq(duite_graph_free(m.rt, graph), 0);
     end(&m);

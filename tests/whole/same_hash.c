@@ -194,8 +194,8 @@ static size_t new_pairs(const struct pairs *pairs, const bool chosen[FACTORS],
     return n;
 }
 
-/* Completes a choice: each factor gets the value that meets most of the others anew, `turn` on from
- * where the last one stood where several do. */
+/* Completes a choice: each factor gets the value that meets most of the others for the first time,
+ * `turn` on from where the last one stood where several do. */
 static void complete(const struct pairs *pairs, bool chosen[FACTORS], size_t turn,
                      size_t pick[FACTORS])
 {

@@ -94,20 +94,20 @@ static void place(const struct flow_state *state, uint32_t block, const struct p
 }
 
 /* A vector of a block without its fourth lane. */
-FLOW_KERNEL(collect, FLOW_NO_PART, struct flow_args, (R(x), W(parcel)))
+FLOW_KERNEL(collect, FLOW_NO_PART, struct flow_args, (R(x), W(gathered)))
 static int collect_body(const duite_call *call, const struct collect_fields *on)
 {
     const struct flow_table *t = flow_shape_of(call);
-    unsigned char *to = on->parcel;
+    unsigned char *to = on->gathered;
     const int code =
-        duite_resize(call, FLOW_INDEX_OF(collect, parcel), FLOW_VERTEX_BYTES * (size_t)t->n);
+        duite_resize(call, FLOW_INDEX_OF(collect, gathered), FLOW_VERTEX_BYTES * (size_t)t->n);
     for (uint32_t i = 0; i < t->n && !code; i++)
         for (int c = 0; c < 3; c++, to += 8)
             flow_put_double(to, on->x[i][c]);
     return code;
 }
 
-/* Sends this vector of these blocks to rank 0, which has each in a parcel only for a moment. */
+/* Sends this vector of these blocks to rank 0, which has each of them only for a moment. */
 static int collect(struct flow_state *state, uint32_t n, const uint32_t *block,
                    enum flow_field_id vector, const struct part *part)
 {
@@ -118,11 +118,11 @@ static int collect(struct flow_state *state, uint32_t n, const uint32_t *block,
         code = flow_fork_one_as(state, &flow_kernel_collect, &args, as);
     }
     for (uint32_t k = 0; k < n && !code; k++) {
-        code = duite_get_at(state->rt, state->block[block[k]].parcel, 0, state->rows);
+        code = duite_get_at(state->rt, state->block[block[k]].gathered, 0, state->rows);
         if (!code && state->bytes)
             place(state, block[k], part);
         if (!code)
-            code = duite_set_sized(state->rt, state->block[block[k]].parcel, NULL, 0);
+            code = duite_set_sized(state->rt, state->block[block[k]].gathered, NULL, 0);
     }
     return code;
 }

@@ -158,7 +158,7 @@ static int stalled(const duite_call *call, const struct solve_scalars *now)
 {
     return duite_fail(
         call, FLOW_NOT_CONVERGED,
-        "step %.0f: conjugate gradients come to no residual below %g, begun anew %.0f "
+        "step %.0f: conjugate gradients come to no residual below %g, begun again %.0f "
         "times: that is what rounding leaves of this matrix; allow a larger "
         "tolerance, or take a smaller h or softer materials",
         flow_step_number(now->step), sqrt(now->square), now->restarts);

@@ -20,7 +20,7 @@ struct flow_block_args {
 struct flow_args {
     uint32_t block;
     uint32_t last; /* not zero: what goes wrong in this step is an error of its body; else it is
-                    * only counted, and the step is made anew with half the length */
+                    * only counted, and the step is made again with half the length */
     uint64_t frame;
     uint32_t stage;  /* of a step by RK4 */
     double h, begin; /* s: length of the step; FLOW_TICKS: when it begins */

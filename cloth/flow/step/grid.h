@@ -12,7 +12,7 @@ enum { FLOW_TICKS = 1024 };
 struct flow_grid {
     uint64_t now, end;   /* ticks; end: a multiple of FLOW_TICKS, at most 2^42 */
     uint32_t length;     /* of the step to come: a power of two */
-    uint64_t refused;    /* steps that were begun anew with half the length */
+    uint64_t refused;    /* steps that were begun again with half the length */
     uint32_t least_done; /* the shortest step that was made */
 };
 

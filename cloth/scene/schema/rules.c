@@ -151,7 +151,7 @@ static const struct scene_rule time_keys[] = {
      PLACE(struct model, fps_place), .about = "frames a second"},
     {"halving", SCENE_CHOICE, .fallback = "on", INTO(struct model, halving),
      WORDS({"on", true}, {"off", false}),
-     .about = "a step that fails is made anew with half the length, down to h/1024"},
+     .about = "a step that fails is made again with half the length, down to h/1024"},
     {"stretch_growth", SCENE_NUMBER, .fallback = "0.1", .range = SCENE_NOT_NEGATIVE,
      INTO(struct model, stretch_growth),
      .about = "largest stretch of an edge may grow by so much in a step; 0: by any"},
